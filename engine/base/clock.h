@@ -1,0 +1,12 @@
+/// Monotonic wall time in nanoseconds, and the time since the process started (for `first_frame_ms`).
+#pragma once
+#include <cstdint>
+
+namespace catena {
+
+std::int64_t now_ns();
+double ms_since(std::int64_t start_ns);
+/// Since the kernel started this process (reads its start time once; falls back to the first call).
+double ms_since_process_start();
+
+}  // namespace catena

@@ -1,0 +1,23 @@
+/// FNV-1a, 64 bit: the hash of `state_hash`.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace catena {
+
+struct Fnv1a {
+  std::uint64_t value = 0xcbf29ce484222325ull;
+
+  void bytes(const void* data, std::size_t size) {
+    const auto* p = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i) value = (value ^ p[i]) * 0x100000001b3ull;
+  }
+  template <class T>
+  void add(const T& item) {
+    static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>, "no padding, please");
+    bytes(&item, sizeof item);
+  }
+};
+
+}  // namespace catena

@@ -1,0 +1,65 @@
+/// JSON with comments and positions: what the scene file and its parts are read from.
+/// The library behind it (jsoncpp) stays inside json.cpp. Every reader names the file, the line, the key and what was expected.
+#pragma once
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/base/vec.h"
+
+namespace catena::json {
+
+enum class Kind { null, boolean, number, string, array, object };
+
+struct Node {
+  Kind kind = Kind::null;
+  int line = 0;                             ///< 1-based line of the value
+  std::shared_ptr<const std::string> file;  ///< the file's name as the user gave it
+  bool boolean = false;
+  double number = 0;
+  std::string string;
+  std::vector<Node> items;                             ///< array
+  std::vector<std::pair<std::string, Node>> members;   ///< object, in file order; keys are unique
+
+  const Node* find(std::string_view key) const;  ///< nullptr if absent (or not an object)
+  bool is_null() const { return kind == Kind::null; }
+};
+
+/// Parses a whole document. Comments are allowed; duplicate keys, trailing text and depth beyond 64 are errors.
+Result<Node> parse(std::string_view text, const std::string& file);
+Result<Node> read(const std::string& path);
+
+/// "scene.json:12: WHAT" at the node's place.
+Error error_at(const Node& node, const std::string& what);
+
+/// An error for the first member whose key is not in `keys`, naming the nearest allowed ones.
+Outcome only_keys(const Node& object, std::initializer_list<std::string_view> keys);
+Outcome only_keys(const Node& object, const std::vector<std::string_view>& keys);
+Outcome expect_object(const Node& node, std::string_view what);
+
+/// Typed readers of one member. `require_*` need the key; `get_*` give the fallback when it is absent.
+/// All numbers must be finite. `what` in the messages is the key.
+enum class Range { any, positive, not_negative };
+Result<double> require_number(const Node& object, std::string_view key, Range range = Range::any);
+Result<double> get_number(const Node& object, std::string_view key, double fallback, Range range = Range::any);
+Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key, Range range = Range::any);
+Result<int> get_integer(const Node& object, std::string_view key, int fallback, int least, int most);
+Result<bool> get_boolean(const Node& object, std::string_view key, bool fallback);
+Result<std::string> require_string(const Node& object, std::string_view key);
+Result<std::string> get_string(const Node& object, std::string_view key, std::string fallback);
+/// One word out of `words`; the index into it.
+Result<int> get_choice(const Node& object, std::string_view key, int fallback, std::initializer_list<std::string_view> words);
+Result<Vec3> require_vec3(const Node& object, std::string_view key);
+Result<Vec3> get_vec3(const Node& object, std::string_view key, const Vec3& fallback);
+Result<std::optional<Vec3>> get_optional_vec3(const Node& object, std::string_view key);
+/// A node itself as a number, a vector of three numbers, or rows of `width` numbers.
+Result<double> as_number(const Node& node, std::string_view what, Range range = Range::any);
+Result<Vec3> as_vec3(const Node& node, std::string_view what);
+Result<std::vector<std::vector<double>>> as_rows(const Node& node, std::string_view what, std::size_t width);
+
+}  // namespace catena::json

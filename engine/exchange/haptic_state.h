@@ -1,0 +1,41 @@
+/// What the tick tells the frame: plain, trivially copyable, grouped by who writes it.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "engine/base/vec.h"
+
+namespace catena::exchange {
+
+inline constexpr int kMaxLinks = 8;
+
+/// One word a link and tick; the words of `NAME_status` in the tick CSV.
+enum class Status : std::uint8_t { ok, free, released, budget, critical, boundary, no_surface, bad_probe };
+const char* status_word(Status status);  ///< OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE
+
+struct LinkReport {
+  Vec3 proxy{0.0};           ///< world units
+  Vec3 force_n{0.0};         ///< this link's own share, before the limit
+  double residual = 0;       ///< distance from the constraint, world units
+  double weight = 0;         ///< w_i of the force law, 0..1
+  std::int32_t evaluations = 0;
+  Status status = Status::ok;
+  bool active = false;       ///< enabled and not released
+};
+
+struct HapticState {
+  // written by the tick
+  std::uint64_t tick = 0;
+  double t_s = 0;
+  Vec3 probe{0.0};     ///< world units
+  Vec3 force_n{0.0};   ///< on the hand, after the limit, world axes
+  std::uint32_t buttons = 0;
+  std::int32_t link_count = 0;
+  std::array<LinkReport, kMaxLinks> links{};
+  // written by the servo
+  std::uint64_t program_epoch = 0;  ///< the newest program that the tick has run
+  std::uint64_t missed_deadlines = 0;
+  double compute_us = 0;
+};
+
+}  // namespace catena::exchange

@@ -1,0 +1,91 @@
+/// Fields: immutable, versioned, in world coordinates and double precision. Grids and analytic fields serve one interface, so
+/// that every algorithm can be tested against closed forms. One fetch (= one evaluation) gives the value and, for scalars,
+/// the analytic gradient: of the trilinear cell on grids, of the formula on analytic fields.
+/// Threads: any number at once, each with its own Cursor. No allocation, lock or throw in any const noexcept function.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "engine/base/vec.h"
+#include "engine/field/cell.h"
+#include "engine/field/mapping.h"
+
+namespace catena::field {
+
+/// Where a walk remembers the nodes it last touched. Plain bytes, one per walk and thread; never changes a result.
+/// Zero-initialised it belongs to no grid; a fetch from another grid than the last starts it anew.
+struct Cursor {
+  const void* owner = nullptr;
+  alignas(16) std::byte memory[368]{};
+};
+
+struct ScalarSample {
+  double value = 0;
+  Vec3 gradient{0.0};   ///< world units
+  bool inside = false;  ///< within the domain (and the valid mask); outside, value and gradient extend the nearest cell or formula
+};
+
+struct VectorSample {
+  Vec3 value{0.0};  ///< components in world axes
+  bool inside = false;
+};
+
+class Field {
+ public:
+  virtual ~Field() = default;
+  Field() = default;
+  Field(const Field&) = delete;
+  Field& operator=(const Field&) = delete;
+
+  const std::string& name() const { return name_; }       ///< the grid's or the formula's name
+  std::uint64_t version() const { return version_; }      ///< unique in the process; the key of mirrors
+  const Mapping& mapping() const { return mapping_; }
+  const Box& index_box() const { return index_box_; }     ///< of voxel centres; analytic: the box -2..2
+  double length() const { return length_; }               ///< L: the longest edge of the domain box, world units; analytic: 4
+  virtual bool is_grid() const noexcept { return false; }
+  virtual std::size_t bytes() const noexcept { return 0; }
+
+ protected:
+  void set_domain(std::string name, const Mapping& mapping, const Box& index_box);
+
+ private:
+  std::string name_;
+  std::uint64_t version_ = 0;
+  Mapping mapping_;
+  Box index_box_;
+  double length_ = 0;
+};
+
+class ScalarGrid;
+class VectorGrid;
+
+class ScalarField : public Field {
+ public:
+  virtual ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept = 0;
+  /// The values that the field attains: of the active (and valid) voxels; of the formula, over all space (may be infinite).
+  virtual double min_value() const noexcept = 0;
+  virtual double max_value() const noexcept = 0;
+  virtual const ScalarGrid* grid() const noexcept { return nullptr; }
+};
+
+class VectorField : public Field {
+ public:
+  /// `line_reference` not null: a line field (v ~ -v); corners are aligned with it before interpolation, and an analytic
+  /// value is turned to its side.
+  virtual VectorSample sample(const Vec3& world, Cursor& cursor, const Vec3* line_reference = nullptr) const noexcept = 0;
+  virtual const VectorGrid* grid() const noexcept { return nullptr; }
+};
+
+using ScalarFieldPtr = std::shared_ptr<const ScalarField>;
+using VectorFieldPtr = std::shared_ptr<const VectorField>;
+
+/// Either kind; exactly one is set.
+struct AnyField {
+  ScalarFieldPtr scalar;
+  VectorFieldPtr vector;
+  const Field* get() const { return scalar ? static_cast<const Field*>(scalar.get()) : vector.get(); }
+};
+
+}  // namespace catena::field

@@ -1,0 +1,84 @@
+/// Sampled fields: a NanoVDB buffer on the CPU is the truth; the GPU mirror is made from it and can always be thrown away.
+/// NanoVDB and OpenVDB stay inside this room's .cpp files.
+#pragma once
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/field/field.h"
+
+namespace catena::field {
+
+struct GridStats {
+  std::uint64_t active_voxels = 0;
+  std::uint64_t nan_count = 0;     ///< active voxels with a NaN or an infinity
+  double min = 0, max = 0;         ///< scalars: values; vectors: magnitudes (finite ones only)
+  Vec3 component_min{0.0}, component_max{0.0};
+};
+
+class ScalarGrid final : public ScalarField {
+ public:
+  struct Storage;  ///< the NanoVDB buffers
+  ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage, const GridStats& stats);
+  ~ScalarGrid() override;
+
+  ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
+  double min_value() const noexcept override { return stats_.min; }
+  double max_value() const noexcept override { return stats_.max; }
+  const ScalarGrid* grid() const noexcept override { return this; }
+  bool is_grid() const noexcept override { return true; }
+  std::size_t bytes() const noexcept override;
+
+  /// The cell whose base is the nearest legal one to `base` (clamped so that base and base + 1 lie in the index box).
+  ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept;
+  Index3 base_of(const Vec3& index) const noexcept;  ///< floor, clamped to legal bases
+  const GridStats& stats() const { return stats_; }
+  float background() const;
+  bool has_mask() const;
+  /// Copies `size` voxels an axis from `origin` into out (x fastest); voxels outside the tree give the background.
+  void read_block(const Index3& origin, const Index3& size, std::span<float> out) const;
+  /// 1 where the *cell* based at the voxel is valid (always 1 inside the box without a mask), 0 elsewhere.
+  void read_cell_valid(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const;
+  /// True where the 8^3 block at `origin` (a multiple of 8) holds only one value and no tree leaf; `value` is it.
+  bool constant_block(const Index3& origin, float& value) const;
+
+ private:
+  std::unique_ptr<Storage> storage_;
+  GridStats stats_;
+};
+
+class VectorGrid final : public VectorField {
+ public:
+  struct Storage;
+  VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage, const GridStats& stats);
+  ~VectorGrid() override;
+
+  VectorSample sample(const Vec3& world, Cursor& cursor, const Vec3* line_reference = nullptr) const noexcept override;
+  const VectorGrid* grid() const noexcept override { return this; }
+  bool is_grid() const noexcept override { return true; }
+  std::size_t bytes() const noexcept override;
+
+  VectorCell cell(const Index3& base, Cursor& cursor) const noexcept;
+  Index3 base_of(const Vec3& index) const noexcept;
+  const GridStats& stats() const { return stats_; }
+  bool has_mask() const;
+  void read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const;
+
+ private:
+  std::unique_ptr<Storage> storage_;
+  GridStats stats_;
+};
+
+/// Grids made in memory: values by voxel, x fastest, over `size` voxels from index (0, 0, 0). `valid` (optional) by voxel.
+/// Voxels whose value is not finite are kept and counted.
+std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> values,
+                                                   std::span<const std::uint8_t> valid = {});
+std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
+                                                   std::span<const std::uint8_t> valid = {});
+
+/// Samples any field at `resolution` nodes an axis, both ends included, over the cube lo..hi (the grid `generate` writes).
+std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);
+std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi);
+
+}  // namespace catena::field

@@ -1,0 +1,57 @@
+/// Reading and writing of fields: .vdb (float, half, double, integer scalars; 3-vectors), .nii and .nii.gz, .raw.
+/// Every failure is one sentence that names the file, what is wrong and what was expected. Nothing else in the house
+/// includes OpenVDB or the NIfTI library.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/field/grid.h"
+
+namespace catena::field {
+
+struct RawLayout {
+  Index3 shape{0, 0, 0};
+  Vec3 spacing{1.0};
+  Vec3 origin{0.0};
+  std::string type = "float32";  ///< float32 float64 uint8 int8 uint16 int16 uint32 int32; little-endian, x fastest; "float32x3" a vector
+};
+
+struct LoadRequest {
+  std::string path;
+  std::string grid;                                  ///< empty: the only usable grid of the file, or an error that lists them
+  std::optional<std::string> valid_grid = "valid";   ///< nullopt: no mask ("valid": null); a missing default mask is fine
+  bool valid_required = false;                       ///< the user named the mask: it must exist
+  std::optional<RawLayout> raw;                      ///< for .raw
+};
+
+/// Loads one grid (and its mask), nothing else of the file.
+Result<AnyField> load(const LoadRequest& request);
+
+struct GridInfo {
+  std::string name, type;           ///< type as the file says: float, half, vec3s, bool, ...
+  Index3 size{0, 0, 0}, lowest{0, 0, 0};
+  Mapping mapping;
+  GridStats stats;
+  std::size_t bytes = 0;            ///< in memory, as NanoVDB
+  bool usable = false;              ///< Catena can load it as a field
+  bool is_vector = false;
+};
+/// Describes every grid of a file.
+Result<std::vector<GridInfo>> describe(const std::string& path);
+
+/// Writes grids to a .vdb through a temporary file beside it, renamed when complete: nothing half-written stays behind.
+struct WriteItem {
+  AnyField field;           ///< grids only
+  std::string name;
+};
+Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items);
+
+/// Counts of what was really loaded, so that a test can show that only what the scene names is.
+struct LoadCounters {
+  std::uint64_t files = 0, grids = 0;
+};
+LoadCounters load_counters();
+
+}  // namespace catena::field

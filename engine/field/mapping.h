@@ -1,0 +1,31 @@
+/// The linear map between the index space of a grid and the world: world = J index + origin. Anisotropic voxels, rotations,
+/// shears and negative origins are all just J. Analytic fields have J = 1, origin = 0.
+#pragma once
+#include "engine/base/vec.h"
+
+namespace catena::field {
+
+struct Mapping {
+  Mat3 world_from_index_linear{1.0};  ///< J, world units a voxel
+  Mat3 index_from_world_linear{1.0};  ///< J^-1
+  Vec3 origin{0.0};                   ///< world position of index (0, 0, 0)
+
+  static Mapping from_linear(const Mat3& world_from_index, const Vec3& origin);
+
+  Vec3 world_from_index(const Vec3& index) const { return world_from_index_linear * index + origin; }
+  Vec3 index_from_world(const Vec3& world) const { return index_from_world_linear * (world - origin); }
+  /// A covector: gradient_world = J^-T gradient_index.
+  Vec3 world_gradient(const Vec3& g) const { return g * index_from_world_linear; }
+  double smallest_edge() const;  ///< of a voxel, world units
+};
+
+/// A box in index space (grids: voxel centres lo..hi, both included; analytic fields: world coordinates).
+struct Box {
+  Vec3 lo{0.0}, hi{0.0};
+  bool contains(const Vec3& p, double slack = 0) const {
+    return p.x >= lo.x - slack && p.y >= lo.y - slack && p.z >= lo.z - slack && p.x <= hi.x + slack && p.y <= hi.y + slack &&
+           p.z <= hi.z + slack;
+  }
+};
+
+}  // namespace catena::field

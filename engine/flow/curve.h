@@ -1,0 +1,60 @@
+/// A streamline as an arc-length curve: knots (s, position, unit tangent) with cubic Hermite dense output between them.
+/// `trace` writes these knots, the tubes draw this object and the selected streamline link moves on it: what is seen is felt.
+/// Immutable once traced. Any thread; reading allocates nothing.
+#pragma once
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/base/vec.h"
+#include "engine/flow/advect.h"
+
+namespace catena::flow {
+
+struct Knot {
+  double s = 0;         ///< arc length from the seed, signed, world units
+  Vec3 p{0.0};
+  Vec3 t{0.0};          ///< unit tangent
+};
+
+enum class End { boundary, critical, length, lap };
+const char* end_word(End end);  ///< BOUNDARY CRITICAL LENGTH LAP
+
+class Curve {
+ public:
+  Curve(std::vector<Knot> knots, bool closed, End first_end, End last_end, double domain_length);
+
+  const std::vector<Knot>& knots() const { return knots_; }
+  bool closed() const { return closed_; }         ///< the last knot repeats the first one's place; s wraps with period()
+  double period() const { return knots_.back().s - knots_.front().s; }
+  End first_end() const { return first_end_; }
+  End last_end() const { return last_end_; }
+  double domain_length() const { return domain_length_; }
+
+  /// Cubic Hermite on the knot interval k: position and d/ds at s (world units; s within the interval).
+  void evaluate_in(std::size_t k, double s, Vec3& p, Vec3& derivative) const noexcept;
+  Vec3 position(double s) const noexcept;         ///< clamped to the ends, or wrapped
+  std::size_t interval_of(double s) const noexcept;
+
+ private:
+  std::vector<Knot> knots_;
+  bool closed_;
+  End first_end_, last_end_;
+  double domain_length_;
+};
+using CurvePtr = std::shared_ptr<const Curve>;
+
+struct TraceOptions {
+  double length = 0;            ///< longest arc length in each direction, world units; 0: 10 L
+  double tolerance = 1e-10;     ///< of the embedded error of one step, times L
+  double hermite_tolerance = 1e-11;  ///< of the Hermite midpoint against a half step, times L
+  std::size_t max_knots = 2000000;
+};
+
+/// Traces both directions from the seed with DP5(4); on grids with knots on cell faces. Ends at the domain's boundary, a
+/// critical point (or min_speed), the length, or one lap. A seed outside the domain, not finite, or at a zero is an error
+/// (the caller prefixes file and line).
+Result<CurvePtr> trace(const Flow& flow, const Vec3& seed, const TraceOptions& options = {});
+
+}  // namespace catena::flow

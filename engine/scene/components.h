@@ -1,0 +1,117 @@
+/// The components: plain structs that say what an entity is. Field's terms; world units; display (sRGB) colours as written.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/json.h"
+#include "engine/field/analytic.h"
+#include "engine/field/load.h"
+#include "engine/scene/world.h"
+
+namespace catena::scene {
+
+struct Name {
+  std::string value;
+};
+
+/// A field of the scene: where it comes from, and the field itself once something has asked for it.
+struct FieldSource {
+  json::Node where;                          ///< its place in the scene file, for messages
+  std::optional<field::LoadRequest> file;    ///< either this
+  std::string analytic;                      ///< or this
+  field::AnalyticParameters parameters;
+  int resolution = 128;                      ///< analytic fields are drawn from a sampled grid: nodes an axis
+  std::array<double, 2> box{-2, 2};
+  field::AnyField loaded;                    ///< exact (the hand's)
+  field::AnyField drawn;                     ///< a grid (the eye's); the same object for files
+};
+
+struct Rgb {
+  float r = 0, g = 0, b = 0;
+};
+
+/// Piecewise-linear maps over field values; opacity is kept as extinction sigma per world unit, interpolated in sigma.
+struct TransferFunction {
+  struct ColorPoint {
+    double value;
+    Rgb color;
+  };
+  struct ExtinctionPoint {
+    double value, sigma;
+  };
+  std::vector<ColorPoint> colors;
+  std::vector<ExtinctionPoint> extinctions;
+};
+
+struct Volume {
+  Entity field;
+  json::Node where;
+  TransferFunction transfer;
+  bool shade = false;
+};
+
+struct Isosurface {
+  Entity field;
+  json::Node where;
+  double level = 0;
+  Rgb color{0.8f, 0.8f, 0.9f};
+  double opacity = 1;
+};
+
+struct StreamlineSet {
+  Entity field;
+  json::Node where;
+  std::vector<Vec3> seeds;
+  double radius = 0;               ///< 0: fitted to the domain
+  Rgb color{1.0f, 0.3f, 0.2f};
+  bool line = false;               ///< "kind": "line"
+  double min_speed = 0;
+  double length = 0;               ///< 0: 10 L, each direction
+};
+
+/// The cursor: what the hand holds, as the last tick left it. Written by the cursor system, drawn as a glyph.
+struct Cursor {
+  Vec3 probe{0.0};
+  std::vector<Vec3> proxies;
+  std::vector<bool> active;
+  Vec3 force_n{0.0};
+  double size = 0;                 ///< glyph radius, world units; 0: fitted
+  bool visible = false;
+};
+
+/// One link of the chain; its own keys are read by the constraint that it names.
+struct Link {
+  std::string name, type;
+  json::Node node;
+};
+
+struct Coupling {
+  double stiffness_n_per_m = 500;
+  double damping_ns_per_m = 0;
+  double max_force_n = 8;
+  std::optional<double> ramp_s;
+};
+
+struct Workspace {
+  double metres_per_unit = 1;
+  Vec3 origin{0.0};
+  Mat3 rotation{1.0};              ///< world from hand
+  bool given = false;
+};
+
+struct Camera {
+  Vec3 position{0.0, -8.0, 3.0}, target{0.0}, up{0.0, 0.0, 1.0};
+  double fovy_deg = 30;
+  bool orthographic = false;
+  double height = 1;               ///< orthographic: world units from bottom to top
+  bool given = false;              ///< false: fitted to what is drawn
+};
+
+struct Background {
+  Rgb color{0, 0, 0};
+  bool transparent = false;
+};
+
+}  // namespace catena::scene

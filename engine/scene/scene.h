@@ -1,0 +1,60 @@
+/// A scene: the world of entities and the few things there is one of. Read from a scene file or made for a bare data file.
+/// Nothing is loaded before it is asked for: a field is loaded once, and only if something names it.
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/flow/curve.h"
+#include "engine/scene/components.h"
+
+namespace catena::scene {
+
+struct Scene {
+  std::string path;
+  World world;
+  Coupling coupling;
+  Workspace workspace;
+  Camera camera;
+  Background background;
+  Entity cursor;
+
+  /// Curves already traced, keyed by field version, flow and seed: tubes and links share the object.
+  struct CurveKey {
+    std::uint64_t field_version;
+    bool line;
+    double min_speed, length;
+    std::array<double, 3> seed;
+    auto operator<=>(const CurveKey&) const = default;
+  };
+  std::map<CurveKey, flow::CurvePtr> curves;
+};
+
+/// "--field NAME=FILE[:GRID]": replaces the source of a named field, or adds one.
+struct FieldOverride {
+  std::string name, file, grid;
+};
+
+/// Reads and checks the whole file; every error names file, line and what was expected. Does not load fields, but every
+/// file that it names must exist.
+Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
+Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
+/// A bare data file: its (first usable) scalar grid as a volume with a transfer function from its histogram, a vector grid
+/// as streamlines; the camera is fitted.
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {});
+
+Entity find_field(const Scene& scene, std::string_view name);
+/// Loads on first use. `where` is the place that names the field, for messages.
+Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where);
+Result<field::AnyField> use_field(Scene& scene, const std::string& name, const json::Node& where);
+/// The same as a grid that can be drawn (analytic fields are sampled once).
+Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where);
+/// The one curve of (field, flow, seed, length).
+Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);
+
+/// Checks that a level can be drawn and felt: it lies within the field's values.
+Outcome check_level(const field::ScalarField& field, double level, const json::Node& where);
+
+}  // namespace catena::scene

@@ -1,0 +1,125 @@
+/// The ECS: entities are numbers, components plain structs in sparse sets, systems free functions over them.
+/// Frame thread only.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <typeindex>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "engine/base/assert.h"
+
+namespace catena::scene {
+
+struct Entity {
+  std::uint32_t id = 0xffffffffu;
+  bool operator==(const Entity&) const = default;
+  explicit operator bool() const { return id != 0xffffffffu; }
+};
+
+/// A sparse set: dense arrays of owners and components, in order of insertion until something is removed.
+template <class T>
+class Pool {
+ public:
+  T& emplace(Entity e, T value) {
+    CATENA_ASSERT(!contains(e));
+    if (sparse_.size() <= e.id) sparse_.resize(e.id + 1, kNone);
+    sparse_[e.id] = static_cast<std::uint32_t>(dense_.size());
+    owners_.push_back(e);
+    dense_.push_back(std::move(value));
+    return dense_.back();
+  }
+  bool contains(Entity e) const { return e.id < sparse_.size() && sparse_[e.id] != kNone; }
+  T& get(Entity e) {
+    CATENA_ASSERT(contains(e));
+    return dense_[sparse_[e.id]];
+  }
+  const T& get(Entity e) const {
+    CATENA_ASSERT(contains(e));
+    return dense_[sparse_[e.id]];
+  }
+  void remove(Entity e) {
+    if (!contains(e)) return;
+    const std::uint32_t hole = sparse_[e.id];
+    dense_[hole] = std::move(dense_.back());
+    owners_[hole] = owners_.back();
+    sparse_[owners_[hole].id] = hole;
+    sparse_[e.id] = kNone;
+    dense_.pop_back();
+    owners_.pop_back();
+  }
+  std::size_t size() const { return dense_.size(); }
+  const std::vector<Entity>& owners() const { return owners_; }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> sparse_;
+  std::vector<Entity> owners_;
+  std::vector<T> dense_;
+};
+
+class World {
+ public:
+  Entity create() { return Entity{next_++}; }
+
+  template <class T>
+  T& emplace(Entity e, T value = {}) {
+    return pool<T>().emplace(e, std::move(value));
+  }
+  template <class T>
+  bool has(Entity e) const {
+    const auto* p = find_pool<T>();
+    return p != nullptr && p->contains(e);
+  }
+  template <class T>
+  T& get(Entity e) { return pool<T>().get(e); }
+  template <class T>
+  const T& get(Entity e) const {
+    const auto* p = find_pool<T>();
+    CATENA_ASSERT(p != nullptr);
+    return p->get(e);
+  }
+  template <class T>
+  void remove(Entity e) { pool<T>().remove(e); }
+  template <class T>
+  std::size_t count() const {
+    const auto* p = find_pool<T>();
+    return p == nullptr ? 0 : p->size();
+  }
+  /// Calls f(entity, T&) for each owner of a T, in order of insertion. f may not add or remove Ts.
+  template <class T, class F>
+  void each(F&& f) {
+    for (Entity e : pool<T>().owners()) f(e, pool<T>().get(e));
+  }
+  template <class T, class F>
+  void each(F&& f) const {
+    if (const auto* p = find_pool<T>())
+      for (Entity e : p->owners()) f(e, p->get(e));
+  }
+
+ private:
+  struct Slot {
+    virtual ~Slot() = default;
+  };
+  template <class T>
+  struct Typed final : Slot {
+    Pool<T> pool;
+  };
+  template <class T>
+  Pool<T>& pool() {
+    auto& slot = pools_[std::type_index(typeid(T))];
+    if (!slot) slot = std::make_unique<Typed<T>>();
+    return static_cast<Typed<T>&>(*slot).pool;
+  }
+  template <class T>
+  const Pool<T>* find_pool() const {
+    const auto it = pools_.find(std::type_index(typeid(T)));
+    return it == pools_.end() ? nullptr : &static_cast<const Typed<T>&>(*it->second).pool;
+  }
+
+  std::uint32_t next_ = 0;
+  std::unordered_map<std::type_index, std::unique_ptr<Slot>> pools_;
+};
+
+}  // namespace catena::scene

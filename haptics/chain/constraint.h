@@ -1,0 +1,67 @@
+/// The interface of every constraint (paper, section 3). A Constraint object is the immutable specification, made off the
+/// tick; what changes from tick to tick is in LinkState (plain data), and caches that never change a result in LinkScratch.
+/// `start` and `advance` run on the haptic thread: no allocation, lock, throw, or unbounded loop; same bits for same input.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <type_traits>
+
+#include "engine/base/assert.h"
+#include "engine/exchange/haptic_state.h"
+#include "engine/field/field.h"
+
+namespace catena::haptics {
+
+using exchange::kMaxLinks;
+using exchange::Status;
+
+inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, for every method
+
+struct LinkState {
+  Vec3 proxy{0.0};
+  double residual = 0;            ///< distance from the constraint, world units
+  std::int32_t evaluations = 0;   ///< of this tick
+  Status status = Status::ok;
+  bool started = false;
+  bool released = false;          ///< let go; re-arms by the constraint's own rule
+  bool on = false;                ///< its switch
+  double weight = 1;              ///< w_i
+  alignas(16) std::array<std::byte, 1024> memory{};  ///< the constraint's own, zero at start; see memory_of
+
+  bool active() const { return on && !released; }
+};
+static_assert(std::is_trivially_copyable_v<LinkState>);
+
+/// The constraint's private memory in the state, as its own plain struct T (zero bytes must be a legal T).
+template <class T>
+T& memory_of(LinkState& state) {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(state.memory) && alignof(T) <= 16);
+  return *std::launder(reinterpret_cast<T*>(state.memory.data()));
+}
+
+struct LinkScratch {
+  std::array<field::Cursor, 3> cursors{};
+};
+
+class Constraint {
+ public:
+  virtual ~Constraint() = default;
+  Constraint() = default;
+  Constraint(const Constraint&) = delete;
+  Constraint& operator=(const Constraint&) = delete;
+
+  /// Before the link's first tick: places the proxy (seed, or projection of the first incoming probe); may set `released`.
+  /// The evaluations that it spends count into the first tick's `state.evaluations` (which `advance` then adds to).
+  virtual void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept = 0;
+
+  /// One tick: moves state.proxy by the (finite) incoming probe; sets status, residual, released and adds to evaluations.
+  /// Where the constraint does not hold (released, free side, no surface) the proxy equals the probe bit for bit.
+  virtual void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept = 0;
+
+  /// Its domain length L, for tolerances and tests.
+  virtual double domain_length() const noexcept { return 4; }
+};
+
+}  // namespace catena::haptics

@@ -1,0 +1,33 @@
+/// One tick: a pure function of (program, state, probe). The servo thread, `replay`, the tests and the benchmarks run this.
+///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
+///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
+/// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE.
+#pragma once
+#include "haptics/chain/program.h"
+
+namespace catena::haptics {
+
+struct ProbeSample {
+  double t_s = 0;
+  Vec3 position{0.0};  ///< world units
+  std::uint32_t buttons = 0;
+};
+
+struct ChainState {
+  std::array<LinkState, kMaxLinks> links{};
+  Vec3 last_probe{0.0};
+  double last_t_s = 0;
+  Vec3 force_n{0.0};
+  std::uint64_t ticks = 0;
+  bool has_probe = false;
+};
+static_assert(std::is_trivially_copyable_v<ChainState>);
+
+struct ChainScratch {
+  std::array<LinkScratch, kMaxLinks> links{};
+};
+
+/// Advances `state` and fills `out` (everything but what the servo writes).
+void tick(const Program& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch, exchange::HapticState& out) noexcept;
+
+}  // namespace catena::haptics

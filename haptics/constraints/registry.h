@@ -1,0 +1,46 @@
+/// The list of all constraints. A new one is one file with one ConstraintType and one line in registry.cpp.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/json.h"
+#include "engine/flow/curve.h"
+#include "haptics/chain/constraint.h"
+
+namespace catena::haptics {
+
+/// What a constraint may ask for while it is built (off the tick). Errors come back with the node's file and line.
+struct BuildContext {
+  std::function<Result<field::AnyField>(const json::Node& where, const std::string& name)> field;
+  /// The one curve object of (field, flow, seed): the same that is drawn.
+  std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const flow::Flow& flow, const Vec3& seed)> curve;
+};
+
+struct Key {
+  std::string_view name;
+  std::string_view type;  ///< JSON Schema: number, string, boolean, array
+  bool required;
+  std::string_view help;
+};
+
+struct ConstraintType {
+  std::string_view type;                ///< the word in the scene file
+  std::string_view paper;               ///< equations and sections it comes from
+  std::vector<Key> keys;                ///< its own keys, beside name, type, on, stiffness
+  Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
+};
+
+const std::vector<ConstraintType>& registry();
+const ConstraintType* find_constraint(std::string_view type);
+/// The keys that every link takes: name, type, stiffness, on.
+const std::vector<Key>& common_keys();
+/// The JSON Schema of a chain, printed from the registry.
+std::string chain_schema();
+
+/// Builds one link's constraint: looks the type up, refuses unknown keys, calls its build.
+Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context);
+
+}  // namespace catena::haptics

@@ -1,0 +1,73 @@
+/// The frame packet: everything one picture needs, as plain data. Copied by render/extract; the ECS is not read after it.
+/// Fields are held by shared pointer (kept alive while the frame uses them) and never looked into here.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/base/vec.h"
+
+namespace catena::field {
+class ScalarGrid;
+}
+
+namespace catena::render {
+
+struct Color {
+  float r = 0, g = 0, b = 0;
+};
+
+struct View {
+  Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};
+  double fovy_deg = 30;
+  bool orthographic = false;
+  double height = 1;
+};
+
+/// Piecewise-linear over field values; sigma is extinction per world unit.
+struct TransferTable {
+  std::vector<std::array<double, 4>> colors;       ///< value, r, g, b
+  std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
+};
+
+struct VolumeItem {
+  std::shared_ptr<const field::ScalarGrid> grid;
+  TransferTable transfer;
+  bool shade = false;
+};
+
+struct IsosurfaceItem {
+  std::shared_ptr<const field::ScalarGrid> grid;
+  double level = 0;
+  Color color;
+  float opacity = 1;
+};
+
+/// A tube around a polyline, already flattened from the curve finely enough for its radius.
+struct TubeItem {
+  std::vector<Vec3> points;
+  double radius = 0;
+  Color color;
+};
+
+/// The cursor: probe, the proxy of every link, the links between them, the force.
+struct CursorItem {
+  Vec3 probe{0.0};
+  std::vector<Vec3> proxies;
+  std::vector<bool> active;
+  Vec3 force_n{0.0};
+  double size = 0;  ///< radius of the probe's ball, world units
+};
+
+struct FramePacket {
+  View view;
+  std::uint32_t width = 1024, height = 768;
+  std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
+  std::vector<VolumeItem> volumes;
+  std::vector<IsosurfaceItem> isosurfaces;
+  std::vector<TubeItem> tubes;
+  std::vector<CursorItem> cursors;
+};
+
+}  // namespace catena::render
