@@ -1,5 +1,63 @@
 #include "engine/app/app.h"
 
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <new>
+
+#include "engine/app/command.h"
+#include "engine/base/clock.h"
+#include "engine/base/text.h"
+
 namespace catena::app {
-int run(int, char**) { return 0; }
+
+namespace {
+int bad_input(const std::string& message) {
+  fmt::print(stderr, "catena: {}\n", one_line(message));
+  return 2;
+}
+
+// "catena: unknown option: expected one of ..., see catena render --help"
+std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
+  std::string command = "catena";
+  for (const CLI::App* sub : program.get_subcommands()) command += " " + sub->get_name();
+  return std::string(error.what()) + " (see " + command + " --help)";
+}
+}  // namespace
+
+int run(int argc, char** argv) {
+  ms_since_process_start();
+  CLI::App program{"Catena: see a scientific field and feel it with a hand."};
+  program.name("catena");
+  program.require_subcommand(1);
+  program.set_version_flag("--version", "catena 0.1.0");
+  Work chosen;
+  int view_exit_code = 0;
+  add_render(program, chosen);
+  add_replay(program, chosen);
+  add_trace(program, chosen);
+  add_info(program, chosen);
+  add_generate(program, chosen);
+  add_import(program, chosen);
+  add_view(program, chosen, view_exit_code);
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    return bad_input(usage_message(program, error));
+  }
+  try {
+    const Outcome done = chosen();
+    if (!done) return bad_input(done.error().message);
+  } catch (const MachineFailure& failure) {
+    fmt::print(stderr, "catena: {}\n", one_line(failure.message));
+    return 1;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "catena: out of memory\n");
+    return 1;
+  }
+  return view_exit_code;
+}
+
 }  // namespace catena::app

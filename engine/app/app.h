@@ -1,5 +1,5 @@
-/// The program `catena`: one file a subcommand. Exit codes: 0 done, 2 bad input (one clear line on stderr), 1 a failure of
-/// the machine (no device, out of memory).
+/// The program `catena`: one file a subcommand. Exit codes: 0 done; 2 bad input, with one clear line on stderr and no output
+/// file; 1 the machine failed (no Vulkan device, no display, out of memory).
 #pragma once
 
 namespace catena::app {

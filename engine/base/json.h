@@ -20,6 +20,7 @@ struct Node {
   Kind kind = Kind::null;
   int line = 0;                             ///< 1-based line of the value
   std::shared_ptr<const std::string> file;  ///< the file's name as the user gave it
+  std::string label;                        ///< its key, or "chain[2]" for an item; empty at the top level
   bool boolean = false;
   double number = 0;
   std::string string;
@@ -34,8 +35,10 @@ struct Node {
 Result<Node> parse(std::string_view text, const std::string& file);
 Result<Node> read(const std::string& path);
 
-/// "scene.json:12: WHAT" at the node's place.
+/// "scene.json:12: WHAT" at the node's place; without the line where it is 0, without the file where there is none.
 Error error_at(const Node& node, const std::string& what);
+/// The node's place without its contents: cheap to keep for later messages.
+Node place_of(const Node& node);
 
 /// An error for the first member whose key is not in `keys`, naming the nearest allowed ones.
 Outcome only_keys(const Node& object, std::initializer_list<std::string_view> keys);

@@ -35,13 +35,14 @@ class ScalarGrid final : public ScalarField {
   Index3 base_of(const Vec3& index) const noexcept;  ///< floor, clamped to legal bases
   const GridStats& stats() const { return stats_; }
   float background() const;
-  bool has_mask() const;
+  bool has_mask() const;  ///< some cells may be invalid: a `valid` mask, or values that are not finite
   /// Copies `size` voxels an axis from `origin` into out (x fastest); voxels outside the tree give the background.
   void read_block(const Index3& origin, const Index3& size, std::span<float> out) const;
   /// 1 where the *cell* based at the voxel is valid (always 1 inside the box without a mask), 0 elsewhere.
   void read_cell_valid(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const;
   /// True where the 8^3 block at `origin` (a multiple of 8) holds only one value and no tree leaf; `value` is it.
   bool constant_block(const Index3& origin, float& value) const;
+  const Storage& storage() const { return *storage_; }  ///< opaque outside this room
 
  private:
   std::unique_ptr<Storage> storage_;
@@ -64,6 +65,7 @@ class VectorGrid final : public VectorField {
   const GridStats& stats() const { return stats_; }
   bool has_mask() const;
   void read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const;
+  const Storage& storage() const { return *storage_; }  ///< opaque outside this room
 
  private:
   std::unique_ptr<Storage> storage_;

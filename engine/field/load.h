@@ -50,7 +50,8 @@ Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items);
 
 /// Counts of what was really loaded, so that a test can show that only what the scene names is.
 struct LoadCounters {
-  std::uint64_t files = 0, grids = 0;
+  std::uint64_t files = 0, grids = 0;  ///< fields
+  std::uint64_t masks = 0;             ///< `valid` grids read along with them
 };
 LoadCounters load_counters();
 

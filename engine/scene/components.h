@@ -20,6 +20,7 @@ struct Name {
 struct FieldSource {
   json::Node where;                          ///< its place in the scene file, for messages
   std::optional<field::LoadRequest> file;    ///< either this
+  bool grid_is_a_wish = false;               ///< a replaced file may lack the grid that the first one had
   std::string analytic;                      ///< or this
   field::AnalyticParameters parameters;
   int resolution = 128;                      ///< analytic fields are drawn from a sampled grid: nodes an axis
@@ -32,7 +33,9 @@ struct Rgb {
   float r = 0, g = 0, b = 0;
 };
 
-/// Piecewise-linear maps over field values; opacity is kept as extinction sigma per world unit, interpolated in sigma.
+/// Piecewise-linear maps over field values, values rising. The scene gives either extinctions (sigma per world unit) or
+/// opacities (alpha per opacity_unit), which become sigma = -ln(1 - alpha) / opacity_unit at their points once the drawn
+/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear.
 struct TransferFunction {
   struct ColorPoint {
     double value;
@@ -41,7 +44,12 @@ struct TransferFunction {
   struct ExtinctionPoint {
     double value, sigma;
   };
+  struct OpacityPoint {
+    double value, alpha;
+  };
   std::vector<ColorPoint> colors;
+  std::vector<OpacityPoint> opacities;
+  double opacity_unit = 0;         ///< world length; 0: the smallest voxel edge of the drawn grid
   std::vector<ExtinctionPoint> extinctions;
 };
 

@@ -19,6 +19,7 @@ struct Scene {
   Workspace workspace;
   Camera camera;
   Background background;
+  std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
 
   /// Curves already traced, keyed by field version, flow and seed: tubes and links share the object.
@@ -49,7 +50,8 @@ Entity find_field(const Scene& scene, std::string_view name);
 /// Loads on first use. `where` is the place that names the field, for messages.
 Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where);
 Result<field::AnyField> use_field(Scene& scene, const std::string& name, const json::Node& where);
-/// The same as a grid that can be drawn (analytic fields are sampled once).
+/// The same as a grid that can be drawn (analytic fields are sampled once). Volumes over the field that state no colours or
+/// no opacity get theirs from its histogram.
 Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where);
 /// The one curve of (field, flow, seed, length).
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);

@@ -35,6 +35,8 @@ struct Program {
   std::vector<Link> links;  ///< at most kMaxLinks
   Coupling coupling;
   double metres_per_unit = 1;  ///< S: metres of hand a world unit
+  Vec3 workspace_origin{0.0};  ///< world position of the device's origin
+  Mat3 workspace_rotation{1.0};  ///< world from device axes
 };
 
 }  // namespace catena::haptics

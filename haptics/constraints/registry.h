@@ -24,7 +24,12 @@ struct Key {
   std::string_view type;  ///< JSON Schema: number, string, boolean, array
   bool required;
   std::string_view help;
+  std::string_view schema = {};  ///< more JSON Schema of the value, such as a range: `"exclusiveMinimum": 0`
 };
+
+inline constexpr std::string_view kVec3Schema = R"("items": {"type": "number"}, "minItems": 3, "maxItems": 3)";
+inline constexpr std::string_view kPositiveSchema = R"("exclusiveMinimum": 0)";
+inline constexpr std::string_view kFreeSchema = R"("enum": ["none", "above", "below"])";
 
 struct ConstraintType {
   std::string_view type;                ///< the word in the scene file

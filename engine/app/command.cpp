@@ -1,0 +1,74 @@
+#include "engine/app/command.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "engine/base/clock.h"
+#include "engine/base/text.h"
+
+namespace catena::app {
+
+bool is_scene_file(const std::string& path) { return path.ends_with(".json"); }
+
+Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options) {
+  std::vector<scene::FieldOverride> overrides;
+  for (const std::string& option : field_options) {
+    const auto equals = option.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == option.size())
+      return Error{"--field " + option + ": expected NAME=FILE or NAME=FILE:GRID"};
+    scene::FieldOverride entry{option.substr(0, equals), option.substr(equals + 1), {}};
+    const auto colon = entry.file.rfind(':');
+    if (colon != std::string::npos && !std::filesystem::exists(entry.file)) {
+      entry.grid = entry.file.substr(colon + 1);
+      entry.file.resize(colon);
+    }
+    overrides.push_back(std::move(entry));
+  }
+  if (is_scene_file(path)) return scene::read_scene(path, overrides);
+  if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
+  return scene::scene_for_file(path);
+}
+
+std::vector<std::string> inputs_of(const scene::Scene& scene) {
+  std::vector<std::string> inputs{scene.path};
+  scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
+    if (source.file) inputs.push_back(source.file->path);
+  });
+  return inputs;
+}
+
+std::string human_bytes(double bytes) {
+  const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+  int unit = 0;
+  for (; bytes >= 1024 && unit < 4; ++unit) bytes /= 1024;
+  return unit == 0 ? fmt::format("{:.0f} B", bytes) : fmt::format("{:.2f} {}", bytes, units[unit]);
+}
+
+Progress::Progress(std::string what, double total)
+    : what_(std::move(what)), total_(total), start_(now_ns()), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+  if (shown_ && terminal_) fmt::print(stderr, "\n");
+}
+
+void Progress::at(double done) {
+  const std::int64_t now = now_ns();
+  if (total_ <= 0 || now - start_ < 1'000'000'000) return;
+  const double part = done / total_ < 1 ? done / total_ : 1;
+  if (terminal_) {
+    if (now - last_ < 200'000'000 && part < 1) return;
+    fmt::print(stderr, "\r{}: {:3.0f} % ", what_, 100 * part);
+    std::fflush(stderr);
+  } else {
+    const int quarter = static_cast<int>(4 * part);
+    if (quarter <= quarters_) return;
+    quarters_ = quarter;
+    fmt::print(stderr, "{}: {:.0f} %\n", what_, 100 * part);
+  }
+  shown_ = true;
+  last_ = now;
+}
+
+}  // namespace catena::app

@@ -1,0 +1,58 @@
+/// What every subcommand shares: how it registers itself, how it fails, how it finds its scene.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace catena::app {
+
+/// A subcommand's work; the exit code of a success is 0. An Error means bad input: exit code 2.
+using Work = std::function<Outcome()>;
+
+/// Each adds its subcommand and, when the user chose it, sets `chosen`.
+void add_render(CLI::App& program, Work& chosen);
+void add_replay(CLI::App& program, Work& chosen);
+void add_trace(CLI::App& program, Work& chosen);
+void add_info(CLI::App& program, Work& chosen);
+void add_generate(CLI::App& program, Work& chosen);
+void add_import(CLI::App& program, Work& chosen);
+void add_view(CLI::App& program, Work& chosen, int& exit_code);
+
+/// A failure of the machine, not of the input: exit code 1.
+struct MachineFailure {
+  std::string message;
+};
+
+/// A scene file (.json), or a bare data file.
+bool is_scene_file(const std::string& path);
+Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {});
+/// The scene file itself and every data file that its fields name: what no output may overwrite.
+std::vector<std::string> inputs_of(const scene::Scene& scene);
+
+/// "1.23 MiB", "512 B".
+std::string human_bytes(double bytes);
+
+/// A line on stderr that says how far long work is; rewritten in place on a terminal, at most four lines elsewhere. Quiet for
+/// work that ends within a second.
+class Progress {
+ public:
+  Progress(std::string what, double total);
+  ~Progress();
+  void at(double done);
+
+ private:
+  std::string what_;
+  double total_;
+  std::int64_t start_, last_ = 0;
+  int quarters_ = 0;
+  bool terminal_, shown_ = false;
+};
+
+}  // namespace catena::app

@@ -1,0 +1,84 @@
+/// catena generate NAME -o OUT.vdb --resolution N [--box LO HI]
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cmath>
+#include <memory>
+
+#include "engine/app/command.h"
+#include "engine/base/numbers.h"
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+#include "engine/field/analytic.h"
+#include "engine/field/load.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr int kMaxResolution = 1024;
+
+struct Options {
+  std::string name, output;
+  int resolution = 0;
+  std::array<double, 2> box{-2, 2};
+  double scale = 1;
+  std::vector<double> direction{1, 0, 0};
+};
+
+Outcome check(const Options& o) {
+  if (!field::is_analytic(o.name)) {
+    const auto names = field::analytic_names();
+    return Error{"no analytic field " + in_quotes(o.name) + suggestion(o.name, names) + "; known: " + joined(names)};
+  }
+  if (o.resolution < 2 || o.resolution > kMaxResolution)
+    return Error{fmt::format("--resolution {}: expected 2 to {} nodes an axis", o.resolution, kMaxResolution)};
+  if (!std::isfinite(o.box[0]) || !std::isfinite(o.box[1]) || !(o.box[0] < o.box[1]))
+    return Error{fmt::format("--box {} {}: expected two finite numbers, LO < HI", to_text(o.box[0]), to_text(o.box[1]))};
+  if (!std::isfinite(o.scale) || o.scale == 0) return Error{fmt::format("--scale {}: expected a finite number other than 0", to_text(o.scale))};
+  const Vec3 d(o.direction[0], o.direction[1], o.direction[2]);
+  if (!is_finite(d) || norm(d) == 0) return Error{"--direction: expected three finite numbers, not all zero"};
+  if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
+  return check_output(o.output, {});
+}
+
+Outcome generate(const Options& o) {
+  CATENA_CHECK(check(o));
+  std::vector<field::WriteItem> items;
+  const auto parts = field::analytic_parts(o.name);
+  Progress progress("generate", static_cast<double>(parts.size()));
+  for (const std::string_view part : parts) {
+    field::AnalyticParameters parameters;
+    parameters.scale = o.scale;
+    parameters.direction = Vec3(o.direction[0], o.direction[1], o.direction[2]);
+    if (parts.size() > 1) parameters.part = std::string(part);
+    CATENA_TRY(const field::AnyField exact, field::make_analytic(o.name, parameters));
+    field::AnyField sampled;
+    if (exact.scalar) sampled.scalar = field::sample_on_grid(*exact.scalar, o.resolution, o.box[0], o.box[1]);
+    if (exact.vector) sampled.vector = field::sample_on_grid(*exact.vector, o.resolution, o.box[0], o.box[1]);
+    items.push_back({sampled, std::string(part)});
+    progress.at(static_cast<double>(items.size()));
+  }
+  CATENA_CHECK(field::write_vdb(o.output, items));
+  fmt::print("{}:", o.output);
+  for (const field::WriteItem& item : items) fmt::print(" {}", item.name);
+  fmt::print(", {0} x {0} x {0} nodes, spacing {1}\n", o.resolution, to_text((o.box[1] - o.box[0]) / (o.resolution - 1)));
+  return Done{};
+}
+
+}  // namespace
+
+void add_generate(CLI::App& program, Work& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("generate", "sample an analytic field on a grid");
+  command->add_option("NAME", options->name, "the field: " + joined(field::analytic_names()))->required();
+  command->add_option("-o,--output", options->output, "the grid, .vdb")->required();
+  command->add_option("--resolution", options->resolution, "nodes an axis, both ends included")->required();
+  command->add_option("--box", options->box, "LO HI: the cube to sample")->capture_default_str();
+  command->add_option("--scale", options->scale, "multiplies the values")->capture_default_str();
+  command->add_option("--direction", options->direction, "of `uniform`")->expected(3)->capture_default_str();
+  command->callback([&chosen, options] { chosen = [options] { return generate(*options); }; });
+}
+
+}  // namespace catena::app

@@ -1,0 +1,63 @@
+/// catena import IN -o OUT.vdb: any file that Catena reads, as a VDB.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "engine/app/command.h"
+#include "engine/base/output_file.h"
+#include "engine/field/load.h"
+
+namespace catena::app {
+
+namespace {
+
+struct Options {
+  std::string input, output, grid, name;
+  std::vector<int> shape;
+  std::vector<double> spacing{1, 1, 1}, origin{0, 0, 0};
+  std::string type = "float32";
+};
+
+Outcome import_file(const Options& o) {
+  CATENA_CHECK(check_output(o.output, {o.input}));
+  if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
+  field::LoadRequest request;
+  request.path = o.input;
+  request.grid = o.grid;
+  if (o.input.ends_with(".raw")) {
+    if (o.shape.empty()) return Error{o.input + ": a .raw file needs --shape NX NY NZ"};
+    field::RawLayout raw;
+    raw.shape = {o.shape[0], o.shape[1], o.shape[2]};
+    raw.spacing = Vec3(o.spacing[0], o.spacing[1], o.spacing[2]);
+    raw.origin = Vec3(o.origin[0], o.origin[1], o.origin[2]);
+    raw.type = o.type;
+    request.raw = raw;
+  }
+  CATENA_TRY(const field::AnyField field, field::load(request));
+  std::string name = o.name;
+  if (name.empty()) name = field.get()->name();
+  if (name.empty()) name = std::filesystem::path(o.input).stem().stem().string();
+  CATENA_CHECK(field::write_vdb(o.output, {{field, name}}));
+  fmt::print("{}: {}\n", o.output, name);
+  return Done{};
+}
+
+}  // namespace
+
+void add_import(CLI::App& program, Work& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("import", "convert a data file to .vdb");
+  command->add_option("IN", options->input, ".nii, .nii.gz, .raw or .vdb")->required();
+  command->add_option("-o,--output", options->output, "the grid, .vdb")->required();
+  command->add_option("--grid", options->grid, "which grid of a .vdb");
+  command->add_option("--name", options->name, "the grid's name in the output");
+  command->add_option("--shape", options->shape, ".raw: voxels along x y z")->expected(3);
+  command->add_option("--spacing", options->spacing, ".raw: voxel edges")->expected(3)->capture_default_str();
+  command->add_option("--origin", options->origin, ".raw: world position of the first voxel's centre")->expected(3)->capture_default_str();
+  command->add_option("--type", options->type, ".raw: float32, uint8, int16, ... or float32x3")->capture_default_str();
+  command->callback([&chosen, options] { chosen = [options] { return import_file(*options); }; });
+}
+
+}  // namespace catena::app

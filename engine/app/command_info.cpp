@@ -1,0 +1,102 @@
+/// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; or what a scene holds.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "engine/app/command.h"
+#include "engine/base/numbers.h"
+#include "engine/field/load.h"
+#include "haptics/constraints/registry.h"
+#include "haptics/extract/extract.h"
+
+namespace catena::app {
+
+namespace {
+
+std::string text(const Vec3& v) { return to_text(v.x) + " " + to_text(v.y) + " " + to_text(v.z); }
+
+bool is_diagonal(const Mat3& m) {
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (r != c && m[c][r] != 0) return false;
+  return true;
+}
+
+void print_mapping(const field::Mapping& mapping) {
+  const Mat3& j = mapping.world_from_index_linear;
+  if (is_diagonal(j)) {
+    fmt::print("  voxel        {}\n", text({j[0][0], j[1][1], j[2][2]}));
+  } else {
+    fmt::print("  voxel axes   ({}) ({}) ({})\n", text(j[0]), text(j[1]), text(j[2]));
+  }
+  fmt::print("  origin       {}   (world = J index + origin)\n", text(mapping.origin));
+}
+
+Outcome describe_file(const std::string& path) {
+  CATENA_TRY(const std::vector<field::GridInfo> grids, field::describe(path));
+  fmt::print("{}: {} grid{}\n", path, grids.size(), grids.size() == 1 ? "" : "s");
+  for (const field::GridInfo& g : grids) {
+    fmt::print("{} ({}{})\n", g.name.empty() ? "(no name)" : g.name, g.type, g.usable ? "" : "; not a field that Catena can show or feel");
+    fmt::print("  size         {} {} {} voxels from index {} {} {}\n", g.size.x, g.size.y, g.size.z, g.lowest.x, g.lowest.y, g.lowest.z);
+    print_mapping(g.mapping);
+    const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
+    fmt::print("  world box    {} .. {}\n", text(g.mapping.world_from_index(lowest)),
+               text(g.mapping.world_from_index(lowest + Vec3(g.size.x - 1, g.size.y - 1, g.size.z - 1))));
+    fmt::print("  active       {} voxels\n", g.stats.active_voxels);
+    if (g.usable) {
+      fmt::print("  {}        {} .. {}\n", g.is_vector ? "speed" : "range", to_text(g.stats.min), to_text(g.stats.max));
+      if (g.is_vector) fmt::print("  components   {} .. {}\n", text(g.stats.component_min), text(g.stats.component_max));
+      fmt::print("  not finite   {}\n", g.stats.nan_count);
+    }
+    fmt::print("  bytes        {} ({})\n", g.bytes, human_bytes(static_cast<double>(g.bytes)));
+  }
+  return Done{};
+}
+
+Outcome describe_scene(const std::string& path) {
+  CATENA_TRY(scene::Scene scene, open_scene(path));
+  std::vector<std::pair<scene::Entity, json::Node>> fields;
+  scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource& f) { fields.emplace_back(e, f.where); });
+  for (const auto& [entity, where] : fields) {
+    CATENA_TRY(const field::AnyField any, scene::use_field(scene, entity, where));
+    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(entity);
+    fmt::print("field {}: {} {}, L = {}", scene.world.get<scene::Name>(entity).value, any.scalar ? "scalar" : "vector",
+               source.file ? source.file->path + (source.file->grid.empty() ? "" : ":" + source.file->grid) : source.analytic,
+               to_text(any.get()->length()));
+    if (any.scalar) fmt::print(", values {}..{}", to_text(any.scalar->min_value()), to_text(any.scalar->max_value()));
+    fmt::print(", {}\n", human_bytes(static_cast<double>(any.get()->bytes())));
+  }
+  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    const haptics::ConstraintType* type = haptics::find_constraint(link.type);
+    fmt::print("link {}: {} ({})\n", link.name, link.type, type == nullptr ? "" : type->paper);
+  });
+  fmt::print("coupling: {} N/m, {} N s/m, at most {} N\n", to_text(program->coupling.stiffness_n_per_m),
+             to_text(program->coupling.damping_ns_per_m), to_text(program->coupling.max_force_n));
+  fmt::print("drawn: {} volumes, {} isosurfaces, {} streamline sets\n", scene.world.count<scene::Volume>(),
+             scene.world.count<scene::Isosurface>(), scene.world.count<scene::StreamlineSet>());
+  return Done{};
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Work& chosen) {
+  auto path = std::make_shared<std::string>();
+  auto schema = std::make_shared<bool>(false);
+  CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
+  command->add_option("FILE", *path, "a data file (.vdb .nii .nii.gz) or a scene (.json)");
+  command->add_flag("--schema", *schema, "print the JSON Schema of a scene's chain instead");
+  command->callback([&chosen, path, schema] {
+    chosen = [path, schema]() -> Outcome {
+      if (*schema) {
+        fmt::print("{}\n", haptics::chain_schema());
+        return Done{};
+      }
+      if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
+      return is_scene_file(*path) ? describe_scene(*path) : describe_file(*path);
+    };
+  });
+}
+
+}  // namespace catena::app

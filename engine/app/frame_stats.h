@@ -1,0 +1,24 @@
+/// `render --stats`: the figures of DESIGN.md, and where they come from.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.h"
+
+namespace catena::app {
+
+struct FrameStats {
+  std::string device, driver;
+  std::vector<double> frame_ms;  ///< start of extraction to the fence of the colour image
+  double first_frame_ms = 0, load_ms = 0, mirror_ms = 0, encode_ms = 0;
+  std::uint64_t cpu_bytes = 0, gpu_bytes = 0, validation_messages = 0;
+
+  double median_ms() const;
+  std::string json() const;
+};
+
+/// Bytes of all grids that the scene has loaded; a grid that several entities share counts once.
+std::uint64_t field_bytes(const scene::Scene& scene);
+
+}  // namespace catena::app

@@ -1,0 +1,113 @@
+#include "engine/app/viewer/controls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace catena::app {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kTurnPerHeight = kPi;    // a drag over the window's height
+constexpr double kZoomPerNotch = 0.9;
+constexpr double kDepthPerNotch = 0.01;   // of the distance from the eye
+constexpr double kPoleAngle = 0.02;       // radians
+
+Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
+}
+
+render::Camera camera_of(const render::View& view, const Input& input) {
+  return render::make_camera(view, std::max(1.0, input.width), std::max(1.0, input.height), render::Bounds());
+}
+
+void pan(render::View& view, const Input& input) {
+  const render::Camera camera = camera_of(view, input);
+  const double unit = render::pixel_size(camera, norm(view.position - view.target));
+  const Vec3 shift = unit * (input.dy * camera.up - input.dx * camera.right);
+  view.position += shift;
+  view.target += shift;
+}
+
+void move_hand(Controls& controls, const Input& input) {
+  const render::Camera camera = camera_of(controls.view, input);
+  auto place = render::project(camera, controls.hand);
+  if (!place) place = render::project(camera, controls.view.target);  // the hand was behind the eye: back into the picture
+  if (!place) return;
+  const double depth = place->z * (1 + kDepthPerNotch * input.wheel);
+  controls.hand = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
+}
+
+}  // namespace
+
+void orbit(render::View& view, double yaw, double pitch) {
+  const Vec3 up = direction(view.up);
+  const double distance = norm(view.position - view.target);
+  if (!(distance > 0) || max_abs(up) == 0) return;
+  Vec3 back = direction(view.position - view.target);
+  if (norm(cross(up, back)) < 1e-6) {
+    // right over the pole: step off it first
+    const Vec3 side = std::fabs(up.x) < 0.9 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+    back = rotated(back, direction(cross(up, side)), kPoleAngle);
+  }
+  back = rotated(back, up, yaw);
+  const double polar = std::atan2(norm(cross(up, back)), dot(up, back));
+  const double turn = std::clamp(polar - pitch, kPoleAngle, kPi - kPoleAngle) - polar;
+  back = direction(rotated(back, direction(cross(up, back)), turn));
+  view.position = view.target + distance * back;
+}
+
+void zoom(render::View& view, double factor) {
+  if (view.orthographic)
+    view.height *= factor;
+  else
+    view.position = view.target + factor * (view.position - view.target);
+}
+
+Changed apply(Controls& controls, const Input& input) {
+  Changed changed;
+  if (input.toggle_hand) controls.hand_mode = !controls.hand_mode;
+  const bool moved = input.dx != 0 || input.dy != 0, wheeled = input.wheel != 0;
+  const bool hand = controls.hand_mode || input.control || input.right;
+  const bool navigates = input.middle || (input.left && input.shift);
+
+  const std::uint32_t buttons = (input.space || (controls.hand_mode && input.left && !input.shift)) ? 1u : 0u;
+  changed.hand = buttons != controls.buttons;
+  controls.buttons = buttons;
+
+  if (navigates && moved) {
+    pan(controls.view, input);
+    changed.view = true;
+  } else if (hand && (moved || wheeled)) {
+    move_hand(controls, input);
+    changed.hand = true;
+  } else if (input.left && moved) {
+    orbit(controls.view, -kTurnPerHeight * input.dx / input.height, kTurnPerHeight * input.dy / input.height);
+    changed.view = true;
+  }
+  if (!hand && wheeled) {
+    zoom(controls.view, std::pow(kZoomPerNotch, input.wheel));
+    changed.view = true;
+  }
+  if (input.reset_view) {
+    controls.view = controls.home;
+    changed.view = true;
+  }
+  return changed;
+}
+
+std::string_view key_help() {
+  return "left drag            orbit\n"
+         "middle, shift+left   pan\n"
+         "wheel                zoom\n"
+         "right drag, control  move the hand in the picture's plane (wheel: depth)\n"
+         "H                    hand mode: the mouse is the hand, the left button its button 1\n"
+         "space                the hand's button 1\n"
+         "R                    the first view again\n"
+         "F1, ?                these keys\n"
+         "Q, Esc               quit\n";
+}
+
+}  // namespace catena::app

@@ -1,0 +1,36 @@
+/// A window by GLFW: input as plain data, and the factory of its Vulkan surface. Nothing else in the house includes GLFW.
+/// Frame thread (the process's main thread) only.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "engine/app/viewer/controls.h"
+#include "engine/base/result.h"
+#include "render/vk/instance.h"
+
+namespace catena::app {
+
+class Window {
+ public:
+  /// No display, or no Vulkan on it: an error in one sentence.
+  static Result<std::unique_ptr<Window>> create(std::uint32_t width, std::uint32_t height, const std::string& title);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  render::vk::SurfaceFactory surface_factory() const;
+  /// Takes what happened since the last call; waits up to `wait_s` for something to happen (0: not at all).
+  Input poll(double wait_s);
+  bool closing() const;
+  /// Of the picture, in pixels; 0 while minimised.
+  void framebuffer_size(std::uint32_t& width, std::uint32_t& height) const;
+  void set_title(const std::string& title);
+
+ private:
+  Window() = default;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace catena::app

@@ -1,0 +1,207 @@
+#include "engine/base/json.h"
+
+#include <json/json.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+
+namespace catena::json {
+namespace {
+
+constexpr int kDeepest = 64;
+
+/// Turns offsets into 1-based line numbers; CR, LF and CRLF each end a line.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) {
+    for (std::size_t i = 0; i < text.size(); ++i)
+      if (text[i] == '\n' || (text[i] == '\r' && !(i + 1 < text.size() && text[i + 1] == '\n'))) ends_.push_back(i);
+  }
+  int at(std::size_t offset) const {
+    return 1 + static_cast<int>(std::lower_bound(ends_.begin(), ends_.end(), offset) - ends_.begin());
+  }
+
+ private:
+  std::vector<std::size_t> ends_;
+};
+
+Error error_on_line(const std::string& file, int line, const std::string& what) {
+  const std::string at = line > 0 ? file + ":" + std::to_string(line) : file;
+  return Error{one_line(at.empty() ? what : at + ": " + what)};
+}
+
+/// The offset at which brackets nest deeper than kDeepest, or npos. Strings and comments are skipped.
+std::size_t too_deep_at(std::string_view text) {
+  int depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      for (++i; i < text.size() && text[i] != '"'; ++i)
+        if (text[i] == '\\') ++i;
+    } else if (c == '/' && text.substr(i, 2) == "//") {
+      i = std::min(text.find_first_of("\r\n", i), text.size());
+    } else if (c == '/' && text.substr(i, 2) == "/*") {
+      const std::size_t end = text.find("*/", i + 2);
+      i = end == std::string_view::npos ? text.size() : end + 1;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kDeepest) return i;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return std::string_view::npos;
+}
+
+/// -?(0|[1-9][0-9]*)(.[0-9]+)?([eE][+-]?[0-9]+)?
+bool is_json_number(std::string_view text) {
+  std::size_t i = 0;
+  const auto digits = [&] {
+    const std::size_t first = i;
+    while (i < text.size() && text[i] >= '0' && text[i] <= '9') ++i;
+    return i - first;
+  };
+  if (i < text.size() && text[i] == '-') ++i;
+  const bool zero = i < text.size() && text[i] == '0';
+  const std::size_t whole = digits();
+  if (whole == 0 || (zero && whole > 1)) return false;
+  if (i < text.size() && text[i] == '.' && (++i, digits() == 0)) return false;
+  if (i < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+    ++i;
+    if (i < text.size() && (text[i] == '+' || text[i] == '-')) ++i;
+    if (digits() == 0) return false;
+  }
+  return i == text.size();
+}
+
+/// jsoncpp's report is "* Line 3, Column 5\n  MESSAGE\n..."; its first error is the one that helps.
+Error first_error(const std::string& file, const std::string& report) {
+  int line = 1;
+  const std::size_t at = report.find("Line ");
+  if (at != std::string::npos) std::from_chars(report.data() + at + 5, report.data() + report.size(), line);
+  std::string message = "is not JSON";
+  if (const std::size_t start = report.find('\n'); start != std::string::npos) {
+    const std::size_t end = report.find('\n', start + 1);
+    message = std::string(trim(std::string_view(report).substr(start + 1, end == std::string::npos ? end : end - start - 1)));
+  }
+  if (message.size() > 200) message = message.substr(0, 200) + "...";
+  while (!message.empty() && message.back() == '.') message.pop_back();
+  if (message.starts_with("Duplicate key: '")) {
+    const std::size_t first = message.find('\'') + 1, last = message.rfind('\'');
+    return error_on_line(file, line, "duplicate key " + in_quotes(std::string_view(message).substr(first, last > first ? last - first : 0)) +
+                                         "; each key was expected once");
+  }
+  if (message.ends_with("is not a number")) return error_on_line(file, line, message + "; a finite number was expected");
+  return error_on_line(file, line, "is not valid JSON: " + message + "; JSON (comments allowed) was expected");
+}
+
+class Converter {
+ public:
+  Converter(std::string_view text, const std::string& file) : text_(text), lines_(text), file_(std::make_shared<const std::string>(file)) {}
+
+  Result<Node> convert(const Json::Value& value, std::string label) const {
+    Node node;
+    node.file = file_;
+    node.label = std::move(label);
+    node.line = lines_.at(static_cast<std::size_t>(value.getOffsetStart()));
+    switch (value.type()) {
+      case Json::nullValue: break;
+      case Json::booleanValue:
+        node.kind = Kind::boolean;
+        node.boolean = value.asBool();
+        break;
+      case Json::intValue:
+      case Json::uintValue:
+      case Json::realValue: {
+        node.kind = Kind::number;
+        const std::string_view word = source(value);
+        const auto number = parse_double(word);
+        if (!is_json_number(word) || !number || !std::isfinite(*number))
+          return error_at(node, in_quotes(word) + " is not a number; a finite number was expected");
+        node.number = *number;
+        break;
+      }
+      case Json::stringValue:
+        node.kind = Kind::string;
+        node.string = value.asString();
+        break;
+      case Json::arrayValue:
+        node.kind = Kind::array;
+        node.items.reserve(value.size());
+        for (Json::ArrayIndex i = 0; i < value.size(); ++i) {
+          CATENA_TRY(Node item, convert(value[i], node.label + "[" + std::to_string(i) + "]"));
+          node.items.push_back(std::move(item));
+        }
+        break;
+      case Json::objectValue: {
+        node.kind = Kind::object;
+        // jsoncpp sorts members by key; their offsets give the order of the file back
+        std::vector<Json::Value::const_iterator> order;
+        for (auto it = value.begin(); it != value.end(); ++it) order.push_back(it);
+        std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a->getOffsetStart() < b->getOffsetStart(); });
+        for (const auto& it : order) {
+          CATENA_TRY(Node member, convert(*it, it.name()));
+          node.members.emplace_back(it.name(), std::move(member));
+        }
+        break;
+      }
+    }
+    return node;
+  }
+
+ private:
+  std::string_view source(const Json::Value& value) const {
+    const auto start = static_cast<std::size_t>(value.getOffsetStart()), limit = static_cast<std::size_t>(value.getOffsetLimit());
+    return start <= limit && limit <= text_.size() ? text_.substr(start, limit - start) : std::string_view();
+  }
+
+  std::string_view text_;
+  Lines lines_;
+  std::shared_ptr<const std::string> file_;
+};
+
+}  // namespace
+
+const Node* Node::find(std::string_view key) const {
+  for (const auto& [name, value] : members)
+    if (name == key) return &value;
+  return nullptr;
+}
+
+Error error_at(const Node& node, const std::string& what) { return error_on_line(node.file ? *node.file : "", node.line, what); }
+
+Result<Node> parse(std::string_view text, const std::string& file) {
+  text = without_bom(text);
+  const Lines lines(text);
+  if (const std::size_t at = too_deep_at(text); at != std::string_view::npos)
+    return error_on_line(file, lines.at(at), "nests too deep; at most " + std::to_string(kDeepest) + " levels were expected");
+  if (const std::size_t at = text.find('\0'); at != std::string_view::npos)
+    return error_on_line(file, lines.at(at), "holds a zero byte; JSON text was expected");
+
+  Json::CharReaderBuilder builder;
+  builder["collectComments"] = false;
+  builder["allowComments"] = true;
+  builder["allowTrailingCommas"] = false;
+  builder["rejectDupKeys"] = true;
+  builder["failIfExtra"] = true;
+  builder["stackLimit"] = 4 * kDeepest;
+  Json::Value root;
+  std::string report;
+  try {
+    const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
+    if (!reader->parse(text.data(), text.data() + text.size(), &root, &report)) return first_error(file, report);
+    return Converter(text, file).convert(root, {});
+  } catch (const std::exception& e) {
+    return error_on_line(file, 1, std::string("is not valid JSON: ") + e.what() + "; JSON (comments allowed) was expected");
+  }
+}
+
+Result<Node> read(const std::string& path) {
+  CATENA_TRY(const std::string text, read_text(path, "a JSON file"));
+  return parse(text, path);
+}
+
+}  // namespace catena::json

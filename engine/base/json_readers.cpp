@@ -1,0 +1,182 @@
+#include "engine/base/json.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+
+namespace catena::json {
+namespace {
+
+/// What the node holds, for "... but X was found".
+std::string shown(const Node& node) {
+  switch (node.kind) {
+    case Kind::null: return "null";
+    case Kind::boolean: return node.boolean ? "true" : "false";
+    case Kind::number: return to_text(node.number);
+    case Kind::string: return in_quotes(node.string);
+    case Kind::array: return "an array of " + std::to_string(node.items.size());
+    case Kind::object: return "an object";
+  }
+  return "null";
+}
+
+const char* range_words(Range range) {
+  switch (range) {
+    case Range::any: return "a finite number";
+    case Range::positive: return "a finite number > 0";
+    case Range::not_negative: return "a finite number >= 0";
+  }
+  return "a finite number";
+}
+
+Error unlike(const Node& node, std::string_view what, const std::string& expected) {
+  return error_at(node, in_quotes(what) + " is " + shown(node) + "; " + expected + " was expected");
+}
+
+std::string place_words(const Node& object) { return object.label.empty() ? "at the top level" : "in " + in_quotes(object.label); }
+
+Error missing(const Node& object, std::string_view key, const std::string& expected) {
+  return error_at(object, "key " + in_quotes(key) + " is missing " + place_words(object) + "; " + expected + " was expected");
+}
+
+}  // namespace
+
+Node place_of(const Node& node) {
+  Node place;
+  place.line = node.line;
+  place.file = node.file;
+  place.label = node.label;
+  return place;
+}
+
+Outcome only_keys(const Node& object, const std::vector<std::string_view>& keys) {
+  for (const auto& [name, value] : object.members) {
+    bool known = false;
+    for (std::string_view key : keys) known = known || key == name;
+    if (known) continue;
+    return error_at(value, "unknown key " + in_quotes(name) + " " + place_words(object) + "; known: " + joined(keys) + suggestion(name, keys));
+  }
+  return Done{};
+}
+
+Outcome only_keys(const Node& object, std::initializer_list<std::string_view> keys) {
+  return only_keys(object, std::vector<std::string_view>(keys));
+}
+
+Outcome expect_object(const Node& node, std::string_view what) {
+  if (node.kind == Kind::object) return Done{};
+  return unlike(node, what, "an object {...}");
+}
+
+// ---- numbers ----
+
+Result<double> as_number(const Node& node, std::string_view what, Range range) {
+  const bool good = node.kind == Kind::number && std::isfinite(node.number) && !(range == Range::positive && node.number <= 0) &&
+                    !(range == Range::not_negative && node.number < 0);
+  if (!good) return unlike(node, what, range_words(range));
+  return node.number;
+}
+
+Result<double> require_number(const Node& object, std::string_view key, Range range) {
+  if (const Node* node = object.find(key)) return as_number(*node, key, range);
+  return missing(object, key, range_words(range));
+}
+
+Result<double> get_number(const Node& object, std::string_view key, double fallback, Range range) {
+  if (const Node* node = object.find(key)) return as_number(*node, key, range);
+  return fallback;
+}
+
+Result<std::optional<double>> get_optional_number(const Node& object, std::string_view key, Range range) {
+  const Node* node = object.find(key);
+  if (node == nullptr) return std::optional<double>();
+  CATENA_TRY(const double value, as_number(*node, key, range));
+  return std::optional<double>(value);
+}
+
+Result<int> get_integer(const Node& object, std::string_view key, int fallback, int least, int most) {
+  const Node* node = object.find(key);
+  if (node == nullptr) return fallback;
+  if (node->kind != Kind::number || std::floor(node->number) != node->number || node->number < least || node->number > most)
+    return unlike(*node, key, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+  return static_cast<int>(node->number);
+}
+
+// ---- words ----
+
+Result<bool> get_boolean(const Node& object, std::string_view key, bool fallback) {
+  const Node* node = object.find(key);
+  if (node == nullptr) return fallback;
+  if (node->kind != Kind::boolean) return unlike(*node, key, "true or false");
+  return node->boolean;
+}
+
+Result<std::string> require_string(const Node& object, std::string_view key) {
+  const Node* node = object.find(key);
+  if (node == nullptr) return missing(object, key, "a string");
+  if (node->kind != Kind::string) return unlike(*node, key, "a string");
+  if (node->string.find('\0') != std::string::npos) return unlike(*node, key, "a string without zero bytes");
+  return node->string;
+}
+
+Result<std::string> get_string(const Node& object, std::string_view key, std::string fallback) {
+  return object.find(key) == nullptr ? Result<std::string>(std::move(fallback)) : require_string(object, key);
+}
+
+Result<int> get_choice(const Node& object, std::string_view key, int fallback, std::initializer_list<std::string_view> words) {
+  const Node* node = object.find(key);
+  if (node == nullptr) return fallback;
+  const std::vector<std::string_view> list(words);
+  if (node->kind == Kind::string)
+    for (std::size_t i = 0; i < list.size(); ++i)
+      if (node->string == list[i]) return static_cast<int>(i);
+  return unlike(*node, key, "one of " + joined(list));
+}
+
+// ---- vectors and tables ----
+
+Result<Vec3> as_vec3(const Node& node, std::string_view what) {
+  const std::string expected = "three finite numbers [x, y, z]";
+  if (node.kind != Kind::array || node.items.size() != 3) return unlike(node, what, expected);
+  Vec3 v(0.0);
+  for (int i = 0; i < 3; ++i) {
+    const Node& item = node.items[static_cast<std::size_t>(i)];
+    if (item.kind != Kind::number || !std::isfinite(item.number)) return error_at(item, in_quotes(what) + " holds " + shown(item) + "; " + expected + " were expected");
+    v[i] = item.number;
+  }
+  return v;
+}
+
+Result<Vec3> require_vec3(const Node& object, std::string_view key) {
+  if (const Node* node = object.find(key)) return as_vec3(*node, key);
+  return missing(object, key, "three finite numbers [x, y, z]");
+}
+
+Result<Vec3> get_vec3(const Node& object, std::string_view key, const Vec3& fallback) {
+  if (const Node* node = object.find(key)) return as_vec3(*node, key);
+  return fallback;
+}
+
+Result<std::optional<Vec3>> get_optional_vec3(const Node& object, std::string_view key) {
+  const Node* node = object.find(key);
+  if (node == nullptr) return std::optional<Vec3>();
+  CATENA_TRY(const Vec3 value, as_vec3(*node, key));
+  return std::optional<Vec3>(value);
+}
+
+Result<std::vector<std::vector<double>>> as_rows(const Node& node, std::string_view what, std::size_t width) {
+  const std::string expected = "rows of " + std::to_string(width) + " finite numbers";
+  if (node.kind != Kind::array) return unlike(node, what, "an array of " + expected);
+  std::vector<std::vector<double>> rows;
+  for (const Node& row : node.items) {
+    if (row.kind != Kind::array || row.items.size() != width)
+      return error_at(row, in_quotes(what) + " holds " + shown(row) + "; " + expected + " were expected");
+    auto& out = rows.emplace_back();
+    for (const Node& item : row.items) {
+      if (item.kind != Kind::number || !std::isfinite(item.number))
+        return error_at(item, in_quotes(what) + " holds " + shown(item) + "; " + expected + " were expected");
+      out.push_back(item.number);
+    }
+  }
+  return rows;
+}
+
+}  // namespace catena::json

@@ -1,0 +1,81 @@
+#include "engine/base/text.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+namespace catena {
+
+Result<std::string> read_text(const std::string& path, std::string_view expected) {
+  const auto failed = [&](const std::string& why) { return Error{one_line(path + ": " + why + "; " + std::string(expected) + " was expected")}; };
+  std::error_code code;
+  if (std::filesystem::is_directory(path, code)) return failed("is a folder");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return std::fclose(f); });
+  if (!file) return failed("cannot be read: " + std::string(std::strerror(errno)));
+  std::string text;
+  char buffer[1 << 16];
+  while (const std::size_t size = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, size);
+  if (std::ferror(file.get()) != 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
+  return text;
+}
+
+std::string_view without_bom(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  return text;
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string out = "\"";
+  for (char c : text.substr(0, longest)) out += (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) ? '?' : c;
+  return out + (text.size() > longest ? "...\"" : "\"");
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
+}
+
+std::string joined(const std::vector<std::string_view>& words) {
+  std::string out;
+  for (std::string_view word : words) out.append(out.empty() ? "" : ", ").append(word);
+  return out;
+}
+
+namespace {
+// Levenshtein distance; both words are short (the caller cuts them).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0u : 1u)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+}  // namespace
+
+std::string suggestion(std::string_view word, const std::vector<std::string_view>& words) {
+  if (word.empty() || word.size() > 40) return {};
+  std::size_t best = 3;
+  std::string_view nearest;
+  for (std::string_view candidate : words) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best && distance < candidate.size()) {
+      best = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest.empty() ? std::string() : " (did you mean " + in_quotes(nearest) + "?)";
+}
+
+}  // namespace catena

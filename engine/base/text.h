@@ -1,0 +1,29 @@
+/// Text from the outside world: whole files, words quoted for a one-line message, and the word that was probably meant.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace catena {
+
+/// The whole file. The error says PATH, why it cannot be read, and that `expected` ("a scene file") was expected.
+Result<std::string> read_text(const std::string& path, std::string_view expected);
+
+/// Without a UTF-8 byte order mark at its start.
+std::string_view without_bom(std::string_view text);
+
+/// "text" in quotes for a message: control characters become '?', and what is longer than 60 bytes is cut.
+std::string in_quotes(std::string_view text);
+
+/// One line: control characters (line ends above all) become blanks.
+std::string one_line(std::string text);
+
+/// `a, b, c`
+std::string joined(const std::vector<std::string_view>& words);
+
+/// ` (did you mean "stiffness"?)` where one of `words` is near, else nothing.
+std::string suggestion(std::string_view word, const std::vector<std::string_view>& words);
+
+}  // namespace catena

@@ -1,0 +1,140 @@
+#include "engine/field/analytic.h"
+
+#include <fmt/format.h>
+
+#include "engine/field/analytic_formula.h"
+
+namespace catena::field {
+namespace {
+
+constexpr std::string_view ventricle = "left-ventricle", uniform = "uniform";
+constexpr Box box{Vec3(-2.0), Vec3(2.0)};
+
+/// Everywhere inside, except where the point or the value is not finite.
+class ScalarByFormula final : public ScalarField {
+ public:
+  ScalarByFormula(const ScalarFormula& formula, double scale) : formula_(formula), scale_(scale) {
+    set_domain(std::string(formula.name), Mapping{}, box);
+  }
+  ScalarSample sample(const Vec3& world, Cursor&) const noexcept override {
+    if (!is_finite(world)) return {};
+    ScalarSample s;
+    s.value = scale_ * formula_.value(world, s.gradient);
+    s.gradient *= scale_;
+    s.inside = std::isfinite(s.value) && is_finite(s.gradient);
+    return s.inside ? s : ScalarSample{};
+  }
+  double min_value() const noexcept override { return scale_ * (scale_ > 0 ? formula_.min : formula_.max); }
+  double max_value() const noexcept override { return scale_ * (scale_ > 0 ? formula_.max : formula_.min); }
+
+ private:
+  ScalarFormula formula_;
+  double scale_;
+};
+
+/// The common part of vector formulas: scale, side of a line field, finite results.
+class VectorByFormula : public VectorField {
+ public:
+  VectorByFormula(std::string_view name, double scale) : scale_(scale) { set_domain(std::string(name), Mapping{}, box); }
+  VectorSample sample(const Vec3& world, Cursor&, const Vec3* line_reference) const noexcept final {
+    VectorSample s;
+    if (!is_finite(world) || !evaluate(world, s.value)) return {};
+    s.value *= scale_;
+    if (!is_finite(s.value)) return {};
+    if (line_reference && dot(s.value, *line_reference) < 0) s.value = -s.value;
+    s.inside = true;
+    return s;
+  }
+
+ private:
+  virtual bool evaluate(const Vec3& world, Vec3& value) const noexcept = 0;
+  double scale_;
+};
+
+class NamedVector final : public VectorByFormula {
+ public:
+  NamedVector(const VectorFormula& formula, double scale) : VectorByFormula(formula.name, scale), value_(formula.value) {}
+
+ private:
+  bool evaluate(const Vec3& world, Vec3& value) const noexcept override {
+    value = value_(world);
+    return true;
+  }
+  Vec3 (*value_)(const Vec3&);
+};
+
+class Uniform final : public VectorByFormula {
+ public:
+  Uniform(const Vec3& unit, double scale) : VectorByFormula(uniform, scale), unit_(unit) {}
+
+ private:
+  bool evaluate(const Vec3&, Vec3& value) const noexcept override {
+    value = unit_;
+    return true;
+  }
+  Vec3 unit_;
+};
+
+class VentricleFibre final : public VectorByFormula {
+ public:
+  explicit VentricleFibre(double scale) : VectorByFormula("fibre", scale) {}
+
+ private:
+  bool evaluate(const Vec3& world, Vec3& value) const noexcept override { return ventricle_fibre(world, value); }
+};
+
+AnyField scalar(const ScalarFormula& formula, double scale) { return {std::make_shared<ScalarByFormula>(formula, scale), nullptr}; }
+
+Result<AnyField> make_ventricle(const AnalyticParameters& parameters) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  const std::string& part = parameters.part;
+  if (part.empty() || part == "density") return scalar({"density", ventricle_density, 0, 1}, parameters.scale);
+  if (part == "transmural") return scalar({"transmural", ventricle_transmural, -1.875, inf}, parameters.scale);
+  if (part == "fibre") return AnyField{nullptr, std::make_shared<VentricleFibre>(parameters.scale)};
+  return Error{fmt::format("left-ventricle has no part \"{}\": expected density, transmural or fibre", part)};
+}
+
+}  // namespace
+
+std::vector<std::string_view> analytic_names() {
+  std::vector<std::string_view> names;
+  for (const auto& f : vector_formulas()) names.push_back(f.name);
+  names.push_back(uniform);
+  for (const auto& f : scalar_formulas()) names.push_back(f.name);
+  names.push_back(ventricle);
+  return names;
+}
+
+bool is_analytic(std::string_view name) {
+  const auto names = analytic_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string_view> analytic_parts(std::string_view name) {
+  if (name == ventricle) return {"density", "transmural", "fibre"};
+  return {name};
+}
+
+Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& parameters) {
+  // the parameters
+  if (!std::isfinite(parameters.scale) || parameters.scale == 0)
+    return Error{fmt::format("field \"{}\": scale is {}, expected a finite number that is not zero", name, parameters.scale)};
+  if (name == ventricle) return make_ventricle(parameters);
+  if (!parameters.part.empty()) return Error{fmt::format("field \"{}\" has no parts, got \"{}\"", name, parameters.part)};
+  if (name == uniform) {
+    const Vec3 unit = direction(parameters.direction);
+    if (unit == Vec3(0.0) || !is_finite(parameters.direction))
+      return Error{"field \"uniform\": the direction must be a finite vector that is not zero"};
+    return AnyField{nullptr, std::make_shared<Uniform>(unit, parameters.scale)};
+  }
+  // the formulas
+  for (const auto& f : scalar_formulas())
+    if (f.name == name) return scalar(f, parameters.scale);
+  for (const auto& f : vector_formulas())
+    if (f.name == name) return AnyField{nullptr, std::make_shared<NamedVector>(f, parameters.scale)};
+  std::string all;
+  for (const auto n : analytic_names()) all += (all.empty() ? "" : " ") + std::string(n);
+  return Error{fmt::format("there is no analytic field \"{}\": expected one of {}", name, all)};
+}
+
+}  // namespace catena::field

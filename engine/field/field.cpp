@@ -1,0 +1,20 @@
+#include "engine/field/field.h"
+
+#include <atomic>
+
+namespace catena::field {
+namespace {
+std::atomic<std::uint64_t> next_version{1};
+}
+
+void Field::set_domain(std::string name, const Mapping& mapping, const Box& index_box) {
+  name_ = std::move(name);
+  mapping_ = mapping;
+  index_box_ = index_box;
+  version_ = next_version.fetch_add(1);
+  const Vec3 size = index_box.hi - index_box.lo;
+  length_ = 0;
+  for (int a = 0; a < 3; ++a) length_ = std::max(length_, norm(mapping.world_from_index_linear[a]) * size[a]);
+}
+
+}  // namespace catena::field

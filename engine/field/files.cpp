@@ -1,0 +1,44 @@
+#include "engine/field/files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace catena::field {
+
+Result<std::uint64_t> readable_file(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return Error{fmt::format("{}: there is no such file", path)};
+  if (std::filesystem::is_directory(status)) return Error{fmt::format("{}: this is a folder, expected a file", path)};
+  if (!std::filesystem::is_regular_file(status)) return Error{fmt::format("{}: this is not a regular file", path)};
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  errno = 0;
+  if (error || !std::ifstream(path, std::ios::binary)) return Error{fmt::format("{}: cannot be opened ({})", path, std::strerror(errno))};
+  if (size == 0) return Error{fmt::format("{}: the file is empty", path)};
+  return size;
+}
+
+std::string extension_of(const std::string& path) {
+  std::string name = std::filesystem::path(path).filename().string();
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+  if (name.ends_with(".nii.gz")) return ".nii.gz";
+  const auto dot = name.rfind('.');
+  return dot == std::string::npos ? "" : name.substr(dot);
+}
+
+std::string stem_of(const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.substr(0, name.size() - extension_of(path).size());
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+}  // namespace catena::field

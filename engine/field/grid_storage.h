@@ -1,0 +1,126 @@
+/// Private to this room: the NanoVDB buffers behind a grid, and the walk's memory.
+/// Where there is a mask, `valid_cells` has one bit a cell: set when all eight corners of the cell with that base are valid.
+#pragma once
+#include <nanovdb/NanoVDB.h>
+#include <nanovdb/util/GridHandle.h>
+
+#include <cstring>
+#include <new>
+#include <optional>
+#include <type_traits>
+
+#include "engine/field/grid.h"
+
+namespace catena::field {
+
+using NanoMask = nanovdb::NanoGrid<nanovdb::ValueMask>;
+inline nanovdb::Coord coord(const Index3& i) { return {i.x, i.y, i.z}; }
+
+template <class T>
+struct GridStorage {
+  nanovdb::GridHandle<> values_handle, voxels_handle, cells_handle;
+  const nanovdb::NanoGrid<T>* values = nullptr;
+  const NanoMask* valid_voxels = nullptr;  ///< null: no mask
+  const NanoMask* valid_cells = nullptr;
+  Index3 lo, last;  ///< legal bases: lo..last
+  Index3 step;      ///< 1, or 0 along an axis of one layer
+  bool may_be_invalid = false;
+
+  std::size_t bytes() const { return values_handle.size() + voxels_handle.size() + cells_handle.size(); }
+  void set_box(const Index3& first, const Index3& final_voxel) {
+    lo = first;
+    step = {first.x < final_voxel.x, first.y < final_voxel.y, first.z < final_voxel.z};
+    last = {final_voxel.x - step.x, final_voxel.y - step.y, final_voxel.z - step.z};
+  }
+  bool legal(const Index3& b) const { return b.x >= lo.x && b.y >= lo.y && b.z >= lo.z && b.x <= last.x && b.y <= last.y && b.z <= last.z; }
+  Index3 clamp(const Index3& b) const {
+    return {std::min(std::max(b.x, lo.x), last.x), std::min(std::max(b.y, lo.y), last.y), std::min(std::max(b.z, lo.z), last.z)};
+  }
+  /// floor, clamped before it is made an integer: any input is safe.
+  Index3 base_of(const Vec3& index) const {
+    const auto axis = [](double x, std::int32_t first, std::int32_t final_base) {
+      if (!(x >= first)) return first;
+      if (x >= final_base) return final_base;
+      const std::int32_t i = static_cast<std::int32_t>(x);
+      return i - (x < i);
+    };
+    return {axis(index.x, lo.x, last.x), axis(index.y, lo.y, last.y), axis(index.z, lo.z, last.z)};
+  }
+};
+
+struct ScalarGrid::Storage : GridStorage<float> {};
+struct VectorGrid::Storage : GridStorage<nanovdb::Vec3f> {};
+
+/// What a Cursor's bytes hold: the accessors and the last cell.
+template <class T, class Corner>
+struct Walk {
+  using Values = nanovdb::ReadAccessor<T, 0, 1, 2>;
+  using Cells = nanovdb::ReadAccessor<nanovdb::ValueMask, 0, -1, -1>;
+  std::uint64_t version;
+  Index3 base;
+  bool filled, valid;
+  std::array<Corner, 8> corner;
+  Values values;
+  alignas(8) std::byte cells[sizeof(Cells)];
+
+  explicit Walk(const nanovdb::NanoGrid<T>& grid, std::uint64_t v) : version(v), base{}, filled(false), valid(false), corner{}, values(grid), cells{} {}
+};
+
+/// The walk in the cursor's memory, made anew when the cursor comes from another grid (or from one freed at the same address).
+template <class W, class Storage>
+W& walk_of(Cursor& cursor, const void* owner, std::uint64_t version, const Storage& storage) {
+  static_assert(sizeof(W) <= sizeof(Cursor::memory) && alignof(W) <= 16 && std::is_trivially_copyable_v<W>);
+  static_assert(offsetof(W, version) == 0);
+  W* walk = std::launder(reinterpret_cast<W*>(cursor.memory));
+  if (cursor.owner == owner && walk->version == version) return *walk;
+  walk = new (cursor.memory) W(*storage.values, version);
+  if (storage.valid_cells) new (walk->cells) typename W::Cells(*storage.valid_cells);
+  cursor.owner = owner;
+  return *walk;
+}
+
+/// Fills the walk with the cell at a legal base. `convert` turns a stored value to a corner; `finite` judges a corner.
+template <class W, class Storage, class Convert, class Finite>
+void fetch(W& walk, const Storage& storage, const Index3& base, const Convert& convert, const Finite& finite) {
+  const nanovdb::Coord ijk = coord(base);
+  const int mx = base.x & 7, my = base.y & 7, mz = base.z & 7;
+  const auto* leaf = mx < 7 && my < 7 && mz < 7 ? walk.values.probeLeaf(ijk) : nullptr;
+  if (leaf) {
+    const int at = mx * 64 + my * 8 + mz, sx = storage.step.x * 64, sy = storage.step.y * 8, sz = storage.step.z;
+    for (int n = 0; n < 8; ++n) walk.corner[n] = convert(leaf->getValue(static_cast<std::uint32_t>(at + (n & 1) * sx + (n >> 1 & 1) * sy + (n >> 2) * sz)));
+  } else {
+    for (int n = 0; n < 8; ++n)
+      walk.corner[n] = convert(
+          walk.values.getValue({base.x + (n & 1) * storage.step.x, base.y + (n >> 1 & 1) * storage.step.y, base.z + (n >> 2) * storage.step.z}));
+  }
+  walk.base = base;
+  walk.filled = true;
+  walk.valid = true;
+  if (storage.valid_cells) walk.valid = std::launder(reinterpret_cast<typename W::Cells*>(walk.cells))->getValue(ijk);
+  for (int n = 0; n < 8; ++n) walk.valid = walk.valid && finite(walk.corner[n]);
+}
+
+/// The place within the cell. Far outside it is held to a range in which the polynomial cannot overflow.
+inline Vec3 place_in_cell(const Vec3& index, const Index3& base) {
+  static constexpr double far = 1e9;
+  const auto axis = [](double x, std::int32_t b) { return std::min(std::max(x - b, -far), far); };
+  return {axis(index.x, base.x), axis(index.y, base.y), axis(index.z, base.z)};
+}
+
+constexpr double domain_slack = 1e-9;  ///< voxels, at the faces of the domain
+
+/// Calls visit(leaf or null, block origin, first, last) for every aligned 8^3 block that meets the region.
+template <class Grid, class Visit>
+void for_blocks(const Grid& grid, const Index3& origin, const Index3& size, const Visit& visit) {
+  auto accessor = grid.getAccessor();
+  const Index3 end{origin.x + size.x, origin.y + size.y, origin.z + size.z};
+  for (std::int32_t bz = origin.z & ~7; bz < end.z; bz += 8)
+    for (std::int32_t by = origin.y & ~7; by < end.y; by += 8)
+      for (std::int32_t bx = origin.x & ~7; bx < end.x; bx += 8) {
+        const Index3 first{std::max(bx, origin.x), std::max(by, origin.y), std::max(bz, origin.z)};
+        const Index3 after{std::min(bx + 8, end.x), std::min(by + 8, end.y), std::min(bz + 8, end.z)};
+        visit(accessor, nanovdb::Coord(bx, by, bz), first, after);
+      }
+}
+
+}  // namespace catena::field

@@ -1,0 +1,28 @@
+#include "engine/field/mapping.h"
+
+#include <glm/matrix.hpp>
+
+namespace catena::field {
+
+Mapping Mapping::from_linear(const Mat3& world_from_index, const Vec3& origin) {
+  Mapping m;
+  m.world_from_index_linear = world_from_index;
+  m.origin = origin;
+  // a diagonal is inverted exactly as a diagonal: no rounding from cofactors
+  const Mat3& j = world_from_index;
+  const bool diagonal = j[0][1] == 0 && j[0][2] == 0 && j[1][0] == 0 && j[1][2] == 0 && j[2][0] == 0 && j[2][1] == 0;
+  if (diagonal) {
+    m.index_from_world_linear = Mat3(0.0);
+    for (int a = 0; a < 3; ++a) m.index_from_world_linear[a][a] = 1 / j[a][a];
+  } else {
+    m.index_from_world_linear = glm::inverse(j);
+  }
+  return m;
+}
+
+double Mapping::smallest_edge() const {
+  const Mat3& j = world_from_index_linear;
+  return std::min(std::min(norm(j[0]), norm(j[1])), norm(j[2]));
+}
+
+}  // namespace catena::field

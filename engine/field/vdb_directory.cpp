@@ -1,0 +1,128 @@
+#include "engine/field/vdb_directory.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+
+#include "engine/field/files.h"
+
+namespace catena::field {
+namespace {
+
+constexpr std::int64_t magic = 0x56444220;
+constexpr std::uint32_t oldest_version = 222;  // OpenVDB 2.0 (2013)
+
+/// Little-endian reads that remember the first failure.
+class Reader {
+ public:
+  explicit Reader(std::istream& in, std::uint64_t size) : in_(in), size_(size) {}
+  template <class T>
+  T number() {
+    T v{};
+    in_.read(reinterpret_cast<char*>(&v), sizeof v);
+    return ok() ? v : T{};
+  }
+  std::string text() {
+    const auto length = number<std::uint32_t>();
+    if (length > size_) in_.setstate(std::ios::failbit);
+    std::string s(ok() ? length : 0, '\0');
+    in_.read(s.data(), static_cast<std::streamsize>(s.size()));
+    return s;
+  }
+  void skip(std::uint64_t count) {
+    if (count > size_) in_.setstate(std::ios::failbit);
+    in_.seekg(static_cast<std::streamoff>(count), std::ios::cur);
+    if (ok() && static_cast<std::uint64_t>(in_.tellg()) > size_) in_.setstate(std::ios::failbit);
+  }
+  void seek(std::int64_t place) { in_.seekg(place); }
+  bool ok() const { return in_.good(); }
+
+ private:
+  std::istream& in_;
+  std::uint64_t size_;
+};
+
+VdbEntry entry_of(std::string unique_name, std::string type) {
+  VdbEntry e;
+  // a repeated name carries a number behind the ASCII record separator
+  const auto separator = unique_name.find('\x1e');
+  e.name = separator == std::string::npos ? unique_name : unique_name.substr(0, separator) + "[" + unique_name.substr(separator + 1) + "]";
+  e.unique_name = std::move(unique_name);
+  constexpr std::string_view half = "_HalfFloat";
+  e.half = type.ends_with(half);
+  e.tree_type = e.half ? type.substr(0, type.size() - half.size()) : std::move(type);
+  return e;
+}
+
+}  // namespace
+
+Result<VdbDirectory> read_vdb_directory(const std::string& path) {
+  CATENA_TRY(const std::uint64_t size, readable_file(path));
+  std::ifstream in(path, std::ios::binary);
+  Reader reader(in, size);
+  const auto cut = [&](const std::string& where) {
+    return Error{fmt::format("{}: the file is cut short or damaged ({} bytes, it breaks off in {}), expected a complete .vdb file", path, size, where)};
+  };
+
+  // the header
+  const auto first = reader.number<std::int64_t>();
+  if (size < sizeof magic || first != magic) return Error{fmt::format("{}: this is not a .vdb file (its first bytes are not OpenVDB's)", path)};
+  const auto version = reader.number<std::uint32_t>();
+  reader.number<std::uint32_t>();
+  reader.number<std::uint32_t>();
+  const auto has_offsets = reader.number<std::uint8_t>();
+  if (!reader.ok()) return cut("its header");
+  if (version < oldest_version) return Error{fmt::format("{}: .vdb format version {} is too old, expected {} or newer", path, version, oldest_version)};
+  constexpr std::uint64_t uuid_bytes = 36;
+  reader.skip(uuid_bytes);
+  const auto metadata = reader.number<std::uint32_t>();
+  for (std::uint32_t i = 0; i < metadata && reader.ok(); ++i) {
+    reader.text();
+    reader.text();
+    reader.skip(reader.number<std::uint32_t>());
+  }
+  const auto count = reader.number<std::int32_t>();
+  if (!reader.ok() || count < 0) return cut("its header");
+
+  // the grids
+  VdbDirectory directory;
+  directory.streamed = !has_offsets;
+  for (std::int32_t i = 0; i < count && has_offsets; ++i) {
+    std::string name = reader.text(), type = reader.text();
+    reader.text();
+    const auto begin = reader.number<std::int64_t>(), blocks = reader.number<std::int64_t>(), end = reader.number<std::int64_t>();
+    if (!reader.ok()) return cut(fmt::format("the entry of grid {}", i + 1));
+    VdbEntry entry = entry_of(std::move(name), std::move(type));
+    if (begin <= 0 || blocks < begin || end < blocks || static_cast<std::uint64_t>(end) > size) return cut("grid \"" + entry.name + "\"");
+    directory.entries.push_back(std::move(entry));
+    reader.seek(end);
+  }
+  return directory;
+}
+
+std::string type_word(const VdbEntry& entry) {
+  // Tree_float_5_4_3 -> float
+  std::string word = entry.tree_type;
+  if (word.starts_with("Tree_")) word = word.substr(5);
+  if (word.ends_with("_5_4_3")) word = word.substr(0, word.size() - 6);
+  if (!entry.half) return word;
+  return word == "float" ? "half" : "half " + word;
+}
+
+bool is_scalar_type(const std::string& word) {
+  return word == "float" || word == "half" || word == "double" || word == "half double" || word == "int32" || word == "int64";
+}
+
+bool is_vector_type(const std::string& word) {
+  return word == "vec3s" || word == "half vec3s" || word == "vec3d" || word == "half vec3d" || word == "vec3i";
+}
+
+std::string list_of(const std::vector<VdbEntry>& entries) {
+  std::string all;
+  for (const VdbEntry& e : entries) all += (all.empty() ? "" : ", ") + e.name + " (" + type_word(e) + ")";
+  return all.empty() ? "nothing" : all;
+}
+
+}  // namespace catena::field

@@ -1,0 +1,111 @@
+#include "engine/flow/advect.h"
+
+#include "engine/flow/direction.h"
+
+namespace catena::flow {
+
+namespace {
+
+constexpr const char* kWords[] = {"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"};
+
+/// The velocity itself (not its direction): the rate of Eq. 3 in the field's own time.
+struct Velocity {
+  const Flow& flow;
+  field::Cursor& cursor;
+  Vec3 reference{0.0};
+
+  Stop operator()(const Vec3& p, Vec3& v) const {
+    const field::VectorSample sample = flow.field->sample(p, cursor, flow.line ? &reference : nullptr);
+    if (!sample.inside || !is_finite(sample.value)) return Stop::outside;
+    v = norm(sample.value) <= flow.min_speed ? Vec3(0.0) : sample.value;
+    return Stop::none;
+  }
+};
+
+}  // namespace
+
+std::optional<Method> method_from_word(std::string_view word) {
+  for (int i = 0; i < 7; ++i)
+    if (word == kWords[i]) return static_cast<Method>(i);
+  return std::nullopt;
+}
+
+const char* method_word(Method method) { return kWords[static_cast<int>(method)]; }
+
+Advected advect(const Flow& flow, const Vec3& p, double dt, Method method, double tolerance_length, field::Cursor& cursor, int cap) {
+  Advected out;
+  const Tableau& tableau = tableau_of(method);
+  const double length = flow.field->length();
+
+  // the first stage
+  Velocity velocity{flow, cursor};
+  if (flow.line) {
+    const Stop stop = seed_direction(flow, p, cursor, velocity.reference);
+    out.evaluations = 1;
+    if (stop == Stop::outside) return {Vec3(0.0), 1, false, true};
+    if (stop == Stop::still) return out;
+  }
+  Vec3 first(0.0);
+  ++out.evaluations;
+  if (!is_finite(p) || !std::isfinite(dt) || velocity(p, first) != Stop::none) {
+    out.inside = false;
+    return out;
+  }
+
+  // fixed methods: one step
+  if (!tableau.embedded) {
+    if (out.evaluations + tableau.stages - 1 > cap) {
+      out.complete = false;
+      return out;
+    }
+    const Step step = runge_kutta_step(tableau, p, first, dt, false, velocity);
+    out.evaluations += step.evaluations;
+    if (step.stop == Stop::none && is_finite(step.displacement))
+      out.displacement = step.displacement;
+    else
+      out.inside = false;
+    return out;
+  }
+
+  // embedded pairs: as many sub-steps as the tolerance asks for, none longer than a tenth of the domain
+  const double sign = dt < 0 ? -1.0 : 1.0;
+  double left = std::fabs(dt), h = left;
+  while (left > 0) {
+    const double speed = norm(first);
+    if (!(speed > 0)) return out;
+    if (std::isfinite(tolerance_length)) h = std::min(h, 0.1 * length / speed);
+    h = std::min(h, left);
+    if (out.evaluations + tableau.stages > cap) {
+      out.complete = false;
+      return out;
+    }
+    const Step step = runge_kutta_step(tableau, p + out.displacement, first, sign * h, true, velocity);
+    out.evaluations += step.evaluations;
+    if (step.stop != Stop::none) {
+      if (h * speed <= 1e-12 * length) {
+        out.inside = false;
+        return out;
+      }
+      h *= 0.25;
+      continue;
+    }
+    const double error = norm(step.error);
+    if (!(error <= tolerance_length)) {
+      const double shorter = h * step_factor(error, tolerance_length, 0.1, 0.8);
+      if (!(shorter > 0) || h * speed <= 1e-15 * length) {
+        out.complete = false;
+        return out;
+      }
+      h = shorter;
+      continue;
+    }
+    out.displacement += step.displacement;
+    first = step.last;
+    if (flow.line) velocity.reference = direction(first);
+    left = h < left ? left - h : 0;
+    h *= step_factor(error, tolerance_length, 0.5, 4.0);
+  }
+  return out;
+}
+
+}  // namespace catena::flow

@@ -1,0 +1,89 @@
+/// What a line is marched through: a formula in world coordinates, or a grid cell by cell in index coordinates, so that cell
+/// faces are exact numbers. Both serve the marcher (march.h):
+///   begin(seed, u, sign, q)   places the motion at the seed, along sign * u; false: outside the domain
+///   rate(q, w, u)             u the unit direction of motion in the world, w = dq/ds; or why there is none
+///   settle(q, w)              makes the cell that the motion goes into the current one
+///   leave(piece, way)         the first place where a Hermite piece leaves the current cell
+/// Off the haptic thread, but without allocation.
+#pragma once
+#include "engine/field/grid.h"
+#include "engine/flow/direction.h"
+#include "engine/flow/hermite.h"
+
+namespace catena::flow {
+
+enum class Settled { here, moved, boundary };
+
+/// A way out of a cell: the Hermite parameter, and the axis and coordinate of the face.
+struct WayOut {
+  double theta = 0;
+  int axis = 0;
+  double face = 0;
+  int side = 0;  ///< -1 or +1
+};
+
+/// Analytic fields, and any field without cells: no faces.
+class FormulaMedium {
+ public:
+  explicit FormulaMedium(const Flow& flow) : flow_(flow) {}
+  /// The field's direction at the seed, or why there is none.
+  Stop seed(const Vec3& place, Vec3& u) { return seed_direction(flow_, place, cursor_, u); }
+  bool begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
+    q = seed;
+    reference_ = sign * u;
+    sign_ = flow_.line ? 1 : sign;
+    return true;
+  }
+  Vec3 world(const Vec3& q) const { return q; }
+  Vec3 world_difference(const Vec3& d) const { return d; }
+  Stop rate(const Vec3& q, Vec3& w, Vec3& u) {
+    const Stop stop = direction_at(flow_, q, reference_, cursor_, u);
+    u *= sign_;
+    w = u;
+    return stop;
+  }
+  Settled settle(Vec3&, const Vec3&) { return Settled::here; }
+  bool leave(const Hermite&, WayOut&) const { return false; }
+  bool hop(const WayOut&) { return true; }
+  void turn(const Vec3& motion) { reference_ = motion; }
+  double longest_step() const { return 0.1 * flow_.field->length(); }
+
+ private:
+  Flow flow_;
+  field::Cursor cursor_;
+  Vec3 reference_{0.0};
+  double sign_ = 1;
+};
+
+/// A sampled field: within a cell every stage uses that cell's polynomial, extended as far as a stage may reach.
+class CellMedium {
+ public:
+  explicit CellMedium(const Flow& flow);
+  Stop seed(const Vec3& place, Vec3& u);
+  bool begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q);
+  Vec3 world(const Vec3& q) const { return grid_->mapping().world_from_index(q); }
+  Vec3 world_difference(const Vec3& d) const { return grid_->mapping().world_from_index_linear * d; }
+  Stop rate(const Vec3& q, Vec3& w, Vec3& u) const;
+  /// Goes on to neighbours while q lies on (or beyond) a face and moves outward.
+  Settled settle(Vec3& q, const Vec3& w);
+  bool leave(const Hermite& piece, WayOut& way) const;
+  /// Enters the neighbour behind a face; false: there is none.
+  bool hop(const WayOut& way);
+  void turn(const Vec3& motion) { motion_ = motion; }
+  double longest_step() const { return longest_step_; }
+
+ private:
+  bool enter(const field::Index3& base);
+
+  Flow flow_;
+  const field::VectorGrid* grid_;
+  field::Cursor cursor_;
+  field::Index3 base_;
+  Vec3 lo_{0.0}, hi_{0.0};          ///< the current cell's faces, index coordinates
+  std::array<Vec3, 8> polynomial_;  ///< coefficients of 1, x, y, xy, z, xz, yz, xyz
+  Vec3 motion_{0.0};                ///< last tangent: line fields are turned to its side
+  double sign_ = 1;
+  double longest_step_ = 0;
+};
+
+}  // namespace catena::flow

@@ -1,0 +1,154 @@
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/scene/read_parts.h"
+
+namespace catena::scene {
+namespace {
+
+Result<Rgb> rgb_of(const Vec3& c, const json::Node& node, std::string_view what) {
+  for (int i = 0; i < 3; ++i)
+    if (!(c[i] >= 0 && c[i] <= 1)) return json::error_at(node, in_quotes(what) + " holds " + to_text(c[i]) + "; colour components from 0 to 1 were expected");
+  return Rgb{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
+}
+
+Result<Rgb> get_color(const json::Node& object, std::string_view key, const Rgb& fallback) {
+  const json::Node* node = object.find(key);
+  if (node == nullptr) return fallback;
+  CATENA_TRY(const Vec3 c, json::as_vec3(*node, key));
+  return rgb_of(c, *node, key);
+}
+
+/// Rows [value, ...] of a table, values rising strictly, at least one.
+Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std::string_view what, std::size_t width) {
+  CATENA_TRY(auto rows, json::as_rows(node, what, width));
+  if (rows.empty()) return json::error_at(node, in_quotes(what) + " is empty; at least one row of " + std::to_string(width) + " numbers was expected");
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (!(rows[i][0] > rows[i - 1][0]))
+      return json::error_at(node.items[i], in_quotes(what) + " has the value " + to_text(rows[i][0]) + " after " + to_text(rows[i - 1][0]) +
+                                               "; strictly rising values were expected");
+  return rows;
+}
+
+Result<TransferFunction> read_transfer(const json::Node& node) {
+  TransferFunction transfer;
+  if (const json::Node* color = node.find("color")) {
+    CATENA_TRY(const auto rows, read_table(*color, "color", 4));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      CATENA_TRY(const Rgb rgb, rgb_of({rows[i][1], rows[i][2], rows[i][3]}, color->items[i], "color"));
+      transfer.colors.push_back({rows[i][0], rgb});
+    }
+  }
+  const json::Node *opacity = node.find("opacity"), *extinction = node.find("extinction"), *unit = node.find("opacity_unit");
+  if (opacity != nullptr && extinction != nullptr)
+    return json::error_at(*extinction, "both \"opacity\" and \"extinction\" are given; one of them was expected");
+  if (unit != nullptr && opacity == nullptr)
+    return json::error_at(*unit, "\"opacity_unit\" is given without \"opacity\"; the table \"opacity\" was expected beside it");
+  if (opacity != nullptr) {
+    CATENA_TRY(const auto rows, read_table(*opacity, "opacity", 2));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!(rows[i][1] >= 0 && rows[i][1] < 1))
+        return json::error_at(opacity->items[i], "\"opacity\" holds " + to_text(rows[i][1]) + "; an opacity 0 <= a < 1 was expected");
+      transfer.opacities.push_back({rows[i][0], rows[i][1]});
+    }
+    CATENA_TRY(transfer.opacity_unit, json::get_number(node, "opacity_unit", 0, json::Range::positive));
+  }
+  if (extinction != nullptr) {
+    CATENA_TRY(const auto rows, read_table(*extinction, "extinction", 2));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!(rows[i][1] >= 0)) return json::error_at(extinction->items[i], "\"extinction\" holds " + to_text(rows[i][1]) + "; a sigma >= 0 was expected");
+      transfer.extinctions.push_back({rows[i][0], rows[i][1]});
+    }
+  }
+  return transfer;
+}
+
+/// Calls read(item) for each object of an array.
+template <class Read>
+Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
+  if (node.kind != json::Kind::array) return json::error_at(node, in_quotes(what) + " is no array; an array of objects was expected");
+  for (const json::Node& item : node.items) {
+    CATENA_CHECK(json::expect_object(item, item.label));
+    CATENA_CHECK(read(item));
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
+  CATENA_TRY(const std::string name, json::require_string(object, key));
+  if (const Entity field = find_field(scene, name)) return field;
+  std::vector<std::string_view> names;
+  scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
+  return json::error_at(*object.find(key), "unknown field " + in_quotes(name) + "; known: " + (names.empty() ? "none" : joined(names)) + ", one of \"fields\" was expected" +
+                                               suggestion(name, names));
+}
+
+Outcome read_volumes(Scene& scene, const json::Node& node) {
+  return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
+    CATENA_CHECK(json::only_keys(item, {"field", "color", "opacity", "opacity_unit", "extinction", "shade"}));
+    Volume volume;
+    volume.where = item;
+    CATENA_TRY(volume.field, read_field_name(scene, item));
+    CATENA_TRY(volume.transfer, read_transfer(item));
+    CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
+    scene.world.emplace<Volume>(scene.world.create(), std::move(volume));
+    return Done{};
+  });
+}
+
+Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
+  return each_item(node, "isosurfaces", [&](const json::Node& item) -> Outcome {
+    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity"}));
+    Isosurface surface;
+    surface.where = item;
+    CATENA_TRY(surface.field, read_field_name(scene, item));
+    CATENA_TRY(surface.level, json::require_number(item, "level"));
+    CATENA_TRY(surface.color, get_color(item, "color", surface.color));
+    CATENA_TRY(surface.opacity, json::get_number(item, "opacity", surface.opacity, json::Range::not_negative));
+    if (surface.opacity > 1) return json::error_at(*item.find("opacity"), "\"opacity\" is " + to_text(surface.opacity) + "; a number from 0 to 1 was expected");
+    scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));
+    return Done{};
+  });
+}
+
+Outcome read_streamlines(Scene& scene, const json::Node& node) {
+  return each_item(node, "streamlines", [&](const json::Node& item) -> Outcome {
+    CATENA_CHECK(json::only_keys(item, {"field", "seeds", "radius", "color", "kind", "min_speed", "length"}));
+    StreamlineSet set;
+    set.where = item;
+    CATENA_TRY(set.field, read_field_name(scene, item));
+    const json::Node* seeds = item.find("seeds");
+    if (seeds == nullptr || seeds->kind != json::Kind::array || seeds->items.empty())
+      return json::error_at(seeds == nullptr ? item : *seeds, "\"seeds\" is missing or empty; at least one seed [x, y, z] was expected");
+    set.seeds.reserve(seeds->items.size());
+    for (const json::Node& seed : seeds->items) {
+      CATENA_TRY(const Vec3 p, json::as_vec3(seed, "seeds"));
+      set.seeds.push_back(p);
+    }
+    CATENA_TRY(set.radius, json::get_number(item, "radius", 0, json::Range::positive));
+    CATENA_TRY(set.color, get_color(item, "color", set.color));
+    CATENA_TRY(const int kind, json::get_choice(item, "kind", 0, {"vector", "line"}));
+    set.line = kind == 1;
+    CATENA_TRY(set.min_speed, json::get_number(item, "min_speed", 0, json::Range::not_negative));
+    CATENA_TRY(set.length, json::get_number(item, "length", 0, json::Range::positive));
+    scene.world.emplace<StreamlineSet>(scene.world.create(), std::move(set));
+    return Done{};
+  });
+}
+
+/// Where the glyph stands in a still picture; a device or a replay moves it.
+Outcome read_cursor(Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::expect_object(node, "cursor"));
+  CATENA_CHECK(json::only_keys(node, {"probe", "size"}));
+  Cursor& cursor = scene.world.get<Cursor>(scene.cursor);
+  CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
+  if (probe) {
+    cursor.probe = *probe;
+    cursor.visible = true;
+  }
+  CATENA_TRY(cursor.size, json::get_number(node, "size", 0, json::Range::positive));
+  return Done{};
+}
+
+}  // namespace catena::scene

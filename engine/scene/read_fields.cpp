@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/scene/read_parts.h"
+
+namespace catena::scene {
+namespace {
+
+namespace fs = std::filesystem;
+using field::LoadRequest;
+
+constexpr int kMostNodes = 1024;  // an axis, of a sampled analytic field
+
+bool is_raw(const std::string& path) { return path.ends_with(".raw"); }
+bool is_readable_kind(const std::string& path) {
+  return path.ends_with(".vdb") || path.ends_with(".nii") || path.ends_with(".nii.gz") || is_raw(path);
+}
+
+/// Empty where `path` is a file that can be loaded, else what is wrong and what was expected.
+std::string file_fault(const std::string& path) {
+  std::error_code code;
+  if (!is_readable_kind(path)) return in_quotes(path) + " has an unknown kind; a .vdb, .nii, .nii.gz or .raw file was expected";
+  if (!fs::exists(path, code)) return in_quotes(path) + " does not exist; a .vdb, .nii, .nii.gz or .raw file was expected";
+  if (!fs::is_regular_file(path, code)) return in_quotes(path) + " is not a file; a .vdb, .nii, .nii.gz or .raw file was expected";
+  return {};
+}
+
+std::string resolve(const std::string& scene_path, const std::string& file) {
+  const fs::path path(file);
+  return path.is_absolute() ? file : (fs::path(scene_path).parent_path() / path).string();
+}
+
+// ---- fields from files ----
+
+Result<field::RawLayout> read_raw_layout(const json::Node& node) {
+  field::RawLayout layout;
+  const json::Node* shape = node.find("shape");
+  if (shape == nullptr) return json::error_at(node, "key \"shape\" is missing; a .raw file was expected to state [nx, ny, nz]");
+  CATENA_TRY(const Vec3 size, json::as_vec3(*shape, "shape"));
+  for (int i = 0; i < 3; ++i)
+    if (!(size[i] >= 2 && size[i] <= 65536 && std::floor(size[i]) == size[i]))
+      return json::error_at(*shape, "\"shape\" holds " + to_text(size[i]) + "; three whole numbers from 2 to 65536 were expected");
+  layout.shape = {static_cast<int>(size.x), static_cast<int>(size.y), static_cast<int>(size.z)};
+  CATENA_TRY(layout.spacing, json::get_vec3(node, "spacing", layout.spacing));
+  if (!(layout.spacing.x > 0 && layout.spacing.y > 0 && layout.spacing.z > 0))
+    return json::error_at(*node.find("spacing"), "\"spacing\" is not positive; three finite numbers > 0 were expected");
+  CATENA_TRY(layout.origin, json::get_vec3(node, "origin", layout.origin));
+  const std::initializer_list<std::string_view> types = {"float32", "float64", "uint8", "int8", "uint16", "int16", "uint32", "int32", "float32x3"};
+  CATENA_TRY(const int type, json::get_choice(node, "type", 0, types));
+  layout.type = types.begin()[type];
+  return layout;
+}
+
+Outcome read_file_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
+  CATENA_TRY(const std::string file, json::require_string(node, "file"));
+  LoadRequest request;
+  request.path = resolve(scene_path, file);
+  if (is_raw(file)) {
+    CATENA_CHECK(json::only_keys(node, {"file", "shape", "spacing", "origin", "type"}));
+    CATENA_TRY(request.raw, read_raw_layout(node));
+  } else {
+    CATENA_CHECK(json::only_keys(node, {"file", "grid", "valid"}));
+    CATENA_TRY(request.grid, json::get_string(node, "grid", {}));
+    if (const json::Node* grid = node.find("grid"); grid != nullptr && request.grid.empty())
+      return json::error_at(*grid, "\"grid\" is empty; the name of a grid was expected");
+    if (const json::Node* valid = node.find("valid"); valid != nullptr && valid->is_null()) {
+      request.valid_grid.reset();
+    } else if (valid != nullptr) {
+      if (valid->kind != json::Kind::string || valid->string.empty())
+        return json::error_at(*valid, "\"valid\" is no name; the name of a BoolGrid, or null for none, was expected");
+      request.valid_grid = valid->string;
+      request.valid_required = true;
+    }
+  }
+  if (const std::string fault = file_fault(request.path); !replaced && !fault.empty())
+    return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + fault);
+  source.file = std::move(request);
+  return Done{};
+}
+
+// ---- fields by formula ----
+
+Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
+  CATENA_CHECK(json::only_keys(node, {"analytic", "scale", "direction", "part", "grid", "resolution", "box"}));
+  CATENA_TRY(source.analytic, json::require_string(node, "analytic"));
+  const json::Node& name = *node.find("analytic");
+  if (!field::is_analytic(source.analytic)) {
+    const auto names = field::analytic_names();
+    return json::error_at(name, "unknown analytic field " + in_quotes(source.analytic) + "; one of " + joined(names) + " was expected" +
+                                    suggestion(source.analytic, names));
+  }
+  CATENA_TRY(source.parameters.scale, json::get_number(node, "scale", 1));
+  if (source.parameters.scale == 0) return json::error_at(*node.find("scale"), "\"scale\" is 0; a finite number other than 0 was expected");
+
+  if (const json::Node* direction_node = node.find("direction")) {
+    if (source.analytic != "uniform")
+      return json::error_at(*direction_node, "\"direction\" does not belong to " + in_quotes(source.analytic) + "; it was expected for \"uniform\" only");
+    CATENA_TRY(source.parameters.direction, json::as_vec3(*direction_node, "direction"));
+    if (norm(source.parameters.direction) == 0)
+      return json::error_at(*direction_node, "\"direction\" is zero; a vector other than [0, 0, 0] was expected");
+  }
+
+  // a part is a grid of what `generate` writes
+  const json::Node* part = node.find("part");
+  if (part != nullptr && node.find("grid") != nullptr) return json::error_at(*part, "both \"part\" and \"grid\" are given; one of them was expected");
+  const char* part_key = part != nullptr ? "part" : "grid";
+  CATENA_TRY(const std::string word, json::get_string(node, part_key, {}));
+  if (const json::Node* part_node = node.find(part_key)) {
+    const auto parts = field::analytic_parts(source.analytic);
+    if (std::count(parts.begin(), parts.end(), word) == 0)
+      return json::error_at(*part_node, "unknown part " + in_quotes(word) + " of " + in_quotes(source.analytic) + "; one of " + joined(parts) + " was expected");
+    if (word != source.analytic) source.parameters.part = word;
+  }
+
+  CATENA_TRY(source.resolution, json::get_integer(node, "resolution", source.resolution, 2, kMostNodes));
+  if (const json::Node* box = node.find("box")) {
+    const bool pair = box->kind == json::Kind::array && box->items.size() == 2 && box->items[0].kind == json::Kind::number &&
+                      box->items[1].kind == json::Kind::number;
+    if (!pair || !(box->items[0].number < box->items[1].number))
+      return json::error_at(*box, "\"box\" is no interval; two finite numbers [LO, HI] with LO < HI were expected");
+    source.box = {box->items[0].number, box->items[1].number};
+  }
+  return Done{};
+}
+
+Outcome read_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
+  CATENA_CHECK(json::expect_object(node, node.label));
+  source.where = node;
+  const bool file = node.find("file") != nullptr, analytic = node.find("analytic") != nullptr;
+  if (file == analytic)
+    return json::error_at(node, "field " + in_quotes(node.label) + " has " + (file ? "both" : "neither") +
+                                    " \"file\" and \"analytic\"; exactly one of them was expected");
+  return file ? read_file_source(scene_path, node, replaced, source) : read_analytic_source(node, source);
+}
+
+// ---- --field NAME=FILE[:GRID] ----
+
+Outcome apply_override(Scene& scene, const FieldOverride& with) {
+  const std::string text = "--field " + with.name + "=" + with.file + (with.grid.empty() ? "" : ":" + with.grid);
+  const auto failed = [&](const std::string& what) { return Error{one_line(text + ": " + what)}; };
+  if (!is_name(with.name)) return failed(in_quotes(with.name) + " is no name; a name like [a-z][a-z0-9_]* was expected");
+  if (const std::string fault = file_fault(with.file); !fault.empty()) return failed("file " + fault);
+
+  Entity entity = find_field(scene, with.name);
+  if (!entity) {
+    entity = scene.world.create();
+    scene.world.emplace<Name>(entity, {with.name});
+    scene.world.emplace<FieldSource>(entity);
+  }
+  FieldSource& source = scene.world.get<FieldSource>(entity);
+  LoadRequest request = source.file.value_or(LoadRequest{});
+  if (is_raw(with.file) && !request.raw) return failed("the shape of a .raw file is not known; a field of the scene that states it was expected");
+  if (!is_raw(with.file)) request.raw.reset();
+  request.path = with.file;
+  request.valid_required = false;
+  source.grid_is_a_wish = with.grid.empty();
+  if (!with.grid.empty()) request.grid = with.grid;
+  source.file = request;
+  source.analytic.clear();
+  source.where = json::Node{};
+  return Done{};
+}
+
+}  // namespace
+
+bool is_name(std::string_view text) {
+  if (text.empty() || text[0] < 'a' || text[0] > 'z') return false;
+  return std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
+  if (const json::Node* fields = root.find("fields")) {
+    CATENA_CHECK(json::expect_object(*fields, "fields"));
+    for (const auto& [name, node] : fields->members) {
+      if (!is_name(name)) return json::error_at(node, "field name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+      const auto has_name = [&name = name](const FieldOverride& o) { return o.name == name; };
+      const bool replaced = std::any_of(overrides.begin(), overrides.end(), has_name);
+      FieldSource source;
+      CATENA_CHECK(read_source(scene.path, node, replaced, source));
+      const Entity entity = scene.world.create();
+      scene.world.emplace<Name>(entity, {name});
+      scene.world.emplace<FieldSource>(entity, std::move(source));
+    }
+  }
+  for (const FieldOverride& with : overrides) CATENA_CHECK(apply_override(scene, with));
+  return Done{};
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,30 @@
+/// The readers of the scene file's parts, one function a top-level key. Inside this room only. Each checks its keys and values
+/// completely and answers "FILE:LINE: what; what was expected".
+#pragma once
+#include <string>
+
+#include "engine/scene/scene.h"
+
+namespace catena::scene {
+
+/// [a-z][a-z0-9_]*, and for links none of the words that the tick CSV uses itself.
+bool is_name(std::string_view text);
+
+Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides);
+/// The entity of the field that member `key` of `object` names; an error lists the known ones.
+Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
+
+Outcome read_chain(Scene& scene, const json::Node& node);
+Outcome read_coupling(Scene& scene, const json::Node& node);
+Outcome read_workspace(Scene& scene, const json::Node& node);
+
+Outcome read_volumes(Scene& scene, const json::Node& node);
+Outcome read_isosurfaces(Scene& scene, const json::Node& node);
+Outcome read_streamlines(Scene& scene, const json::Node& node);
+Outcome read_cursor(Scene& scene, const json::Node& node);
+
+Outcome read_camera(Scene& scene, const json::Node& node);
+Outcome read_background(Scene& scene, const json::Node& node);
+Outcome read_quality(Scene& scene, const json::Node& node);
+
+}  // namespace catena::scene

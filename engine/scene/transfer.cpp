@@ -1,0 +1,105 @@
+#include "engine/scene/transfer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace catena::scene {
+namespace {
+
+constexpr std::size_t kMostSamples = 1u << 21;
+constexpr int kBins = 256;
+constexpr double kBackgroundShare = 0.1, kMargin = 0.06, kOpticalDepth = 2.5;
+constexpr int kRampPoints = 17;
+
+/// From dusk blue over green to ivory: light enough on black, dark enough on white.
+constexpr std::array<Rgb, 6> kMap = {{{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f}, {0.72f, 0.79f, 0.52f},
+                                      {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}}};
+
+struct Range {
+  double lo = 0, hi = 0, background = 0;
+};
+
+Range range_of(std::vector<float> values) {
+  std::sort(values.begin(), values.end());
+  const auto percentile = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
+  Range range{percentile(0.005), percentile(0.998), 0};
+  if (!(range.lo < range.hi)) range = {values.front(), values.back(), 0};
+  range.background = range.lo;
+  if (!(range.lo < range.hi)) return range;
+
+  // the fullest bin
+  std::array<std::size_t, kBins> bins{};
+  const double scale = kBins / (range.hi - range.lo);
+  for (float v : values) ++bins[static_cast<std::size_t>(std::clamp((v - range.lo) * scale, 0.0, kBins - 1.0))];
+  const auto fullest = static_cast<std::size_t>(std::max_element(bins.begin(), bins.end()) - bins.begin());
+  if (static_cast<double>(bins[fullest]) > kBackgroundShare * static_cast<double>(values.size()))
+    range.background = range.lo + (static_cast<double>(fullest) + 0.5) / scale;
+  return range;
+}
+
+double weight(const Range& range, double value) {
+  const double far = std::max(range.hi - range.background, range.background - range.lo);
+  if (!(far > 0)) return 1;
+  const double x = std::clamp((std::fabs(value - range.background) / far - kMargin) / (1 - kMargin), 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+}  // namespace
+
+std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most) {
+  const field::Box& box = grid.index_box();
+  const field::Index3 lo{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
+  const field::Index3 size{static_cast<int>(box.hi.x - box.lo.x) + 1, static_cast<int>(box.hi.y - box.lo.y) + 1,
+                           static_cast<int>(box.hi.z - box.lo.z) + 1};
+  const double voxels = static_cast<double>(size.x) * size.y * size.z;
+  const int every = std::max(1, static_cast<int>(std::ceil(std::cbrt(voxels / static_cast<double>(most)))));
+
+  std::vector<float> values, block;
+  std::vector<std::uint8_t> valid;
+  for (int z = 0; z < size.z; z += 8 * every)
+    for (int y = 0; y < size.y; y += 8 * every)
+      for (int x = 0; x < size.x; x += 8 * every) {
+        const field::Index3 origin{lo.x + x, lo.y + y, lo.z + z};
+        const field::Index3 extent{std::min(8, size.x - x), std::min(8, size.y - y), std::min(8, size.z - z)};
+        const auto count = static_cast<std::size_t>(extent.x * extent.y * extent.z);
+        block.resize(count);
+        valid.assign(count, 1);
+        grid.read_block(origin, extent, block);
+        if (grid.has_mask()) grid.read_cell_valid(origin, extent, valid);
+        for (std::size_t i = 0; i < count; ++i)
+          if (valid[i] != 0 && std::isfinite(block[i])) values.push_back(block[i]);
+      }
+  return values;
+}
+
+void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid) {
+  const bool opaque = transfer.extinctions.empty() && transfer.opacities.empty();
+  if (!transfer.colors.empty() && !opaque) return;
+  std::vector<float> values = sample_values(grid, kMostSamples);
+  if (values.empty()) values.push_back(0);
+  const Range range = range_of(values);
+  const bool flat = !(range.lo < range.hi);
+
+  if (transfer.colors.empty()) {
+    const std::size_t count = flat ? 1 : kMap.size();
+    for (std::size_t i = 0; i < count; ++i)
+      transfer.colors.push_back({range.lo + (range.hi - range.lo) * static_cast<double>(i) / (kMap.size() - 1), kMap[flat ? kMap.size() / 2 : i]});
+  }
+  if (!opaque) return;
+
+  double mean = 0;
+  for (float v : values) mean += weight(range, v);
+  mean = std::max(mean / static_cast<double>(values.size()), 1e-3);
+  const double k = kOpticalDepth / (mean * std::max(grid.length(), 1e-300));
+  if (flat) {
+    transfer.extinctions.push_back({range.lo, k});
+    return;
+  }
+  for (int i = 0; i < kRampPoints; ++i) {
+    const double value = range.lo + (range.hi - range.lo) * i / (kRampPoints - 1);
+    transfer.extinctions.push_back({value, k * weight(range, value)});
+  }
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,19 @@
+/// A transfer function from the values themselves, for volumes that state none. Off the tick, any thread.
+///   background b: the fullest of 256 bins between the 0.5 and 99.8 percentiles, where it holds over 10 % of the samples;
+///   else the lowest value. w(s) = smoothstep of |s - b| from a 6 % margin to the far end of the range;
+///   sigma(s) = k w(s), k such that a ray across the domain meets an optical depth of 2.5 on average.
+#pragma once
+#include <vector>
+
+#include "engine/field/grid.h"
+#include "engine/scene/components.h"
+
+namespace catena::scene {
+
+/// At most about `most` finite values of valid cells' voxels, spread over the grid in blocks of 8^3.
+std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most);
+
+/// Fills what is missing: colours if there are none, extinctions if there are neither extinctions nor opacities.
+void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid);
+
+}  // namespace catena::scene

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/scene/read_parts.h"
+#include "engine/scene/transfer.h"
+
+namespace catena::scene {
+namespace {
+
+/// A field without a single value helps nobody.
+Outcome check_grid(const field::AnyField& any) {
+  const field::GridStats* stats = nullptr;
+  if (any.scalar && any.scalar->grid()) stats = &any.scalar->grid()->stats();
+  if (any.vector && any.vector->grid()) stats = &any.vector->grid()->stats();
+  if (stats == nullptr) return Done{};
+  if (stats->active_voxels == 0) return Error{"grid " + in_quotes(any.get()->name()) + " is empty; active voxels were expected"};
+  if (stats->nan_count >= stats->active_voxels) return Error{"grid " + in_quotes(any.get()->name()) + " holds no finite value; numbers were expected"};
+  return Done{};
+}
+
+Result<field::AnyField> load_source(const FieldSource& source) {
+  if (!source.file) return field::make_analytic(source.analytic, source.parameters);
+  auto loaded = field::load(*source.file);
+  if (!loaded && source.grid_is_a_wish && !source.file->grid.empty()) {
+    field::LoadRequest any_grid = *source.file;
+    any_grid.grid.clear();
+    loaded = field::load(any_grid);
+  }
+  if (!loaded) return loaded.error();
+  CATENA_CHECK(check_grid(*loaded));
+  return *loaded;
+}
+
+}  // namespace
+
+Entity find_field(const Scene& scene, std::string_view name) {
+  Entity found;
+  scene.world.each<FieldSource>([&](Entity e, const FieldSource&) {
+    if (scene.world.get<Name>(e).value == name) found = e;
+  });
+  return found;
+}
+
+Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where) {
+  FieldSource& source = scene.world.get<FieldSource>(field);
+  if (source.loaded.get() != nullptr) return source.loaded;
+  auto loaded = load_source(source);
+  if (!loaded) {
+    const json::Node& place = source.where.line > 0 ? source.where : where;
+    return json::error_at(place, "field " + in_quotes(scene.world.get<Name>(field).value) + ": " + loaded.error().message);
+  }
+  source.loaded = *loaded;
+  return source.loaded;
+}
+
+Result<field::AnyField> use_field(Scene& scene, const std::string& name, const json::Node& where) {
+  if (const Entity field = find_field(scene, name)) return use_field(scene, field, where);
+  std::vector<std::string_view> names;
+  scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
+  return json::error_at(where, "unknown field " + in_quotes(name) + "; one of the scene's fields was expected: " + (names.empty() ? "it has none" : joined(names)) +
+                                   suggestion(name, names));
+}
+
+Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where) {
+  CATENA_TRY(const field::AnyField loaded, use_field(scene, field, where));
+  FieldSource& source = scene.world.get<FieldSource>(field);
+  if (source.drawn.get() == nullptr) {
+    if (loaded.get()->is_grid())
+      source.drawn = loaded;
+    else if (loaded.scalar)
+      source.drawn.scalar = field::sample_on_grid(*loaded.scalar, source.resolution, source.box[0], source.box[1]);
+    else
+      source.drawn.vector = field::sample_on_grid(*loaded.vector, source.resolution, source.box[0], source.box[1]);
+  }
+  if (source.drawn.scalar)
+    scene.world.each<Volume>([&](Entity, Volume& volume) {
+      if (volume.field == field) complete_transfer(volume.transfer, *source.drawn.scalar->grid());
+    });
+  return source.drawn;
+}
+
+Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length) {
+  CATENA_ASSERT(flow.field != nullptr);
+  if (!is_finite(seed)) return json::error_at(where, "the seed is not finite; three finite numbers [x, y, z] were expected");
+  const Scene::CurveKey key{flow.field->version(), flow.line, flow.min_speed, length, {seed.x, seed.y, seed.z}};
+  if (const auto it = scene.curves.find(key); it != scene.curves.end()) return it->second;
+  flow::TraceOptions options;
+  options.length = length;
+  auto curve = flow::trace(flow, seed, options);
+  if (!curve) return json::error_at(where, curve.error().message);
+  scene.curves.emplace(key, *curve);
+  return *curve;
+}
+
+Outcome check_level(const field::ScalarField& field, double level, const json::Node& where) {
+  const double lo = field.min_value(), hi = field.max_value();
+  if (level >= lo && level <= hi) return Done{};
+  return json::error_at(where, "level " + to_text(level) + " lies outside the field's values " + fmt::format("{:.6g}..{:.6g}", lo, hi) +
+                                   "; a level that the field attains was expected");
+}
+
+}  // namespace catena::scene

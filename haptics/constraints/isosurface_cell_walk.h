@@ -1,0 +1,34 @@
+/// The closest point of a sampled level set to the probe x, exact to the trilinear cells: one fetch is the whole polynomial,
+/// with its Hessian. Many closest points lie on a face or an edge of a cell, where no single normal gives t = 0; so the walk
+/// works on pieces: a cell with some of the faces through p held (active set A). On the span Q of the axes that are not held:
+///   n = Q'grad s / |Q'grad s|, e = Q'(x - p), t = e - (n.e) n, (I + (n.e) Q'HQ / |Q'grad s|) u = t, then back to the level
+/// At p every adjoining cell x subset of the faces through p is a piece; the steepest feasible one is followed until it
+/// converges or meets a face. None left: p is the local closest point. Walls (the domain, the mask, cells with values that
+/// are not finite) have no cell behind them: BOUNDARY where the probe pulls across one.
+/// Worlds may be anisotropic, rotated, sheared. Haptic thread: bounded by the fetches, at most kEvaluationCap.
+#pragma once
+#include "engine/field/grid.h"
+#include "haptics/constraints/isosurface_level.h"
+
+namespace catena::haptics {
+
+/// A point of a grid: f in [0, 1]^3 of the cell at `base`; exactly 0 or 1 on a face.
+struct CellPoint {
+  field::Index3 base;
+  Vec3 f{0.0};
+};
+
+struct WalkResult {
+  Status status = Status::ok;  ///< ok, boundary, budget, critical
+  double residual = 0;         ///< off the level, world units
+  Vec3 normal{0.0};
+};
+
+/// The cell point of a world position (clamped to the domain).
+CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept;
+Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
+
+/// Moves `at` (on the level to 1e-9 L or so) to the local closest point to the probe, with at most `most` fetches.
+WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint& at) noexcept;
+
+}  // namespace catena::haptics

@@ -1,0 +1,52 @@
+/// A scalar field seen from one level: value, slope and distance in one counted fetch.
+///   sigma = s - level,  n = grad s / |grad s|,  distance = sigma / |grad s|  (signed, a length)
+/// Grids are read at the nearest point of their domain. Haptic thread.
+#pragma once
+#include "haptics/chain/constraint.h"
+
+namespace catena::haptics {
+
+struct LevelPoint {
+  Vec3 p{0.0};          ///< world
+  double sigma = 0;
+  Vec3 n{0.0};
+  double distance = 0;  ///< 0 on a plateau
+  double round_off = 0; ///< a distance below this is noise
+  bool valid = false;   ///< finite, and inside the domain and mask
+  bool finite = false;
+  bool plateau = false; ///< no usable gradient
+};
+
+class LevelField {
+ public:
+  LevelField(const field::ScalarField& field, double level, field::Cursor& cursor, std::int32_t& evaluations)
+      : field_(field), level_(level), cursor_(cursor), evaluations_(evaluations) {}
+
+  /// One evaluation. Costs nothing and is not valid when the budget is spent.
+  LevelPoint at(const Vec3& world) noexcept;
+  bool spent(int reserve = 0) const noexcept { return evaluations_ + reserve >= kEvaluationCap; }
+
+  /// The nearest point of a grid's box, in index space; a formula has no walls.
+  Vec3 clamped(const Vec3& world) const noexcept;
+  double level() const noexcept { return level_; }
+  double length() const noexcept { return field_.length(); }
+  /// Half a voxel; a 256th of L for formulas.
+  double march_step() const noexcept;
+  /// The longest edge of a voxel; 0 for formulas.
+  double voxel() const noexcept;
+  const field::ScalarField& field() const noexcept { return field_; }
+  const field::ScalarGrid* grid() const noexcept { return field_.grid(); }
+  field::Cursor& cursor() noexcept { return cursor_; }
+  std::int32_t& evaluations() noexcept { return evaluations_; }
+
+ private:
+  const field::ScalarField& field_;
+  double level_;
+  field::Cursor& cursor_;
+  std::int32_t& evaluations_;
+};
+
+/// An orthonormal pair across the unit vector n; the same bits for the same n.
+void tangents(const Vec3& n, Vec3& a, Vec3& b) noexcept;
+
+}  // namespace catena::haptics

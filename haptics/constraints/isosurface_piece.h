@@ -1,0 +1,54 @@
+/// One piece of a sampled level set: a trilinear cell with some of its axes held. See isosurface_cell_walk.h.
+#pragma once
+#include "engine/field/grid.h"
+#include "haptics/constraints/isosurface_level.h"
+
+namespace catena::haptics {
+
+/// The geometry of the free axes: an orthonormal basis of the span of their columns of J.
+struct PieceFrame {
+  int count = 0;  ///< dimensions of the span
+  std::array<Vec3, 3> q{};
+  std::array<bool, 3> held{};
+
+  PieceFrame(const field::Mapping& mapping, unsigned held_axes) noexcept;
+  Vec3 on_span(const Vec3& v) const noexcept;
+  /// A world vector of the span as an index step: held axes exactly 0.
+  Vec3 index_step(const field::Mapping& mapping, const Vec3& v) const noexcept;
+};
+
+struct PieceSample {
+  double sigma = 0;
+  double slope = 0;     ///< |Q'grad s|
+  double distance = 0;  ///< sigma / slope
+  Vec3 n{0.0};          ///< world, in the span
+  bool usable = false;
+};
+
+class Piece {
+ public:
+  Piece(const field::Mapping& mapping, const field::ScalarCell& cell, double level, unsigned held_axes) noexcept
+      : mapping_(mapping), cell_(cell), level_(level), frame_(mapping, held_axes) {}
+
+  const field::ScalarCell& cell() const noexcept { return cell_; }
+  const PieceFrame& frame() const noexcept { return frame_; }
+  Vec3 world(const Vec3& f) const noexcept;
+  PieceSample sample(const Vec3& f) const noexcept;
+  /// t = e - (n.e) n, in the span.
+  Vec3 tangential(const Vec3& f, const Vec3& probe, const PieceSample& s) const noexcept;
+  /// The Newton step on the tangent plane.
+  Vec3 newton(const Vec3& f, const Vec3& probe, const PieceSample& s, const Vec3& t) const noexcept;
+  /// f + step, brought back to the level along n (of the point f). False: no level near by. May leave the cell.
+  bool retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out) const noexcept;
+  /// By how much f is outside the cell (negative: inside), over the axes that are not held; and the worst axis.
+  double outside(const Vec3& f, int& axis) const noexcept;
+
+ private:
+  Vec3 hessian_times(const Vec3& f, const Vec3& world) const noexcept;
+  const field::Mapping& mapping_;
+  const field::ScalarCell& cell_;
+  double level_;
+  PieceFrame frame_;
+};
+
+}  // namespace catena::haptics

@@ -1,0 +1,26 @@
+/// From any point to the level: march along the gradient (steps of at most r_max), bracket the sign change, Illinois inside
+/// the bracket, keep the last good normal on plateaus; where that fails, scan 26 directions outwards.
+/// Lengths in world units, every fetch counted. Haptic thread.
+#pragma once
+#include "haptics/constraints/isosurface_level.h"
+
+namespace catena::haptics {
+
+struct Reached {
+  bool found = false;
+  LevelPoint at;
+};
+
+/// The level between a and b, where sigma has opposite signs (or is zero in one).
+Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept;
+
+/// Marches from `start` at most `radius` far. `normal`: the last good one, for plateaus; zero if there is none.
+Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius) noexcept;
+
+/// Looks along 26 directions, near before far, up to L from the centre.
+Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept;
+
+/// The first crossing of the segment from..to, seen with steps of march_step (at most 64).
+Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept;
+
+}  // namespace catena::haptics

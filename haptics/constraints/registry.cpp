@@ -1,0 +1,81 @@
+#include "haptics/constraints/registry.h"
+
+#include <fmt/format.h>
+
+#include "haptics/constraints/isosurface.h"
+#include "haptics/constraints/plane.h"
+#include "haptics/constraints/point.h"
+
+namespace catena::haptics {
+namespace {
+
+std::string property(const Key& key) {
+  return fmt::format(R"("{}": {{"type": "{}", "description": "{}"{}{}}})", key.name, key.type, key.help, key.schema.empty() ? "" : ", ",
+                     key.schema);
+}
+
+std::string link_schema(const ConstraintType& type) {
+  std::string properties = fmt::format(R"("type": {{"const": "{}", "description": "{}"}})", type.type, type.paper);
+  std::string required = R"("type")";
+  const auto add = [&](const Key& key) {
+    if (key.name == "type") return;
+    properties += fmt::format(",\n        {}", property(key));
+    if (key.required) required += fmt::format(R"(, "{}")", key.name);
+  };
+  for (const Key& key : common_keys()) add(key);
+  for (const Key& key : type.keys) add(key);
+  return fmt::format("    {{\n      \"type\": \"object\",\n      \"properties\": {{\n        {}\n      }},\n      \"required\": [{}],\n"
+                     "      \"additionalProperties\": false\n    }}",
+                     properties, required);
+}
+
+std::string known_types() {
+  std::string list;
+  for (const ConstraintType& type : registry()) list += (list.empty() ? "" : ", ") + std::string(type.type);
+  return list;
+}
+
+}  // namespace
+
+const std::vector<ConstraintType>& registry() {
+  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint()};
+  return list;
+}
+
+const ConstraintType* find_constraint(std::string_view type) {
+  for (const ConstraintType& entry : registry())
+    if (entry.type == type) return &entry;
+  return nullptr;
+}
+
+const std::vector<Key>& common_keys() {
+  static const std::vector<Key> keys{
+      {"name", "string", true, "unique; names the columns of the tick CSV", R"("pattern": "^[a-z][a-z0-9_]*$")"},
+      {"type", "string", true, "which constraint"},
+      {"stiffness", "number", false, "N/m; default: the coupling's", kPositiveSchema},
+      {"on", "object", false, "its switch: {button: n} or {force_above: newtons}",
+       R"("properties": {"button": {"type": "integer", "minimum": 1}, "force_above": {"type": "number", "exclusiveMinimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 1)"}};
+  return keys;
+}
+
+std::string chain_schema() {
+  std::string links;
+  for (const ConstraintType& type : registry()) links += (links.empty() ? "" : ",\n") + link_schema(type);
+  return fmt::format("{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"chain\",\n  \"type\": \"array\",\n"
+                     "  \"maxItems\": {},\n  \"items\": {{ \"oneOf\": [\n{}\n  ] }}\n}}\n",
+                     kMaxLinks, links);
+}
+
+Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {
+  CATENA_CHECK(json::expect_object(link, "a link of the chain"));
+  CATENA_TRY(const std::string word, json::require_string(link, "type"));
+  const ConstraintType* type = find_constraint(word);
+  if (!type) return json::error_at(*link.find("type"), fmt::format("unknown constraint type \"{}\"; expected one of {}", word, known_types()));
+  std::vector<std::string_view> keys;
+  for (const Key& key : common_keys()) keys.push_back(key.name);
+  for (const Key& key : type->keys) keys.push_back(key.name);
+  CATENA_CHECK(json::only_keys(link, keys));
+  return type->build(link, context);
+}
+
+}  // namespace catena::haptics

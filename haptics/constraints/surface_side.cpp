@@ -1,0 +1,170 @@
+#include "haptics/constraints/surface_side.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kHandStep = 0.02;   // of L: longest step, and deepest hold, for thin sheets
+constexpr double kRearmPart = 0.1;   // of release
+
+bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+bool is_free(const SideRules& rules, double value) {
+  return rules.free == FreeSide::above ? value > 0 : rules.free == FreeSide::below ? value < 0 : false;
+}
+
+/// True when the probe lies behind the held point, seen from the free side.
+bool is_behind(const Surface& surface, const SideRules& rules, const Vec3& probe, const Vec3& proxy) {
+  const double above = dot(surface.normal(), probe - proxy);
+  return rules.free == FreeSide::above ? above < 0 : above > 0;
+}
+
+void leave(const Vec3& proxy, double residual, Status status, LinkState& state) {
+  state.proxy = proxy;
+  state.residual = residual;
+  state.status = status;
+}
+
+void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, const LinkState& state) {
+  memory.probe = probe;
+  memory.proxy = state.proxy;
+  memory.value = side.value;
+  memory.known = side.known;
+  memory.residual = state.residual;
+  memory.status = state.status;
+  memory.fresh = true;
+  memory.settled = state.status != Status::budget;
+}
+
+/// Puts the proxy on what was found, lets go if that is too far, passes the probe through if nothing was.
+void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
+  if (!hold.found || !is_finite(hold.proxy)) {
+    memory.holding = memory.sheet = false;
+    leave(probe, 0, hold.found ? Status::critical : Status::no_surface, state);
+    return;
+  }
+  if (rules.release > 0 && norm(probe - hold.proxy) >= rules.release) {
+    memory.holding = memory.sheet = false;
+    state.released = true;
+    leave(probe, 0, Status::released, state);
+    return;
+  }
+  memory.holding = true;
+  leave(hold.proxy, hold.residual, hold.status, state);
+}
+
+/// A thin sheet between the last probe and this one, both on the free side: the held point on its near face, if any.
+Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory) {
+  const double reach = kHandStep * surface.domain_length();
+  Hold hold;
+  if (memory.sheet && memory.holding) {
+    hold = surface.slide(probe);
+  } else if (memory.fresh && memory.status == Status::free && memory.known && surface.march_step() > 0) {
+    const double step = norm(probe - memory.probe);
+    if (step > surface.march_step() && step <= reach) hold = surface.cross(memory.probe, probe);
+  }
+  if (hold.found && (norm(probe - hold.proxy) > reach || !is_behind(surface, rules, probe, hold.proxy))) hold.found = false;
+  return hold;
+}
+
+}  // namespace
+
+Result<SideRules> read_side_rules(const json::Node& link, bool has_sides) {
+  SideRules rules;
+  if (has_sides) {
+    CATENA_TRY(const int side, json::get_choice(link, "free", 0, {"none", "above", "below"}));
+    rules.free = static_cast<FreeSide>(side);
+  }
+  CATENA_TRY(const auto release, json::get_optional_number(link, "release", json::Range::positive));
+  rules.release = release.value_or(0);
+  return rules;
+}
+
+void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
+  memory = SideMemory{};
+  state.released = false;
+  SideValue side;
+  leave(probe, 0, Status::free, state);
+  if (rules.free != FreeSide::none) {
+    side = surface.side(probe);
+    if (!side.known || is_free(rules, side.value)) return;
+  }
+  const Hold hold = surface.place(probe);
+  if (!hold.found || !is_finite(hold.proxy)) return;
+  if (rules.free != FreeSide::none && rules.release > 0 && norm(probe - hold.proxy) > rules.release) {
+    state.released = true;
+    return;
+  }
+  memory.holding = true;
+  leave(hold.proxy, hold.residual, hold.status, state);
+}
+
+void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
+  // a resting probe, or a proxy that somebody else has moved meanwhile
+  const bool untouched = !memory.fresh || same_bits(memory.proxy, state.proxy);
+  if (memory.fresh && untouched && memory.settled && same_bits(memory.probe, probe)) {
+    leave(memory.proxy, memory.residual, memory.status, state);
+    return;
+  }
+  if (!untouched) {
+    const bool released = state.released;
+    memory = SideMemory{};
+    state.released = released;
+  }
+
+  // on which side, and does a released link take hold again
+  const bool one_sided = rules.free != FreeSide::none;
+  SideValue side;
+  if (one_sided || state.released) side = surface.side(probe);
+  const bool free = one_sided && side.known && is_free(rules, side.value);
+  Hold hold;
+  bool have_hold = false;
+  if (state.released) {
+    if (!one_sided) {
+      const bool both = memory.fresh && memory.known && side.known;
+      const bool far = memory.fresh && surface.march_step() > 0 && norm(probe - memory.probe) > surface.march_step();
+      if (both && ((memory.value < 0) != (side.value < 0) || far)) hold = surface.cross(memory.probe, probe);
+      if (!hold.found) hold = surface.near_by(probe, kRearmPart * rules.release);
+      have_hold = hold.found;
+    }
+    if (!free && !have_hold) {
+      leave(probe, 0, Status::released, state);
+      remember(probe, side, memory, state);
+      return;
+    }
+    state.released = memory.holding = memory.sheet = false;
+  }
+
+  // free motion, but not through a thin sheet
+  if (free) {
+    hold = catch_sheet(surface, rules, probe, memory);
+    memory.sheet = hold.found;
+    if (!hold.found) {
+      memory.holding = false;
+      leave(probe, 0, Status::free, state);
+      remember(probe, side, memory, state);
+      return;
+    }
+    have_hold = true;
+  }
+
+  // nothing is known of the side here: what is held stays held, what is free stays free
+  if (one_sided && !side.known && !memory.holding) {
+    leave(probe, 0, side.broken ? Status::critical : Status::free, state);
+    remember(probe, side, memory, state);
+    return;
+  }
+
+  // hold
+  if (!have_hold) {
+    if (memory.holding) {
+      hold = surface.slide(probe);
+    } else {
+      if (one_sided && memory.fresh) hold = surface.cross(memory.probe, probe);
+      if (!hold.found) hold = surface.place(probe);
+    }
+  }
+  take(hold, rules, probe, memory, state);
+  remember(probe, side, memory, state);
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,76 @@
+/// The rules that all penetrable surfaces share: the free side, letting go, taking hold again ("Links and proxies").
+///   free = above | below: where value - level has that sign the hand moves freely and the proxy is the probe, bit for bit;
+///   a crossing is decided within the tick that makes it.
+///   release: the link lets go in the tick in which |probe - proxy| >= release. A one-sided link takes hold again when its
+///   probe is on the free side, a two-sided one when the probe crosses the level or comes within 0.1 release of it.
+///   A one-sided link whose first probe is deeper than release starts released.
+/// Thin sheets: a one-sided probe that passes a sheet within one step of at most 0.02 L (a hand, not a jump) is caught on
+/// the sheet's near face, and stays caught until it comes back, or is 0.02 L away, or released.
+/// Haptic thread: no allocation, lock, or throw. Lengths in world units.
+#pragma once
+#include "engine/base/json.h"
+#include "haptics/chain/constraint.h"
+
+namespace catena::haptics {
+
+enum class FreeSide { none, above, below };
+
+struct SideRules {
+  FreeSide free = FreeSide::none;
+  double release = 0;  ///< 0: never lets go
+};
+
+/// Reads `free` (if asked for) and `release`.
+Result<SideRules> read_side_rules(const json::Node& link, bool has_sides);
+
+struct SideValue {
+  double value = 0;     ///< value - level
+  bool known = false;   ///< false where the field says nothing (outside the mask)
+  bool broken = false;  ///< the field is not finite here
+};
+
+struct Hold {
+  bool found = false;
+  Vec3 proxy{0.0};
+  double residual = 0;
+  Status status = Status::ok;
+};
+
+/// What the rules need to know about a surface. It remembers the point on which it holds from tick to tick.
+class Surface {
+ public:
+  virtual ~Surface() = default;
+  virtual SideValue side(const Vec3& at) noexcept = 0;
+  /// The projection of the probe, with no earlier point to start from.
+  virtual Hold place(const Vec3& probe) noexcept = 0;
+  /// The closest point reached from the point held before.
+  virtual Hold slide(const Vec3& probe) noexcept = 0;
+  /// The first crossing of the segment from..probe, moved on to the closest point; not found: no crossing.
+  virtual Hold cross(const Vec3& from, const Vec3& probe) noexcept = 0;
+  /// As place, but only if that point is at most `limit` away.
+  virtual Hold near_by(const Vec3& probe, double limit) noexcept = 0;
+  /// Unit normal at the point held, to the side above.
+  virtual Vec3 normal() const noexcept = 0;
+  /// Two crossings closer than this within one tick are not looked for; 0: there are none.
+  virtual double march_step() const noexcept { return 0; }
+  virtual double domain_length() const noexcept = 0;
+};
+
+/// What the rules remember; part of the constraint's memory.
+struct SideMemory {
+  Vec3 probe{0.0};   ///< the last incoming probe
+  Vec3 proxy{0.0};   ///< as it was left, to notice a proxy moved by others
+  double value = 0;  ///< at the last probe
+  double residual = 0;
+  bool known;        ///< `value` means something
+  bool fresh;        ///< `probe` and `proxy` mean something
+  bool holding;      ///< the surface has a point to go on from
+  bool settled;      ///< nothing to gain from another tick at the same probe
+  bool sheet;        ///< holding from the near face of a thin sheet
+  Status status;
+};
+
+void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
+void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
+
+}  // namespace catena::haptics

@@ -1,0 +1,31 @@
+/// A device that plays a recorded probe path, one sample a tick, in world units and with its own time. After the last sample
+/// it stays there. The forces written to it are only counted. Haptic thread.
+#pragma once
+#include <vector>
+
+#include "haptics/device/device.h"
+
+namespace catena::haptics {
+
+class RecordedPath final : public Device {
+ public:
+  struct Sample {
+    double t_s = 0;
+    Vec3 position{0.0};
+    std::uint32_t buttons = 0;
+  };
+  explicit RecordedPath(std::vector<Sample> samples);
+
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override;
+  void write(const Vec3&) noexcept override { ++forces_written_; }
+  std::uint64_t forces_written() const { return forces_written_; }
+
+ private:
+  std::vector<Sample> samples_;
+  DeviceCapabilities capabilities_;
+  std::size_t next_ = 0;
+  std::uint64_t forces_written_ = 0;
+};
+
+}  // namespace catena::haptics

@@ -1,0 +1,21 @@
+/// Drives the tick from a recorded probe path: deterministic, no thread.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "haptics/chain/tick.h"
+
+namespace catena::haptics {
+
+struct ReplayStats {
+  std::uint64_t ticks = 0;
+  double tick_ns_p50 = 0, tick_ns_p99 = 0, tick_ns_p999 = 0, tick_ns_max = 0;
+  std::int64_t evaluations_p50 = 0, evaluations_max = 0;  ///< summed over links
+  std::uint64_t state_hash = 0;
+};
+
+/// Calls `on_tick` after every tick, outside the timed part. False from it stops the replay.
+ReplayStats replay(const Program& program, std::span<const ProbeSample> path, const std::function<bool(const exchange::HapticState&)>& on_tick);
+
+}  // namespace catena::haptics

@@ -1,0 +1,172 @@
+#include "render/extract/extract.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/assert.h"
+#include "render/extract/flatten.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kTubeShare = 0.003;    // fitted tube radius by the domain's diagonal
+constexpr double kCursorShare = 0.008;  // fitted glyph radius by the diagonal of what is drawn
+constexpr double kCursorOverTube = 1.6;
+
+Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
+
+Bounds domain_bounds(const field::Field& field) {
+  Bounds bounds;
+  const field::Box& box = field.index_box();
+  Bounds index;
+  index.add(box.lo);
+  index.add(box.hi);
+  for (int i = 0; i < 8; ++i) bounds.add(field.mapping().world_from_index(index.corner(i)));
+  return bounds;
+}
+
+double domain_diagonal(const field::Field& field) {
+  return norm(field.mapping().world_from_index_linear * (field.index_box().hi - field.index_box().lo));
+}
+
+std::string field_name(const scene::Scene& scene, scene::Entity field) {
+  return scene.world.has<scene::Name>(field) ? scene.world.get<scene::Name>(field).value : std::string("?");
+}
+
+template <class T>
+std::vector<scene::Entity> owners_of(const scene::World& world) {
+  std::vector<scene::Entity> owners;
+  world.each<T>([&](scene::Entity e, const T&) { owners.push_back(e); });
+  return owners;
+}
+
+const json::Node& member_or(const json::Node& node, std::string_view key) {
+  const json::Node* member = node.find(key);
+  return member == nullptr ? node : *member;
+}
+
+/// The scalar grid that the eye sees of a field.
+Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene, scene::Entity field, const json::Node& where,
+                                                            const char* what) {
+  CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, field, where));
+  if (!any.scalar)
+    return json::error_at(member_or(where, "field"),
+                          "\"" + field_name(scene, field) + "\" is a vector field; expected a scalar field for " + what);
+  CATENA_ASSERT(any.scalar->grid() != nullptr);
+  return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
+}
+
+Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::Volume>(scene.world)) {
+    const scene::Volume& volume = scene.world.get<scene::Volume>(e);
+    CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
+    TransferTable transfer = transfer_table(volume.transfer, *grid);
+    packet.volumes.push_back({std::move(grid), std::move(transfer), volume.shade});
+  }
+  return Done{};
+}
+
+Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::Isosurface>(scene.world)) {
+    const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
+    CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
+    CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
+    packet.isosurfaces.push_back({std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity)});
+  }
+  return Done{};
+}
+
+/// What this room keeps beside a StreamlineSet: each curve as a polyline, made once.
+struct FlatCurves {
+  std::vector<flow::CurvePtr> curves;
+  std::vector<double> radii;
+  std::vector<std::vector<Vec3>> points;
+};
+
+/// Every seed's curve is the one object of the scene: the same that a selected link moves on.
+Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::StreamlineSet>(scene.world)) {
+    const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
+    CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
+    if (!any.vector)
+      return json::error_at(member_or(set.where, "field"),
+                            "\"" + field_name(scene, set.field) + "\" is a scalar field; expected a vector field for streamlines");
+    const flow::Flow flow{any.vector.get(), set.line, set.min_speed};
+    const double radius = set.radius > 0 ? set.radius : kTubeShare * domain_diagonal(*any.vector);
+    const json::Node& seeds = member_or(set.where, "seeds");
+    if (!scene.world.has<FlatCurves>(e)) scene.world.emplace<FlatCurves>(e);
+    FlatCurves& flat = scene.world.get<FlatCurves>(e);
+    flat.curves.resize(set.seeds.size());
+    flat.radii.resize(set.seeds.size());
+    flat.points.resize(set.seeds.size());
+    for (std::size_t i = 0; i < set.seeds.size(); ++i) {
+      const json::Node& where = i < seeds.items.size() ? seeds.items[i] : seeds;
+      CATENA_TRY(const flow::CurvePtr curve, scene::use_curve(scene, flow, set.seeds[i], where, set.length));
+      if (flat.curves[i] != curve || flat.radii[i] != radius) {
+        flat.curves[i] = curve;
+        flat.radii[i] = radius;
+        flat.points[i] = flatten(*curve, {radius});
+      }
+      packet.tubes.push_back({flat.points[i], radius, color_of(set.color)});
+    }
+  }
+  return Done{};
+}
+
+void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
+  Bounds drawn = packet_bounds(packet);
+  if (drawn.empty()) {
+    // nothing but the cursor: its size follows the fields that the hand feels
+    scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
+      if (const field::Field* field = source.loaded.get()) drawn.add(domain_bounds(*field));
+    });
+  }
+  double widest_tube = 0;
+  for (const TubeItem& tube : packet.tubes) widest_tube = std::max(widest_tube, tube.radius);
+  scene.world.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
+    if (!cursor.visible || !is_finite(cursor.probe)) return;
+    CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size};
+    item.active.resize(item.proxies.size(), true);
+    if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
+    packet.cursors.push_back(std::move(item));
+  });
+}
+
+View view_of(const scene::Scene& scene, const FramePacket& packet) {
+  const scene::Camera& camera = scene.camera;
+  if (camera.given) return {camera.position, camera.target, camera.up, camera.fovy_deg, camera.orthographic, camera.height};
+  return fit_view(packet_bounds(packet), static_cast<double>(packet.width) / packet.height);
+}
+
+}  // namespace
+
+Bounds packet_bounds(const FramePacket& packet) {
+  Bounds bounds;
+  for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));
+  for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(domain_bounds(*surface.grid));
+  for (const TubeItem& tube : packet.tubes)
+    for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
+  for (const CursorItem& cursor : packet.cursors) {
+    bounds.add(cursor.probe, cursor.size);
+    for (const Vec3& p : cursor.proxies) bounds.add(p, cursor.size);
+  }
+  return bounds;
+}
+
+Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height) {
+  CATENA_ASSERT(width > 0 && height > 0);
+  FramePacket packet;
+  packet.width = width;
+  packet.height = height;
+  const scene::Background& background = scene.background;
+  packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};
+  CATENA_CHECK(extract_volumes(scene, packet));
+  CATENA_CHECK(extract_isosurfaces(scene, packet));
+  CATENA_CHECK(extract_streamlines(scene, packet));
+  extract_cursors(scene, packet);
+  packet.view = view_of(scene, packet);
+  return packet;
+}
+
+}  // namespace catena::render

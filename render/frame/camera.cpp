@@ -1,0 +1,184 @@
+#include "render/frame/camera.h"
+
+#include <numbers>
+
+#include "engine/base/assert.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kNearestShare = 1e-4;  // near >= far * this: keeps a float depth buffer useful with the eye inside the scene
+constexpr double kSlack = 1e-3;         // near and far stand off the bounds by this share
+
+/// An orthonormal frame with its z along `back`, its y as near to `up` as can be.
+void set_axes(Camera& camera, const Vec3& back, const Vec3& up) {
+  camera.back = direction(back);
+  if (max_abs(camera.back) == 0) camera.back = {0.0, -1.0, 0.0};
+  camera.right = cross(direction(up), camera.back);
+  if (!(norm(camera.right) > 1e-9)) {
+    const Vec3 other = std::fabs(camera.back.z) < 0.9 ? Vec3(0.0, 0.0, 1.0) : Vec3(0.0, 1.0, 0.0);
+    camera.right = cross(other, camera.back);
+  }
+  camera.right = direction(camera.right);
+  camera.up = direction(cross(camera.back, camera.right));
+}
+
+void set_depth_range(Camera& camera, const Bounds& bounds, double fallback_distance) {
+  double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+  if (!bounds.empty()) {
+    for (int i = 0; i < 8; ++i) {
+      const double depth = -dot(bounds.corner(i) - camera.position, camera.back);
+      nearest = std::min(nearest, depth);
+      farthest = std::max(farthest, depth);
+    }
+  }
+  // nothing to see, or all of it behind the eye
+  if (!(farthest > 0)) {
+    camera.near = 0.01 * fallback_distance;
+    camera.far = 100 * fallback_distance;
+    return;
+  }
+  const double slack = kSlack * std::max(farthest - nearest, kSlack * farthest);
+  camera.far = farthest + slack;
+  camera.near = std::max(nearest - slack, camera.orthographic ? 0.0 : kNearestShare * camera.far);
+}
+
+}  // namespace
+
+void Bounds::add(const Vec3& p, double radius) {
+  if (!is_finite(p)) return;
+  for (int i = 0; i < 3; ++i) {
+    lo[i] = std::min(lo[i], p[i] - radius);
+    hi[i] = std::max(hi[i], p[i] + radius);
+  }
+}
+
+void Bounds::add(const Bounds& other) {
+  if (other.empty()) return;
+  add(other.lo);
+  add(other.hi);
+}
+
+Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds) {
+  CATENA_ASSERT(width_px >= 1 && height_px >= 1);
+  Camera camera;
+  camera.position = view.position;
+  camera.width = width_px;
+  camera.height = height_px;
+  camera.orthographic = view.orthographic;
+  camera.half_height = view.orthographic ? 0.5 * view.height : std::tan(0.5 * view.fovy_deg * std::numbers::pi / 180);
+  camera.half_width = camera.half_height * width_px / height_px;
+  set_axes(camera, view.position - view.target, view.up);
+  const double distance = norm(view.position - view.target);
+  set_depth_range(camera, bounds, distance > 0 ? distance : 1);
+  return camera;
+}
+
+Mat4 view_from_world(const Camera& c) {
+  Mat4 m(1.0);
+  for (int i = 0; i < 3; ++i) {
+    m[i][0] = c.right[i];
+    m[i][1] = c.up[i];
+    m[i][2] = c.back[i];
+  }
+  m[3][0] = -dot(c.right, c.position);
+  m[3][1] = -dot(c.up, c.position);
+  m[3][2] = -dot(c.back, c.position);
+  return m;
+}
+
+Mat4 clip_from_view(const Camera& c) {
+  Mat4 m(0.0);
+  m[0][0] = 1 / c.half_width;
+  m[1][1] = -1 / c.half_height;
+  if (c.orthographic) {
+    m[2][2] = -1 / (c.far - c.near);
+    m[3][2] = -c.near / (c.far - c.near);
+    m[3][3] = 1;
+  } else {
+    m[2][2] = -c.far / (c.far - c.near);
+    m[3][2] = -c.far * c.near / (c.far - c.near);
+    m[2][3] = -1;
+  }
+  return m;
+}
+
+Mat4 clip_from_world(const Camera& c) { return clip_from_view(c) * view_from_world(c); }
+
+Mat4 world_from_clip(const Camera& c) {
+  Mat4 view_from_clip(0.0);
+  view_from_clip[0][0] = c.half_width;
+  view_from_clip[1][1] = -c.half_height;
+  if (c.orthographic) {
+    view_from_clip[2][2] = -(c.far - c.near);
+    view_from_clip[3][2] = -c.near;
+    view_from_clip[3][3] = 1;
+  } else {
+    view_from_clip[3][2] = -1;
+    view_from_clip[2][3] = -(c.far - c.near) / (c.far * c.near);
+    view_from_clip[3][3] = 1 / c.near;
+  }
+  Mat4 world_from_view(1.0);
+  world_from_view[0] = {c.right, 0.0};
+  world_from_view[1] = {c.up, 0.0};
+  world_from_view[2] = {c.back, 0.0};
+  world_from_view[3] = {c.position, 1.0};
+  return world_from_view * view_from_clip;
+}
+
+Ray ray_through(const Camera& c, double x_px, double y_px) {
+  const double x = (2 * x_px / c.width - 1) * c.half_width, y = (1 - 2 * y_px / c.height) * c.half_height;
+  const Vec3 offset = x * c.right + y * c.up;
+  if (c.orthographic) return {c.position + offset, -c.back};
+  return {c.position, direction(offset - c.back)};
+}
+
+std::optional<Vec3> project(const Camera& c, const Vec3& world) {
+  const Vec3 d = world - c.position;
+  const double depth = -dot(d, c.back);
+  if (!c.orthographic && !(depth > 0)) return std::nullopt;
+  const double scale = c.orthographic ? 1 : 1 / depth;
+  const double x = dot(d, c.right) * scale / c.half_width, y = dot(d, c.up) * scale / c.half_height;
+  return Vec3(0.5 * (x + 1) * c.width, 0.5 * (1 - y) * c.height, depth);
+}
+
+Vec3 unproject(const Camera& c, double x_px, double y_px, double depth) {
+  const double scale = c.orthographic ? 1 : depth;
+  const double x = (2 * x_px / c.width - 1) * c.half_width * scale, y = (1 - 2 * y_px / c.height) * c.half_height * scale;
+  return c.position + x * c.right + y * c.up - depth * c.back;
+}
+
+double pixel_size(const Camera& c, double depth) { return 2 * c.half_height / c.height * (c.orthographic ? 1 : std::max(depth, c.near)); }
+
+Vec3 default_direction() { return direction(Vec3(0.5, -1.0, 0.45)); }
+
+View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, double fovy_deg) {
+  Bounds bounds = given;
+  if (bounds.empty()) {
+    bounds.add(Vec3(-1.0));
+    bounds.add(Vec3(1.0));
+  }
+  Camera axes;
+  set_axes(axes, towards_eye, Vec3(0.0, 0.0, 1.0));
+  const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;
+
+  // the nearest distance from which every corner lies inside the four planes of the frustum
+  double distance = 0, half_height = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 q = bounds.corner(i) - bounds.centre();
+    const double x = std::fabs(dot(q, axes.right)), y = std::fabs(dot(q, axes.up)), z = dot(q, axes.back);
+    distance = std::max(distance, z + std::max(x / tan_x, y / tan_y));
+    half_height = std::max(half_height, std::max(y, x / aspect));
+  }
+  if (!(distance > 0)) distance = half_height = 1;  // a single point
+  View view;
+  view.target = bounds.centre();
+  view.position = view.target + 1.05 * distance * axes.back;
+  view.up = std::fabs(axes.back.z) < 0.999 ? Vec3(0.0, 0.0, 1.0) : axes.up;
+  view.fovy_deg = fovy_deg;
+  view.height = 2.1 * half_height;
+  return view;
+}
+
+}  // namespace catena::render

@@ -1,0 +1,69 @@
+/// The camera of one picture: a View, the size in pixels and what there is to see, worked out in double precision.
+///   view axes: right-handed, x right, y up, z towards the viewer (the camera looks along -z = -back)
+///   clip axes: Vulkan's, x right, y *down*, depth 0 at near and 1 at far
+///   pixels: x right, y down, row 0 at the top; the centre of pixel (i, j) is at (i + 0.5, j + 0.5)
+/// Perspective: vertical field of view. Orthographic: `height` world units from bottom to top.
+/// Near and far enclose the bounds that are given (what lies behind the eye is not seen). Pure functions, any thread.
+#pragma once
+#include <glm/mat4x4.hpp>
+#include <limits>
+#include <optional>
+
+#include "render/frame/frame_packet.h"
+
+namespace catena::render {
+
+using Mat4 = glm::dmat4;
+
+/// A box along the world's axes; empty until something finite is added.
+struct Bounds {
+  Vec3 lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
+
+  bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+  Vec3 centre() const { return 0.5 * lo + 0.5 * hi; }
+  double diagonal() const { return empty() ? 0 : norm(hi - lo); }
+  Vec3 corner(int i) const { return {(i & 1) ? hi.x : lo.x, (i & 2) ? hi.y : lo.y, (i & 4) ? hi.z : lo.z}; }
+  void add(const Vec3& p, double radius = 0);
+  void add(const Bounds& other);
+};
+
+struct Camera {
+  Vec3 position{0.0};
+  Vec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, back{0.0, 0.0, 1.0};  ///< unit, orthogonal
+  bool orthographic = false;
+  double half_height = 1;  ///< at the distance 1 (perspective: tan(fovy / 2)), or everywhere (orthographic), world units
+  double half_width = 1;   ///< half_height times the aspect
+  double near = 1, far = 2;  ///< along the axis, world units
+  double width = 1, height = 1;  ///< pixels
+};
+
+/// A half line; `direction` is unit.
+struct Ray {
+  Vec3 origin{0.0}, direction{0.0};
+};
+
+/// A degenerate up (along the axis) is replaced by another; a target at the position looks along +y.
+Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
+
+Mat4 view_from_world(const Camera& camera);
+Mat4 clip_from_view(const Camera& camera);
+Mat4 clip_from_world(const Camera& camera);
+/// Its inverse, from the closed form (not by elimination).
+Mat4 world_from_clip(const Camera& camera);
+
+/// Through a place in the picture, in pixels. From the eye (perspective) or the plane of the eye (orthographic).
+Ray ray_through(const Camera& camera, double x_px, double y_px);
+/// Pixels x, y and the distance along the axis (view depth, world units); nothing at or behind the eye (perspective).
+std::optional<Vec3> project(const Camera& camera, const Vec3& world);
+/// The inverse: the point at view depth `depth` in the pixel place.
+Vec3 unproject(const Camera& camera, double x_px, double y_px, double depth);
+/// World units that one pixel covers at the view depth.
+double pixel_size(const Camera& camera, double depth);
+
+/// From the scene towards the eye: oblique, +z up.
+Vec3 default_direction();
+/// A view that frames the box: all its corners inside the picture with a margin of 5 % of the distance.
+/// An empty box counts as -1..1. `towards_eye` need not be unit.
+View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_direction(), double fovy_deg = 30);
+
+}  // namespace catena::render

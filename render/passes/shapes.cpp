@@ -1,0 +1,263 @@
+#include "render/passes/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/base/assert.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kJointTurn = 0.35;  // a corner that turns more than this (radians) gets several rings
+
+std::uint32_t add_vertex(Shape& shape, const Vec3& position, const Vec3& normal, const Color& color) {
+  shape.vertices.push_back({position, normal, color});
+  return static_cast<std::uint32_t>(shape.vertices.size() - 1);
+}
+
+void add_triangle(Shape& shape, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  shape.triangles.insert(shape.triangles.end(), {a, b, c});
+}
+
+Vec3 any_perpendicular(const Vec3& t) {
+  const Vec3 axis = std::fabs(t.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+  return direction(cross(t, axis));
+}
+
+/// The least rotation that takes unit `from` to unit `to` (not opposite), applied to a vector across `from`.
+Vec3 transport(const Vec3& v, const Vec3& from, const Vec3& to) {
+  const Vec3 sum = from + to;
+  const Vec3 w = v - (dot(v, to) / (1 + dot(from, to))) * sum;
+  return direction(w - dot(w, to) * to);
+}
+
+Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {  // v across the axis
+  return std::cos(angle) * v + std::sin(angle) * cross(axis, v);
+}
+
+struct Ring {
+  Vec3 centre, tangent, normal;
+};
+
+/// `sides` vertices around centre + height * tangent, at `radius`; vertex normals lean by `slope` along the tangent.
+std::uint32_t add_ring(Shape& shape, const Ring& ring, double radius, double height, double across, double along, int sides, const Color& color) {
+  const Vec3 binormal = cross(ring.tangent, ring.normal);
+  const std::uint32_t first = static_cast<std::uint32_t>(shape.vertices.size());
+  for (int k = 0; k < sides; ++k) {
+    const double angle = 2 * kPi * k / sides;
+    const Vec3 out = std::cos(angle) * ring.normal + std::sin(angle) * binormal;
+    add_vertex(shape, ring.centre + height * ring.tangent + radius * out, across * out + along * ring.tangent, color);
+  }
+  return first;
+}
+
+/// The wall between two rings, `b` further along the tangent; `shift` turns b's numbering.
+void add_wall(Shape& shape, std::uint32_t a, std::uint32_t b, int sides, int shift = 0) {
+  const auto n = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t l = (k + 1) % n, kb = (k + static_cast<std::uint32_t>(shift)) % n, lb = (kb + 1) % n;
+    add_triangle(shape, a + k, a + l, b + lb);
+    add_triangle(shape, a + k, b + lb, b + kb);
+  }
+}
+
+/// The fan that closes a ring with one vertex, `ahead` of it along the tangent or behind.
+void add_fan(Shape& shape, std::uint32_t ring, std::uint32_t apex, int sides, bool ahead) {
+  const auto n = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t a = ring + k, b = ring + (k + 1) % n;
+    ahead ? add_triangle(shape, a, b, apex) : add_triangle(shape, b, a, apex);
+  }
+}
+
+/// A half sphere on a ring that exists already.
+void add_round_cap(Shape& shape, const Ring& ring, std::uint32_t equator, double radius, int sides, const Color& color, bool ahead) {
+  const int steps = std::max(2, sides / 4);
+  const double sign = ahead ? 1 : -1;
+  std::uint32_t last = equator;
+  for (int i = 1; i < steps; ++i) {
+    const double latitude = 0.5 * kPi * i / steps, c = std::cos(latitude), s = sign * std::sin(latitude);
+    const std::uint32_t next = add_ring(shape, ring, radius * c, radius * s, c, s, sides, color);
+    ahead ? add_wall(shape, last, next, sides) : add_wall(shape, next, last, sides);
+    last = next;
+  }
+  add_fan(shape, last, add_vertex(shape, ring.centre + sign * radius * ring.tangent, sign * ring.tangent, color), sides, ahead);
+}
+
+/// The points of a polyline without those that fall on their predecessor; of a closed one without the repeated end.
+std::vector<Vec3> distinct_points(const TubeItem& tube, bool& closed) {
+  std::vector<Vec3> points;
+  points.reserve(tube.points.size());
+  const double least = 1e-9 * tube.radius;
+  for (const Vec3& p : tube.points) {
+    CATENA_ASSERT(is_finite(p));
+    if (points.empty() || norm(p - points.back()) > least) points.push_back(p);
+  }
+  closed = points.size() > 3 && norm(points.front() - points.back()) <= 1e-6 * tube.radius;
+  if (closed) points.pop_back();
+  return points;
+}
+
+/// One ring a point, across the mean of its two segments; a sharp corner gets rings from the one direction to the other.
+std::vector<Ring> rings_of(const std::vector<Vec3>& points, bool closed) {
+  const std::size_t n = points.size();
+  std::vector<Ring> rings;
+  rings.reserve(n);
+  const auto segment = [&](std::size_t i) { return direction(points[(i + 1) % n] - points[i % n]); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool first = !closed && i == 0, last = !closed && i + 1 == n;
+    const Vec3 before = first ? segment(0) : segment(i + n - 1), after = last ? before : segment(i);
+    const double turn = std::atan2(norm(cross(before, after)), dot(before, after));
+    if (turn <= kJointTurn) {
+      rings.push_back({points[i], direction(before + after), Vec3(0.0)});
+      continue;
+    }
+    Vec3 axis = direction(cross(before, after));
+    if (max_abs(axis) == 0) axis = any_perpendicular(before);
+    const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
+    for (int k = 0; k <= steps; ++k) rings.push_back({points[i], direction(turned(before, axis, turn * k / steps)), Vec3(0.0)});
+  }
+  return rings;
+}
+
+}  // namespace
+
+int tube_sides(double radius, double scene_size) {
+  if (!(radius > 0) || !(scene_size > 0)) return 12;
+  const double share = radius / scene_size;
+  return share < 0.002 ? 8 : share < 0.006 ? 12 : 16;
+}
+
+void add_tube(Shape& shape, const TubeItem& tube, int sides) {
+  CATENA_ASSERT(sides >= 3);
+  if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return;
+  bool closed = false;
+  const std::vector<Vec3> points = distinct_points(tube, closed);
+  if (points.empty()) return;
+  if (points.size() == 1) return add_ball(shape, points.front(), tube.radius, tube.color, std::max(8, sides));
+  std::vector<Ring> rings = rings_of(points, closed);
+
+  // frames: transported from ring to ring
+  rings.front().normal = any_perpendicular(rings.front().tangent);
+  for (std::size_t i = 1; i < rings.size(); ++i) rings[i].normal = transport(rings[i - 1].normal, rings[i - 1].tangent, rings[i].tangent);
+
+  // a closed line: its frame comes back turned by some angle; taken up bit by bit along the line
+  if (closed) {
+    const Ring &a = rings.front(), &b = rings.back();
+    const Vec3 back = transport(b.normal, b.tangent, a.tangent);
+    const double angle = std::atan2(dot(cross(back, a.normal), a.tangent), dot(back, a.normal));
+    const double count = static_cast<double>(rings.size());
+    for (std::size_t i = 0; i < rings.size(); ++i) rings[i].normal = turned(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
+  }
+
+  std::uint32_t first = 0, last = 0;
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    const std::uint32_t ring = add_ring(shape, rings[i], tube.radius, 0, 1, 0, sides, tube.color);
+    if (i == 0) first = ring;
+    if (i > 0) add_wall(shape, last, ring, sides);
+    last = ring;
+  }
+  if (closed) return add_wall(shape, last, first, sides);
+  add_round_cap(shape, rings.front(), first, tube.radius, sides, tube.color, false);
+  add_round_cap(shape, rings.back(), last, tube.radius, sides, tube.color, true);
+}
+
+void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides) {
+  CATENA_ASSERT(is_finite(centre) && sides >= 4);
+  if (!(radius > 0) || !std::isfinite(radius)) return;
+  const Ring ring{centre, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}};
+  const std::uint32_t equator = add_ring(shape, ring, radius, 0, 1, 0, sides, color);
+  add_round_cap(shape, ring, equator, radius, sides, color, false);
+  add_round_cap(shape, ring, equator, radius, sides, color, true);
+}
+
+void add_cylinder(Shape& shape, const Vec3& a, const Vec3& b, double radius, const Color& color, int sides) {
+  CATENA_ASSERT(is_finite(a) && is_finite(b) && sides >= 3);
+  const double length = norm(b - a);
+  if (!(length > 0) || !(radius > 0)) return;
+  const Vec3 t = direction(b - a);
+  const Ring ring{a, t, any_perpendicular(t)};
+  add_wall(shape, add_ring(shape, ring, radius, 0, 1, 0, sides, color), add_ring(shape, ring, radius, length, 1, 0, sides, color), sides);
+  add_fan(shape, add_ring(shape, ring, radius, 0, 0, -1, sides, color), add_vertex(shape, a, -t, color), sides, false);
+  add_fan(shape, add_ring(shape, ring, radius, length, 0, 1, sides, color), add_vertex(shape, b, t, color), sides, true);
+}
+
+void add_cone(Shape& shape, const Vec3& base, const Vec3& tip, double radius, const Color& color, int sides) {
+  CATENA_ASSERT(is_finite(base) && is_finite(tip) && sides >= 3);
+  const double length = norm(tip - base);
+  if (!(length > 0) || !(radius > 0)) return;
+  const Vec3 t = direction(tip - base);
+  const Ring ring{base, t, any_perpendicular(t)};
+  const double slant = std::sqrt(length * length + radius * radius), across = length / slant, along = radius / slant;
+
+  // the side: the tip once for each facet, so that its normal can be the facet's
+  const std::uint32_t side = add_ring(shape, ring, radius, 0, across, along, sides, color), n = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t l = side + (k + 1) % n;
+    const Vec3 normal = direction(shape.vertices[side + k].normal + shape.vertices[l].normal);
+    add_triangle(shape, side + k, l, add_vertex(shape, tip, normal, color));
+  }
+  add_fan(shape, add_ring(shape, ring, radius, 0, 0, -1, sides, color), add_vertex(shape, base, -t, color), sides, false);
+}
+
+Color link_color(std::size_t i, bool active) {
+  static constexpr Color kSequence[8] = {{0.90f, 0.62f, 0.00f}, {0.34f, 0.71f, 0.91f}, {0.00f, 0.62f, 0.45f}, {0.94f, 0.89f, 0.26f},
+                                         {0.80f, 0.47f, 0.65f}, {0.84f, 0.37f, 0.00f}, {0.00f, 0.45f, 0.70f}, {0.60f, 0.60f, 0.60f}};
+  const Color c = kSequence[i % 8];
+  return active ? c : Color{0.4f * c.r, 0.4f * c.g, 0.4f * c.b};
+}
+
+double cursor_arrow_length(double force_n, double size) {
+  if (!(force_n > 1e-9) || !(size > 0)) return 0;
+  return size * std::clamp(2.5 * force_n, 2.0, 16.0);
+}
+
+void add_cursor(Shape& shape, const CursorItem& cursor) {
+  if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
+  const Color white{0.95f, 0.95f, 0.95f}, grey{0.65f, 0.65f, 0.65f}, red{0.86f, 0.15f, 0.15f};
+  add_ball(shape, cursor.probe, cursor.size, white);
+
+  // every proxy, joined to the one before; radii fall a little, so that balls in one place do not fight
+  Vec3 before = cursor.probe;
+  for (std::size_t i = 0; i < cursor.proxies.size(); ++i) {
+    if (!is_finite(cursor.proxies[i])) continue;
+    const bool active = i < cursor.active.size() && cursor.active[i];
+    const double radius = cursor.size * (0.9 - 0.03 * static_cast<double>(std::min<std::size_t>(i, 8)));
+    add_ball(shape, cursor.proxies[i], radius, link_color(i, active));
+    add_cylinder(shape, before, cursor.proxies[i], 0.18 * cursor.size, active ? grey : Color{0.3f, 0.3f, 0.3f});
+    before = cursor.proxies[i];
+  }
+
+  // the force, from the probe
+  const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.size) : 0;
+  if (length > 0) {
+    const Vec3 along = direction(cursor.force_n), tip = cursor.probe + length * along, neck = tip - 1.1 * cursor.size * along;
+    add_cylinder(shape, cursor.probe, neck, 0.25 * cursor.size, red);
+    add_cone(shape, neck, tip, 0.55 * cursor.size, red);
+  }
+}
+
+Shape tubes_shape(const std::vector<TubeItem>& tubes) {
+  Vec3 lo(std::numeric_limits<double>::infinity()), hi = -lo;
+  for (const TubeItem& tube : tubes)
+    for (const Vec3& p : tube.points)
+      for (int i = 0; i < 3; ++i) {
+        lo[i] = std::min(lo[i], p[i]);
+        hi[i] = std::max(hi[i], p[i]);
+      }
+  Shape shape;
+  for (const TubeItem& tube : tubes) add_tube(shape, tube, tube_sides(tube.radius, lo.x <= hi.x ? norm(hi - lo) : 0));
+  return shape;
+}
+
+Shape cursors_shape(const std::vector<CursorItem>& cursors) {
+  Shape shape;
+  for (const CursorItem& cursor : cursors) add_cursor(shape, cursor);
+  return shape;
+}
+
+}  // namespace catena::render

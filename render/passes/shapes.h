@@ -1,0 +1,53 @@
+/// Triangle meshes of the packet's shapes: tubes around polylines and the cursor's glyph. Plain CPU code, frame thread.
+///   tube: rings of `tube_sides` vertices around the points, in a parallel-transport frame (no twist of its own; on a closed
+///         line the frame's holonomy is spread over the length), mitred at the corners so that the walls keep the radius,
+///         with round caps (half spheres) at open ends
+///   ball, cylinder, cone: for the probe, the proxies, the links between them, the force
+/// All are closed surfaces with outward normals, counter-clockwise seen from outside. World units.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "render/frame/frame_packet.h"
+
+namespace catena::render {
+
+struct MeshVertex {
+  Vec3 position{0.0};
+  Vec3 normal{0.0};  ///< unit, outward
+  Color color;
+};
+
+/// Indexed triangles in double precision; the uploader makes floats of them, relative to an origin of its choice.
+struct Shape {
+  std::vector<MeshVertex> vertices;
+  std::vector<std::uint32_t> triangles;  ///< three indices each
+};
+
+/// All tubes of a packet in one shape; they change only with the scene.
+Shape tubes_shape(const std::vector<TubeItem>& tubes);
+/// All cursors of a packet in one shape; small, made anew each frame.
+Shape cursors_shape(const std::vector<CursorItem>& cursors);
+
+/// 8 to 16 by the radius' share of the scene's size (0: 12).
+int tube_sides(double radius, double scene_size);
+
+/// Appends a tube. Points that are not further apart than 1e-9 of the radius are one; a single point gives a ball, none nothing.
+/// Closed: the last point repeats the first. Non-finite points are a bug of the caller.
+void add_tube(Shape& shape, const TubeItem& tube, int sides);
+
+void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides = 20);
+/// With flat ends. Nothing if a and b coincide.
+void add_cylinder(Shape& shape, const Vec3& a, const Vec3& b, double radius, const Color& color, int sides = 12);
+void add_cone(Shape& shape, const Vec3& base, const Vec3& tip, double radius, const Color& color, int sides = 16);
+
+/// The colour of link i's proxy: a colour-blind-safe sequence (Okabe and Ito); dim while the link is not active.
+Color link_color(std::size_t i, bool active);
+
+/// Probe ball, a ball a proxy (larger than a tube of the fitted radius: it covers the line it sits on), thin cylinders
+/// probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length, along F, from the probe.
+void add_cursor(Shape& shape, const CursorItem& cursor);
+/// 2.5 glyph radii a newton, between 2 (anything felt can be seen) and 16 radii; 0 without a force.
+double cursor_arrow_length(double force_n, double size);
+
+}  // namespace catena::render

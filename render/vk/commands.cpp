@@ -1,0 +1,190 @@
+#include "render/vk/commands.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "render/vk/check.h"
+
+namespace catena::render::vk {
+
+Result<Commands> Commands::begin(Device& device) {
+  VkCommandBufferAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  allocate.commandPool = device.command_pool();
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  VkCommandBuffer buffer = VK_NULL_HANDLE;
+  CATENA_VK(vkAllocateCommandBuffers(device.handle(), &allocate, &buffer), "allocate a command buffer");
+  Commands self(device, buffer);
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  CATENA_VK(vkBeginCommandBuffer(buffer, &begin), "begin a command buffer");
+  return self;
+}
+
+Commands::~Commands() {
+  if (buffer_)
+    device_->retire([device = device_, buffer = buffer_] { vkFreeCommandBuffers(device->handle(), device->command_pool(), 1, &buffer); });
+}
+
+void Commands::use(Image& image, const Use& next) {
+  constexpr VkAccessFlags2 writes = VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                                    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  const bool same = image.layout == next.layout && image.stage == next.stage && image.access == next.access;
+  if (same && !(next.access & writes)) return;
+  VkImageMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  barrier.srcStageMask = image.stage;
+  barrier.srcAccessMask = image.access;
+  barrier.dstStageMask = next.stage;
+  barrier.dstAccessMask = next.access;
+  barrier.oldLayout = image.layout;
+  barrier.newLayout = next.layout;
+  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.image = image.handle();
+  barrier.subresourceRange = {image.aspect(), 0, 1, 0, 1};
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.imageMemoryBarrierCount = 1;
+  info.pImageMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(buffer_, &info);
+  image.layout = next.layout;
+  image.stage = next.stage;
+  image.access = next.access;
+}
+
+void Commands::barrier(const Buffer& buffer, const Use& from, const Use& to) {
+  VkBufferMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2;
+  barrier.srcStageMask = from.stage;
+  barrier.srcAccessMask = from.access;
+  barrier.dstStageMask = to.stage;
+  barrier.dstAccessMask = to.access;
+  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.buffer = buffer.handle();
+  barrier.size = VK_WHOLE_SIZE;
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.bufferMemoryBarrierCount = 1;
+  info.pBufferMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(buffer_, &info);
+}
+
+void Commands::copy(const Buffer& from, VkDeviceSize offset, Image& to, VkOffset3D at, VkExtent3D extent) {
+  VkBufferImageCopy region{};
+  region.bufferOffset = offset;
+  region.imageSubresource = {to.aspect(), 0, 0, 1};
+  region.imageOffset = at;
+  region.imageExtent = extent;
+  vkCmdCopyBufferToImage(buffer_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+  ++device_->counters().uploads;
+}
+
+void Commands::copy(const Buffer& from, const Buffer& to, VkDeviceSize size) {
+  const VkBufferCopy region{0, 0, size};
+  vkCmdCopyBuffer(buffer_, from.handle(), to.handle(), 1, &region);
+  ++device_->counters().uploads;
+}
+
+void Commands::copy(Image& from, const Buffer& to) {
+  use(from, kTransferRead);
+  VkBufferImageCopy region{};
+  region.imageSubresource = {from.aspect(), 0, 0, 1};
+  region.imageExtent = from.info().extent;
+  vkCmdCopyImageToBuffer(buffer_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1, &region);
+  barrier(to, kTransferWrite, kHostRead);
+}
+
+void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth) {
+  VkExtent3D extent = depth.image ? depth.image->info().extent : colors.front().image->info().extent;
+  std::vector<VkRenderingAttachmentInfo> attachments;
+  for (const ColorTarget& target : colors) {
+    use(*target.image, kColorTarget);
+    VkRenderingAttachmentInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    info.imageView = target.image->view();
+    info.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    info.loadOp = target.clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+    info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    if (target.clear) std::copy(target.clear->begin(), target.clear->end(), info.clearValue.color.float32);
+    attachments.push_back(info);
+  }
+  VkRenderingAttachmentInfo depth_info{};
+  depth_info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  if (depth.image) {
+    use(*depth.image, kDepthTarget);
+    depth_info.imageView = depth.image->view();
+    depth_info.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth_info.loadOp = depth.clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+    depth_info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    depth_info.clearValue.depthStencil.depth = depth.clear.value_or(0);
+  }
+  VkRenderingInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+  info.renderArea = {{0, 0}, {extent.width, extent.height}};
+  info.layerCount = 1;
+  info.colorAttachmentCount = std::uint32_t(attachments.size());
+  info.pColorAttachments = attachments.data();
+  info.pDepthAttachment = depth.image ? &depth_info : nullptr;
+  vkCmdBeginRendering(buffer_, &info);
+  const VkViewport viewport{0, 0, float(extent.width), float(extent.height), 0, 1};
+  vkCmdSetViewport(buffer_, 0, 1, &viewport);
+  scissor(info.renderArea);
+}
+
+void Commands::end_pass() { vkCmdEndRendering(buffer_); }
+void Commands::scissor(const VkRect2D& area) { vkCmdSetScissor(buffer_, 0, 1, &area); }
+
+void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings) {
+  vkCmdBindPipeline(buffer_, pipeline.bind_point(), pipeline.handle());
+  std::vector<VkDescriptorBufferInfo> buffers(bindings.size());
+  std::vector<VkDescriptorImageInfo> images(bindings.size());
+  std::vector<VkWriteDescriptorSet> writes;
+  for (std::size_t i = 0; i < bindings.size(); ++i) {
+    const Binding& b = bindings[i];
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstBinding = b.binding;
+    write.descriptorCount = 1;
+    if (b.buffer) {
+      buffers[i] = {b.buffer->handle(), 0, VK_WHOLE_SIZE};
+      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+      write.pBufferInfo = &buffers[i];
+    } else {
+      images[i] = {b.sampler ? b.sampler->handle() : VK_NULL_HANDLE, b.image->view(),
+                   b.storage_image ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      write.descriptorType = b.storage_image ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                             : b.sampler     ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
+                                             : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+      write.pImageInfo = &images[i];
+    }
+    writes.push_back(write);
+  }
+  if (!writes.empty())
+    device_->push_descriptors()(buffer_, pipeline.bind_point(), pipeline.layout(), 0, std::uint32_t(writes.size()), writes.data());
+}
+
+void Commands::draw_triangle() { vkCmdDraw(buffer_, 3, 1, 0, 0); }
+
+void Commands::draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count) {
+  const VkBuffer buffer = vertices.handle();
+  const VkDeviceSize offset = 0;
+  vkCmdBindVertexBuffers(buffer_, 0, 1, &buffer, &offset);
+  vkCmdBindIndexBuffer(buffer_, indices.handle(), 0, VK_INDEX_TYPE_UINT32);
+  vkCmdDrawIndexed(buffer_, index_count, 1, 0, 0, 0);
+}
+
+void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) { vkCmdDispatch(buffer_, x, y, z); }
+
+Result<std::uint64_t> Commands::submit(VkSemaphore wait, VkSemaphore signal) {
+  CATENA_VK(vkEndCommandBuffer(buffer_), "record commands");
+  return device_->submit(buffer_, wait, signal);
+}
+
+Outcome Commands::finish() {
+  CATENA_TRY(const std::uint64_t value, submit());
+  return device_->wait(value);
+}
+
+}  // namespace catena::render::vk

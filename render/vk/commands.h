@@ -1,0 +1,91 @@
+/// One recording of work: barriers, copies, passes. Submitted once; its command buffer is retired to the timeline.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "render/vk/pipeline.h"
+#include "render/vk/resources.h"
+
+namespace catena::render::vk {
+
+/// A use of an image or a buffer, for barriers.
+struct Use {
+  VkImageLayout layout;  ///< images
+  VkPipelineStageFlags2 stage;
+  VkAccessFlags2 access;
+};
+inline constexpr Use kTransferWrite{VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+inline constexpr Use kTransferRead{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
+inline constexpr Use kFragmentRead{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                   VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                   VK_ACCESS_2_SHADER_READ_BIT};
+inline constexpr Use kVertexRead{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT,
+                                 VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT};
+inline constexpr Use kComputeWrite{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT};
+inline constexpr Use kHostRead{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
+inline constexpr Use kColorTarget{VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                  VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+inline constexpr Use kDepthTarget{VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                  VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                                  VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+
+struct ColorTarget {
+  Image* image = nullptr;
+  std::optional<std::array<float, 4>> clear;  ///< none: keep what is there
+};
+struct DepthTarget {
+  Image* image = nullptr;
+  std::optional<float> clear;
+};
+
+/// What a shader sees at one binding.
+struct Binding {
+  std::uint32_t binding = 0;
+  const Buffer* buffer = nullptr;    ///< a storage buffer, or
+  const Image* image = nullptr;      ///< an image: sampled with `sampler`, plain without one, or
+  const Sampler* sampler = nullptr;
+  bool storage_image = false;        ///< a storage image in the layout GENERAL
+};
+
+class Commands {
+ public:
+  static Result<Commands> begin(Device& device);
+  ~Commands();
+  Commands(Commands&& other) noexcept : device_(other.device_), buffer_(other.buffer_) { other.buffer_ = VK_NULL_HANDLE; }
+  Commands& operator=(Commands&&) = delete;
+
+  VkCommandBuffer handle() const { return buffer_; }
+
+  // barriers
+  void use(Image& image, const Use& next);
+  void barrier(const Buffer& buffer, const Use& from, const Use& to);
+
+  // copies
+  void copy(const Buffer& from, VkDeviceSize offset, Image& to, VkOffset3D at, VkExtent3D extent);  ///< an upload; counted
+  void copy(const Buffer& from, const Buffer& to, VkDeviceSize size);                               ///< an upload; counted
+  void copy(Image& from, const Buffer& to);                                                         ///< a read-back
+
+  // passes
+  void begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth);  ///< moves the targets to their layouts
+  void end_pass();
+  void scissor(const VkRect2D& area);
+  void bind(const Pipeline& pipeline, std::span<const Binding> bindings);
+  void draw_triangle();  ///< one that covers the picture
+  void draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count);
+  void dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z);
+
+  /// Ends and submits; the value of the timeline when it is done.
+  Result<std::uint64_t> submit(VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
+  /// submit() and wait for it.
+  Outcome finish();
+
+ private:
+  Commands(Device& device, VkCommandBuffer buffer) : device_(&device), buffer_(buffer) {}
+  Device* device_;
+  VkCommandBuffer buffer_;
+};
+
+}  // namespace catena::render::vk

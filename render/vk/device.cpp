@@ -1,0 +1,289 @@
+#include "render/vk/device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include "render/vk/check.h"
+
+namespace catena::render::vk {
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+const char* type_name(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
+    default: return "other";
+  }
+}
+
+int preference(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_OTHER: return 1;
+    default: return 0;
+  }
+}
+
+bool matches(const VkPhysicalDeviceProperties& properties, const std::string& choice) {
+  if (choice.empty()) return true;
+  const bool cpu = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  if (choice == "cpu") return cpu;
+  if (choice == "gpu") return !cpu;
+  return lower(properties.deviceName).find(lower(choice)) != std::string::npos;
+}
+
+/// The features that Catena asks for; the chain points into itself, so it does not move.
+struct Features {
+  VkPhysicalDeviceFeatures2 core{};
+  VkPhysicalDeviceVulkan12Features v12{};
+  VkPhysicalDeviceVulkan13Features v13{};
+  Features() {
+    core.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    core.pNext = &v12;
+    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    v12.pNext = &v13;
+    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  }
+  Features(const Features&) = delete;
+  Features& operator=(const Features&) = delete;
+};
+
+bool has_extension(VkPhysicalDevice physical, const char* name) {
+  std::uint32_t count = 0;
+  if (vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr) != VK_SUCCESS) return false;
+  std::vector<VkExtensionProperties> extensions(count);
+  if (vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data()) != VK_SUCCESS) return false;
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+/// The first queue family with graphics (and presentation, where there is a surface).
+std::optional<std::uint32_t> find_queue(VkPhysicalDevice physical, VkSurfaceKHR surface) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!(families[i].queueFlags & VK_QUEUE_GRAPHICS_BIT) || !(families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)) continue;
+    VkBool32 presents = VK_TRUE;
+    if (surface && vkGetPhysicalDeviceSurfaceSupportKHR(physical, i, surface, &presents) != VK_SUCCESS) presents = VK_FALSE;
+    if (presents) return i;
+  }
+  return std::nullopt;
+}
+
+/// Empty when the device will do, else what it lacks.
+std::string lacks(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties, VkSurfaceKHR surface) {
+  if (properties.apiVersion < VK_API_VERSION_1_3) return "Vulkan 1.3";
+  if (!has_extension(physical, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME)) return VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME;
+  if (surface && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) return VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+  Features features;
+  vkGetPhysicalDeviceFeatures2(physical, &features.core);
+  if (!features.v12.timelineSemaphore) return "timelineSemaphore";
+  if (!features.v12.scalarBlockLayout) return "scalarBlockLayout";
+  if (!features.v13.dynamicRendering) return "dynamicRendering";
+  if (!features.v13.synchronization2) return "synchronization2";
+  if (!find_queue(physical, surface)) return surface ? "a queue that draws and presents" : "a queue that draws";
+  return {};
+}
+
+Result<std::vector<VkPhysicalDevice>> physical_devices(VkInstance instance) {
+  std::uint32_t count = 0;
+  CATENA_VK(vkEnumeratePhysicalDevices(instance, &count, nullptr), "list the devices");
+  std::vector<VkPhysicalDevice> devices(count);
+  CATENA_VK(vkEnumeratePhysicalDevices(instance, &count, devices.data()), "list the devices");
+  if (devices.empty()) return Error{"no Vulkan device was found, expected a GPU or Mesa's lavapipe (package mesa-vulkan-drivers)"};
+  return devices;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
+  std::unique_ptr<Device> self(new Device);
+  CATENA_TRY(self->instance_, Instance::create(options.validation, options.surface));
+  const char* environment = std::getenv("CATENA_DEVICE");
+  CATENA_CHECK(self->choose_physical(!options.choose.empty() ? options.choose : environment ? environment : ""));
+  CATENA_CHECK(self->create_device());
+  return self;
+}
+
+Outcome Device::choose_physical(const std::string& choice) {
+  CATENA_TRY(const auto devices, physical_devices(instance_->handle()));
+  int best = -1;
+  std::string seen;
+  for (VkPhysicalDevice candidate : devices) {
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(candidate, &properties);
+    const std::string missing = lacks(candidate, properties, instance_->surface());
+    seen += fmt::format("{}{}{}", seen.empty() ? "" : ", ", properties.deviceName, missing.empty() ? "" : " (without " + missing + ")");
+    if (!missing.empty() || !matches(properties, choice)) continue;
+    if (preference(properties.deviceType) > best) {
+      best = preference(properties.deviceType);
+      physical_ = candidate;
+    }
+  }
+  if (!physical_)
+    return Error{choice.empty() ? fmt::format("no usable Vulkan device: {}", seen)
+                                : fmt::format("no usable Vulkan device matches CATENA_DEVICE \"{}\", expected cpu, gpu or a part of: {}", choice, seen)};
+  queue_family_ = *find_queue(physical_, instance_->surface());
+
+  // describe it
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(physical_, &properties);
+  info_.name = properties.properties.deviceName;
+  info_.driver = fmt::format("{} {}", driver.driverName, driver.driverInfo);
+  info_.type = properties.properties.deviceType;
+  info_.limits = properties.properties.limits;
+  VkPhysicalDeviceMemoryProperties memory{};
+  vkGetPhysicalDeviceMemoryProperties(physical_, &memory);
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
+      info_.memory_bytes = std::max<std::uint64_t>(info_.memory_bytes, memory.memoryHeaps[i].size);
+  return Done{};
+}
+
+Outcome Device::create_device() {
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue{};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = queue_family_;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+
+  Features features;
+  features.v12.timelineSemaphore = VK_TRUE;
+  features.v12.scalarBlockLayout = VK_TRUE;
+  features.v13.dynamicRendering = VK_TRUE;
+  features.v13.synchronization2 = VK_TRUE;
+  std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+  if (instance_->surface()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.pNext = &features.core;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.enabledExtensionCount = std::uint32_t(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
+  CATENA_VK(vkCreateDevice(physical_, &info, nullptr, &device_), "create the device " + info_.name);
+  vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  push_descriptors_ = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(vkGetDeviceProcAddr(device_, "vkCmdPushDescriptorSetKHR"));
+  if (!push_descriptors_) return Error{"the driver of " + info_.name + " has no vkCmdPushDescriptorSetKHR"};
+
+  VkCommandPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  pool.queueFamilyIndex = queue_family_;
+  CATENA_VK(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "create a command pool");
+
+  VkSemaphoreTypeCreateInfo type{};
+  type.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO;
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  VkSemaphoreCreateInfo semaphore{};
+  semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+  semaphore.pNext = &type;
+  CATENA_VK(vkCreateSemaphore(device_, &semaphore, nullptr, &timeline_), "create the timeline semaphore");
+  return Done{};
+}
+
+Device::~Device() {
+  if (device_) {
+    // wait for everything; whatever the answer is, nothing runs after it
+    (void)vkDeviceWaitIdle(device_);
+    passed_ = std::numeric_limits<std::uint64_t>::max();
+    collect();
+    if (timeline_) vkDestroySemaphore(device_, timeline_, nullptr);
+    if (pool_) vkDestroyCommandPool(device_, pool_, nullptr);
+    vkDestroyDevice(device_, nullptr);
+  }
+}
+
+Result<std::uint64_t> Device::submit(VkCommandBuffer commands, VkSemaphore wait_for, VkSemaphore signal) {
+  VkCommandBufferSubmitInfo buffer{};
+  buffer.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
+  buffer.commandBuffer = commands;
+  VkSemaphoreSubmitInfo wait_info{};
+  wait_info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+  wait_info.semaphore = wait_for;
+  wait_info.stageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+  VkSemaphoreSubmitInfo signals[2]{};
+  for (auto& s : signals) {
+    s.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+    s.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  }
+  signals[0].semaphore = timeline_;
+  signals[0].value = submitted_ + 1;
+  signals[1].semaphore = signal;
+  VkSubmitInfo2 info{};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
+  info.waitSemaphoreInfoCount = wait_for ? 1 : 0;
+  info.pWaitSemaphoreInfos = &wait_info;
+  info.commandBufferInfoCount = 1;
+  info.pCommandBufferInfos = &buffer;
+  info.signalSemaphoreInfoCount = signal ? 2 : 1;
+  info.pSignalSemaphoreInfos = signals;
+  CATENA_VK(vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE), "submit work to " + info_.name);
+  ++counters_.submissions;
+  return ++submitted_;
+}
+
+Outcome Device::wait(std::uint64_t value) {
+  if (value > passed_) {
+    VkSemaphoreWaitInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO;
+    info.semaphoreCount = 1;
+    info.pSemaphores = &timeline_;
+    info.pValues = &value;
+    CATENA_VK(vkWaitSemaphores(device_, &info, std::numeric_limits<std::uint64_t>::max()), "wait for " + info_.name);
+    passed_ = value;
+  }
+  collect();
+  return Done{};
+}
+
+void Device::retire(std::function<void()> destroy) {
+  retired_.push_back({submitted_, std::move(destroy)});
+  collect();
+}
+
+void Device::collect() {
+  while (!retired_.empty() && retired_.front().value <= passed_) {
+    auto destroy = std::move(retired_.front().destroy);
+    retired_.pop_front();
+    destroy();
+  }
+}
+
+Result<std::vector<std::string>> list_devices() {
+  CATENA_TRY(const auto instance, Instance::create(false, {}));
+  CATENA_TRY(const auto devices, physical_devices(instance->handle()));
+  std::vector<std::string> lines;
+  for (VkPhysicalDevice device : devices) {
+    VkPhysicalDeviceProperties p{};
+    vkGetPhysicalDeviceProperties(device, &p);
+    const std::string missing = lacks(device, p, VK_NULL_HANDLE);
+    lines.push_back(fmt::format("{} ({}), Vulkan {}.{}{}", p.deviceName, type_name(p.deviceType), VK_API_VERSION_MAJOR(p.apiVersion),
+                                VK_API_VERSION_MINOR(p.apiVersion), missing.empty() ? "" : ", unusable: no " + missing));
+  }
+  return lines;
+}
+
+}  // namespace catena::render::vk

@@ -1,0 +1,98 @@
+/// One device, one queue, one timeline. A GPU is taken when there is one, a CPU driver (lavapipe) otherwise; the environment
+/// variable CATENA_DEVICE (cpu, gpu, or a part of the device's name) decides otherwise. What is retired is destroyed once the
+/// timeline has passed the last submission that could use it. Frame thread only.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "render/vk/instance.h"
+
+namespace catena::render::vk {
+
+struct DeviceOptions {
+  bool validation = false;
+  std::string choose;      ///< cpu, gpu or a part of a name; empty: CATENA_DEVICE, else the best one
+  SurfaceFactory surface;  ///< empty: headless
+};
+
+struct DeviceInfo {
+  std::string name, driver;
+  VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
+  VkPhysicalDeviceLimits limits{};
+  std::uint64_t memory_bytes = 0;  ///< of the largest device-local heap
+  bool is_cpu() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+};
+
+/// What the device has done so far; tests read it.
+struct DeviceCounters {
+  std::uint64_t bytes = 0;         ///< device memory held now
+  std::uint64_t uploads = 0;       ///< copies from staging memory
+  std::uint64_t upload_bytes = 0;
+  std::uint64_t pipelines = 0;     ///< created
+  std::uint64_t submissions = 0;
+};
+
+class Device {
+ public:
+  static Result<std::unique_ptr<Device>> create(const DeviceOptions& options);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkDevice handle() const { return device_; }
+  VkPhysicalDevice physical() const { return physical_; }
+  VkQueue queue() const { return queue_; }
+  std::uint32_t queue_family() const { return queue_family_; }
+  VkCommandPool command_pool() const { return pool_; }
+  VkSurfaceKHR surface() const { return instance_->surface(); }
+  const DeviceInfo& info() const { return info_; }
+  const Messages& messages() const { return instance_->messages(); }
+  DeviceCounters& counters() { return counters_; }
+  const DeviceCounters& counters() const { return counters_; }
+  PFN_vkCmdPushDescriptorSetKHR push_descriptors() const { return push_descriptors_; }
+
+  /// Submits and returns the timeline value that is reached when the work is done. Optional binary semaphores for a swapchain.
+  Result<std::uint64_t> submit(VkCommandBuffer commands, VkSemaphore wait = VK_NULL_HANDLE, VkSemaphore signal = VK_NULL_HANDLE);
+  Outcome wait(std::uint64_t value);
+  Outcome wait_idle() { return wait(submitted_); }
+
+  /// Calls `destroy` once everything submitted so far is done (at a later wait, or when the device goes).
+  void retire(std::function<void()> destroy);
+  std::size_t retired() const { return retired_.size(); }
+
+ private:
+  Device() = default;
+  Outcome choose_physical(const std::string& choice);
+  Outcome create_device();
+  void collect();
+
+  struct Retired {
+    std::uint64_t value;
+    std::function<void()> destroy;
+  };
+  std::unique_ptr<Instance> instance_;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  std::uint32_t queue_family_ = 0;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkSemaphore timeline_ = VK_NULL_HANDLE;
+  std::uint64_t submitted_ = 0, passed_ = 0;
+  std::deque<Retired> retired_;
+  DeviceInfo info_;
+  DeviceCounters counters_;
+  PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;
+};
+
+/// One line a device: name, type, Vulkan version, driver.
+Result<std::vector<std::string>> list_devices();
+
+}  // namespace catena::render::vk

@@ -1,0 +1,121 @@
+#include "render/vk/instance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "render/vk/check.h"
+
+namespace catena::render::vk {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+constexpr std::size_t kKeptTexts = 64;
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  static_cast<Messages*>(user)->add(data->pMessage ? data->pMessage : "(no text)");
+  return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(Messages* messages) {
+  VkDebugUtilsMessengerCreateInfoEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+  info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  info.pfnUserCallback = on_message;
+  info.pUserData = messages;
+  return info;
+}
+
+bool has_layer(const char* name) {
+  std::uint32_t count = 0;
+  if (vkEnumerateInstanceLayerProperties(&count, nullptr) != VK_SUCCESS) return false;
+  std::vector<VkLayerProperties> layers(count);
+  if (vkEnumerateInstanceLayerProperties(&count, layers.data()) != VK_SUCCESS) return false;
+  return std::any_of(layers.begin(), layers.end(), [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
+}
+
+}  // namespace
+
+void Messages::add(std::string text) {
+  const std::lock_guard lock(mutex_);
+  ++count_;
+  if (texts_.size() < kKeptTexts) texts_.push_back(std::move(text));
+}
+
+std::uint64_t Messages::count() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
+}
+
+std::vector<std::string> Messages::texts() const {
+  const std::lock_guard lock(mutex_);
+  return texts_;
+}
+
+Result<std::unique_ptr<Instance>> Instance::create(bool validation, const SurfaceFactory& surface) {
+  std::unique_ptr<Instance> self(new Instance);
+
+  // version
+  std::uint32_t version = VK_API_VERSION_1_0;
+  CATENA_VK(vkEnumerateInstanceVersion(&version), "ask the loader's version");
+  if (version < VK_API_VERSION_1_3)
+    return Error{fmt::format("the Vulkan loader has version {}.{}, expected 1.3 or newer (package libvulkan1)", VK_API_VERSION_MAJOR(version),
+                             VK_API_VERSION_MINOR(version))};
+
+  // layers and extensions
+  std::vector<const char*> layers, extensions;
+  for (const std::string& name : surface.instance_extensions) extensions.push_back(name.c_str());
+  if (validation) {
+    if (!has_layer(kValidationLayer))
+      return Error{fmt::format("the layer {} is not installed, expected the package vulkan-validationlayers", kValidationLayer)};
+    layers.push_back(kValidationLayer);
+    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+  }
+
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "catena";
+  application.apiVersion = VK_API_VERSION_1_3;
+
+  // validation, with synchronization checks
+  VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&self->messages_);
+  const VkValidationFeatureEnableEXT enabled[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+  VkValidationFeaturesEXT features{};
+  features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+  features.enabledValidationFeatureCount = 1;
+  features.pEnabledValidationFeatures = enabled;
+  features.pNext = &messenger;
+
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pNext = validation ? &features : nullptr;
+  info.pApplicationInfo = &application;
+  info.enabledLayerCount = std::uint32_t(layers.size());
+  info.ppEnabledLayerNames = layers.data();
+  info.enabledExtensionCount = std::uint32_t(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
+  CATENA_VK(vkCreateInstance(&info, nullptr, &self->instance_), "create an instance");
+
+  if (validation) {
+    const auto create =
+        reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(self->instance_, "vkCreateDebugUtilsMessengerEXT"));
+    if (!create) return Error{"the Vulkan loader has no vkCreateDebugUtilsMessengerEXT"};
+    CATENA_VK(create(self->instance_, &messenger, nullptr, &self->messenger_), "create the debug messenger");
+  }
+  if (surface) CATENA_VK(surface.create(self->instance_, &self->surface_), "create the window's surface");
+  return self;
+}
+
+Instance::~Instance() {
+  if (surface_) vkDestroySurfaceKHR(instance_, surface_, nullptr);
+  if (messenger_) {
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    if (destroy) destroy(instance_, messenger_, nullptr);
+  }
+  if (instance_) vkDestroyInstance(instance_, nullptr);
+}
+
+}  // namespace catena::render::vk

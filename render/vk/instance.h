@@ -1,0 +1,56 @@
+/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
+/// the layer and the loader are counted and their texts kept; tests assert that there are none.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace catena::render::vk {
+
+/// Where a window's surface comes from; the viewer passes it, headless programs have none.
+struct SurfaceFactory {
+  std::vector<std::string> instance_extensions;
+  std::function<VkResult(VkInstance, VkSurfaceKHR*)> create;
+  explicit operator bool() const { return static_cast<bool>(create); }
+};
+
+/// Warnings and errors so far; the driver may report from any thread.
+class Messages {
+ public:
+  void add(std::string text);
+  std::uint64_t count() const;
+  std::vector<std::string> texts() const;  ///< the first 64
+
+ private:
+  mutable std::mutex mutex_;
+  std::uint64_t count_ = 0;
+  std::vector<std::string> texts_;
+};
+
+class Instance {
+ public:
+  static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface);
+  ~Instance();
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
+
+  VkInstance handle() const { return instance_; }
+  VkSurfaceKHR surface() const { return surface_; }
+  const Messages& messages() const { return messages_; }
+
+ private:
+  Instance() = default;
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+  VkSurfaceKHR surface_ = VK_NULL_HANDLE;
+  Messages messages_;
+};
+
+}  // namespace catena::render::vk

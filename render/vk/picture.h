@@ -1,0 +1,22 @@
+/// Pictures on the host and PNG files (8 bit). Values are display values, unchanged; alpha is straight.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace catena::render {
+
+struct Picture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;  ///< row 0 at the top, 4 bytes a pixel
+
+  const std::uint8_t* pixel(std::uint32_t x, std::uint32_t y) const { return rgba.data() + 4 * (std::size_t(y) * width + x); }
+};
+
+/// Writes RGBA (`alpha`) or RGB. A regular file is written beside its place and renamed when complete; nothing half-written stays.
+Outcome write_png(const std::string& path, const Picture& picture, bool alpha);
+Result<Picture> read_png(const std::string& path);
+
+}  // namespace catena::render

@@ -1,0 +1,70 @@
+/// Pipelines from SPIR-V words that were embedded at build time. Descriptors are pushed; shader constants are specialised.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <span>
+#include <vector>
+
+#include "render/vk/device.h"
+
+namespace catena::render::vk {
+
+using Spirv = std::span<const std::uint32_t>;
+
+/// One binding of a shader: what kind it is.
+enum class Resource { buffer, sampled, texture, storage_image };  ///< sampled: with a sampler; texture: fetched only
+struct Slot {
+  std::uint32_t binding = 0;
+  Resource resource = Resource::buffer;
+};
+
+struct VertexAttribute {
+  std::uint32_t location = 0;
+  VkFormat format = VK_FORMAT_R32G32B32_SFLOAT;
+  std::uint32_t offset = 0;
+};
+
+struct GraphicsInfo {
+  Spirv vertex, fragment;
+  std::vector<Slot> slots;
+  std::vector<std::uint32_t> constants;  ///< specialisation constants 0, 1, 2, .. of the fragment shader
+  std::vector<VkFormat> colors;
+  bool depth = false;                    ///< D32F, reversed: greater is nearer
+  std::uint32_t vertex_stride = 0;       ///< 0: no vertex buffer
+  std::vector<VertexAttribute> attributes;
+};
+
+struct ComputeInfo {
+  Spirv shader;
+  std::vector<Slot> slots;
+  std::vector<std::uint32_t> constants;
+};
+
+class Pipeline {
+ public:
+  Pipeline() = default;
+  static Result<Pipeline> create(Device& device, const GraphicsInfo& info);
+  static Result<Pipeline> create(Device& device, const ComputeInfo& info);
+  ~Pipeline();
+  Pipeline(Pipeline&& other) noexcept { swap(other); }
+  Pipeline& operator=(Pipeline&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  VkPipeline handle() const { return pipeline_; }
+  VkPipelineLayout layout() const { return layout_; }
+  VkPipelineBindPoint bind_point() const { return bind_point_; }
+  explicit operator bool() const { return pipeline_ != VK_NULL_HANDLE; }
+
+ private:
+  void swap(Pipeline& other) noexcept;
+  Outcome create_layout(std::span<const Slot> slots, VkShaderStageFlags stages);
+  Device* device_ = nullptr;
+  VkDescriptorSetLayout set_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  VkPipelineBindPoint bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;
+};
+
+}  // namespace catena::render::vk

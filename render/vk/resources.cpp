@@ -1,0 +1,171 @@
+#include "render/vk/resources.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "render/vk/check.h"
+
+namespace catena::render::vk {
+namespace {
+
+std::string mebibytes(VkDeviceSize bytes) { return fmt::format("{:.1f} MiB", double(bytes) / double(1 << 20)); }
+
+/// The first memory type that is allowed and has all of `required`, one with `preferred` before others.
+std::optional<std::uint32_t> memory_type(const Device& device, std::uint32_t allowed, VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) {
+  VkPhysicalDeviceMemoryProperties memory{};
+  vkGetPhysicalDeviceMemoryProperties(device.physical(), &memory);
+  for (const VkMemoryPropertyFlags wanted : {required | preferred, required})
+    for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i)
+      if ((allowed >> i & 1u) && (memory.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+  return std::nullopt;
+}
+
+Result<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& needs, Memory where, const std::string& what) {
+  constexpr VkMemoryPropertyFlags host = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const auto type = where == Memory::device   ? memory_type(device, needs.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)
+                    : where == Memory::upload ? memory_type(device, needs.memoryTypeBits, host, 0)
+                                              : memory_type(device, needs.memoryTypeBits, host, VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+  if (!type) return Error{"the device " + device.info().name + " has no memory for " + what};
+  VkMemoryAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  info.allocationSize = needs.size;
+  info.memoryTypeIndex = *type;
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  CATENA_VK(vkAllocateMemory(device.handle(), &info, nullptr, &memory),
+            fmt::format("allocate {} for {} ({} of {} held)", mebibytes(needs.size), what, mebibytes(device.counters().bytes),
+                        mebibytes(device.info().memory_bytes)));
+  device.counters().bytes += needs.size;
+  return memory;
+}
+
+}  // namespace
+
+Result<Buffer> Buffer::create(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory) {
+  CATENA_ASSERT(size > 0);
+  Buffer self;
+  self.device_ = &device;
+  self.size_ = size;
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = size;
+  info.usage = usage;
+  CATENA_VK(vkCreateBuffer(device.handle(), &info, nullptr, &self.buffer_), "create a buffer of " + mebibytes(size));
+  VkMemoryRequirements needs{};
+  vkGetBufferMemoryRequirements(device.handle(), self.buffer_, &needs);
+  CATENA_TRY(self.memory_, allocate(device, needs, memory, "a buffer"));
+  self.allocated_ = needs.size;
+  CATENA_VK(vkBindBufferMemory(device.handle(), self.buffer_, self.memory_, 0), "bind a buffer's memory");
+  if (memory != Memory::device) CATENA_VK(vkMapMemory(device.handle(), self.memory_, 0, VK_WHOLE_SIZE, 0, &self.mapped_), "map a buffer");
+  return self;
+}
+
+void Buffer::swap(Buffer& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(buffer_, other.buffer_);
+  std::swap(memory_, other.memory_);
+  std::swap(size_, other.size_);
+  std::swap(allocated_, other.allocated_);
+  std::swap(mapped_, other.mapped_);
+}
+
+void Buffer::release() {
+  if (!device_ || (!buffer_ && !memory_)) return;
+  device_->retire([device = device_, buffer = buffer_, memory = memory_, bytes = memory_ ? allocated_ : 0] {
+    vkDestroyBuffer(device->handle(), buffer, nullptr);
+    vkFreeMemory(device->handle(), memory, nullptr);
+    device->counters().bytes -= bytes;
+  });
+  buffer_ = VK_NULL_HANDLE;
+  memory_ = VK_NULL_HANDLE;
+}
+
+VkImageAspectFlags Image::aspect() const {
+  return info_.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+}
+
+Result<Image> Image::create(Device& device, const ImageInfo& info) {
+  // within the device's limits, with a sentence when not
+  VkImageFormatProperties limits{};
+  const VkResult supported =
+      vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.type, VK_IMAGE_TILING_OPTIMAL, info.usage, 0, &limits);
+  const auto& e = info.extent;
+  if (supported != VK_SUCCESS || e.width > limits.maxExtent.width || e.height > limits.maxExtent.height || e.depth > limits.maxExtent.depth)
+    return Error{fmt::format("an image of {} x {} x {} does not fit the device {}, expected at most {} x {} x {}", e.width, e.height, e.depth,
+                             device.info().name, limits.maxExtent.width, limits.maxExtent.height, limits.maxExtent.depth)};
+
+  Image self;
+  self.device_ = &device;
+  self.info_ = info;
+  VkImageCreateInfo create{};
+  create.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  create.imageType = info.type;
+  create.format = info.format;
+  create.extent = info.extent;
+  create.mipLevels = 1;
+  create.arrayLayers = 1;
+  create.samples = VK_SAMPLE_COUNT_1_BIT;
+  create.tiling = VK_IMAGE_TILING_OPTIMAL;
+  create.usage = info.usage;
+  create.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  const std::string what = fmt::format("an image of {} x {} x {}", e.width, e.height, e.depth);
+  CATENA_VK(vkCreateImage(device.handle(), &create, nullptr, &self.image_), "create " + what);
+  VkMemoryRequirements needs{};
+  vkGetImageMemoryRequirements(device.handle(), self.image_, &needs);
+  CATENA_TRY(self.memory_, allocate(device, needs, Memory::device, what));
+  self.allocated_ = needs.size;
+  CATENA_VK(vkBindImageMemory(device.handle(), self.image_, self.memory_, 0), "bind the memory of " + what);
+
+  VkImageViewCreateInfo view{};
+  view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  view.image = self.image_;
+  view.viewType = info.type == VK_IMAGE_TYPE_3D ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D;
+  view.format = info.format;
+  view.subresourceRange = {self.aspect(), 0, 1, 0, 1};
+  CATENA_VK(vkCreateImageView(device.handle(), &view, nullptr, &self.view_), "create a view of " + what);
+  return self;
+}
+
+void Image::swap(Image& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(image_, other.image_);
+  std::swap(view_, other.view_);
+  std::swap(memory_, other.memory_);
+  std::swap(allocated_, other.allocated_);
+  std::swap(info_, other.info_);
+  std::swap(layout, other.layout);
+  std::swap(stage, other.stage);
+  std::swap(access, other.access);
+}
+
+void Image::release() {
+  if (!device_ || (!image_ && !memory_)) return;
+  device_->retire([device = device_, image = image_, view = view_, memory = memory_, bytes = memory_ ? allocated_ : 0] {
+    vkDestroyImageView(device->handle(), view, nullptr);
+    vkDestroyImage(device->handle(), image, nullptr);
+    vkFreeMemory(device->handle(), memory, nullptr);
+    device->counters().bytes -= bytes;
+  });
+  image_ = VK_NULL_HANDLE;
+  view_ = VK_NULL_HANDLE;
+  memory_ = VK_NULL_HANDLE;
+}
+
+Result<Sampler> Sampler::create(Device& device, Filter filter) {
+  const bool linear = filter == Filter::linear;
+  VkSamplerCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  info.magFilter = info.minFilter = linear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+  info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  Sampler self;
+  self.device_ = &device;
+  CATENA_VK(vkCreateSampler(device.handle(), &info, nullptr, &self.sampler_), "create a sampler");
+  return self;
+}
+
+Sampler::~Sampler() {
+  if (sampler_) device_->retire([device = device_, sampler = sampler_] { vkDestroySampler(device->handle(), sampler, nullptr); });
+}
+
+}  // namespace catena::render::vk

@@ -1,0 +1,105 @@
+/// Buffers and images, each with its own memory (they are few). Move-only; destruction is retired to the device's timeline.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <span>
+
+#include "render/vk/device.h"
+
+namespace catena::render::vk {
+
+/// Where a buffer lives: on the device, or on the host (mapped, coherent) for writing or for reading back.
+enum class Memory { device, upload, readback };
+
+class Buffer {
+ public:
+  Buffer() = default;
+  static Result<Buffer> create(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
+  ~Buffer() { release(); }
+  Buffer(Buffer&& other) noexcept { swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  VkBuffer handle() const { return buffer_; }
+  VkDeviceSize size() const { return size_; }
+  explicit operator bool() const { return buffer_ != VK_NULL_HANDLE; }
+  /// Mapped bytes; empty on the device.
+  std::span<std::byte> bytes() const { return {static_cast<std::byte*>(mapped_), mapped_ ? std::size_t(size_) : 0}; }
+
+ private:
+  void swap(Buffer& other) noexcept;
+  void release();
+  Device* device_ = nullptr;
+  VkBuffer buffer_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  VkDeviceSize size_ = 0, allocated_ = 0;
+  void* mapped_ = nullptr;
+};
+
+struct ImageInfo {
+  VkImageType type = VK_IMAGE_TYPE_2D;
+  VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
+  VkExtent3D extent{1, 1, 1};
+  VkImageUsageFlags usage = 0;
+};
+
+/// One mip level, one layer, one view. Remembers its layout and last use, so that a barrier needs only the next one.
+class Image {
+ public:
+  Image() = default;
+  static Result<Image> create(Device& device, const ImageInfo& info);
+  ~Image() { release(); }
+  Image(Image&& other) noexcept { swap(other); }
+  Image& operator=(Image&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+
+  VkImage handle() const { return image_; }
+  VkImageView view() const { return view_; }
+  const ImageInfo& info() const { return info_; }
+  VkDeviceSize bytes() const { return allocated_; }
+  VkImageAspectFlags aspect() const;
+  explicit operator bool() const { return image_ != VK_NULL_HANDLE; }
+
+  // written by Commands::use, as recorded
+  VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  VkPipelineStageFlags2 stage = VK_PIPELINE_STAGE_2_NONE;
+  VkAccessFlags2 access = VK_ACCESS_2_NONE;
+
+ private:
+  void swap(Image& other) noexcept;
+  void release();
+  Device* device_ = nullptr;
+  VkImage image_ = VK_NULL_HANDLE;
+  VkImageView view_ = VK_NULL_HANDLE;
+  VkDeviceMemory memory_ = VK_NULL_HANDLE;
+  VkDeviceSize allocated_ = 0;
+  ImageInfo info_;
+};
+
+enum class Filter { nearest, linear };
+
+/// Clamped to the edge.
+class Sampler {
+ public:
+  Sampler() = default;
+  static Result<Sampler> create(Device& device, Filter filter);
+  ~Sampler();
+  Sampler(Sampler&& other) noexcept : device_(other.device_), sampler_(other.sampler_) { other.sampler_ = VK_NULL_HANDLE; }
+  Sampler& operator=(Sampler&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(sampler_, other.sampler_);
+    return *this;
+  }
+  VkSampler handle() const { return sampler_; }
+  explicit operator bool() const { return sampler_ != VK_NULL_HANDLE; }
+
+ private:
+  Device* device_ = nullptr;
+  VkSampler sampler_ = VK_NULL_HANDLE;
+};
+
+}  // namespace catena::render::vk

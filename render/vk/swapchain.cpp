@@ -1,0 +1,149 @@
+#include "render/vk/swapchain.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "render/vk/check.h"
+#include "render/vk/commands.h"
+
+namespace catena::render::vk {
+namespace {
+
+VkSemaphoreCreateInfo binary_semaphore() {
+  VkSemaphoreCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+  return info;
+}
+
+/// Display values go out unchanged: a UNORM format in the usual colour space before any other.
+Result<VkSurfaceFormatKHR> choose_format(const Device& device) {
+  std::uint32_t count = 0;
+  CATENA_VK(vkGetPhysicalDeviceSurfaceFormatsKHR(device.physical(), device.surface(), &count, nullptr), "list the window's formats");
+  std::vector<VkSurfaceFormatKHR> formats(count);
+  CATENA_VK(vkGetPhysicalDeviceSurfaceFormatsKHR(device.physical(), device.surface(), &count, formats.data()), "list the window's formats");
+  for (const VkSurfaceFormatKHR& f : formats)
+    if ((f.format == VK_FORMAT_B8G8R8A8_UNORM || f.format == VK_FORMAT_R8G8B8A8_UNORM) && f.colorSpace == VK_COLOR_SPACE_SRGB_NONLINEAR_KHR)
+      return f;
+  return Error{"the window has no 8-bit UNORM format, expected B8G8R8A8_UNORM or R8G8B8A8_UNORM"};
+}
+
+void swapchain_barrier(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 from_stage,
+                       VkAccessFlags2 from_access, VkPipelineStageFlags2 to_stage, VkAccessFlags2 to_access) {
+  VkImageMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  barrier.srcStageMask = from_stage;
+  barrier.srcAccessMask = from_access;
+  barrier.dstStageMask = to_stage;
+  barrier.dstAccessMask = to_access;
+  barrier.oldLayout = from;
+  barrier.newLayout = to;
+  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.image = image;
+  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.imageMemoryBarrierCount = 1;
+  info.pImageMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(commands, &info);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Swapchain>> Swapchain::create(Device& device, std::uint32_t width, std::uint32_t height) {
+  if (!device.surface()) return Error{"the device was created without a window"};
+  std::unique_ptr<Swapchain> self(new Swapchain(device));
+  CATENA_TRY(self->format_, choose_format(device));
+  const VkSemaphoreCreateInfo info = binary_semaphore();
+  CATENA_VK(vkCreateSemaphore(device.handle(), &info, nullptr, &self->acquired_), "create a semaphore");
+  CATENA_CHECK(self->resize(width, height));
+  return self;
+}
+
+Swapchain::~Swapchain() {
+  destroy();
+  if (acquired_) vkDestroySemaphore(device_->handle(), acquired_, nullptr);
+}
+
+void Swapchain::destroy() {
+  (void)vkDeviceWaitIdle(device_->handle());
+  for (VkSemaphore s : finished_) vkDestroySemaphore(device_->handle(), s, nullptr);
+  finished_.clear();
+  images_.clear();
+  if (swapchain_) vkDestroySwapchainKHR(device_->handle(), swapchain_, nullptr);
+  swapchain_ = VK_NULL_HANDLE;
+}
+
+Outcome Swapchain::resize(std::uint32_t width, std::uint32_t height) {
+  destroy();
+  VkSurfaceCapabilitiesKHR caps{};
+  CATENA_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_->physical(), device_->surface(), &caps), "ask the window's capabilities");
+  extent_ = caps.currentExtent;
+  if (extent_.width == std::numeric_limits<std::uint32_t>::max())
+    extent_ = {std::clamp(width, caps.minImageExtent.width, caps.maxImageExtent.width),
+               std::clamp(height, caps.minImageExtent.height, caps.maxImageExtent.height)};
+  if (extent_.width == 0 || extent_.height == 0) return Done{};  // minimised: present() says false until it is back
+  VkSwapchainCreateInfoKHR info{};
+  info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
+  info.surface = device_->surface();
+  info.minImageCount = caps.minImageCount + 1;
+  if (caps.maxImageCount) info.minImageCount = std::min(info.minImageCount, caps.maxImageCount);
+  info.imageFormat = format_.format;
+  info.imageColorSpace = format_.colorSpace;
+  info.imageExtent = extent_;
+  info.imageArrayLayers = 1;
+  info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  info.preTransform = caps.currentTransform;
+  for (const VkCompositeAlphaFlagBitsKHR alpha : {VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR, VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR})
+    if (caps.supportedCompositeAlpha & alpha) info.compositeAlpha = alpha;
+  info.presentMode = VK_PRESENT_MODE_FIFO_KHR;
+  info.clipped = VK_TRUE;
+  CATENA_VK(vkCreateSwapchainKHR(device_->handle(), &info, nullptr, &swapchain_), "create the window's images");
+  std::uint32_t count = 0;
+  CATENA_VK(vkGetSwapchainImagesKHR(device_->handle(), swapchain_, &count, nullptr), "list the window's images");
+  images_.resize(count);
+  CATENA_VK(vkGetSwapchainImagesKHR(device_->handle(), swapchain_, &count, images_.data()), "list the window's images");
+  const VkSemaphoreCreateInfo semaphore = binary_semaphore();
+  finished_.resize(count);
+  for (VkSemaphore& s : finished_) CATENA_VK(vkCreateSemaphore(device_->handle(), &semaphore, nullptr, &s), "create a semaphore");
+  return Done{};
+}
+
+Result<bool> Swapchain::present(const Image& source) {
+  if (!swapchain_) return false;
+  std::uint32_t index = 0;
+  const VkResult acquired =
+      vkAcquireNextImageKHR(device_->handle(), swapchain_, std::numeric_limits<std::uint64_t>::max(), acquired_, VK_NULL_HANDLE, &index);
+  if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return false;
+  if (acquired != VK_SUCCESS && acquired != VK_SUBOPTIMAL_KHR) return vulkan_error(acquired, "take an image of the window");
+
+  // copy, scaled to the window
+  CATENA_TRY(Commands commands, Commands::begin(*device_));
+  const VkImage target = images_[index];
+  swapchain_barrier(commands.handle(), target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                    VK_ACCESS_2_TRANSFER_WRITE_BIT);
+  VkImageBlit region{};
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.srcOffsets[1] = {std::int32_t(source.info().extent.width), std::int32_t(source.info().extent.height), 1};
+  region.dstOffsets[1] = {std::int32_t(extent_.width), std::int32_t(extent_.height), 1};
+  vkCmdBlitImage(commands.handle(), source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                 &region, VK_FILTER_LINEAR);
+  swapchain_barrier(commands.handle(), target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
+                    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_NONE);
+  CATENA_TRY(const std::uint64_t value, commands.submit(acquired_, finished_[index]));
+
+  VkPresentInfoKHR info{};
+  info.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
+  info.waitSemaphoreCount = 1;
+  info.pWaitSemaphores = &finished_[index];
+  info.swapchainCount = 1;
+  info.pSwapchains = &swapchain_;
+  info.pImageIndices = &index;
+  const VkResult shown = vkQueuePresentKHR(device_->queue(), &info);
+  CATENA_CHECK(device_->wait(value));
+  if (shown == VK_ERROR_OUT_OF_DATE_KHR) return false;
+  if (shown != VK_SUCCESS && shown != VK_SUBOPTIMAL_KHR) return vulkan_error(shown, "show the picture");
+  return shown == VK_SUCCESS;
+}
+
+}  // namespace catena::render::vk

@@ -1,0 +1,39 @@
+/// A window's images: UNORM, so that display values stay as they are. present() copies (and scales) a finished picture.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <memory>
+#include <vector>
+
+#include "render/vk/device.h"
+#include "render/vk/resources.h"
+
+namespace catena::render::vk {
+
+class Swapchain {
+ public:
+  /// For the surface that the device was created with; the size is used where the window system leaves it open.
+  static Result<std::unique_ptr<Swapchain>> create(Device& device, std::uint32_t width, std::uint32_t height);
+  ~Swapchain();
+  Swapchain(const Swapchain&) = delete;
+  Swapchain& operator=(const Swapchain&) = delete;
+
+  Outcome resize(std::uint32_t width, std::uint32_t height);
+  /// Copies `source` (in the layout TRANSFER_SRC) to the next image and shows it. False: out of date, call resize.
+  Result<bool> present(const Image& source);
+  VkExtent2D extent() const { return extent_; }
+
+ private:
+  explicit Swapchain(Device& device) : device_(&device) {}
+  void destroy();
+
+  Device* device_;
+  VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
+  VkSurfaceFormatKHR format_{};
+  VkExtent2D extent_{};
+  std::vector<VkImage> images_;
+  std::vector<VkSemaphore> finished_;  ///< one an image
+  VkSemaphore acquired_ = VK_NULL_HANDLE;
+};
+
+}  // namespace catena::render::vk

@@ -1,0 +1,114 @@
+/// One replay, one state_hash: the committed constants hold in every preset, with and without the thread.
+/// The scenes use + - * / sqrt only (sampled grids, circle, sphere); a change of behaviour changes them, and must say so.
+#include <gtest/gtest.h>
+
+#include "engine/base/numbers.h"
+#include "haptics/device/recorded_path.h"
+#include "haptics/extract/extract.h"
+#include "haptics/servo/replay.h"
+#include "haptics/servo/servo.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+
+struct Recorded {
+  const char* name;
+  const char* scene;
+  std::uint64_t hash;
+};
+
+// A path without libm: a polygon with rational corners, a still stretch, a jump.
+std::vector<ProbeSample> probe_path() {
+  const Vec3 corners[] = {{0.6, 0.1, 0.0}, {0.1, 0.7, 0.2}, {-0.6, 0.2, -0.1}, {-0.2, -0.5, 0.3}, {0.5, -0.4, -0.2}, {0.45, 0.05, 0.1}};
+  std::vector<ProbeSample> path;
+  for (int k = 0; k < 3000; ++k) {
+    const int segment = k / 500;
+    const double f = segment == 3 ? 0.5 : (k % 500) / 500.0;
+    const Vec3 a = corners[segment], b = corners[(segment + 1) % 6];
+    path.push_back({k / 1000.0, a + (b - a) * f, k > 1500 ? 1u : 0u});
+  }
+  return path;
+}
+
+constexpr const char* kCircle = R"({"fields": {"v": {"analytic": "circle"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0]}], "coupling": {"stiffness": 300, "damping": 1.5, "max_force": 6}})";
+constexpr const char* kCircleOnline = R"({"fields": {"v": {"analytic": "circle"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0], "follow": "online"}]})";
+constexpr const char* kSphere = R"({"fields": {"s": {"analytic": "sphere"}},
+  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5, "free": "above", "release": 0.3}]})";
+constexpr const char* kChain = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1]},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "on": {"button": 1}},
+            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "free": "above"},
+            {"name": "pin", "type": "point", "position": [0.1, 0.2, 0.3], "stiffness": 20}], "coupling": {"ramp_s": 0.02}})";
+constexpr const char* kGrids = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03]},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55, "free": "below", "release": 0.2}]})";
+constexpr const char* kGridOnline = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.4},
+            {"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03], "method": "rk4"}]})";
+
+const Recorded kRecorded[] = {
+    {"circle", kCircle, 0}, {"circle_online", kCircleOnline, 0}, {"sphere", kSphere, 0},
+    {"chain", kChain, 0},   {"grids", kGrids, 0},                {"grid_online", kGridOnline, 0},
+};
+
+std::string fmt_hash(std::uint64_t hash) {
+  std::string text(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15];
+  return text;
+}
+
+std::shared_ptr<const Program> program_of(const Recorded& recorded, const test::TemporaryFolder& folder) {
+  for (const char* name : {"circle", "sphere"}) {
+    const auto run = test::run_program(CATENA_PROGRAM, {"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+  auto scene = scene::parse_scene(recorded.scene, folder / "scene.json");
+  EXPECT_TRUE(scene) << scene.error().message;
+  auto program = extract_program(*scene);
+  EXPECT_TRUE(program) << program.error().message;
+  return *program;
+}
+
+void PrintTo(const Recorded& recorded, std::ostream* out) { *out << recorded.name; }
+
+class Hash : public testing::TestWithParam<Recorded> {};
+
+TEST_P(Hash, IsTheCommittedOneWithAndWithoutTheThread) {
+  const test::TemporaryFolder folder;
+  const auto program = program_of(GetParam(), folder);
+  const std::vector<ProbeSample> path = probe_path();
+  const ReplayStats stats = replay(*program, path, [](const exchange::HapticState&) { return true; });
+  EXPECT_EQ(stats.state_hash, GetParam().hash) << fmt_hash(stats.state_hash);
+
+  std::vector<RecordedPath::Sample> samples;
+  for (const ProbeSample& p : path) samples.push_back({p.t_s, p.position, p.buttons});
+  RecordedPath device(samples);
+  Servo servo(device, program, {.rate_hz = 1000, .paced = false, .max_ticks = path.size()});
+  servo.start();
+  while (servo.running()) std::this_thread::yield();
+  servo.stop();
+  EXPECT_EQ(servo.state_hash(), stats.state_hash);
+}
+
+TEST_P(Hash, IsTheProgramsToo) {
+  const test::TemporaryFolder folder;
+  const auto program = program_of(GetParam(), folder);
+  test::write_file(folder / "scene.json", GetParam().scene);
+  std::string csv = "t,x,y,z,buttons\n";
+  for (const ProbeSample& p : probe_path())
+    csv += to_text(p.t_s) + "," + to_text(p.position.x) + "," + to_text(p.position.y) + "," + to_text(p.position.z) + "," + std::to_string(p.buttons) + "\n";
+  test::write_file(folder / "p.csv", csv);
+  const auto run = test::run_program(CATENA_PROGRAM, {"replay", folder / "scene.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(test::read_file(folder / "s.json").find(fmt_hash(GetParam().hash)), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Hash, testing::ValuesIn(kRecorded), [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace

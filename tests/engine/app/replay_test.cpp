@@ -1,0 +1,230 @@
+/// `catena replay` and `catena trace` from the outside: the acceptance figures of the first scenes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "engine/base/numbers.h"
+#include "engine/base/vec.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using namespace catena;
+using test::ProgramResult;
+using test::Table;
+
+ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+
+Vec3 vector_at(const Table& table, std::size_t row, const std::string& name) {
+  return {table.number(row, name + "_x"), table.number(row, name + "_y"), table.number(row, name + "_z")};
+}
+
+// One lap of the circle of radius 0.05 at 0.2 units/s, 1 kHz: the probe is on the circle.
+void write_lap(const std::string& path, double radius, double speed, double outward = 1) {
+  std::string text = "t,x,y,z\n";
+  const double lap_s = 2 * M_PI * radius / speed;
+  const int ticks = static_cast<int>(std::ceil(lap_s / 1e-3));
+  for (int k = 0; k <= ticks; ++k) {
+    const double angle = speed * (1e-3 * k) / radius;
+    text += to_text(1e-3 * k) + "," + to_text(outward * radius * std::cos(angle)) + "," + to_text(outward * radius * std::sin(angle)) + ",0\n";
+  }
+  test::write_file(path, text);
+}
+
+std::string circle_scene(const std::string& link_keys) {
+  return R"({"fields": {"v": {"analytic": "circle"}},
+             "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.05, 0, 0])" + link_keys + "}]}";
+}
+
+double drift_of_last_tick(const std::string& link_keys) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", circle_scene(link_keys));
+  write_lap(folder / "lap.csv", 0.05, 0.2);
+  const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "lap.csv", "-o", folder / "t.csv"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const Table table = Table::read(folder / "t.csv");
+  double worst = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const Vec3 p = vector_at(table, row, "curve");
+    worst = std::max(worst, std::hypot(std::hypot(p.x, p.y) - 0.05, p.z));
+  }
+  return worst;
+}
+
+TEST(Replay, LinearStreamlineDriftsAsThePaperSays) { EXPECT_NEAR(drift_of_last_tick(R"(, "method": "linear")"), 0.63e-3, 0.02e-3); }
+
+TEST(Replay, SelectedAndOnlineStreamlinesStayOnTheCircle) {
+  EXPECT_LE(drift_of_last_tick(""), 5e-10);
+  EXPECT_LE(drift_of_last_tick(R"(, "follow": "online")"), 5e-10);
+  EXPECT_LE(drift_of_last_tick(R"(, "method": "dp54")"), 5e-10);
+}
+
+TEST(Replay, SphereIsHeldAtTheLocalClosestPointWithinTheTick) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"s": {"analytic": "sphere"}},
+    "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5}]})");
+  std::string path = "t,x,y,z\n";
+  for (int k = 0; k < 1000; ++k) {
+    const double t = 1e-3 * k, r = 0.3 + 0.4 * std::sin(7 * t);
+    path += to_text(t) + "," + to_text(r * std::cos(3 * t) + 0.3) + "," + to_text(r * std::sin(3 * t)) + "," + to_text(0.2 + 0.3 * std::sin(11 * t)) + "\n";
+  }
+  test::write_file(folder / "p.csv", path);
+  const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Table table = Table::read(folder / "t.csv");
+  ASSERT_EQ(table.rows(), 1000u);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const Vec3 probe = vector_at(table, row, "probe"), p = vector_at(table, row, "surface");
+    EXPECT_NEAR(norm(p), 0.5, 1e-11) << row;
+    const Vec3 closest = direction(probe) * 0.5;
+    EXPECT_LE(norm(p - closest), 1e-6) << row;
+    EXPECT_EQ(table.word(row, "surface_status"), "OK");
+    EXPECT_EQ(table.word(row, "surface_active"), "1");
+  }
+}
+
+TEST(Replay, SelectedProxyLiesOnTheTracedCurve) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"v": {"analytic": "abc"}},
+    "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.3, -0.2, 0.7]}]})");
+  test::write_file(folder / "seeds.csv", "x,y,z\n0.3,-0.2,0.7\n");
+  std::string path = "t,x,y,z\n";
+  for (int k = 0; k < 800; ++k) {
+    const double t = 1e-3 * k;
+    path += to_text(t) + "," + to_text(0.3 + 0.5 * std::sin(5 * t)) + "," + to_text(-0.2 + 0.3 * t) + "," + to_text(0.7 - 0.4 * t) + "\n";
+  }
+  test::write_file(folder / "p.csv", path);
+  ASSERT_EQ(catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"}).exit_code, 0);
+  const ProgramResult traced = catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
+  ASSERT_EQ(traced.exit_code, 0) << traced.err;
+  const Table ticks = Table::read(folder / "t.csv"), line = Table::read(folder / "l.csv");
+  const auto knot = [&](std::size_t i, const char* a, const char* b, const char* c) { return Vec3(line.number(i, a), line.number(i, b), line.number(i, c)); };
+  for (std::size_t row = 0; row < ticks.rows(); row += 7) {
+    const Vec3 p = vector_at(ticks, row, "curve");
+    // distance to the Hermite curve through knots and tangents: the nearest intervals, densely
+    double best = 1e9;
+    for (std::size_t i = 0; i + 1 < line.rows(); ++i) {
+      const Vec3 a = knot(i, "x", "y", "z"), b = knot(i + 1, "x", "y", "z");
+      const double h = line.number(i + 1, "s") - line.number(i, "s");
+      if (norm(p - a) > 2 * h) continue;
+      const Vec3 ta = knot(i, "tx", "ty", "tz") * h, tb = knot(i + 1, "tx", "ty", "tz") * h;
+      const auto at = [&](double f) {
+        const double f2 = f * f, f3 = f2 * f;
+        return a * (2 * f3 - 3 * f2 + 1) + ta * (f3 - 2 * f2 + f) + b * (3 * f2 - 2 * f3) + tb * (f3 - f2);
+      };
+      double lo = 0, hi = 1;
+      for (int k = 0; k < 100; ++k) {
+        const double m1 = lo + (hi - lo) / 3, m2 = hi - (hi - lo) / 3;
+        (norm(p - at(m1)) < norm(p - at(m2)) ? hi : lo) = norm(p - at(m1)) < norm(p - at(m2)) ? m2 : m1;
+      }
+      best = std::min(best, norm(p - at(0.5 * (lo + hi))));
+    }
+    // ternary search resolves the distance to about its own size: what is left is rounding
+    EXPECT_LE(best, 4 * 1e-12) << row;
+  }
+}
+
+TEST(Replay, ColumnsAreThoseOfTheContract) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {}, "chain": [{"name": "a", "type": "point", "position": [0, 0, 0]},
+     {"name": "b_2", "type": "plane", "point": [0, 0, 1], "normal": [0, 0, 2]}]})");
+  test::write_file(folder / "p.csv", "\xef\xbb\xbft,x,y,z,buttons\r\n0,1,2,3,1\r\n");
+  const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string text = test::read_file(folder / "t.csv");
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            "t,probe_x,probe_y,probe_z,a_x,a_y,a_z,a_active,a_status,a_evaluations,b_2_x,b_2_y,b_2_z,b_2_active,b_2_status,b_2_evaluations,"
+            "force_x,force_y,force_z");
+  const std::string stats = test::read_file(folder / "s.out");
+  for (const char* key : {"\"ticks\": 1", "\"tick_ns\"", "\"p50\"", "\"p99\"", "\"p999\"", "\"max\"", "\"evaluations\"", "\"state_hash\""})
+    EXPECT_NE(stats.find(key), std::string::npos) << key;
+}
+
+TEST(Replay, AnEmptySceneIsLegalAndOnlyDamps) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {}, "chain": [], "coupling": {"damping": 2, "max_force": 100}})");
+  test::write_file(folder / "p.csv", "t,x,y,z\n0,0,0,0\n0.5,1,0,0\n");
+  ASSERT_EQ(catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"}).exit_code, 0);
+  const Table table = Table::read(folder / "t.csv");
+  EXPECT_EQ(table.number(0, "force_x"), 0);
+  EXPECT_EQ(table.number(1, "force_x"), -4);
+}
+
+TEST(Replay, ReleaseAndReArmOfAOneSidedSurface) {
+  // free above (outside |x| > 0.5); the probe dives along x from outside to the centre and comes back
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"s": {"analytic": "sphere"}},
+    "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.5, "free": "above", "release": 0.05}],
+    "coupling": {"stiffness": 100, "max_force": 1000}})");
+  std::string path = "t,x,y,z\n";
+  std::vector<double> depth;
+  for (int k = 0; k < 400; ++k) {
+    const double x = k < 200 ? 0.6 - 0.001 * k : 0.4 + 0.001 * (k - 200);
+    depth.push_back(0.5 - x);
+    path += to_text(1e-3 * k) + "," + to_text(x) + ",0,0\n";
+  }
+  test::write_file(folder / "p.csv", path);
+  ASSERT_EQ(catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"}).exit_code, 0);
+  const Table table = Table::read(folder / "t.csv");
+  bool released = false;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::string status = table.word(row, "surface_status");
+    const double d = depth[row];
+    if (d < -1e-12) released = false;
+    if (!released && d >= 0.05 - 1e-12 && d <= 0.05 + 1e-12) {
+      // at the limit to rounding: either side is right
+      released = status == "RELEASED";
+      continue;
+    }
+    if (d > 0.05) released = true;
+    if (released) {
+      EXPECT_EQ(status, "RELEASED") << row;
+      EXPECT_EQ(table.word(row, "surface_active"), "0");
+      EXPECT_EQ(table.word(row, "surface_x"), table.word(row, "probe_x"));
+      EXPECT_EQ(table.number(row, "force_x"), 0);
+    } else if (d > 1e-12) {
+      EXPECT_EQ(status, "OK") << row;
+      EXPECT_NEAR(table.number(row, "surface_x"), 0.5, 1e-11);
+      EXPECT_NEAR(table.number(row, "force_x"), 100 * d, 1e-7);
+    } else if (d < -1e-12) {
+      EXPECT_EQ(status, "FREE") << row;
+      EXPECT_EQ(table.word(row, "surface_active"), "1");
+      EXPECT_EQ(table.word(row, "surface_x"), table.word(row, "probe_x"));
+    }
+  }
+}
+
+TEST(Trace, CircleIsOneLap) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", circle_scene(""));
+  test::write_file(folder / "seeds.csv", "x,y,z\n0.05,0,0\n1,0,0.5\n");
+  const ProgramResult run = catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Table line = Table::read(folder / "l.csv");
+  double last_s[2] = {0, 0};
+  for (std::size_t i = 0; i < line.rows(); ++i) {
+    const int which = static_cast<int>(line.number(i, "line"));
+    const double radius = which == 0 ? 0.05 : 1;
+    const Vec3 p(line.number(i, "x"), line.number(i, "y"), line.number(i, "z")), t(line.number(i, "tx"), line.number(i, "ty"), line.number(i, "tz"));
+    EXPECT_NEAR(std::hypot(p.x, p.y), radius, 4e-9);
+    EXPECT_NEAR(norm(t), 1, 1e-14);
+    EXPECT_NEAR(dot(p, t), 0, 4e-9);
+    last_s[which] = line.number(i, "s");
+  }
+  EXPECT_NEAR(last_s[0], 2 * M_PI * 0.05, 4e-9);
+  EXPECT_NEAR(last_s[1], 2 * M_PI, 4e-9);
+}
+
+TEST(Trace, WritesPolyDataToo) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", circle_scene(""));
+  test::write_file(folder / "seeds.csv", "x,y,z\n0.05,0,0\n");
+  ASSERT_EQ(catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.vtp"}).exit_code, 0);
+  const std::string text = test::read_file(folder / "l.vtp");
+  EXPECT_NE(text.find("NumberOfLines=\"1\""), std::string::npos);
+  EXPECT_NE(text.find("Name=\"tangent\""), std::string::npos);
+}
+
+}  // namespace

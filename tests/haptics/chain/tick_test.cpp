@@ -1,0 +1,157 @@
+#include "haptics/chain/tick.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "engine/base/allocation_guard.h"
+#include "haptics/chain/rebind.h"
+#include "haptics/chain/state_hash.h"
+#include "tests/support/simple_links.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+using test::hold_height;
+
+struct Hand {
+  Program program;
+  ChainState state;
+  ChainScratch scratch;
+  exchange::HapticState out;
+  void step(double t, const Vec3& p, std::uint32_t buttons = 0) { tick(program, {t, p, buttons}, state, scratch, out); }
+};
+
+TEST(Tick, EqualStiffnessTelescopesToTheLastProxy) {
+  Hand run;
+  run.program.links = {hold_height("a", 1), hold_height("b", 3), hold_height("c", 2)};
+  run.program.metres_per_unit = 0.5;
+  run.program.coupling.max_force_n = 1e9;
+  run.step(0, {0.25, 0.5, 0});
+  EXPECT_DOUBLE_EQ(run.out.force_n.z, 500 * 0.5 * 2.0);
+  EXPECT_EQ(run.out.force_n.x, 0);
+  EXPECT_DOUBLE_EQ(run.out.links[1].force_n.z, 500 * 0.5 * 2.0);
+  EXPECT_DOUBLE_EQ(run.out.links[2].force_n.z, -500 * 0.5 * 1.0);
+}
+
+TEST(Tick, LinksMaySetTheirOwnStiffness) {
+  Hand run;
+  run.program.links = {hold_height("a", 1, 100), hold_height("b", 3, 10)};
+  run.program.coupling.max_force_n = 1e9;
+  run.step(0, {0, 0, 0});
+  EXPECT_DOUBLE_EQ(run.out.force_n.z, 100 * 1.0 + 10 * 2.0);
+}
+
+TEST(Tick, DampingUsesTheTimeBetweenSamplesAndIsZeroAtTickZero) {
+  Hand run;
+  run.program.coupling.damping_ns_per_m = 2;
+  run.program.coupling.max_force_n = 1e9;
+  run.program.metres_per_unit = 0.1;
+  run.step(1.0, {0, 0, 0});
+  EXPECT_EQ(run.out.force_n, Vec3(0.0));
+  run.step(1.5, {3, 0, 0});
+  EXPECT_DOUBLE_EQ(run.out.force_n.x, -2 * 0.1 * 3 / 0.5);
+}
+
+TEST(Tick, ForceIsLimitedAndKeepsItsDirection) {
+  Hand run;
+  run.program.links = {hold_height("a", 1)};
+  run.program.coupling.max_force_n = 8;
+  run.program.coupling.damping_ns_per_m = 500;
+  run.step(0, {0, 0, 0});
+  EXPECT_DOUBLE_EQ(norm(run.out.force_n), 8);
+  run.step(1, {-1, 0, 0});
+  EXPECT_NEAR(norm(run.out.force_n), 8, 1e-14);
+  EXPECT_NEAR(run.out.force_n.x, 8 / std::sqrt(2.0), 1e-14);
+  EXPECT_NEAR(run.out.force_n.z, 8 / std::sqrt(2.0), 1e-14);
+}
+
+TEST(Tick, BadProbeHoldsProxiesAndGivesNoForce) {
+  Hand run;
+  run.program.links = {hold_height("a", 1)};
+  run.step(0, {0.5, 0, 0});
+  const Vec3 held = run.out.links[0].proxy;
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    run.step(0.001, {0, bad, 0});
+    EXPECT_EQ(run.out.links[0].proxy, held);
+    EXPECT_EQ(run.out.force_n, Vec3(0.0));
+    EXPECT_EQ(run.out.links[0].status, Status::bad_probe);
+    EXPECT_EQ(run.out.links[0].evaluations, 0);
+  }
+  run.step(0.002, {0.5, 0, 0});
+  EXPECT_EQ(run.out.links[0].status, Status::ok);
+}
+
+TEST(Tick, ASwitchedOffLinkPassesItsProbeThroughBitForBit) {
+  Hand run;
+  run.program.links = {hold_height("a", 1)};
+  run.program.links[0].on.button = 2;
+  run.program.coupling.ramp_s = 0.004;
+  run.program.coupling.max_force_n = 1e9;
+  const Vec3 probe{0.1, -0.2, 0.3};
+  run.step(0, probe, 1);
+  EXPECT_FALSE(run.out.links[0].active);
+  EXPECT_EQ(std::memcmp(&run.out.links[0].proxy, &probe, sizeof probe), 0);
+  EXPECT_EQ(run.out.force_n, Vec3(0.0));
+  // switched on: the weight climbs over the ramp
+  double last = 0;
+  for (int k = 1; k <= 4; ++k) {
+    run.step(0.001 * k, probe, 2);
+    EXPECT_TRUE(run.out.links[0].active);
+    EXPECT_NEAR(run.out.links[0].weight, 0.25 * k, 1e-12);
+    EXPECT_GT(run.out.force_n.z, last);
+    last = run.out.force_n.z;
+  }
+}
+
+TEST(Tick, ALinkCanWaitForAForce) {
+  Hand run;
+  run.program.links = {hold_height("a", 1, 5), hold_height("b", 2, 5)};
+  run.program.links[1].on.force_above_n = 3;
+  run.step(0, {0, 0, 0.9});
+  EXPECT_FALSE(run.out.links[1].active);
+  run.step(1, {0, 0, 0});   // 5 N
+  EXPECT_FALSE(run.out.links[1].active);
+  run.step(2, {0, 0, 0});
+  EXPECT_TRUE(run.out.links[1].active);
+}
+
+TEST(Tick, AllocatesNothing) {
+  Hand run;
+  run.program.links = {hold_height("a", 1), hold_height("b", 2)};
+  const AllocationGuard guard;
+  for (int k = 0; k < 1000; ++k) run.step(0.001 * k, {0.001 * k, 0, 0});
+  EXPECT_EQ(guard.count(), 0u);
+  const AllocationGuard control;
+  const auto escaped = std::make_unique<std::array<int, 100>>();
+  EXPECT_NE(escaped.get(), nullptr);
+  EXPECT_EQ(control.count(), 1u) << "the counter itself must work";
+}
+
+TEST(Tick, StateHashSeesEveryBit) {
+  exchange::HapticState a;
+  a.link_count = 1;
+  exchange::HapticState b = a;
+  b.links[0].proxy.z = -0.0;
+  StateHash hash_a, hash_b;
+  hash_a.add(a);
+  hash_b.add(b);
+  EXPECT_NE(hash_a.value(), hash_b.value());
+}
+
+TEST(Rebind, KeepsTheStateOfTheSameConstraintUnderTheSameName) {
+  Hand run;
+  run.program.links = {hold_height("a", 1), hold_height("b", 2)};
+  run.step(0, {0, 0, 0});
+  Program next = run.program;
+  std::swap(next.links[0], next.links[1]);
+  next.links[1].constraint = std::make_shared<test::HoldHeight>(5.0);
+  rebind(run.program, next, run.state, run.scratch);
+  EXPECT_TRUE(run.state.links[0].started);
+  EXPECT_EQ(run.state.links[0].proxy.z, 2);
+  EXPECT_FALSE(run.state.links[1].started);
+}
+
+}  // namespace

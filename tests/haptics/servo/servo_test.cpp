@@ -1,0 +1,122 @@
+#include "haptics/servo/servo.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "haptics/device/recorded_path.h"
+#include "haptics/device/simulated_hand.h"
+#include "haptics/servo/replay.h"
+#include "tests/support/simple_links.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+
+std::shared_ptr<Program> program_at(double height, std::uint64_t epoch) {
+  auto program = std::make_shared<Program>();
+  program->epoch = epoch;
+  program->links = {test::hold_height("a", height)};
+  program->coupling.damping_ns_per_m = 1.5;
+  return program;
+}
+
+TEST(Servo, ThreadAndReplayGiveOneHash) {
+  std::vector<RecordedPath::Sample> samples;
+  std::vector<ProbeSample> path;
+  for (int k = 0; k < 5000; ++k) {
+    const double t = 0.001 * k;
+    const Vec3 p{std::sin(t), -0.0, 0.3 * t};
+    samples.push_back({t, p, 0});
+    path.push_back({t, p, 0});
+  }
+  const auto program = program_at(0.5, 1);
+  const ReplayStats stats = replay(*program, path, [](const exchange::HapticState&) { return true; });
+  RecordedPath device(samples);
+  Servo servo(device, program, {.rate_hz = 1000, .paced = false, .max_ticks = 5000});
+  servo.start();
+  exchange::HapticState seen;
+  while (servo.running()) servo.take(seen);
+  servo.stop();
+  servo.take(seen);
+  EXPECT_EQ(servo.state_hash(), stats.state_hash);
+  EXPECT_EQ(seen.tick, 5000u);
+  EXPECT_EQ(device.forces_written(), 5001u) << "one a tick, and a last zero";
+}
+
+TEST(Servo, NewProgramsTakeOverAndOldOnesAreFreedByTheFrameSide) {
+  SimulatedHand hand({{0, {0, 0, 0.4}}}, {});
+  Servo servo(hand, program_at(0.5, 1), {.rate_hz = 1000, .paced = false});
+  servo.start();
+  exchange::HapticState seen;
+  for (std::uint64_t epoch = 2; epoch <= 40; ++epoch) {
+    servo.set_program(program_at(0.5 + 0.001 * static_cast<double>(epoch), epoch));
+    while (seen.program_epoch != epoch) servo.take(seen);
+    EXPECT_EQ(servo.programs_alive(), 1u);
+  }
+  servo.stop();
+  EXPECT_NEAR(seen.links[0].proxy.z, 0.54, 1e-12);
+}
+
+TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
+  // grip 500 N/m toward z = 0, link 500 N/m toward z = 0.01: they meet in the middle
+  auto program = program_at(0.01, 1);
+  program->coupling.damping_ns_per_m = 0;
+  SimulatedHand hand({{0, {0, 0, 0}}}, {.mass_kg = 0.15, .stiffness_n_per_m = 500, .damping_ns_per_m = 5, .period_s = 1e-3});
+  Servo servo(hand, program, {.rate_hz = 1000, .paced = false, .max_ticks = 4000});
+  servo.start();
+  while (servo.running()) std::this_thread::yield();
+  servo.stop();
+  EXPECT_NEAR(hand.position_m().z, 0.005, 1e-6);
+}
+
+TEST(Servo, PacedLoopKeepsCountOfItsTicks) {
+  SimulatedHand hand({{0, {0, 0, 0}}}, {});
+  Servo servo(hand, program_at(0.5, 1), {.rate_hz = 2000, .paced = true, .max_ticks = 200});
+  servo.start();
+  while (servo.running()) std::this_thread::yield();
+  servo.stop();
+  exchange::HapticState seen;
+  EXPECT_TRUE(servo.take(seen));
+  EXPECT_EQ(seen.tick, 200u);
+  EXPECT_GE(seen.t_s, 199 / 2000.0 - 1e-9);
+}
+
+class Unplugged final : public Device {
+ public:
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override {
+    DeviceInput input;
+    input.connected = ++reads_ < 10;
+    return input;
+  }
+  void write(const Vec3& force) noexcept override { last = force; all_zero_after_loss = all_zero_after_loss && (reads_ < 10 || norm(force) == 0); }
+  Vec3 last{1.0};
+  bool all_zero_after_loss = true;
+
+ private:
+  DeviceCapabilities capabilities_;
+  int reads_ = 0;
+};
+
+TEST(Servo, ALostDeviceGetsZeroForceInThatTick) {
+  Unplugged device;
+  Servo servo(device, program_at(0.5, 1), {.rate_hz = 1000, .paced = false, .max_ticks = 50});
+  servo.start();
+  while (servo.running()) std::this_thread::yield();
+  servo.stop();
+  EXPECT_TRUE(device.all_zero_after_loss);
+  EXPECT_EQ(device.last, Vec3(0.0));
+}
+
+TEST(Replay, CountsTicksAndStopsWhenAsked) {
+  std::vector<ProbeSample> path(100);
+  for (std::size_t k = 0; k < path.size(); ++k) path[k].t_s = 0.001 * static_cast<double>(k);
+  int calls = 0;
+  const ReplayStats stats = replay(*program_at(0, 1), path, [&](const exchange::HapticState&) { return ++calls < 30; });
+  EXPECT_EQ(stats.ticks, 30u);
+  EXPECT_EQ(stats.evaluations_p50, 1);
+}
+
+}  // namespace

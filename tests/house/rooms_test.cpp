@@ -1,0 +1,151 @@
+/// Every #include of the tree against the edges declared in CMakeLists.txt (written to rooms.txt at configure time).
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Edges = std::map<std::string, std::set<std::string>>;
+
+Edges declared_edges() {
+  Edges edges;
+  std::ifstream in(std::string(CATENA_BINARY_DIR) + "/rooms.txt");
+  for (std::string line; std::getline(in, line);) {
+    const auto colon = line.find(':');
+    if (colon == std::string::npos) continue;
+    std::istringstream words(line.substr(colon + 1));
+    std::set<std::string>& to = edges[line.substr(0, colon)];
+    for (std::string word; words >> word;) to.insert(word);
+  }
+  return edges;
+}
+
+// what may be included through others: scene -> flow -> field -> base
+std::set<std::string> reachable(const Edges& edges, const std::string& room) {
+  std::set<std::string> seen{room}, todo{room};
+  while (!todo.empty()) {
+    const std::string next = *todo.begin();
+    todo.erase(todo.begin());
+    const auto it = edges.find(next);
+    if (it == edges.end()) continue;
+    for (const std::string& to : it->second)
+      if (seen.insert(to).second) todo.insert(to);
+  }
+  return seen;
+}
+
+// "engine/app/viewer/x.h" belongs to the room engine/app: the longest declared folder that holds it
+std::string room_of(const Edges& edges, const std::string& path) {
+  std::string best;
+  for (const auto& [room, to] : edges)
+    if (path.starts_with(room + "/") && room.size() > best.size()) best = room;
+  if (best.empty() && path.starts_with("shaders/shared/")) return "shaders/shared";
+  return best;
+}
+
+struct Include {
+  std::string from, to;  ///< paths from the repository root
+};
+
+std::vector<Include> all_includes(const std::string& top) {
+  std::vector<Include> found;
+  const std::regex pattern("^\\s*#\\s*include\\s*[\"<]([^\">]+)[\">]");
+  for (const auto& entry : fs::recursive_directory_iterator(std::string(CATENA_SOURCE_DIR) + "/" + top)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".h" && extension != ".cpp") continue;
+    std::ifstream in(entry.path());
+    std::smatch match;
+    for (std::string line; std::getline(in, line);)
+      if (std::regex_search(line, match, pattern)) found.push_back({fs::relative(entry.path(), CATENA_SOURCE_DIR).string(), match[1]});
+  }
+  return found;
+}
+
+bool ours(const std::string& path) {
+  for (const char* top : {"engine/", "haptics/", "render/", "shaders/", "tests/"})
+    if (path.starts_with(top)) return true;
+  return false;
+}
+
+TEST(Rooms, EveryIncludeFollowsADeclaredEdge) {
+  const Edges edges = declared_edges();
+  ASSERT_GT(edges.size(), 10u);
+  int checked = 0;
+  for (const char* top : {"engine", "haptics", "render"}) {
+    for (const Include& include : all_includes(top)) {
+      const std::string from = room_of(edges, include.from);
+      ASSERT_FALSE(from.empty()) << include.from << " is in no declared room";
+      if (!ours(include.to) || edges.at(from).contains("ALL")) continue;
+      const std::string to = room_of(edges, include.to);
+      EXPECT_TRUE(!to.empty() && reachable(edges, from).contains(to)) << include.from << " includes " << include.to << ": no edge " << from << " -> " << to;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 100);
+}
+
+TEST(Rooms, ProjectHeadersAreIncludedFromTheRepositoryRoot) {
+  for (const char* top : {"engine", "haptics", "render"})
+    for (const Include& include : all_includes(top)) {
+      const bool sibling = include.to.find('/') == std::string::npos && fs::exists(fs::path(CATENA_SOURCE_DIR) / fs::path(include.from).parent_path() / include.to);
+      EXPECT_FALSE(sibling) << include.from << " includes " << include.to << ": write the path from the repository root";
+      EXPECT_FALSE(include.to.starts_with("..")) << include.from;
+    }
+}
+
+TEST(Rooms, OnlyTheRoofAndTheTopRoomsStandAboveBothHapticsAndRender) {
+  const Edges edges = declared_edges();
+  std::set<std::string> above;
+  for (const auto& [room, to] : edges) {
+    if (to.contains("ALL")) continue;
+    bool haptics = false, render = false;
+    for (const std::string& r : reachable(edges, room)) {
+      haptics = haptics || r.starts_with("haptics/");
+      render = render || r.starts_with("render/");
+    }
+    if (haptics && render) above.insert(room);
+  }
+  EXPECT_TRUE(above.empty()) << *above.begin() << " sees both haptics and render";
+  EXPECT_FALSE(reachable(edges, "haptics/extract").contains("render/frame"));
+  EXPECT_FALSE(reachable(edges, "render/extract").contains("haptics/chain"));
+  // the two doors from the scene
+  EXPECT_TRUE(edges.at("haptics/extract").contains("engine/scene"));
+  EXPECT_TRUE(edges.at("render/extract").contains("engine/scene"));
+}
+
+TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
+  std::map<std::string, std::set<std::string>> users;  // library -> files
+  for (const char* top : {"engine", "haptics", "render"}) {
+    for (const Include& include : all_includes(top)) {
+      for (const char* library : {"openvdb/", "nanovdb/", "vulkan/", "GLFW/", "json/", "tbb/", "nifti1_io.h", "png.h", "CLI/"})
+        if (include.to.starts_with(library)) users[library].insert(include.from);
+    }
+  }
+  const auto only_in = [&](const std::string& library, const std::vector<std::string>& places) {
+    for (const std::string& file : users[library]) {
+      bool allowed = false;
+      for (const std::string& place : places) allowed = allowed || file.starts_with(place);
+      EXPECT_TRUE(allowed) << file << " includes " << library;
+    }
+  };
+  only_in("openvdb/", {"engine/field/"});
+  only_in("nanovdb/", {"engine/field/"});
+  only_in("nifti1_io.h", {"engine/field/"});
+  only_in("json/", {"engine/base/json"});
+  only_in("tbb/", {"engine/base/parallel_for"});
+  only_in("vulkan/", {"render/", "engine/app/viewer/"});
+  only_in("GLFW/", {"engine/app/viewer/"});
+  only_in("png.h", {"render/vk/"});
+  only_in("CLI/", {"engine/app/"});
+  EXPECT_LE(users["openvdb/"].size(), 4u) << "openvdb headers cost 10 s of build each";
+  for (const char* library : {"openvdb/", "vulkan/", "json/"}) EXPECT_FALSE(users[library].empty()) << library;
+}
+
+}  // namespace

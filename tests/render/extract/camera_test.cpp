@@ -1,0 +1,160 @@
+#include "render/frame/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+#include <random>
+
+namespace catena::render {
+namespace {
+
+Bounds box(const Vec3& lo, const Vec3& hi) {
+  Bounds b;
+  b.add(lo);
+  b.add(hi);
+  return b;
+}
+
+View looking_along_y() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4}; }
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z; }
+
+TEST(Camera, AxisPointLandsInTheMiddle) {
+  for (const bool orthographic : {false, true}) {
+    View view = looking_along_y();
+    view.orthographic = orthographic;
+    const Camera c = make_camera(view, 640, 480, box(Vec3(-1.0), Vec3(1.0)));
+    const auto p = project(c, {0.0, 3.0, 0.0});
+    ASSERT_TRUE(p);
+    expect_near(*p, {320.0, 240.0, 13.0}, 1e-9);
+  }
+}
+
+TEST(Camera, UpIsUpAndRightIsRight) {
+  const Camera c = make_camera(looking_along_y(), 640, 480, box(Vec3(-1.0), Vec3(1.0)));
+  expect_near(c.right, {1.0, 0.0, 0.0}, 1e-15);
+  expect_near(c.up, {0.0, 0.0, 1.0}, 1e-15);
+  EXPECT_LT(project(c, {0.0, 0.0, 1.0})->y, 240);  // row 0 is the top
+  EXPECT_GT(project(c, {1.0, 0.0, 0.0})->x, 320);
+}
+
+TEST(Camera, FieldOfViewIsVertical) {
+  // at the distance 10 the picture's upper edge is 10 tan(15 degrees) above the axis
+  const double top = 10 * std::tan(15 * std::acos(-1.0) / 180);
+  const Camera c = make_camera(looking_along_y(), 640, 320, box(Vec3(-1.0), Vec3(1.0)));
+  EXPECT_NEAR(project(c, {0.0, 0.0, top})->y, 0, 1e-9);
+  EXPECT_NEAR(project(c, {2 * top, 0.0, 0.0})->x, 640, 1e-9);
+}
+
+TEST(Camera, OrthographicHeightIsTheWholePicture) {
+  View view = looking_along_y();
+  view.orthographic = true;
+  const Camera c = make_camera(view, 200, 100, box(Vec3(-1.0), Vec3(1.0)));
+  EXPECT_NEAR(project(c, {0.0, 0.0, 2.0})->y, 0, 1e-12);
+  EXPECT_NEAR(project(c, {-4.0, 5.0, 0.0})->x, 0, 1e-12);
+}
+
+TEST(Camera, PixelCentresAreAtHalf) {
+  // 2 x 2 pixels: the ray of the upper left centre passes a quarter of the way in
+  const Camera c = make_camera(looking_along_y(), 2, 2, box(Vec3(-1.0), Vec3(1.0)));
+  const Ray ray = ray_through(c, 0.5, 0.5);
+  const double t = std::tan(15 * std::acos(-1.0) / 180);
+  expect_near(ray.direction, direction(Vec3(-0.5 * t, 1.0, 0.5 * t)), 1e-15);
+  expect_near(ray.origin, {0.0, -10.0, 0.0}, 0);
+}
+
+TEST(Camera, RoundTripsAgreeWithTheMatrices) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < 200; ++i) {
+    View view{{30 * u(random), 30 * u(random), 30 * u(random)}, {u(random), u(random), u(random)}, {u(random), u(random), u(random)}, 30, i % 2 == 1, 5};
+    const Bounds bounds = box(Vec3(-2.0), Vec3(2.0));
+    const Camera c = make_camera(view, 801, 603, bounds);
+    const Vec3 p{2 * u(random), 2 * u(random), 2 * u(random)};
+    const auto pixel = project(c, p);
+    if (!pixel) continue;
+    expect_near(unproject(c, pixel->x, pixel->y, pixel->z), p, 1e-11);
+
+    // the same through the matrices, and back
+    const glm::dvec4 clip = clip_from_world(c) * glm::dvec4(p, 1.0);
+    EXPECT_NEAR(0.5 * (clip.x / clip.w + 1) * 801, pixel->x, 1e-7);
+    EXPECT_NEAR(0.5 * (clip.y / clip.w + 1) * 603, pixel->y, 1e-7);
+    const glm::dvec4 back = world_from_clip(c) * clip;
+    expect_near(Vec3(back) / back.w, p, 1e-8);
+
+    // and on the ray
+    const Ray ray = ray_through(c, pixel->x, pixel->y);
+    EXPECT_LE(norm(cross(p - ray.origin, ray.direction)), 1e-10);
+    EXPECT_NEAR(norm(ray.direction), 1, 1e-14);
+  }
+}
+
+TEST(Camera, DepthRunsFromNearZeroToFarOne) {
+  for (const bool orthographic : {false, true}) {
+    View view = looking_along_y();
+    view.orthographic = orthographic;
+    const Camera c = make_camera(view, 64, 64, box(Vec3(-1.0), Vec3(1.0)));
+    for (const auto& [depth, expected] : {std::pair{c.near, 0.0}, std::pair{c.far, 1.0}}) {
+      const glm::dvec4 clip = clip_from_view(c) * glm::dvec4(0, 0, -depth, 1);
+      EXPECT_NEAR(clip.z / clip.w, expected, 1e-12);
+    }
+    EXPECT_LT(c.near, 9);
+    EXPECT_GT(c.near, 8.9);
+    EXPECT_GT(c.far, 11);
+    EXPECT_LT(c.far, 11.1);
+  }
+}
+
+TEST(Camera, InsideTheBoundsNearStaysPositive) {
+  View view = looking_along_y();
+  view.position = {0.1, 0.2, 0.3};
+  const Camera c = make_camera(view, 64, 64, box(Vec3(-1.0), Vec3(1.0)));
+  EXPECT_GT(c.near, 0);
+  EXPECT_LT(c.near, 1e-3);
+  EXPECT_GT(c.far, 1);
+}
+
+TEST(Camera, DegenerateViewsStillGiveAFrame) {
+  View along_up = looking_along_y();
+  along_up.up = {0.0, 1.0, 0.0};
+  View nowhere = looking_along_y();
+  nowhere.target = nowhere.position;
+  for (const View& view : {along_up, nowhere}) {
+    const Camera c = make_camera(view, 64, 64, Bounds());
+    EXPECT_NEAR(norm(c.right), 1, 1e-14);
+    EXPECT_NEAR(norm(c.up), 1, 1e-14);
+    EXPECT_NEAR(dot(cross(c.right, c.up), c.back), 1, 1e-14);
+    EXPECT_GT(c.far, c.near);
+  }
+}
+
+TEST(Camera, FitShowsTheWholeBoxAndFillsThePicture) {
+  for (const double aspect : {0.5, 1.0, 2.0})
+    for (const Vec3& towards : {default_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)})
+      for (const bool orthographic : {false, true}) {
+        const Bounds bounds = box({3.0, -100.0, 7.0}, {9.0, -70.0, 8.0});
+        View view = fit_view(bounds, aspect, towards);
+        view.orthographic = orthographic;
+        const Camera c = make_camera(view, 400 * aspect, 400, bounds);
+        double widest = 0;
+        for (int i = 0; i < 8; ++i) {
+          const auto p = project(c, bounds.corner(i));
+          ASSERT_TRUE(p);
+          widest = std::max({widest, std::fabs(p->x / (200 * aspect) - 1), std::fabs(p->y / 200 - 1)});
+        }
+        EXPECT_LT(widest, 1);
+        EXPECT_GT(widest, 0.75);
+      }
+}
+
+TEST(Camera, FitOfNothingAndOfAPoint) {
+  const View nothing = fit_view(Bounds(), 1);
+  EXPECT_TRUE(is_finite(nothing.position));
+  EXPECT_GT(norm(nothing.position), 2);
+  const View point = fit_view(box(Vec3(5.0), Vec3(5.0)), 1);
+  EXPECT_GT(norm(point.position - Vec3(5.0)), 0.5);
+}
+
+}  // namespace
+}  // namespace catena::render

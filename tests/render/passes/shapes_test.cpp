@@ -1,0 +1,253 @@
+#include "render/passes/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace catena::render {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::vector<Vec3> helix(int n, double turns = 2) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= n; ++i) {
+    const double a = 2 * kPi * turns * i / n;
+    points.push_back({std::cos(a), std::sin(a), 0.3 * a});
+  }
+  return points;
+}
+
+std::vector<Vec3> knotted_loop(int n) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * kPi * i / n;
+    points.push_back({(2 + std::cos(3 * a)) * std::cos(2 * a), (2 + std::cos(3 * a)) * std::sin(2 * a), std::sin(3 * a)});
+  }
+  points.push_back(points.front());
+  return points;
+}
+
+Shape tube(std::vector<Vec3> points, double radius, int sides = 12) {
+  Shape shape;
+  add_tube(shape, {std::move(points), radius, {1, 0, 0}}, sides);
+  return shape;
+}
+
+/// Closed: every edge (by position) is walked once in each direction.
+void expect_closed(const Shape& shape) {
+  using Key = std::array<double, 3>;
+  std::map<std::pair<Key, Key>, int> edges;
+  const auto key = [&](std::uint32_t i) {
+    const Vec3& p = shape.vertices[i].position;
+    return Key{p.x, p.y, p.z};
+  };
+  for (std::size_t t = 0; t < shape.triangles.size(); t += 3)
+    for (int k = 0; k < 3; ++k) {
+      const auto a = key(shape.triangles[t + k]), b = key(shape.triangles[t + (k + 1) % 3]);
+      ++edges[{a, b}];
+      --edges[{b, a}];
+    }
+  for (const auto& [edge, sum] : edges) ASSERT_EQ(sum, 0) << edge.first[0] << " " << edge.first[1] << " " << edge.first[2];
+}
+
+double volume_of(const Shape& shape) {
+  double volume = 0;
+  for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
+    const Vec3 &a = shape.vertices[shape.triangles[t]].position, &b = shape.vertices[shape.triangles[t + 1]].position,
+               &c = shape.vertices[shape.triangles[t + 2]].position;
+    volume += dot(a, cross(b, c)) / 6;
+  }
+  return volume;
+}
+
+/// The triangles' winding agrees with the vertex normals, and those are unit.
+void expect_outward(const Shape& shape) {
+  for (const MeshVertex& v : shape.vertices) ASSERT_NEAR(norm(v.normal), 1, 1e-12);
+  for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
+    const MeshVertex &a = shape.vertices[shape.triangles[t]], &b = shape.vertices[shape.triangles[t + 1]],
+                     &c = shape.vertices[shape.triangles[t + 2]];
+    const Vec3 face = direction(cross(b.position - a.position, c.position - a.position));
+    ASSERT_GT(dot(face, a.normal), 0.2);
+    ASSERT_GT(dot(face, b.normal), 0.2);
+    ASSERT_GT(dot(face, c.normal), 0.2);
+  }
+}
+
+double distance_to(const Vec3& p, const std::vector<Vec3>& line) {
+  double best = 1e300;
+  for (const Vec3& q : line) best = std::min(best, norm(p - q));
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    const Vec3 d = line[i + 1] - line[i];
+    if (!(dot(d, d) > 0)) continue;
+    const double t = std::clamp(dot(p - line[i], d) / dot(d, d), 0.0, 1.0);
+    best = std::min(best, norm(p - line[i] - t * d));
+  }
+  return best;
+}
+
+TEST(Shapes, TubeIsClosedAndOutward) {
+  for (const auto& points : {helix(200), knotted_loop(400), std::vector<Vec3>{{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}}) {
+    const Shape shape = tube(points, 0.05);
+    expect_closed(shape);
+    expect_outward(shape);
+    EXPECT_GT(volume_of(shape), 0);
+  }
+}
+
+TEST(Shapes, TubeVerticesKeepTheRadius) {
+  const auto points = helix(1000, 0.25);
+  const Shape shape = tube(points, 0.05);
+  for (const MeshVertex& v : shape.vertices) ASSERT_NEAR(distance_to(v.position, points), 0.05, 1e-6 * 0.05);
+}
+
+TEST(Shapes, AStraightTubeKeepsTheRadiusThroughSharpCorners) {
+  const std::vector<Vec3> corner{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+  const Shape shape = tube(corner, 0.05);
+  expect_closed(shape);
+  for (const MeshVertex& v : shape.vertices) {
+    const double d = distance_to(v.position, corner);
+    EXPECT_LE(d, 0.05 * (1 + 1e-12));
+  }
+}
+
+TEST(Shapes, VolumeOfATubeIsThatOfACapsule) {
+  const double r = 0.1, l = 2;
+  const int n = 48;
+  const Shape shape = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, l}}, r, n);
+  EXPECT_NEAR(volume_of(shape), kPi * r * r * l + 4.0 / 3 * kPi * r * r * r, 0.01 * kPi * r * r * l);
+}
+
+TEST(Shapes, AClosedLineIsJoinedWithoutCaps) {
+  const int n = 300, sides = 12;
+  const Shape shape = tube(knotted_loop(n), 0.1, sides);
+  EXPECT_EQ(shape.vertices.size(), std::size_t(n) * sides);
+  EXPECT_EQ(shape.triangles.size(), std::size_t(n) * sides * 6);
+  expect_closed(shape);
+}
+
+TEST(Shapes, FramesDoNotTwist) {
+  // along a plane curve the transported normal keeps its angle to the plane
+  std::vector<Vec3> arc;
+  for (int i = 0; i <= 100; ++i) arc.push_back({std::cos(0.03 * i), std::sin(0.03 * i), 0.0});
+  const int sides = 8;
+  const Shape shape = tube(arc, 0.01, sides);
+  for (int i = 1; i <= 100; ++i) EXPECT_NEAR(shape.vertices[i * sides].normal.z, shape.vertices[0].normal.z, 1e-12);
+}
+
+TEST(Shapes, TriangleCountIsBounded) {
+  for (const int sides : {8, 12, 16}) {
+    const Shape shape = tube(helix(500), 0.01, sides);
+    EXPECT_LE(shape.triangles.size() / 3, std::size_t(2 * sides * (500 + sides)));
+  }
+  EXPECT_EQ(tube_sides(0.001, 1), 8);
+  EXPECT_EQ(tube_sides(0.003, 1), 12);
+  EXPECT_EQ(tube_sides(0.05, 1), 16);
+}
+
+TEST(Shapes, DegenerateTubes) {
+  EXPECT_TRUE(tube({}, 0.1).triangles.empty());
+  EXPECT_TRUE(tube(helix(10), 0).triangles.empty());
+  const Shape point = tube({{1.0, 2.0, 3.0}}, 0.1);
+  expect_closed(point);
+  EXPECT_FALSE(point.triangles.empty());
+  const Shape repeated = tube({{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, 0.1);
+  expect_closed(repeated);
+  expect_outward(repeated);
+  const Shape there_and_back = tube({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}, 0.1);
+  expect_closed(there_and_back);
+  for (const MeshVertex& v : there_and_back.vertices) ASSERT_TRUE(is_finite(v.position) && is_finite(v.normal));
+}
+
+TEST(ShapesDeathTest, NonFinitePointsAreABug) { EXPECT_DEATH(tube({{0.0, 0.0, 0.0}, {std::nan(""), 0.0, 0.0}}, 0.1), "is_finite"); }
+
+TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
+  Shape ball, cylinder, cone;
+  add_ball(ball, {1.0, 2.0, 3.0}, 0.5, {}, 40);
+  add_cylinder(cylinder, {0.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, 0.2, {}, 40);
+  add_cone(cone, {0.0, 0.0, 0.0}, {0.0, -1.0, 0.5}, 0.3, {}, 40);
+  for (const Shape* s : {&ball, &cylinder, &cone}) {
+    expect_closed(*s);
+    expect_outward(*s);
+  }
+  EXPECT_NEAR(volume_of(ball), 4.0 / 3 * kPi * 0.125, 0.02);
+  EXPECT_NEAR(volume_of(cylinder), kPi * 0.04 * std::sqrt(2.0), 0.002);
+  EXPECT_NEAR(volume_of(cone), kPi * 0.09 * std::sqrt(1.25) / 3, 0.002);
+  for (const MeshVertex& v : ball.vertices) EXPECT_NEAR(norm(v.position - Vec3(1.0, 2.0, 3.0)), 0.5, 1e-14);
+  Shape none;
+  add_cylinder(none, Vec3(1.0), Vec3(1.0), 0.1, {});
+  add_ball(none, Vec3(0.0), 0, {});
+  EXPECT_TRUE(none.vertices.empty());
+}
+
+CursorItem cursor() { return {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {1.0, 2.0, 0.0}}, {true, false}, {0.0, 0.0, 3.0}, 0.1}; }
+
+TEST(Shapes, CursorShowsEveryProxyAndTheForce) {
+  Shape shape;
+  add_cursor(shape, cursor());
+  expect_closed(shape);
+  expect_outward(shape);
+  // a vertex of link 0's colour on the first proxy's ball, of the dim colour of link 1 on the second's
+  int first = 0, second = 0;
+  double highest = 0;
+  for (const MeshVertex& v : shape.vertices) {
+    const auto is = [&](const Color& c) { return v.color.r == c.r && v.color.g == c.g && v.color.b == c.b; };
+    if (is(link_color(0, true))) {
+      ++first;
+      EXPECT_LE(norm(v.position - Vec3(1.0, 0.0, 0.0)), 0.1);
+    }
+    if (is(link_color(1, false))) {
+      ++second;
+      EXPECT_LE(norm(v.position - Vec3(1.0, 2.0, 0.0)), 0.1);
+    }
+    highest = std::max(highest, v.position.z);
+  }
+  EXPECT_GT(first, 50);
+  EXPECT_GT(second, 50);
+  EXPECT_NEAR(highest, cursor_arrow_length(3, 0.1), 1e-12);
+}
+
+TEST(Shapes, ArrowLengthFollowsTheForceWithinLimits) {
+  EXPECT_EQ(cursor_arrow_length(0, 1), 0);
+  EXPECT_EQ(cursor_arrow_length(std::nan(""), 1), 0);
+  EXPECT_EQ(cursor_arrow_length(0.001, 1), 2);
+  EXPECT_DOUBLE_EQ(cursor_arrow_length(2, 1), 5);
+  EXPECT_DOUBLE_EQ(cursor_arrow_length(4, 1), 10);
+  EXPECT_EQ(cursor_arrow_length(1e6, 1), 16);
+}
+
+TEST(Shapes, ACursorWithoutSizeOrPlaceIsNotDrawn) {
+  Shape shape;
+  CursorItem item = cursor();
+  item.size = 0;
+  add_cursor(shape, item);
+  item = cursor();
+  item.probe.x = std::nan("");
+  add_cursor(shape, item);
+  EXPECT_TRUE(shape.vertices.empty());
+}
+
+TEST(Shapes, LinkColoursDiffer) {
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Color a = link_color(i, true), b = link_color(j, true);
+      EXPECT_GT(std::fabs(a.r - b.r) + std::fabs(a.g - b.g) + std::fabs(a.b - b.b), 0.15f);
+    }
+  EXPECT_LT(link_color(0, false).r, link_color(0, true).r);
+}
+
+TEST(Shapes, PacketsBecomeOneShape) {
+  EXPECT_TRUE(tubes_shape({}).triangles.empty());
+  EXPECT_TRUE(cursors_shape({}).triangles.empty());
+  const TubeItem item{helix(50), 0.05, {1, 0, 0}};
+  const Shape one = tubes_shape({item}), two = tubes_shape({item, item});
+  EXPECT_EQ(two.vertices.size(), 2 * one.vertices.size());
+  EXPECT_FALSE(cursors_shape({cursor()}).triangles.empty());
+  expect_closed(two);
+}
+
+}  // namespace
+}  // namespace catena::render

@@ -1,0 +1,31 @@
+/// Constraints as small as can be, so that the chain, the tick and the servo are tested without a real one.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "haptics/chain/program.h"
+
+namespace catena::test {
+
+/// Holds the proxy on the plane z = height.
+class HoldHeight final : public haptics::Constraint {
+ public:
+  explicit HoldHeight(double height) : height_(height) {}
+  void start(const Vec3& probe, haptics::LinkState& state, haptics::LinkScratch&) const noexcept override {
+    state.proxy = {probe.x, probe.y, height_};
+  }
+  void advance(const Vec3& probe, haptics::LinkState& state, haptics::LinkScratch&) const noexcept override {
+    state.proxy = {probe.x, probe.y, height_};
+    state.evaluations += 1;
+    state.status = haptics::Status::ok;
+  }
+
+ private:
+  double height_;
+};
+
+inline haptics::Link hold_height(const std::string& name, double height, double stiffness = 500) {
+  return {name, std::make_shared<HoldHeight>(height), stiffness, {}};
+}
+
+}  // namespace catena::test
