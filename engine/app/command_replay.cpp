@@ -69,8 +69,9 @@ struct Felt {
     }
   }
   void print(const haptics::Program& program, const haptics::ReplayStats& stats) const {
-    fmt::print("{} ticks, {:.3f} us each (p99 {:.3f} us), force up to {:.3g} N, {:.3g} N on average\n", stats.ticks, 1e-3 * stats.tick_ns_p50,
-               1e-3 * stats.tick_ns_p99, max_force_n, stats.ticks > 0 ? mean_force_n / static_cast<double>(stats.ticks) : 0.0);
+    fmt::print("{} ticks, {:.3f} us each (p99 {:.3f} us), force up to {:.3g} N, {:.3g} N on average\n", stats.ticks,
+               1e-3 * stats.tick_ns_p50, 1e-3 * stats.tick_ns_p99, max_force_n,
+               stats.ticks > 0 ? mean_force_n / static_cast<double>(stats.ticks) : 0.0);
     for (std::size_t i = 0; i < program.links.size(); ++i) {
       fmt::print("  {}: up to {:.4g} from its probe;", program.links[i].name, max_gap[i]);
       for (const auto& [word, count] : statuses[i]) fmt::print(" {} {}", word, count);

@@ -67,8 +67,8 @@ void write_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves) {
   std::size_t points = 0;
   for (const auto& curve : curves) points += curve->knots().size();
   out.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n");
-  out.write(fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n", points,
-                        curves.size()));
+  out.write(fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
+                        points, curves.size()));
   const auto array = [&](const char* name, int components, const auto& values_of) {
     out.write(fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n", name, components));
     for (const auto& curve : curves)
@@ -90,7 +90,8 @@ void write_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves) {
 }
 
 Outcome trace_lines(const Options& options) {
-  if (!std::isfinite(options.length) || !std::isfinite(options.min_speed)) return Error{"--length and --min-speed: expected finite numbers"};
+  if (!std::isfinite(options.length) || !std::isfinite(options.min_speed))
+    return Error{"--length and --min-speed: expected finite numbers"};
   const bool vtp = options.output.ends_with(".vtp");
   std::vector<std::string> inputs;
   CATENA_TRY(const field::VectorFieldPtr field, vector_field(options, inputs));
@@ -107,7 +108,9 @@ Outcome trace_lines(const Options& options) {
   Progress progress("trace", static_cast<double>(seeds.size()));
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     auto curve = flow::trace(flow, seeds[i], trace_options);
-    if (!curve) return Error{fmt::format("{}: seed {} ({} {} {}): {}", options.seeds, i, to_text(seeds[i].x), to_text(seeds[i].y), to_text(seeds[i].z), curve.error().message)};
+    if (!curve)
+      return Error{fmt::format("{}: seed {} ({} {} {}): {}", options.seeds, i, to_text(seeds[i].x), to_text(seeds[i].y),
+                               to_text(seeds[i].z), curve.error().message)};
     knots += (*curve)->knots().size();
     ++ends[flow::end_word((*curve)->first_end())];
     ++ends[flow::end_word((*curve)->last_end())];
@@ -138,8 +141,11 @@ void add_trace(CLI::App& program, Work& chosen) {
   command->add_option("--field", options->field, "a field of the scene, or a grid of the file")->required();
   command->add_option("--seeds", options->seeds, "seeds, CSV: x,y,z")->required();
   command->add_option("-o,--output", options->output, "lines: .vtp, or CSV: line,s,x,y,z,tx,ty,tz")->required();
-  command->add_option("--length", options->length, "longest arc length in each direction, world units (default: 10 L)")->check(CLI::PositiveNumber);
-  command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")->check(CLI::IsMember({"vector", "line"}))->capture_default_str();
+  command->add_option("--length", options->length, "longest arc length in each direction, world units (default: 10 L)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")
+      ->check(CLI::IsMember({"vector", "line"}))
+      ->capture_default_str();
   command->add_option("--min-speed", options->min_speed, "speeds at or below this end a line")->check(CLI::NonNegativeNumber);
   command->callback([&chosen, options] { chosen = [options] { return trace_lines(*options); }; });
 }

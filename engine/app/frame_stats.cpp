@@ -34,8 +34,8 @@ std::string FrameStats::json() const {
       "  \"frame_ms\": {{\"median\": {:.3f}, \"p99\": {:.3f}, \"max\": {:.3f}}},\n"
       "  \"first_frame_ms\": {:.3f},\n  \"load_ms\": {:.3f},\n  \"mirror_ms\": {:.3f},\n  \"encode_ms\": {:.3f},\n"
       "  \"cpu_bytes\": {},\n  \"gpu_bytes\": {},\n  \"validation_messages\": {}\n}}\n",
-      json_string(device), json_string(driver), frame_ms.size(), median_ms(), quantile(frame_ms, 0.99), quantile(frame_ms, 1), first_frame_ms,
-      load_ms, mirror_ms, encode_ms, cpu_bytes, gpu_bytes, validation_messages);
+      json_string(device), json_string(driver), frame_ms.size(), median_ms(), quantile(frame_ms, 0.99), quantile(frame_ms, 1),
+      first_frame_ms, load_ms, mirror_ms, encode_ms, cpu_bytes, gpu_bytes, validation_messages);
 }
 
 std::uint64_t field_bytes(const scene::Scene& scene) {

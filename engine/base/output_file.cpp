@@ -27,7 +27,8 @@ Outcome check_output(const std::string& path, const std::vector<std::string>& in
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) return Error{path + ": the folder " + folder.string() + " does not exist"};
   for (const std::string& input : inputs) {
-    const bool same = fs::exists(path, code) ? fs::equivalent(path, input, code) : fs::weakly_canonical(path, code) == fs::weakly_canonical(input, code);
+    const bool same =
+        fs::exists(path, code) ? fs::equivalent(path, input, code) : fs::weakly_canonical(path, code) == fs::weakly_canonical(input, code);
     if (same && !written_directly(path)) return Error{path + ": is also an input: expected another name for the output"};
   }
   return Done{};

@@ -84,16 +84,15 @@ openvdb::MaskTree::Ptr mask_tree(const openvdb::GridBase::Ptr& grid) {
   if (auto g = openvdb::gridPtrCast<openvdb::MaskGrid>(grid)) return g->treePtr();
   const auto g = openvdb::gridPtrCast<openvdb::BoolGrid>(grid);
   if (!g) return nullptr;
-  auto mask = std::make_shared<openvdb::MaskTree>(g->tree(), false, true, openvdb::TopologyCopy());
   // active voxels that hold `false` are not valid
-  for (auto it = mask->beginLeaf(); it; ++it)
-    for (auto on = it->beginValueOn(); on; ++on)
-      if (!g->tree().getValue(on.getCoord())) on.setValueOff();
-  auto tile = mask->beginValueOn();
-  tile.setMaxDepth(openvdb::MaskTree::ValueOnIter::LEAF_DEPTH - 1);
+  for (auto leaf = g->tree().beginLeaf(); leaf; ++leaf)
+    for (auto on = leaf->beginValueOn(); on; ++on)
+      if (!*on) on.setValueOff();
+  auto tile = g->tree().beginValueOn();
+  tile.setMaxDepth(openvdb::BoolTree::ValueOnIter::LEAF_DEPTH - 1);
   for (; tile; ++tile)
-    if (!g->tree().getValue(tile.getCoord())) tile.setActiveState(false);
-  return mask;
+    if (!*tile) tile.setActiveState(false);
+  return std::make_shared<openvdb::MaskTree>(g->tree(), false, true, openvdb::TopologyCopy());
 }
 
 /// The entry asked for, or the only usable one.
@@ -181,6 +180,7 @@ Result<std::vector<GridInfo>> describe_vdb(const std::string& path) {
       info.size = index3(box.dim());
       info.lowest = index3(box.min());
     }
+    const auto active = grid->activeVoxelCount();
     if (const auto tree = float_tree(grid)) {
       info.stats = stats_of(*tree);
       info.bytes = nano_bytes(*tree);
@@ -189,13 +189,13 @@ Result<std::vector<GridInfo>> describe_vdb(const std::string& path) {
       info.bytes = nano_bytes(*vectors);
       info.is_vector = true;
     } else if (const auto mask = mask_tree(grid)) {
-      info.stats.active_voxels = grid->activeVoxelCount();
       const auto on = mask->activeVoxelCount();
-      info.stats.min = on > 0 && on == info.stats.active_voxels ? 1 : 0;
+      info.stats.active_voxels = active;
+      info.stats.min = on > 0 && on == active ? 1 : 0;
       info.stats.max = on > 0 ? 1 : 0;
       info.bytes = nano_bytes(*mask);
     } else {
-      info.stats.active_voxels = grid->activeVoxelCount();
+      info.stats.active_voxels = active;
       info.bytes = grid->memUsage();
     }
     info.usable = mapping && (is_scalar_type(info.type) || is_vector_type(info.type)) && info.stats.active_voxels > info.stats.nan_count;

@@ -26,7 +26,10 @@ struct Writer : openvdb::io::Archive {
 
 openvdb::math::Transform::Ptr transform_of(const Mapping& m) {
   const Mat3& j = m.world_from_index_linear;
-  const openvdb::Mat4d matrix(j[0].x, j[0].y, j[0].z, 0, j[1].x, j[1].y, j[1].z, 0, j[2].x, j[2].y, j[2].z, 0, m.origin.x, m.origin.y, m.origin.z, 1);
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity();  // rows are the images of the axes
+  for (int a = 0; a < 3; ++a)
+    for (int c = 0; c < 3; ++c) matrix(a, c) = j[a][c];
+  for (int c = 0; c < 3; ++c) matrix(3, c) = m.origin[c];
   return openvdb::math::Transform::createLinearTransform(matrix);
 }
 

@@ -27,6 +27,7 @@ class March {
     Branch branch;
     branch.knots.push_back({0, seed, u_seed});
     u_ = sign * u_seed;
+    forced_ = 1e-8 * domain_;
     if (!medium_.begin(seed, u_seed, sign, q_)) {
       branch.end = End::boundary;
       return branch;
@@ -103,10 +104,7 @@ class March {
       u_end = u_last_;
       piece = Hermite(q_, step.displacement, h, w_, step.last);
     }
-    if (forced)
-      forced_ = std::min(2 * forced_, domain_);
-    else
-      forced_ = 1e-8 * domain_;
+    forced_ = forced ? std::min(2 * forced_, domain_) : 1e-8 * domain_;
     idle_ = 0;
     if (sign_ > 0 && closes(knots.back(), step, h, piece, knots)) return End::lap;
 
@@ -122,6 +120,7 @@ class March {
     std::optional<End> end;
     if (left && !medium_.hop(way)) end = End::boundary;
     if (!end) end = start_in_cell();
+    if (knots.size() > 1 && std::fabs(s_ - std::fabs(knots.back().s)) < 1e-10 * domain_) knots.pop_back();
     knots.push_back({sign_ * s_, medium_.world(q_), sign_ * u_});
     if (!end && norm(u_ - u_start) * kCapture * 2 * domain_ > h) end = capture(knots);
     return end;

@@ -21,13 +21,13 @@ inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, 
 
 struct LinkState {
   Vec3 proxy{0.0};
-  double residual = 0;            ///< distance from the constraint, world units
-  std::int32_t evaluations = 0;   ///< of this tick
+  double residual = 0;           ///< distance from the constraint, world units
+  std::int32_t evaluations = 0;  ///< of this tick
   Status status = Status::ok;
   bool started = false;
-  bool released = false;          ///< let go; re-arms by the constraint's own rule
-  bool on = false;                ///< its switch
-  double weight = 1;              ///< w_i
+  bool released = false;                             ///< let go; re-arms by the constraint's own rule
+  bool on = false;                                   ///< its switch
+  double weight = 1;                                 ///< w_i
   alignas(16) std::array<std::byte, 1024> memory{};  ///< the constraint's own, zero at start; see memory_of
 
   bool active() const { return on && !released; }

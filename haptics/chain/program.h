@@ -34,8 +34,8 @@ struct Program {
   std::uint64_t epoch = 0;
   std::vector<Link> links;  ///< at most kMaxLinks
   Coupling coupling;
-  double metres_per_unit = 1;  ///< S: metres of hand a world unit
-  Vec3 workspace_origin{0.0};  ///< world position of the device's origin
+  double metres_per_unit = 1;    ///< S: metres of hand a world unit
+  Vec3 workspace_origin{0.0};    ///< world position of the device's origin
   Mat3 workspace_rotation{1.0};  ///< world from device axes
 };
 

@@ -18,8 +18,8 @@ struct DeviceInput {
 
 struct DeviceCapabilities {
   std::string name;
-  double workspace_m = 0.2;    ///< edge of a cube that the hand reaches
-  double max_force_n = 0;      ///< 0: no force output (pseudo-haptics only)
+  double workspace_m = 0.2;  ///< edge of a cube that the hand reaches
+  double max_force_n = 0;    ///< 0: no force output (pseudo-haptics only)
 };
 
 class Device {

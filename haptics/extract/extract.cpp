@@ -52,10 +52,10 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene) {
       return json::error_at(from.node, "the chain is too long; at most " + std::to_string(kMaxLinks) + " links were expected");
     Link link;
     link.name = from.name;
-    CATENA_TRY(link.constraint, build_constraint(from.node, context));
     CATENA_TRY(link.stiffness_n_per_m,
                json::get_number(from.node, "stiffness", program->coupling.stiffness_n_per_m, json::Range::not_negative));
     CATENA_TRY(link.on, read_switch(from.node));
+    CATENA_TRY(link.constraint, build_constraint(from.node, context));
     program->links.push_back(std::move(link));
   }
   program->epoch = ++newest_epoch;

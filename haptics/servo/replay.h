@@ -16,6 +16,7 @@ struct ReplayStats {
 };
 
 /// Calls `on_tick` after every tick, outside the timed part. False from it stops the replay.
-ReplayStats replay(const Program& program, std::span<const ProbeSample> path, const std::function<bool(const exchange::HapticState&)>& on_tick);
+ReplayStats replay(const Program& program, std::span<const ProbeSample> path,
+                   const std::function<bool(const exchange::HapticState&)>& on_tick);
 
 }  // namespace catena::haptics

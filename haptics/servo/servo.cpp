@@ -57,8 +57,9 @@ void Servo::one_tick(double t_s, exchange::HapticState& out) noexcept {
   ProbeSample probe;
   probe.buttons = input.buttons;
   probe.t_s = input.recorded ? input.t_s : t_s;
-  probe.position = input.recorded ? input.position_m
-                                  : program_->workspace_origin + program_->workspace_rotation * input.position_m * (1 / program_->metres_per_unit);
+  probe.position = input.recorded
+                       ? input.position_m
+                       : program_->workspace_origin + program_->workspace_rotation * input.position_m * (1 / program_->metres_per_unit);
   tick(*program_, probe, state_, scratch_, out);
   if (!input.connected) out.force_n = state_.force_n = Vec3(0.0);
   device_.write(out.force_n * program_->workspace_rotation);  // v * R = R^T v: back to the device's axes
@@ -76,7 +77,8 @@ void Servo::loop() noexcept {
       }
     }
     const std::int64_t woke = now_ns();
-    const double nominal_s = options_.paced ? 1e-9 * static_cast<double>(deadline - first_deadline) : static_cast<double>(k) / options_.rate_hz;
+    const double nominal_s =
+        options_.paced ? 1e-9 * static_cast<double>(deadline - first_deadline) : static_cast<double>(k) / options_.rate_hz;
     one_tick(nominal_s, out);
     hash_.add(out);
     out.compute_us = static_cast<double>(now_ns() - woke) * 1e-3;

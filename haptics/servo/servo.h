@@ -18,8 +18,8 @@ namespace catena::haptics {
 
 struct ServoOptions {
   double rate_hz = 1000;
-  bool paced = true;             ///< false: as fast as it goes (soaks, determinism)
-  std::uint64_t max_ticks = 0;   ///< 0: until stop()
+  bool paced = true;            ///< false: as fast as it goes (soaks, determinism)
+  std::uint64_t max_ticks = 0;  ///< 0: until stop()
 };
 
 class Servo {

@@ -10,6 +10,7 @@
 
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
+#include "render/mirror/grid_mirror.h"
 #include "render/vk/device.h"
 #include "render/vk/picture.h"
 
@@ -20,7 +21,6 @@ class Swapchain;
 }
 
 enum class TexelFormat { automatic, r16f, r32f };
-enum class MirrorLayout { automatic, dense, atlas };
 
 struct RenderSettings {
   double step_voxels = 1;                             ///< in smallest voxel edges

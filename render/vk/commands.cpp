@@ -79,12 +79,14 @@ void Commands::copy(const Buffer& from, VkDeviceSize offset, Image& to, VkOffset
   region.imageExtent = extent;
   vkCmdCopyBufferToImage(buffer_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
   ++device_->counters().uploads;
+  device_->counters().upload_bytes += texel_bytes(to.info().format) * extent.width * extent.height * extent.depth;
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, VkDeviceSize size) {
   const VkBufferCopy region{0, 0, size};
   vkCmdCopyBuffer(buffer_, from.handle(), to.handle(), 1, &region);
   ++device_->counters().uploads;
+  device_->counters().upload_bytes += size;
 }
 
 void Commands::copy(Image& from, const Buffer& to) {

@@ -80,6 +80,20 @@ void Buffer::release() {
   memory_ = VK_NULL_HANDLE;
 }
 
+VkDeviceSize texel_bytes(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R8_UINT: return 1;
+    case VK_FORMAT_R16_SFLOAT: return 2;
+    case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_R8G8B8A8_UNORM: return 4;
+    case VK_FORMAT_R16G16B16A16_SFLOAT: return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
+    default: CATENA_ASSERT(!"a format without a size here"); return 0;
+  }
+}
+
 VkImageAspectFlags Image::aspect() const {
   return info_.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }

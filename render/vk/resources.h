@@ -45,6 +45,9 @@ struct ImageInfo {
   VkImageUsageFlags usage = 0;
 };
 
+/// Bytes of one texel of the formats that Catena uses.
+VkDeviceSize texel_bytes(VkFormat format);
+
 /// One mip level, one layer, one view. Remembers its layout and last use, so that a barrier needs only the next one.
 class Image {
  public:

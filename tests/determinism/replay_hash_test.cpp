@@ -53,8 +53,8 @@ constexpr const char* kGridOnline = R"({"fields": {"v": {"file": "circle.vdb"}, 
             {"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03], "method": "rk4"}]})";
 
 const Recorded kRecorded[] = {
-    {"circle", kCircle, 0}, {"circle_online", kCircleOnline, 0}, {"sphere", kSphere, 0},
-    {"chain", kChain, 0},   {"grids", kGrids, 0},                {"grid_online", kGridOnline, 0},
+    {"circle", kCircle, 0}, {"circle_online", kCircleOnline, 0}, {"sphere", kSphere, 0}, {"chain", kChain, 0},
+    {"grids", kGrids, 0},   {"grid_online", kGridOnline, 0},
 };
 
 std::string fmt_hash(std::uint64_t hash) {
@@ -65,7 +65,8 @@ std::string fmt_hash(std::uint64_t hash) {
 
 std::shared_ptr<const Program> program_of(const Recorded& recorded, const test::TemporaryFolder& folder) {
   for (const char* name : {"circle", "sphere"}) {
-    const auto run = test::run_program(CATENA_PROGRAM, {"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
+    const auto run = test::run_program(
+        CATENA_PROGRAM, {"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
   auto scene = scene::parse_scene(recorded.scene, folder / "scene.json");
@@ -102,9 +103,11 @@ TEST_P(Hash, IsTheProgramsToo) {
   test::write_file(folder / "scene.json", GetParam().scene);
   std::string csv = "t,x,y,z,buttons\n";
   for (const ProbeSample& p : probe_path())
-    csv += to_text(p.t_s) + "," + to_text(p.position.x) + "," + to_text(p.position.y) + "," + to_text(p.position.z) + "," + std::to_string(p.buttons) + "\n";
+    csv += to_text(p.t_s) + "," + to_text(p.position.x) + "," + to_text(p.position.y) + "," + to_text(p.position.z) + "," +
+           std::to_string(p.buttons) + "\n";
   test::write_file(folder / "p.csv", csv);
-  const auto run = test::run_program(CATENA_PROGRAM, {"replay", folder / "scene.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.json"});
+  const auto run = test::run_program(
+      CATENA_PROGRAM, {"replay", folder / "scene.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(test::read_file(folder / "s.json").find(fmt_hash(GetParam().hash)), std::string::npos);
 }

@@ -84,7 +84,8 @@ TEST(Rooms, EveryIncludeFollowsADeclaredEdge) {
       ASSERT_FALSE(from.empty()) << include.from << " is in no declared room";
       if (!ours(include.to) || edges.at(from).contains("ALL")) continue;
       const std::string to = room_of(edges, include.to);
-      EXPECT_TRUE(!to.empty() && reachable(edges, from).contains(to)) << include.from << " includes " << include.to << ": no edge " << from << " -> " << to;
+      EXPECT_TRUE(!to.empty() && reachable(edges, from).contains(to))
+          << include.from << " includes " << include.to << ": no edge " << from << " -> " << to;
       ++checked;
     }
   }
@@ -94,7 +95,8 @@ TEST(Rooms, EveryIncludeFollowsADeclaredEdge) {
 TEST(Rooms, ProjectHeadersAreIncludedFromTheRepositoryRoot) {
   for (const char* top : {"engine", "haptics", "render"})
     for (const Include& include : all_includes(top)) {
-      const bool sibling = include.to.find('/') == std::string::npos && fs::exists(fs::path(CATENA_SOURCE_DIR) / fs::path(include.from).parent_path() / include.to);
+      const bool sibling = include.to.find('/') == std::string::npos &&
+                           fs::exists(fs::path(CATENA_SOURCE_DIR) / fs::path(include.from).parent_path() / include.to);
       EXPECT_FALSE(sibling) << include.from << " includes " << include.to << ": write the path from the repository root";
       EXPECT_FALSE(include.to.starts_with("..")) << include.from;
     }

@@ -17,6 +17,7 @@ struct Input {
   bool left = false, middle = false, right = false;  ///< held
   bool shift = false, control = false, space = false;
   bool toggle_hand = false, reset_view = false, help = false, quit = false;  ///< pressed in this frame
+  bool damaged = false;  ///< the window system lost the picture
 };
 
 struct Controls {

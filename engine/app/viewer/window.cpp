@@ -65,6 +65,8 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
     if (key == GLFW_KEY_F1) input.help = true;
     if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) input.quit = true;
   });
+  glfwSetWindowRefreshCallback(parts.window,
+                               [](GLFWwindow* w) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->input.damaged = true; });
   glfwSetCharCallback(parts.window, [](GLFWwindow* w, unsigned int c) {
     if (c == '?') static_cast<Parts*>(glfwGetWindowUserPointer(w))->input.help = true;
   });

@@ -57,7 +57,8 @@ std::string curve(const std::string& keys) { return chain("{\"name\": \"a\", \"t
 std::string coupling(const std::string& keys) { return "{\"fields\": {},\n\"coupling\": {" + keys + "}}"; }
 std::string nine_links() {
   std::string links;
-  for (int i = 0; i < 9; ++i) links += std::string(i == 0 ? "" : ",\n") + "{\"name\": \"p" + std::to_string(i) + "\", \"type\": \"point\", \"position\": [0,0,0]}";
+  for (int i = 0; i < 9; ++i)
+    links += std::string(i == 0 ? "" : ",\n") + "{\"name\": \"p" + std::to_string(i) + "\", \"type\": \"point\", \"position\": [0,0,0]}";
   return chain(links);
 }
 
@@ -66,13 +67,22 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Bad{"NotJson", "{\"fields\": ", {}}, Bad{"UnknownKey", "{\"fields\": {},\n \"chian\": []}", {":2:", "chian", "chain"}},
         Bad{"DuplicateKey", "{\"fields\": {},\n \"fields\": {}}", {":2:", "fields"}},
-        Bad{"DuplicateName", chain("{\"name\": \"a\", \"type\": \"point\", \"position\": [0,0,0]},\n{\"name\": \"a\", \"type\": \"point\", \"position\": [1,0,0]}"), {":4:", "\"a\""}},
+        Bad{"DuplicateName",
+            chain("{\"name\": \"a\", \"type\": \"point\", \"position\": [0,0,0]},\n{\"name\": \"a\", \"type\": \"point\", \"position\": "
+                  "[1,0,0]}"),
+            {":4:", "\"a\""}},
         Bad{"RefusedName", chain("{\"name\": \"probe\", \"type\": \"point\", \"position\": [0,0,0]}"), {":3:", "probe"}},
         Bad{"BadName", chain("{\"name\": \"A b\", \"type\": \"point\", \"position\": [0,0,0]}"), {":3:"}},
         Bad{"UnknownType", chain("{\"name\": \"a\", \"type\": \"blob\"}"), {":3:", "blob", "isosurface"}},
         Bad{"UnknownLinkKey", surface(", \"lvel\": 1"), {":3:", "lvel"}}, Bad{"NineLinks", nine_links(), {"8"}},
-        Bad{"MissingFile", "{\"fields\": {\"d\": {\"file\": \"none.vdb\"}},\n \"volumes\": [{\"field\": \"d\"}], \"chain\": [{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"d\", \"level\": 1}]}", {"none.vdb"}},
-        Bad{"BrokenFile", "{\"fields\": {\"d\": {\"file\": \"broken.vdb\"}},\n \"volumes\": [{\"field\": \"d\"}], \"chain\": [{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"d\", \"level\": 1}]}", {"broken.vdb"}},
+        Bad{"MissingFile",
+            "{\"fields\": {\"d\": {\"file\": \"none.vdb\"}},\n \"volumes\": [{\"field\": \"d\"}], \"chain\": [{\"name\": \"a\", \"type\": "
+            "\"isosurface\", \"field\": \"d\", \"level\": 1}]}",
+            {"none.vdb"}},
+        Bad{"BrokenFile",
+            "{\"fields\": {\"d\": {\"file\": \"broken.vdb\"}},\n \"volumes\": [{\"field\": \"d\"}], \"chain\": [{\"name\": \"a\", "
+            "\"type\": \"isosurface\", \"field\": \"d\", \"level\": 1}]}",
+            {"broken.vdb"}},
         Bad{"UnknownAnalytic", "{\"fields\": {\n\"d\": {\"analytic\": \"spere\"}}}", {":2:", "spere", "sphere"}},
         Bad{"ZeroScale", "{\"fields\": {\n\"d\": {\"analytic\": \"sphere\", \"scale\": 0}}}", {":2:", "scale"}},
         Bad{"ZeroDirection", "{\"fields\": {\n\"d\": {\"analytic\": \"uniform\", \"direction\": [0, 0, 0]}}}", {":2:", "direction"}},
@@ -80,14 +90,17 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"WrongKindOfField", chain("{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"v\", \"level\": 1}"), {":3:", "scalar"}},
         Bad{"LevelNotAttained", chain("{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"s\", \"level\": -1}"), {":3:", "level"}},
         Bad{"NoLevel", chain("{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"s\"}"), {":3:", "level"}},
-        Bad{"NegativeRelease", surface(", \"release\": -0.1"), {":3:", "release"}}, Bad{"NanRelease", surface(", \"release\": NaN"), {":3:"}},
-        Bad{"HugeNumber", surface(", \"release\": 1e999"), {":3:"}}, Bad{"BadFreeWord", surface(", \"free\": \"left\""), {":3:", "free"}},
+        Bad{"NegativeRelease", surface(", \"release\": -0.1"), {":3:", "release"}},
+        Bad{"NanRelease", surface(", \"release\": NaN"), {":3:"}}, Bad{"HugeNumber", surface(", \"release\": 1e999"), {":3:"}},
+        Bad{"BadFreeWord", surface(", \"free\": \"left\""), {":3:", "free"}},
         Bad{"TwoComponentSeed", curve(", \"seed\": [1, 2]"), {":3:", "seed"}}, Bad{"NanSeed", curve(", \"seed\": [1, NaN, 2]"), {":3:"}},
         Bad{"SeedAtAZero", curve(", \"seed\": [0, 0, 0]"), {":3:", "seed"}},
         Bad{"ZeroTolerance", curve(", \"seed\": [1, 0, 0], \"follow\": \"online\", \"tolerance\": 0"), {":3:", "tolerance"}},
         Bad{"UnknownMethod", curve(", \"seed\": [1, 0, 0], \"method\": \"rk5\""), {":3:", "rk5"}},
-        Bad{"NegativeStiffness", coupling("\n\"stiffness\": -1"), {":3:", "stiffness"}}, Bad{"NanDamping", coupling("\n\"damping\": NaN"), {":3:"}},
-        Bad{"NegativeDamping", coupling("\n\"damping\": -1"), {":3:", "damping"}}, Bad{"NegativeMaxForce", coupling("\n\"max_force\": -1"), {":3:", "max_force"}},
+        Bad{"NegativeStiffness", coupling("\n\"stiffness\": -1"), {":3:", "stiffness"}},
+        Bad{"NanDamping", coupling("\n\"damping\": NaN"), {":3:"}},
+        Bad{"NegativeDamping", coupling("\n\"damping\": -1"), {":3:", "damping"}},
+        Bad{"NegativeMaxForce", coupling("\n\"max_force\": -1"), {":3:", "max_force"}},
         Bad{"NegativeLinkStiffness", surface(", \"stiffness\": -5"), {":3:", "stiffness"}},
         Bad{"ZeroWorkspace", "{\"workspace\": {\n\"metres_per_unit\": 0}}", {":2:", "metres_per_unit"}}),
     [](const auto& info) { return std::string(info.param.name); });
@@ -111,16 +124,15 @@ TEST_P(BadProbe, IsRefused) {
   expect_one_line_and_no_file(run, folder / "o.csv", expects);
 }
 
-INSTANTIATE_TEST_SUITE_P(Paths, BadProbe,
-                         testing::Values(BadTable{"Empty", "", {}}, BadTable{"HeaderOnly", "t,x,y,z\n", {}},
-                                         BadTable{"BrokenRow", "t,x,y,z\n0,1,2,3\n1,2,zebra,3\n", {":3:", "zebra"}},
-                                         BadTable{"ShortRow", "t,x,y,z\n0,1,2\n", {":2:"}}, BadTable{"LongRow", "t,x,y,z\n0,1,2,3,4\n", {":2:"}},
-                                         BadTable{"MissingColumn", "t,x,y\n0,1,2\n", {"z"}},
-                                         BadTable{"ExtraColumn", "t,x,y,z,w\n0,1,2,3,4\n", {"w"}},
-                                         BadTable{"NotRising", "t,x,y,z\n0,0,0,0\n1,0,0,0\n1,0,0,0\n", {":4:", "ris"}},
-                                         BadTable{"NotFinite", "t,x,y,z\n0,0,nan,0\n", {":2:"}},
-                                         BadTable{"Infinite", "t,x,y,z\n0,0,inf,0\n", {":2:"}}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Paths, BadProbe,
+    testing::Values(BadTable{"Empty", "", {}}, BadTable{"HeaderOnly", "t,x,y,z\n", {}},
+                    BadTable{"BrokenRow", "t,x,y,z\n0,1,2,3\n1,2,zebra,3\n", {":3:", "zebra"}},
+                    BadTable{"ShortRow", "t,x,y,z\n0,1,2\n", {":2:"}}, BadTable{"LongRow", "t,x,y,z\n0,1,2,3,4\n", {":2:"}},
+                    BadTable{"MissingColumn", "t,x,y\n0,1,2\n", {"z"}}, BadTable{"ExtraColumn", "t,x,y,z,w\n0,1,2,3,4\n", {"w"}},
+                    BadTable{"NotRising", "t,x,y,z\n0,0,0,0\n1,0,0,0\n1,0,0,0\n", {":4:", "ris"}},
+                    BadTable{"NotFinite", "t,x,y,z\n0,0,nan,0\n", {":2:"}}, BadTable{"Infinite", "t,x,y,z\n0,0,inf,0\n", {":2:"}}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 class BadArguments : public testing::Test {
  protected:

@@ -10,12 +10,13 @@ using namespace catena;
 
 TEST(Generate, InfoTellsWhatWasWritten) {
   const test::TemporaryFolder folder;
-  const auto made = test::run_program(CATENA_PROGRAM, {"generate", "linear", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-1", "3"});
+  const auto made =
+      test::run_program(CATENA_PROGRAM, {"generate", "linear", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-1", "3"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const auto info = test::run_program(CATENA_PROGRAM, {"info", folder / "a.vdb"});
   ASSERT_EQ(info.exit_code, 0) << info.err;
-  for (const char* part : {"linear (float)", "5 5 5 voxels from index 0 0 0", "voxel        1 1 1", "origin       -1 -1 -1", "world box    -1 -1 -1 .. 3 3 3",
-                           "active       125 voxels", "not finite   0", "bytes"})
+  for (const char* part : {"linear (float)", "5 5 5 voxels from index 0 0 0", "voxel        1 1 1", "origin       -1 -1 -1",
+                           "world box    -1 -1 -1 .. 3 3 3", "active       125 voxels", "not finite   0", "bytes"})
     EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
 }
 
@@ -23,13 +24,14 @@ TEST(Generate, LeftVentricleHasItsPartsAndAMask) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(test::run_program(CATENA_PROGRAM, {"generate", "left-ventricle", "-o", folder / "lv.vdb", "--resolution", "24"}).exit_code, 0);
   const auto info = test::run_program(CATENA_PROGRAM, {"info", folder / "lv.vdb"});
-  for (const char* part : {"density (float)", "transmural (float)", "fibre (vec3s)", "valid (bool"}) EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
+  for (const char* part : {"density (float)", "transmural (float)", "fibre (vec3s)", "valid (bool"})
+    EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
 }
 
 TEST(Generate, EveryNameOfTheContractWorks) {
   const test::TemporaryFolder folder;
-  for (const char* name : {"circle", "saddle", "node", "rankine", "lamb-oseen", "hill", "abc", "helix", "uniform", "sphere", "plane", "torus", "constant",
-                           "linear", "gaussian", "marschner-lobb", "tanh", "left-ventricle"}) {
+  for (const char* name : {"circle", "saddle", "node", "rankine", "lamb-oseen", "hill", "abc", "helix", "uniform", "sphere", "plane",
+                           "torus", "constant", "linear", "gaussian", "marschner-lobb", "tanh", "left-ventricle"}) {
     const std::string out = folder / (std::string(name) + ".vdb");
     const auto run = test::run_program(CATENA_PROGRAM, {"generate", name, "-o", out, "--resolution", "9"});
     EXPECT_EQ(run.exit_code, 0) << name << ": " << run.err;
@@ -50,7 +52,9 @@ TEST(Import, NiftiOfTheDistributionBecomesAVdb) {
 
 TEST(Info, DescribesAScene) {
   const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", R"({"fields": {"s": {"analytic": "sphere"}}, "chain": [{"name": "a", "type": "isosurface", "field": "s", "level": 1}]})");
+  test::write_file(
+      folder / "s.json",
+      R"({"fields": {"s": {"analytic": "sphere"}}, "chain": [{"name": "a", "type": "isosurface", "field": "s", "level": 1}]})");
   const auto info = test::run_program(CATENA_PROGRAM, {"info", folder / "s.json"});
   ASSERT_EQ(info.exit_code, 0) << info.err;
   EXPECT_NE(info.out.find("field s: scalar sphere"), std::string::npos) << info.out;

@@ -28,14 +28,16 @@ void write_lap(const std::string& path, double radius, double speed, double outw
   const int ticks = static_cast<int>(std::ceil(lap_s / 1e-3));
   for (int k = 0; k <= ticks; ++k) {
     const double angle = speed * (1e-3 * k) / radius;
-    text += to_text(1e-3 * k) + "," + to_text(outward * radius * std::cos(angle)) + "," + to_text(outward * radius * std::sin(angle)) + ",0\n";
+    text +=
+        to_text(1e-3 * k) + "," + to_text(outward * radius * std::cos(angle)) + "," + to_text(outward * radius * std::sin(angle)) + ",0\n";
   }
   test::write_file(path, text);
 }
 
 std::string circle_scene(const std::string& link_keys) {
   return R"({"fields": {"v": {"analytic": "circle"}},
-             "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.05, 0, 0])" + link_keys + "}]}";
+             "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.05, 0, 0])" +
+         link_keys + "}]}";
 }
 
 double drift_of_last_tick(const std::string& link_keys) {
@@ -68,7 +70,8 @@ TEST(Replay, SphereIsHeldAtTheLocalClosestPointWithinTheTick) {
   std::string path = "t,x,y,z\n";
   for (int k = 0; k < 1000; ++k) {
     const double t = 1e-3 * k, r = 0.3 + 0.4 * std::sin(7 * t);
-    path += to_text(t) + "," + to_text(r * std::cos(3 * t) + 0.3) + "," + to_text(r * std::sin(3 * t)) + "," + to_text(0.2 + 0.3 * std::sin(11 * t)) + "\n";
+    path += to_text(t) + "," + to_text(r * std::cos(3 * t) + 0.3) + "," + to_text(r * std::sin(3 * t)) + "," +
+            to_text(0.2 + 0.3 * std::sin(11 * t)) + "\n";
   }
   test::write_file(folder / "p.csv", path);
   const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
@@ -97,10 +100,13 @@ TEST(Replay, SelectedProxyLiesOnTheTracedCurve) {
   }
   test::write_file(folder / "p.csv", path);
   ASSERT_EQ(catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"}).exit_code, 0);
-  const ProgramResult traced = catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
+  const ProgramResult traced =
+      catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
   ASSERT_EQ(traced.exit_code, 0) << traced.err;
   const Table ticks = Table::read(folder / "t.csv"), line = Table::read(folder / "l.csv");
-  const auto knot = [&](std::size_t i, const char* a, const char* b, const char* c) { return Vec3(line.number(i, a), line.number(i, b), line.number(i, c)); };
+  const auto knot = [&](std::size_t i, const char* a, const char* b, const char* c) {
+    return Vec3(line.number(i, a), line.number(i, b), line.number(i, c));
+  };
   for (std::size_t row = 0; row < ticks.rows(); row += 7) {
     const Vec3 p = vector_at(ticks, row, "curve");
     // distance to the Hermite curve through knots and tangents: the nearest intervals, densely
@@ -131,7 +137,8 @@ TEST(Replay, ColumnsAreThoseOfTheContract) {
   test::write_file(folder / "s.json", R"({"fields": {}, "chain": [{"name": "a", "type": "point", "position": [0, 0, 0]},
      {"name": "b_2", "type": "plane", "point": [0, 0, 1], "normal": [0, 0, 2]}]})");
   test::write_file(folder / "p.csv", "\xef\xbb\xbft,x,y,z,buttons\r\n0,1,2,3,1\r\n");
-  const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.out"});
+  const ProgramResult run =
+      catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string text = test::read_file(folder / "t.csv");
   EXPECT_EQ(text.substr(0, text.find('\n')),
@@ -200,14 +207,16 @@ TEST(Trace, CircleIsOneLap) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", circle_scene(""));
   test::write_file(folder / "seeds.csv", "x,y,z\n0.05,0,0\n1,0,0.5\n");
-  const ProgramResult run = catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
+  const ProgramResult run =
+      catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.csv"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Table line = Table::read(folder / "l.csv");
   double last_s[2] = {0, 0};
   for (std::size_t i = 0; i < line.rows(); ++i) {
     const int which = static_cast<int>(line.number(i, "line"));
     const double radius = which == 0 ? 0.05 : 1;
-    const Vec3 p(line.number(i, "x"), line.number(i, "y"), line.number(i, "z")), t(line.number(i, "tx"), line.number(i, "ty"), line.number(i, "tz"));
+    const Vec3 p(line.number(i, "x"), line.number(i, "y"), line.number(i, "z")),
+        t(line.number(i, "tx"), line.number(i, "ty"), line.number(i, "tz"));
     EXPECT_NEAR(std::hypot(p.x, p.y), radius, 4e-9);
     EXPECT_NEAR(norm(t), 1, 1e-14);
     EXPECT_NEAR(dot(p, t), 0, 4e-9);
@@ -221,7 +230,8 @@ TEST(Trace, WritesPolyDataToo) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", circle_scene(""));
   test::write_file(folder / "seeds.csv", "x,y,z\n0.05,0,0\n");
-  ASSERT_EQ(catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.vtp"}).exit_code, 0);
+  ASSERT_EQ(catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.vtp"}).exit_code,
+            0);
   const std::string text = test::read_file(folder / "l.vtp");
   EXPECT_NE(text.find("NumberOfLines=\"1\""), std::string::npos);
   EXPECT_NE(text.find("Name=\"tangent\""), std::string::npos);

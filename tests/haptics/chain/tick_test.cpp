@@ -112,7 +112,7 @@ TEST(Tick, ALinkCanWaitForAForce) {
   run.program.links[1].on.force_above_n = 3;
   run.step(0, {0, 0, 0.9});
   EXPECT_FALSE(run.out.links[1].active);
-  run.step(1, {0, 0, 0});   // 5 N
+  run.step(1, {0, 0, 0});  // 5 N
   EXPECT_FALSE(run.out.links[1].active);
   run.step(2, {0, 0, 0});
   EXPECT_TRUE(run.out.links[1].active);

@@ -91,7 +91,10 @@ class Unplugged final : public Device {
     input.connected = ++reads_ < 10;
     return input;
   }
-  void write(const Vec3& force) noexcept override { last = force; all_zero_after_loss = all_zero_after_loss && (reads_ < 10 || norm(force) == 0); }
+  void write(const Vec3& force) noexcept override {
+    last = force;
+    all_zero_after_loss = all_zero_after_loss && (reads_ < 10 || norm(force) == 0);
+  }
   Vec3 last{1.0};
   bool all_zero_after_loss = true;
 

@@ -1,0 +1,47 @@
+#include "engine/app/viewer/hand_setup.h"
+
+#include <algorithm>
+
+namespace catena::app {
+
+void fit_workspace(scene::Scene& scene, const render::Bounds& bounds, double reach_m) {
+  if (!scene.coupling.ramp_s) scene.coupling.ramp_s = 0.02;
+  if (scene.workspace.given || bounds.empty()) return;
+  const double edge = max_abs(bounds.hi - bounds.lo);
+  if (!(edge > 0)) return;
+  scene.workspace.metres_per_unit = reach_m / edge;
+  scene.workspace.origin = bounds.centre();
+}
+
+Vec3 first_probe(const scene::Scene& scene, const render::Bounds& bounds) {
+  if (scene.cursor && scene.world.has<scene::Cursor>(scene.cursor)) {
+    const scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+    if (cursor.visible && is_finite(cursor.probe)) return cursor.probe;
+  }
+  std::optional<Vec3> seed;
+  scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    if (seed || link.node.find("seed") == nullptr) return;
+    if (const auto v = json::require_vec3(link.node, "seed")) seed = *v;
+  });
+  if (seed) return *seed;
+  return bounds.empty() ? Vec3(0.0) : bounds.centre();
+}
+
+Vec3 device_from_world(const scene::Workspace& workspace, const Vec3& world) {
+  return ((world - workspace.origin) * workspace.rotation) * workspace.metres_per_unit;  // v * R = R^T v
+}
+
+render::Bounds loaded_bounds(const scene::Scene& scene) {
+  render::Bounds bounds;
+  scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
+    const field::Field* field = source.loaded.get();
+    if (field == nullptr) return;
+    render::Bounds index;
+    index.add(field->index_box().lo);
+    index.add(field->index_box().hi);
+    for (int i = 0; i < 8; ++i) bounds.add(field->mapping().world_from_index(index.corner(i)));
+  });
+  return bounds;
+}
+
+}  // namespace catena::app

@@ -1,0 +1,255 @@
+#include "engine/app/viewer/viewer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/app/viewer/controls.h"
+#include "engine/app/viewer/hand_setup.h"
+#include "engine/app/viewer/window.h"
+#include "engine/base/clock.h"
+#include "engine/scene/systems.h"
+#include "haptics/device/mouse.h"
+#include "haptics/extract/extract.h"
+#include "haptics/servo/servo.h"
+#include "render/extract/extract.h"
+#include "render/passes/renderer.h"
+#include "render/vk/picture.h"
+#include "render/vk/swapchain.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr double kRestS = 0.25;        // without input for so long: the picture may take its time
+constexpr double kSlowMs = 60;         // a full picture above this is halved in both directions while moving
+constexpr double kIdleWaitS = 0.004;   // between looks at the servo's news when nothing else happens
+constexpr double kMinimisedWaitS = 0.1;
+constexpr double kTitleS = 0.25;
+
+struct Failure {
+  int exit_code;
+  std::string message;
+};
+
+/// One open window on one scene. Members in the order of their making: the servo goes before the device it reads.
+class Session {
+ public:
+  explicit Session(ViewOptions options) : options_(std::move(options)) {}
+
+  std::optional<Failure> open();
+  std::optional<Failure> run();
+
+ private:
+  std::optional<Failure> open_scene();
+  void pin_camera();
+  Changed take_input(double wait_s);
+  bool take_haptics();
+  std::optional<Failure> draw(bool moving);
+  void update_title();
+  void say_goodbye();
+
+  ViewOptions options_;
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<render::Renderer> renderer_;
+  std::unique_ptr<render::vk::Swapchain> swapchain_;
+  Controls controls_;
+  std::unique_ptr<haptics::MouseDevice> mouse_;
+  std::unique_ptr<haptics::Servo> servo_;
+  std::vector<std::string> link_names_;
+  exchange::HapticState felt_;
+
+  bool quit_ = false;
+  bool fits_ = true;    ///< the swapchain still has the window's size
+  bool stale_ = true;   ///< what the window shows is not the newest picture at full quality
+  int frames_ = 0;
+  double full_ms_ = 0;               ///< what a picture of full size takes, estimated
+  std::vector<double> frame_ms_;     ///< of this run, for the goodbye
+  std::int64_t last_title_ = 0;
+  int frames_in_title_ = 0;
+};
+
+std::optional<Failure> Session::open_scene() {
+  scene::Scene& scene = options_.scene;
+  if (!scene.cursor) scene.cursor = scene.world.create();
+  if (!scene.world.has<scene::Cursor>(scene.cursor)) scene.world.emplace<scene::Cursor>(scene.cursor);
+
+  // the program loads what is felt, the packet what is drawn; the workspace is fitted to both, then the program is final
+  if (auto felt = haptics::extract_program(scene); !felt) return Failure{2, felt.error().message};
+  auto packet = render::extract_frame(scene, options_.width, options_.height);
+  if (!packet) return Failure{2, packet.error().message};
+  render::Bounds bounds = render::packet_bounds(*packet);
+  bounds.add(loaded_bounds(scene));
+  mouse_ = std::make_unique<haptics::MouseDevice>(Vec3(0.0));
+  fit_workspace(scene, bounds, mouse_->capabilities().workspace_m);
+  controls_.hand = first_probe(scene, bounds);
+  mouse_ = std::make_unique<haptics::MouseDevice>(device_from_world(scene.workspace, controls_.hand));
+  auto program = haptics::extract_program(scene);
+  if (!program) return Failure{2, program.error().message};
+  for (const haptics::Link& link : (*program)->links) link_names_.push_back(link.name);
+  servo_ = std::make_unique<haptics::Servo>(*mouse_, *program);
+
+  if (!scene.camera.given && packet->volumes.empty() && packet->isosurfaces.empty() && packet->tubes.empty())
+    packet->view = render::fit_view(bounds, static_cast<double>(options_.width) / options_.height);
+  controls_.view = controls_.home = packet->view;
+  pin_camera();
+  return std::nullopt;
+}
+
+std::optional<Failure> Session::open() {
+  auto window = Window::create(options_.width, options_.height, "catena");
+  if (!window) return Failure{1, window.error().message};
+  window_ = std::move(*window);
+  if (auto failure = open_scene()) return failure;
+
+  render::vk::DeviceOptions device;
+  device.surface = window_->surface_factory();
+  auto renderer = render::Renderer::create(device);
+  if (!renderer) return Failure{1, renderer.error().message};
+  renderer_ = std::move(*renderer);
+  std::uint32_t width = 0, height = 0;
+  window_->framebuffer_size(width, height);
+  auto swapchain = render::vk::Swapchain::create(renderer_->device(), std::max(1u, width), std::max(1u, height));
+  if (!swapchain) return Failure{1, swapchain.error().message};
+  swapchain_ = std::move(*swapchain);
+  servo_->start();
+  return std::nullopt;
+}
+
+/// From now on the camera is where the controls have it (a fitted one would follow the cursor).
+void Session::pin_camera() {
+  const render::View& v = controls_.view;
+  options_.scene.camera = {v.position, v.target, v.up, v.fovy_deg, v.orthographic, v.height, true};
+}
+
+Changed Session::take_input(double wait_s) {
+  const Input input = window_->poll(wait_s);
+  const Changed changed = apply(controls_, input);
+  quit_ = quit_ || input.quit || window_->closing();
+  if (changed.hand) mouse_->move_to(device_from_world(options_.scene.workspace, controls_.hand), controls_.buttons);
+  if (changed.view) pin_camera();
+  stale_ = stale_ || input.damaged;
+  if (input.help) {
+    std::fputs(std::string(key_help()).c_str(), stdout);
+    std::fflush(stdout);
+  }
+  return changed;
+}
+
+/// The newest state, if there is one; true where it would change the picture.
+bool Session::take_haptics() {
+  const exchange::HapticState before = felt_;
+  if (!servo_->take(felt_)) return false;
+  scene::update_cursor(options_.scene, felt_);
+  bool changed = before.tick == 0 || before.probe != felt_.probe || before.force_n != felt_.force_n;
+  for (int i = 0; i < felt_.link_count && !changed; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    changed = before.links[k].proxy != felt_.links[k].proxy || before.links[k].active != felt_.links[k].active;
+  }
+  return changed;
+}
+
+std::optional<Failure> Session::draw(bool moving) {
+  std::uint32_t width = 0, height = 0;
+  window_->framebuffer_size(width, height);
+  if (width == 0 || height == 0) return std::nullopt;
+  if (!fits_ || swapchain_->extent().width != width || swapchain_->extent().height != height)
+    if (auto resized = swapchain_->resize(width, height); !resized) return Failure{1, resized.error().message};
+
+  // while something moves: coarser steps, and half the pixels in both directions if need be
+  const std::uint32_t scale = moving && full_ms_ > kSlowMs ? 2 : 1;
+  const std::int64_t start = now_ns();
+  auto packet = render::extract_frame(options_.scene, std::max(1u, width / scale), std::max(1u, height / scale));
+  if (!packet) return Failure{2, packet.error().message};
+  if (auto drawn = renderer_->draw(*packet, moving ? render::draft_settings() : render::balanced_settings()); !drawn)
+    return Failure{1, drawn.error().message};
+  const double ms = ms_since(start);
+  // the first picture pays for uploads and pipelines: it says nothing of the next
+  if (moving && frames_ > 0) full_ms_ = frames_ == 1 ? ms * scale * scale : 0.7 * full_ms_ + 0.3 * ms * scale * scale;
+  frame_ms_.push_back(ms);
+
+  auto shown = renderer_->present(*swapchain_);
+  if (!shown) return Failure{1, shown.error().message};
+  fits_ = *shown;
+  ++frames_;
+  ++frames_in_title_;
+  return std::nullopt;
+}
+
+void Session::update_title() {
+  const double since_s = 1e-3 * ms_since(last_title_);
+  if (last_title_ != 0 && since_s < kTitleS) return;
+  std::string title = fmt::format("catena  {:.0f} fps  {:.2f} N", last_title_ == 0 ? 0 : frames_in_title_ / since_s, norm(felt_.force_n));
+  for (int i = 0; i < felt_.link_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    title += fmt::format("  {} {}", link_names_[k], exchange::status_word(felt_.links[k].status));
+  }
+  if (controls_.hand_mode) title += "  [hand]";
+  window_->set_title(title);
+  last_title_ = now_ns();
+  frames_in_title_ = 0;
+}
+
+void Session::say_goodbye() {
+  std::sort(frame_ms_.begin(), frame_ms_.end());
+  fmt::print("{} frames, {:.1f} ms median, on {}\n", frames_, frame_ms_.empty() ? 0 : frame_ms_[frame_ms_.size() / 2], renderer_->stats().device);
+  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} late\n", felt_.probe.x, felt_.probe.y, felt_.probe.z, norm(felt_.force_n),
+             felt_.tick, felt_.missed_deadlines);
+}
+
+std::optional<Failure> Session::run() {
+  std::int64_t last_input = now_ns();
+  while (!quit_ && (options_.frames == 0 || frames_ < options_.frames)) {
+    const Changed changed = take_input(stale_ ? 0 : kIdleWaitS);
+    const bool news = take_haptics();
+    if (changed.any() || news) last_input = now_ns();
+    std::uint32_t width = 0, height = 0;
+    window_->framebuffer_size(width, height);
+    if (width == 0) {
+      // minimised: nothing to draw until it comes back
+      window_->poll(kMinimisedWaitS);
+      stale_ = true;
+      continue;
+    }
+    const bool resized = width != swapchain_->extent().width || height != swapchain_->extent().height;
+    if (changed.any() || news || resized || !fits_ || stale_ || options_.frames > 0) {
+      const bool moving = 1e-3 * ms_since(last_input) < kRestS;
+      if (auto failure = draw(moving)) return failure;
+      stale_ = moving;
+    }
+    update_title();
+  }
+  servo_->stop();
+  take_haptics();
+
+  if (!options_.screenshot.empty() && frames_ > 0) {
+    if (auto failure = draw(false)) return failure;
+    auto picture = renderer_->read_back();
+    if (!picture) return Failure{1, picture.error().message};
+    if (auto written = render::write_png(options_.screenshot, *picture, options_.scene.background.transparent); !written)
+      return Failure{2, written.error().message};
+  }
+  say_goodbye();
+  return std::nullopt;
+}
+
+}  // namespace
+
+int view(ViewOptions options) {
+  if (options.device != "mouse") {
+    fmt::print(stderr, "catena: device \"{}\" is not known; expected mouse\n", options.device);
+    return 2;
+  }
+  Session session(std::move(options));
+  auto failure = session.open();
+  if (!failure) failure = session.run();
+  if (failure) fmt::print(stderr, "catena: {}\n", failure->message);
+  return failure ? failure->exit_code : 0;
+}
+
+}  // namespace catena::app

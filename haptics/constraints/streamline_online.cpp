@@ -1,0 +1,255 @@
+#include "haptics/constraints/streamline_online.h"
+
+#include "engine/flow/direction.h"
+#include "engine/flow/hermite.h"
+#include "engine/flow/zero.h"
+
+namespace catena::haptics {
+namespace {
+
+using flow::Stop;
+using Mode = OnlineMemory::Mode;
+
+// lengths, times L
+constexpr double kConverged = 1e-12, kLongestStep = 0.1, kFirstTrust = 0.02;
+constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15;
+constexpr int kSearches = 2;  ///< for a zero, a tick
+
+/// One tick of one link.
+class Tick {
+ public:
+  Tick(const OnlineSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
+      : spec_(spec),
+        tableau_(flow::tableau_of(spec.method)),
+        flow_{spec.field.get(), spec.line, spec.min_speed},
+        x_(probe),
+        state_(state),
+        memory_(memory_of<OnlineMemory>(state)),
+        cursor_(scratch.cursors[0]),
+        length_(spec.field->length()) {}
+
+  /// Begins a line at the seed; without a direction there, none begins.
+  void begin(const Vec3& seed) noexcept {
+    memory_ = OnlineMemory{};
+    memory_.trust = kFirstTrust * length_;
+    state_.proxy = seed;
+    ++state_.evaluations;
+    const Stop stop = flow::seed_direction(flow_, seed, cursor_, memory_.t);
+    if (stop == Stop::none)
+      memory_.mode = Mode::following;
+    else
+      state_.status = stop == Stop::outside ? Status::boundary : Status::critical;
+  }
+
+  void run() noexcept {
+    state_.residual = 0;
+    if (memory_.mode == Mode::seeking) {
+      // no line through the last place: pass the probe through until there is one
+      if (state_.evaluations == 0) begin(x_);
+      state_.proxy = x_;
+      if (memory_.mode == Mode::seeking) return;
+    }
+    state_.status = Status::ok;
+    if (spec_.method == flow::Method::linear) return linear();
+    if (held()) return;
+    memory_.tried = 0;
+    march();
+  }
+
+ private:
+  // Eqs. 1-2 as printed
+  void linear() noexcept {
+    const double g = dot(x_ - state_.proxy, memory_.t);
+    if (g == 0) return;
+    const Vec3 next = state_.proxy + g * memory_.t;
+    Vec3 u;
+    ++state_.evaluations;
+    const Stop stop = flow::direction_at(flow_, next, memory_.t, cursor_, u);
+    if (stop != Stop::none) {
+      state_.status = stop == Stop::outside ? Status::boundary : Status::critical;
+      return;
+    }
+    state_.proxy = next;
+    memory_.t = u;
+  }
+
+  /// Still held at a zero or at the boundary? Let go when the probe has turned back.
+  bool held() noexcept {
+    if (memory_.mode == Mode::following) return false;
+    if (dot(x_ - memory_.hold, memory_.way) >= 0) {
+      state_.proxy = memory_.hold;
+      state_.status = memory_.mode == Mode::at_zero ? Status::critical : Status::boundary;
+      return true;
+    }
+    state_.proxy = memory_.p_in;
+    memory_.t = memory_.t_in;
+    memory_.curvature = Vec3(0.0);
+    memory_.mode = Mode::following;
+    return false;
+  }
+
+  void hold_at(Mode mode, const Vec3& place, double way) noexcept {
+    if (!has_entry_) remember_entry(way);
+    memory_.mode = mode;
+    memory_.hold = place;
+    state_.proxy = place;
+    state_.status = mode == Mode::at_zero ? Status::critical : Status::boundary;
+  }
+
+  void remember_entry(double way) noexcept {
+    has_entry_ = true;
+    memory_.p_in = state_.proxy;
+    memory_.t_in = memory_.t;
+    memory_.way = way * memory_.t;
+  }
+
+  flow::Step try_step(double h) noexcept {
+    const auto rate = [this](const Vec3& q, Vec3& u) {
+      const Stop stop = flow::direction_at(flow_, q, memory_.t, cursor_, u);
+      return stop == Stop::none && dot(u, memory_.t) < 0.5 ? Stop::turned : stop;
+    };
+    const flow::Step step = flow::runge_kutta_step(tableau_, state_.proxy, memory_.t, h, true, rate);
+    state_.evaluations += step.evaluations;
+    return step;
+  }
+
+  bool affordable() noexcept {
+    if (state_.evaluations + tableau_.stages <= kEvaluationCap) return true;
+    state_.status = Status::budget;
+    return false;
+  }
+
+  /// Item 5: a zero near by ends the march on it, if it is nearer to the probe.
+  bool capture(double way) noexcept {
+    if (spec_.min_speed > 0 || memory_.tried >= kSearches) return false;
+    ++memory_.tried;
+    const int budget = std::min(kEvaluationCap - state_.evaluations, 57);
+    const auto zero = flow::find_zero(flow_, state_.proxy, memory_.t, kCapture * length_, cursor_, budget - 1, state_.evaluations);
+    if (!zero || norm(x_ - *zero) > norm(x_ - state_.proxy)) return false;
+    hold_at(Mode::at_zero, *zero, way);
+    return true;
+  }
+
+  void march() noexcept {
+    double limit = memory_.trust;  // longest step from here that may still do
+    double bad = -1;               // distance ahead at which a step was seen to fail, while > 0
+    double bad_way = 0;
+    for (int i = 0; i < 2 * kEvaluationCap; ++i) {
+      const Vec3 e = x_ - state_.proxy;
+      const double g = dot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
+      state_.residual = std::fabs(g);
+      if (!(std::fabs(g) > kConverged * length_)) return;
+      if (way != bad_way) bad = -1;
+
+      // the step: Newton with the curvature, within the trust radius and the bracket
+      double h = std::fabs(g) / std::max(std::fabs(1 - dot(memory_.curvature, e)), 0.1);
+      h = std::min(std::min(h, limit), kLongestStep * length_);
+      if (bad > 0) h = std::min(h, std::max(0.5 * bad, kSmallest * length_));
+      if (!affordable()) return;
+      flow::Step step = try_step(way * h);
+
+      if (step.stop == Stop::outside) {
+        if (!has_entry_) remember_entry(way);
+        if (h <= kBoundary * length_) return hold_on_boundary(way);
+        bad = limit = 0.5 * h;
+        bad = h;
+        bad_way = way;
+        continue;
+      }
+      if (step.stop != Stop::none) {
+        if (!has_entry_) remember_entry(way);
+        if (h <= 4 * kCapture * length_ && capture(way)) return;
+        if (h <= kCritical * length_) return hold_at(Mode::at_zero, state_.proxy, way);
+        limit = 0.5 * h;
+        bad = h;
+        bad_way = way;
+        continue;
+      }
+
+      // embedded error
+      const double tolerance = spec_.tolerance * length_, error = norm(step.error);
+      if (tableau_.embedded && !(error <= tolerance)) {
+        if (h <= kCritical * length_ * 1e-3) return hold_at(Mode::at_zero, state_.proxy, way);
+        limit = h * flow::step_factor(error, tolerance, 0.1, 0.8);
+        memory_.trust = limit;
+        continue;
+      }
+      const double grown = tableau_.embedded ? h * flow::step_factor(error, tolerance, 0.5, 4.0) : 2 * h;
+
+      // over the foot: root on the Hermite, one true step onto it
+      const double g_end = dot(e - step.displacement, step.last);
+      if (way * g_end < 0) {
+        if (!affordable()) return;
+        const flow::Hermite piece(state_.proxy, step.displacement, way * h, memory_.t, step.last);
+        const double theta = piece.foot(x_, way * h * g, way * h * g_end);
+        h *= theta;
+        step = try_step(way * h);
+        if (step.stop != Stop::none) {
+          limit = 0.5 * h;
+          continue;
+        }
+      }
+
+      // Armijo, without cancellation
+      const double change = -dot(step.displacement, e - 0.5 * step.displacement);
+      if (!(change <= -1e-4 * std::fabs(g) * h)) {
+        limit = 0.5 * h;
+        if (h <= kSmallest * length_) return;
+        continue;
+      }
+      accept(step, way * h, grown);
+      limit = memory_.trust;
+      if (bad > 0) bad = std::max(bad - h, kSmallest * length_);
+      if (norm(memory_.curvature) * kCapture * length_ > 1 && capture(way)) return;
+    }
+    state_.status = Status::budget;
+  }
+
+  void hold_on_boundary(double way) noexcept {
+    memory_.p_in = state_.proxy;
+    memory_.t_in = memory_.t;
+    memory_.way = way * memory_.t;
+    hold_at(Mode::at_boundary, state_.proxy, way);
+  }
+
+  void accept(const flow::Step& step, double h, double grown) noexcept {
+    if (std::fabs(h) > 1e-9 * length_) memory_.curvature = (step.last - memory_.t) / h;
+    state_.proxy += step.displacement;
+    memory_.t = step.last;
+    memory_.trust = std::min(std::max(memory_.trust, grown), kLongestStep * length_);
+  }
+
+  const OnlineSpec& spec_;
+  const flow::Tableau& tableau_;
+  flow::Flow flow_;
+  Vec3 x_;
+  LinkState& state_;
+  OnlineMemory& memory_;
+  field::Cursor& cursor_;
+  double length_;
+  bool has_entry_ = false;  ///< p_in, t_in and way are of this approach
+};
+
+class OnlineStreamline final : public Constraint {
+ public:
+  explicit OnlineStreamline(const OnlineSpec& spec) : spec_(spec) {}
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    Tick(spec_, probe, state, scratch).begin(spec_.seed.value_or(probe));
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    Tick(spec_, probe, state, scratch).run();
+  }
+  double domain_length() const noexcept override { return spec_.field->length(); }
+
+ private:
+  OnlineSpec spec_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Constraint> make_online_streamline(const OnlineSpec& spec) {
+  CATENA_ASSERT(spec.field);
+  return std::make_shared<OnlineStreamline>(spec);
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,21 @@
+/// Selected streamline: the proxy is an arc length s on an immutable curve; no field is fetched in a tick (0 evaluations).
+///   g(s) = (x - c(s)) . c'(s);  march knot by knot to where g changes sign, then the root of g on that interval's Hermite.
+/// The root is always bracketed by the interval's two knots, so it does not depend on where the proxy came from: sweeping there
+/// and back gives the same bits. Open ends hold with BOUNDARY or CRITICAL; closed curves wrap. At most 4096 knots a tick, then
+/// BUDGET, and on from there in the next. Haptic thread: no allocation, lock or throw.
+#pragma once
+#include "engine/flow/curve.h"
+#include "haptics/chain/constraint.h"
+
+namespace catena::haptics {
+
+/// What the link remembers.
+struct SelectedMemory {
+  double s = 0;                ///< arc length of the proxy
+  std::uint64_t interval = 0;  ///< of knots, that s lies in
+  std::int32_t knots = 0;      ///< visited in the last tick: its work
+};
+
+std::shared_ptr<const Constraint> make_selected_streamline(flow::CurvePtr curve);
+
+}  // namespace catena::haptics

@@ -1,0 +1,345 @@
+#include "render/mirror/grid_mirror.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <unordered_map>
+
+#include "engine/base/parallel_for.h"
+#include "render/mirror/half.h"
+#include "render/mirror/upload.h"
+
+namespace catena::render {
+namespace {
+
+using field::Index3;
+constexpr int kApron = kBrick + 1;
+constexpr std::uint32_t kSlotsAnAxis = 255;
+
+/// Writes values as texels of the mirror's format; what is not finite becomes the least value (its cells are masked).
+struct Encoder {
+  bool float32;
+  float offset, scale, replacement;
+  void write(const float* from, std::size_t count, std::byte* out) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      const float value = std::isfinite(from[i]) ? from[i] : replacement;
+      if (float32) {
+        std::memcpy(out + 4 * i, &value, 4);
+      } else {
+        const std::uint16_t half = half_from_float((value - offset) / scale);
+        std::memcpy(out + 2 * i, &half, 2);
+      }
+    }
+  }
+  std::size_t texel() const { return float32 ? 4 : 2; }
+};
+
+Encoder choose_encoder(const field::ScalarGrid& grid, bool float32) {
+  double least = grid.stats().min, greatest = grid.stats().max;
+  const float background = grid.background();
+  if (std::isfinite(background)) {
+    least = std::min(least, double(background));
+    greatest = std::max(greatest, double(background));
+  }
+  if (!(least <= greatest)) least = greatest = 0;
+  Encoder e{float32, 0, 1, float(least)};
+  if (float32) return e;
+  const double largest = std::max(std::fabs(least), std::fabs(greatest)), range = greatest - least;
+  if (range < 0.5 * largest && range > 0) {
+    e.offset = float(least);
+    e.scale = float(range);
+  } else if (largest > 0) {
+    // a power of two that brings the largest magnitude to 0.5..1: halves round alike at every power of two
+    e.scale = std::exp2(float(std::clamp(std::ilogb(largest) + 1, -120, 120)));
+  }
+  if (range == 0) e.offset = float(least);
+  return e;
+}
+
+/// Voxels and cell validity of a box of cells, with what they say about one brick.
+struct Block {
+  Index3 voxels;  ///< an axis, the apron included
+  std::vector<float> values;
+  std::vector<std::uint8_t> valid;  ///< by voxel of the block (the cell based there); empty: all valid
+
+  void read(const field::ScalarGrid& grid, const Index3& origin, const Index3& size, bool masked) {
+    voxels = size;
+    const std::size_t count = std::size_t(size.x) * size.y * size.z;
+    values.resize(count);
+    grid.read_block(origin, size, values);
+    if (!masked) return;
+    valid.resize(count);
+    grid.read_cell_valid(origin, size, valid);
+    for (int z = 0; z + 1 < size.z; ++z)
+      for (int y = 0; y + 1 < size.y; ++y)
+        for (int x = 0; x + 1 < size.x; ++x) {
+          std::uint8_t& v = valid[at(x, y, z)];
+          for (int c = 0; c < 8 && v; ++c) v = std::isfinite(values[at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))]);
+        }
+  }
+  std::size_t at(int x, int y, int z) const { return (std::size_t(z) * voxels.y + y) * voxels.x + x; }
+
+  /// Over the corners of valid cells with base in [x0, x1) x [0, ny) x [0, nz).
+  BrickRange range(int x0, int x1, int ny, int nz) const {
+    float least = std::numeric_limits<float>::infinity(), greatest = -least;
+    if (valid.empty()) {
+      for (int z = 0; z <= nz; ++z)
+        for (int y = 0; y <= ny; ++y)
+          for (int x = x0; x <= x1; ++x) {
+            const float v = values[at(x, y, z)];
+            least = std::min(least, v);
+            greatest = std::max(greatest, v);
+          }
+    } else {
+      for (int z = 0; z < nz; ++z)
+        for (int y = 0; y < ny; ++y)
+          for (int x = x0; x < x1; ++x) {
+            if (!valid[at(x, y, z)]) continue;
+            for (int c = 0; c < 8; ++c) {
+              const float v = values[at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))];
+              least = std::min(least, v);
+              greatest = std::max(greatest, v);
+            }
+          }
+    }
+    return least <= greatest ? BrickRange{least, greatest} : BrickRange{};
+  }
+};
+
+class Builder {
+ public:
+  Builder(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options)
+      : device_(device), grid_(grid), options_(options), encoder_(choose_encoder(grid, options.float32)) {}
+
+  Result<GridMirror> build() {
+    const Vec3 lo = grid_.index_box().lo, hi = grid_.index_box().hi;
+    lo_ = {std::int32_t(std::lround(lo.x)), std::int32_t(std::lround(lo.y)), std::int32_t(std::lround(lo.z))};
+    hi_ = {std::int32_t(std::lround(hi.x)), std::int32_t(std::lround(hi.y)), std::int32_t(std::lround(hi.z))};
+    size_ = {hi_.x - lo_.x + 1, hi_.y - lo_.y + 1, hi_.z - lo_.z + 1};
+    if (size_.x < 2 || size_.y < 2 || size_.z < 2 || grid_.stats().active_voxels == 0) return std::move(mirror_);
+    mirror_.drawable = true;
+    mirror_.offset = encoder_.offset;
+    mirror_.scale = encoder_.scale;
+    mirror_.masked = grid_.has_mask() || grid_.stats().nan_count > 0 || !std::isfinite(grid_.background());
+    if (options_.layout != MirrorLayout::dense) plan_atlas();
+    mirror_.atlas = options_.layout == MirrorLayout::atlas || (options_.layout == MirrorLayout::automatic && atlas_pays());
+    CATENA_CHECK(mirror_.atlas ? build_atlas() : build_dense());
+    return std::move(mirror_);
+  }
+
+ private:
+  /// The first index of a brick, counted from the leaf that holds the box's corner.
+  Index3 leaf(int x, int y, int z) const { return {leaves_lo_.x + kBrick * x, leaves_lo_.y + kBrick * y, leaves_lo_.z + kBrick * z}; }
+
+  void place(const Index3& origin) {
+    mirror_.origin = origin;
+    mirror_.box_lo = Vec3(lo_.x - origin.x, lo_.y - origin.y, lo_.z - origin.z);
+    mirror_.box_hi = Vec3(hi_.x - origin.x, hi_.y - origin.y, hi_.z - origin.z);
+    mirror_.bricks = {(hi_.x - origin.x + kBrick - 1) / kBrick, (hi_.y - origin.y + kBrick - 1) / kBrick, (hi_.z - origin.z + kBrick - 1) / kBrick};
+    mirror_.ranges.assign(std::size_t(mirror_.bricks[0]) * mirror_.bricks[1] * mirror_.bricks[2], BrickRange{});
+  }
+
+  /// Finds the bricks whose 9^3 voxels are one value: the block and the seven that the apron touches.
+  void plan_atlas() {
+    const auto down = [](std::int32_t v) { return v & ~(kBrick - 1); };
+    leaves_lo_ = {down(lo_.x), down(lo_.y), down(lo_.z)};
+    place(leaves_lo_);
+    const auto [bx, by, bz] = mirror_.bricks;
+    // constant blocks, one more an axis for the aprons
+    const int cx = bx + 1, cy = by + 1;
+    std::vector<std::uint8_t> constant(std::size_t(cx) * cy * (bz + 1));
+    std::vector<float> value(constant.size());
+    parallel_for(constant.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        constant[i] = grid_.constant_block(leaf(int(i % cx), int(i / cx % cy), int(i / cx / cy)), value[i]) && std::isfinite(value[i]);
+    });
+    is_constant_.assign(mirror_.ranges.size(), 0);
+    constant_value_.assign(mirror_.ranges.size(), 0);
+    stored_ = 0;
+    for (int z = 0; z < bz; ++z)
+      for (int y = 0; y < by; ++y)
+        for (int x = 0; x < bx; ++x) {
+          bool same = !grid_.has_mask();
+          const auto at = [&](int c) { return (std::size_t(z + (c >> 2)) * cy + y + (c >> 1 & 1)) * cx + x + (c & 1); };
+          for (int c = 0; c < 8 && same; ++c) same = constant[at(c)] && value[at(c)] == value[at(0)];
+          const std::size_t brick = mirror_.brick_index(x, y, z);
+          is_constant_[brick] = same;
+          constant_value_[brick] = value[at(0)];
+          stored_ += !same;
+        }
+  }
+
+  bool fits_dense() const {
+    const auto limit = std::int32_t(device_.info().limits.maxImageDimension3D);
+    return size_.x <= limit && size_.y <= limit && size_.z <= limit;
+  }
+
+  bool atlas_pays() const {
+    const double dense = double(size_.x) * size_.y * size_.z, atlas = double(stored_) * kApron * kApron * kApron;
+    return !fits_dense() || (dense > 64.0 * 64 * 64 && atlas < 0.5 * dense);
+  }
+
+  Result<vk::Image> create_image(VkFormat format, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    vk::ImageInfo info;
+    info.type = VK_IMAGE_TYPE_3D;
+    info.format = format;
+    info.extent = {x, y, z};
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    auto image = vk::Image::create(device_, info);
+    if (!image) return Error{fmt::format("the grid \"{}\" cannot be mirrored: {}", grid_.name(), image.error().message)};
+    return image;
+  }
+
+  Outcome create_images(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t mx, std::uint32_t my, std::uint32_t mz) {
+    CATENA_TRY(mirror_.values, create_image(encoder_.float32 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R16_SFLOAT, x, y, z));
+    if (mirror_.masked) CATENA_TRY(mirror_.mask, create_image(VK_FORMAT_R8_UINT, mx, my, mz));
+    return Done{};
+  }
+
+  /// Rows of bricks, in parallel; the mask is uploaded from a copy kept while the values go up.
+  Outcome build_dense() {
+    place(lo_);
+    const auto nx = std::uint32_t(size_.x), ny = std::uint32_t(size_.y), nz = std::uint32_t(size_.z);
+    CATENA_CHECK(create_images(nx, ny, nz, nx, ny, nz));
+    const auto [bx, by, bz] = mirror_.bricks;
+    std::vector<std::uint8_t> mask(mirror_.masked ? std::size_t(nx) * ny * nz : 0);
+    const std::size_t texel = encoder_.texel();
+    CATENA_CHECK(upload_planes(device_, mirror_.values, kBrick, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+      const std::uint32_t layers = (count + kBrick - 1) / kBrick, rows = (ny + kBrick - 1) / kBrick;
+      parallel_for(std::size_t(layers) * rows, 1, [&](std::size_t begin, std::size_t end) {
+        Block block;
+        for (std::size_t task = begin; task < end; ++task) {
+          const int y0 = kBrick * int(task % rows), z0 = int(first) + kBrick * int(task / rows);
+          const int height = std::min(kApron, int(ny) - y0), depth = std::min(kApron, int(nz) - z0);
+          block.read(grid_, {lo_.x, lo_.y + y0, lo_.z + z0}, {size_.x, height, depth}, mirror_.masked);
+          for (int z = 0; z < std::min(kBrick, depth); ++z)
+            for (int y = 0; y < std::min(kBrick, height); ++y) {
+              const std::size_t row = (std::size_t(z0 + z) * ny + y0 + y) * nx;
+              encoder_.write(&block.values[block.at(0, y, z)], nx, out + (row - std::size_t(first) * ny * nx) * texel);
+              if (!mask.empty()) std::copy_n(&block.valid[block.at(0, y, z)], nx, &mask[row]);
+            }
+          if (height < 2 || depth < 2) continue;
+          for (int x = 0; x < bx; ++x)
+            mirror_.ranges[mirror_.brick_index(x, y0 / kBrick, z0 / kBrick)] =
+                block.range(kBrick * x, std::min(kBrick * (x + 1), int(nx) - 1), height - 1, depth - 1);
+        }
+      });
+    }));
+    if (mask.empty()) return Done{};
+    return upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+      std::memcpy(out, mask.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny);
+    });
+  }
+
+  /// Gives every brick a slot; constant ones of one value share theirs.
+  Outcome assign_slots() {
+    const std::size_t count = mirror_.ranges.size();
+    mirror_.slots.assign(count, 0);
+    std::vector<std::uint32_t> linear(count);
+    std::unordered_map<float, std::uint32_t> shared;
+    for (std::size_t i = 0; i < count; ++i) {
+      std::uint32_t slot = std::uint32_t(brick_of_slot_.size());
+      if (is_constant_[i]) {
+        const auto [found, added] = shared.try_emplace(constant_value_[i], slot);
+        slot = found->second;
+        if (added) brick_of_slot_.push_back(i);
+      } else {
+        brick_of_slot_.push_back(i);
+      }
+      linear[i] = slot;
+    }
+    const auto total = double(brick_of_slot_.size());
+    const std::uint32_t most = std::min(kSlotsAnAxis, device_.info().limits.maxImageDimension3D / kApron);
+    slots_[0] = std::min(most, std::uint32_t(std::ceil(std::cbrt(total))));
+    slots_[1] = std::min(most, std::uint32_t(std::ceil(std::sqrt(total / slots_[0]))));
+    slots_[2] = std::uint32_t(std::ceil(total / (double(slots_[0]) * slots_[1])));
+    if (slots_[2] > most)
+      return Error{fmt::format("the grid \"{}\" has {} leaves to draw, expected at most {} on this device", grid_.name(), brick_of_slot_.size(),
+                               std::uint64_t(most) * most * most)};
+    for (std::size_t i = 0; i < count; ++i)
+      mirror_.slots[i] = linear[i] % slots_[0] | linear[i] / slots_[0] % slots_[1] << 8 | linear[i] / slots_[0] / slots_[1] << 16;
+    return Done{};
+  }
+
+  Outcome build_atlas() {
+    CATENA_CHECK(assign_slots());
+    const auto [sx, sy, sz] = slots_;
+    CATENA_CHECK(create_images(sx * kApron, sy * kApron, sz * kApron, sx * kBrick, sy * kBrick, sz * kBrick));
+    const auto [bx, by, bz] = mirror_.bricks;
+    constexpr std::size_t mask_bytes = std::size_t(kBrick) * kBrick * kBrick;
+    std::vector<std::uint8_t> mask(mirror_.masked ? mask_bytes * sx * sy * sz : 0);
+    const std::size_t texel = encoder_.texel(), width = std::size_t(sx) * kApron, height = std::size_t(sy) * kApron;
+    CATENA_CHECK(upload_planes(device_, mirror_.values, kApron, [&, bx = bx, by = by, sx = sx, sy = sy](std::uint32_t first, std::uint32_t count, std::byte* out) {
+      const std::size_t begin_slot = std::size_t(first / kApron) * sx * sy;
+      const std::size_t end_slot = std::min(brick_of_slot_.size(), begin_slot + std::size_t(count / kApron) * sx * sy);
+      std::memset(out, 0, width * height * count * texel);
+      parallel_for(end_slot - begin_slot, 8, [&](std::size_t begin, std::size_t end) {
+        Block block;
+        for (std::size_t slot = begin_slot + begin; slot < begin_slot + end; ++slot) {
+          const std::size_t brick = brick_of_slot_[slot];
+          const int x = int(brick % std::size_t(bx)), y = int(brick / std::size_t(bx) % std::size_t(by)), z = int(brick / std::size_t(bx) / std::size_t(by));
+          const Index3 origin = leaf(x, y, z);
+          block.read(grid_, origin, {kApron, kApron, kApron}, mirror_.masked);
+          mirror_.ranges[brick] = clipped_range(block, origin);
+          const std::size_t ox = slot % sx * kApron, oy = slot / sx % sy * kApron, oz = (slot - begin_slot) / sx / sy * kApron;
+          for (int k = 0; k < kApron; ++k)
+            for (int j = 0; j < kApron; ++j)
+              encoder_.write(&block.values[block.at(0, j, k)], kApron, out + (((oz + k) * height + oy + j) * width + ox) * texel);
+          if (mask.empty()) continue;
+          const std::size_t mw = std::size_t(sx) * kBrick, mh = std::size_t(sy) * kBrick;
+          for (int k = 0; k < kBrick; ++k)
+            for (int j = 0; j < kBrick; ++j)
+              std::copy_n(&block.valid[block.at(0, j, k)], kBrick,
+                          &mask[((slot / sx / sy * kBrick + k) * mh + slot / sx % sy * kBrick + j) * mw + slot % sx * kBrick]);
+        }
+      });
+    }));
+    for (std::size_t i = 0; i < is_constant_.size(); ++i)
+      if (is_constant_[i]) mirror_.ranges[i] = {constant_value_[i], constant_value_[i]};
+    if (mask.empty()) return Done{};
+    const std::size_t plane = std::size_t(sx) * kBrick * sy * kBrick;
+    return upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+      std::memcpy(out, mask.data() + first * plane, count * plane);
+    });
+  }
+
+  /// Cells outside the index box say nothing about a brick.
+  BrickRange clipped_range(const Block& block, const Index3& origin) const {
+    const auto first = [](int lo, int at) { return std::max(0, lo - at); };
+    const auto last = [](int hi, int at) { return std::min(kBrick, hi - at); };
+    const int x0 = first(lo_.x, origin.x), y0 = first(lo_.y, origin.y), z0 = first(lo_.z, origin.z);
+    const int x1 = last(hi_.x, origin.x), y1 = last(hi_.y, origin.y), z1 = last(hi_.z, origin.z);
+    if (x0 >= x1 || y0 >= y1 || z0 >= z1) return {};
+    Block part;
+    part.voxels = {x1 - x0 + 1, y1 - y0 + 1, z1 - z0 + 1};
+    for (int z = z0; z <= z1; ++z)
+      for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) {
+          part.values.push_back(block.values[block.at(x, y, z)]);
+          if (!block.valid.empty()) part.valid.push_back(block.valid[block.at(x, y, z)]);
+        }
+    return part.range(0, x1 - x0, y1 - y0, z1 - z0);
+  }
+
+  vk::Device& device_;
+  const field::ScalarGrid& grid_;
+  const MirrorOptions options_;
+  const Encoder encoder_;
+  GridMirror mirror_;
+  Index3 lo_, hi_, size_, leaves_lo_;
+  std::vector<std::uint8_t> is_constant_;
+  std::vector<float> constant_value_;
+  std::size_t stored_ = 0;
+  std::vector<std::size_t> brick_of_slot_;
+  std::array<std::uint32_t, 3> slots_{};
+};
+
+}  // namespace
+
+Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options) {
+  return Builder(device, grid, options).build();
+}
+
+}  // namespace catena::render

@@ -1,0 +1,52 @@
+/// A scalar grid on the GPU, made from its NanoVDB truth, keyed by (grid version, texel format), never changed, thrown away at will.
+///   dense: one 3D image over the index box
+///   atlas: the 8^3 leaves as 9^3 bricks (apron +1) in one 3D image; constant leaves of one value share a brick
+/// Positions are *local*: local = index - origin, voxel centres at whole numbers; the domain is box_lo..box_hi.
+/// value = offset + scale * texel. R32F: 0 and 1, exact. R16F: 0 and a power of two (texels round as halves do), unless the
+/// values span less than half of their largest magnitude: then the texels span 0..1 from the least value.
+/// A cell that the grid's `valid` mask excludes, or with a corner that is not finite, is 0 in the mask image and drawn by nobody.
+/// Min and max are kept a brick of 8^3 cells, on the host, over the corners of the brick's valid cells (least > greatest: none).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/field/grid.h"
+#include "render/vk/resources.h"
+
+namespace catena::render {
+
+inline constexpr int kBrick = 8;
+
+enum class MirrorLayout { automatic, dense, atlas };
+
+struct MirrorOptions {
+  bool float32 = false;
+  MirrorLayout layout = MirrorLayout::automatic;  ///< automatic: dense unless less than about a third of the leaves would be stored
+};
+
+struct BrickRange {
+  float least = 1, greatest = 0;
+  bool empty() const { return least > greatest; }
+};
+
+struct GridMirror {
+  bool drawable = false;                ///< false: thinner than a cell along some axis, nothing below is set
+  bool atlas = false;
+  bool masked = false;                  ///< there is a mask image
+  field::Index3 origin;                 ///< index = origin + local
+  Vec3 box_lo{0.0}, box_hi{0.0};        ///< the domain, local
+  std::array<std::int32_t, 3> bricks{}; ///< an axis
+  float offset = 0, scale = 1;
+  vk::Image values;
+  vk::Image mask;                       ///< R8_UINT a cell: dense like `values`; atlas in 8^3 bricks at the same slots
+  std::vector<BrickRange> ranges;       ///< x fastest
+  std::vector<std::uint32_t> slots;     ///< atlas: x | y << 8 | z << 16, in bricks
+
+  std::size_t brick_index(int x, int y, int z) const { return (std::size_t(z) * bricks[1] + y) * bricks[0] + x; }
+  std::uint64_t bytes() const { return values.bytes() + mask.bytes(); }
+};
+
+Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
+
+}  // namespace catena::render

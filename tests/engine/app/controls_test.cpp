@@ -1,0 +1,164 @@
+#include "engine/app/viewer/controls.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/app/viewer/hand_setup.h"
+
+namespace catena::app {
+namespace {
+
+Controls controls() {
+  Controls c;
+  c.view = c.home = {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4};
+  return c;
+}
+
+Input input(double dx, double dy, double wheel = 0) {
+  Input i;
+  i.width = 320;
+  i.height = 240;
+  i.dx = dx;
+  i.dy = dy;
+  i.wheel = wheel;
+  return i;
+}
+
+TEST(Controls, MotionWithoutAButtonDoesNothing) {
+  Controls c = controls();
+  EXPECT_FALSE(apply(c, input(30, 20)).any());
+  EXPECT_EQ(c.view.position, c.home.position);
+}
+
+TEST(Controls, ALeftDragOrbitsAtTheSameDistance) {
+  Controls c = controls();
+  Input i = input(50, 0);
+  i.left = true;
+  const Changed changed = apply(c, i);
+  EXPECT_TRUE(changed.view);
+  EXPECT_FALSE(changed.hand);
+  EXPECT_NEAR(norm(c.view.position), 10, 1e-12);
+  EXPECT_LT(c.view.position.x, -1);  // the scene follows the pointer to the right: the eye goes left
+  EXPECT_NEAR(c.view.position.z, 0, 1e-12);
+
+  // dragging down shows the scene from above, and stops short of the pole
+  i = input(0, 1000);
+  i.left = true;
+  apply(c, i);
+  EXPECT_GT(c.view.position.z, 9.9);
+  EXPECT_GT(std::hypot(c.view.position.x, c.view.position.y), 0.1);
+  i.reset_view = true;
+  apply(c, i);
+  EXPECT_EQ(c.view.position, c.home.position);
+}
+
+TEST(Controls, AViewAlongUpCanStillBeOrbited) {
+  render::View view{{0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 1};
+  orbit(view, 0.5, -0.5);
+  EXPECT_TRUE(is_finite(view.position));
+  EXPECT_NEAR(norm(view.position), 5, 1e-12);
+  EXPECT_GT(std::hypot(view.position.x, view.position.y), 1);
+}
+
+TEST(Controls, PanMovesTheSceneWithThePointer) {
+  Controls c = controls();
+  Input i = input(24, -12);
+  i.middle = true;
+  EXPECT_TRUE(apply(c, i).view);
+  const auto camera = render::make_camera(c.view, 320, 240, {});
+  const auto p = render::project(camera, Vec3(0.0));  // was in the middle
+  ASSERT_TRUE(p);
+  EXPECT_NEAR(p->x, 160 + 24, 1e-9);
+  EXPECT_NEAR(p->y, 120 - 12, 1e-9);
+}
+
+TEST(Controls, TheWheelZooms) {
+  Controls c = controls();
+  EXPECT_TRUE(apply(c, input(0, 0, 1)).view);
+  EXPECT_NEAR(norm(c.view.position), 9, 1e-12);
+  c.view.orthographic = true;
+  apply(c, input(0, 0, -1));
+  EXPECT_NEAR(c.view.height, 4 / 0.9, 1e-12);
+  EXPECT_NEAR(norm(c.view.position), 9, 1e-12);
+}
+
+TEST(Controls, TheHandFollowsThePointerInThePicturesPlane) {
+  for (const int way : {0, 1, 2}) {
+    Controls c = controls();
+    c.hand = {0.2, 1.0, -0.3};
+    const auto camera = render::make_camera(c.view, 320, 240, {});
+    const auto before = render::project(camera, c.hand);
+    Input i = input(40, 25);
+    i.right = way == 0;
+    i.control = way == 1;
+    i.toggle_hand = way == 2;
+    const Changed changed = apply(c, i);
+    EXPECT_TRUE(changed.hand);
+    EXPECT_FALSE(changed.view);
+    const auto after = render::project(camera, c.hand);
+    EXPECT_NEAR(after->x - before->x, 40, 1e-9);
+    EXPECT_NEAR(after->y - before->y, 25, 1e-9);
+    EXPECT_NEAR(after->z, before->z, 1e-12);
+  }
+}
+
+TEST(Controls, InHandModeTheWheelIsDepthAndTheButtonIsTheDevices) {
+  Controls c = controls();
+  c.hand_mode = true;
+  EXPECT_TRUE(apply(c, input(0, 0, 2)).hand);
+  EXPECT_NEAR(c.hand.y, 0.2, 1e-12);  // 1 % of the distance 10, twice, away from the eye
+  EXPECT_EQ(c.view.position, c.home.position);
+  Input i = input(0, 0);
+  i.left = true;
+  EXPECT_TRUE(apply(c, i).hand);
+  EXPECT_EQ(c.buttons, 1u);
+  EXPECT_FALSE(apply(c, i).any());
+  i.left = false;
+  EXPECT_TRUE(apply(c, i).hand);
+  EXPECT_EQ(c.buttons, 0u);
+}
+
+TEST(Controls, AHandBehindTheEyeComesBackIntoThePicture) {
+  Controls c = controls();
+  c.hand = {0.0, -50.0, 0.0};
+  Input i = input(1, 0);
+  i.right = true;
+  apply(c, i);
+  EXPECT_NEAR(c.hand.y, 0, 1e-12);
+}
+
+TEST(HandSetup, TheWorkspaceFillsTheDevicesReach) {
+  auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
+  ASSERT_TRUE(scene);
+  render::Bounds bounds;
+  bounds.add(Vec3(10.0, 0.0, 0.0));
+  bounds.add(Vec3(50.0, 4.0, 2.0));
+  fit_workspace(*scene, bounds, 0.2);
+  EXPECT_DOUBLE_EQ(scene->workspace.metres_per_unit, 0.005);
+  EXPECT_LE(norm(device_from_world(scene->workspace, {50.0, 2.0, 1.0}) - Vec3(0.1, 0.0, 0.0)), 1e-15);
+  EXPECT_EQ(scene->coupling.ramp_s, 0.02);
+  EXPECT_EQ(first_probe(*scene, bounds), Vec3(30.0, 2.0, 1.0));
+}
+
+TEST(HandSetup, AGivenWorkspaceAndRampStay) {
+  auto scene =
+      scene::parse_scene(R"({"fields": {}, "chain": [], "workspace": {"metres_per_unit": 3}, "coupling": {"ramp_s": 0.5}})", "test.json");
+  ASSERT_TRUE(scene);
+  render::Bounds bounds;
+  bounds.add(Vec3(0.0), 1);
+  fit_workspace(*scene, bounds, 0.2);
+  EXPECT_EQ(scene->workspace.metres_per_unit, 3);
+  EXPECT_EQ(scene->coupling.ramp_s, 0.5);
+}
+
+TEST(HandSetup, TheHandBeginsAtTheFirstSeed) {
+  auto scene = scene::parse_scene(
+      R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0.5, 0]}]})",
+      "test.json");
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(first_probe(*scene, {}), Vec3(1.0, 0.5, 0.0));
+}
+
+}  // namespace
+}  // namespace catena::app

@@ -1,0 +1,55 @@
+/// Helpers of the field tests: repeatable random numbers, mappings of every kind, an independent trilinear formula.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/field/grid.h"
+
+namespace catena::field::test {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed * 2654435769u + 1) {}
+  double between(double lo, double hi) {
+    state_ = state_ * 6364136223846793005ull + 1442695040888963407ull;
+    return lo + (hi - lo) * (static_cast<double>(state_ >> 11) * 0x1p-53);
+  }
+  Vec3 in_box(const Vec3& lo, const Vec3& hi) { return {between(lo.x, hi.x), between(lo.y, hi.y), between(lo.z, hi.z)}; }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Identity, anisotropic, rotated and sheared with a negative origin, mirrored.
+inline std::vector<Mapping> mappings() {
+  return {Mapping{}, Mapping::from_linear(Mat3(0.957, 0, 0, 0, 0.957, 0, 0, 0, 1.5), Vec3(-90, -125, -71)),
+          Mapping::from_linear(Mat3(0.8, 0.6, 0.0, -0.3, 0.4, 0.2, 0.1, 0.05, 0.9), Vec3(-3, 7, -11)),
+          Mapping::from_linear(Mat3(-2, 0, 0, 0, 0, 1, 0, 1, 0), Vec3(5, -5, 0.5))};
+}
+
+struct Block {
+  Index3 size;
+  std::vector<float> values;
+  double at(int x, int y, int z) const { return values[(static_cast<std::size_t>(z) * size.y + y) * size.x + x]; }
+  /// sum of corner * weights, straight from the definition
+  double trilinear(const Vec3& p) const {
+    const auto base = [](double v, int n) { return std::min(std::max(static_cast<int>(std::floor(v)), 0), n - 2); };
+    const int x = base(p.x, size.x), y = base(p.y, size.y), z = base(p.z, size.z);
+    double sum = 0;
+    for (int k = 0; k < 2; ++k)
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i)
+          sum += at(x + i, y + j, z + k) * (i ? p.x - x : 1 - p.x + x) * (j ? p.y - y : 1 - p.y + y) * (k ? p.z - z : 1 - p.z + z);
+    return sum;
+  }
+};
+
+inline Block random_block(const Index3& size, std::uint64_t seed) {
+  Random random(seed);
+  Block b{size, {}};
+  b.values.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
+  for (float& v : b.values) v = static_cast<float>(random.between(-3, 5));
+  return b;
+}
+
+}  // namespace catena::field::test

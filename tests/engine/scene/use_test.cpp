@@ -1,0 +1,202 @@
+#include <gtest/gtest.h>
+
+#include "engine/field/load.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/systems.h"
+#include "engine/scene/transfer.h"
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace {
+
+Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
+  auto scene = parse_scene(text, path);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? std::move(*scene) : Scene{};
+}
+
+template <class T>
+std::string message_of(const Result<T>& result) {
+  return result ? std::string("no error") : result.error().message;
+}
+
+/// Two grids, a scalar ball and a swirl, in one file.
+void write_grids(const std::string& path) {
+  const auto ball = *field::make_analytic("sphere"), swirl = *field::make_analytic("circle");
+  const field::AnyField a{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, b{nullptr, field::sample_on_grid(*swirl.vector, 9, -2, 2)};
+  const auto written = field::write_vdb(path, {{b, "flow"}, {a, "ball"}});
+  ASSERT_TRUE(written) << written.error().message;
+}
+
+TEST(UseField, LoadsOnlyWhatIsAskedForAndOnce) {
+  const test::TemporaryFolder folder;
+  write_grids(folder / "a.vdb");
+  Scene scene = scene_of("{\"fields\": {\"ball\": {\"file\": \"a.vdb\", \"grid\": \"ball\"}, \"flow\": {\"file\": \"a.vdb\", \"grid\": \"flow\"}}}",
+                         folder / "s.json");
+  const auto before = field::load_counters();
+  const auto ball = use_field(scene, "ball", {});
+  ASSERT_TRUE(ball) << message_of(ball);
+  ASSERT_NE(ball->scalar, nullptr);
+  EXPECT_EQ(field::load_counters().grids, before.grids + 1);
+  EXPECT_EQ(use_field(scene, "ball", {})->scalar, ball->scalar);
+  EXPECT_EQ(use_drawn_field(scene, find_field(scene, "ball"), {})->scalar, ball->scalar);
+  EXPECT_EQ(field::load_counters().grids, before.grids + 1);
+}
+
+TEST(UseField, ErrorsNameTheFieldsOwnLine) {
+  const test::TemporaryFolder folder;
+  write_grids(folder / "a.vdb");
+  test::write_file(folder / "torn.vdb", "not a vdb");
+  Scene scene = scene_of("{\"fields\": {\n\"wrong\": {\"file\": \"a.vdb\", \"grid\": \"bal\"},\n\"torn\": {\"file\": \"torn.vdb\"}}}", folder / "s.json");
+  for (const auto& [name, line] : {std::pair{"wrong", ":2: "}, std::pair{"torn", ":3: "}}) {
+    const std::string message = message_of(use_field(scene, name, {}));
+    EXPECT_TRUE(message.starts_with((folder / "s.json") + line)) << message;
+    EXPECT_NE(message.find(name), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  EXPECT_NE(message_of(use_field(scene, "tor", {})).find("wrong, torn (did you mean \"torn\"?)"), std::string::npos);
+}
+
+TEST(UseField, AReplacedFileMayLackTheFirstGrid) {
+  const test::TemporaryFolder folder;
+  const auto ball = *field::make_analytic("sphere");
+  ASSERT_TRUE(field::write_vdb(folder / "one.vdb", {{{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, "other"}}));
+  auto scene = parse_scene("{\"fields\": {\"a\": {\"file\": \"gone.vdb\", \"grid\": \"density\"}}}", "scene.json", {{"a", folder / "one.vdb", ""}});
+  ASSERT_TRUE(scene);
+  EXPECT_TRUE(use_field(*scene, "a", {}));
+}
+
+TEST(UseDrawnField, SamplesFormulasOnceAndKeepsThemExactForTheHand) {
+  Scene scene = scene_of("{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 9, \"box\": [-1, 1]}}, \"volumes\": [{\"field\": \"ball\"}]}");
+  const Entity ball = find_field(scene, "ball");
+  const auto drawn = use_drawn_field(scene, ball, {});
+  ASSERT_TRUE(drawn) << message_of(drawn);
+  ASSERT_TRUE(drawn->scalar && drawn->scalar->is_grid());
+  EXPECT_EQ(drawn->scalar->index_box().hi.x, 8);
+  EXPECT_EQ(use_drawn_field(scene, ball, {})->scalar, drawn->scalar);
+  EXPECT_FALSE(use_field(scene, ball, {})->scalar->is_grid());
+  scene.world.each<Volume>([&](Entity, const Volume& volume) {
+    EXPECT_GE(volume.transfer.colors.size(), 2u);
+    ASSERT_GE(volume.transfer.extinctions.size(), 2u);
+    for (std::size_t i = 1; i < volume.transfer.extinctions.size(); ++i)
+      EXPECT_GT(volume.transfer.extinctions[i].value, volume.transfer.extinctions[i - 1].value);
+  });
+}
+
+TEST(UseCurve, SharesOneObjectAndNamesThePlaceOfErrors) {
+  Scene scene = scene_of("{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}}}");
+  const auto any = use_field(scene, "swirl", {});
+  ASSERT_TRUE(any);
+  const flow::Flow flow{any->vector.get(), false, 0};
+  const auto a = use_curve(scene, flow, {1, 0, 0}, {}), b = use_curve(scene, flow, {1, 0, 0}, {});
+  ASSERT_TRUE(a) << message_of(a);
+  EXPECT_EQ(*a, *b);
+  EXPECT_NE(*a, *use_curve(scene, flow, {0.5, 0, 0}, {}));
+  EXPECT_NE(*a, *use_curve(scene, flow, {1, 0, 0}, {}, 0.25));
+  json::Node where;
+  where.line = 7;
+  where.file = std::make_shared<const std::string>("scene.json");
+  EXPECT_TRUE(message_of(use_curve(scene, flow, {0, 0, 0}, where)).starts_with("scene.json:7: "));
+  EXPECT_NE(message_of(use_curve(scene, flow, {std::nan(""), 0, 0}, where)).find("not finite"), std::string::npos);
+}
+
+TEST(CheckLevel, MustBeAttained) {
+  const auto ball = *field::make_analytic("sphere");
+  const auto grid = field::sample_on_grid(*ball.scalar, 9, -2, 2);
+  json::Node where;
+  where.line = 3;
+  where.file = std::make_shared<const std::string>("scene.json");
+  EXPECT_TRUE(check_level(*grid, 1, where));
+  EXPECT_TRUE(check_level(*ball.scalar, 100, where));
+  for (double bad : {-0.1, 5.0, std::nan("")}) {
+    const std::string message = message_of(check_level(*grid, bad, where));
+    EXPECT_TRUE(message.starts_with("scene.json:3: level ")) << message;
+    EXPECT_NE(message.find("0..3.4641"), std::string::npos) << message;
+  }
+}
+
+TEST(SceneForFile, ScalarsBecomeAVolumeWithATransparentBackground) {
+  const test::TemporaryFolder folder;
+  write_grids(folder / "a.vdb");
+  auto scene = scene_for_file(folder / "a.vdb");
+  ASSERT_TRUE(scene) << message_of(scene);
+  EXPECT_EQ(scene->world.count<Volume>(), 1u);
+  EXPECT_EQ(scene->world.count<StreamlineSet>(), 0u);
+  EXPECT_FALSE(scene->camera.given);
+  EXPECT_TRUE(find_field(*scene, "ball"));
+}
+
+TEST(SceneForFile, VectorsBecomeStreamlines) {
+  const test::TemporaryFolder folder;
+  write_grids(folder / "a.vdb");
+  auto scene = scene_for_file(folder / "a.vdb", "flow");
+  ASSERT_TRUE(scene) << message_of(scene);
+  EXPECT_EQ(scene->world.count<Volume>(), 0u);
+  scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
+    EXPECT_EQ(set.seeds.size(), 120u);  // 125 less the five on the axis, where the swirl is zero
+    EXPECT_GT(set.length, 0);
+  });
+  EXPECT_TRUE(find_field(*scene, "flow"));
+}
+
+TEST(SceneForFile, Errors) {
+  const test::TemporaryFolder folder;
+  write_grids(folder / "a.vdb");
+  test::write_file(folder / "torn.vdb", "not a vdb");
+  for (const auto& [file, grid] : {std::pair{"none.vdb", ""}, std::pair{"torn.vdb", ""}, std::pair{"a.vdb", "speed"}, std::pair{"b.raw", ""}}) {
+    const std::string message = message_of(scene_for_file(folder / file, grid));
+    EXPECT_NE(message.find(file), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(CompleteTransfer, TheFullestValueIsTransparent) {
+  // 90 % background at 10, a block that rises to 110
+  std::vector<float> values(1000, 10.0f);
+  for (std::size_t i = 0; i < 100; ++i) values[i] = 11.0f + static_cast<float>(i);
+  const auto grid = field::make_scalar_grid("g", field::Mapping{}, {10, 10, 10}, values);
+  TransferFunction transfer;
+  complete_transfer(transfer, *grid);
+  ASSERT_EQ(transfer.extinctions.size(), 17u);
+  EXPECT_EQ(transfer.extinctions.front().sigma, 0);
+  EXPECT_GT(transfer.extinctions.back().sigma, 0.1);
+  EXPECT_NEAR(transfer.colors.front().value, 10, 1e-6);
+  const auto colors = transfer.colors.size();
+  complete_transfer(transfer, *grid);
+  EXPECT_EQ(transfer.colors.size(), colors);
+}
+
+TEST(CompleteTransfer, AConstantGridGetsOnePoint) {
+  const std::vector<float> values(1000, 3.0f);
+  const auto grid = field::make_scalar_grid("g", field::Mapping{}, {10, 10, 10}, values);
+  TransferFunction transfer;
+  complete_transfer(transfer, *grid);
+  ASSERT_EQ(transfer.extinctions.size(), 1u);
+  EXPECT_GT(transfer.extinctions[0].sigma, 0);
+  EXPECT_EQ(transfer.colors.size(), 1u);
+}
+
+TEST(UpdateCursor, FollowsTheState) {
+  Scene scene = scene_of("{}");
+  EXPECT_FALSE(scene.world.get<Cursor>(scene.cursor).visible);
+  exchange::HapticState state;
+  state.probe = {1, 2, 3};
+  state.force_n = {0, 0, 4};
+  state.link_count = 2;
+  state.links[1].proxy = {5, 6, 7};
+  state.links[1].active = true;
+  update_cursor(scene, state);
+  const Cursor& cursor = scene.world.get<Cursor>(scene.cursor);
+  EXPECT_TRUE(cursor.visible);
+  EXPECT_EQ(cursor.probe, Vec3(1, 2, 3));
+  ASSERT_EQ(cursor.proxies.size(), 2u);
+  EXPECT_EQ(cursor.proxies[1], Vec3(5, 6, 7));
+  EXPECT_FALSE(cursor.active[0]);
+  EXPECT_TRUE(cursor.active[1]);
+  state.probe.x = std::nan("");
+  update_cursor(scene, state);
+  EXPECT_EQ(cursor.probe, Vec3(1, 2, 3));
+}
+
+}  // namespace
+}  // namespace catena::scene

@@ -1,0 +1,87 @@
+#include <gtest/gtest.h>
+
+#include "engine/scene/scene.h"
+#include "haptics/extract/extract.h"
+#include "tests/fuzz/mutate.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace {
+
+constexpr int kMutations = 20000;
+
+const std::string kScene = R"({ // a scene that touches every reader
+  "fields": {"density": {"analytic": "sphere", "scale": 1.5, "resolution": 4, "box": [-1, 1]}, "swirl": {"analytic": "circle"},
+             "wind": {"analytic": "uniform", "direction": [0, 0, 1]}, "wall": {"analytic": "left-ventricle", "part": "fibre"}},
+  "chain": [{"name": "a", "type": "point", "position": [0, 0, 0], "release": 0.5, "on": {"button": 1}},
+            {"name": "b", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "stiffness": 20},
+            {"name": "s", "type": "isosurface", "field": "density", "level": 0.45, "free": "below", "release": 0.05}],
+  "coupling": {"stiffness": 500, "damping": 1.0, "max_force": 8, "ramp_s": 0.1},
+  "workspace": {"metres_per_unit": 0.05, "origin": [1, 2, 3], "rotation": {"axis": [0, 0, 1], "angle_deg": 30}},
+  "camera": {"position": [8, -32, 38], "target": [8.25, 0, 29.8], "up": [0, 0, 1], "fovy_deg": 30},
+  "volumes": [{"field": "density", "color": [[0.2, 0.1, 0.1, 0.4], [0.7, 0.9, 0.2, 0.1]], "opacity": [[0.2, 0.0], [0.7, 0.1]],
+               "opacity_unit": 0.18, "shade": true}, {"field": "density", "extinction": [[0, 0], [1, 3]]}],
+  "isosurfaces": [{"field": "density", "level": 0.45, "color": [0.8, 0.8, 0.9], "opacity": 0.5}],
+  "streamlines": [{"field": "swirl", "seeds": [[1.6, -0.57, 27.09], [1, 0, 0]], "radius": 0.02, "color": [1, 0.3, 0.2], "kind": "line"}],
+  "cursor": {"probe": [0, 0, 1], "size": 0.1},
+  /* done */ "background": [0, 0, 0], "quality": "time=8" })";
+
+/// A value, or one line that starts with the file's name.
+bool check(const std::string& text, bool extract) {
+  auto scene = scene::parse_scene(text, "scene.json");
+  std::string message;
+  if (!scene) {
+    message = scene.error().message;
+  } else if (extract) {
+    const auto program = haptics::extract_program(*scene);
+    if (!program) message = program.error().message;
+  }
+  if (message.empty()) return true;
+  EXPECT_TRUE(message.starts_with("scene.json:")) << message << "\nfor\n" << text;
+  EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message << "\nfor\n" << text;
+  EXPECT_LT(message.size(), 1000u) << message;
+  return false;
+}
+
+TEST(SceneFuzz, TheSeedIsValid) {
+  auto scene = scene::parse_scene(kScene, "scene.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto program = haptics::extract_program(*scene);
+  ASSERT_TRUE(program) << program.error().message;
+}
+
+TEST(SceneFuzz, EveryTruncation) {
+  for (std::size_t n = 0; n < kScene.size(); ++n) EXPECT_FALSE(check(kScene.substr(0, n), false)) << n;
+}
+
+TEST(SceneFuzz, EveryByteTurned) {
+  for (std::size_t n = 0; n < kScene.size(); ++n) {
+    std::string text = kScene;
+    text[n] = static_cast<char>(text[n] ^ 0x81);
+    check(text, false);
+  }
+}
+
+TEST(SceneFuzz, Mutations) {
+  test::Random random{1};
+  int read = 0;
+  for (int i = 0; i < kMutations && !HasFailure(); ++i) read += check(test::mutate(kScene, random), false) ? 1 : 0;
+  EXPECT_GT(read, 0);
+  EXPECT_LT(read, kMutations);
+}
+
+TEST(SceneFuzz, MutatedChainsAreExtracted) {
+  test::Random random{2};
+  for (int i = 0; i < kMutations / 10 && !HasFailure(); ++i) check(test::mutate(kScene, random), true);
+}
+
+TEST(SceneFuzz, DeepAndLongTexts) {
+  EXPECT_FALSE(check(std::string(1000000, '['), false));
+  EXPECT_FALSE(check("{\"chain\": " + std::string(100000, '{') + "}", false));
+  EXPECT_FALSE(check("{\"" + std::string(1000000, 'k') + "\": 1}", false));
+  EXPECT_FALSE(check(std::string(1000000, '\n') + "{", false));
+  EXPECT_FALSE(check("{\"quality\": " + std::string(100000, '9') + "}", false));
+}
+
+}  // namespace
+}  // namespace catena

@@ -1,0 +1,60 @@
+#include <set>
+
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+TEST(Registry, TypesAreUniqueAndFound) {
+  std::set<std::string> seen;
+  for (const ConstraintType& type : registry()) {
+    EXPECT_TRUE(seen.insert(std::string(type.type)).second) << type.type;
+    EXPECT_EQ(find_constraint(type.type), &type);
+    EXPECT_NE(type.build, nullptr);
+    for (const Key& key : type.keys)
+      for (const Key& common : common_keys()) EXPECT_NE(key.name, common.name) << type.type;
+  }
+  for (const char* type : {"point", "plane", "isosurface"}) EXPECT_NE(find_constraint(type), nullptr) << type;
+  EXPECT_EQ(find_constraint("spline"), nullptr);
+}
+
+TEST(Registry, UnknownTypeNamesTheKnownOnes) {
+  const auto made = try_build("{\n\"name\": \"a\",\n\"type\": \"spline\"}");
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().message.rfind("scene.json:3:", 0), 0u) << made.error().message;
+  EXPECT_NE(made.error().message.find("isosurface"), std::string::npos) << made.error().message;
+  EXPECT_NE(made.error().message.find("spline"), std::string::npos) << made.error().message;
+  EXPECT_EQ(made.error().message.find('\n'), std::string::npos);
+}
+
+TEST(Registry, UnknownKeyNamesItsLine) {
+  const auto made = try_build("{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0],\n\n\"positon\": 1}");
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().message.rfind("scene.json:3:", 0), 0u) << made.error().message;
+  EXPECT_NE(made.error().message.find("positon"), std::string::npos);
+}
+
+TEST(Registry, CommonKeysAreAccepted) {
+  EXPECT_TRUE(try_build(R"({"name": "a", "type": "point", "position": [0, 0, 0], "stiffness": 3, "on": {"button": 1}})"));
+}
+
+TEST(Registry, SchemaIsJsonWithEveryTypeAndKey) {
+  const auto schema = json::parse(chain_schema(), "schema");
+  ASSERT_TRUE(schema) << schema.error().message << "\n" << chain_schema();
+  const json::Node& list = *schema->find("items")->find("oneOf");
+  ASSERT_EQ(list.items.size(), registry().size());
+  for (std::size_t i = 0; i < registry().size(); ++i) {
+    const ConstraintType& type = registry()[i];
+    const json::Node& properties = *list.items[i].find("properties");
+    EXPECT_EQ(properties.find("type")->find("const")->string, type.type);
+    for (const Key& key : type.keys) ASSERT_NE(properties.find(key.name), nullptr) << key.name;
+    for (const Key& key : common_keys()) ASSERT_NE(properties.find(key.name), nullptr) << key.name;
+    EXPECT_FALSE(list.items[i].find("additionalProperties")->boolean);
+    std::set<std::string> required;
+    for (const json::Node& word : list.items[i].find("required")->items) required.insert(word.string);
+    for (const Key& key : type.keys) EXPECT_EQ(required.contains(std::string(key.name)), key.required) << key.name;
+  }
+}
+
+}  // namespace
+}  // namespace catena::haptics::test

@@ -1,0 +1,119 @@
+/// Helpers of the constraint tests: fields by name, a constraint from a piece of JSON, a link driven tick by tick.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/field/analytic.h"
+#include "engine/field/grid.h"
+#include "haptics/constraints/registry.h"
+
+namespace catena::haptics::test {
+
+using ConstraintPtr = std::shared_ptr<const Constraint>;
+
+inline field::ScalarFieldPtr analytic(const std::string& name, double scale = 1) {
+  auto made = field::make_analytic(name, {.scale = scale, .part = {}});
+  CATENA_ASSERT(static_cast<bool>(made));
+  return made->scalar;
+}
+
+inline field::ScalarFieldPtr sampled(const std::string& name, int resolution, double box = 2) {
+  return field::sample_on_grid(*analytic(name), resolution, -box, box);
+}
+
+/// A grid from a function of the world position.
+template <class F>
+std::shared_ptr<const field::ScalarGrid> grid_of(const field::Mapping& mapping, const field::Index3& size, const F& f,
+                                                 const std::vector<std::uint8_t>& valid = {}) {
+  std::vector<float> values;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) values.push_back(static_cast<float>(f(mapping.world_from_index(Vec3(x, y, z)))));
+  return field::make_scalar_grid("made", mapping, size, values, valid);
+}
+
+struct Fields {
+  std::map<std::string, field::AnyField> named;
+  BuildContext context() const {
+    BuildContext c;
+    c.field = [this](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
+      const auto it = named.find(name);
+      if (it == named.end()) return json::error_at(where, "no field " + name);
+      return it->second;
+    };
+    c.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };
+    return c;
+  }
+};
+
+inline Result<ConstraintPtr> try_build(const std::string& text, const Fields& fields = {}) {
+  auto node = json::parse(text, "scene.json");
+  if (!node) return node.error();
+  return build_constraint(*node, fields.context());
+}
+
+inline ConstraintPtr build(const std::string& text, const Fields& fields = {}) {
+  auto made = try_build(text, fields);
+  if (!made) {
+    ADD_FAILURE() << made.error().message << "\n" << text;
+    return nullptr;
+  }
+  return *made;
+}
+
+inline ConstraintPtr isosurface(field::ScalarFieldPtr f, double level, const std::string& more = "") {
+  Fields fields;
+  fields.named["f"].scalar = std::move(f);
+  char number[40];
+  std::snprintf(number, sizeof number, "%.17g", level);
+  return build(std::string(R"({"name": "a", "type": "isosurface", "field": "f", "level": )") + number + more + "}", fields);
+}
+
+inline bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// One link, as the tick drives it.
+struct Rig {
+  explicit Rig(ConstraintPtr c) : constraint(std::move(c)) {}
+  const LinkState& tick(const Vec3& probe) {
+    state.evaluations = 0;
+    if (!state.started) {
+      state.on = state.started = true;
+      constraint->start(probe, state, scratch);
+    }
+    constraint->advance(probe, state, scratch);
+    return state;
+  }
+  ConstraintPtr constraint;
+  LinkState state;
+  LinkScratch scratch;
+};
+
+struct Random {
+  std::mt19937_64 engine;
+  explicit Random(std::uint64_t seed) : engine(seed) {}
+  double in(double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(engine() >> 11) * 0x1p-53); }
+  Vec3 box(double half) { return {in(-half, half), in(-half, half), in(-half, half)}; }
+  Vec3 unit() {
+    while (true) {
+      const Vec3 v = box(1);
+      if (dot(v, v) < 1 && dot(v, v) > 1e-4) return direction(v);
+    }
+  }
+};
+
+/// p50, p99 and max of a sample.
+struct Spread {
+  std::vector<int> values;
+  void add(int v) { values.push_back(v); }
+  int at(double part) {
+    std::sort(values.begin(), values.end());
+    return values.empty() ? 0 : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+  }
+};
+
+}  // namespace catena::haptics::test

@@ -1,0 +1,70 @@
+#include "haptics/device/mouse.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+namespace catena::haptics {
+namespace {
+
+TEST(Mouse, BeginsWhereItIsPut) {
+  MouseDevice mouse({1.0, 2.0, 3.0});
+  const DeviceInput input = mouse.read();
+  EXPECT_EQ(input.position_m, Vec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(input.buttons, 0u);
+  EXPECT_TRUE(input.connected);
+  EXPECT_FALSE(input.recorded);
+}
+
+TEST(Mouse, WithoutSmoothingTheNewestPlaceCounts) {
+  MouseDevice mouse(Vec3(0.0), {0, 1000});
+  mouse.move_to({1.0, 0.0, 0.0}, 1);
+  mouse.move_to({2.0, 0.0, 0.0}, 3);
+  EXPECT_EQ(mouse.read().position_m, Vec3(2.0, 0.0, 0.0));
+  EXPECT_EQ(mouse.read().buttons, 3u);
+}
+
+TEST(Mouse, MotionIsEasedByTheTimeConstant) {
+  MouseDevice mouse(Vec3(0.0), {0.02, 1000});
+  mouse.move_to({1.0, 0.0, 0.0}, 0);
+  double last = 0;
+  for (int k = 1; k <= 20; ++k) {
+    const double x = mouse.read().position_m.x;
+    EXPECT_GT(x, last);
+    EXPECT_LT(x - last, 0.05);
+    last = x;
+  }
+  EXPECT_NEAR(last, 1 - std::exp(-1), 1e-12);
+
+  // and comes to rest exactly
+  for (int k = 0; k < 1000; ++k) mouse.read();
+  EXPECT_EQ(mouse.read().position_m, Vec3(1.0, 0.0, 0.0));
+}
+
+TEST(Mouse, ANonFinitePlaceIsIgnored) {
+  MouseDevice mouse(Vec3(0.0), {0, 1000});
+  mouse.move_to({std::nan(""), 0.0, 0.0}, 1);
+  EXPECT_EQ(mouse.read().position_m, Vec3(0.0));
+}
+
+TEST(Mouse, PlacesAreNeverTornBetweenThreads) {
+  MouseDevice mouse(Vec3(0.0), {0, 1000});
+  constexpr int kMoves = 20000;
+  std::thread frame([&] {
+    for (int i = 1; i <= kMoves; ++i) mouse.move_to(Vec3(static_cast<double>(i)), static_cast<std::uint32_t>(i));
+  });
+  double last = 0;
+  while (last < kMoves) {
+    const DeviceInput input = mouse.read();
+    ASSERT_EQ(input.position_m.x, input.position_m.y);
+    ASSERT_EQ(input.position_m.x, input.position_m.z);
+    ASSERT_EQ(static_cast<double>(input.buttons), input.position_m.x);
+    ASSERT_GE(input.position_m.x, last);
+    last = input.position_m.x;
+  }
+  frame.join();
+}
+
+}  // namespace
+}  // namespace catena::haptics

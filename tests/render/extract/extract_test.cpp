@@ -1,0 +1,173 @@
+#include "render/extract/extract.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/support.h"
+
+namespace catena::render {
+namespace {
+
+scene::Scene scene_of(const std::string& text) {
+  auto scene = scene::parse_scene(text, "test.json");
+  EXPECT_TRUE(scene) << scene.error().message;
+  return std::move(*scene);
+}
+
+FramePacket packet_of(scene::Scene& scene, std::uint32_t width = 320, std::uint32_t height = 240) {
+  auto packet = extract_frame(scene, width, height);
+  EXPECT_TRUE(packet) << (packet ? "" : packet.error().message);
+  return std::move(*packet);
+}
+
+std::string error_of(const std::string& text) {
+  scene::Scene scene = scene_of(text);
+  const auto packet = extract_frame(scene, 32, 32);
+  EXPECT_FALSE(packet);
+  return packet ? std::string() : packet.error().message;
+}
+
+const std::string kSphere = R"("s": {"analytic": "sphere", "resolution": 9})", kCircle = R"("v": {"analytic": "circle"})";
+
+TEST(Extract, AnEmptySceneIsABackgroundAndAView) {
+  scene::Scene scene = scene_of(R"({"fields": {}, "chain": [], "background": [0.1, 0.2, 0.3]})");
+  const FramePacket packet = packet_of(scene);
+  EXPECT_EQ(packet.background, (std::array<float, 4>{0.1f, 0.2f, 0.3f, 1.0f}));
+  EXPECT_TRUE(packet.volumes.empty() && packet.isosurfaces.empty() && packet.tubes.empty() && packet.cursors.empty());
+  EXPECT_TRUE(is_finite(packet.view.position));
+}
+
+TEST(Extract, TransparentBackgroundHasNoAlpha) {
+  scene::Scene scene = scene_of(R"({"fields": {}, "chain": [], "background": "transparent"})");
+  EXPECT_EQ(packet_of(scene).background[3], 0.0f);
+}
+
+TEST(Extract, OpacityBecomesExtinctionAtItsPoints) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kSphere +
+                                R"(}, "volumes": [{"field": "s", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0.25]],
+                                                   "opacity": [[0, 0], [1, 0.5], [2, 0.1]], "opacity_unit": 0.25, "shade": true}]})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.volumes.size(), 1u);
+  const VolumeItem& volume = packet.volumes[0];
+  EXPECT_TRUE(volume.shade);
+  ASSERT_EQ(volume.transfer.extinctions.size(), 3u);
+  EXPECT_EQ(volume.transfer.extinctions[0], (std::array<double, 2>{0, 0}));
+  EXPECT_DOUBLE_EQ(volume.transfer.extinctions[1][1], std::log(2.0) / 0.25);
+  EXPECT_DOUBLE_EQ(volume.transfer.extinctions[2][1], -std::log(0.9) / 0.25);
+  EXPECT_EQ(volume.transfer.colors[1], (std::array<double, 4>{2, 1, 0.5, 0.25}));
+  EXPECT_NEAR(volume.grid->max_value(), std::sqrt(12.0), 1e-6);
+}
+
+TEST(Extract, TheUnitOfOpacityIsTheSmallestVoxelEdge) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "volumes": [{"field": "s", "opacity": [[1, 0.5]]}]})");
+  EXPECT_DOUBLE_EQ(packet_of(scene).volumes[0].transfer.extinctions[0][1], std::log(2.0) / 0.5);  // 4 / 8 cells
+}
+
+TEST(Extract, AVolumeWithoutTransferGetsOne) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "volumes": [{"field": "s"}]})");
+  const TransferTable table = packet_of(scene).volumes[0].transfer;
+  EXPECT_FALSE(table.colors.empty());
+  EXPECT_FALSE(table.extinctions.empty());
+}
+
+TEST(Extract, IsosurfacesCarryTheirLevel) {
+  scene::Scene scene =
+      scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1.25, "color": [1, 0, 0], "opacity": 0.5}]})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.isosurfaces.size(), 1u);
+  EXPECT_EQ(packet.isosurfaces[0].level, 1.25);
+  EXPECT_EQ(packet.isosurfaces[0].color.r, 1.0f);
+  EXPECT_EQ(packet.isosurfaces[0].opacity, 0.5f);
+}
+
+TEST(Extract, TubesAreTheFeltCurve) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(},
+    "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0.5]}],
+    "streamlines": [{"field": "v", "seeds": [[1, 0, 0.5]], "color": [0, 1, 0]}]})");
+  const auto field = scene::use_field(scene, "v", json::Node());
+  ASSERT_TRUE(field);
+  const auto felt = scene::use_curve(scene, {field->vector.get()}, {1.0, 0.0, 0.5}, json::Node());
+  ASSERT_TRUE(felt);
+  const FramePacket packet = packet_of(scene);
+  EXPECT_EQ(scene.curves.size(), 1u) << "one object for the hand and the eye";
+  ASSERT_EQ(packet.tubes.size(), 1u);
+  const TubeItem& tube = packet.tubes[0];
+  EXPECT_NEAR(tube.radius, 0.003 * std::sqrt(48.0), 1e-12);  // of the box -2..2
+  EXPECT_EQ(tube.points.front(), tube.points.back());
+  for (const Vec3& p : tube.points) EXPECT_NEAR(std::hypot(p.x, p.y), 1, 1e-8);
+
+  // a second packet takes the polyline as it is
+  EXPECT_EQ(packet_of(scene).tubes[0].points, tube.points);
+}
+
+TEST(Extract, LinksAreNotDrawnByThemselves) {
+  scene::Scene scene =
+      scene_of("{\"fields\": {" + kCircle + R"(}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}]})");
+  EXPECT_TRUE(packet_of(scene).tubes.empty());
+  EXPECT_TRUE(scene.curves.empty()) << "and nothing is loaded or traced for the eye";
+}
+
+TEST(Extract, TheCursorShowsOnceItIsVisible) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "radius": 0.5}]})");
+  EXPECT_TRUE(packet_of(scene).cursors.empty());
+  scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+  cursor.visible = true;
+  cursor.probe = {1.0, 2.0, 3.0};
+  cursor.proxies = {{0.0, 0.0, 1.0}, {0.0, 0.0, 2.0}};
+  cursor.active = {true};
+  cursor.force_n = {0.0, 0.0, 1.0};
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.cursors.size(), 1u);
+  EXPECT_EQ(packet.cursors[0].probe, cursor.probe);
+  EXPECT_EQ(packet.cursors[0].proxies, cursor.proxies);
+  EXPECT_EQ(packet.cursors[0].active.size(), 2u);
+  EXPECT_GT(packet.cursors[0].size * 0.7, 0.5) << "every proxy's ball covers the tube it sits on";
+
+  cursor.size = 0.25;
+  EXPECT_EQ(packet_of(scene).cursors[0].size, 0.25);
+  cursor.probe.x = std::nan("");
+  EXPECT_TRUE(packet_of(scene).cursors.empty());
+}
+
+TEST(Extract, TheFittedCameraSeesEverything) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kSphere + "," + kCircle +
+                                R"(}, "isosurfaces": [{"field": "s", "level": 1}], "streamlines": [{"field": "v", "seeds": [[1, 0, 5]]}]})");
+  const FramePacket packet = packet_of(scene);
+  const Bounds bounds = packet_bounds(packet);
+  EXPECT_GT(bounds.hi.z, 5);
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, bounds);
+  for (int i = 0; i < 8; ++i) {
+    const auto p = project(camera, bounds.corner(i));
+    ASSERT_TRUE(p);
+    EXPECT_TRUE(p->x > 0 && p->x < 320 && p->y > 0 && p->y < 240);
+    EXPECT_TRUE(p->z > camera.near && p->z < camera.far);
+  }
+}
+
+TEST(Extract, AGivenCameraIsTakenAsItIs) {
+  scene::Scene scene =
+      scene_of(R"({"fields": {}, "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0], "projection": "orthographic", "height": 7}})");
+  const View view = packet_of(scene).view;
+  EXPECT_EQ(view.position, Vec3(1.0, 2.0, 3.0));
+  EXPECT_EQ(view.target, Vec3(4.0, 5.0, 6.0));
+  EXPECT_EQ(view.up, Vec3(0.0, 1.0, 0.0));
+  EXPECT_TRUE(view.orthographic);
+  EXPECT_EQ(view.height, 7);
+}
+
+TEST(Extract, ErrorsNameThePlaceAndWhatWasExpected) {
+  std::string e = error_of("{\"fields\": {" + kCircle + "},\n\"volumes\": [{\"field\": \"v\"}]}");
+  EXPECT_NE(e.find("test.json:2:"), std::string::npos) << e;
+  EXPECT_NE(e.find("expected a scalar field"), std::string::npos) << e;
+  e = error_of("{\"fields\": {" + kSphere + "},\n\n\"streamlines\": [{\"field\": \"s\", \"seeds\": [[1, 0, 0]]}]}");
+  EXPECT_NE(e.find("test.json:3:"), std::string::npos) << e;
+  EXPECT_NE(e.find("expected a vector field"), std::string::npos) << e;
+  e = error_of("{\"fields\": {" + kSphere + "},\n\"isosurfaces\": [{\"field\": \"s\",\n\"level\": 17}]}");
+  EXPECT_NE(e.find("test.json:3:"), std::string::npos) << e;
+  e = error_of("{\"fields\": {" + kCircle + "},\n\"streamlines\": [{\"field\": \"v\", \"seeds\": [[1, 0, 0],\n[0, 0, 0]]}]}");
+  EXPECT_NE(e.find("test.json:3:"), std::string::npos) << e;
+}
+
+}  // namespace
+}  // namespace catena::render
