@@ -66,7 +66,8 @@ Result<Table> parse_csv(std::string_view text, const std::string& file, const st
 
   // blank lines at the end do not count
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  if (text.empty()) return reader.error(1, "is empty; the header " + header_words(required, optional) + " and rows of numbers were expected");
+  if (text.empty())
+    return reader.error(1, "is empty; the header " + header_words(required, optional) + " and rows of numbers were expected");
 
   bool last_line = false;
   CATENA_TRY(const auto names, reader.header(take(text, '\n', last_line)));
@@ -92,8 +93,8 @@ Result<Table> parse_csv(std::string_view text, const std::string& file, const st
     const auto cells = static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) + 1;
     if (trim(row).empty()) return reader.error(line, "is blank; " + std::to_string(names.size()) + " numbers were expected");
     if (cells != names.size())
-      return reader.error(line, "has " + std::to_string(cells) + (cells == 1 ? " cell; " : " cells; ") + std::to_string(names.size()) +
-                                    " were expected");
+      return reader.error(
+          line, "has " + std::to_string(cells) + (cells == 1 ? " cell; " : " cells; ") + std::to_string(names.size()) + " were expected");
     bool last = false;
     for (std::size_t i = 0; i < cells; ++i) {
       const std::string_view cell = take(row, ',', last);

@@ -21,9 +21,7 @@ class Lines {
     for (std::size_t i = 0; i < text.size(); ++i)
       if (text[i] == '\n' || (text[i] == '\r' && !(i + 1 < text.size() && text[i + 1] == '\n'))) ends_.push_back(i);
   }
-  int at(std::size_t offset) const {
-    return 1 + static_cast<int>(std::lower_bound(ends_.begin(), ends_.end(), offset) - ends_.begin());
-  }
+  int at(std::size_t offset) const { return 1 + static_cast<int>(std::lower_bound(ends_.begin(), ends_.end(), offset) - ends_.begin()); }
 
  private:
   std::vector<std::size_t> ends_;
@@ -91,8 +89,9 @@ Error first_error(const std::string& file, const std::string& report) {
   while (!message.empty() && message.back() == '.') message.pop_back();
   if (message.starts_with("Duplicate key: '")) {
     const std::size_t first = message.find('\'') + 1, last = message.rfind('\'');
-    return error_on_line(file, line, "duplicate key " + in_quotes(std::string_view(message).substr(first, last > first ? last - first : 0)) +
-                                         "; each key was expected once");
+    return error_on_line(file, line,
+                         "duplicate key " + in_quotes(std::string_view(message).substr(first, last > first ? last - first : 0)) +
+                             "; each key was expected once");
   }
   if (message.ends_with("is not a number")) return error_on_line(file, line, message + "; a finite number was expected");
   return error_on_line(file, line, "is not valid JSON: " + message + "; JSON (comments allowed) was expected");
@@ -108,7 +107,8 @@ class Converter {
     node.label = std::move(label);
     node.line = lines_.at(static_cast<std::size_t>(value.getOffsetStart()));
     switch (value.type()) {
-      case Json::nullValue: break;
+      case Json::nullValue:
+        break;
       case Json::booleanValue:
         node.kind = Kind::boolean;
         node.boolean = value.asBool();

@@ -24,8 +24,8 @@ struct Node {
   bool boolean = false;
   double number = 0;
   std::string string;
-  std::vector<Node> items;                             ///< array
-  std::vector<std::pair<std::string, Node>> members;   ///< object, in file order; keys are unique
+  std::vector<Node> items;                            ///< array
+  std::vector<std::pair<std::string, Node>> members;  ///< object, in file order; keys are unique
 
   const Node* find(std::string_view key) const;  ///< nullptr if absent (or not an object)
   bool is_null() const { return kind == Kind::null; }
@@ -37,8 +37,6 @@ Result<Node> read(const std::string& path);
 
 /// "scene.json:12: WHAT" at the node's place; without the line where it is 0, without the file where there is none.
 Error error_at(const Node& node, const std::string& what);
-/// The node's place without its contents: cheap to keep for later messages.
-Node place_of(const Node& node);
 
 /// An error for the first member whose key is not in `keys`, naming the nearest allowed ones.
 Outcome only_keys(const Node& object, std::initializer_list<std::string_view> keys);

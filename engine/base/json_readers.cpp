@@ -8,21 +8,30 @@ namespace {
 /// What the node holds, for "... but X was found".
 std::string shown(const Node& node) {
   switch (node.kind) {
-    case Kind::null: return "null";
-    case Kind::boolean: return node.boolean ? "true" : "false";
-    case Kind::number: return to_text(node.number);
-    case Kind::string: return in_quotes(node.string);
-    case Kind::array: return "an array of " + std::to_string(node.items.size());
-    case Kind::object: return "an object";
+    case Kind::null:
+      return "null";
+    case Kind::boolean:
+      return node.boolean ? "true" : "false";
+    case Kind::number:
+      return to_text(node.number);
+    case Kind::string:
+      return in_quotes(node.string);
+    case Kind::array:
+      return "an array of " + std::to_string(node.items.size());
+    case Kind::object:
+      return "an object";
   }
   return "null";
 }
 
 const char* range_words(Range range) {
   switch (range) {
-    case Range::any: return "a finite number";
-    case Range::positive: return "a finite number > 0";
-    case Range::not_negative: return "a finite number >= 0";
+    case Range::any:
+      return "a finite number";
+    case Range::positive:
+      return "a finite number > 0";
+    case Range::not_negative:
+      return "a finite number >= 0";
   }
   return "a finite number";
 }
@@ -39,20 +48,13 @@ Error missing(const Node& object, std::string_view key, const std::string& expec
 
 }  // namespace
 
-Node place_of(const Node& node) {
-  Node place;
-  place.line = node.line;
-  place.file = node.file;
-  place.label = node.label;
-  return place;
-}
-
 Outcome only_keys(const Node& object, const std::vector<std::string_view>& keys) {
   for (const auto& [name, value] : object.members) {
     bool known = false;
     for (std::string_view key : keys) known = known || key == name;
     if (known) continue;
-    return error_at(value, "unknown key " + in_quotes(name) + " " + place_words(object) + "; known: " + joined(keys) + suggestion(name, keys));
+    return error_at(value,
+                    "unknown key " + in_quotes(name) + " " + place_words(object) + "; known: " + joined(keys) + suggestion(name, keys));
   }
   return Done{};
 }
@@ -139,7 +141,8 @@ Result<Vec3> as_vec3(const Node& node, std::string_view what) {
   Vec3 v(0.0);
   for (int i = 0; i < 3; ++i) {
     const Node& item = node.items[static_cast<std::size_t>(i)];
-    if (item.kind != Kind::number || !std::isfinite(item.number)) return error_at(item, in_quotes(what) + " holds " + shown(item) + "; " + expected + " were expected");
+    if (item.kind != Kind::number || !std::isfinite(item.number))
+      return error_at(item, in_quotes(what) + " holds " + shown(item) + "; " + expected + " were expected");
     v[i] = item.number;
   }
   return v;

@@ -1,6 +1,8 @@
 #include "engine/base/numbers.h"
 
 #include <charconv>
+#include <cmath>
+#include <cstdlib>
 
 namespace catena {
 
@@ -35,7 +37,17 @@ std::optional<T> parse(std::string_view text) {
 }
 }  // namespace
 
-std::optional<double> parse_double(std::string_view text) { return parse<double>(text); }
+std::optional<double> parse_double(std::string_view text) {
+  if (const auto value = parse<double>(text)) return value;
+  // from_chars refuses what is too small for a double; that is zero, or nearly
+  text = trim(text);
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (code != std::errc::result_out_of_range || end != text.data() + text.size()) return std::nullopt;
+  value = std::strtod(std::string(text).c_str(), nullptr);
+  if (!std::isfinite(value)) return std::nullopt;
+  return value;
+}
 std::optional<long long> parse_integer(std::string_view text) { return parse<long long>(text); }
 
 }  // namespace catena

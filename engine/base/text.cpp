@@ -10,7 +10,9 @@
 namespace catena {
 
 Result<std::string> read_text(const std::string& path, std::string_view expected) {
-  const auto failed = [&](const std::string& why) { return Error{one_line(path + ": " + why + "; " + std::string(expected) + " was expected")}; };
+  const auto failed = [&](const std::string& why) {
+    return Error{one_line(path + ": " + why + "; " + std::string(expected) + " was expected")};
+  };
   std::error_code code;
   if (std::filesystem::is_directory(path, code)) return failed("is a folder");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return std::fclose(f); });

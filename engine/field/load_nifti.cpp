@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <vector>
 
 #include "engine/field/files.h"
@@ -66,8 +67,8 @@ Result<std::vector<std::byte>> read_bytes(const std::string& path, const nifti_i
   // one byte beyond lets the decompressor check its trailer when the volume is the whole file
   std::byte beyond{};
   const bool whole = image.nvox * static_cast<std::size_t>(image.nbyper) == bytes;
-  const bool sound = !whole || znzread(&beyond, 1, 1, file) <= 1;
-  znzclose(file);
+  bool sound = !whole || znzread(&beyond, 1, 1, file) <= 1;
+  sound = znzclose(file) == 0 && sound;
   if (got != bytes) return short_of(got > bytes ? 0 : got);
   if (!sound) return Error{fmt::format("{}: the compressed file is cut short or damaged", path)};
   if (image.swapsize > 1 && image.byteorder != nifti_short_order())
@@ -75,11 +76,23 @@ Result<std::vector<std::byte>> read_bytes(const std::string& path, const nifti_i
   return data;
 }
 
+/// The header is looked at first: the library reports some bad ones on stderr, whatever its debug level.
+Image read_header(const std::string& path) {
+  nifti_set_debug_level(0);
+  int swapped = 0;
+  const std::unique_ptr<nifti_1_header, decltype(&std::free)> header(nifti_read_header(path.c_str(), &swapped, 0), &std::free);
+  if (!header || nifti_hdr_looks_good(header.get()) == 0) return nullptr;
+  const int dimensions = header->dim[0];
+  if (dimensions < 1 || dimensions > 7 || header->datatype == DT_BINARY || header->datatype == DT_UNKNOWN) return nullptr;
+  for (int d = 1; d <= dimensions; ++d)
+    if (header->dim[d] < 1) return nullptr;
+  return Image(nifti_image_read(path.c_str(), 0));
+}
+
 Result<Volume> read_volume(const std::string& path) {
   // the header
   CATENA_TRY(const std::uint64_t file_size, readable_file(path));
-  nifti_set_debug_level(0);
-  const Image image(nifti_image_read(path.c_str(), 0));
+  const Image image = read_header(path);
   if (!image) return Error{fmt::format("{}: this is not a NIfTI-1 file, or its header is damaged", path)};
   const std::string_view word = word_of(image->datatype);
   const auto type = number_type(word);

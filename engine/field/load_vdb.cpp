@@ -72,10 +72,26 @@ openvdb::FloatTree::Ptr float_tree(const openvdb::GridBase::Ptr& grid) {
   return nullptr;
 }
 
+/// OpenVDB converts numbers on its own, but not vectors: the same topology, then every value, active or not.
+template <class Tree>
+openvdb::Vec3fTree::Ptr converted(const Tree& from) {
+  auto to = std::make_shared<openvdb::Vec3fTree>(from, openvdb::Vec3f(from.background()), openvdb::TopologyCopy());
+  std::vector<const typename Tree::LeafNodeType*> sources;
+  from.getNodes(sources);
+  for (const auto* source : sources) {
+    auto* leaf = to->probeLeaf(source->origin());
+    for (openvdb::Index n = 0; n < Tree::LeafNodeType::SIZE; ++n) leaf->setValueOnly(n, openvdb::Vec3f(source->getValue(n)));
+  }
+  auto tile = to->beginValueAll();
+  tile.setMaxDepth(openvdb::Vec3fTree::ValueAllIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) tile.setValue(openvdb::Vec3f(from.getValue(tile.getCoord())));
+  return to;
+}
+
 openvdb::Vec3fTree::Ptr vector_tree(const openvdb::GridBase::Ptr& grid) {
   if (auto g = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid)) return g->treePtr();
-  if (auto g = openvdb::gridPtrCast<openvdb::Vec3DGrid>(grid)) return std::make_shared<openvdb::Vec3fTree>(g->tree());
-  if (auto g = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grid)) return std::make_shared<openvdb::Vec3fTree>(g->tree());
+  if (auto g = openvdb::gridPtrCast<openvdb::Vec3DGrid>(grid)) return converted(g->tree());
+  if (auto g = openvdb::gridPtrCast<openvdb::Vec3IGrid>(grid)) return converted(g->tree());
   return nullptr;
 }
 

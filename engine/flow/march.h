@@ -60,7 +60,7 @@ class March {
       Vec3 u;
       const Stop stop = medium_.rate(q_, w_, u);
       if (stop == Stop::outside) return End::boundary;
-      if (stop != Stop::none) return End::critical;
+      if (stop != Stop::none || dot(u, u_) < 0.5) return End::critical;  // a line field may jump at a face, around a singular line
       u_ = u;
       medium_.turn(u_);
       const Settled settled = medium_.settle(q_, w_);
@@ -120,8 +120,10 @@ class March {
     std::optional<End> end;
     if (left && !medium_.hop(way)) end = End::boundary;
     if (!end) end = start_in_cell();
-    if (knots.size() > 1 && std::fabs(s_ - std::fabs(knots.back().s)) < 1e-10 * domain_) knots.pop_back();
-    knots.push_back({sign_ * s_, medium_.world(q_), sign_ * u_});
+    // of knots closer than 1e-10 L only the later stays, but the seed always
+    const bool close = s_ - std::fabs(knots.back().s) < 1e-10 * domain_;
+    if (close && knots.size() > 1) knots.pop_back();
+    if (!close || knots.size() > 1 || end) knots.push_back({sign_ * s_, medium_.world(q_), sign_ * u_});
     if (!end && norm(u_ - u_start) * kCapture * 2 * domain_ > h) end = capture(knots);
     return end;
   }
@@ -130,7 +132,7 @@ class March {
     Vec3 u;
     const Stop stop = medium_.rate(q_, w_, u);
     if (stop == Stop::outside) return End::boundary;
-    if (stop != Stop::none) return End::critical;
+    if (stop != Stop::none || dot(u, u_) < 0.5) return End::critical;
     u_ = u;
     return std::nullopt;
   }

@@ -7,9 +7,9 @@
 namespace catena::scene {
 namespace {
 
-constexpr int kLattice = 5;             // seeds an axis
-constexpr double kSlowShare = 0.05;     // of the fastest seed: not worth a line
-constexpr double kLengthShare = 2.0;    // of L, in each direction
+constexpr int kLattice = 5;           // seeds an axis
+constexpr double kSlowShare = 0.05;   // of the fastest seed: not worth a line
+constexpr double kLengthShare = 2.0;  // of L, in each direction
 constexpr Rgb kLineColor{0.96f, 0.66f, 0.26f};
 
 /// The grid asked for; else the only one; else the first scalar one, else the first vector one.
@@ -56,7 +56,8 @@ std::vector<Vec3> lattice_seeds(const field::VectorField& field) {
 }  // namespace
 
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid) {
-  if (path.ends_with(".raw")) return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
+  if (path.ends_with(".raw"))
+    return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
   field::LoadRequest request;
   request.path = path;
   request.grid = grid;

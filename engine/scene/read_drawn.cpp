@@ -7,7 +7,8 @@ namespace {
 
 Result<Rgb> rgb_of(const Vec3& c, const json::Node& node, std::string_view what) {
   for (int i = 0; i < 3; ++i)
-    if (!(c[i] >= 0 && c[i] <= 1)) return json::error_at(node, in_quotes(what) + " holds " + to_text(c[i]) + "; colour components from 0 to 1 were expected");
+    if (!(c[i] >= 0 && c[i] <= 1))
+      return json::error_at(node, in_quotes(what) + " holds " + to_text(c[i]) + "; colour components from 0 to 1 were expected");
   return Rgb{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
 }
 
@@ -21,7 +22,8 @@ Result<Rgb> get_color(const json::Node& object, std::string_view key, const Rgb&
 /// Rows [value, ...] of a table, values rising strictly, at least one.
 Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std::string_view what, std::size_t width) {
   CATENA_TRY(auto rows, json::as_rows(node, what, width));
-  if (rows.empty()) return json::error_at(node, in_quotes(what) + " is empty; at least one row of " + std::to_string(width) + " numbers was expected");
+  if (rows.empty())
+    return json::error_at(node, in_quotes(what) + " is empty; at least one row of " + std::to_string(width) + " numbers was expected");
   for (std::size_t i = 1; i < rows.size(); ++i)
     if (!(rows[i][0] > rows[i - 1][0]))
       return json::error_at(node.items[i], in_quotes(what) + " has the value " + to_text(rows[i][0]) + " after " + to_text(rows[i - 1][0]) +
@@ -55,7 +57,8 @@ Result<TransferFunction> read_transfer(const json::Node& node) {
   if (extinction != nullptr) {
     CATENA_TRY(const auto rows, read_table(*extinction, "extinction", 2));
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!(rows[i][1] >= 0)) return json::error_at(extinction->items[i], "\"extinction\" holds " + to_text(rows[i][1]) + "; a sigma >= 0 was expected");
+      if (!(rows[i][1] >= 0))
+        return json::error_at(extinction->items[i], "\"extinction\" holds " + to_text(rows[i][1]) + "; a sigma >= 0 was expected");
       transfer.extinctions.push_back({rows[i][0], rows[i][1]});
     }
   }
@@ -80,8 +83,8 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
   if (const Entity field = find_field(scene, name)) return field;
   std::vector<std::string_view> names;
   scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(*object.find(key), "unknown field " + in_quotes(name) + "; known: " + (names.empty() ? "none" : joined(names)) + ", one of \"fields\" was expected" +
-                                               suggestion(name, names));
+  return json::error_at(*object.find(key), "unknown field " + in_quotes(name) + "; known: " + (names.empty() ? "none" : joined(names)) +
+                                               ", one of \"fields\" was expected" + suggestion(name, names));
 }
 
 Outcome read_volumes(Scene& scene, const json::Node& node) {
@@ -106,7 +109,8 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
     CATENA_TRY(surface.level, json::require_number(item, "level"));
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
     CATENA_TRY(surface.opacity, json::get_number(item, "opacity", surface.opacity, json::Range::not_negative));
-    if (surface.opacity > 1) return json::error_at(*item.find("opacity"), "\"opacity\" is " + to_text(surface.opacity) + "; a number from 0 to 1 was expected");
+    if (surface.opacity > 1)
+      return json::error_at(*item.find("opacity"), "\"opacity\" is " + to_text(surface.opacity) + "; a number from 0 to 1 was expected");
     scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));
     return Done{};
   });

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 
@@ -49,7 +47,8 @@ Result<field::RawLayout> read_raw_layout(const json::Node& node) {
   if (!(layout.spacing.x > 0 && layout.spacing.y > 0 && layout.spacing.z > 0))
     return json::error_at(*node.find("spacing"), "\"spacing\" is not positive; three finite numbers > 0 were expected");
   CATENA_TRY(layout.origin, json::get_vec3(node, "origin", layout.origin));
-  const std::initializer_list<std::string_view> types = {"float32", "float64", "uint8", "int8", "uint16", "int16", "uint32", "int32", "float32x3"};
+  const std::initializer_list<std::string_view> types = {"float32", "float64", "uint8", "int8",     "uint16",
+                                                         "int16",   "uint32",  "int32", "float32x3"};
   CATENA_TRY(const int type, json::get_choice(node, "type", 0, types));
   layout.type = types.begin()[type];
   return layout;
@@ -98,7 +97,8 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
 
   if (const json::Node* direction_node = node.find("direction")) {
     if (source.analytic != "uniform")
-      return json::error_at(*direction_node, "\"direction\" does not belong to " + in_quotes(source.analytic) + "; it was expected for \"uniform\" only");
+      return json::error_at(*direction_node,
+                            "\"direction\" does not belong to " + in_quotes(source.analytic) + "; it was expected for \"uniform\" only");
     CATENA_TRY(source.parameters.direction, json::as_vec3(*direction_node, "direction"));
     if (norm(source.parameters.direction) == 0)
       return json::error_at(*direction_node, "\"direction\" is zero; a vector other than [0, 0, 0] was expected");
@@ -106,13 +106,15 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
 
   // a part is a grid of what `generate` writes
   const json::Node* part = node.find("part");
-  if (part != nullptr && node.find("grid") != nullptr) return json::error_at(*part, "both \"part\" and \"grid\" are given; one of them was expected");
+  if (part != nullptr && node.find("grid") != nullptr)
+    return json::error_at(*part, "both \"part\" and \"grid\" are given; one of them was expected");
   const char* part_key = part != nullptr ? "part" : "grid";
   CATENA_TRY(const std::string word, json::get_string(node, part_key, {}));
   if (const json::Node* part_node = node.find(part_key)) {
     const auto parts = field::analytic_parts(source.analytic);
     if (std::count(parts.begin(), parts.end(), word) == 0)
-      return json::error_at(*part_node, "unknown part " + in_quotes(word) + " of " + in_quotes(source.analytic) + "; one of " + joined(parts) + " was expected");
+      return json::error_at(*part_node, "unknown part " + in_quotes(word) + " of " + in_quotes(source.analytic) + "; one of " +
+                                            joined(parts) + " was expected");
     if (word != source.analytic) source.parameters.part = word;
   }
 
@@ -153,7 +155,8 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
   }
   FieldSource& source = scene.world.get<FieldSource>(entity);
   LoadRequest request = source.file.value_or(LoadRequest{});
-  if (is_raw(with.file) && !request.raw) return failed("the shape of a .raw file is not known; a field of the scene that states it was expected");
+  if (is_raw(with.file) && !request.raw)
+    return failed("the shape of a .raw file is not known; a field of the scene that states it was expected");
   if (!is_raw(with.file)) request.raw.reset();
   request.path = with.file;
   request.valid_required = false;
@@ -176,7 +179,8 @@ Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<Fiel
   if (const json::Node* fields = root.find("fields")) {
     CATENA_CHECK(json::expect_object(*fields, "fields"));
     for (const auto& [name, node] : fields->members) {
-      if (!is_name(name)) return json::error_at(node, "field name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+      if (!is_name(name))
+        return json::error_at(node, "field name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
       const auto has_name = [&name = name](const FieldOverride& o) { return o.name == name; };
       const bool replaced = std::any_of(overrides.begin(), overrides.end(), has_name);
       FieldSource source;

@@ -27,7 +27,8 @@ Result<Mat3> read_rotation(const json::Node& node) {
     return rotation;
   }
   const bool flat = node.kind == json::Kind::array && node.items.size() == 9;
-  if (node.kind != json::Kind::array || (!flat && node.items.size() != 3)) return json::error_at(node, "\"rotation\" has the wrong shape; " + expected);
+  if (node.kind != json::Kind::array || (!flat && node.items.size() != 3))
+    return json::error_at(node, "\"rotation\" has the wrong shape; " + expected);
   Mat3 rotation(1.0);
   for (int row = 0; row < 3; ++row) {
     Vec3 values(0.0);
@@ -57,13 +58,16 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const json::Node& item = node.items[i];
     if (i >= kMostLinks)
-      return json::error_at(item, "\"chain\" has " + std::to_string(node.items.size()) + " links; at most " + std::to_string(kMostLinks) + " were expected");
+      return json::error_at(
+          item, "\"chain\" has " + std::to_string(node.items.size()) + " links; at most " + std::to_string(kMostLinks) + " were expected");
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     const json::Node& name_node = *item.find("name");
-    if (!is_name(name)) return json::error_at(name_node, "link name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+    if (!is_name(name))
+      return json::error_at(name_node, "link name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
     if (name == "t" || name == "probe" || name == "force")
-      return json::error_at(name_node, "link name " + in_quotes(name) + " is taken by the tick CSV; another name than t, probe, force was expected");
+      return json::error_at(name_node,
+                            "link name " + in_quotes(name) + " is taken by the tick CSV; another name than t, probe, force was expected");
     bool twice = false;
     scene.world.each<Link>([&](Entity, const Link& other) { twice = twice || other.name == name; });
     if (twice) return json::error_at(name_node, "duplicate link name " + in_quotes(name) + "; unique names were expected");

@@ -13,7 +13,8 @@ Outcome read_camera(Scene& scene, const json::Node& node) {
   CATENA_TRY(const auto up, json::get_optional_vec3(node, "up"));
   const Vec3 view = camera.target - camera.position;
   if (!(norm(view) > 0) || !is_finite(view))
-    return json::error_at(*node.find("target"), "\"target\" is the camera's position, or too far from it; two different points were expected");
+    return json::error_at(*node.find("target"),
+                          "\"target\" is the camera's position, or too far from it; two different points were expected");
   const auto parallel = [&](const Vec3& v) { return norm(cross(direction(view), direction(v))) < 1e-9; };
   if (up && norm(*up) == 0) return json::error_at(*node.find("up"), "\"up\" is zero; a vector other than [0, 0, 0] was expected");
   if (up && parallel(*up)) return json::error_at(*node.find("up"), "\"up\" is parallel to the view; a vector across it was expected");
@@ -22,7 +23,8 @@ Outcome read_camera(Scene& scene, const json::Node& node) {
 
   CATENA_TRY(camera.fovy_deg, json::get_number(node, "fovy_deg", camera.fovy_deg, json::Range::positive));
   if (camera.fovy_deg >= 180)
-    return json::error_at(*node.find("fovy_deg"), "\"fovy_deg\" is " + to_text(camera.fovy_deg) + "; degrees between 0 and 180 were expected");
+    return json::error_at(*node.find("fovy_deg"),
+                          "\"fovy_deg\" is " + to_text(camera.fovy_deg) + "; degrees between 0 and 180 were expected");
   CATENA_TRY(const int projection, json::get_choice(node, "projection", 0, {"perspective", "orthographic"}));
   camera.orthographic = projection == 1;
   if (camera.orthographic) {

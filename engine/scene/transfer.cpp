@@ -3,24 +3,30 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace catena::scene {
 namespace {
 
 constexpr std::size_t kMostSamples = 1u << 21;
 constexpr int kBins = 256;
-constexpr double kBackgroundShare = 0.1, kMargin = 0.06, kOpticalDepth = 2.5;
+constexpr double kLowEnd = 0.15, kLowShare = 0.1, kDominantShare = 0.3;  // where the background lies, see transfer.h
+constexpr double kMargin = 0.06, kOpticalDepth = 2.5;
 constexpr int kRampPoints = 17;
 
 /// From dusk blue over green to ivory: light enough on black, dark enough on white.
-constexpr std::array<Rgb, 6> kMap = {{{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f}, {0.72f, 0.79f, 0.52f},
-                                      {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}}};
+constexpr std::array<Rgb, 6> kMap = {{{0.16f, 0.24f, 0.52f},
+                                      {0.15f, 0.47f, 0.62f},
+                                      {0.33f, 0.66f, 0.58f},
+                                      {0.72f, 0.79f, 0.52f},
+                                      {0.95f, 0.80f, 0.55f},
+                                      {0.99f, 0.96f, 0.90f}}};
 
 struct Range {
   double lo = 0, hi = 0, background = 0;
 };
 
-Range range_of(std::vector<float> values) {
+Range range_of(std::vector<float> values, bool masked) {
   std::sort(values.begin(), values.end());
   const auto percentile = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
   Range range{percentile(0.005), percentile(0.998), 0};
@@ -28,13 +34,16 @@ Range range_of(std::vector<float> values) {
   range.background = range.lo;
   if (!(range.lo < range.hi)) return range;
 
-  // the fullest bin
+  // the fullest bin: of the low end if that end is well filled, else of all if it dominates
   std::array<std::size_t, kBins> bins{};
   const double scale = kBins / (range.hi - range.lo);
   for (float v : values) ++bins[static_cast<std::size_t>(std::clamp((v - range.lo) * scale, 0.0, kBins - 1.0))];
-  const auto fullest = static_cast<std::size_t>(std::max_element(bins.begin(), bins.end()) - bins.begin());
-  if (static_cast<double>(bins[fullest]) > kBackgroundShare * static_cast<double>(values.size()))
-    range.background = range.lo + (static_cast<double>(fullest) + 0.5) / scale;
+  const auto low_end = bins.begin() + static_cast<int>(kLowEnd * kBins);
+  const auto samples = static_cast<double>(values.size());
+  const bool low = static_cast<double>(std::accumulate(bins.begin(), low_end, std::size_t{0})) > kLowShare * samples;
+  const auto fullest = std::max_element(bins.begin(), low ? low_end : bins.end());
+  if (low || (!masked && static_cast<double>(*fullest) > kDominantShare * samples))
+    range.background = range.lo + (static_cast<double>(fullest - bins.begin()) + 0.5) / scale;
   return range;
 }
 
@@ -78,13 +87,14 @@ void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid
   if (!transfer.colors.empty() && !opaque) return;
   std::vector<float> values = sample_values(grid, kMostSamples);
   if (values.empty()) values.push_back(0);
-  const Range range = range_of(values);
+  const Range range = range_of(values, grid.has_mask());
   const bool flat = !(range.lo < range.hi);
 
   if (transfer.colors.empty()) {
     const std::size_t count = flat ? 1 : kMap.size();
     for (std::size_t i = 0; i < count; ++i)
-      transfer.colors.push_back({range.lo + (range.hi - range.lo) * static_cast<double>(i) / (kMap.size() - 1), kMap[flat ? kMap.size() / 2 : i]});
+      transfer.colors.push_back(
+          {range.lo + (range.hi - range.lo) * static_cast<double>(i) / (kMap.size() - 1), kMap[flat ? kMap.size() / 2 : i]});
   }
   if (!opaque) return;
 

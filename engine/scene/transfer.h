@@ -1,6 +1,7 @@
 /// A transfer function from the values themselves, for volumes that state none. Off the tick, any thread.
-///   background b: the fullest of 256 bins between the 0.5 and 99.8 percentiles, where it holds over 10 % of the samples;
-///   else the lowest value. w(s) = smoothstep of |s - b| from a 6 % margin to the far end of the range;
+///   background b, in a range from the 0.5 to the 99.8 percentile cut into 256 bins: the fullest bin of the lowest 15 % where
+///   those hold over 10 % of the samples; else the fullest of all where it holds over 30 % and no mask cuts the background
+///   away; else the lowest value. w(s) = smoothstep of |s - b| from a 6 % margin to the far end of the range;
 ///   sigma(s) = k w(s), k such that a ray across the domain meets an optical depth of 2.5 on average.
 #pragma once
 #include <vector>

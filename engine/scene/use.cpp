@@ -15,7 +15,8 @@ Outcome check_grid(const field::AnyField& any) {
   if (any.vector && any.vector->grid()) stats = &any.vector->grid()->stats();
   if (stats == nullptr) return Done{};
   if (stats->active_voxels == 0) return Error{"grid " + in_quotes(any.get()->name()) + " is empty; active voxels were expected"};
-  if (stats->nan_count >= stats->active_voxels) return Error{"grid " + in_quotes(any.get()->name()) + " holds no finite value; numbers were expected"};
+  if (stats->nan_count >= stats->active_voxels)
+    return Error{"grid " + in_quotes(any.get()->name()) + " holds no finite value; numbers were expected"};
   return Done{};
 }
 
@@ -58,8 +59,8 @@ Result<field::AnyField> use_field(Scene& scene, const std::string& name, const j
   if (const Entity field = find_field(scene, name)) return use_field(scene, field, where);
   std::vector<std::string_view> names;
   scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(where, "unknown field " + in_quotes(name) + "; one of the scene's fields was expected: " + (names.empty() ? "it has none" : joined(names)) +
-                                   suggestion(name, names));
+  return json::error_at(where, "unknown field " + in_quotes(name) + "; one of the scene's fields was expected: " +
+                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
 }
 
 Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where) {

@@ -36,7 +36,11 @@ class LevelSurface final : public Surface {
   Hold place(const Vec3& probe) noexcept override {
     const LevelPoint start = look(probe);
     Reached reached = reach_along_gradient(field_, start, Vec3(0.0), kSearchRadius * field_.length());
-    if (!reached.found || !reached.at.valid) reached = reach_by_scan(field_, start);
+    if (!reached.found) {
+      // where the march ended it may be much closer to the level
+      const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
+      reached = reach_by_scan(field_, closer ? reached.at : start);
+    }
     return reached.found ? settle(reached.at, probe, Curvature{}) : Hold{};
   }
 

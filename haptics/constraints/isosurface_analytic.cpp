@@ -42,8 +42,7 @@ void solve_tangent(double m11, double m12, double m22, double t1, double t2, dou
 
 Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& goal, LevelPoint& at, Curvature& curvature) noexcept {
   const double length = field.length();
-  const double longest = 0.3 * length;
-  double trust = longest;
+  double trust = 0.3 * length;
   bool restarted = false;
   const std::int32_t first = field.evaluations();
   LevelPoint a = at;
@@ -114,7 +113,7 @@ Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& g
     }
     const double moved = norm(u);
     learn(a, c, length, curvature);
-    trust = std::min(longest, std::max(4 * moved, 1e-3 * length));
+    trust = std::max(4 * moved, 1e-3 * length);
     a = c;
   }
   at = a;

@@ -9,6 +9,7 @@ constexpr double kRelease = 1e-8;    // of L: a smaller tangential descent is no
 constexpr double kConverged = 1e-10;  // of L: within a piece
 constexpr double kStill = 1e-13;     // of L: a shorter move is none
 constexpr double kAccepted = 1e-6;   // of L: what may remain where no piece moves any more
+constexpr double kFaceSlack = 1e-12;  // voxels: closer to a face than this is on it
 constexpr int kRounds = 600;
 
 bool is_flat(const field::Box& box, int a) { return !(box.hi[a] > box.lo[a]); }
@@ -124,7 +125,8 @@ Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& p
       bool inner = false;
       for (double alpha = 0.5; alpha > 1e-14; alpha *= 0.5) {
         if (!piece.retract(f, u * alpha, s, g)) break;
-        const double v = piece.outside(g, axis);
+        int worst;
+        const double v = piece.outside(g, worst);
         if (v <= 0) {
           low = alpha;
           v_low = v;
@@ -133,9 +135,16 @@ Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& p
         }
         high = alpha;
         v_high = v;
+        axis = worst;
         outer = g;
       }
-      if (!inner) return Followed::blocked;
+      if (!inner) {
+        // a rounding away from a face, but not on it
+        const double face = outer[axis] < 0.5 ? 0.0 : 1.0;
+        if (f[axis] == face || std::fabs(f[axis] - face) > kFaceSlack) return Followed::blocked;
+        f[axis] = face;
+        return Followed::landed;
+      }
 
       // land on the face: Illinois on how far the point is outside
       double a = v_low, b = v_high;
@@ -169,6 +178,10 @@ CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept 
   out.base = grid.base_of(index);
   const Vec3 base(out.base.x, out.base.y, out.base.z);
   for (int a = 0; a < 3; ++a) out.f[a] = is_flat(grid.index_box(), a) ? 0 : std::min(std::max(index[a] - base[a], 0.0), 1.0);
+  for (int a = 0; a < 3; ++a) {
+    if (out.f[a] < kFaceSlack) out.f[a] = 0;
+    if (out.f[a] > 1 - kFaceSlack) out.f[a] = 1;
+  }
   return out;
 }
 
@@ -250,8 +263,9 @@ WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint&
     const Piece piece(mapping, *best_cell, field.level(), best_held | corner.flat);
     const Followed how = follow(piece, mapping, probe, length, field.voxel(), next.f);
     const bool moved = norm(mapping.world_from_index_linear * (next.f - before)) > kStill * length;
-    if (moved) exhausted = 0;
-    if (!moved || how == Followed::blocked) exhausted |= std::uint64_t{1} << (best_upper * 8 + best_held);
+    const bool snapped = !moved && Corner(grid.index_box(), next).faces != corner.faces;
+    if (moved || snapped) exhausted = 0;
+    if ((!moved && !snapped) || how == Followed::blocked) exhausted |= std::uint64_t{1} << (best_upper * 8 + best_held);
     at = next;
   }
   result.status = Status::budget;

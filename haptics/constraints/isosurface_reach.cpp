@@ -19,8 +19,8 @@ bool on_level(const LevelField& field, const LevelPoint& a) {
 
 Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
   if (!a.valid || !b.valid) return {};
-  if (on_level(field, a)) return {true, a};
-  if (on_level(field, b)) return {true, b};
+  if (on_level(field, a)) return {!a.plateau, a};
+  if (on_level(field, b)) return {!b.plateau, b};
   double fa = a.sigma, fb = b.sigma;
   int same_side = 0;
   for (int i = 0; i < 80 && !field.spent(); ++i) {
@@ -30,7 +30,7 @@ Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
     if (!(w > 0 && w < 1)) w = 0.5;
     const LevelPoint c = field.at(a.p + (b.p - a.p) * w);
     if (!c.valid) return {};
-    if (on_level(field, c)) return {true, c};
+    if (on_level(field, c)) return {!c.plateau, c};
     const bool replaces_b = opposite(fa, c.sigma);
     if (replaces_b) {
       b = c;
@@ -56,19 +56,19 @@ Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const V
   double path = 0;
   int stalls = 0;
   for (int i = 0; i < kMarchSteps && a.valid && !field.spent(kReserve / 2) && path < radius; ++i) {
-    if (on_level(field, a)) return {true, a};
+    if (on_level(field, a)) return {!a.plateau, a};
     if (!a.plateau) last_normal = a.n;
-    if (!(max_abs(last_normal) > 0)) return {};
+    if (!(max_abs(last_normal) > 0)) return {false, a};
     const double step = std::min(a.plateau ? longest : std::min(std::fabs(a.distance), longest), radius - path);
     const LevelPoint b = field.at(a.p - last_normal * (a.sigma > 0 ? step : -step));
-    if (!b.valid) return {};
+    if (!b.valid) return {false, a};
     if (opposite(a.sigma, b.sigma)) return root_between(field, a, b);
-    if (!(std::fabs(b.sigma) < std::fabs(a.sigma)) && !b.plateau && ++stalls > 3) return {};
+    if ((std::fabs(b.sigma) > std::fabs(a.sigma) || dot(a.n, b.n) < 0) && ++stalls > 3) return {false, a};
     path += step;
     if (i >= 8) longest = std::min(longest * 1.5, 0.25 * field.length());
     a = b;
   }
-  return {a.valid && on_level(field, a), a};
+  return {a.valid && !a.plateau && on_level(field, a), a};
 }
 
 Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept {

@@ -15,6 +15,7 @@ struct Reached {
 Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept;
 
 /// Marches from `start` at most `radius` far. `normal`: the last good one, for plateaus; zero if there is none.
+/// Not found: `at` is where the march ended, if it is valid.
 Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius) noexcept;
 
 /// Looks along 26 directions, near before far, up to L from the centre.

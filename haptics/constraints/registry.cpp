@@ -5,6 +5,7 @@
 #include "haptics/constraints/isosurface.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
+#include "haptics/constraints/streamline.h"
 
 namespace catena::haptics {
 namespace {
@@ -38,7 +39,7 @@ std::string known_types() {
 }  // namespace
 
 const std::vector<ConstraintType>& registry() {
-  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint()};
+  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint(), streamline_constraint()};
   return list;
 }
 

@@ -22,7 +22,8 @@ class Tick {
       : spec_(spec),
         tableau_(flow::tableau_of(spec.method)),
         flow_{spec.field.get(), spec.line, spec.min_speed},
-        x_(probe),
+        probe_(probe),
+        x_(max_abs(probe) > 1e280 ? probe * 1e-20 : probe),
         state_(state),
         memory_(memory_of<OnlineMemory>(state)),
         cursor_(scratch.cursors[0]),
@@ -45,8 +46,8 @@ class Tick {
     state_.residual = 0;
     if (memory_.mode == Mode::seeking) {
       // no line through the last place: pass the probe through until there is one
-      if (state_.evaluations == 0) begin(x_);
-      state_.proxy = x_;
+      if (state_.evaluations == 0) begin(probe_);
+      state_.proxy = probe_;
       if (memory_.mode == Mode::seeking) return;
     }
     state_.status = Status::ok;
@@ -151,7 +152,7 @@ class Tick {
       if (step.stop == Stop::outside) {
         if (!has_entry_) remember_entry(way);
         if (h <= kBoundary * length_) return hold_on_boundary(way);
-        bad = limit = 0.5 * h;
+        limit = 0.5 * h;
         bad = h;
         bad_way = way;
         continue;
@@ -222,7 +223,8 @@ class Tick {
   const OnlineSpec& spec_;
   const flow::Tableau& tableau_;
   flow::Flow flow_;
-  Vec3 x_;
+  Vec3 probe_;
+  Vec3 x_;  ///< the probe, or from afar only its direction, where products would overflow
   LinkState& state_;
   OnlineMemory& memory_;
   field::Cursor& cursor_;

@@ -6,6 +6,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr std::int32_t kKnotCap = 4096;
+constexpr double kFar = 1e280;  ///< beyond, only the probe's direction counts, and products would overflow
 
 class SelectedStreamline final : public Constraint {
  public:
@@ -21,13 +22,18 @@ class SelectedStreamline final : public Constraint {
     state.status = Status::ok;
   }
 
-  void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+  void advance(const Vec3& far_probe, LinkState& state, LinkScratch&) const noexcept override {
+    const Vec3 probe = max_abs(far_probe) > kFar ? far_probe * 1e-20 : far_probe;
     SelectedMemory& memory = memory_of<SelectedMemory>(state);
     state.status = Status::ok;
     state.residual = 0;
     memory.knots = 2;
     std::size_t k = memory.interval;
     double below = slope_at_knot(k, probe), above = slope_at_knot(k + 1, probe);
+
+    // every place here is equally near (the centre of a circle): stay
+    const double flat = 1e-13 * curve_->domain_length();
+    if (std::fabs(below) <= flat && std::fabs(above) <= flat) return place(memory, k, memory.s, state);
 
     // downhill: up the curve, down it, or a foot in this interval
     int way = 0;
@@ -37,7 +43,6 @@ class SelectedStreamline final : public Constraint {
       way = -1;
     else if (!(below >= 0 && above <= 0))
       way = slope_at(k, memory.s, probe) >= 0 ? 1 : -1;
-    if (below == 0 && above == 0) way = slope_at(k, memory.s, probe) > 0 ? 1 : slope_at(k, memory.s, probe) < 0 ? -1 : 0;
 
     // knot by knot until the slope changes sign
     const std::size_t start = k;

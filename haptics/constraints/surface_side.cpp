@@ -9,7 +9,7 @@ constexpr double kRearmPart = 0.1;   // of release
 bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 bool is_free(const SideRules& rules, double value) {
-  return rules.free == FreeSide::above ? value > 0 : rules.free == FreeSide::below ? value < 0 : false;
+  return rules.free == FreeSide::above ? value >= 0 : rules.free == FreeSide::below ? value <= 0 : false;
 }
 
 /// True when the probe lies behind the held point, seen from the free side.
@@ -164,6 +164,7 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
     }
   }
   take(hold, rules, probe, memory, state);
+  if (state.released && !side.known) side = surface.side(probe);
   remember(probe, side, memory, state);
 }
 

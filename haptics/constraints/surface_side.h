@@ -1,6 +1,6 @@
 /// The rules that all penetrable surfaces share: the free side, letting go, taking hold again ("Links and proxies").
-///   free = above | below: where value - level has that sign the hand moves freely and the proxy is the probe, bit for bit;
-///   a crossing is decided within the tick that makes it.
+///   free = above | below: where value - level has that sign (or is 0) the hand moves freely and the proxy is the probe, bit
+///   for bit; a crossing is decided within the tick that makes it.
 ///   release: the link lets go in the tick in which |probe - proxy| >= release. A one-sided link takes hold again when its
 ///   probe is on the free side, a two-sided one when the probe crosses the level or comes within 0.1 release of it.
 ///   A one-sided link whose first probe is deeper than release starts released.

@@ -31,9 +31,9 @@ struct Camera {
   Vec3 position{0.0};
   Vec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, back{0.0, 0.0, 1.0};  ///< unit, orthogonal
   bool orthographic = false;
-  double half_height = 1;  ///< at the distance 1 (perspective: tan(fovy / 2)), or everywhere (orthographic), world units
-  double half_width = 1;   ///< half_height times the aspect
-  double near = 1, far = 2;  ///< along the axis, world units
+  double half_height = 1;        ///< at the distance 1 (perspective: tan(fovy / 2)), or everywhere (orthographic), world units
+  double half_width = 1;         ///< half_height times the aspect
+  double near = 1, far = 2;      ///< along the axis, world units
   double width = 1, height = 1;  ///< pixels
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/mirror/upload.h"
+#include "render/vk/upload.h"
 
 namespace catena::render {
 
@@ -50,7 +50,7 @@ Result<BrickMap> make_brick_map(vk::Device& device, const GridMirror& mirror, co
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   CATENA_TRY(map.image, vk::Image::create(device, info));
   const std::size_t plane = std::size_t(mirror.bricks[0]) * mirror.bricks[1];
-  CATENA_CHECK(upload_planes(device, map.image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+  CATENA_CHECK(vk::upload_planes(device, map.image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     std::vector<std::uint32_t> words(plane * count);
     for (std::size_t i = 0; i < words.size(); ++i) {
       const std::size_t brick = first * plane + i;

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <unordered_map>
 
 #include "engine/base/parallel_for.h"
 #include "render/mirror/half.h"
-#include "render/mirror/upload.h"
+#include "render/vk/upload.h"
 
 namespace catena::render {
 namespace {
@@ -32,6 +33,12 @@ struct Encoder {
         std::memcpy(out + 2 * i, &half, 2);
       }
     }
+  }
+  /// What a texel gives back; rounding is monotonic, so ranges can be rounded at their ends.
+  BrickRange stored(const BrickRange& r) const {
+    if (float32 || r.empty()) return r;
+    const auto back = [this](float v) { return offset + scale * float_from_half(half_from_float((v - offset) / scale)); };
+    return {back(r.least), back(r.greatest)};
   }
   std::size_t texel() const { return float32 ? 4 : 2; }
 };
@@ -126,6 +133,7 @@ class Builder {
     if (options_.layout != MirrorLayout::dense) plan_atlas();
     mirror_.atlas = options_.layout == MirrorLayout::atlas || (options_.layout == MirrorLayout::automatic && atlas_pays());
     CATENA_CHECK(mirror_.atlas ? build_atlas() : build_dense());
+    for (BrickRange& range : mirror_.ranges) range = encoder_.stored(range);
     return std::move(mirror_);
   }
 
@@ -194,7 +202,8 @@ class Builder {
 
   Outcome create_images(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t mx, std::uint32_t my, std::uint32_t mz) {
     CATENA_TRY(mirror_.values, create_image(encoder_.float32 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R16_SFLOAT, x, y, z));
-    if (mirror_.masked) CATENA_TRY(mirror_.mask, create_image(VK_FORMAT_R8_UINT, mx, my, mz));
+    if (!mirror_.masked) return Done{};
+    CATENA_TRY(mirror_.mask, create_image(VK_FORMAT_R8_UINT, mx, my, mz));
     return Done{};
   }
 
@@ -206,7 +215,7 @@ class Builder {
     const auto [bx, by, bz] = mirror_.bricks;
     std::vector<std::uint8_t> mask(mirror_.masked ? std::size_t(nx) * ny * nz : 0);
     const std::size_t texel = encoder_.texel();
-    CATENA_CHECK(upload_planes(device_, mirror_.values, kBrick, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    CATENA_CHECK(vk::upload_planes(device_, mirror_.values, kBrick, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       const std::uint32_t layers = (count + kBrick - 1) / kBrick, rows = (ny + kBrick - 1) / kBrick;
       parallel_for(std::size_t(layers) * rows, 1, [&](std::size_t begin, std::size_t end) {
         Block block;
@@ -228,7 +237,7 @@ class Builder {
       });
     }));
     if (mask.empty()) return Done{};
-    return upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    return vk::upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       std::memcpy(out, mask.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny);
     });
   }
@@ -271,7 +280,7 @@ class Builder {
     constexpr std::size_t mask_bytes = std::size_t(kBrick) * kBrick * kBrick;
     std::vector<std::uint8_t> mask(mirror_.masked ? mask_bytes * sx * sy * sz : 0);
     const std::size_t texel = encoder_.texel(), width = std::size_t(sx) * kApron, height = std::size_t(sy) * kApron;
-    CATENA_CHECK(upload_planes(device_, mirror_.values, kApron, [&, bx = bx, by = by, sx = sx, sy = sy](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    CATENA_CHECK(vk::upload_planes(device_, mirror_.values, kApron, [&, bx = bx, by = by, sx = sx, sy = sy](std::uint32_t first, std::uint32_t count, std::byte* out) {
       const std::size_t begin_slot = std::size_t(first / kApron) * sx * sy;
       const std::size_t end_slot = std::min(brick_of_slot_.size(), begin_slot + std::size_t(count / kApron) * sx * sy);
       std::memset(out, 0, width * height * count * texel);
@@ -300,7 +309,7 @@ class Builder {
       if (is_constant_[i]) mirror_.ranges[i] = {constant_value_[i], constant_value_[i]};
     if (mask.empty()) return Done{};
     const std::size_t plane = std::size_t(sx) * kBrick * sy * kBrick;
-    return upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    return vk::upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       std::memcpy(out, mask.data() + first * plane, count * plane);
     });
   }

@@ -22,4 +22,11 @@ inline std::uint16_t half_from_float(float value) {
   return std::uint16_t(sign | (rounded - 0x38000000u) >> 13);
 }
 
+inline float float_from_half(std::uint16_t half) {
+  const std::uint32_t sign = std::uint32_t(half & 0x8000u) << 16, magnitude = half & 0x7fffu;
+  if (magnitude >= 0x7c00u) return std::bit_cast<float>(sign | 0x7f800000u | (magnitude & 0x3ffu) << 13);
+  if (magnitude < 0x400u) return std::bit_cast<float>(sign | std::bit_cast<std::uint32_t>(float(magnitude) * 0x1p-24f));
+  return std::bit_cast<float>(sign | ((magnitude << 13) + 0x38000000u));
+}
+
 }  // namespace catena::render

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "engine/base/assert.h"
@@ -44,7 +43,8 @@ struct Ring {
 };
 
 /// `sides` vertices around centre + height * tangent, at `radius`; vertex normals lean by `slope` along the tangent.
-std::uint32_t add_ring(Shape& shape, const Ring& ring, double radius, double height, double across, double along, int sides, const Color& color) {
+std::uint32_t add_ring(Shape& shape, const Ring& ring, double radius, double height, double across, double along, int sides,
+                       const Color& color) {
   const Vec3 binormal = cross(ring.tangent, ring.normal);
   const std::uint32_t first = static_cast<std::uint32_t>(shape.vertices.size());
   for (int k = 0; k < sides; ++k) {
@@ -151,7 +151,8 @@ void add_tube(Shape& shape, const TubeItem& tube, int sides) {
     const Vec3 back = transport(b.normal, b.tangent, a.tangent);
     const double angle = std::atan2(dot(cross(back, a.normal), a.tangent), dot(back, a.normal));
     const double count = static_cast<double>(rings.size());
-    for (std::size_t i = 0; i < rings.size(); ++i) rings[i].normal = turned(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
+    for (std::size_t i = 0; i < rings.size(); ++i)
+      rings[i].normal = turned(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
   }
 
   std::uint32_t first = 0, last = 0;
@@ -218,7 +219,7 @@ double cursor_arrow_length(double force_n, double size) {
 
 void add_cursor(Shape& shape, const CursorItem& cursor) {
   if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
-  const Color white{0.95f, 0.95f, 0.95f}, grey{0.65f, 0.65f, 0.65f}, red{0.86f, 0.15f, 0.15f};
+  const Color white{0.95f, 0.95f, 0.95f}, grey{0.65f, 0.65f, 0.65f}, lime{0.60f, 0.95f, 0.25f};
   add_ball(shape, cursor.probe, cursor.size, white);
 
   // every proxy, joined to the one before; radii fall a little, so that balls in one place do not fight
@@ -236,28 +237,9 @@ void add_cursor(Shape& shape, const CursorItem& cursor) {
   const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.size) : 0;
   if (length > 0) {
     const Vec3 along = direction(cursor.force_n), tip = cursor.probe + length * along, neck = tip - 1.1 * cursor.size * along;
-    add_cylinder(shape, cursor.probe, neck, 0.25 * cursor.size, red);
-    add_cone(shape, neck, tip, 0.55 * cursor.size, red);
+    add_cylinder(shape, cursor.probe, neck, 0.25 * cursor.size, lime);
+    add_cone(shape, neck, tip, 0.55 * cursor.size, lime);
   }
-}
-
-Shape tubes_shape(const std::vector<TubeItem>& tubes) {
-  Vec3 lo(std::numeric_limits<double>::infinity()), hi = -lo;
-  for (const TubeItem& tube : tubes)
-    for (const Vec3& p : tube.points)
-      for (int i = 0; i < 3; ++i) {
-        lo[i] = std::min(lo[i], p[i]);
-        hi[i] = std::max(hi[i], p[i]);
-      }
-  Shape shape;
-  for (const TubeItem& tube : tubes) add_tube(shape, tube, tube_sides(tube.radius, lo.x <= hi.x ? norm(hi - lo) : 0));
-  return shape;
-}
-
-Shape cursors_shape(const std::vector<CursorItem>& cursors) {
-  Shape shape;
-  for (const CursorItem& cursor : cursors) add_cursor(shape, cursor);
-  return shape;
 }
 
 }  // namespace catena::render

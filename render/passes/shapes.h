@@ -24,11 +24,6 @@ struct Shape {
   std::vector<std::uint32_t> triangles;  ///< three indices each
 };
 
-/// All tubes of a packet in one shape; they change only with the scene.
-Shape tubes_shape(const std::vector<TubeItem>& tubes);
-/// All cursors of a packet in one shape; small, made anew each frame.
-Shape cursors_shape(const std::vector<CursorItem>& cursors);
-
 /// 8 to 16 by the radius' share of the scene's size (0: 12).
 int tube_sides(double radius, double scene_size);
 

@@ -149,16 +149,13 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings)
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstBinding = b.binding;
     write.descriptorCount = 1;
-    if (b.buffer) {
+    write.descriptorType = descriptor_type(b.resource);
+    if (b.resource == Resource::buffer || b.resource == Resource::uniform) {
       buffers[i] = {b.buffer->handle(), 0, VK_WHOLE_SIZE};
-      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
       write.pBufferInfo = &buffers[i];
     } else {
       images[i] = {b.sampler ? b.sampler->handle() : VK_NULL_HANDLE, b.image->view(),
-                   b.storage_image ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-      write.descriptorType = b.storage_image ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-                             : b.sampler     ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
-                                             : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+                   b.resource == Resource::storage_image ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.pImageInfo = &images[i];
     }
     writes.push_back(write);

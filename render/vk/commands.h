@@ -41,13 +41,13 @@ struct DepthTarget {
   std::optional<float> clear;
 };
 
-/// What a shader sees at one binding.
+/// What a shader sees at one binding; which members count is the kind's business.
 struct Binding {
   std::uint32_t binding = 0;
-  const Buffer* buffer = nullptr;    ///< a storage buffer, or
-  const Image* image = nullptr;      ///< an image: sampled with `sampler`, plain without one, or
+  Resource resource = Resource::buffer;
+  const Buffer* buffer = nullptr;
+  const Image* image = nullptr;
   const Sampler* sampler = nullptr;
-  bool storage_image = false;        ///< a storage image in the layout GENERAL
 };
 
 class Commands {

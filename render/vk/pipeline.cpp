@@ -39,16 +39,6 @@ class ShaderModule {
   VkShaderModule module_ = VK_NULL_HANDLE;
 };
 
-VkDescriptorType descriptor_type(Resource resource) {
-  switch (resource) {
-    case Resource::buffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case Resource::sampled: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    case Resource::texture: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    case Resource::storage_image: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-  }
-  return VK_DESCRIPTOR_TYPE_MAX_ENUM;
-}
-
 /// The constants 0, 1, 2, .. as Vulkan wants them. Points into the vector that it was given.
 struct Specialization {
   std::vector<VkSpecializationMapEntry> entries;
@@ -65,6 +55,17 @@ struct Specialization {
 };
 
 }  // namespace
+
+VkDescriptorType descriptor_type(Resource resource) {
+  switch (resource) {
+    case Resource::uniform: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case Resource::buffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    case Resource::sampled: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case Resource::texture: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    case Resource::storage_image: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+  }
+  return VK_DESCRIPTOR_TYPE_MAX_ENUM;
+}
 
 Outcome Pipeline::create_layout(std::span<const Slot> slots, VkShaderStageFlags stages) {
   std::vector<VkDescriptorSetLayoutBinding> bindings;

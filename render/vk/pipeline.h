@@ -12,7 +12,8 @@ namespace catena::render::vk {
 using Spirv = std::span<const std::uint32_t>;
 
 /// One binding of a shader: what kind it is.
-enum class Resource { buffer, sampled, texture, storage_image };  ///< sampled: with a sampler; texture: fetched only
+enum class Resource { uniform, buffer, sampled, texture, storage_image };  ///< sampled: with a sampler; texture: fetched only
+VkDescriptorType descriptor_type(Resource resource);
 struct Slot {
   std::uint32_t binding = 0;
   Resource resource = Resource::buffer;

@@ -8,7 +8,8 @@ namespace {
 
 constexpr int kMutations = 20000;
 
-const std::string kPath = "t,x,y,z,buttons\r\n0,0.05,0,0,0\r\n0.001,0.0499,1e-3,-0,1\r\n0.002,0.04,.002,+3,2\r\n0.003,1e-300,0.5,7,4294967295\r\n";
+const std::string kPath =
+    "t,x,y,z,buttons\r\n0,0.05,0,0,0\r\n0.001,0.0499,1e-3,-0,1\r\n0.002,0.04,.002,+3,2\r\n0.003,1e-300,0.5,7,4294967295\r\n";
 const std::string kSeeds = "x,y,z\n1,2,3\n-0.5,0.25,1e3\n0,0,0\n";
 
 template <class T>

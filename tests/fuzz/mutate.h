@@ -18,9 +18,11 @@ struct Random {
   std::size_t below(std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(next() % n); }
 };
 
-inline constexpr std::string_view kSpice[] = {"{",    "}",     "[",   "]",     ",",    ":",     "\"",   "\\",       "\n",  "\r",   "null", "1e999",
-                                              "-1",   "0",     "NaN", "inf",   "1e-400", "//",  "/*",   "*/",       "\xEF\xBB\xBF", "\xff", "true",
-                                              "[[[[", "{\"a\":", "0.5", "-0.0", "99999999999999999999", "\"field\"", ",,", "\t",  " "};
+inline constexpr std::string_view kSpice[] = {"{",         "}",    "[",      "]",       ",",     ":",    "\"",
+                                              "\\",        "\n",   "\r",     "null",    "1e999", "-1",   "0",
+                                              "NaN",       "inf",  "1e-400", "//",      "/*",    "*/",   "\xEF\xBB\xBF",
+                                              "\xff",      "true", "[[[[",   "{\"a\":", "0.5",   "-0.0", "99999999999999999999",
+                                              "\"field\"", ",,",   "\t",     " "};
 
 inline std::string mutate(std::string text, Random& random) {
   const std::size_t changes = 1 + random.below(4);
@@ -31,11 +33,21 @@ inline std::string mutate(std::string text, Random& random) {
       case 0:
         if (at < text.size()) text[at] = static_cast<char>(text[at] ^ static_cast<char>(1u << random.below(8)));
         break;
-      case 1: text.erase(at, length); break;
-      case 2: text.insert(at, text.substr(random.below(text.size() + 1), length)); break;
-      case 3: text.insert(at, spice); break;
-      case 4: text.replace(at, std::min(length, text.size() - at), spice); break;
-      case 5: text.insert(at, 1, static_cast<char>(random.below(256))); break;
+      case 1:
+        text.erase(at, length);
+        break;
+      case 2:
+        text.insert(at, text.substr(random.below(text.size() + 1), length));
+        break;
+      case 3:
+        text.insert(at, spice);
+        break;
+      case 4:
+        text.replace(at, std::min(length, text.size() - at), spice);
+        break;
+      case 5:
+        text.insert(at, 1, static_cast<char>(random.below(256)));
+        break;
       default:
         if (random.below(20) == 0) text.insert(at, std::string(1 + random.below(300), random.below(2) == 0 ? '[' : '{'));
     }

@@ -9,10 +9,10 @@ namespace catena::app {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kTurnPerHeight = kPi;    // a drag over the window's height
+constexpr double kTurnPerHeight = kPi;  // a drag over the window's height
 constexpr double kZoomPerNotch = 0.9;
-constexpr double kDepthPerNotch = 0.01;   // of the distance from the eye
-constexpr double kPoleAngle = 0.02;       // radians
+constexpr double kDepthPerNotch = 0.01;  // of the distance from the eye
+constexpr double kPoleAngle = 0.02;      // radians
 
 Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);

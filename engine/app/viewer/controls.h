@@ -10,14 +10,14 @@
 
 namespace catena::app {
 
-/// One frame's input. Window coordinates (y down); differences since the last frame.
+/// A piece of input under one set of held buttons. Window coordinates (y down); differences since the last piece.
 struct Input {
   double width = 1, height = 1;  ///< of the window
   double dx = 0, dy = 0, wheel = 0;
   bool left = false, middle = false, right = false;  ///< held
   bool shift = false, control = false, space = false;
-  bool toggle_hand = false, reset_view = false, help = false, quit = false;  ///< pressed in this frame
-  bool damaged = false;  ///< the window system lost the picture
+  bool toggle_hand = false, reset_view = false, help = false, quit = false;  ///< pressed in this piece
+  bool damaged = false;                                                      ///< the window system lost the picture
 };
 
 struct Controls {

@@ -26,9 +26,9 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kRestS = 0.25;        // without input for so long: the picture may take its time
-constexpr double kSlowMs = 60;         // a full picture above this is halved in both directions while moving
-constexpr double kIdleWaitS = 0.004;   // between looks at the servo's news when nothing else happens
+constexpr double kRestS = 0.25;       // without input for so long: the picture may take its time
+constexpr double kSlowMs = 60;        // a full picture above this is halved in both directions while moving
+constexpr double kIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
 constexpr double kMinimisedWaitS = 0.1;
 constexpr double kTitleS = 0.25;
 
@@ -65,11 +65,11 @@ class Session {
   exchange::HapticState felt_;
 
   bool quit_ = false;
-  bool fits_ = true;    ///< the swapchain still has the window's size
-  bool stale_ = true;   ///< what the window shows is not the newest picture at full quality
+  bool fits_ = true;   ///< the swapchain still has the window's size
+  bool stale_ = true;  ///< what the window shows is not the newest picture at full quality
   int frames_ = 0;
-  double full_ms_ = 0;               ///< what a picture of full size takes, estimated
-  std::vector<double> frame_ms_;     ///< of this run, for the goodbye
+  double full_ms_ = 0;            ///< what a picture of full size takes, estimated
+  std::vector<double> frame_ms_;  ///< of this run, for the goodbye
   std::int64_t last_title_ = 0;
   int frames_in_title_ = 0;
 };
@@ -128,16 +128,21 @@ void Session::pin_camera() {
 }
 
 Changed Session::take_input(double wait_s) {
-  const Input input = window_->poll(wait_s);
-  const Changed changed = apply(controls_, input);
-  quit_ = quit_ || input.quit || window_->closing();
+  Changed changed;
+  for (const Input& input : window_->poll(wait_s)) {
+    const Changed by_piece = apply(controls_, input);
+    changed.view = changed.view || by_piece.view;
+    changed.hand = changed.hand || by_piece.hand;
+    quit_ = quit_ || input.quit;
+    stale_ = stale_ || input.damaged;
+    if (input.help) {
+      std::fputs(std::string(key_help()).c_str(), stdout);
+      std::fflush(stdout);
+    }
+  }
+  quit_ = quit_ || window_->closing();
   if (changed.hand) mouse_->move_to(device_from_world(options_.scene.workspace, controls_.hand), controls_.buttons);
   if (changed.view) pin_camera();
-  stale_ = stale_ || input.damaged;
-  if (input.help) {
-    std::fputs(std::string(key_help()).c_str(), stdout);
-    std::fflush(stdout);
-  }
   return changed;
 }
 
@@ -197,28 +202,31 @@ void Session::update_title() {
 
 void Session::say_goodbye() {
   std::sort(frame_ms_.begin(), frame_ms_.end());
-  fmt::print("{} frames, {:.1f} ms median, on {}\n", frames_, frame_ms_.empty() ? 0 : frame_ms_[frame_ms_.size() / 2], renderer_->stats().device);
-  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} late\n", felt_.probe.x, felt_.probe.y, felt_.probe.z, norm(felt_.force_n),
-             felt_.tick, felt_.missed_deadlines);
+  fmt::print("{} frames, {:.1f} ms median, on {}\n", frames_, frame_ms_.empty() ? 0 : frame_ms_[frame_ms_.size() / 2],
+             renderer_->stats().device);
+  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} late\n", felt_.probe.x, felt_.probe.y, felt_.probe.z,
+             norm(felt_.force_n), felt_.tick, felt_.missed_deadlines);
 }
 
 std::optional<Failure> Session::run() {
   std::int64_t last_input = now_ns();
+  bool busy = true, minimised = false;
   while (!quit_ && (options_.frames == 0 || frames_ < options_.frames)) {
-    const Changed changed = take_input(stale_ ? 0 : kIdleWaitS);
+    const Changed changed = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
     const bool news = take_haptics();
     if (changed.any() || news) last_input = now_ns();
     std::uint32_t width = 0, height = 0;
     window_->framebuffer_size(width, height);
-    if (width == 0) {
-      // minimised: nothing to draw until it comes back
-      window_->poll(kMinimisedWaitS);
+    minimised = width == 0;
+    if (minimised) {
       stale_ = true;
       continue;
     }
-    const bool resized = width != swapchain_->extent().width || height != swapchain_->extent().height;
-    if (changed.any() || news || resized || !fits_ || stale_ || options_.frames > 0) {
-      const bool moving = 1e-3 * ms_since(last_input) < kRestS;
+    // a coarse picture at once while something moves, a fine one when it rests
+    const bool moving = 1e-3 * ms_since(last_input) < kRestS;
+    const bool resized = !fits_ || width != swapchain_->extent().width || height != swapchain_->extent().height;
+    busy = changed.any() || news || resized || frames_ == 0 || (stale_ && !moving) || options_.frames > 0;
+    if (busy) {
       if (auto failure = draw(moving)) return failure;
       stale_ = moving;
     }

@@ -9,11 +9,11 @@
 namespace catena::app {
 
 struct ViewOptions {
-  scene::Scene scene;              ///< read already (its errors are the caller's)
-  std::string device = "mouse";    ///< what holds the probe
+  scene::Scene scene;            ///< read already (its errors are the caller's)
+  std::string device = "mouse";  ///< what holds the probe
   std::uint32_t width = 1024, height = 768;
-  int frames = 0;                  ///< quit after so many frames; 0: until the window is closed
-  std::string screenshot;          ///< .png of the last frame, written at the end; empty: none
+  int frames = 0;          ///< quit after so many frames; 0: until the window is closed
+  std::string screenshot;  ///< .png of the last frame, written at the end; empty: none
 };
 
 /// Exit code: 0 done, 1 no display or no device, 2 the scene cannot be shown or felt (one line on stderr).

@@ -3,6 +3,8 @@
 #define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
 
+#include <utility>
+
 namespace catena::app {
 
 namespace {
@@ -16,13 +18,32 @@ std::string& last_error() {
 
 struct Window::Parts {
   GLFWwindow* window = nullptr;
-  Input input;                  ///< gathered since the last poll
+  std::vector<Input> done;  ///< gathered since the last poll, cut where a button or modifier changed
+  Input current;
   double last_x = 0, last_y = 0;
   bool has_last = false;
 
   ~Parts() {
     if (window != nullptr) glfwDestroyWindow(window);
     glfwTerminate();
+  }
+
+  /// Ends the current piece: what follows has other buttons held.
+  void cut() {
+    done.push_back(current);
+    Input next;
+    next.left = current.left;
+    next.middle = current.middle;
+    next.right = current.right;
+    next.shift = current.shift;
+    next.control = current.control;
+    next.space = current.space;
+    current = next;
+  }
+  void hold(bool Input::*what, bool held) {
+    if (current.*what == held) return;
+    cut();
+    current.*what = held;
   }
 };
 
@@ -42,8 +63,8 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   glfwSetCursorPosCallback(parts.window, [](GLFWwindow* w, double x, double y) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
     if (p.has_last) {
-      p.input.dx += x - p.last_x;
-      p.input.dy += y - p.last_y;
+      p.current.dx += x - p.last_x;
+      p.current.dy += y - p.last_y;
     }
     p.last_x = x;
     p.last_y = y;
@@ -52,24 +73,37 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   // what moves while the pointer is away does not count
   glfwSetCursorEnterCallback(parts.window, [](GLFWwindow* w, int inside) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
-    if (inside == GLFW_FALSE && glfwGetMouseButton(w, GLFW_MOUSE_BUTTON_LEFT) == GLFW_RELEASE) p.has_last = false;
+    const bool dragging = p.current.left || p.current.middle || p.current.right;
+    if (inside == GLFW_FALSE && !dragging) p.has_last = false;
   });
-  glfwSetScrollCallback(parts.window, [](GLFWwindow* w, double, double y) {
-    static_cast<Parts*>(glfwGetWindowUserPointer(w))->input.wheel += y;
+  glfwSetMouseButtonCallback(parts.window, [](GLFWwindow* w, int button, int action, int) {
+    Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    if (button == GLFW_MOUSE_BUTTON_LEFT) p.hold(&Input::left, action == GLFW_PRESS);
+    if (button == GLFW_MOUSE_BUTTON_MIDDLE) p.hold(&Input::middle, action == GLFW_PRESS);
+    if (button == GLFW_MOUSE_BUTTON_RIGHT) p.hold(&Input::right, action == GLFW_PRESS);
   });
+  glfwSetScrollCallback(parts.window,
+                        [](GLFWwindow* w, double, double y) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->current.wheel += y; });
   glfwSetKeyCallback(parts.window, [](GLFWwindow* w, int key, int, int action, int) {
-    Input& input = static_cast<Parts*>(glfwGetWindowUserPointer(w))->input;
+    Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    const bool held = action != GLFW_RELEASE;
+    if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) p.hold(&Input::shift, held);
+    if (key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL) p.hold(&Input::control, held);
+    if (key == GLFW_KEY_SPACE) p.hold(&Input::space, held);
     if (action != GLFW_PRESS) return;
-    if (key == GLFW_KEY_H) input.toggle_hand = true;
-    if (key == GLFW_KEY_R) input.reset_view = true;
-    if (key == GLFW_KEY_F1) input.help = true;
-    if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) input.quit = true;
+    if (key == GLFW_KEY_H) {
+      p.cut();
+      p.current.toggle_hand = true;
+    }
+    if (key == GLFW_KEY_R) p.current.reset_view = true;
+    if (key == GLFW_KEY_F1) p.current.help = true;
+    if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) p.current.quit = true;
+  });
+  glfwSetCharCallback(parts.window, [](GLFWwindow* w, unsigned int c) {
+    if (c == '?') static_cast<Parts*>(glfwGetWindowUserPointer(w))->current.help = true;
   });
   glfwSetWindowRefreshCallback(parts.window,
-                               [](GLFWwindow* w) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->input.damaged = true; });
-  glfwSetCharCallback(parts.window, [](GLFWwindow* w, unsigned int c) {
-    if (c == '?') static_cast<Parts*>(glfwGetWindowUserPointer(w))->input.help = true;
-  });
+                               [](GLFWwindow* w) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->current.damaged = true; });
   return result;
 }
 
@@ -86,26 +120,19 @@ render::vk::SurfaceFactory Window::surface_factory() const {
   return factory;
 }
 
-Input Window::poll(double wait_s) {
-  Parts& parts = *parts_;
-  parts.input = Input();
+std::vector<Input> Window::poll(double wait_s) {
   wait_s > 0 ? glfwWaitEventsTimeout(wait_s) : glfwPollEvents();
-
-  Input& input = parts.input;
-  GLFWwindow* w = parts.window;
-  const auto button = [&](int b) { return glfwGetMouseButton(w, b) == GLFW_PRESS; };
-  const auto key = [&](int k) { return glfwGetKey(w, k) == GLFW_PRESS; };
-  input.left = button(GLFW_MOUSE_BUTTON_LEFT);
-  input.middle = button(GLFW_MOUSE_BUTTON_MIDDLE);
-  input.right = button(GLFW_MOUSE_BUTTON_RIGHT);
-  input.shift = key(GLFW_KEY_LEFT_SHIFT) || key(GLFW_KEY_RIGHT_SHIFT);
-  input.control = key(GLFW_KEY_LEFT_CONTROL) || key(GLFW_KEY_RIGHT_CONTROL);
-  input.space = key(GLFW_KEY_SPACE);
+  Parts& parts = *parts_;
+  parts.cut();
+  std::vector<Input> pieces = std::move(parts.done);
+  parts.done.clear();
   int width = 1, height = 1;
-  glfwGetWindowSize(w, &width, &height);
-  input.width = width > 0 ? width : 1;
-  input.height = height > 0 ? height : 1;
-  return input;
+  glfwGetWindowSize(parts.window, &width, &height);
+  for (Input& input : pieces) {
+    input.width = width > 0 ? width : 1;
+    input.height = height > 0 ? height : 1;
+  }
+  return pieces;
 }
 
 bool Window::closing() const { return glfwWindowShouldClose(parts_->window) == GLFW_TRUE; }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/app/viewer/controls.h"
 #include "engine/base/result.h"
@@ -20,8 +21,9 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   render::vk::SurfaceFactory surface_factory() const;
-  /// Takes what happened since the last call; waits up to `wait_s` for something to happen (0: not at all).
-  Input poll(double wait_s);
+  /// Takes what happened since the last call; waits up to `wait_s` for something to happen (0: not at all). In pieces, in
+  /// order, cut where a button or modifier changed: a whole drag within one slow picture is still a drag. At least one.
+  std::vector<Input> poll(double wait_s);
   bool closing() const;
   /// Of the picture, in pixels; 0 while minimised.
   void framebuffer_size(std::uint32_t& width, std::uint32_t& height) const;

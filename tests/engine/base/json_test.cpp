@@ -51,7 +51,8 @@ TEST(Json, NumbersReadExactly) {
 
 TEST(Json, BadNumbersAreErrors) {
   for (const char* bad : {"1e999", "-1e999", "01", "1.", "-", "1e", "1-2", "0x10"})
-    EXPECT_EQ(error_of(std::string("{\n\"a\": ") + bad + "\n}").substr(0, 13), "scene.json:2:") << bad << " " << error_of(std::string("{\n\"a\": ") + bad + "\n}");
+    EXPECT_EQ(error_of(std::string("{\n\"a\": ") + bad + "\n}").substr(0, 13), "scene.json:2:")
+        << bad << " " << error_of(std::string("{\n\"a\": ") + bad + "\n}");
   expect_parts(error_of("{\n\"a\": 1e999}"), {"scene.json:2:", "1e999", "finite number"});
   expect_parts(error_of("{\n\"a\": NaN}"), {"scene.json:2:", "expected"});
 }
@@ -91,7 +92,8 @@ TEST(Json, MessagesStayOneLine) {
 }
 
 TEST(Json, ReadersCheckKindAndRange) {
-  const Node root = object_of("{\"n\": -1,\n\"s\": \"x\",\n\"v\": [1, 2],\n\"w\": [1, null, 3], \"ok\": [1, 2, 3], \"rows\": [[1, 2], [3]], \"i\": 2.5}");
+  const Node root =
+      object_of("{\"n\": -1,\n\"s\": \"x\",\n\"v\": [1, 2],\n\"w\": [1, null, 3], \"ok\": [1, 2, 3], \"rows\": [[1, 2], [3]], \"i\": 2.5}");
   EXPECT_EQ(*require_number(root, "n"), -1);
   expect_parts(require_number(root, "n", Range::not_negative).error().message, {"scene.json:1:", "\"n\" is -1", ">= 0 was expected"});
   expect_parts(get_number(root, "s", 0).error().message, {"scene.json:2:", "\"x\"", "finite number was expected"});

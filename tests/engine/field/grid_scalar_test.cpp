@@ -253,17 +253,17 @@ TEST(ScalarGrid, BlocksAreCopiedAsStored) {
 }
 
 TEST(ScalarGrid, RunsOfOneValueAreConstantBlocks) {
-  std::vector<float> values(24 * 24 * 24, 2.5f);
+  std::vector<float> values(72 * 72 * 72, 2.5f);
   values[0] = 1;
-  const auto grid = make_scalar_grid("g", {}, {24, 24, 24}, values);
+  const auto grid = make_scalar_grid("g", {}, {72, 72, 72}, values);
   float value = 0;
   EXPECT_FALSE(grid->constant_block({0, 0, 0}, value));
   EXPECT_TRUE(grid->constant_block({8, 16, 0}, value));
   EXPECT_EQ(value, 2.5f);
-  EXPECT_TRUE(grid->constant_block({64, 0, 0}, value));
+  EXPECT_TRUE(grid->constant_block({80, 0, 0}, value));
   EXPECT_EQ(value, grid->background());
-  EXPECT_EQ(grid->stats().active_voxels, 24u * 24 * 24);
-  EXPECT_LT(grid->bytes(), 4u * 24 * 24 * 24);
+  EXPECT_EQ(grid->stats().active_voxels, 72u * 72 * 72);
+  EXPECT_LT(grid->bytes(), 4u * 72 * 72 * 72 / 3);
 }
 
 TEST(Field, TheLengthIsTheLongestEdgeAndVersionsDiffer) {

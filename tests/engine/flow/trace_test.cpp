@@ -167,7 +167,7 @@ TEST(Trace, UniformGridEndsExactlyOnTheFaces) {
   EXPECT_EQ(curve->last_end(), End::boundary);
   const Vec3 a = mapping.index_from_world(curve->knots().front().p), b = mapping.index_from_world(curve->knots().back().p);
   EXPECT_NEAR(a.x, 0, 1e-13);
-  EXPECT_NEAR(b.x, 8, 1e-13);
+  EXPECT_NEAR(b.y, 6, 1e-13);
   for (const Knot& knot : curve->knots()) EXPECT_LE(norm(cross(knot.p - seed, direction(Vec3(1.0, 0.25, -0.125)))), 1e-13);
 }
 
@@ -208,14 +208,14 @@ TEST(Trace, GridLinesAgreeWithTinySteps) {
 }
 
 TEST(Trace, HillFloorOfTheGrid) {
-  // the grid's own error at 32 and 64 nodes, within 20 %
+  // the grid's own error, within 20 %
   const auto hill = analytic_vector("hill");
   const Vec3 seed(0.5, 0.0, 0.0);
   const auto exact = traced({hill.get()}, seed, 3.2);
   const struct {
     int nodes;
     double floor;
-  } cases[] = {{32, 1.2e-3}, {64, 2.8e-4}};
+  } cases[] = {{32, 1.2e-3}, {64, 2.8e-4}, {128, 7.1e-5}};
   for (const auto& c : cases) {
     const auto grid = field::sample_on_grid(*hill, c.nodes, -1.2, 1.2);
     const auto curve = traced({grid.get()}, seed, 3.2);
@@ -223,10 +223,11 @@ TEST(Trace, HillFloorOfTheGrid) {
     for (const Knot& knot : curve->knots()) {
       // cross-track: distance to the exact curve near the same arc length
       double nearest = 1;
-      for (int i = -400; i <= 400; ++i) nearest = std::min(nearest, norm(knot.p - exact->position(knot.s + i * 1e-4)));
+      for (int i = -200; i <= 200; ++i) nearest = std::min(nearest, norm(knot.p - exact->position(knot.s + i * 2e-4)));
       worst = std::max(worst, nearest);
     }
-    std::printf("hill %d: %zu knots, cross-track/L' %.3g\n", c.nodes, curve->knots().size(), worst / 3.2);
+    std::printf("hill %d: %zu knots, cross-track/3.2 %.3g\n", c.nodes, curve->knots().size(), worst / 3.2);
+    EXPECT_NEAR(worst / 3.2, c.floor, 0.2 * c.floor) << c.nodes;
   }
 }
 
@@ -244,7 +245,7 @@ TEST(Trace, MaskedCellsAreABoundary) {
 }
 
 TEST(Trace, NotANumberInTheWayIsABoundary) {
-  const auto grid = grid_of(field::Mapping{}, {8, 8, 8}, [](const Vec3& p) { return p.x == 5 && p.y == 4 ? Vec3(std::nan("")) : Vec3(1.0, 0.0, 0.0); });
+  const auto grid = grid_of(field::Mapping{}, {8, 8, 8}, [](const Vec3& p) { return p.x == 5 && p.y == 4 ? Vec3(std::nan("")) : Vec3(1 + 0.01 * p.x, 0.0, 0.0); });
   const auto curve = traced({grid.get()}, Vec3(1.5, 3.5, 3.5));
   EXPECT_EQ(curve->last_end(), End::boundary);
   EXPECT_EQ(curve->knots().back().p.x, 4.0);

@@ -43,7 +43,8 @@ TEST(SceneFile, ReadsTheWholeExample) {
     "streamlines": [{"field": "swirl", "seeds": [[1.6, -0.57, 27.09], [1, 0, 0]], "radius": 0.02, "color": [1, 0.3, 0.2], "kind": "line",
                      "min_speed": 0.1, "length": 3}],
     "cursor": {"probe": [1, 1, 0], "size": 0.1}, "background": [0, 0.5, 1], "quality": "error=2"
-  })", "scene.json");
+  })",
+                                 "scene.json");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(scene->world.count<FieldSource>(), 4u);
   const FieldSource& wall = scene->world.get<FieldSource>(find_field(*scene, "wall"));
@@ -110,9 +111,11 @@ TEST(SceneFile, FilesResolveBesideTheScene) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.vdb", "x");
   test::write_file(folder / "b.raw", "x");
-  test::write_file(folder / "s.json",
-                   "{\"fields\": {\"a\": {\"file\": \"a.vdb\", \"grid\": \"density\", \"valid\": null}, \"c\": {\"file\": \"a.vdb\", \"valid\": \"mask\"},\n"
-                   "\"b\": {\"file\": \"b.raw\", \"shape\": [4, 5, 6], \"spacing\": [1, 2, 3], \"origin\": [0, 0, -1], \"type\": \"uint16\"}}}");
+  test::write_file(
+      folder / "s.json",
+      "{\"fields\": {\"a\": {\"file\": \"a.vdb\", \"grid\": \"density\", \"valid\": null}, \"c\": {\"file\": \"a.vdb\", \"valid\": "
+      "\"mask\"},\n"
+      "\"b\": {\"file\": \"b.raw\", \"shape\": [4, 5, 6], \"spacing\": [1, 2, 3], \"origin\": [0, 0, -1], \"type\": \"uint16\"}}}");
   const auto scene = read_scene(folder / "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   const auto& a = scene->world.get<FieldSource>(find_field(*scene, "a")).file;
@@ -161,7 +164,8 @@ TEST(SceneFile, Overrides) {
   EXPECT_EQ(a.file->grid, "density");
   EXPECT_TRUE(a.grid_is_a_wish);
   EXPECT_EQ(scene->world.get<FieldSource>(find_field(*scene, "b")).file->grid, "speed");
-  EXPECT_EQ(error_of("{}", {{"a", "gone.vdb", ""}}), "--field a=gone.vdb: file \"gone.vdb\" does not exist; a .vdb, .nii, .nii.gz or .raw file was expected");
+  EXPECT_EQ(error_of("{}", {{"a", "gone.vdb", ""}}),
+            "--field a=gone.vdb: file \"gone.vdb\" does not exist; a .vdb, .nii, .nii.gz or .raw file was expected");
   EXPECT_NE(error_of("{}", {{"A", "gone.vdb", ""}}).find("[a-z][a-z0-9_]*"), std::string::npos);
 }
 
@@ -175,7 +179,8 @@ TEST(SceneFile, Chains) {
     expect_error(link("\"name\": \"" + std::string(taken) + "\", \"type\": \"point\""), 3, {taken, "taken", "expected"});
   expect_error(link("\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"bal\""), 3,
                {"unknown field \"bal\"", "known: swirl, ball", "did you mean \"ball\"?"});
-  expect_error(with("\"chain\": [{\"name\": \"a\", \"type\": \"point\"},\n{\"name\": \"a\", \"type\": \"point\"}]"), 3, {"duplicate link name \"a\"", "expected"});
+  expect_error(with("\"chain\": [{\"name\": \"a\", \"type\": \"point\"},\n{\"name\": \"a\", \"type\": \"point\"}]"), 3,
+               {"duplicate link name \"a\"", "expected"});
   std::string many;
   for (int i = 0; i < 9; ++i) many += std::string(i == 0 ? "" : ",") + "\n{\"name\": \"l" + std::to_string(i) + "\", \"type\": \"point\"}";
   expect_error(with("\"chain\": [" + many + "]"), 11, {"has 9 links", "at most 8 were expected"});

@@ -23,7 +23,8 @@ std::string message_of(const Result<T>& result) {
 /// Two grids, a scalar ball and a swirl, in one file.
 void write_grids(const std::string& path) {
   const auto ball = *field::make_analytic("sphere"), swirl = *field::make_analytic("circle");
-  const field::AnyField a{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, b{nullptr, field::sample_on_grid(*swirl.vector, 9, -2, 2)};
+  const field::AnyField a{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr},
+      b{nullptr, field::sample_on_grid(*swirl.vector, 9, -2, 2)};
   const auto written = field::write_vdb(path, {{b, "flow"}, {a, "ball"}});
   ASSERT_TRUE(written) << written.error().message;
 }
@@ -31,8 +32,9 @@ void write_grids(const std::string& path) {
 TEST(UseField, LoadsOnlyWhatIsAskedForAndOnce) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a.vdb");
-  Scene scene = scene_of("{\"fields\": {\"ball\": {\"file\": \"a.vdb\", \"grid\": \"ball\"}, \"flow\": {\"file\": \"a.vdb\", \"grid\": \"flow\"}}}",
-                         folder / "s.json");
+  Scene scene =
+      scene_of("{\"fields\": {\"ball\": {\"file\": \"a.vdb\", \"grid\": \"ball\"}, \"flow\": {\"file\": \"a.vdb\", \"grid\": \"flow\"}}}",
+               folder / "s.json");
   const auto before = field::load_counters();
   const auto ball = use_field(scene, "ball", {});
   ASSERT_TRUE(ball) << message_of(ball);
@@ -47,7 +49,8 @@ TEST(UseField, ErrorsNameTheFieldsOwnLine) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a.vdb");
   test::write_file(folder / "torn.vdb", "not a vdb");
-  Scene scene = scene_of("{\"fields\": {\n\"wrong\": {\"file\": \"a.vdb\", \"grid\": \"bal\"},\n\"torn\": {\"file\": \"torn.vdb\"}}}", folder / "s.json");
+  Scene scene = scene_of("{\"fields\": {\n\"wrong\": {\"file\": \"a.vdb\", \"grid\": \"bal\"},\n\"torn\": {\"file\": \"torn.vdb\"}}}",
+                         folder / "s.json");
   for (const auto& [name, line] : {std::pair{"wrong", ":2: "}, std::pair{"torn", ":3: "}}) {
     const std::string message = message_of(use_field(scene, name, {}));
     EXPECT_TRUE(message.starts_with((folder / "s.json") + line)) << message;
@@ -61,13 +64,15 @@ TEST(UseField, AReplacedFileMayLackTheFirstGrid) {
   const test::TemporaryFolder folder;
   const auto ball = *field::make_analytic("sphere");
   ASSERT_TRUE(field::write_vdb(folder / "one.vdb", {{{field::sample_on_grid(*ball.scalar, 9, -2, 2), nullptr}, "other"}}));
-  auto scene = parse_scene("{\"fields\": {\"a\": {\"file\": \"gone.vdb\", \"grid\": \"density\"}}}", "scene.json", {{"a", folder / "one.vdb", ""}});
+  auto scene =
+      parse_scene("{\"fields\": {\"a\": {\"file\": \"gone.vdb\", \"grid\": \"density\"}}}", "scene.json", {{"a", folder / "one.vdb", ""}});
   ASSERT_TRUE(scene);
   EXPECT_TRUE(use_field(*scene, "a", {}));
 }
 
 TEST(UseDrawnField, SamplesFormulasOnceAndKeepsThemExactForTheHand) {
-  Scene scene = scene_of("{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 9, \"box\": [-1, 1]}}, \"volumes\": [{\"field\": \"ball\"}]}");
+  Scene scene = scene_of(
+      "{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 9, \"box\": [-1, 1]}}, \"volumes\": [{\"field\": \"ball\"}]}");
   const Entity ball = find_field(scene, "ball");
   const auto drawn = use_drawn_field(scene, ball, {});
   ASSERT_TRUE(drawn) << message_of(drawn);
@@ -143,10 +148,47 @@ TEST(SceneForFile, Errors) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a.vdb");
   test::write_file(folder / "torn.vdb", "not a vdb");
-  for (const auto& [file, grid] : {std::pair{"none.vdb", ""}, std::pair{"torn.vdb", ""}, std::pair{"a.vdb", "speed"}, std::pair{"b.raw", ""}}) {
+  for (const auto& [file, grid] :
+       {std::pair{"none.vdb", ""}, std::pair{"torn.vdb", ""}, std::pair{"a.vdb", "speed"}, std::pair{"b.raw", ""}}) {
     const std::string message = message_of(scene_for_file(folder / file, grid));
     EXPECT_NE(message.find(file), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(SceneForFile, RealScansAreTransparentInTheAir) {
+  for (const auto& [name, air, tissue] : {std::tuple{"cranium_ct.vdb", -1000.0, 1500.0}, std::tuple{"colin27_brain_mr.vdb", 0.0, 100.0}}) {
+    const std::string path = test::shared_data(name);
+    if (path.empty()) GTEST_SKIP() << "no shared data";
+    auto scene = scene_for_file(path);
+    ASSERT_TRUE(scene) << message_of(scene);
+    scene->world.each<Volume>([&, air = air, tissue = tissue](Entity, const Volume& volume) {
+      const auto sigma = [&](double value) {
+        double best = 1e300, found = 0;
+        for (const auto& e : volume.transfer.extinctions)
+          if (std::fabs(e.value - value) < best) best = std::fabs(e.value - value), found = e.sigma;
+        return found;
+      };
+      EXPECT_LT(sigma(air), 1e-3 * sigma(tissue));
+      EXPECT_GT(sigma(tissue), 0);
+    });
+  }
+}
+
+TEST(SceneForFile, RealFlowsHaveLinesInside) {
+  for (const char* name : {"combustor_cfd.vdb", "carotid_flow.vdb"}) {
+    const std::string path = test::shared_data(name);
+    if (path.empty()) GTEST_SKIP() << "no shared data";
+    auto scene = scene_for_file(path, "velocity");
+    ASSERT_TRUE(scene) << message_of(scene);
+    ASSERT_EQ(scene->world.count<StreamlineSet>(), 1u) << name;
+    scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
+      const auto any = use_field(*scene, set.field, set.where);
+      ASSERT_TRUE(any);
+      for (const Vec3& seed : set.seeds)
+        EXPECT_TRUE(use_curve(*scene, {any->vector.get(), set.line, set.min_speed}, seed, set.where, set.length)) << name;
+      EXPECT_EQ(scene->curves.size(), set.seeds.size());
+    });
   }
 }
 

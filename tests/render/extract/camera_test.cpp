@@ -68,7 +68,12 @@ TEST(Camera, RoundTripsAgreeWithTheMatrices) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int i = 0; i < 200; ++i) {
-    View view{{30 * u(random), 30 * u(random), 30 * u(random)}, {u(random), u(random), u(random)}, {u(random), u(random), u(random)}, 30, i % 2 == 1, 5};
+    View view{{30 * u(random), 30 * u(random), 30 * u(random)},
+              {u(random), u(random), u(random)},
+              {u(random), u(random), u(random)},
+              30,
+              i % 2 == 1,
+              5};
     const Bounds bounds = box(Vec3(-2.0), Vec3(2.0));
     const Camera c = make_camera(view, 801, 603, bounds);
     const Vec3 p{2 * u(random), 2 * u(random), 2 * u(random)};

@@ -131,8 +131,9 @@ TEST(Extract, TheCursorShowsOnceItIsVisible) {
 }
 
 TEST(Extract, TheFittedCameraSeesEverything) {
-  scene::Scene scene = scene_of("{\"fields\": {" + kSphere + "," + kCircle +
-                                R"(}, "isosurfaces": [{"field": "s", "level": 1}], "streamlines": [{"field": "v", "seeds": [[1, 0, 5]]}]})");
+  scene::Scene scene =
+      scene_of("{\"fields\": {" + kSphere + "," + kCircle +
+               R"(}, "isosurfaces": [{"field": "s", "level": 1}], "streamlines": [{"field": "v", "seeds": [[1, 0, 5]]}]})");
   const FramePacket packet = packet_of(scene);
   const Bounds bounds = packet_bounds(packet);
   EXPECT_GT(bounds.hi.z, 5);
@@ -146,8 +147,8 @@ TEST(Extract, TheFittedCameraSeesEverything) {
 }
 
 TEST(Extract, AGivenCameraIsTakenAsItIs) {
-  scene::Scene scene =
-      scene_of(R"({"fields": {}, "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0], "projection": "orthographic", "height": 7}})");
+  scene::Scene scene = scene_of(
+      R"({"fields": {}, "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 1, 0], "projection": "orthographic", "height": 7}})");
   const View view = packet_of(scene).view;
   EXPECT_EQ(view.position, Vec3(1.0, 2.0, 3.0));
   EXPECT_EQ(view.target, Vec3(4.0, 5.0, 6.0));

@@ -239,15 +239,5 @@ TEST(Shapes, LinkColoursDiffer) {
   EXPECT_LT(link_color(0, false).r, link_color(0, true).r);
 }
 
-TEST(Shapes, PacketsBecomeOneShape) {
-  EXPECT_TRUE(tubes_shape({}).triangles.empty());
-  EXPECT_TRUE(cursors_shape({}).triangles.empty());
-  const TubeItem item{helix(50), 0.05, {1, 0, 0}};
-  const Shape one = tubes_shape({item}), two = tubes_shape({item, item});
-  EXPECT_EQ(two.vertices.size(), 2 * one.vertices.size());
-  EXPECT_FALSE(cursors_shape({cursor()}).triangles.empty());
-  expect_closed(two);
-}
-
 }  // namespace
 }  // namespace catena::render

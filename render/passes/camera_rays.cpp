@@ -1,0 +1,95 @@
+#include "render/passes/camera_rays.h"
+
+#include <glm/matrix.hpp>
+
+namespace catena::render {
+namespace {
+
+glm::vec3 narrow(const Vec3& v) { return glm::vec3(v); }
+
+}  // namespace
+
+CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds) {
+  CameraRays rays;
+  rays.camera = make_camera(packet.view, packet.width, packet.height, bounds);
+  rays.forward = -rays.camera.back;
+  if (bounds.empty()) return rays;
+  rays.reference_depth = std::max(0.0, rays.view_depth(bounds.centre()));
+  double farthest = 0;
+  for (int i = 0; i < 8; ++i) farthest = std::max(farthest, rays.view_depth(bounds.corner(i)));
+  const double scale = std::max(farthest, bounds.diagonal());
+  // reversed float depth keeps its relative precision at any distance: near may be tiny
+  rays.depth_near = rays.camera.orthographic ? 0 : std::max(1e-6 * scale, 1e-30);
+  rays.depth_far = farthest + 1e-3 * scale + 1e-30;
+  return rays;
+}
+
+shared::FrameData CameraRays::frame() const {
+  shared::FrameData f{};
+  f.half_size = {float(0.5 * camera.width), float(0.5 * camera.height)};
+  const double slope_x = camera.half_width / (0.5 * camera.width), slope_y = camera.half_height / (0.5 * camera.height);
+  if (!camera.orthographic) f.slope = {float(slope_x), float(slope_y)};
+  f.right = narrow(camera.right);
+  f.up = narrow(camera.up);
+  f.forward = narrow(forward);
+  f.reference_depth = float(reference_depth);
+  f.front = float(-reference_depth);
+  f.depth_near = float(depth_near);
+  f.depth_far = float(depth_far);
+  f.orthographic = camera.orthographic;
+  return f;
+}
+
+shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping& mapping) const {
+  const Mat3& inverse = mapping.index_from_world_linear;
+  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
+  // one pixel to the right and down, in index space at depth 1 (perspective) or anywhere (orthographic)
+  const Vec3 x = inverse * (camera.right * (camera.half_width / (0.5 * camera.width)));
+  const Vec3 y = inverse * (camera.up * (-camera.half_height / (0.5 * camera.height)));
+  const Vec3 z = inverse * forward;
+  const Vec3 at_reference = mapping.index_from_world(camera.position + forward * reference_depth) - origin;
+  shared::GridData g{};
+  g.origin = narrow(at_reference);
+  g.direction = narrow(z);
+  if (camera.orthographic) {
+    g.origin_x = narrow(x);
+    g.origin_y = narrow(y);
+  } else {
+    g.origin_x = narrow(reference_depth * x);
+    g.origin_y = narrow(reference_depth * y);
+    g.direction_x = narrow(x);
+    g.direction_y = narrow(y);
+  }
+  g.lo = narrow(mirror.box_lo);
+  g.hi = narrow(mirror.box_hi);
+  const VkExtent3D extent = mirror.values.info().extent;
+  g.texel = {1.0f / float(extent.width), 1.0f / float(extent.height), 1.0f / float(extent.depth)};
+  g.world_gradient = glm::mat3(glm::transpose(inverse));
+  g.value_offset = mirror.offset;
+  g.value_scale = mirror.scale;
+  return g;
+}
+
+shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
+  shared::MeshFrameData m{};
+  // columns of the matrix whose rows are right, up, forward
+  for (int i = 0; i < 3; ++i) m.view_from_world[i] = {float(camera.right[i]), float(camera.up[i]), float(forward[i])};
+  const Vec3 from_eye = origin - camera.position;
+  m.offset = {float(dot(from_eye, camera.right)), float(dot(from_eye, camera.up)), float(dot(from_eye, forward))};
+  m.offset_depth = float(dot(from_eye, forward) - reference_depth);
+  m.scale = {float(1 / camera.half_width), float(1 / camera.half_height)};
+  m.depth_near = float(depth_near);
+  m.depth_far = float(depth_far);
+  m.orthographic = camera.orthographic;
+  return m;
+}
+
+Bounds grid_bounds(const field::ScalarGrid& grid) {
+  const field::Box& box = grid.index_box();
+  Bounds bounds;
+  for (int i = 0; i < 8; ++i)
+    bounds.add(grid.mapping().world_from_index({(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z}));
+  return bounds;
+}
+
+}  // namespace catena::render

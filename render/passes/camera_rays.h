@@ -1,0 +1,29 @@
+/// From a packet's view to the numbers of shaders/shared/frame.h: everything that can lose digits is done in double precision
+/// here; shaders get rays in each grid's own index space, with depths counted from the scene and not from a distant eye.
+#pragma once
+#include "engine/field/grid.h"
+#include "render/frame/camera.h"
+#include "render/mirror/grid_mirror.h"
+#include "shaders/shared/frame.h"
+
+namespace catena::render {
+
+struct CameraRays {
+  Camera camera;
+  Vec3 forward{0.0};
+  double reference_depth = 0;
+  double depth_near = 1, depth_far = 2;
+
+  /// `bounds` of everything drawn.
+  static CameraRays make(const FramePacket& packet, const Bounds& bounds);
+  double view_depth(const Vec3& world) const { return dot(world - camera.position, forward); }
+  shared::FrameData frame() const;
+  /// The ray's part of a grid's data; the caller adds table, level and colour.
+  shared::GridData grid(const GridMirror& mirror, const field::Mapping& mapping) const;
+  shared::MeshFrameData mesh(const Vec3& origin) const;
+};
+
+/// The corners of a grid's domain.
+Bounds grid_bounds(const field::ScalarGrid& grid);
+
+}  // namespace catena::render

@@ -1,0 +1,261 @@
+#include "render/passes/renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "render/passes/camera_rays.h"
+#include "render/passes/compose.h"
+#include "render/passes/isosurface.h"
+#include "render/passes/mesh.h"
+#include "render/passes/mirrors.h"
+#include "render/passes/targets.h"
+#include "render/passes/volume.h"
+#include "render/vk/swapchain.h"
+
+namespace catena::render {
+namespace {
+
+template <class Item>
+using Mirrored = VolumePass::Mirrored<Item>;
+
+/// The pixels that the grids' domains can cover; the whole picture when a corner is behind the eye.
+VkRect2D covered_area(const std::vector<const field::ScalarGrid*>& grids, const Camera& camera) {
+  double x0 = camera.width, y0 = camera.height, x1 = 0, y1 = 0;
+  for (const field::ScalarGrid* grid : grids) {
+    const field::Box& box = grid->index_box();
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 index{(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z};
+      const auto pixel = project(camera, grid->mapping().world_from_index(index));
+      if (!pixel) return {{0, 0}, {std::uint32_t(camera.width), std::uint32_t(camera.height)}};
+      x0 = std::min(x0, pixel->x);
+      y0 = std::min(y0, pixel->y);
+      x1 = std::max(x1, pixel->x);
+      y1 = std::max(y1, pixel->y);
+    }
+  }
+  x0 = std::clamp(std::floor(x0) - 1, 0.0, camera.width);
+  y0 = std::clamp(std::floor(y0) - 1, 0.0, camera.height);
+  x1 = std::clamp(std::ceil(x1) + 1, x0, camera.width);
+  y1 = std::clamp(std::ceil(y1) + 1, y0, camera.height);
+  return {{std::int32_t(x0), std::int32_t(y0)}, {std::uint32_t(x1 - x0), std::uint32_t(y1 - y0)}};
+}
+
+/// What one frame draws, sorted by pass.
+struct Work {
+  std::vector<Mirrored<VolumeItem>> volumes;
+  std::vector<Mirrored<IsosurfaceItem>> opaque_surfaces, translucent_surfaces;
+  std::vector<const field::ScalarGrid*> grids;
+  bool meshes = false;
+  bool opaque() const { return meshes || !opaque_surfaces.empty(); }
+  bool raycast() const { return !volumes.empty() || !translucent_surfaces.empty(); }
+};
+
+Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
+  const std::uint32_t most = device.limits.maxImageDimension2D;
+  if (packet.width == 0 || packet.height == 0 || packet.width > most || packet.height > most)
+    return Error{fmt::format("a picture of {} x {} pixels cannot be drawn, expected 1 to {} each way", packet.width, packet.height, most)};
+  if (!(settings.step_voxels > 0) || !std::isfinite(settings.step_voxels))
+    return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
+  return Done{};
+}
+
+}  // namespace
+
+RenderSettings draft_settings() {
+  RenderSettings s;
+  s.step_voxels = 2;
+  return s;
+}
+
+RenderSettings balanced_settings() { return {}; }
+
+RenderSettings reference_settings() {
+  RenderSettings s;
+  s.step_voxels = 0.1;
+  s.termination = 1e-4;
+  s.texels = TexelFormat::r32f;
+  return s;
+}
+
+struct Renderer::Parts {
+  std::unique_ptr<vk::Device> device;  // first in, last out
+  std::optional<Mirrors> mirrors;
+  Targets targets;
+  std::optional<MeshPass> mesh;
+  std::optional<IsosurfacePass> isosurface;
+  std::optional<VolumePass> volume;
+  std::optional<ComposePass> compose;
+  bool drawn = false, drawn_opaque = false;
+  double reference_depth = 0;
+
+  Result<Work> sort(const FramePacket& packet, const RenderSettings& settings);
+  Outcome prepare(const FramePacket& packet, const Work& work);
+  Outcome record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work, const CameraRays& rays);
+};
+
+Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& options) {
+  std::unique_ptr<Renderer> self(new Renderer);
+  CATENA_TRY(self->parts_->device, vk::Device::create(options));
+  self->parts_->mirrors.emplace(*self->parts_->device);
+  self->parts_->compose.emplace(*self->parts_->device);
+  return self;
+}
+
+/// Mirrors what the packet names and says which pass draws it.
+Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettings& settings) {
+  Work work;
+  work.meshes = !packet.tubes.empty() || !packet.cursors.empty();
+  mirrors->begin_frame();
+  const auto mirror = [&](const field::ScalarGrid& grid) {
+    const bool surface = std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), [&](const auto& item) { return item.grid.get() == &grid; });
+    const bool float32 = settings.texels == TexelFormat::r32f || (settings.texels == TexelFormat::automatic && surface);
+    return mirrors->get(grid, {float32, settings.layout});
+  };
+  for (const VolumeItem& item : packet.volumes) {
+    CATENA_ASSERT(item.grid != nullptr);
+    CATENA_TRY(auto mirrored, mirror(*item.grid));
+    if (!mirrored->drawable) continue;
+    work.grids.push_back(item.grid.get());
+    work.volumes.emplace_back(&item, std::move(mirrored));
+  }
+  for (const IsosurfaceItem& item : packet.isosurfaces) {
+    CATENA_ASSERT(item.grid != nullptr);
+    if (!(item.opacity > 0)) continue;
+    CATENA_TRY(auto mirrored, mirror(*item.grid));
+    if (!mirrored->drawable) continue;
+    work.grids.push_back(item.grid.get());
+    (item.opacity < 1 ? work.translucent_surfaces : work.opaque_surfaces).emplace_back(&item, std::move(mirrored));
+  }
+  mirrors->drop_unused();
+  if (work.volumes.size() > MAX_VOLUMES)
+    return Error{fmt::format("the scene has {} volumes, expected at most {}", work.volumes.size(), MAX_VOLUMES)};
+  if (work.translucent_surfaces.size() > MAX_SURFACES)
+    return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", work.translucent_surfaces.size(), MAX_SURFACES)};
+  return work;
+}
+
+/// Creates the passes that are needed and hands every pass its work, also none.
+Outcome Renderer::Parts::prepare(const FramePacket& packet, const Work& work) {
+  if (!mesh && work.meshes) {
+    CATENA_TRY(mesh, MeshPass::create(*device));
+  }
+  if (!isosurface && !work.opaque_surfaces.empty()) {
+    CATENA_TRY(isosurface, IsosurfacePass::create(*device));
+  }
+  if (!volume && work.raycast()) {
+    CATENA_TRY(volume, VolumePass::create(*device));
+  }
+  if (mesh) CATENA_CHECK(mesh->prepare(packet));
+  if (isosurface) CATENA_CHECK(isosurface->prepare(work.opaque_surfaces));
+  if (volume) CATENA_CHECK(volume->prepare(work.volumes, work.translucent_surfaces));
+  return targets.ensure(*device, packet.width, packet.height, work.opaque(), work.raycast());
+}
+
+Outcome Renderer::Parts::record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work,
+                                const CameraRays& rays) {
+  const VkRect2D area = covered_area(work.grids, rays.camera);
+  if (work.opaque()) {
+    const vk::ColorTarget colors[] = {{&targets.opaque_color, std::array<float, 4>{0, 0, 0, 0}},
+                                      {&targets.opaque_depth, std::array<float, 4>{NO_DEPTH, 0, 0, 0}}};
+    commands.begin_pass(colors, {&targets.depth_buffer, 0.0f});
+    if (work.meshes) CATENA_CHECK(mesh->record(commands, rays));
+    if (isosurface) CATENA_CHECK(isosurface->record(commands, rays, area));
+    commands.end_pass();
+  }
+  if (work.raycast()) {
+    if (work.opaque()) commands.use(targets.opaque_depth, vk::kFragmentRead);
+    const vk::ColorTarget color{&targets.volume, std::array<float, 4>{0, 0, 0, 0}};
+    commands.begin_pass({&color, 1}, {});
+    CATENA_CHECK(volume->record(commands, rays, {settings.step_voxels, settings.termination, settings.skip}, area,
+                                work.opaque() ? &targets.opaque_depth : nullptr, targets.none));
+    commands.end_pass();
+  }
+  return compose->record(commands, targets, packet.background, work.opaque(), work.raycast());
+}
+
+Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
+  Parts& p = *parts_;
+  p.drawn = false;
+  CATENA_CHECK(check(packet, settings, p.device->info()));
+  CATENA_TRY(const Work work, p.sort(packet, settings));
+  CATENA_CHECK(p.prepare(packet, work));
+  Bounds bounds;
+  for (const field::ScalarGrid* grid : work.grids) bounds.add(grid_bounds(*grid));
+  if (work.meshes) bounds.add(p.mesh->bounds());
+  const CameraRays rays = CameraRays::make(packet, bounds);
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+  CATENA_CHECK(p.record(commands, packet, settings, work, rays));
+  CATENA_CHECK(commands.finish());
+  p.drawn = true;
+  p.drawn_opaque = work.opaque();
+  p.reference_depth = rays.reference_depth;
+  return Done{};
+}
+
+Result<Picture> Renderer::read_back() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn);
+  Picture picture;
+  picture.width = p.targets.picture.info().extent.width;
+  picture.height = p.targets.picture.info().extent.height;
+  picture.rgba.resize(std::size_t(4) * picture.width * picture.height);
+  CATENA_TRY(const vk::Buffer buffer,
+             vk::Buffer::create(*p.device, picture.rgba.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+  commands.copy(p.targets.picture, buffer);
+  CATENA_CHECK(commands.finish());
+  std::memcpy(picture.rgba.data(), buffer.bytes().data(), picture.rgba.size());
+  return picture;
+}
+
+Result<DepthPicture> Renderer::read_depth() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn);
+  DepthPicture picture;
+  picture.width = p.targets.picture.info().extent.width;
+  picture.height = p.targets.picture.info().extent.height;
+  picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
+  if (!p.drawn_opaque) return picture;
+  const std::size_t bytes = picture.depth.size() * sizeof(float);
+  CATENA_TRY(const vk::Buffer buffer, vk::Buffer::create(*p.device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+  commands.copy(p.targets.opaque_depth, buffer);
+  CATENA_CHECK(commands.finish());
+  std::vector<float> relative(picture.depth.size());
+  std::memcpy(relative.data(), buffer.bytes().data(), bytes);
+  for (std::size_t i = 0; i < relative.size(); ++i)
+    if (relative[i] < NO_DEPTH) picture.depth[i] = float(double(relative[i]) + p.reference_depth);
+  return picture;
+}
+
+Result<bool> Renderer::present(vk::Swapchain& swapchain) {
+  CATENA_ASSERT(parts_->drawn);
+  return swapchain.present(parts_->targets.picture);
+}
+
+RenderStats Renderer::stats() const {
+  const vk::Device& device = *parts_->device;
+  RenderStats stats;
+  stats.device = device.info().name;
+  stats.driver = device.info().driver;
+  stats.gpu_bytes = device.counters().bytes;
+  stats.uploads = device.counters().uploads;
+  stats.upload_bytes = device.counters().upload_bytes;
+  stats.pipelines = device.counters().pipelines;
+  stats.mirrors = parts_->mirrors->count();
+  stats.mirror_ms = parts_->mirrors->build_ms();
+  stats.validation_messages = device.messages().count();
+  return stats;
+}
+
+std::vector<std::string> Renderer::validation_texts() const { return parts_->device->messages().texts(); }
+vk::Device& Renderer::device() { return *parts_->device; }
+
+}  // namespace catena::render

@@ -1,0 +1,129 @@
+// Grids as textures: dense or brick atlas (render/mirror), with their masks and brick maps. GRID_COUNT of them are bound.
+// Lavapipe cannot index an array of textures, hence the switches; they fold away where the index is a constant.
+#define BRICK 8
+#define APRON 9
+
+layout(scalar, binding = 0) uniform Frame { FrameData frame; };
+layout(binding = 3) uniform sampler3D values_0;
+layout(binding = 11) uniform utexture3D map_0;
+layout(binding = 19) uniform utexture3D mask_0;
+#if GRID_COUNT > 1
+layout(binding = 4) uniform sampler3D values_1;
+layout(binding = 5) uniform sampler3D values_2;
+layout(binding = 6) uniform sampler3D values_3;
+layout(binding = 7) uniform sampler3D values_4;
+layout(binding = 8) uniform sampler3D values_5;
+layout(binding = 9) uniform sampler3D values_6;
+layout(binding = 10) uniform sampler3D values_7;
+layout(binding = 12) uniform utexture3D map_1;
+layout(binding = 13) uniform utexture3D map_2;
+layout(binding = 14) uniform utexture3D map_3;
+layout(binding = 15) uniform utexture3D map_4;
+layout(binding = 16) uniform utexture3D map_5;
+layout(binding = 17) uniform utexture3D map_6;
+layout(binding = 18) uniform utexture3D map_7;
+layout(binding = 20) uniform utexture3D mask_1;
+layout(binding = 21) uniform utexture3D mask_2;
+layout(binding = 22) uniform utexture3D mask_3;
+layout(binding = 23) uniform utexture3D mask_4;
+layout(binding = 24) uniform utexture3D mask_5;
+layout(binding = 25) uniform utexture3D mask_6;
+layout(binding = 26) uniform utexture3D mask_7;
+#define SWITCH_GRID(i, CALL) \
+  switch (i) {               \
+    case 0: return CALL(0);  \
+    case 1: return CALL(1);  \
+    case 2: return CALL(2);  \
+    case 3: return CALL(3);  \
+    case 4: return CALL(4);  \
+    case 5: return CALL(5);  \
+    case 6: return CALL(6);  \
+    default: return CALL(7); \
+  }
+#else
+#define SWITCH_GRID(i, CALL) return CALL(0);
+#endif
+
+// four bits a grid
+layout(constant_id = 0) const uint GRID_FLAGS = 0;
+bool grid_is_atlas(int i) { return (GRID_FLAGS >> (4 * i) & 1u) != 0u; }
+bool grid_is_masked(int i) { return (GRID_FLAGS >> (4 * i) & 2u) != 0u; }
+bool grid_is_shaded(int i) { return (GRID_FLAGS >> (4 * i) & 4u) != 0u; }
+bool grid_skips(int i) { return (GRID_FLAGS >> (4 * i) & 8u) != 0u; }
+
+float filtered_texel(int i, vec3 uvw) {
+#define FILTERED(n) textureLod(values_##n, uvw, 0.0).r
+  SWITCH_GRID(i, FILTERED)
+}
+float texel(int i, ivec3 at) {
+#define TEXEL(n) texelFetch(values_##n, at, 0).r
+  SWITCH_GRID(i, TEXEL)
+}
+uint brick_word(int i, ivec3 brick) {
+#define WORD(n) texelFetch(map_##n, brick, 0).r
+  SWITCH_GRID(i, WORD)
+}
+uint mask_texel(int i, ivec3 at) {
+#define MASK(n) texelFetch(mask_##n, at, 0).r
+  SWITCH_GRID(i, MASK)
+}
+
+ivec3 slot_of(uint word) { return ivec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
+int empty_distance(uint word) { return int(word >> 24); }
+
+// The cell that holds a local position of the domain.
+ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }
+
+// The value at a local position of the domain, trilinear.
+float sample_value(int i, vec3 p) {
+  float t;
+  if (grid_is_atlas(i)) {
+    const ivec3 brick = cell_of(i, p) >> 3;
+    const ivec3 slot = slot_of(brick_word(i, brick));
+    t = filtered_texel(i, (vec3(slot * APRON) + (p - vec3(brick * BRICK)) + 0.5) * frame.grids[i].texel);
+  } else {
+    t = filtered_texel(i, (p + 0.5) * frame.grids[i].texel);
+  }
+  return frame.grids[i].value_offset + frame.grids[i].value_scale * t;
+}
+
+bool cell_is_valid(int i, ivec3 cell) {
+  if (!grid_is_masked(i)) return true;
+  if (grid_is_atlas(i)) return mask_texel(i, slot_of(brick_word(i, cell >> 3)) * BRICK + (cell & 7)) != 0u;
+  return mask_texel(i, cell) != 0u;
+}
+
+// Corner i + 2 j + 4 k of a cell in c[k][...]: lo = (000, 100, 010, 110), hi the same one plane up.
+void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
+  ivec3 at = cell;
+  if (grid_is_atlas(i)) at = slot_of(brick_word(i, cell >> 3)) * APRON + (cell & 7);
+  lo = vec4(texel(i, at), texel(i, at + ivec3(1, 0, 0)), texel(i, at + ivec3(0, 1, 0)), texel(i, at + ivec3(1, 1, 0)));
+  hi = vec4(texel(i, at + ivec3(0, 0, 1)), texel(i, at + ivec3(1, 0, 1)), texel(i, at + ivec3(0, 1, 1)), texel(i, at + ivec3(1, 1, 1)));
+  lo = frame.grids[i].value_offset + frame.grids[i].value_scale * lo;
+  hi = frame.grids[i].value_offset + frame.grids[i].value_scale * hi;
+}
+
+// One side of a central difference: clamped to the domain; a place in an invalid cell gives the centre instead.
+float side_value(int i, vec3 p, float centre, vec3 step, out float moved) {
+  const vec3 q = clamp(p + step, frame.grids[i].lo, frame.grids[i].hi);
+  moved = abs(dot(q - p, vec3(1.0)));
+  if (grid_is_masked(i) && !cell_is_valid(i, cell_of(i, q))) {
+    moved = 0.0;
+    return centre;
+  }
+  return sample_value(i, q);
+}
+
+// The gradient by central differences of one voxel, in world axes.
+vec3 world_gradient(int i, vec3 p) {
+  const float centre = grid_is_masked(i) ? sample_value(i, p) : 0.0;
+  vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    vec3 step = vec3(0.0);
+    step[axis] = 1.0;
+    float before, after;
+    const float a = side_value(i, p, centre, -step, before), b = side_value(i, p, centre, step, after);
+    gradient[axis] = (b - a) / max(before + after, 1e-6);
+  }
+  return frame.grids[i].world_gradient * gradient;
+}

@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// volume over opaque over background, premultiplied floats; written as straight alpha. Display values are not converted.
+#include "shaders/shared/frame.h"
+
+layout(constant_id = 0) const uint HAS_OPAQUE = 0;
+layout(constant_id = 1) const uint HAS_VOLUME = 0;
+layout(scalar, binding = 0) uniform Compose { ComposeData compose; };
+layout(binding = 1) uniform texture2D opaque_color;
+layout(binding = 2) uniform texture2D volume_color;
+layout(location = 0) out vec4 out_color;
+
+void main() {
+  const ivec2 at = ivec2(gl_FragCoord.xy);
+  vec4 sum = vec4(compose.background.rgb * compose.background.a, compose.background.a);
+  if (HAS_OPAQUE != 0u) {
+    const vec4 c = texelFetch(opaque_color, at, 0);
+    sum = c + (1.0 - c.a) * sum;
+  }
+  if (HAS_VOLUME != 0u) {
+    const vec4 c = texelFetch(volume_color, at, 0);
+    sum = c + (1.0 - c.a) * sum;
+  }
+  out_color = sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : vec4(0.0);
+}

@@ -1,0 +1,28 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// An opaque isosurface: the first crossing along the pixel's ray, lit, with its exact depth.
+#include "shaders/shared/frame.h"
+#define GRID_COUNT 1
+#include "shaders/lib/grids.glsl"
+#include "shaders/lib/rays.glsl"
+#include "shaders/lib/lighting.glsl"
+#include "shaders/lib/surface.glsl"
+
+layout(location = 0) out vec4 out_color;
+layout(location = 1) out float out_depth;
+
+void main() {
+  const vec2 q = pixel_place();
+  const LocalRay ray = local_ray(0, q);
+  const vec2 interval = domain_interval(0, ray);
+  const float from = max(interval.x, frame.front);
+  if (!(from < interval.y)) discard;
+  const float t = first_crossing(0, ray, from, interval.y);
+  if (t >= NO_DEPTH) discard;
+  const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
+  out_color = vec4(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), 1.0);
+  out_depth = t;
+  gl_FragDepth = buffer_depth(t);
+}

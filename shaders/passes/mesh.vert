@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/shared/frame.h"
+
+layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec3 in_normal;
+layout(location = 2) in vec3 in_color;
+layout(location = 0) out vec3 out_normal;   // view axes: x right, y up, z forward
+layout(location = 1) out vec3 out_color;
+layout(location = 2) out vec3 out_view;     // position in the view
+layout(location = 3) out float out_depth;
+
+void main() {
+  const vec3 turned = frame.view_from_world * in_position;
+  const vec3 view = turned + frame.offset;
+  out_normal = frame.view_from_world * in_normal;
+  out_color = in_color;
+  out_view = view;
+  out_depth = turned.z + frame.offset_depth;
+  const vec2 clip = vec2(view.x * frame.scale.x, -view.y * frame.scale.y);
+  if (frame.orthographic != 0u) gl_Position = vec4(clip, (frame.depth_far - view.z) / (frame.depth_far - frame.depth_near), 1.0);
+  else gl_Position = vec4(clip, frame.depth_near, view.z);
+}

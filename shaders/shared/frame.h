@@ -1,0 +1,58 @@
+// What the passes of one picture share. Depth t is measured along the view axis in world units, from the reference depth: the
+// distance from the eye's plane is t + reference_depth. Pixel places q count from the centre of the picture.
+#ifndef CATENA_SHARED_FRAME_H
+#define CATENA_SHARED_FRAME_H
+#include "shaders/shared/language.h"
+
+#define MAX_VOLUMES 4
+#define MAX_SURFACES 4
+#define MAX_GRIDS 8
+#define NO_DEPTH 3.0e38f
+
+CATENA_SHARED_BEGIN
+
+// One grid as a ray meets it. Local position on the ray of pixel q at depth t:
+//   (origin + origin_x q.x + origin_y q.y) + t (direction + direction_x q.x + direction_y q.y)
+struct GridData {
+  vec3 origin, origin_x, origin_y;
+  vec3 direction, direction_x, direction_y;
+  vec3 lo, hi;           // the domain, local
+  vec3 texel;            // 1 / size of the value image
+  mat3 world_gradient;   // world = world_gradient * local gradient
+  float value_offset, value_scale;
+  // volumes: the table's first entry, its last index, and the value range it spans
+  uint table_start, table_last;
+  float table_lo, table_per_value;
+  // isosurfaces
+  float level, opacity;
+  vec3 color;
+};
+
+struct FrameData {
+  vec2 half_size;        // of the picture, pixels
+  vec2 slope;            // world units a pixel at depth 1 from the eye; 0 if orthographic
+  vec3 right, up, forward;
+  float reference_depth;
+  float front;           // the first depth that is seen: the eye's plane
+  float depth_near, depth_far;  // buffer depth: perspective near / z, orthographic (far - z) / (far - near)
+  uint orthographic;
+  float step_world;      // length of a ray's segments
+  float termination;     // a ray ends when less gets through
+  GridData grids[MAX_GRIDS];
+};
+
+struct MeshFrameData {
+  mat3 view_from_world;  // rows right, up, forward
+  vec3 offset;           // of the mesh's origin in the view: x, y, distance from the eye's plane
+  float offset_depth;    // the same along the axis, from the reference depth
+  vec2 scale;            // clip units per world unit (per slope, if perspective)
+  float depth_near, depth_far;
+  uint orthographic;
+};
+
+struct ComposeData {
+  vec4 background;       // alpha 0: transparent
+};
+
+CATENA_SHARED_END
+#endif

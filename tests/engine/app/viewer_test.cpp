@@ -1,0 +1,114 @@
+// The window itself, on a virtual display (xvfb-run), with real pointer events where xdotool is there.
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+#include "render/vk/picture.h"
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace {
+
+constexpr const char* kScene = R"({
+  "fields": {"v": {"analytic": "circle"}},
+  "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
+  "workspace": {"metres_per_unit": 0.05},
+  "streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0.5, 0, 0.4]], "radius": 0.05}],
+  "camera": {"position": [0, -6, 3], "target": [0, 0, 0]} })";
+
+bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
+
+int exit_code(const std::string& command) {
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+class Viewer : public testing::Test {
+ protected:
+  void SetUp() override {
+    scene_ = folder_ / "scene.json";
+    test::write_file(scene_, kScene);
+  }
+  std::string view() const { return std::string(CATENA_PROGRAM) + " view " + scene_ + " --size 320x240"; }
+  int on_display(const std::string& script) {
+    test::write_file(folder_ / "script.sh", script);
+    return exit_code("timeout 60 xvfb-run -a -s '-screen 0 640x480x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") +
+                     " 2>&1");
+  }
+  std::string log() const { return test::read_file(folder_ / "log"); }
+  render::Picture picture(const std::string& name) {
+    auto read = render::read_png(folder_ / name);
+    EXPECT_TRUE(read) << log();
+    return read ? std::move(*read) : render::Picture();
+  }
+
+  test::TemporaryFolder folder_;
+  std::string scene_;
+};
+
+int differing(const render::Picture& a, const render::Picture& b) {
+  int count = 0;
+  for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); i += 4)
+    if (std::abs(a.rgba[i] - b.rgba[i]) + std::abs(a.rgba[i + 1] - b.rgba[i + 1]) + std::abs(a.rgba[i + 2] - b.rgba[i + 2]) > 40) ++count;
+  return count;
+}
+
+TEST_F(Viewer, WithoutADisplayItSaysSoInOneLine) {
+  const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + view() + " > " + (folder_ / "log") + " 2>&1";
+  EXPECT_EQ(exit_code(command), 1);
+  EXPECT_EQ(log().find("catena: no display"), 0u) << log();
+  EXPECT_EQ(std::count(log().begin(), log().end(), '\n'), 1) << log();
+}
+
+TEST_F(Viewer, DrawsTheSceneAndTheHand) {
+  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  ASSERT_EQ(on_display(view() + " --frames 4 --screenshot " + (folder_ / "a.png")), 0) << log();
+  const render::Picture a = picture("a.png");
+  ASSERT_EQ(a.width, 320u);
+  ASSERT_EQ(a.height, 240u);
+  int red = 0, white = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    if (a.rgba[i] > 80 && a.rgba[i + 1] < a.rgba[i] / 2) ++red;
+    if (a.rgba[i] > 150 && a.rgba[i + 1] > 150 && a.rgba[i + 2] > 150) ++white;
+  }
+  EXPECT_GT(red, 500) << "the streamlines";
+  EXPECT_GT(white, 10) << "the probe";
+  EXPECT_NE(log().find("4 frames"), std::string::npos) << log();
+}
+
+TEST_F(Viewer, DragsTurnTheViewAndMoveTheHand) {
+  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  const auto drive = [&](const std::string& events, const std::string& png) {
+    std::ostringstream script;
+    script << view() << " --screenshot " << (folder_ / png) << " &\n"
+           << "for i in $(seq 200); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done\n"
+           << "xdotool mousemove 160 120; sleep 0.3\n"
+           << events << "\nsleep 0.5; xdotool key q; wait $!\n";
+    EXPECT_EQ(on_display(script.str()), 0) << log();
+    return log();
+  };
+  const std::string still = drive("", "still.png");
+  const std::string turned = drive("xdotool mousedown 1 mousemove 220 130 mousemove 260 140 mouseup 1", "turned.png");
+  const std::string moved = drive("xdotool mousedown 3 mousemove 140 120 mousemove 80 120 mouseup 3", "moved.png");
+  EXPECT_GT(differing(picture("still.png"), picture("turned.png")), 500);
+  EXPECT_GT(differing(picture("still.png"), picture("moved.png")), 20);
+
+  // the probe stays where it began unless the hand was dragged
+  const auto probe = [](const std::string& text) {
+    std::istringstream in(text.substr(text.find("probe ") + 6));
+    double x = 0;
+    in >> x;
+    return x;
+  };
+  ASSERT_NE(still.find("probe "), std::string::npos) << still;
+  EXPECT_NEAR(probe(still), 1, 1e-9) << still;
+  EXPECT_NEAR(probe(turned), 1, 1e-9) << turned;
+  EXPECT_LT(probe(moved), 0) << moved;
+}
+
+}  // namespace
+}  // namespace catena::app

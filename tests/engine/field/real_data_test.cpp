@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "engine/field/load.h"
+#include "tests/support/support.h"
+
+namespace catena::field {
+namespace {
+
+using catena::test::shared_data;
+
+#define CATENA_NEED(variable, name)                  \
+  const std::string variable = shared_data(name);    \
+  if (variable.empty()) GTEST_SKIP() << name << " of the shared data is not here"
+
+AnyField load_grid(const std::string& path, const std::string& grid = {}) {
+  LoadRequest r;
+  r.path = path;
+  r.grid = grid;
+  auto field = load(r);
+  EXPECT_TRUE(field) << field.error().message;
+  return field.value();
+}
+
+void expect_range(const std::string& path, const std::string& grid, double lo, double hi, double tolerance) {
+  const auto field = load_grid(path, grid).scalar;
+  EXPECT_NEAR(field->min_value(), lo, tolerance) << path;
+  EXPECT_NEAR(field->max_value(), hi, tolerance) << path;
+  EXPECT_EQ(field->grid()->stats().nan_count, 0u);
+}
+
+TEST(RealData, Combustor) {
+  CATENA_NEED(path, "combustor_cfd.vdb");
+  expect_range(path, "density", 0.198, 0.707, 5e-4);
+  const auto velocity = load_grid(path, "velocity").vector;
+  EXPECT_NEAR(velocity->grid()->stats().max, 1519, 1);
+  EXPECT_TRUE(velocity->grid()->has_mask());
+  EXPECT_NEAR(velocity->mapping().smallest_edge(), 0.18, 1e-3);
+  Cursor cursor;
+  EXPECT_TRUE(velocity->sample(Vec3(1.6, -0.57, 27.09), cursor).inside);
+}
+
+TEST(RealData, CarotidCraniumAndWeather) {
+  CATENA_NEED(carotid, "carotid_flow.vdb");
+  CATENA_NEED(cranium, "cranium_ct.vdb");
+  CATENA_NEED(weather, "weather_uvt.vdb");
+  expect_range(carotid, "density", 0, 580, 1);
+  expect_range(cranium, {}, -1024, 2986, 1);
+  expect_range(weather, "temperature", 190.9, 310.6, 0.2);
+  EXPECT_NEAR(load_grid(weather, "wind").vector->grid()->stats().max, 80.7, 0.1);
+  EXPECT_NEAR(load_grid(carotid, "velocity").vector->grid()->stats().max, 22.7, 0.1);
+}
+
+TEST(RealData, TheSyntheticHelixIsTheFormula) {
+  CATENA_NEED(path, "synth_helix.vdb");
+  const auto field = load_grid(path, "velocity").vector;
+  Cursor cursor;
+  const Box& box = field->index_box();
+  for (int n = 1; n < 8; ++n) {
+    const Vec3 p = field->mapping().world_from_index(box.lo + (box.hi - box.lo) * (n / 8.0));
+    EXPECT_NEAR(norm(field->sample(p, cursor).value - Vec3(-2 * p.y, 2 * p.x, 0.5)), 0, 1e-5);
+  }
+}
+
+TEST(RealData, TheBrainEqualsItsPackage) {
+  CATENA_NEED(path, "colin27_brain_mr.vdb");
+  const std::string package = "/usr/share/mricron/templates/ch2bet.nii.gz";
+  if (!catena::test::exists(package)) GTEST_SKIP() << "package mricron-data is not installed";
+  const auto vdb = load_grid(path).scalar, nii = load_grid(package).scalar;
+  EXPECT_EQ(nii->max_value(), 133);
+  // voxel by voxel, in the world of either
+  Cursor a, b;
+  const Box& box = nii->index_box();
+  double worst = 0;
+  int compared = 0;
+  for (double z = box.lo.z; z <= box.hi.z; z += 3)
+    for (double y = box.lo.y; y <= box.hi.y; y += 2)
+      for (double x = box.lo.x; x <= box.hi.x; x += 2) {
+        const Vec3 p = nii->mapping().world_from_index(Vec3(x, y, z));
+        const ScalarSample s = vdb->sample(p, a);
+        if (!s.inside) continue;
+        worst = std::max(worst, std::fabs(s.value - nii->sample(p, b).value));
+        ++compared;
+      }
+  EXPECT_GT(compared, 100000);
+  EXPECT_LE(worst, 1e-3);
+}
+
+TEST(RealData, FibresHaveTheirHelixAngle) {
+  CATENA_NEED(path, "ideal_lv_fibres.vdb");
+  const auto fibre = load_grid(path, "fibre").vector;
+  const auto depth = load_grid(path, "transmural").scalar;
+  const auto info = describe(path);
+  ASSERT_TRUE(info);
+  EXPECT_EQ(info->size(), 4u);
+  Cursor cf, cd;
+  const VectorGrid& grid = *fibre->grid();
+  const Vec3 centre = fibre->mapping().world_from_index((fibre->index_box().lo + fibre->index_box().hi) * 0.5);
+  int compared = 0;
+  double error = 0;
+  for (int x = 0; x < 96; x += 3)
+    for (int y = 0; y < 96; y += 3) {
+      const Vec3 p = fibre->mapping().world_from_index(Vec3(x, y, 0.5 * (fibre->index_box().lo.z + fibre->index_box().hi.z)));
+      const VectorCell cell = grid.cell(grid.base_of(fibre->mapping().index_from_world(p)), cf);
+      if (!cell.valid) continue;
+      const Vec3 around = direction(Vec3(-(p.y - centre.y), p.x - centre.x, 0));
+      const VectorSample f = fibre->sample(p, cf, &around);
+      const ScalarSample t = depth->sample(p, cd);
+      const Vec3 along = direction(cross(t.gradient, around));
+      const double angle = std::atan2(dot(f.value, along), dot(f.value, around)) * 180 / std::numbers::pi;
+      error += std::fabs(std::fabs(angle) - std::fabs(60 - 120 * t.value));
+      ++compared;
+    }
+  ASSERT_GT(compared, 20);
+  EXPECT_LT(error / compared, 10);
+}
+
+}  // namespace
+}  // namespace catena::field
