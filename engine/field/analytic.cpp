@@ -133,8 +133,8 @@ Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& 
   for (const auto& f : vector_formulas())
     if (f.name == name) return AnyField{nullptr, std::make_shared<NamedVector>(f, parameters.scale)};
   std::string all;
-  for (const auto n : analytic_names()) all += (all.empty() ? "" : " ") + std::string(n);
-  return Error{fmt::format("there is no analytic field \"{}\": expected one of {}", name, all)};
+  for (const auto n : analytic_names()) all.append(" ").append(n);
+  return Error{fmt::format("there is no analytic field \"{}\": expected one of{}", name, all)};
 }
 
 }  // namespace catena::field

@@ -13,9 +13,9 @@
 namespace catena::field {
 
 struct AnalyticParameters {
-  double scale = 1;                ///< multiplies values
-  Vec3 direction{1.0, 0.0, 0.0};   ///< `uniform`
-  std::string part;                ///< `left-ventricle`: density (default), transmural or fibre
+  double scale = 1;               ///< multiplies values
+  Vec3 direction{1.0, 0.0, 0.0};  ///< `uniform`
+  std::string part;               ///< `left-ventricle`: density (default), transmural or fibre
 };
 
 std::vector<std::string_view> analytic_names();

@@ -72,9 +72,14 @@ double marschner_lobb(const Vec3& p, Vec3& g) {
 }
 
 constexpr ScalarFormula formulas[] = {
-    {"sphere", sphere, 0, inf},  {"plane", plane, -inf, inf},   {"torus", torus, 0, inf},
-    {"constant", constant, 1, 1}, {"linear", linear, -inf, inf}, {"gaussian", gaussian, 0, 1},
-    {"marschner-lobb", marschner_lobb, 0, 1},                    {"tanh", plateau, -1, 1},
+    {"sphere", sphere, 0, inf},
+    {"plane", plane, -inf, inf},
+    {"torus", torus, 0, inf},
+    {"constant", constant, 1, 1},
+    {"linear", linear, -inf, inf},
+    {"gaussian", gaussian, 0, 1},
+    {"marschner-lobb", marschner_lobb, 0, 1},
+    {"tanh", plateau, -1, 1},
 };
 
 }  // namespace

@@ -43,7 +43,8 @@ Vec3 abc(const Vec3& p) {
 }
 
 constexpr VectorFormula formulas[] = {
-    {"circle", circle}, {"saddle", saddle}, {"node", node}, {"rankine", rankine}, {"lamb-oseen", lamb_oseen}, {"hill", hill}, {"abc", abc}, {"helix", helix},
+    {"circle", circle},         {"saddle", saddle}, {"node", node}, {"rankine", rankine},
+    {"lamb-oseen", lamb_oseen}, {"hill", hill},     {"abc", abc},   {"helix", helix},
 };
 
 }  // namespace

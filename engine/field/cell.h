@@ -20,7 +20,7 @@ struct ScalarCell {
   std::array<double, 8> corner{};
 
   double value(const Vec3& f) const;
-  Vec3 gradient(const Vec3& f) const;             ///< by index
+  Vec3 gradient(const Vec3& f) const;  ///< by index
   /// Mixed second derivatives by index; the diagonal of a trilinear function is zero. Returns (d2/dydz, d2/dxdz, d2/dxdy).
   Vec3 mixed_second(const Vec3& f) const;
   void value_and_gradient(const Vec3& f, double& value, Vec3& gradient) const;
@@ -38,16 +38,27 @@ struct VectorCell {
 
 // The hot path is in the header: one fetch costs a few nanoseconds, and so would the call.
 
-inline void ScalarCell::value_and_gradient(const Vec3& f, double& value, Vec3& gradient) const {
+inline void trilinear(const std::array<double, 8>& c, const Vec3& f, double& value, Vec3& gradient) {
   // along x, then y, then z
-  const double d00 = corner[1] - corner[0], d10 = corner[3] - corner[2], d01 = corner[5] - corner[4], d11 = corner[7] - corner[6];
-  const double v00 = corner[0] + d00 * f.x, v10 = corner[2] + d10 * f.x, v01 = corner[4] + d01 * f.x, v11 = corner[6] + d11 * f.x;
+  const double d00 = c[1] - c[0], d10 = c[3] - c[2], d01 = c[5] - c[4], d11 = c[7] - c[6];
+  const double v00 = c[0] + d00 * f.x, v10 = c[2] + d10 * f.x, v01 = c[4] + d01 * f.x, v11 = c[6] + d11 * f.x;
   const double e0 = v10 - v00, e1 = v11 - v01;
   const double w0 = v00 + e0 * f.y, w1 = v01 + e1 * f.y;
   value = w0 + (w1 - w0) * f.z;
   const double x0 = d00 + (d10 - d00) * f.y, x1 = d01 + (d11 - d01) * f.y;
   gradient = Vec3(x0 + (x1 - x0) * f.z, e0 + (e1 - e0) * f.z, w1 - w0);
 }
+
+inline Vec3 trilinear(const std::array<Vec3, 8>& c, const Vec3& f) {
+  const auto mix = [](const Vec3& a, const Vec3& b, double t) {
+    return Vec3(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t);
+  };
+  const Vec3 w0 = mix(mix(c[0], c[1], f.x), mix(c[2], c[3], f.x), f.y);
+  const Vec3 w1 = mix(mix(c[4], c[5], f.x), mix(c[6], c[7], f.x), f.y);
+  return mix(w0, w1, f.z);
+}
+
+inline void ScalarCell::value_and_gradient(const Vec3& f, double& value, Vec3& gradient) const { trilinear(corner, f, value, gradient); }
 
 inline double ScalarCell::value(const Vec3& f) const {
   double v;
@@ -63,13 +74,6 @@ inline Vec3 ScalarCell::gradient(const Vec3& f) const {
   return g;
 }
 
-inline Vec3 VectorCell::value(const Vec3& f) const {
-  const auto mix = [](const Vec3& a, const Vec3& b, double t) {
-    return Vec3(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t);
-  };
-  const Vec3 w0 = mix(mix(corner[0], corner[1], f.x), mix(corner[2], corner[3], f.x), f.y);
-  const Vec3 w1 = mix(mix(corner[4], corner[5], f.x), mix(corner[6], corner[7], f.x), f.y);
-  return mix(w0, w1, f.z);
-}
+inline Vec3 VectorCell::value(const Vec3& f) const { return trilinear(corner, f); }
 
 }  // namespace catena::field

@@ -157,7 +157,7 @@ openvdb::MaskTree erode(const openvdb::MaskTree& valid, const openvdb::CoordBBox
         for (int y = 0; y < 9; ++y)
           for (int z = 0; z < 9; ++z)
             window[x][y][z] = x < 8 && y < 8 && z < 8 ? sources[n]->isValueOn(static_cast<openvdb::Index>(x * 64 + y * 8 + z))
-                                                       : neighbours.isValueOn(o.offsetBy(x, y, z));
+                                                      : neighbours.isValueOn(o.offsetBy(x, y, z));
       for (int x = 0; x < 8; ++x)
         for (int y = 0; y < 8; ++y)
           for (int z = 0; z < 8; ++z) {
@@ -196,11 +196,13 @@ Result<std::shared_ptr<const Grid>> from_tree(std::string name, const Mapping& m
 
 }  // namespace
 
-Result<std::shared_ptr<const ScalarGrid>> scalar_from_tree(std::string name, const Mapping& mapping, const openvdb::FloatTree& tree, const ValidMask& valid) {
+Result<std::shared_ptr<const ScalarGrid>> scalar_from_tree(std::string name, const Mapping& mapping, const openvdb::FloatTree& tree,
+                                                           const ValidMask& valid) {
   return from_tree<ScalarGrid, float>(std::move(name), mapping, tree, valid);
 }
 
-Result<std::shared_ptr<const VectorGrid>> vector_from_tree(std::string name, const Mapping& mapping, const openvdb::Vec3fTree& tree, const ValidMask& valid) {
+Result<std::shared_ptr<const VectorGrid>> vector_from_tree(std::string name, const Mapping& mapping, const openvdb::Vec3fTree& tree,
+                                                           const ValidMask& valid) {
   return from_tree<VectorGrid, nanovdb::Vec3f>(std::move(name), mapping, tree, valid);
 }
 

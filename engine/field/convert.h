@@ -12,8 +12,10 @@ namespace catena::field {
 using ValidMask = openvdb::MaskTree::Ptr;
 
 /// Fails (one phrase, without the file's name) when no voxel is active, none is valid or none is finite.
-Result<std::shared_ptr<const ScalarGrid>> scalar_from_tree(std::string name, const Mapping& mapping, const openvdb::FloatTree& tree, const ValidMask& valid);
-Result<std::shared_ptr<const VectorGrid>> vector_from_tree(std::string name, const Mapping& mapping, const openvdb::Vec3fTree& tree, const ValidMask& valid);
+Result<std::shared_ptr<const ScalarGrid>> scalar_from_tree(std::string name, const Mapping& mapping, const openvdb::FloatTree& tree,
+                                                           const ValidMask& valid);
+Result<std::shared_ptr<const VectorGrid>> vector_from_tree(std::string name, const Mapping& mapping, const openvdb::Vec3fTree& tree,
+                                                           const ValidMask& valid);
 
 /// Statistics over the active voxels; with a mask the ranges count only the valid ones. The box is of the active voxels.
 GridStats stats_of(const openvdb::FloatTree& tree, const openvdb::MaskTree* valid = nullptr);

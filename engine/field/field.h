@@ -39,11 +39,11 @@ class Field {
   Field(const Field&) = delete;
   Field& operator=(const Field&) = delete;
 
-  const std::string& name() const { return name_; }       ///< the grid's or the formula's name
-  std::uint64_t version() const { return version_; }      ///< unique in the process; the key of mirrors
+  const std::string& name() const { return name_; }   ///< the grid's or the formula's name
+  std::uint64_t version() const { return version_; }  ///< unique in the process; the key of mirrors
   const Mapping& mapping() const { return mapping_; }
-  const Box& index_box() const { return index_box_; }     ///< of voxel centres; analytic: the box -2..2
-  double length() const { return length_; }               ///< L: the longest edge of the domain box, world units; analytic: 4
+  const Box& index_box() const { return index_box_; }  ///< of voxel centres; analytic: the box -2..2
+  double length() const { return length_; }            ///< L: the longest edge of the domain box, world units; analytic: 4
   virtual bool is_grid() const noexcept { return false; }
   virtual std::size_t bytes() const noexcept { return 0; }
 

@@ -25,7 +25,8 @@ Result<std::uint64_t> readable_file(const std::string& path) {
 
 std::string extension_of(const std::string& path) {
   std::string name = std::filesystem::path(path).filename().string();
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
   if (name.ends_with(".nii.gz")) return ".nii.gz";
   const auto dot = name.rfind('.');
   return dot == std::string::npos ? "" : name.substr(dot);

@@ -12,8 +12,8 @@ namespace catena::field {
 
 struct GridStats {
   std::uint64_t active_voxels = 0;
-  std::uint64_t nan_count = 0;     ///< active voxels with a NaN or an infinity
-  double min = 0, max = 0;         ///< scalars: values; vectors: magnitudes (finite ones only)
+  std::uint64_t nan_count = 0;  ///< active voxels with a NaN or an infinity
+  double min = 0, max = 0;      ///< scalars: values; vectors: magnitudes (finite ones only)
   Vec3 component_min{0.0}, component_max{0.0};
 };
 
@@ -74,8 +74,8 @@ class VectorGrid final : public VectorField {
 
 /// Grids made in memory: values by voxel, x fastest, over `size` voxels from index (0, 0, 0). `valid` (optional) by voxel.
 /// Voxels whose value is not finite are kept and counted.
-std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> values,
-                                                   std::span<const std::uint8_t> valid = {});
+std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
+                                                   std::span<const float> values, std::span<const std::uint8_t> valid = {});
 std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
                                                    std::span<const std::uint8_t> valid = {});
 

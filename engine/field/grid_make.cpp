@@ -46,7 +46,8 @@ ValidMask mask_tree(const Index3& size, std::span<const std::uint8_t> valid) {
 Result<std::shared_ptr<const ScalarGrid>> try_make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
                                                                std::span<const float> values, std::span<const std::uint8_t> valid) {
   CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && values.size() == count_of(size));
-  const auto tree = dense_tree<openvdb::FloatTree>(size, [&](auto& leaf, openvdb::Index at, std::size_t n) { leaf.setValueOn(at, values[n]); });
+  const auto tree =
+      dense_tree<openvdb::FloatTree>(size, [&](auto& leaf, openvdb::Index at, std::size_t n) { leaf.setValueOn(at, values[n]); });
   return scalar_from_tree(std::move(name), mapping, *tree, mask_tree(size, valid));
 }
 
@@ -59,8 +60,8 @@ Result<std::shared_ptr<const VectorGrid>> try_make_vector_grid(std::string name,
   return vector_from_tree(std::move(name), mapping, *tree, mask_tree(size, valid));
 }
 
-std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> values,
-                                                   std::span<const std::uint8_t> valid) {
+std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
+                                                   std::span<const float> values, std::span<const std::uint8_t> valid) {
   return try_make_scalar_grid(std::move(name), mapping, size, values, valid).value();
 }
 

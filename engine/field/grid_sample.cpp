@@ -33,7 +33,8 @@ void for_nodes(const Nodes& n, const Visit& visit) {
     for (std::size_t z = begin; z < end; ++z)
       for (int y = 0; y < n.size.y; ++y)
         for (int x = 0; x < n.size.x; ++x)
-          visit(z * n.layer + static_cast<std::size_t>(y) * n.size.x + x, n.mapping.world_from_index(Vec3(x, y, static_cast<double>(z))), cursor);
+          visit(z * n.layer + static_cast<std::size_t>(y) * n.size.x + x, n.mapping.world_from_index(Vec3(x, y, static_cast<double>(z))),
+                cursor);
   });
 }
 

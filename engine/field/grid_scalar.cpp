@@ -16,7 +16,8 @@ ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, 
 
 }  // namespace
 
-ScalarGrid::ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage, const GridStats& stats)
+ScalarGrid::ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage,
+                       const GridStats& stats)
     : storage_(std::move(storage)), stats_(stats) {
   CATENA_ASSERT(storage_ && storage_->values);
   set_domain(std::move(name), mapping, index_box);
@@ -29,10 +30,8 @@ ScalarSample ScalarGrid::sample(const Vec3& world, Cursor& cursor) const noexcep
   const Vec3 index = mapping().index_from_world(world);
   if (!is_finite(index)) return s;
   const ScalarWalk& walk = walk_to(*this, *storage_, storage_->base_of(index), cursor);
-  ScalarCell cell;
-  cell.corner = walk.corner;
   Vec3 g;
-  cell.value_and_gradient(place_in_cell(index, walk.base), s.value, g);
+  trilinear(walk.corner, place_in_cell(index, walk.base), s.value, g);
   s.gradient = mapping().world_gradient(g);
   s.inside = walk.valid && index_box().contains(index, domain_slack);
   return s;

@@ -63,7 +63,8 @@ struct Walk {
   Values values;
   alignas(8) std::byte cells[sizeof(Cells)];
 
-  explicit Walk(const nanovdb::NanoGrid<T>& grid, std::uint64_t v) : version(v), base{}, filled(false), valid(false), corner{}, values(grid), cells{} {}
+  explicit Walk(const nanovdb::NanoGrid<T>& grid, std::uint64_t v)
+      : version(v), base{}, filled(false), valid(false), corner{}, values(grid), cells{} {}
 };
 
 /// The walk in the cursor's memory, made anew when the cursor comes from another grid (or from one freed at the same address).
@@ -87,11 +88,12 @@ void fetch(W& walk, const Storage& storage, const Index3& base, const Convert& c
   const auto* leaf = mx < 7 && my < 7 && mz < 7 ? walk.values.probeLeaf(ijk) : nullptr;
   if (leaf) {
     const int at = mx * 64 + my * 8 + mz, sx = storage.step.x * 64, sy = storage.step.y * 8, sz = storage.step.z;
-    for (int n = 0; n < 8; ++n) walk.corner[n] = convert(leaf->getValue(static_cast<std::uint32_t>(at + (n & 1) * sx + (n >> 1 & 1) * sy + (n >> 2) * sz)));
+    for (int n = 0; n < 8; ++n)
+      walk.corner[n] = convert(leaf->getValue(static_cast<std::uint32_t>(at + (n & 1) * sx + (n >> 1 & 1) * sy + (n >> 2) * sz)));
   } else {
     for (int n = 0; n < 8; ++n)
-      walk.corner[n] = convert(
-          walk.values.getValue({base.x + (n & 1) * storage.step.x, base.y + (n >> 1 & 1) * storage.step.y, base.z + (n >> 2) * storage.step.z}));
+      walk.corner[n] = convert(walk.values.getValue(
+          {base.x + (n & 1) * storage.step.x, base.y + (n >> 1 & 1) * storage.step.y, base.z + (n >> 2) * storage.step.z}));
   }
   walk.base = base;
   walk.filled = true;

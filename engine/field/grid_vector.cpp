@@ -16,7 +16,8 @@ VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, 
 
 }  // namespace
 
-VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage, const GridStats& stats)
+VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage,
+                       const GridStats& stats)
     : storage_(std::move(storage)), stats_(stats) {
   CATENA_ASSERT(storage_ && storage_->values);
   set_domain(std::move(name), mapping, index_box);
@@ -29,10 +30,15 @@ VectorSample VectorGrid::sample(const Vec3& world, Cursor& cursor, const Vec3* l
   const Vec3 index = mapping().index_from_world(world);
   if (!is_finite(index)) return s;
   const VectorWalk& walk = walk_to(*this, *storage_, storage_->base_of(index), cursor);
-  VectorCell cell;
-  cell.corner = walk.corner;
-  if (line_reference) cell.align(*line_reference);
-  s.value = cell.value(place_in_cell(index, walk.base));
+  const Vec3 f = place_in_cell(index, walk.base);
+  if (line_reference) {
+    VectorCell cell;
+    cell.corner = walk.corner;
+    cell.align(*line_reference);
+    s.value = cell.value(f);
+  } else {
+    s.value = trilinear(walk.corner, f);
+  }
   s.inside = walk.valid && index_box().contains(index, domain_slack);
   return s;
 }

@@ -58,7 +58,8 @@ Result<std::vector<GridInfo>> describe(const std::string& path) {
     if (kind == ".vdb") return describe_vdb(path);
     if (kind == ".nii" || kind == ".nii.gz") return describe_nifti(path);
     CATENA_CHECK(readable_file(path));
-    if (kind == ".raw") return Error{fmt::format("{}: a .raw file says nothing about itself; name it in a scene with shape, spacing, origin and type", path)};
+    if (kind == ".raw")
+      return Error{fmt::format("{}: a .raw file says nothing about itself; name it in a scene with shape, spacing, origin and type", path)};
     return unknown_kind(path);
   });
 }

@@ -20,22 +20,22 @@ struct RawLayout {
 
 struct LoadRequest {
   std::string path;
-  std::string grid;                                  ///< empty: the only usable grid of the file, or an error that lists them
-  std::optional<std::string> valid_grid = "valid";   ///< nullopt: no mask ("valid": null); a missing default mask is fine
-  bool valid_required = false;                       ///< the user named the mask: it must exist
-  std::optional<RawLayout> raw;                      ///< for .raw
+  std::string grid;                                 ///< empty: the only usable grid of the file, or an error that lists them
+  std::optional<std::string> valid_grid = "valid";  ///< nullopt: no mask ("valid": null); a missing default mask is fine
+  bool valid_required = false;                      ///< the user named the mask: it must exist
+  std::optional<RawLayout> raw;                     ///< for .raw
 };
 
 /// Loads one grid (and its mask), nothing else of the file.
 Result<AnyField> load(const LoadRequest& request);
 
 struct GridInfo {
-  std::string name, type;           ///< type as the file says: float, half, vec3s, bool, ...
+  std::string name, type;  ///< type as the file says: float, half, vec3s, bool, ...
   Index3 size{0, 0, 0}, lowest{0, 0, 0};
   Mapping mapping;
   GridStats stats;
-  std::size_t bytes = 0;            ///< in memory, as NanoVDB
-  bool usable = false;              ///< Catena can load it as a field
+  std::size_t bytes = 0;  ///< in memory, as NanoVDB
+  bool usable = false;    ///< Catena can load it as a field
   bool is_vector = false;
 };
 /// Describes every grid of a file.
@@ -43,7 +43,7 @@ Result<std::vector<GridInfo>> describe(const std::string& path);
 
 /// Writes grids to a .vdb through a temporary file beside it, renamed when complete: nothing half-written stays behind.
 struct WriteItem {
-  AnyField field;           ///< grids only
+  AnyField field;  ///< grids only
   std::string name;
 };
 Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items);

@@ -27,17 +27,28 @@ struct Volume {
 
 std::string_view word_of(int datatype) {
   switch (datatype) {
-    case NIFTI_TYPE_UINT8: return "uint8";
-    case NIFTI_TYPE_INT8: return "int8";
-    case NIFTI_TYPE_UINT16: return "uint16";
-    case NIFTI_TYPE_INT16: return "int16";
-    case NIFTI_TYPE_UINT32: return "uint32";
-    case NIFTI_TYPE_INT32: return "int32";
-    case NIFTI_TYPE_UINT64: return "uint64";
-    case NIFTI_TYPE_INT64: return "int64";
-    case NIFTI_TYPE_FLOAT32: return "float32";
-    case NIFTI_TYPE_FLOAT64: return "float64";
-    default: return {};
+    case NIFTI_TYPE_UINT8:
+      return "uint8";
+    case NIFTI_TYPE_INT8:
+      return "int8";
+    case NIFTI_TYPE_UINT16:
+      return "uint16";
+    case NIFTI_TYPE_INT16:
+      return "int16";
+    case NIFTI_TYPE_UINT32:
+      return "uint32";
+    case NIFTI_TYPE_INT32:
+      return "int32";
+    case NIFTI_TYPE_UINT64:
+      return "uint64";
+    case NIFTI_TYPE_INT64:
+      return "int64";
+    case NIFTI_TYPE_FLOAT32:
+      return "float32";
+    case NIFTI_TYPE_FLOAT64:
+      return "float64";
+    default:
+      return {};
   }
 }
 
@@ -97,18 +108,21 @@ Result<Volume> read_volume(const std::string& path) {
   const std::string_view word = word_of(image->datatype);
   const auto type = number_type(word);
   if (!type)
-    return Error{fmt::format("{}: voxels of type {} are not supported, expected integers or floats (uint8 to int64, float32, float64)", path,
-                             nifti_datatype_string(image->datatype))};
+    return Error{fmt::format("{}: voxels of type {} are not supported, expected integers or floats (uint8 to int64, float32, float64)",
+                             path, nifti_datatype_string(image->datatype))};
   if (image->nu > 1 || image->nv > 1 || image->nw > 1)
-    return Error{fmt::format("{}: the image has {} dimensions (vectors or more), expected a scalar volume of 3, or 4 with time", path, image->ndim)};
-  if (image->nx < 1 || image->ny < 1 || image->nz < 1 || image->iname_offset < 0 || !image->iname) return Error{fmt::format("{}: the header is damaged", path)};
+    return Error{
+        fmt::format("{}: the image has {} dimensions (vectors or more), expected a scalar volume of 3, or 4 with time", path, image->ndim)};
+  if (image->nx < 1 || image->ny < 1 || image->nz < 1 || image->iname_offset < 0 || !image->iname)
+    return Error{fmt::format("{}: the header is damaged", path)};
   const Mapping mapping = mapping_of(*image);
   if (!is_finite(mapping.origin) || !is_finite(mapping.index_from_world(Vec3(1.0))) || !(mapping.smallest_edge() > 0))
     return Error{fmt::format("{}: the transform of the header cannot be inverted", path)};
 
   // the voxels of the first volume
   const long double wanted = static_cast<long double>(image->nx) * image->ny * image->nz * static_cast<long double>(type->bytes);
-  if (wanted > 1e15L) return Error{fmt::format("{}: the header asks for {} x {} x {} voxels: it is damaged", path, image->nx, image->ny, image->nz)};
+  if (wanted > 1e15L)
+    return Error{fmt::format("{}: the header asks for {} x {} x {} voxels: it is damaged", path, image->nx, image->ny, image->nz)};
   CATENA_TRY(std::vector<std::byte> bytes, read_bytes(path, *image, file_size, static_cast<std::size_t>(wanted)));
   const bool scaled = image->scl_slope != 0 && std::isfinite(image->scl_slope) && std::isfinite(image->scl_inter);
   std::vector<float> values(bytes.size() / type->bytes);

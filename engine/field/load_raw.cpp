@@ -17,7 +17,8 @@ static_assert(std::endian::native == std::endian::little, "raw files are read as
 Result<AnyField> load_raw(const LoadRequest& request) {
   const std::string& path = request.path;
   CATENA_TRY(const std::uint64_t size, readable_file(path));
-  if (!request.raw) return Error{fmt::format("{}: a .raw file needs its shape, spacing, origin and type (in the scene's \"fields\")", path)};
+  if (!request.raw)
+    return Error{fmt::format("{}: a .raw file needs its shape, spacing, origin and type (in the scene's \"fields\")", path)};
   const RawLayout& raw = *request.raw;
 
   // the layout
@@ -26,22 +27,26 @@ Result<AnyField> load_raw(const LoadRequest& request) {
   if (vector) word = "float32";
   const auto type = number_type(word);
   if (!type || word == "int64" || word == "uint64")
-    return Error{fmt::format("{}: type is \"{}\", expected one of float32 float64 uint8 int8 uint16 int16 uint32 int32 float32x3", path, raw.type)};
+    return Error{
+        fmt::format("{}: type is \"{}\", expected one of float32 float64 uint8 int8 uint16 int16 uint32 int32 float32x3", path, raw.type)};
   const Index3& n = raw.shape;
-  if (n.x < 1 || n.y < 1 || n.z < 1) return Error{fmt::format("{}: shape is [{}, {}, {}], expected three positive numbers", path, n.x, n.y, n.z)};
+  if (n.x < 1 || n.y < 1 || n.z < 1)
+    return Error{fmt::format("{}: shape is [{}, {}, {}], expected three positive numbers", path, n.x, n.y, n.z)};
   if (!is_finite(raw.origin)) return Error{fmt::format("{}: origin must be finite", path)};
   for (int a = 0; a < 3; ++a)
-    if (!(raw.spacing[a] > 0) || !std::isfinite(raw.spacing[a])) return Error{fmt::format("{}: spacing is {}, expected positive numbers", path, raw.spacing[a])};
+    if (!(raw.spacing[a] > 0) || !std::isfinite(raw.spacing[a]))
+      return Error{fmt::format("{}: spacing is {}, expected positive numbers", path, raw.spacing[a])};
   const std::string name = stem_of(path);
-  if (!request.grid.empty() && request.grid != name) return Error{fmt::format("{}: there is no grid \"{}\", a .raw file holds one, \"{}\"", path, request.grid, name)};
+  if (!request.grid.empty() && request.grid != name)
+    return Error{fmt::format("{}: there is no grid \"{}\", a .raw file holds one, \"{}\"", path, request.grid, name)};
   if (request.valid_required) return Error{fmt::format("{}: a .raw file holds no mask", path)};
 
   // the size, with room for any shape
   const std::size_t components = vector ? 3 : 1, voxel_bytes = components * type->bytes;
   const long double wanted = static_cast<long double>(n.x) * n.y * n.z * static_cast<long double>(voxel_bytes);
   if (wanted != static_cast<long double>(size))
-    return Error{fmt::format("{}: the file has {} bytes, expected {:.0f} ({} x {} x {} voxels of {} bytes)", path, size, static_cast<double>(wanted), n.x, n.y, n.z,
-                             voxel_bytes)};
+    return Error{fmt::format("{}: the file has {} bytes, expected {:.0f} ({} x {} x {} voxels of {} bytes)", path, size,
+                             static_cast<double>(wanted), n.x, n.y, n.z, voxel_bytes)};
 
   // the numbers
   std::vector<std::byte> bytes(size);

@@ -119,8 +119,8 @@ Result<const VdbEntry*> choose(const OpenFile& f, const LoadRequest& request) {
     const VdbEntry* e = f.find(request.grid);
     if (!e) return Error{fmt::format("{}: there is no grid \"{}\", the file has: {}", request.path, request.grid, list_of(entries))};
     if (!usable(*e))
-      return Error{fmt::format("{}: grid \"{}\" is of type {}, expected a scalar (float, half, double, int32, int64) or a 3-vector grid", request.path,
-                               request.grid, type_word(*e))};
+      return Error{fmt::format("{}: grid \"{}\" is of type {}, expected a scalar (float, half, double, int32, int64) or a 3-vector grid",
+                               request.path, request.grid, type_word(*e))};
     return e;
   }
   const VdbEntry* only = nullptr;
@@ -128,7 +128,8 @@ Result<const VdbEntry*> choose(const OpenFile& f, const LoadRequest& request) {
   for (const VdbEntry& e : entries)
     if (usable(e)) only = &e, ++count;
   if (count == 1) return only;
-  if (count == 0) return Error{fmt::format("{}: there is no scalar or 3-vector grid in the file, it has: {}", request.path, list_of(entries))};
+  if (count == 0)
+    return Error{fmt::format("{}: there is no scalar or 3-vector grid in the file, it has: {}", request.path, list_of(entries))};
   return Error{fmt::format("{}: the file has several grids, name one of: {}", request.path, list_of(entries))};
 }
 
@@ -137,7 +138,8 @@ Result<ValidMask> read_mask(OpenFile& f, const LoadRequest& request, const Mappi
   const VdbEntry* entry = f.find(*request.valid_grid);
   if (!entry) {
     if (!request.valid_required) return ValidMask();
-    return Error{fmt::format("{}: there is no grid \"{}\" for the mask, the file has: {}", request.path, *request.valid_grid, list_of(f.directory.entries))};
+    return Error{fmt::format("{}: there is no grid \"{}\" for the mask, the file has: {}", request.path, *request.valid_grid,
+                             list_of(f.directory.entries))};
   }
   const std::string word = type_word(*entry);
   if (word != "bool" && word != "mask")
@@ -145,12 +147,15 @@ Result<ValidMask> read_mask(OpenFile& f, const LoadRequest& request, const Mappi
   const auto grid = f.read(*entry);
   CATENA_TRY(const Mapping own, mapping_of(*grid));
   if (!same_mapping(mapping, own))
-    return Error{fmt::format("{}: the mask \"{}\" has another transform than the grid, expected the same (\"valid\": null ignores it)", request.path, entry->name)};
+    return Error{fmt::format("{}: the mask \"{}\" has another transform than the grid, expected the same (\"valid\": null ignores it)",
+                             request.path, entry->name)};
   count_mask();
   return mask_tree(grid);
 }
 
-Error about(const std::string& path, const VdbEntry& entry, const Error& e) { return Error{fmt::format("{}: grid \"{}\" {}", path, entry.name, e.message)}; }
+Error about(const std::string& path, const VdbEntry& entry, const Error& e) {
+  return Error{fmt::format("{}: grid \"{}\" {}", path, entry.name, e.message)};
+}
 
 Index3 index3(const openvdb::Coord& c) { return {c.x(), c.y(), c.z()}; }
 

@@ -26,10 +26,11 @@ void decode_numbers(const std::byte* in, std::size_t count, double slope, double
 
 inline std::optional<NumberType> number_type(std::string_view word) {
   static constexpr NumberType types[] = {
-      {"float32", 4, decode_numbers<float>},         {"float64", 8, decode_numbers<double>},       {"uint8", 1, decode_numbers<std::uint8_t>},
-      {"int8", 1, decode_numbers<std::int8_t>},      {"uint16", 2, decode_numbers<std::uint16_t>}, {"int16", 2, decode_numbers<std::int16_t>},
-      {"uint32", 4, decode_numbers<std::uint32_t>},  {"int32", 4, decode_numbers<std::int32_t>},   {"uint64", 8, decode_numbers<std::uint64_t>},
-      {"int64", 8, decode_numbers<std::int64_t>},
+      {"float32", 4, decode_numbers<float>},        {"float64", 8, decode_numbers<double>},
+      {"uint8", 1, decode_numbers<std::uint8_t>},   {"int8", 1, decode_numbers<std::int8_t>},
+      {"uint16", 2, decode_numbers<std::uint16_t>}, {"int16", 2, decode_numbers<std::int16_t>},
+      {"uint32", 4, decode_numbers<std::uint32_t>}, {"int32", 4, decode_numbers<std::int32_t>},
+      {"uint64", 8, decode_numbers<std::uint64_t>}, {"int64", 8, decode_numbers<std::int64_t>},
   };
   for (const NumberType& t : types)
     if (t.word == word) return t;

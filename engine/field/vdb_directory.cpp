@@ -48,7 +48,8 @@ VdbEntry entry_of(std::string unique_name, std::string type) {
   VdbEntry e;
   // a repeated name carries a number behind the ASCII record separator
   const auto separator = unique_name.find('\x1e');
-  e.name = separator == std::string::npos ? unique_name : unique_name.substr(0, separator) + "[" + unique_name.substr(separator + 1) + "]";
+  e.name = separator == std::string::npos ? unique_name
+                                          : fmt::format("{}[{}]", unique_name.substr(0, separator), unique_name.substr(separator + 1));
   e.unique_name = std::move(unique_name);
   constexpr std::string_view half = "_HalfFloat";
   e.half = type.ends_with(half);
@@ -63,18 +64,21 @@ Result<VdbDirectory> read_vdb_directory(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   Reader reader(in, size);
   const auto cut = [&](const std::string& where) {
-    return Error{fmt::format("{}: the file is cut short or damaged ({} bytes, it breaks off in {}), expected a complete .vdb file", path, size, where)};
+    return Error{fmt::format("{}: the file is cut short or damaged ({} bytes, it breaks off in {}), expected a complete .vdb file", path,
+                             size, where)};
   };
 
   // the header
   const auto first = reader.number<std::int64_t>();
-  if (size < sizeof magic || first != magic) return Error{fmt::format("{}: this is not a .vdb file (its first bytes are not OpenVDB's)", path)};
+  if (size < sizeof magic || first != magic)
+    return Error{fmt::format("{}: this is not a .vdb file (its first bytes are not OpenVDB's)", path)};
   const auto version = reader.number<std::uint32_t>();
   reader.number<std::uint32_t>();
   reader.number<std::uint32_t>();
   const auto has_offsets = reader.number<std::uint8_t>();
   if (!reader.ok()) return cut("its header");
-  if (version < oldest_version) return Error{fmt::format("{}: .vdb format version {} is too old, expected {} or newer", path, version, oldest_version)};
+  if (version < oldest_version)
+    return Error{fmt::format("{}: .vdb format version {} is too old, expected {} or newer", path, version, oldest_version)};
   constexpr std::uint64_t uuid_bytes = 36;
   reader.skip(uuid_bytes);
   const auto metadata = reader.number<std::uint32_t>();
@@ -95,7 +99,8 @@ Result<VdbDirectory> read_vdb_directory(const std::string& path) {
     const auto begin = reader.number<std::int64_t>(), blocks = reader.number<std::int64_t>(), end = reader.number<std::int64_t>();
     if (!reader.ok()) return cut(fmt::format("the entry of grid {}", i + 1));
     VdbEntry entry = entry_of(std::move(name), std::move(type));
-    if (begin <= 0 || blocks < begin || end < blocks || static_cast<std::uint64_t>(end) > size) return cut("grid \"" + entry.name + "\"");
+    if (begin <= 0 || blocks < begin || end < blocks || static_cast<std::uint64_t>(end) > size)
+      return cut(fmt::format("grid \"{}\"", entry.name));
     directory.entries.push_back(std::move(entry));
     reader.seek(end);
   }
@@ -108,7 +113,7 @@ std::string type_word(const VdbEntry& entry) {
   if (word.starts_with("Tree_")) word = word.substr(5);
   if (word.ends_with("_5_4_3")) word = word.substr(0, word.size() - 6);
   if (!entry.half) return word;
-  return word == "float" ? "half" : "half " + word;
+  return word == "float" ? word.replace(0, 5, "half") : word.insert(0, "half ");
 }
 
 bool is_scalar_type(const std::string& word) {
@@ -121,7 +126,7 @@ bool is_vector_type(const std::string& word) {
 
 std::string list_of(const std::vector<VdbEntry>& entries) {
   std::string all;
-  for (const VdbEntry& e : entries) all += (all.empty() ? "" : ", ") + e.name + " (" + type_word(e) + ")";
+  for (const VdbEntry& e : entries) all += fmt::format("{}{} ({})", all.empty() ? "" : ", ", e.name, type_word(e));
   return all.empty() ? "nothing" : all;
 }
 

@@ -90,7 +90,8 @@ Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items) 
   // the target
   std::error_code ignored;
   const fs::path folder = fs::path(path).parent_path();
-  if (!folder.empty() && !fs::is_directory(folder, ignored)) return Error{fmt::format("{}: the folder {} does not exist", path, folder.string())};
+  if (!folder.empty() && !fs::is_directory(folder, ignored))
+    return Error{fmt::format("{}: the folder {} does not exist", path, folder.string())};
   if (fs::is_directory(path, ignored)) return Error{fmt::format("{}: this is a folder, expected the name of a file to write", path)};
   const auto failed = [&](const std::string& why) { return Error{fmt::format("{}: cannot be written ({})", path, one_line(why))}; };
   const auto reason = [] { return errno ? std::string(std::strerror(errno)) : std::string("the stream failed"); };

@@ -106,12 +106,13 @@ class March {
     }
     forced_ = forced ? std::min(2 * forced_, domain_) : 1e-8 * domain_;
     idle_ = 0;
-    if (sign_ > 0 && closes(knots.back(), step, h, piece, knots)) return End::lap;
+    Vec3 next = q_ + step.displacement;
+    if (left) next[way.axis] = way.face;
+    if (sign_ > 0 && closes(next, h, piece, knots)) return End::lap;
 
     // accept
     const Vec3 u_start = u_;
-    q_ += step.displacement;
-    if (left) q_[way.axis] = way.face;
+    q_ = next;
     w_ = step.last;
     u_ = u_end;
     s_ += h;
@@ -161,6 +162,7 @@ class March {
     const auto zero = find_zero(flow_, p, u_, kCapture * domain_, zero_cursor_, 56, evaluations);
     if (!zero) return std::nullopt;
     const double way = norm(*zero - p);
+    if (dot(*zero - p, u_) < 0.2 * way) return std::nullopt;  // passing by, or round a centre
     if (way > 1e-12 * domain_) knots.push_back({sign_ * (s_ + way), *zero, sign_ * direction(*zero - p)});
     return End::critical;
   }
@@ -184,10 +186,10 @@ class March {
   }
 
   /// The line is back: it crosses the seed's plane within 1e-7 L of the seed, in the seed's direction.
-  bool closes(const Knot& last, const Step& step, double h, const Hermite& piece, std::vector<Knot>& knots) {
-    const double before = dot(last.p - seed_, u_seed_);
-    const Vec3 end = medium_.world(q_ + step.displacement);
-    const double after = dot(end - seed_, u_seed_);
+  bool closes(const Vec3& next, double h, const Hermite& piece, std::vector<Knot>& knots) {
+    const Vec3 end = medium_.world(next);
+    const double before = height_, after = dot(end - seed_, u_seed_);
+    height_ = after;
     if (!(before < 0 && after >= 0) || norm(end - seed_) > 2 * h + 1e-6 * domain_) return false;
     const auto height = [&](double theta) { return dot(medium_.world(piece.at(theta)) - seed_, u_seed_); };
     double at = h * illinois_root(0.0, before, 1.0, after, height);
@@ -215,6 +217,7 @@ class March {
   Vec3 q_{0.0}, w_{0.0};        ///< where the march is, and its rate
   Vec3 u_{0.0}, u_last_{0.0};   ///< directions of motion: here, and of the last stage
   double s_ = 0, h_ = 0;
+  double height_ = 0;           ///< above the seed's plane
   int idle_ = 0;                ///< changes of cell without progress
   double forced_ = 0;
   std::size_t tried_at_ = 0;

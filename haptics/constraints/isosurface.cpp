@@ -40,6 +40,7 @@ class LevelSurface final : public Surface {
       // where the march ended it may be much closer to the level
       const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
       reached = reach_by_scan(field_, closer ? reached.at : start);
+      if (!reached.found && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
     }
     return reached.found ? settle(reached.at, probe, Curvature{}) : Hold{};
   }
@@ -92,17 +93,16 @@ class LevelSurface final : public Surface {
   }
 
   Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature) noexcept {
-    const ClosestGoal goal{1e-8 * field_.length(), 1e-12 * field_.length(), kEvaluationCap};
+    const LevelPoint before = at;
+    constexpr int kForLevel = 24;  // fetches kept for the way back to the level
+    const ClosestGoal goal{1e-8 * field_.length(), 1e-12 * field_.length(), kEvaluationCap - field_.evaluations() - kForLevel};
     Closest how = closest_point(field_, probe, goal, at, curvature);
-    if (how == Closest::stuck && !field_.spent()) {
-      // off the level and lost: reach it again
-      const Reached reached = reach_along_gradient(field_, at, at.n, field_.length());
-      if (reached.found) {
-        at = reached.at;
-        curvature = Curvature{};
-        how = closest_point(field_, probe, goal, at, curvature);
-      }
+    if (how != Closest::converged && std::fabs(at.distance) > 1e-11 * field_.length()) {
+      const Reached reached = reach_along_gradient(field_, at, at.n, field_.length(), 0);
+      if (reached.found) at = reached.at;
     }
+    // lost: the last point on the level is kept
+    if (std::fabs(at.distance) > 1e-9 * field_.length() && std::fabs(before.distance) < std::fabs(at.distance)) at = before;
     memory_.at = at;
     memory_.curvature = curvature;
     memory_.normal = at.n;
@@ -164,11 +164,13 @@ class Isosurface final : public Constraint {
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const std::string name, json::require_string(link, "field"));
   CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
-  if (!any.scalar) return json::error_at(*link.find("field"), fmt::format("field \"{}\" is a vector field; an isosurface needs a scalar field", name));
+  if (!any.scalar)
+    return json::error_at(*link.find("field"), fmt::format("field \"{}\" is a vector field; an isosurface needs a scalar field", name));
   CATENA_TRY(const double level, json::require_number(link, "level"));
   const double least = any.scalar->min_value(), most = any.scalar->max_value();
   if (!(level >= least && level <= most))
-    return json::error_at(*link.find("level"), fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}", level, name, least, most));
+    return json::error_at(*link.find("level"), fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}",
+                                                           level, name, least, most));
   CATENA_TRY(const SideRules rules, read_side_rules(link, true));
   return std::shared_ptr<const Constraint>(std::make_shared<Isosurface>(any.scalar, level, rules));
 }
@@ -176,7 +178,8 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
 }  // namespace
 
 ConstraintType isosurface_constraint() {
-  return {"isosurface", "Eqs. 5-6",
+  return {"isosurface",
+          "Eqs. 5-6",
           {{"field", "string", true, "a scalar field of the scene"},
            {"level", "number", true, "the field's value on the surface"},
            {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema},

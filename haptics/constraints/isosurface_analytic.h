@@ -1,7 +1,8 @@
 /// The closest point of a smooth level set to the probe x, one fetch an iteration.
 ///   n = grad s / |grad s|, l = (s - level) / |grad s|, e = x - p, delta = n.e, t = e - delta n
-///   (I + delta B) u = t on the tangent plane (|eigenvalues| >= 0.1), |u| <= D;  p+ = p + u + (-l - u'Bu / 2) n
-/// B, the surface's curvature, is learned by SR1 from step to step and from tick to tick.
+///   (I + delta B) u = t on the tangent plane (|eigenvalues| >= 0.1, less after 12 steps), |u| <= D;  p+ = p + u + (-l - u'Bu / 2) n
+/// B, the surface's curvature, is learned by SR1 from step to step and from tick to tick; after three refusals it is measured
+/// with two more fetches.
 /// Accepted: n.n+ > 0.3 and (Armijo on |e + l n|^2 / 2 + l^2 / 2, or |l| halved), else u *= 0.35. Haptic thread.
 #pragma once
 #include "haptics/constraints/isosurface_level.h"
@@ -27,7 +28,7 @@ enum class Closest { converged, stuck, spent };
 /// Moves `at` (valid, not a plateau) to the closest point; `at` is the best point found whatever comes back.
 Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& goal, LevelPoint& at, Curvature& curvature) noexcept;
 
-/// (I + delta b) u = t in two dimensions, eigenvalues taken as |.| >= 0.1: always a descent direction.
-void solve_tangent(double m11, double m12, double m22, double t1, double t2, double& u1, double& u2) noexcept;
+/// M u = t in two dimensions, eigenvalues taken as |.| >= least: always a descent direction.
+void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept;
 
 }  // namespace catena::haptics

@@ -5,10 +5,10 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kRelease = 1e-8;    // of L: a smaller tangential descent is none
+constexpr double kRelease = 1e-8;     // of L: a smaller tangential descent is none
 constexpr double kConverged = 1e-10;  // of L: within a piece
-constexpr double kStill = 1e-13;     // of L: a shorter move is none
-constexpr double kAccepted = 1e-6;   // of L: what may remain where no piece moves any more
+constexpr double kStill = 1e-13;      // of L: a shorter move is none
+constexpr double kAccepted = 1e-6;    // of L: what may remain where no piece moves any more
 constexpr double kFaceSlack = 1e-12;  // voxels: closer to a face than this is on it
 constexpr int kRounds = 600;
 
@@ -60,8 +60,10 @@ struct Corner {
 
   Corner(const field::Box& box, const CellPoint& point) : at(point) {
     for (int a = 0; a < 3; ++a) {
-      if (is_flat(box, a)) flat |= 1u << a;
-      else if (at.f[a] == 0 || at.f[a] == 1) faces |= 1u << a;
+      if (is_flat(box, a))
+        flat |= 1u << a;
+      else if (at.f[a] == 0 || at.f[a] == 1)
+        faces |= 1u << a;
     }
   }
   /// Bit a of `upper`: the cell that has the point on its lower face a (f = 0).
@@ -154,8 +156,10 @@ Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& p
         const double mid = low + (high - low) * w;
         if (!(mid > low && mid < high) || !piece.retract(f, u * mid, s, g)) break;
         const double v = piece.outside(g, axis);
-        if (v <= 0) low = mid, a = v, b *= 0.5;
-        else high = mid, b = v_high = v, outer = g, a *= 0.5;
+        if (v <= 0)
+          low = mid, a = v, b *= 0.5;
+        else
+          high = mid, b = v_high = v, outer = g, a *= 0.5;
       }
       if (v_high > 1e-9) continue;
       piece.outside(outer, axis);

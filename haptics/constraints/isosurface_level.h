@@ -7,14 +7,14 @@
 namespace catena::haptics {
 
 struct LevelPoint {
-  Vec3 p{0.0};          ///< world
+  Vec3 p{0.0};  ///< world
   double sigma = 0;
   Vec3 n{0.0};
-  double distance = 0;  ///< 0 on a plateau
-  double round_off = 0; ///< a distance below this is noise
-  bool valid = false;   ///< finite, and inside the domain and mask
+  double distance = 0;   ///< 0 on a plateau
+  double round_off = 0;  ///< a distance below this is noise
+  bool valid = false;    ///< finite, and inside the domain and mask
   bool finite = false;
-  bool plateau = false; ///< no usable gradient
+  bool plateau = false;  ///< no usable gradient
 };
 
 class LevelField {

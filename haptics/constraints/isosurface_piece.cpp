@@ -70,7 +70,7 @@ Vec3 Piece::newton(const Vec3& f, const Vec3& probe, const PieceSample& s, const
   const Vec3 t2 = cross(s.n, t1);
   const Vec3 b2 = hessian_times(f, t2) * (1 / s.slope);
   double u1, u2;
-  solve_tangent(1 + delta * dot(t1, b1), delta * dot(t1, b2), 1 + delta * dot(t2, b2), size, 0, u1, u2);
+  solve_tangent(1 + delta * dot(t1, b1), delta * dot(t1, b2), 1 + delta * dot(t2, b2), size, 0, 0.1, u1, u2);
   return t1 * u1 + t2 * u2;
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMarchSteps = 64;
 constexpr int kSegmentSteps = 64;
-constexpr int kReserve = 64;  // fetches that a scan leaves for what follows
+constexpr int kReserve = 32;  // fetches that a scan leaves for what follows
 
 bool opposite(double a, double b) { return (a <= 0 && b >= 0) || (a >= 0 && b <= 0); }
 
@@ -49,13 +49,13 @@ Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
   return {!best.plateau, best};
 }
 
-Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius) noexcept {
+Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius, int reserve) noexcept {
   LevelPoint a = start;
   Vec3 last_normal = normal;
   double longest = field.voxel() > 0 ? std::max(0.02 * field.length(), field.voxel()) : 0.05 * field.length();
   double path = 0;
   int stalls = 0;
-  for (int i = 0; i < kMarchSteps && a.valid && !field.spent(kReserve / 2) && path < radius; ++i) {
+  for (int i = 0; i < kMarchSteps && a.valid && !field.spent(reserve) && path < radius; ++i) {
     if (on_level(field, a)) return {!a.plateau, a};
     if (!a.plateau) last_normal = a.n;
     if (!(max_abs(last_normal) > 0)) return {false, a};
@@ -63,7 +63,11 @@ Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const V
     const LevelPoint b = field.at(a.p - last_normal * (a.sigma > 0 ? step : -step));
     if (!b.valid) return {false, a};
     if (opposite(a.sigma, b.sigma)) return root_between(field, a, b);
-    if ((std::fabs(b.sigma) > std::fabs(a.sigma) || dot(a.n, b.n) < 0) && ++stalls > 3) return {false, a};
+    if ((std::fabs(b.sigma) > std::fabs(a.sigma) || dot(a.n, b.n) < 0)) {
+      // over a ridge or a valley: shorter steps
+      if (++stalls > 8) return {false, a};
+      longest = std::max(0.5 * step, field.march_step());
+    }
     path += step;
     if (i >= 8) longest = std::min(longest * 1.5, 0.25 * field.length());
     a = b;
@@ -75,9 +79,10 @@ Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept {
   constexpr std::array<double, 8> kRadii{1.0 / 64, 1.0 / 35, 1.0 / 20, 1.0 / 11, 1.0 / 6, 0.3, 0.55, 1.0};
   std::array<LevelPoint, 27> last;
   last.fill(centre);
+  LevelPoint nearest;
   for (const double part : kRadii) {
     for (int k = 0; k < 27; ++k) {
-      if (k == 13 || field.spent(kReserve / 2)) continue;
+      if (k == 13 || field.spent(kReserve)) continue;
       const Vec3 d = direction(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
       const Vec3 wanted = centre.p + d * (part * field.length());
       if (max_abs(field.clamped(wanted) - wanted) > 0) continue;
@@ -88,9 +93,10 @@ Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept {
         if (root.found) return root;
       }
       before = here;
+      if (here.valid && !here.plateau && (!nearest.valid || std::fabs(here.sigma) < std::fabs(nearest.sigma))) nearest = here;
     }
   }
-  return {};
+  return {false, nearest};
 }
 
 Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept {

@@ -15,10 +15,10 @@ struct Reached {
 Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept;
 
 /// Marches from `start` at most `radius` far. `normal`: the last good one, for plateaus; zero if there is none.
-/// Not found: `at` is where the march ended, if it is valid.
-Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius) noexcept;
+/// `reserve`: fetches left to others. Not found: `at` is where the march ended, if it is valid.
+Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius, int reserve = 32) noexcept;
 
-/// Looks along 26 directions, near before far, up to L from the centre.
+/// Looks along 26 directions, near before far, up to L from the centre. Not found: `at` is the sample nearest in value.
 Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept;
 
 /// The first crossing of the segment from..to, seen with steps of march_step (at most 64).

@@ -17,9 +17,7 @@ class PlaneSurface final : public Surface {
   }
   Hold slide(const Vec3& probe) noexcept override { return place(probe); }
   Hold cross(const Vec3&, const Vec3& probe) noexcept override { return place(probe); }
-  Hold near_by(const Vec3& probe, double limit) noexcept override {
-    return std::fabs(height(probe)) <= limit ? place(probe) : Hold{};
-  }
+  Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
   Vec3 normal() const noexcept override { return normal_; }
   double domain_length() const noexcept override { return 4; }
 
@@ -57,7 +55,8 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
 }  // namespace
 
 ConstraintType plane_constraint() {
-  return {"plane", "section 3",
+  return {"plane",
+          "section 3",
           {{"point", "array", true, "a point of the plane, world units", kVec3Schema},
            {"normal", "array", true, "its normal, any length but zero", kVec3Schema},
            {"free", "string", false, "the side where the hand moves freely: above is where the normal points to", kFreeSchema},

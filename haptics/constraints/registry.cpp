@@ -25,9 +25,10 @@ std::string link_schema(const ConstraintType& type) {
   };
   for (const Key& key : common_keys()) add(key);
   for (const Key& key : type.keys) add(key);
-  return fmt::format("    {{\n      \"type\": \"object\",\n      \"properties\": {{\n        {}\n      }},\n      \"required\": [{}],\n"
-                     "      \"additionalProperties\": false\n    }}",
-                     properties, required);
+  return fmt::format(
+      "    {{\n      \"type\": \"object\",\n      \"properties\": {{\n        {}\n      }},\n      \"required\": [{}],\n"
+      "      \"additionalProperties\": false\n    }}",
+      properties, required);
 }
 
 std::string known_types() {
@@ -62,16 +63,18 @@ const std::vector<Key>& common_keys() {
 std::string chain_schema() {
   std::string links;
   for (const ConstraintType& type : registry()) links += (links.empty() ? "" : ",\n") + link_schema(type);
-  return fmt::format("{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"chain\",\n  \"type\": \"array\",\n"
-                     "  \"maxItems\": {},\n  \"items\": {{ \"oneOf\": [\n{}\n  ] }}\n}}\n",
-                     kMaxLinks, links);
+  return fmt::format(
+      "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"chain\",\n  \"type\": \"array\",\n"
+      "  \"maxItems\": {},\n  \"items\": {{ \"oneOf\": [\n{}\n  ] }}\n}}\n",
+      kMaxLinks, links);
 }
 
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {
   CATENA_CHECK(json::expect_object(link, "a link of the chain"));
   CATENA_TRY(const std::string word, json::require_string(link, "type"));
   const ConstraintType* type = find_constraint(word);
-  if (!type) return json::error_at(*link.find("type"), fmt::format("unknown constraint type \"{}\"; expected one of {}", word, known_types()));
+  if (!type)
+    return json::error_at(*link.find("type"), fmt::format("unknown constraint type \"{}\"; expected one of {}", word, known_types()));
   std::vector<std::string_view> keys;
   for (const Key& key : common_keys()) keys.push_back(key.name);
   for (const Key& key : type->keys) keys.push_back(key.name);

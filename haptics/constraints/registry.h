@@ -16,7 +16,8 @@ namespace catena::haptics {
 struct BuildContext {
   std::function<Result<field::AnyField>(const json::Node& where, const std::string& name)> field;
   /// The one curve object of (field, flow, seed): the same that is drawn.
-  std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const flow::Flow& flow, const Vec3& seed)> curve;
+  std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const flow::Flow& flow, const Vec3& seed)>
+      curve;
 };
 
 struct Key {
@@ -32,9 +33,9 @@ inline constexpr std::string_view kPositiveSchema = R"("exclusiveMinimum": 0)";
 inline constexpr std::string_view kFreeSchema = R"("enum": ["none", "above", "below"])";
 
 struct ConstraintType {
-  std::string_view type;                ///< the word in the scene file
-  std::string_view paper;               ///< equations and sections it comes from
-  std::vector<Key> keys;                ///< its own keys, beside name, type, on, stiffness
+  std::string_view type;   ///< the word in the scene file
+  std::string_view paper;  ///< equations and sections it comes from
+  std::vector<Key> keys;   ///< its own keys, beside name, type, on, stiffness
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
 };
 

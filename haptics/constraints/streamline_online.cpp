@@ -127,6 +127,9 @@ class Tick {
     const int budget = std::min(kEvaluationCap - state_.evaluations, 57);
     const auto zero = flow::find_zero(flow_, state_.proxy, memory_.t, kCapture * length_, cursor_, budget - 1, state_.evaluations);
     if (!zero || norm(x_ - *zero) > norm(x_ - state_.proxy)) return false;
+    const Vec3 ahead = *zero - state_.proxy;
+    const bool forward = way * dot(ahead, memory_.t) >= 0.2 * norm(ahead);
+    if (!forward && dot(ahead, memory_.curvature) > 0) return false;  // round a centre; past a saddle a line bends away from it
     hold_at(Mode::at_zero, *zero, way);
     return true;
   }

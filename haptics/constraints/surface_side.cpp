@@ -3,8 +3,8 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kHandStep = 0.02;   // of L: longest step, and deepest hold, for thin sheets
-constexpr double kRearmPart = 0.1;   // of release
+constexpr double kHandStep = 0.02;  // of L: longest step, and deepest hold, for thin sheets
+constexpr double kRearmPart = 0.1;  // of release
 
 bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 

@@ -62,11 +62,11 @@ struct SideMemory {
   Vec3 proxy{0.0};   ///< as it was left, to notice a proxy moved by others
   double value = 0;  ///< at the last probe
   double residual = 0;
-  bool known;        ///< `value` means something
-  bool fresh;        ///< `probe` and `proxy` mean something
-  bool holding;      ///< the surface has a point to go on from
-  bool settled;      ///< nothing to gain from another tick at the same probe
-  bool sheet;        ///< holding from the near face of a thin sheet
+  bool known;    ///< `value` means something
+  bool fresh;    ///< `probe` and `proxy` mean something
+  bool holding;  ///< the surface has a point to go on from
+  bool settled;  ///< nothing to gain from another tick at the same probe
+  bool sheet;    ///< holding from the near face of a thin sheet
   Status status;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTubeShare = 0.003;    // fitted tube radius by the domain's diagonal
 constexpr double kCursorShare = 0.008;  // fitted glyph radius by the diagonal of what is drawn
-constexpr double kCursorOverTube = 1.6;
+constexpr double kCursorOverTube = 2;
 
 Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
 

@@ -40,6 +40,35 @@ vec4 transfer(int i, float value) {
   return vec4(mix(table[at].rgb, table[at + 1u].rgb, f), sigma);
 }
 
+// What volume i adds at depth t of its ray: sigma and sigma-weighted colour. Lowers `leap` to the segments (of depth h) that may
+// be passed over. Called with constants only: loops over textures are not unrolled once they branch.
+void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_sum, inout int leap) {
+  if (i < VOLUMES && (VOLUMES == 1 || (t >= intervals[i].x && t <= intervals[i].y))) {
+    const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
+    int empty = 0;
+    ivec3 brick = ivec3(0);
+    if (grid_skips(i)) {
+      brick = cell_of(i, p) >> 3;
+      empty = empty_distance(brick_word(i, brick));
+    }
+    if (empty > 0) {
+      leap = min(leap, max(1, int(ceil(min(leave_empty(rays[i], p, brick, empty) / h, 1e6)))));
+    } else {
+      leap = 1;
+      bool valid = true;
+      if (grid_is_masked(i)) valid = cell_is_valid(i, cell_of(i, p));
+      if (valid) {
+        vec4 c = transfer(i, sample_value(i, p));
+        if (c.a > 0.0) {
+          if (grid_is_shaded(i)) c.rgb = lit(c.rgb, world_gradient(i, p), eye_direction);
+          emitted += c.a * c.rgb;
+          sigma_sum += c.a;
+        }
+      }
+    }
+  }
+}
+
 // Segments of one length over [from, to], in which the same volumes are met throughout.
 void march(float from, float to) {
   const float h = frame.step_world / world_per_depth;
@@ -51,26 +80,10 @@ void march(float from, float to) {
     int leap = count;
     vec3 emitted = vec3(0.0);
     float sigma_sum = 0.0;
-    for (int i = 0; i < VOLUMES; ++i) {
-      if (VOLUMES > 1 && (t < intervals[i].x || t > intervals[i].y)) continue;
-      const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
-      if (grid_skips(i)) {
-        const ivec3 brick = cell_of(i, p) >> 3;
-        const int d = empty_distance(brick_word(i, brick));
-        if (d > 0) {
-          leap = min(leap, max(1, int(ceil(min(leave_empty(rays[i], p, brick, d) / h, 1e6)))));
-          continue;
-        }
-      }
-      leap = 1;
-      if (grid_is_masked(i) && !cell_is_valid(i, cell_of(i, p))) continue;
-      vec4 c = transfer(i, sample_value(i, p));
-      if (c.a > 0.0) {
-        if (grid_is_shaded(i)) c.rgb = lit(c.rgb, world_gradient(i, p), eye_direction);
-        emitted += c.a * c.rgb;
-        sigma_sum += c.a;
-      }
-    }
+    add_volume(0, t, h, emitted, sigma_sum, leap);
+    add_volume(1, t, h, emitted, sigma_sum, leap);
+    add_volume(2, t, h, emitted, sigma_sum, leap);
+    add_volume(3, t, h, emitted, sigma_sum, leap);
     k += leap;
     if (sigma_sum > 0.0) {
       optical_depth += sigma_sum * extent * world_per_depth;

@@ -48,8 +48,8 @@ void fetch_all(benchmark::State& state, const Grid& grid, const std::vector<Vec3
   for (auto _ : state)
     for (const Vec3& p : points) benchmark::DoNotOptimize(grid.sample(p, cursor));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
-  state.counters["ns_per_fetch"] =
-      benchmark::Counter(static_cast<double>(points.size()) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["ns_per_fetch"] = benchmark::Counter(static_cast<double>(points.size()) * 1e-9,
+                                                      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void scalar_walk(benchmark::State& state) { fetch_all(state, scalar_grid(), walk(0.05)); }

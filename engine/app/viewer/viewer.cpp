@@ -223,7 +223,8 @@ std::optional<Failure> Session::run() {
       continue;
     }
     // a coarse picture at once while something moves, a fine one when it rests
-    const bool moving = 1e-3 * ms_since(last_input) < kRestS;
+    const bool last = options_.frames > 0 && frames_ + 1 == options_.frames;
+    const bool moving = !last && 1e-3 * ms_since(last_input) < kRestS;
     const bool resized = !fits_ || width != swapchain_->extent().width || height != swapchain_->extent().height;
     busy = changed.any() || news || resized || frames_ == 0 || (stale_ && !moving) || options_.frames > 0;
     if (busy) {
@@ -236,7 +237,8 @@ std::optional<Failure> Session::run() {
   take_haptics();
 
   if (!options_.screenshot.empty() && frames_ > 0) {
-    if (auto failure = draw(false)) return failure;
+    if (stale_)
+      if (auto failure = draw(false)) return failure;
     auto picture = renderer_->read_back();
     if (!picture) return Failure{1, picture.error().message};
     if (auto written = render::write_png(options_.screenshot, *picture, options_.scene.background.transparent); !written)

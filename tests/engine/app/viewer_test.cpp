@@ -60,8 +60,9 @@ int differing(const render::Picture& a, const render::Picture& b) {
 TEST_F(Viewer, WithoutADisplayItSaysSoInOneLine) {
   const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + view() + " > " + (folder_ / "log") + " 2>&1";
   EXPECT_EQ(exit_code(command), 1);
-  EXPECT_EQ(log().find("catena: no display"), 0u) << log();
-  EXPECT_EQ(std::count(log().begin(), log().end(), '\n'), 1) << log();
+  const std::string text = log();
+  EXPECT_EQ(text.find("catena: no display"), 0u) << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
 }
 
 TEST_F(Viewer, DrawsTheSceneAndTheHand) {

@@ -12,7 +12,9 @@ namespace {
 
 using test::Random;
 
-VectorFieldPtr vector(std::string_view name, double scale = 1) { return make_analytic(name, {.scale = scale, .direction = Vec3(1, 0, 0), .part = {}}).value().vector; }
+VectorFieldPtr vector(std::string_view name, double scale = 1) {
+  return make_analytic(name, {.scale = scale, .direction = Vec3(1, 0, 0), .part = {}}).value().vector;
+}
 ScalarFieldPtr scalar(std::string_view name, double scale = 1, std::string part = {}) {
   return make_analytic(name, {.scale = scale, .direction = Vec3(1, 0, 0), .part = std::move(part)}).value().scalar;
 }
@@ -46,7 +48,8 @@ void expect_gradient(const ScalarFieldPtr& f, const Vec3& p, double tolerance) {
     Vec3 e(0.0);
     e[a] = h;
     const double difference = (at(f, p + e) - at(f, p - e)) / (2 * h);
-    EXPECT_NEAR(s.gradient[a], difference, tolerance * std::max(1.0, norm(s.gradient))) << f->name() << " at " << p.x << " " << p.y << " " << p.z;
+    EXPECT_NEAR(s.gradient[a], difference, tolerance * std::max(1.0, norm(s.gradient)))
+        << f->name() << " at " << p.x << " " << p.y << " " << p.z;
   }
 }
 
@@ -60,7 +63,8 @@ TEST(AnalyticScalars, GradientsAreTheDerivatives) {
   Random random(2);
   for (int trial = 0; trial < 100; ++trial) expect_gradient(scalar("tanh"), random.in_box(Vec3(-2, -2, -0.1), Vec3(2, 2, 0.1)), 1e-6);
   for (const char* part : {"density", "transmural"})
-    for (int trial = 0; trial < 500; ++trial) expect_gradient(scalar("left-ventricle", 1, part), random.in_box(Vec3(-2.0), Vec3(2.0)), 2e-4);
+    for (int trial = 0; trial < 500; ++trial)
+      expect_gradient(scalar("left-ventricle", 1, part), random.in_box(Vec3(-2.0), Vec3(2.0)), 2e-4);
 }
 
 TEST(AnalyticScalars, KnownValues) {

@@ -16,7 +16,8 @@ using test::Random;
 constexpr double inf = std::numeric_limits<double>::infinity();
 
 bool same_bits(const ScalarSample& a, const ScalarSample& b) {
-  return std::memcmp(&a.value, &b.value, sizeof a.value) == 0 && std::memcmp(&a.gradient, &b.gradient, sizeof a.gradient) == 0 && a.inside == b.inside;
+  return std::memcmp(&a.value, &b.value, sizeof a.value) == 0 && std::memcmp(&a.gradient, &b.gradient, sizeof a.gradient) == 0 &&
+         a.inside == b.inside;
 }
 
 TEST(ScalarGrid, AgreesWithTheTrilinearFormulaUnderEveryMapping) {
@@ -43,7 +44,8 @@ TEST(ScalarGrid, GradientIsACovector) {
     for (int trial = 0; trial < 300; ++trial) {
       // well within a cell, so that the differences do not leave it
       const Vec3 f = random.in_box(Vec3(0.1), Vec3(0.9));
-      const Vec3 index = Vec3(static_cast<int>(random.between(0, 8)), static_cast<int>(random.between(0, 8)), static_cast<int>(random.between(0, 8))) + f;
+      const Vec3 index =
+          Vec3(static_cast<int>(random.between(0, 8)), static_cast<int>(random.between(0, 8)), static_cast<int>(random.between(0, 8))) + f;
       const Vec3 p = mapping.world_from_index(index);
       const ScalarSample s = grid->sample(p, cursor);
       constexpr double h = 1e-4;
@@ -165,7 +167,8 @@ TEST(ScalarGrid, OneLayerHasNoDerivativeAcross) {
   const ScalarSample s = grid->sample(Vec3(2.25, 3.5, 0), cursor);
   EXPECT_TRUE(s.inside);
   EXPECT_EQ(s.gradient.z, 0);
-  EXPECT_NEAR(s.value, 0.5 * (0.75 * block.at(2, 3, 0) + 0.25 * block.at(3, 3, 0) + 0.75 * block.at(2, 4, 0) + 0.25 * block.at(3, 4, 0)), 1e-6);
+  EXPECT_NEAR(s.value, 0.5 * (0.75 * block.at(2, 3, 0) + 0.25 * block.at(3, 3, 0) + 0.75 * block.at(2, 4, 0) + 0.25 * block.at(3, 4, 0)),
+              1e-6);
   EXPECT_FALSE(grid->sample(Vec3(2.25, 3.5, 0.1), cursor).inside);
   EXPECT_EQ(grid->base_of(Vec3(2, 3, 5)).z, 0);
 }

@@ -117,7 +117,9 @@ TEST(LoadNifti, TheQformThenTheVoxelSizes) {
 TEST(LoadNifti, OtherByteOrder) {
   TemporaryFolder folder;
   Nifti n = numbers<float>(16);
-  const auto swap = [](std::string& s, std::size_t at, std::size_t size) { std::reverse(s.begin() + static_cast<long>(at), s.begin() + static_cast<long>(at + size)); };
+  const auto swap = [](std::string& s, std::size_t at, std::size_t size) {
+    std::reverse(s.begin() + static_cast<long>(at), s.begin() + static_cast<long>(at + size));
+  };
   swap(n.header, 0, 4);
   for (std::size_t at = 40; at < 56; at += 2) swap(n.header, at, 2);
   swap(n.header, 70, 2), swap(n.header, 72, 2);

@@ -61,8 +61,8 @@ TEST(LoadVdb, ReadsEveryScalarType) {
   openvdb::initialize();
   auto half = numbers<openvdb::FloatGrid>("half");
   half->setSaveFloatAsHalf(true);
-  save(folder / "a.vdb", {numbers<openvdb::FloatGrid>("float"), half, numbers<openvdb::DoubleGrid>("double"), numbers<openvdb::Int32Grid>("int32"),
-                          numbers<openvdb::Int64Grid>("int64")});
+  save(folder / "a.vdb", {numbers<openvdb::FloatGrid>("float"), half, numbers<openvdb::DoubleGrid>("double"),
+                          numbers<openvdb::Int32Grid>("int32"), numbers<openvdb::Int64Grid>("int64")});
   for (const char* name : {"float", "half", "double", "int32", "int64"}) {
     const auto field = load(request(folder / "a.vdb", name));
     ASSERT_TRUE(field) << field.error().message;
@@ -96,7 +96,8 @@ TEST(LoadVdb, ReadsEveryScalarType) {
 TEST(LoadVdb, ReadsEveryVectorType) {
   TemporaryFolder folder;
   openvdb::initialize();
-  save(folder / "v.vdb", {numbers<openvdb::Vec3SGrid>("vec3s"), numbers<openvdb::Vec3DGrid>("vec3d"), numbers<openvdb::Vec3IGrid>("vec3i")});
+  save(folder / "v.vdb",
+       {numbers<openvdb::Vec3SGrid>("vec3s"), numbers<openvdb::Vec3DGrid>("vec3d"), numbers<openvdb::Vec3IGrid>("vec3i")});
   for (const char* name : {"vec3s", "vec3d", "vec3i"}) {
     const auto field = load(request(folder / "v.vdb", name));
     ASSERT_TRUE(field) << field.error().message;
@@ -130,8 +131,7 @@ TEST(LoadVdb, RoundTripKeepsEveryBitAndTheTransform) {
     grid->read_cell_valid({0, 0, 0}, block.size, before);
     g.read_cell_valid({0, 0, 0}, block.size, after);
     EXPECT_EQ(before, after);
-    for (int a = 0; a < 3; ++a)
-      EXPECT_NEAR(norm(g.mapping().world_from_index_linear[a] - mapping.world_from_index_linear[a]), 0, 1e-14);
+    for (int a = 0; a < 3; ++a) EXPECT_NEAR(norm(g.mapping().world_from_index_linear[a] - mapping.world_from_index_linear[a]), 0, 1e-14);
     EXPECT_EQ(g.mapping().origin, mapping.origin);
     EXPECT_EQ(g.min_value(), grid->min_value());
   }
@@ -296,8 +296,9 @@ TEST(LoadVdb, BadFilesNeverPassAndNeverCrash) {
   noise->setName("noise");
   test::Random random(3);
   for (int n = 0; n < 4000; ++n)
-    noise->tree().setValue({static_cast<int>(random.between(0, 20)), static_cast<int>(random.between(0, 20)), static_cast<int>(random.between(0, 20))},
-                           static_cast<float>(random.between(0, 1)));
+    noise->tree().setValue(
+        {static_cast<int>(random.between(0, 20)), static_cast<int>(random.between(0, 20)), static_cast<int>(random.between(0, 20))},
+        static_cast<float>(random.between(0, 1)));
   noise->setSaveFloatAsHalf(true);
   save(folder / "whole.vdb", {noise, numbers<openvdb::FloatGrid>("b")});
   const std::string whole = catena::test::read_file(folder / "whole.vdb");

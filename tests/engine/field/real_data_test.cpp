@@ -10,8 +10,8 @@ namespace {
 
 using catena::test::shared_data;
 
-#define CATENA_NEED(variable, name)                  \
-  const std::string variable = shared_data(name);    \
+#define CATENA_NEED(variable, name)               \
+  const std::string variable = shared_data(name); \
   if (variable.empty()) GTEST_SKIP() << name << " of the shared data is not here"
 
 AnyField load_grid(const std::string& path, const std::string& grid = {}) {

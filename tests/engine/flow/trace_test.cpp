@@ -59,7 +59,7 @@ void expect_sound(const Curve& curve, const Vec3& seed) {
 }
 
 TEST(Trace, CircleIsOneLapAndExact) {
-  for (const double radius : {0.05, 0.3, 1.5, 5.0}) {
+  for (const double radius : {1e-5, 0.05, 0.3, 1.5, 5.0}) {
     const auto field = analytic_vector("circle");
     const Vec3 seed(radius * 0.6, -radius * 0.8, 0.25);
     const auto curve = traced({field.get()}, seed);
@@ -251,6 +251,17 @@ TEST(Trace, NotANumberInTheWayIsABoundary) {
   EXPECT_EQ(curve->knots().back().p.x, 4.0);
 }
 
+TEST(Trace, LapsCloseAlsoOnFacesAndNodes) {
+  const auto grid = field::sample_on_grid(*analytic_vector("circle"), 41, -2, 2);
+  for (const Vec3& seed : {Vec3(0.0, -1.2, 0.0), Vec3(0.0, 0.9, 0.0), Vec3(0.5, 0.0, 1.0), Vec3(-0.9, 0.0, 0.4), Vec3(0.0, 1.6384480463519915, 0.0),
+                           Vec3(0.3, 0.4, 0.1), Vec3(1.0, 0.0, -0.05)}) {
+    const auto curve = traced({grid.get()}, seed);
+    ASSERT_TRUE(curve->closed()) << seed.x << " " << seed.y;
+    EXPECT_EQ(curve->knots().back().p, seed);
+    EXPECT_NEAR(curve->period(), 2 * M_PI * std::hypot(seed.x, seed.y), 1e-6);
+  }
+}
+
 TEST(Trace, FlatFieldsAlongFacesAndEdges) {
   const auto grid = grid_of(field::Mapping{}, {12, 12, 4}, [](const Vec3& p) { return Vec3(-(p.y - 5.5), p.x - 5.5, 0.0); });
   for (const Vec3& seed : {Vec3(8.0, 5.5, 0.0), Vec3(8.0, 5.0, 1.0), Vec3(7.0, 7.0, 3.0), Vec3(5.5, 2.0, 2.5)}) {
@@ -289,6 +300,31 @@ TEST(Trace, LineFieldsKeepTheirWayThroughSignFlips) {
   const auto a = traced({steady.get()}, seed, 3), b = traced({flipping.get(), true}, seed, 3);
   const double same = dot(direction(a->knots()[1].p - a->knots()[0].p), direction(b->knots()[1].p - b->knots()[0].p)) > 0 ? 1 : -1;
   for (const double s : {-2.0, -0.5, 1.0, 2.0}) EXPECT_LE(norm(a->position(s) - b->position(same * s)), 1e-9) << s;
+}
+
+TEST(Trace, NoiseAlwaysEnds) {
+  // the worst of fields: no cell agrees with the next in direction, seeds on nodes, edges and faces; vectors and lines
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> value(-1, 1);
+  for (const bool line : {false, true}) {
+    const auto mapping = field::Mapping::from_linear(Mat3(0.5, 0.1, 0, 0, 0.25, 0, 0.05, 0, 1), Vec3(-3.0, 5.0, 0.0));
+    const auto grid = grid_of(mapping, {12, 12, 12}, [&](const Vec3&) { return Vec3(value(random), value(random), value(random)); });
+    for (int i = 0; i < 60; ++i) {
+      Vec3 index(5.5 + 5 * value(random), 5.5 + 5 * value(random), 5.5 + 5 * value(random));
+      for (int axis = 0; axis < 3; ++axis)
+        if (random() % 2) index[axis] = std::floor(index[axis]);
+      const Vec3 seed = mapping.world_from_index(index);
+      TraceOptions options;
+      options.length = 20;
+      const auto curve = trace({grid.get(), line, i % 4 == 0 ? 0.3 : 0.0}, seed, options);
+      if (!curve) continue;
+      expect_sound(**curve, seed);
+      for (std::size_t k = 1; k < (*curve)->knots().size(); ++k) {
+        const Knot &a = (*curve)->knots()[k - 1], &b = (*curve)->knots()[k];
+        ASSERT_LE(norm(b.p - a.p), (b.s - a.s) * (1 + 1e-6) + 1e-12);
+      }
+    }
+  }
 }
 
 TEST(Trace, HeartFibresAreSmooth) {

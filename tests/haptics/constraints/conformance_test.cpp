@@ -94,8 +94,8 @@ const std::vector<Vec3>& probes() {
     for (int i = 0; i < 200; ++i) out.push_back(random.box(2.5));
     const double huge = 1e6;
     for (const Vec3& q : {Vec3(0.0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(-0.0, 0.0, -0.0), Vec3(2, 2, 2), Vec3(-2, -2, -2), Vec3(huge, 0, 0),
-                          Vec3(-huge, huge, huge), Vec3(0.0), Vec3(1e-300, 0, 0), Vec3(1e-12, 1e-12, 0), Vec3(1e150, -1e150, 1), Vec3(1e300, 1e300, 1e300),
-                          Vec3(0.5, 0.5, 0.5), Vec3(huge, 1, 1), Vec3(0.3, 0.3, 0.3)})
+                          Vec3(-huge, huge, huge), Vec3(0.0), Vec3(1e-300, 0, 0), Vec3(1e-12, 1e-12, 0), Vec3(1e150, -1e150, 1),
+                          Vec3(1e300, 1e300, 1e300), Vec3(0.5, 0.5, 0.5), Vec3(huge, 1, 1), Vec3(0.3, 0.3, 0.3)})
       out.insert(out.end(), 2, q);
     return out;
   }();

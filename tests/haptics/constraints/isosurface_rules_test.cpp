@@ -67,9 +67,9 @@ TEST_P(Sphere, TwoSidedReleaseNeedsTheLevelAgain) {
   EXPECT_EQ(rig.tick({0, 0, 1.1}).status, Status::ok);
   EXPECT_EQ(rig.tick({0, 0, 1.21}).status, Status::released);
   EXPECT_EQ(rig.tick({0, 0, 1.03}).status, Status::released);
-  EXPECT_EQ(rig.tick({0, 0, 1.018}).status, Status::ok);   // within a tenth of release
+  EXPECT_EQ(rig.tick({0, 0, 1.018}).status, Status::ok);  // within a tenth of release
   EXPECT_EQ(rig.tick({0, 0, 1.3}).status, Status::released);
-  EXPECT_EQ(rig.tick({0, 0, 0.9}).status, Status::ok);     // across the level in one tick
+  EXPECT_EQ(rig.tick({0, 0, 0.9}).status, Status::ok);  // across the level in one tick
   EXPECT_NEAR(rig.state.proxy.z, 1, slack());
   EXPECT_EQ(rig.tick({0, 0, 0.7}).status, Status::released);
   EXPECT_EQ(rig.tick({0, 0, 0.97}).status, Status::released);
@@ -118,7 +118,8 @@ INSTANTIATE_TEST_SUITE_P(BothKinds, Sphere, testing::Bool(), [](const auto& test
 
 TEST(IsosurfaceRules, AFastHandDoesNotTunnelAThinSheet) {
   // |z| on a fine grid: a sheet 0.02 thick, free above, crossed by steps of 0.05
-  const auto grid = grid_of(field::Mapping::from_linear(Mat3(0.0625), Vec3(-2.0)), {65, 65, 65}, [](const Vec3& p) { return std::fabs(p.z); });
+  const auto grid =
+      grid_of(field::Mapping::from_linear(Mat3(0.0625), Vec3(-2.0)), {65, 65, 65}, [](const Vec3& p) { return std::fabs(p.z); });
   Rig rig(isosurface(grid, 0.01, kAbove));
   EXPECT_EQ(rig.tick({0.3, 0.2, 0.04}).status, Status::free);
   EXPECT_EQ(rig.tick({0.3, 0.2, -0.03}).status, Status::ok);
@@ -158,7 +159,8 @@ TEST(IsosurfaceRules, FarStartsEndOnTheLevel) {
 
 TEST(IsosurfaceRules, TheProxyStopsAtTheDomainsWall) {
   // z = 0.1 x on [-2, 2]^3: pulled out through x = 2 the proxy slides on the wall
-  const auto grid = grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; });
+  const auto grid =
+      grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; });
   Rig rig(isosurface(grid, 0));
   for (double x = 0; x < 3; x += 0.01) {
     rig.tick({x, 0.33, 0.5});
@@ -179,8 +181,8 @@ TEST(IsosurfaceRules, TheMaskIsAWall) {
   for (int z = 0; z < 17; ++z)
     for (int y = 0; y < 17; ++y)
       for (int x = 0; x < 17; ++x) valid.push_back(x <= 10);
-  const auto grid =
-      grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }, valid);
+  const auto grid = grid_of(
+      field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }, valid);
   Rig rig(isosurface(grid, 0));
   for (double x = -1; x < 1.5; x += 0.01) {
     rig.tick({x, 0.1, 0.3});
@@ -277,10 +279,10 @@ TEST(IsosurfaceRules, KeysAreChecked) {
     return made ? std::string() : made.error().message;
   };
   EXPECT_TRUE(try_build(R"({"name": "a", "type": "isosurface", "field": "s", "level": 1})", fields));
-  for (const char* rest :
-       {R"("level": 1)", R"("field": "s")", R"("field": "none", "level": 1)", R"("field": "s", "level": -1)", R"("field": "g", "level": 99)",
-        R"("field": "s", "level": "1")", R"("field": "s", "level": 1, "free": "inside")", R"("field": "s", "level": 1, "release": 0)",
-        R"("field": "s", "level": 1, "release": -0.1)", R"("field": "s", "level": 1e999)", R"("field": "s", "level": 1, "relase": 1)"}) {
+  for (const char* rest : {R"("level": 1)", R"("field": "s")", R"("field": "none", "level": 1)", R"("field": "s", "level": -1)",
+                           R"("field": "g", "level": 99)", R"("field": "s", "level": "1")", R"("field": "s", "level": 1, "free": "inside")",
+                           R"("field": "s", "level": 1, "release": 0)", R"("field": "s", "level": 1, "release": -0.1)",
+                           R"("field": "s", "level": 1e999)", R"("field": "s", "level": 1, "relase": 1)"}) {
     const std::string text = message(rest);
     EXPECT_EQ(text.rfind("scene.json:", 0), 0u) << text;
     EXPECT_EQ(text.find('\n'), std::string::npos) << text;

@@ -227,7 +227,8 @@ class SampledIsosurface : public testing::TestWithParam<Grid> {
     const Judged j = judge(grid, GetParam().level, probe, state.proxy);
     tally.worst_off = std::max(tally.worst_off, j.off_level);
     if (state.status == Status::ok) tally.worst_tangential = std::max(tally.worst_tangential, left);
-    tally.bad += state.status != Status::ok || !(left <= kTangential) || !(j.off_level <= kOffSampled);
+    tally.bad +=
+        (state.status != Status::ok && state.status != Status::boundary) || !(left <= kTangential) || !(j.off_level <= kOffSampled);
     EXPECT_LE(state.evaluations, kEvaluationCap);
   }
 };

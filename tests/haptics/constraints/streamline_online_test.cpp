@@ -173,6 +173,18 @@ TEST(StreamlineOnline, CurvedManifoldIsReachedWhenDragged) {
   EXPECT_LE(std::fabs(hand.state.proxy.x - hand.state.proxy.y * hand.state.proxy.y / 3), 1e-6);
 }
 
+TEST(StreamlineOnline, SmallCirclesAreNotMistakenForTheirCentre) {
+  for (const double radius : {1e-5, 1e-4, 1e-3}) {
+    Hand hand = online(analytic_vector("circle"), {Vec3(radius, 0.0, 0.0)});
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 direction(std::cos(0.05 * i), std::sin(0.05 * i), 0.0);
+      hand.to(1.2 * radius * direction);
+      ASSERT_EQ(hand.state.status, Status::ok) << radius << " " << i;
+      ASSERT_LE(norm(hand.state.proxy - radius * direction), 1e-3 * radius + 1e-10) << radius;
+    }
+  }
+}
+
 TEST(StreamlineOnline, LeastSpeedHoldsCritical) {
   const auto field = lambda_field([](const Vec3& p) { return Vec3(1 - 0.5 * p.x, 0.0, 0.0); });
   Online with{Vec3(0.0)};
