@@ -26,11 +26,12 @@ struct Flow {
 struct Advected {
   Vec3 displacement{0.0};  ///< f_V(p, dt); the paper adds it to p
   int evaluations = 0;
-  bool inside = true;      ///< false: a stage left the domain; the displacement stops before it
-  bool complete = true;    ///< false: the evaluation cap was reached first
+  bool inside = true;    ///< false: a stage left the domain; the displacement stops before it
+  bool complete = true;  ///< false: the evaluation cap was reached first
 };
 
 /// f_V(p, dt) in the field's own time. `linear` and `euler` take one step; fixed methods one step; pairs as many as needed.
-Advected advect(const Flow& flow, const Vec3& p, double dt, Method method, double tolerance_length, field::Cursor& cursor, int cap = 100000);
+Advected advect(const Flow& flow, const Vec3& p, double dt, Method method, double tolerance_length, field::Cursor& cursor,
+                int cap = 100000);
 
 }  // namespace catena::flow

@@ -4,8 +4,8 @@ namespace catena::flow {
 
 namespace {
 
-constexpr double kSlack = 1e-12;       ///< voxels: an excursion beyond a face that is only rounding
-constexpr double kSeedSlack = 1e-9;    ///< voxels: a seed on the domain's face
+constexpr double kSlack = 1e-12;     ///< voxels: an excursion beyond a face that is only rounding
+constexpr double kSeedSlack = 1e-9;  ///< voxels: a seed on the domain's face
 
 /// The first theta at which one coordinate of the piece passes above `face` (mirrored for below), or 2.
 double first_passage(double c0, double c1, double c2, double c3, double face, double side) {
@@ -108,7 +108,8 @@ Settled CellMedium::settle(Vec3& q, const Vec3& w) {
   for (int hops = 0; hops < 6; ++hops) {
     int axis = 0, side = 0;
     for (; axis < 3; ++axis) {
-      side = q[axis] < lo_[axis] || (q[axis] == lo_[axis] && w[axis] < 0) ? -1 : q[axis] > hi_[axis] || (q[axis] == hi_[axis] && w[axis] > 0);
+      side =
+          q[axis] < lo_[axis] || (q[axis] == lo_[axis] && w[axis] < 0) ? -1 : q[axis] > hi_[axis] || (q[axis] == hi_[axis] && w[axis] > 0);
       if (side != 0) break;
     }
     if (axis == 3) return settled;

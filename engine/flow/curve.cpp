@@ -9,10 +9,14 @@ namespace catena::flow {
 
 const char* end_word(End end) {
   switch (end) {
-    case End::boundary: return "BOUNDARY";
-    case End::critical: return "CRITICAL";
-    case End::length: return "LENGTH";
-    case End::lap: return "LAP";
+    case End::boundary:
+      return "BOUNDARY";
+    case End::critical:
+      return "CRITICAL";
+    case End::length:
+      return "LENGTH";
+    case End::lap:
+      return "LAP";
   }
   return "LENGTH";
 }

@@ -13,9 +13,9 @@
 namespace catena::flow {
 
 struct Knot {
-  double s = 0;         ///< arc length from the seed, signed, world units
+  double s = 0;  ///< arc length from the seed, signed, world units
   Vec3 p{0.0};
-  Vec3 t{0.0};          ///< unit tangent
+  Vec3 t{0.0};  ///< unit tangent
 };
 
 enum class End { boundary, critical, length, lap };
@@ -26,7 +26,7 @@ class Curve {
   Curve(std::vector<Knot> knots, bool closed, End first_end, End last_end, double domain_length);
 
   const std::vector<Knot>& knots() const { return knots_; }
-  bool closed() const { return closed_; }         ///< the last knot repeats the first one's place; s wraps with period()
+  bool closed() const { return closed_; }  ///< the last knot repeats the first one's place; s wraps with period()
   double period() const { return knots_.back().s - knots_.front().s; }
   End first_end() const { return first_end_; }
   End last_end() const { return last_end_; }
@@ -34,7 +34,7 @@ class Curve {
 
   /// Cubic Hermite on the knot interval k: position and d/ds at s (world units; s within the interval).
   void evaluate_in(std::size_t k, double s, Vec3& p, Vec3& derivative) const noexcept;
-  Vec3 position(double s) const noexcept;         ///< clamped to the ends, or wrapped
+  Vec3 position(double s) const noexcept;  ///< clamped to the ends, or wrapped
   std::size_t interval_of(double s) const noexcept;
 
  private:
@@ -46,8 +46,8 @@ class Curve {
 using CurvePtr = std::shared_ptr<const Curve>;
 
 struct TraceOptions {
-  double length = 0;            ///< longest arc length in each direction, world units; 0: 10 L
-  double tolerance = 1e-10;     ///< of the embedded error of one step, times L
+  double length = 0;                 ///< longest arc length in each direction, world units; 0: 10 L
+  double tolerance = 1e-10;          ///< of the embedded error of one step, times L
   double hermite_tolerance = 1e-11;  ///< of the Hermite midpoint against a half step, times L
   std::size_t max_knots = 2000000;
 };

@@ -1,7 +1,7 @@
 /// The cubic Hermite of one step: place and rate at both ends. c(theta), theta in [0, 1]; exact at theta = 0.
 #pragma once
-#include "engine/flow/root.h"
 #include "engine/base/vec.h"
+#include "engine/flow/root.h"
 
 namespace catena::flow {
 

@@ -214,11 +214,11 @@ class March {
   field::Cursor zero_cursor_;
   Vec3 seed_{0.0}, u_seed_{0.0};
   double sign_ = 1;
-  Vec3 q_{0.0}, w_{0.0};        ///< where the march is, and its rate
-  Vec3 u_{0.0}, u_last_{0.0};   ///< directions of motion: here, and of the last stage
+  Vec3 q_{0.0}, w_{0.0};       ///< where the march is, and its rate
+  Vec3 u_{0.0}, u_last_{0.0};  ///< directions of motion: here, and of the last stage
   double s_ = 0, h_ = 0;
-  double height_ = 0;           ///< above the seed's plane
-  int idle_ = 0;                ///< changes of cell without progress
+  double height_ = 0;  ///< above the seed's plane
+  int idle_ = 0;       ///< changes of cell without progress
   double forced_ = 0;
   std::size_t tried_at_ = 0;
 };

@@ -48,12 +48,18 @@ inline constexpr Tableau dp54{5,
 inline const Tableau& tableau_of(Method method) {
   switch (method) {
     case Method::linear:
-    case Method::euler: return tableaus::euler;
-    case Method::rk2: return tableaus::rk2;
-    case Method::rk3: return tableaus::rk3;
-    case Method::rk4: return tableaus::rk4;
-    case Method::rkf34: return tableaus::rkf34;
-    case Method::dp54: return tableaus::dp54;
+    case Method::euler:
+      return tableaus::euler;
+    case Method::rk2:
+      return tableaus::rk2;
+    case Method::rk3:
+      return tableaus::rk3;
+    case Method::rk4:
+      return tableaus::rk4;
+    case Method::rkf34:
+      return tableaus::rkf34;
+    case Method::dp54:
+      return tableaus::dp54;
   }
   return tableaus::rkf34;
 }

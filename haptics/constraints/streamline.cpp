@@ -20,7 +20,8 @@ Outcome check_seed(const json::Node& where, const OnlineSpec& spec, const std::s
   field::Cursor cursor;
   Vec3 u;
   switch (flow::seed_direction({spec.field.get(), spec.line, spec.min_speed}, *spec.seed, cursor, u)) {
-    case flow::Stop::none: return Done{};
+    case flow::Stop::none:
+      return Done{};
     case flow::Stop::outside:
       return json::error_at(where, fmt::format("\"seed\" lies outside the domain of field \"{}\"; a place within it was expected", name));
     default:
@@ -43,7 +44,9 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
   CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::Range::not_negative));
   CATENA_TRY(spec.tolerance, json::get_number(link, "tolerance", 1e-9, json::Range::positive));
   if (!(spec.tolerance < 1))
-    return json::error_at(*link.find("tolerance"), fmt::format("\"tolerance\" is {}; a number > 0 and < 1 was expected (it is times the domain length)", spec.tolerance));
+    return json::error_at(
+        *link.find("tolerance"),
+        fmt::format("\"tolerance\" is {}; a number > 0 and < 1 was expected (it is times the domain length)", spec.tolerance));
   CATENA_TRY(const int method, json::get_choice(link, "method", static_cast<int>(flow::Method::rkf34),
                                                 {"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"}));
   spec.method = static_cast<flow::Method>(method);

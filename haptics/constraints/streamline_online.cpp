@@ -12,7 +12,7 @@ using Mode = OnlineMemory::Mode;
 
 // lengths, times L
 constexpr double kConverged = 1e-12, kLongestStep = 0.1, kFirstTrust = 0.02;
-constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15;
+constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15, kCalm = 1e-3, kNear = 0.02;
 constexpr int kSearches = 2;  ///< for a zero, a tick
 
 /// One tick of one link.
@@ -36,6 +36,8 @@ class Tick {
     state_.proxy = seed;
     ++state_.evaluations;
     const Stop stop = flow::seed_direction(flow_, seed, cursor_, memory_.t);
+    memory_.calm = seed;
+    memory_.t_calm = memory_.t;
     if (stop == Stop::none)
       memory_.mode = Mode::following;
     else
@@ -91,6 +93,13 @@ class Tick {
 
   void hold_at(Mode mode, const Vec3& place, double way) noexcept {
     if (!has_entry_) remember_entry(way);
+    const Vec3 approach = place - memory_.calm;
+    if (mode == Mode::at_zero && max_abs(approach) > 0 && norm(approach) <= kNear * length_) {
+      // let go onto the branch that it came by, not onto one that it has turned to
+      memory_.p_in = memory_.calm;
+      memory_.t_in = memory_.t_calm;
+      memory_.way = dot(approach, memory_.t_calm) < 0 ? -memory_.t_calm : memory_.t_calm;
+    }
     memory_.mode = mode;
     memory_.hold = place;
     state_.proxy = place;
@@ -221,6 +230,9 @@ class Tick {
     state_.proxy += step.displacement;
     memory_.t = step.last;
     memory_.trust = std::min(std::max(memory_.trust, grown), kLongestStep * length_);
+    if (norm(memory_.curvature) * kCalm * length_ > 1) return;
+    memory_.calm = state_.proxy;
+    memory_.t_calm = memory_.t;
   }
 
   const OnlineSpec& spec_;

@@ -33,7 +33,8 @@ struct OnlineMemory {
   double trust = 0;        ///< longest step that the error control takes now, world units
   Vec3 hold{0.0};          ///< held while (x - hold).way >= 0
   Vec3 way{0.0};
-  Vec3 p_in{0.0}, t_in{0.0};  ///< where the line goes on from when it is let go
+  Vec3 p_in{0.0}, t_in{0.0};    ///< where the line goes on from when it is let go
+  Vec3 calm{0.0}, t_calm{0.0};  ///< last place with a radius of curvature above 1e-3 L: before the turn at a saddle
 };
 
 std::shared_ptr<const Constraint> make_online_streamline(const OnlineSpec& spec);

@@ -103,27 +103,19 @@ void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
   hi = frame.grids[i].value_offset + frame.grids[i].value_scale * hi;
 }
 
-// One side of a central difference: clamped to the domain; a place in an invalid cell gives the centre instead.
-float side_value(int i, vec3 p, float centre, vec3 step, out float moved) {
-  const vec3 q = clamp(p + step, frame.grids[i].lo, frame.grids[i].hi);
-  moved = abs(dot(q - p, vec3(1.0)));
-  if (grid_is_masked(i) && !cell_is_valid(i, cell_of(i, q))) {
-    moved = 0.0;
-    return centre;
+// Central difference along one axis: both ends clamped to the domain; an end in an invalid cell gives the centre instead.
+float central_difference(int i, vec3 p, vec3 step) {
+  vec3 a = clamp(p - step, frame.grids[i].lo, frame.grids[i].hi), b = clamp(p + step, frame.grids[i].lo, frame.grids[i].hi);
+  if (grid_is_masked(i)) {
+    if (!cell_is_valid(i, cell_of(i, a))) a = p;
+    if (!cell_is_valid(i, cell_of(i, b))) b = p;
   }
-  return sample_value(i, q);
+  const float moved = dot(b - a, vec3(1.0));
+  return moved > 0.0 ? (sample_value(i, b) - sample_value(i, a)) / moved : 0.0;
 }
 
 // The gradient by central differences of one voxel, in world axes.
 vec3 world_gradient(int i, vec3 p) {
-  const float centre = grid_is_masked(i) ? sample_value(i, p) : 0.0;
-  vec3 gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    vec3 step = vec3(0.0);
-    step[axis] = 1.0;
-    float before, after;
-    const float a = side_value(i, p, centre, -step, before), b = side_value(i, p, centre, step, after);
-    gradient[axis] = (b - a) / max(before + after, 1e-6);
-  }
-  return frame.grids[i].world_gradient * gradient;
+  return frame.grids[i].world_gradient * vec3(central_difference(i, p, vec3(1.0, 0.0, 0.0)), central_difference(i, p, vec3(0.0, 1.0, 0.0)),
+                                              central_difference(i, p, vec3(0.0, 0.0, 1.0)));
 }

@@ -94,6 +94,37 @@ void march(float from, float to) {
   }
 }
 
+// The surfaces, by their number, which is a constant here too.
+float crossings[MAX_SURFACES];  // the next one
+float limits[MAX_SURFACES];
+
+void meet_surface(int s, vec2 q, float end) {
+  const int i = VOLUMES + s;
+  if (s < SURFACES) {
+    rays[i] = local_ray(i, q);
+    const vec2 interval = domain_interval(i, rays[i]);
+    const float from = max(interval.x, frame.front);
+    limits[s] = min(interval.y, end);
+    crossings[s] = NO_DEPTH;
+    if (from < limits[s]) crossings[s] = first_crossing(i, rays[i], from, limits[s]);
+  }
+}
+
+// Blends surface s, if it is the one that the ray crosses at t, and looks for its next crossing a little way behind.
+void pass_surface(int s, int surface, float t) {
+  const int i = VOLUMES + s;
+  if (s < SURFACES && s == surface && through > frame.termination) {
+    const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
+    const float opacity = frame.grids[i].opacity;
+    color_sum += through * opacity * lit(frame.grids[i].color, world_gradient(i, p), eye_direction);
+    surfaces_through *= 1.0 - opacity;
+    through *= 1.0 - opacity;
+    const float past = t + 1e-3 / max(max(abs(rays[i].direction.x), abs(rays[i].direction.y)), abs(rays[i].direction.z));
+    crossings[s] = NO_DEPTH;
+    if (past < limits[s]) crossings[s] = first_crossing(i, rays[i], past, limits[s]);
+  }
+}
+
 void main() {
   const vec2 q = pixel_place();
   const vec3 direction = world_direction(q);
@@ -122,16 +153,11 @@ void main() {
   }
 
   // the first crossing of each surface
-  float crossings[MAX_SURFACES], limits[MAX_SURFACES];
-  for (int s = 0; s < SURFACES; ++s) {
-    const int i = VOLUMES + s;
-    rays[i] = local_ray(i, q);
-    vec2 interval = domain_interval(i, rays[i]);
-    interval.x = max(interval.x, frame.front);
-    limits[s] = min(interval.y, end);
-    crossings[s] = interval.x < limits[s] ? first_crossing(i, rays[i], interval.x, limits[s]) : NO_DEPTH;
-    start = min(start, crossings[s]);
-  }
+  meet_surface(0, q, end);
+  meet_surface(1, q, end);
+  meet_surface(2, q, end);
+  meet_surface(3, q, end);
+  for (int s = 0; s < SURFACES; ++s) start = min(start, crossings[s]);
 
   // from event to event: a volume begins or ends, a surface is crossed
   float t = start;
@@ -154,18 +180,10 @@ void main() {
     if (next >= NO_DEPTH) break;
     if (inside && next > t) march(t, next);
     t = max(t, next);
-    for (int s = 0; s < SURFACES; ++s) {
-      if (s != surface || through <= frame.termination) continue;
-      const int i = VOLUMES + s;
-      const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
-      const float opacity = frame.grids[i].opacity;
-      color_sum += through * opacity * lit(frame.grids[i].color, world_gradient(i, p), eye_direction);
-      surfaces_through *= 1.0 - opacity;
-      through *= 1.0 - opacity;
-      // on behind the crossing, a little way into the cell
-      const float past = t + 1e-3 / max(max(abs(rays[i].direction.x), abs(rays[i].direction.y)), abs(rays[i].direction.z));
-      crossings[s] = past < limits[s] ? first_crossing(i, rays[i], past, limits[s]) : NO_DEPTH;
-    }
+    pass_surface(0, surface, t);
+    pass_surface(1, surface, t);
+    pass_surface(2, surface, t);
+    pass_surface(3, surface, t);
   }
   out_color = vec4(color_sum, 1.0 - through);
 }

@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"NegativeMaxForce", coupling("\n\"max_force\": -1"), {":3:", "max_force"}},
         Bad{"NegativeLinkStiffness", surface(", \"stiffness\": -5"), {":3:", "stiffness"}},
         Bad{"ZeroWorkspace", "{\"workspace\": {\n\"metres_per_unit\": 0}}", {":2:", "metres_per_unit"}}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 struct BadTable {
   const char* name;
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadTable{"MissingColumn", "t,x,y\n0,1,2\n", {"z"}}, BadTable{"ExtraColumn", "t,x,y,z,w\n0,1,2,3,4\n", {"w"}},
                     BadTable{"NotRising", "t,x,y,z\n0,0,0,0\n1,0,0,0\n1,0,0,0\n", {":4:", "ris"}},
                     BadTable{"NotFinite", "t,x,y,z\n0,0,nan,0\n", {":2:"}}, BadTable{"Infinite", "t,x,y,z\n0,0,inf,0\n", {":2:"}}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& tested) { return std::string(tested.param.name); });
 
 class BadArguments : public testing::Test {
  protected:

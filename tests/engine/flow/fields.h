@@ -43,7 +43,8 @@ inline field::VectorFieldPtr analytic_vector(const std::string& name, double sca
 
 /// A grid of a formula: `nodes` an axis, node i at lo + i * spacing (per axis).
 inline std::shared_ptr<const field::VectorGrid> grid_of(const field::Mapping& mapping, const field::Index3& size,
-                                                        const std::function<Vec3(const Vec3&)>& value, const std::vector<std::uint8_t>& valid = {}) {
+                                                        const std::function<Vec3(const Vec3&)>& value,
+                                                        const std::vector<std::uint8_t>& valid = {}) {
   std::vector<float> xyz;
   for (int k = 0; k < size.z; ++k)
     for (int j = 0; j < size.y; ++j)

@@ -236,7 +236,8 @@ TEST(Trace, MaskedCellsAreABoundary) {
   std::vector<std::uint8_t> valid(1000, 1);
   for (int k = 0; k < 10; ++k)
     for (int j = 0; j < 10; ++j) valid[static_cast<std::size_t>(7 + 10 * j + 100 * k)] = 0;
-  const auto grid = grid_of(field::Mapping{}, size, [](const Vec3&) { return Vec3(1.0, 0.1, 0.0); }, valid);
+  const auto grid = grid_of(
+      field::Mapping{}, size, [](const Vec3&) { return Vec3(1.0, 0.1, 0.0); }, valid);
   const auto curve = traced({grid.get()}, Vec3(3.5, 4.0, 4.5));
   EXPECT_EQ(curve->last_end(), End::boundary);
   EXPECT_EQ(curve->knots().back().p.x, 6.0);
@@ -245,7 +246,8 @@ TEST(Trace, MaskedCellsAreABoundary) {
 }
 
 TEST(Trace, NotANumberInTheWayIsABoundary) {
-  const auto grid = grid_of(field::Mapping{}, {8, 8, 8}, [](const Vec3& p) { return p.x == 5 && p.y == 4 ? Vec3(std::nan("")) : Vec3(1 + 0.01 * p.x, 0.0, 0.0); });
+  const auto grid = grid_of(field::Mapping{}, {8, 8, 8},
+                            [](const Vec3& p) { return p.x == 5 && p.y == 4 ? Vec3(std::nan("")) : Vec3(1 + 0.01 * p.x, 0.0, 0.0); });
   const auto curve = traced({grid.get()}, Vec3(1.5, 3.5, 3.5));
   EXPECT_EQ(curve->last_end(), End::boundary);
   EXPECT_EQ(curve->knots().back().p.x, 4.0);
@@ -253,8 +255,8 @@ TEST(Trace, NotANumberInTheWayIsABoundary) {
 
 TEST(Trace, LapsCloseAlsoOnFacesAndNodes) {
   const auto grid = field::sample_on_grid(*analytic_vector("circle"), 41, -2, 2);
-  for (const Vec3& seed : {Vec3(0.0, -1.2, 0.0), Vec3(0.0, 0.9, 0.0), Vec3(0.5, 0.0, 1.0), Vec3(-0.9, 0.0, 0.4), Vec3(0.0, 1.6384480463519915, 0.0),
-                           Vec3(0.3, 0.4, 0.1), Vec3(1.0, 0.0, -0.05)}) {
+  for (const Vec3& seed : {Vec3(0.0, -1.2, 0.0), Vec3(0.0, 0.9, 0.0), Vec3(0.5, 0.0, 1.0), Vec3(-0.9, 0.0, 0.4),
+                           Vec3(0.0, 1.6384480463519915, 0.0), Vec3(0.3, 0.4, 0.1), Vec3(1.0, 0.0, -0.05)}) {
     const auto curve = traced({grid.get()}, seed);
     ASSERT_TRUE(curve->closed()) << seed.x << " " << seed.y;
     EXPECT_EQ(curve->knots().back().p, seed);

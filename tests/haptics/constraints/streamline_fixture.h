@@ -20,7 +20,8 @@ struct StreamlineBench {
       if (found == fields.end()) return json::error_at(where, "unknown field \"" + name + "\"");
       return found->second;
     };
-    context.curve = [this](const json::Node& where, const std::string&, const flow::Flow& flow, const Vec3& seed) -> Result<flow::CurvePtr> {
+    context.curve = [this](const json::Node& where, const std::string&, const flow::Flow& flow,
+                           const Vec3& seed) -> Result<flow::CurvePtr> {
       auto curve = flow::trace(flow, seed);
       if (!curve) return json::error_at(where, curve.error().message);
       last_curve = *curve;

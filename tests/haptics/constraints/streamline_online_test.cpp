@@ -54,8 +54,12 @@ TEST(StreamlineOnline, DriftOfALapOfTheCircle) {
   const struct {
     flow::Method method;
     double least, greatest;
-  } cases[] = {{flow::Method::linear, 0.61e-3, 0.65e-3}, {flow::Method::euler, 0.61e-3, 0.65e-3}, {flow::Method::rk2, 0, 1e-5},
-               {flow::Method::rk3, 0, 2e-9},             {flow::Method::rk4, 0, 5e-10},           {flow::Method::rkf34, 0, 5e-10},
+  } cases[] = {{flow::Method::linear, 0.61e-3, 0.65e-3},
+               {flow::Method::euler, 0.61e-3, 0.65e-3},
+               {flow::Method::rk2, 0, 1e-5},
+               {flow::Method::rk3, 0, 2e-9},
+               {flow::Method::rk4, 0, 5e-10},
+               {flow::Method::rkf34, 0, 5e-10},
                {flow::Method::dp54, 0, 5e-10}};
   for (const auto& c : cases) {
     const double drift = drift_of_a_lap(c.method, most);
@@ -137,7 +141,8 @@ TEST(StreamlineOnline, NodesAndStraightManifoldsStopCriticalAndLetGo) {
   const auto node = lambda_field([](const Vec3& p) { return Vec3(-p.x, -2 * p.y, -3 * p.z); });
   const auto saddle = lambda_field([](const Vec3& p) { return Vec3(2 * p.x, -p.y, 0.0); });
   for (const auto method : {flow::Method::euler, flow::Method::rk2, flow::Method::rk4, flow::Method::rkf34, flow::Method::dp54})
-    for (const auto& [field, seed] : {std::pair{node, Vec3(1.0, 0.0, 0.0)}, std::pair{saddle, Vec3(0.0, 1.0, 0.0)}, std::pair{node, Vec3(0.0, 0.0, 0.7)}}) {
+    for (const auto& [field, seed] :
+         {std::pair{node, Vec3(1.0, 0.0, 0.0)}, std::pair{saddle, Vec3(0.0, 1.0, 0.0)}, std::pair{node, Vec3(0.0, 0.0, 0.7)}}) {
       Hand hand = online(field, {seed, method});
       for (int tick = 0; tick < 6; ++tick) {
         hand.to(-0.5 * seed);
@@ -171,6 +176,37 @@ TEST(StreamlineOnline, CurvedManifoldIsReachedWhenDragged) {
   for (double y = -0.3; y < 0.5; y += 0.02) hand.to(Vec3(y * y / 3, y, 0.0));
   EXPECT_EQ(hand.state.status, Status::ok);
   EXPECT_LE(std::fabs(hand.state.proxy.x - hand.state.proxy.y * hand.state.proxy.y / 3), 1e-6);
+}
+
+TEST(StreamlineOnline, CurvedManifoldsInAnyPositionAreReachedAndLeft) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> value(-1, 1);
+  for (const auto method : {flow::Method::rkf34, flow::Method::dp54})
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 a = direction(Vec3(value(random), value(random), value(random)));
+      const Vec3 b = direction(cross(a, Vec3(value(random), value(random), value(random)))), c = cross(a, b);
+      const Vec3 zero = 0.3 * Vec3(value(random), value(random), value(random));
+      const double bend = value(random), third = (i % 2 ? 1 : -1) * (0.1 + 0.7 * std::fabs(value(random)));
+      const auto field = lambda_field([=](const Vec3& p) {
+        const double x = dot(p - zero, a), y = dot(p - zero, b), z = dot(p - zero, c);
+        return (x - bend * y * y) * a - y * b + third * z * c;
+      });
+      const auto on = [&](double y) { return zero + (bend * y * y / 3) * a + y * b; };
+      Hand hand = online(field, {on(1), method});
+      for (double y = 0.99; y > -0.3; y -= 0.02) {
+        const double before = norm(hand.state.proxy - on(y));
+        const bool started = hand.started;
+        hand.to(on(y));
+        if (started) {
+          ASSERT_LE(norm(hand.state.proxy - on(y)), before + 1e-14) << i;
+        }
+      }
+      EXPECT_EQ(hand.state.status, Status::critical) << i;
+      EXPECT_LE(norm(hand.state.proxy - zero), 4e-6) << i;
+      for (double y = -0.3; y < 0.5; y += 0.02) hand.to(on(y));
+      EXPECT_EQ(hand.state.status, Status::ok) << i;
+      EXPECT_LE(norm(hand.state.proxy - on(0.48)), 0.02) << i;
+    }
 }
 
 TEST(StreamlineOnline, SmallCirclesAreNotMistakenForTheirCentre) {

@@ -29,33 +29,33 @@ TEST(Streamline, KeysAreCheckedWithTheirLine) {
   bench.with("f", analytic_vector("circle"));
   bench.fields["s"].scalar = field::make_analytic("sphere")->scalar;
   const auto link = [](const std::string& more) { return "\n\n{\"name\": \"a\", \"type\": \"streamline\"" + more + "}"; };
-  const std::string bad[] = {
-      "",
-      R"(, "field": "s", "seed": [1, 0, 0])",
-      R"(, "field": "none", "seed": [1, 0, 0])",
-      R"(, "field": 3)",
-      R"(, "field": "f", "seed": [1, 0])",
-      R"(, "field": "f", "seed": [1, 0, "z"])",
-      R"(, "field": "f", "seed": [1, 0, 0], "method": "rk5")",
-      R"(, "field": "f", "seed": [1, 0, 0], "follow": "me")",
-      R"(, "field": "f", "seed": [1, 0, 0], "kind": "tensor")",
-      R"(, "field": "f", "seed": [1, 0, 0], "tolerance": 0)",
-      R"(, "field": "f", "seed": [1, 0, 0], "tolerance": -1e-9)",
-      R"(, "field": "f", "seed": [1, 0, 0], "tolerance": 1)",
-      R"(, "field": "f", "seed": [1, 0, 0], "tolerance": 1e999)",
-      R"(, "field": "f", "seed": [1, 0, 0], "min_speed": -1)",
-      R"(, "field": "f", "follow": "selected")",
-      R"(, "field": "f", "seed": [1, 0, 0], "follow": "selected", "method": "rk4")",
-      R"(, "field": "f", "seed": [0, 0, 0])",
-      R"(, "field": "f", "seed": [0, 0, 0], "follow": "online")",
-      R"(, "field": "f", "seed": [0.1, 0, 0], "method": "rk2", "min_speed": 0.2)"};
+  const std::string bad[] = {"",
+                             R"(, "field": "s", "seed": [1, 0, 0])",
+                             R"(, "field": "none", "seed": [1, 0, 0])",
+                             R"(, "field": 3)",
+                             R"(, "field": "f", "seed": [1, 0])",
+                             R"(, "field": "f", "seed": [1, 0, "z"])",
+                             R"(, "field": "f", "seed": [1, 0, 0], "method": "rk5")",
+                             R"(, "field": "f", "seed": [1, 0, 0], "follow": "me")",
+                             R"(, "field": "f", "seed": [1, 0, 0], "kind": "tensor")",
+                             R"(, "field": "f", "seed": [1, 0, 0], "tolerance": 0)",
+                             R"(, "field": "f", "seed": [1, 0, 0], "tolerance": -1e-9)",
+                             R"(, "field": "f", "seed": [1, 0, 0], "tolerance": 1)",
+                             R"(, "field": "f", "seed": [1, 0, 0], "tolerance": 1e999)",
+                             R"(, "field": "f", "seed": [1, 0, 0], "min_speed": -1)",
+                             R"(, "field": "f", "follow": "selected")",
+                             R"(, "field": "f", "seed": [1, 0, 0], "follow": "selected", "method": "rk4")",
+                             R"(, "field": "f", "seed": [0, 0, 0])",
+                             R"(, "field": "f", "seed": [0, 0, 0], "follow": "online")",
+                             R"(, "field": "f", "seed": [0.1, 0, 0], "method": "rk2", "min_speed": 0.2)"};
   for (const std::string& more : bad) {
     const std::string message = failure(bench, link(more));
     EXPECT_EQ(message.rfind("scene.json:3: ", 0), 0u) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
-  for (const char* good : {R"(, "field": "f")", R"(, "field": "f", "method": "dp54")", R"(, "field": "f", "seed": [1, 0, 0], "follow": "selected")",
-                           R"(, "field": "f", "seed": [1, 0, 0], "follow": "online", "method": "linear", "kind": "line", "min_speed": 0.1)"})
+  for (const char* good :
+       {R"(, "field": "f")", R"(, "field": "f", "method": "dp54")", R"(, "field": "f", "seed": [1, 0, 0], "follow": "selected")",
+        R"(, "field": "f", "seed": [1, 0, 0], "follow": "online", "method": "linear", "kind": "line", "min_speed": 0.1)"})
     EXPECT_TRUE(bench.build(link(good))) << good;
 }
 
