@@ -26,7 +26,7 @@ namespace {
 constexpr int kUnreportedFrames = 3;
 
 struct Options {
-  std::string source, output, size = "1024x768", quality = "balanced", stats, probe;
+  std::string source, output, size = "1024x768", quality, stats, probe;
   std::vector<std::string> fields;
   int frames = 1;
   double orbit_deg = 0;
@@ -80,11 +80,12 @@ void orbit(render::View& view, double degrees) {
 
 Outcome render_pictures(const Options& o) {
   CATENA_TRY(const Size size, parse_size(o.size));
-  CATENA_TRY(const render::RenderSettings settings, settings_for(o.quality));
   if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
   if (!o.output.ends_with(".png") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .png"};
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
+  const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
+  CATENA_TRY(const render::RenderSettings settings, settings_for(quality));
   std::vector<std::string> inputs = inputs_of(scene);
   if (!o.probe.empty()) inputs.push_back(o.probe);
   CATENA_CHECK(check_output(o.output, inputs));
@@ -167,7 +168,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
   command->add_option("-o,--output", options->output, "the picture, .png; %03d in the name numbers the frames")->required();
   command->add_option("--size", options->size, "WxH")->capture_default_str();
-  command->add_option("--quality", options->quality, "draft, balanced, reference or step=VOXELS")->capture_default_str();
+  command->add_option("--quality", options->quality, "draft, balanced, reference or step=VOXELS (default: the scene's, or balanced)");
   command->add_option("--frames", options->frames, "how many frames to draw and time")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--orbit", options->orbit_deg, "turn by so many degrees over the frames");
   command->add_option("--probe", options->probe, "probe path, CSV: the cursor is drawn where the hand is at its end");

@@ -14,6 +14,9 @@ constexpr std::uint32_t kVertexShader[] = {
 constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/volume.frag.inc"
 };
+constexpr std::uint32_t kBlendShader[] = {
+#include "spirv/blend.frag.inc"
+};
 
 /// Below this share of active bricks a ray asks the brick map before it samples; above, asking costs more than it saves.
 constexpr double kSkipBelow = 0.95;
@@ -43,10 +46,11 @@ Result<const vk::Pipeline*> VolumePass::pipeline(std::uint32_t flags, std::uint3
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
-    info.fragment = kFragmentShader;
+    const bool single = volumes == 1 && surfaces == 0;
+    info.fragment = single ? vk::Spirv(kFragmentShader) : vk::Spirv(kBlendShader);
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}};
-    add_grid_slots(info.slots, MAX_GRIDS);
-    info.constants = {flags, volumes, surfaces, opaque};
+    add_grid_slots(info.slots, single ? 1 : MAX_GRIDS);
+    info.constants = single ? std::vector<std::uint32_t>{flags, opaque} : std::vector<std::uint32_t>{flags, opaque, volumes, surfaces};
     info.colors = {kVolumeFormat};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
@@ -120,7 +124,7 @@ Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const
   std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                     {1, vk::Resource::buffer, &tables_, nullptr, nullptr},
                                     {2, vk::Resource::texture, nullptr, opaque_depth ? opaque_depth : &none, nullptr}};
-  add_grid_bindings(bindings, bound, MAX_GRIDS, linear_);
+  add_grid_bindings(bindings, bound, bound.size() == 1 && surfaces_.empty() ? 1 : MAX_GRIDS, linear_);
   commands.scissor(area);
   commands.bind(*pipe, bindings);
   commands.draw_triangle();

@@ -240,6 +240,16 @@ TEST(ScalarGrid, NonFiniteVoxelsAreCountedAndTheirCellsInvalid) {
   EXPECT_EQ(std::count(cells.begin(), cells.end(), 0), 1000 - 729 + 16);
 }
 
+TEST(ScalarGrid, ANanInAConstantBlockIsNotPrunedAway) {
+  std::vector<float> values(16 * 16 * 16, 3.0f);
+  values[(5 * 16 + 6) * 16 + 7] = std::nanf("");
+  const auto grid = make_scalar_grid("g", Mapping{}, {16, 16, 16}, values);
+  EXPECT_EQ(grid->stats().nan_count, 1u);
+  Cursor cursor;
+  EXPECT_FALSE(grid->sample(Vec3(7.25, 6.25, 5.25), cursor).inside);
+  EXPECT_TRUE(grid->sample(Vec3(9.25, 6.25, 5.25), cursor).inside);
+}
+
 TEST(ScalarGrid, BlocksAreCopiedAsStored) {
   const Block block = test::random_block({21, 18, 19}, 21);
   const auto grid = make_scalar_grid("g", {}, block.size, block.values);

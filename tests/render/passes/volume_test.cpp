@@ -1,0 +1,233 @@
+#include <cmath>
+#include <numbers>
+
+#include "render/frame/camera.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+class Volume : public PictureTest {};
+
+/// Compares alpha with 1 - exp(-tau(ray)) at every pixel.
+void expect_alpha(const Picture& picture, const FramePacket& packet, double tolerance_255, const std::function<double(const Ray&)>& depth) {
+  Bounds none;
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
+  double worst = 0;
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    for (std::uint32_t x = 0; x < picture.width; ++x) {
+      const double expected = 255 * (1 - std::exp(-depth(ray_through(camera, x + 0.5, y + 0.5))));
+      worst = std::max(worst, std::fabs(picture.pixel(x, y)[3] - expected));
+    }
+  EXPECT_LE(worst, tolerance_255);
+}
+
+int covered(const Picture& picture) {
+  int count = 0;
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) count += picture.rgba[i] > 0;
+  return count;
+}
+
+TEST_F(Volume, HomogeneousBoxSeenObliquely) {
+  const auto grid = make_grid({20, 33, 12}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({52, -41, 37}, {9.5, 16, 5.5}, 40);
+  for (const double sigma : {0.02, 0.1, 1.0}) {
+    packet.volumes = {volume_item(grid, {{0, sigma}, {1, sigma}}, {0.2f, 0.5f, 0.9f})};
+    for (const double step : {0.25, 0.5, 1.0}) {
+      RenderSettings settings;
+      settings.step_voxels = step;
+      const Picture picture = draw(packet, settings, step == 1 && sigma == 0.1 ? "box" : "");
+      expect_alpha(picture, packet, 1, [&](const Ray& ray) { return sigma * chord(*grid, ray.origin, ray.direction); });
+      EXPECT_GT(covered(picture), 2500);
+      EXPECT_LT(covered(picture), 15000);
+    }
+  }
+  // straight alpha: the colour is the table's wherever enough of it is there
+  const Picture picture = draw(packet);
+  for (std::uint32_t y = 0; y < picture.height; ++y)
+    for (std::uint32_t x = 0; x < picture.width; ++x)
+      if (picture.pixel(x, y)[3] > 8) {
+        ASSERT_NEAR(picture.pixel(x, y)[0], 51, 1);
+        ASSERT_NEAR(picture.pixel(x, y)[1], 127.5, 1.5);
+        ASSERT_NEAR(picture.pixel(x, y)[2], 229.5, 1.5);
+      }
+}
+
+TEST_F(Volume, EyeInsideTheBox) {
+  const auto grid = make_grid({24, 24, 24}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({11.3, 9.7, 12.1}, {20, 14, 9}, 90);
+  packet.volumes = {volume_item(grid, {{0, 0.07}, {1, 0.07}})};
+  expect_alpha(draw(packet), packet, 1, [&](const Ray& ray) { return 0.07 * chord(*grid, ray.origin, ray.direction); });
+}
+
+TEST_F(Volume, AnisotropicRotatedAndFarFromTheOrigin) {
+  const double a = 0.4, b = -0.9;
+  const Mat3 turn = Mat3(std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a), 0, 0, 0, 1) * Mat3(1, 0, 0, 0, std::cos(b), std::sin(b), 0, -std::sin(b), std::cos(b));
+  const Mat3 linear = turn * Mat3(0.5, 0, 0, 0, 1.25, 0, 0.3, 0, 3);
+  const Vec3 far{-8200.5, 1e5, 77.25};
+  const auto grid = make_grid({30, 14, 9}, [](const Vec3&) { return 1.0; }, field::Mapping::from_linear(linear, far));
+  const Vec3 centre = grid->mapping().world_from_index({14.5, 6.5, 4});
+  FramePacket packet = packet_of(centre + Vec3(31, -44, 25), centre, 35);
+  packet.volumes = {volume_item(grid, {{0, 0.08}, {1, 0.08}})};
+  const Picture picture = draw(packet, {}, "box");
+  expect_alpha(picture, packet, 1, [&](const Ray& ray) { return 0.08 * chord(*grid, ray.origin, ray.direction); });
+  EXPECT_GT(covered(picture), 2000);
+}
+
+TEST_F(Volume, Orthographic) {
+  const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({40, -30, 35}, {7.5, 7.5, 7.5});
+  packet.view.orthographic = true;
+  packet.view.height = 30;
+  packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
+  const Picture picture = draw(packet, {}, "box");
+  expect_alpha(picture, packet, 1, [&](const Ray& ray) { return 0.1 * chord(*grid, ray.origin, ray.direction); });
+  EXPECT_GT(covered(picture), 3000);
+}
+
+TEST_F(Volume, LinearSigmaIsExact) {
+  const auto grid = make_grid({17, 17, 17}, [](const Vec3& p) { return (p.x + 2 * p.y + 3 * p.z) / 96; });
+  FramePacket packet = packet_of({40, -30, 35}, {8, 8, 8});
+  packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.2}})};
+  RenderSettings settings;
+  settings.texels = TexelFormat::r32f;
+  for (const double step : {0.5, 2.0}) {
+    settings.step_voxels = step;
+    expect_alpha(draw(packet, settings), packet, 1, [&](const Ray& ray) {
+      const double length = chord(*grid, ray.origin, ray.direction);
+      if (!(length > 0)) return 0.0;
+      // the mean of a linear function is its value at the middle
+      double enter = 0, leave = 1000;
+      for (int k = 0; k < 3; ++k) {
+        const double s = (0 - ray.origin[k]) / ray.direction[k], t = (16 - ray.origin[k]) / ray.direction[k];
+        enter = std::max(enter, std::min(s, t));
+        leave = std::min(leave, std::max(s, t));
+      }
+      const Vec3 middle = ray.origin + 0.5 * (enter + leave) * ray.direction;
+      return length * 0.2 * (middle.x + 2 * middle.y + 3 * middle.z) / 96;
+    });
+  }
+}
+
+TEST_F(Volume, GaussianMatchesItsIntegral) {
+  const double s = 4.5;  // 9 voxels wide
+  const Vec3 c(31.5);
+  const auto grid = make_grid({64, 64, 64}, [&](const Vec3& p) { return std::exp(-dot(p - c, p - c) / (2 * s * s)); });
+  FramePacket packet = packet_of({120, -80, 90}, c, 25);
+  packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.15}})};
+  const auto depth = [&](const Ray& ray) {
+    const Vec3 to = c - ray.origin;
+    const double along = dot(to, ray.direction), b2 = dot(to, to) - along * along;
+    return 0.15 * s * std::sqrt(2 * std::numbers::pi) * std::exp(-b2 / (2 * s * s));
+  };
+  expect_alpha(draw(packet, {}, "blob"), packet, 2, depth);
+  RenderSettings fine;
+  fine.step_voxels = 0.25;
+  fine.texels = TexelFormat::r32f;
+  expect_alpha(draw(packet, fine), packet, 2, depth);
+}
+
+TEST_F(Volume, SkippingChangesNothing) {
+  const Vec3 c(20, 40, 30);
+  const auto grid = make_grid({64, 56, 48}, [&](const Vec3& p) { return std::max(0.0, 1 - norm(p - c) / 11) + (p.x > 55 && p.z < 9 ? 0.7 : 0.0); });
+  FramePacket packet = packet_of({110, -90, 80}, {31, 27, 23}, 28);
+  packet.volumes = {volume_item(grid, {{0, 0}, {0.1, 0}, {1, 0.3}})};
+  packet.volumes[0].transfer.colors = {{0, 0.1, 0.2, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
+  for (const bool shade : {false, true})
+    for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+      packet.volumes[0].shade = shade;
+      RenderSettings settings;
+      settings.layout = layout;
+      const Picture with = draw(packet, settings, shade ? "shaded" : "plain");
+      settings.skip = false;
+      const Picture without = draw(packet, settings);
+      EXPECT_LE(max_difference(with, without), 0);
+      EXPECT_GT(covered(with), 500);
+    }
+}
+
+TEST_F(Volume, DenseAndAtlasDrawTheSame) {
+  const auto grid = make_grid({37, 45, 29}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.4 * p.x) * std::cos(0.3 * p.y + 0.2 * p.z); });
+  FramePacket packet = packet_of({80, -70, 60}, {18, 22, 14});
+  packet.volumes = {volume_item(grid, {{0, 0}, {0.5, 0}, {1, 0.3}})};
+  packet.volumes[0].shade = true;
+  RenderSettings settings;
+  settings.layout = MirrorLayout::dense;
+  const Picture dense = draw(packet, settings, "dense");
+  settings.layout = MirrorLayout::atlas;
+  EXPECT_LE(max_difference(dense, draw(packet, settings, "atlas")), 1);
+}
+
+TEST_F(Volume, MaskedCellsAreTransparent) {
+  // cells with a corner at x > 15 do not count: the box ends at x = 15
+  const auto valid = [](const Vec3& p) { return p.x <= 15; };
+  const auto grid = make_grid({32, 16, 16}, [](const Vec3&) { return 0.5; }, {}, valid);
+  const auto half = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({55, -40, 35}, {10, 8, 8});
+  packet.volumes = {volume_item(grid, {{0, 0.2}, {1, 0.2}})};
+  RenderSettings settings;
+  settings.step_voxels = 0.05;
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+    settings.layout = layout;
+    expect_alpha(draw(packet, settings, layout == MirrorLayout::dense ? "dense" : "atlas"), packet, 3,
+                 [&](const Ray& ray) { return 0.2 * chord(*half, ray.origin, ray.direction); });
+  }
+}
+
+TEST_F(Volume, NotANumberIsTransparent) {
+  const auto grid = make_grid({24, 24, 24}, [](const Vec3& p) { return p.z == 12 ? std::nan("") : p.z == 5 ? HUGE_VAL : 0.5; });
+  FramePacket packet = packet_of({60, -40, 45}, {11.5, 11.5, 11.5});
+  packet.volumes = {volume_item(grid, {{0, 0.2}, {1, 0.2}})};
+  packet.volumes[0].shade = true;
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+    RenderSettings settings;
+    settings.layout = layout;
+    const Picture picture = draw(packet, settings, "slabs");
+    EXPECT_GT(covered(picture), 2000);
+  }
+}
+
+TEST_F(Volume, EarlyTerminationCostsLittle) {
+  const auto grid = make_grid({48, 48, 48}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.5 * p.x + 0.3 * p.y) * std::cos(0.4 * p.z); });
+  FramePacket packet = packet_of({120, -80, 90}, {23.5, 23.5, 23.5});
+  packet.background = {0, 0, 0, 1};
+  packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.8}})};
+  packet.volumes[0].transfer.colors = {{0, 0, 0.2, 1}, {1, 1, 0.9, 0}};
+  RenderSettings all;
+  all.termination = 0;
+  EXPECT_LE(max_difference(draw(packet, {}, "early"), draw(packet, all)), 1);
+}
+
+TEST_F(Volume, TwoVolumesAddTheirSigmas) {
+  const auto a = make_grid({20, 20, 20}, [](const Vec3&) { return 0.5; });
+  const auto b = make_grid({20, 20, 20}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(Mat3(1.5), {9.3, 4, -2}));
+  FramePacket packet = packet_of({90, -70, 60}, {14, 12, 10});
+  packet.volumes = {volume_item(a, {{0, 0.05}, {1, 0.05}}), volume_item(b, {{0, 0.03}, {1, 0.03}})};
+  for (const bool skip : {true, false}) {
+    RenderSettings settings;
+    settings.skip = skip;
+    expect_alpha(draw(packet, settings, "two"), packet, 1, [&](const Ray& ray) {
+      return 0.05 * chord(*a, ray.origin, ray.direction) + 0.03 * chord(*b, ray.origin, ray.direction);
+    });
+  }
+}
+
+TEST_F(Volume, GridsTooThinForACellAreNotDrawn) {
+  FramePacket packet = packet_of({20, -20, 20}, {4, 4, 0});
+  packet.volumes = {volume_item(make_grid({8, 8, 1}, [](const Vec3&) { return 1.0; }), {{0, 1}, {1, 1}})};
+  EXPECT_EQ(covered(draw(packet)), 0);
+}
+
+TEST_F(Volume, TooManyAreRefusedWithASentence) {
+  const auto grid = make_grid({8, 8, 8}, [](const Vec3&) { return 1.0; });
+  FramePacket packet = packet_of({20, -20, 20}, {4, 4, 4});
+  packet.volumes.assign(5, volume_item(grid, {{0, 1}, {1, 1}}));
+  const auto drawn = renderer_->draw(packet);
+  ASSERT_FALSE(drawn);
+  EXPECT_NE(drawn.error().message.find("5 volumes"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace catena::test
