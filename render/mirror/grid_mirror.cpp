@@ -19,13 +19,14 @@ using field::Index3;
 constexpr int kApron = kBrick + 1;
 constexpr std::uint32_t kSlotsAnAxis = 255;
 
-/// Writes values as texels of the mirror's format; what is not finite becomes the least value (its cells are masked).
+/// Writes values as texels of the mirror's format. What is not finite becomes the least value (its cells are masked); what lies
+/// outside the range can only be outside the domain, where it must stay finite all the same.
 struct Encoder {
   bool float32;
-  float offset, scale, replacement;
+  float offset, scale, least, greatest;
   void write(const float* from, std::size_t count, std::byte* out) const {
     for (std::size_t i = 0; i < count; ++i) {
-      const float value = std::isfinite(from[i]) ? from[i] : replacement;
+      const float value = from[i] >= least ? std::min(from[i], greatest) : least;
       if (float32) {
         std::memcpy(out + 4 * i, &value, 4);
       } else {
@@ -45,13 +46,15 @@ struct Encoder {
 
 Encoder choose_encoder(const field::ScalarGrid& grid, bool float32) {
   double least = grid.stats().min, greatest = grid.stats().max;
+  const Vec3 voxels = grid.index_box().hi - grid.index_box().lo + Vec3(1.0);
   const float background = grid.background();
-  if (std::isfinite(background)) {
+  const bool inactive_inside = double(grid.stats().active_voxels) < voxels.x * voxels.y * voxels.z;
+  if (inactive_inside && std::isfinite(background)) {
     least = std::min(least, double(background));
     greatest = std::max(greatest, double(background));
   }
   if (!(least <= greatest)) least = greatest = 0;
-  Encoder e{float32, 0, 1, float(least)};
+  Encoder e{float32, 0, 1, float(least), float(greatest)};
   if (float32) return e;
   const double largest = std::max(std::fabs(least), std::fabs(greatest)), range = greatest - least;
   if (range < 0.5 * largest && range > 0) {

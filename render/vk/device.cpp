@@ -97,6 +97,7 @@ std::string lacks(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& p
   if (!features.v12.scalarBlockLayout) return "scalarBlockLayout";
   if (!features.v13.dynamicRendering) return "dynamicRendering";
   if (!features.v13.synchronization2) return "synchronization2";
+  if (!features.v13.maintenance4) return "maintenance4";
   if (!find_queue(physical, surface)) return surface ? "a queue that draws and presents" : "a queue that draws";
   return {};
 }
@@ -173,6 +174,7 @@ Outcome Device::create_device() {
   features.v12.scalarBlockLayout = VK_TRUE;
   features.v13.dynamicRendering = VK_TRUE;
   features.v13.synchronization2 = VK_TRUE;
+  features.v13.maintenance4 = VK_TRUE;  // glslang writes LocalSizeId for Vulkan 1.3
   std::vector<const char*> extensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
   if (instance_->surface()) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
 

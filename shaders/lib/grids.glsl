@@ -74,8 +74,8 @@ int empty_distance(uint word) { return int(word >> 24); }
 // The cell that holds a local position of the domain.
 ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }
 
-// The value at a local position of the domain, trilinear.
-float sample_value(int i, vec3 p) {
+// The texel value at a local position of the domain, trilinear.
+float sample_texel(int i, vec3 p) {
   float t;
   if (grid_is_atlas(i)) {
     const ivec3 brick = cell_of(i, p) >> 3;
@@ -84,8 +84,10 @@ float sample_value(int i, vec3 p) {
   } else {
     t = filtered_texel(i, (p + 0.5) * frame.grids[i].texel);
   }
-  return frame.grids[i].value_offset + frame.grids[i].value_scale * t;
+  return t;
 }
+
+float sample_value(int i, vec3 p) { return frame.grids[i].value_offset + frame.grids[i].value_scale * sample_texel(i, p); }
 
 bool cell_is_valid(int i, ivec3 cell) {
   if (!grid_is_masked(i)) return true;
@@ -103,7 +105,8 @@ void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
   hi = frame.grids[i].value_offset + frame.grids[i].value_scale * hi;
 }
 
-// Central difference along one axis: both ends clamped to the domain; an end in an invalid cell gives the centre instead.
+// Central difference of texels along one axis: both ends clamped to the domain; an end in an invalid cell gives the centre instead.
+// What rounding alone can make is zero, or constant regions would be lit at random.
 float central_difference(int i, vec3 p, vec3 step) {
   vec3 a = clamp(p - step, frame.grids[i].lo, frame.grids[i].hi), b = clamp(p + step, frame.grids[i].lo, frame.grids[i].hi);
   if (grid_is_masked(i)) {
@@ -111,10 +114,11 @@ float central_difference(int i, vec3 p, vec3 step) {
     if (!cell_is_valid(i, cell_of(i, b))) b = p;
   }
   const float moved = dot(b - a, vec3(1.0));
-  return moved > 0.0 ? (sample_value(i, b) - sample_value(i, a)) / moved : 0.0;
+  const float low = sample_texel(i, a), high = sample_texel(i, b);
+  return abs(high - low) > 1e-6 * (abs(low) + abs(high)) ? (high - low) / moved : 0.0;
 }
 
-// The gradient by central differences of one voxel, in world axes.
+// The gradient by central differences of one voxel, in world axes, up to the texels' scale (which is positive).
 vec3 world_gradient(int i, vec3 p) {
   return frame.grids[i].world_gradient * vec3(central_difference(i, p, vec3(1.0, 0.0, 0.0)), central_difference(i, p, vec3(0.0, 1.0, 0.0)),
                                               central_difference(i, p, vec3(0.0, 0.0, 1.0)));

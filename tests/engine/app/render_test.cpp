@@ -1,0 +1,172 @@
+/// `catena render` from the outside: pictures with a known answer, statistics, and one scene for both senses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "engine/base/json.h"
+#include "engine/base/vec.h"
+#include "render/vk/picture.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using namespace catena;
+using render::Picture;
+
+test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+
+Picture picture_of(const std::string& scene, const std::vector<std::string>& more, const std::string& keep) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", scene);
+  std::vector<std::string> arguments{"render", folder / "s.json", "-o", folder / "o.png", "--validation", "--stats", folder / "o.json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const auto run = program(arguments);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
+  auto picture = render::read_png(folder / "o.png");
+  EXPECT_TRUE(picture) << picture.error().message;
+  if (!keep.empty()) {
+    EXPECT_TRUE(render::write_png(std::string(CATENA_BINARY_DIR) + "/app-" + keep + ".png", *picture, true));
+  }
+  return *picture;
+}
+
+// the chord of a ray through the cube lo..hi
+double chord(const Vec3& origin, const Vec3& unit, double lo, double hi) {
+  double near = 0, far = 1e30;
+  for (int a = 0; a < 3; ++a) {
+    const double t0 = (lo - origin[a]) / unit[a], t1 = (hi - origin[a]) / unit[a];
+    near = std::max(near, std::min(t0, t1));
+    far = std::min(far, std::max(t0, t1));
+  }
+  return std::max(0.0, far - near);
+}
+
+TEST(Render, AHomogeneousBoxSeenObliquelyIsExactAtEveryStep) {
+  constexpr double sigma = 0.7;
+  constexpr std::uint32_t w = 120, h = 90;
+  const Vec3 position(3.1, -6.2, 4.3), target(0.1, 0.2, -0.1), up(0, 0, 1);
+  const Vec3 forward = direction(target - position), right = direction(cross(forward, up)), over = cross(right, forward);
+  const double half = std::tan(0.5 * 40 * M_PI / 180);
+  for (const char* step : {"step=0.25", "step=0.5", "step=1"}) {
+    const Picture picture = picture_of(R"({"fields": {"d": {"analytic": "constant", "resolution": 17, "box": [-1, 1]}},
+      "volumes": [{"field": "d", "color": [[1, 1, 1, 1]], "extinction": [[1, 0.7]]}],
+      "camera": {"position": [3.1, -6.2, 4.3], "target": [0.1, 0.2, -0.1], "up": [0, 0, 1], "fovy_deg": 40}, "background": "transparent"})",
+                                       {"--size", "120x90", "--quality", step}, std::string("box-") + step);
+    double worst = 0;
+    for (std::uint32_t y = 0; y < h; ++y)
+      for (std::uint32_t x = 0; x < w; ++x) {
+        const double u = (2 * (x + 0.5) / w - 1) * half * w / h, v = (1 - 2 * (y + 0.5) / h) * half;
+        const double alpha = 1 - std::exp(-sigma * chord(position, direction(forward + right * u + over * v), -1, 1));
+        worst = std::max(worst, std::fabs(picture.pixel(x, y)[3] / 255.0 - alpha));
+      }
+    EXPECT_LE(worst, 1 / 255.0) << step;
+  }
+}
+
+TEST(Render, TheGlyphOfTheProxySitsOnTheDrawnLine) {
+  // a streamline seen from above; the probe is off the line, its proxy on it
+  const std::string scene = R"({"fields": {"v": {"analytic": "circle"}},
+    "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
+    "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "radius": 0.02, "color": [1, 0, 0]}],
+    "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 40}CURSOR})";
+  const auto with = [&](const std::string& cursor) { return std::string(scene).replace(scene.find("CURSOR"), 6, cursor); };
+  const Picture bare = picture_of(with(""), {"--size", "256x192"}, "line");
+  const Picture held = picture_of(with(R"(, "cursor": {"probe": [0.2, 1.3, 0]})"), {"--size", "256x192"}, "held");
+  // the proxy: the closest point of the circle
+  const Vec3 proxy = direction(Vec3(0.2, 1.3, 0));
+  const double scale = 96 / (6 * std::tan(20 * M_PI / 180));
+  const auto px = static_cast<std::uint32_t>(128 + scale * proxy.x), py = static_cast<std::uint32_t>(96 - scale * proxy.y);
+  EXPECT_GT(bare.pixel(px, py)[0], 100) << "the line is drawn there";
+  EXPECT_LT(bare.pixel(px, py)[1], 60);
+  const std::uint8_t* glyph = held.pixel(px, py);
+  EXPECT_GT(
+      std::abs(glyph[0] - bare.pixel(px, py)[0]) + std::abs(glyph[1] - bare.pixel(px, py)[1]) + std::abs(glyph[2] - bare.pixel(px, py)[2]),
+      60)
+      << "the glyph covers the line";
+  // away from the glyph and its link nothing changed
+  EXPECT_EQ(
+      0, std::memcmp(bare.pixel(128, 96 + static_cast<std::uint32_t>(scale)), held.pixel(128, 96 + static_cast<std::uint32_t>(scale)), 4));
+}
+
+TEST(Render, StatsHaveTheKeysOfTheContract) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"s": {"analytic": "gaussian", "resolution": 24}}, "volumes": [{"field": "s"}]})");
+  const auto run =
+      program({"render", folder / "s.json", "-o", folder / "o.png", "--size", "64x48", "--frames", "4", "--stats", folder / "o.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto stats = json::read(folder / "o.json");
+  ASSERT_TRUE(stats) << stats.error().message;
+  for (const char* key : {"device", "driver", "frames", "frame_ms", "first_frame_ms", "load_ms", "mirror_ms", "encode_ms", "cpu_bytes",
+                          "gpu_bytes", "validation_messages"})
+    EXPECT_NE(stats->find(key), nullptr) << key;
+  EXPECT_EQ(stats->find("frames")->number, 4);
+  for (const char* key : {"median", "p99", "max"}) EXPECT_GT(stats->find("frame_ms")->find(key)->number, 0) << key;
+  EXPECT_GT(stats->find("gpu_bytes")->number, 24 * 24 * 24 * 2);
+  EXPECT_GT(stats->find("cpu_bytes")->number, 24 * 24 * 24 * 4);
+  EXPECT_GE(stats->find("first_frame_ms")->number, stats->find("load_ms")->number);
+}
+
+TEST(Render, ABareFileMakesAPictureByItself) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"torus", "helix"}) {
+    const std::string file = folder / (std::string(name) + ".vdb"), out = folder / "o.png";
+    ASSERT_EQ(program({"generate", name, "-o", file, "--resolution", "32"}).exit_code, 0);
+    const auto run = program({"render", file, "-o", out, "--size", "128x96"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto picture = render::read_png(out);
+    ASSERT_TRUE(picture);
+    int lit = 0;
+    for (std::uint32_t y = 0; y < 96; ++y)
+      for (std::uint32_t x = 0; x < 128; ++x) lit += picture->pixel(x, y)[0] + picture->pixel(x, y)[1] + picture->pixel(x, y)[2] > 60;
+    EXPECT_GT(lit, 128 * 96 / 50) << name;
+    EXPECT_TRUE(render::write_png(std::string(CATENA_BINARY_DIR) + "/app-bare-" + name + ".png", *picture, false));
+  }
+}
+
+TEST(Render, AnOrbitNumbersItsPictures) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json",
+                   R"({"fields": {"s": {"analytic": "plane", "resolution": 16}}, "isosurfaces": [{"field": "s", "level": 0.3}]})");
+  const auto run =
+      program({"render", folder / "s.json", "-o", folder / "turn_%02d.png", "--size", "64x48", "--frames", "3", "--orbit", "90"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* name : {"turn_00.png", "turn_01.png", "turn_02.png"}) EXPECT_TRUE(test::exists(folder / name)) << name;
+  EXPECT_NE(test::read_file(folder / "turn_00.png"), test::read_file(folder / "turn_02.png"));
+}
+
+TEST(Render, AFieldCanBeReplacedFromTheCommandLine) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(program({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "16"}).exit_code, 0);
+  ASSERT_EQ(program({"generate", "plane", "-o", folder / "b.vdb", "--resolution", "16"}).exit_code, 0);
+  test::write_file(folder / "s.json",
+                   R"({"fields": {"d": {"file": "a.vdb", "grid": "sphere"}}, "isosurfaces": [{"field": "d", "level": 0.5}]})");
+  ASSERT_EQ(program({"render", folder / "s.json", "-o", folder / "a.png", "--size", "64x48"}).exit_code, 0);
+  const auto run =
+      program({"render", folder / "s.json", "-o", folder / "b.png", "--size", "64x48", "--field", "d=" + (folder / "b.vdb") + ":plane"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(test::read_file(folder / "a.png"), test::read_file(folder / "b.png"));
+}
+
+TEST(Render, CombustorIsSeenAndFeltFromOneScene) {
+  if (test::shared_data("combustor_cfd.vdb").empty()) GTEST_SKIP() << "the shared data is not there";
+  const std::string assets = std::string(CATENA_SOURCE_DIR) + "/assets/";
+  const test::TemporaryFolder folder;
+  const auto felt =
+      program({"replay", assets + "scenes/combustor.json", "--probe", assets + "probes/combustor.csv", "-o", folder / "t.csv"});
+  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  const test::Table ticks = test::Table::read(folder / "t.csv");
+  int both = 0;
+  for (std::size_t row = 0; row < ticks.rows(); ++row)
+    both += ticks.word(row, "curve_status") == "OK" && ticks.word(row, "surface_status") == "OK";
+  EXPECT_GT(both, 100) << "the hand is on the streamline and pressed into the isosurface";
+  const auto seen = program({"render", assets + "scenes/combustor.json", "--probe", assets + "probes/combustor.csv", "-o",
+                             std::string(CATENA_BINARY_DIR) + "/app-combustor.png", "--size", "256x192", "--validation"});
+  EXPECT_EQ(seen.exit_code, 0) << seen.err;
+  EXPECT_EQ(seen.err.find("validation"), std::string::npos) << seen.err;
+}
+
+}  // namespace

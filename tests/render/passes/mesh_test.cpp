@@ -1,0 +1,108 @@
+#include <cmath>
+
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+class Mesh : public PictureTest {};
+
+TubeItem tube_of(const Vec3& a, const Vec3& b, double radius, Color color) {
+  TubeItem tube;
+  tube.points = {a, b};
+  tube.radius = radius;
+  tube.color = color;
+  return tube;
+}
+
+FramePacket along_y() {
+  FramePacket packet = packet_of({15.5, -60, 15.5}, {15.5, 0, 15.5}, 20);
+  packet.background = {0, 0, 0, 1};
+  return packet;
+}
+
+TEST_F(Mesh, TubeInFrontOfAndBehindTheVolume) {
+  const auto fog = make_grid({32, 32, 32}, [](const Vec3&) { return 0.5; });
+  for (const double y : {-5.0, 15.0, 40.0}) {
+    FramePacket packet = along_y();
+    packet.volumes = {volume_item(fog, {{0, 0.05}, {1, 0.05}}, {0, 1, 0})};
+    packet.tubes = {tube_of({-20, y, 15.5}, {50, y, 15.5}, 2, {1, 0, 0})};
+    const Picture picture = draw(packet, {}, "y" + std::to_string(int(y)));
+    // the tube's front wall is at y - 2
+    const double length = std::min(31.0, std::max(0.0, y - 2)), through = std::exp(-0.05 * length);
+    const std::uint8_t* p = picture.pixel(80, 60);
+    EXPECT_NEAR(p[0], std::min(255.0, 255 * through * 1.1), 5) << y;
+    EXPECT_NEAR(p[1], 255 * ((1 - through) + through * 0.2), 5) << y;
+  }
+}
+
+TEST_F(Mesh, DepthOfATubeIsExact) {
+  FramePacket packet = along_y();
+  packet.tubes = {tube_of({-20, 10, 15.5}, {50, 10, 15.5}, 2, {1, 0, 0})};
+  draw(packet, {}, "tube");
+  const auto depth = renderer_->read_depth();
+  ASSERT_TRUE(depth);
+  // 68 from the eye; a tube of flat facets is a little thinner
+  EXPECT_NEAR(depth->depth[60 * 160 + 80], 68, 0.1);
+  EXPECT_TRUE(std::isinf(depth->depth[2 * 160 + 80]));
+}
+
+TEST_F(Mesh, NearerTubeHidesTheFartherOne) {
+  FramePacket packet = along_y();
+  const TubeItem red = tube_of({-20, 10, 15.5}, {50, 10, 15.5}, 2, {1, 0, 0}), blue = tube_of({15.5, 4, -9}, {15.5, 4, 40}, 2, {0, 0, 1});
+  for (const bool red_first : {true, false}) {
+    packet.tubes = red_first ? std::vector{red, blue} : std::vector{blue, red};
+    const Picture picture = draw(packet, {}, red_first ? "a" : "b");
+    EXPECT_GT(picture.pixel(80, 60)[2], 200);
+    EXPECT_LT(picture.pixel(80, 60)[0], 60);
+    EXPECT_GT(picture.pixel(20, 60)[0], 150);
+  }
+}
+
+TEST_F(Mesh, TubeAndOpaqueSurfaceHideEachOther) {
+  const auto plane = make_grid({32, 32, 32}, [](const Vec3& p) { return p.y; });
+  for (const bool orthographic : {false, true})
+    for (const double y : {8.0, 20.0}) {
+      FramePacket packet = along_y();
+      packet.view.orthographic = orthographic;
+      packet.view.height = 25;
+      IsosurfaceItem wall;
+      wall.grid = plane;
+      wall.level = 14.5;
+      wall.color = {0, 1, 0};
+      packet.isosurfaces = {wall};
+      packet.tubes = {tube_of({-20, y, 15.5}, {50, y, 15.5}, 2, {1, 0, 0})};
+      const Picture picture = draw(packet, {}, std::string(orthographic ? "o" : "p") + std::to_string(int(y)));
+      EXPECT_EQ(picture.pixel(80, 60)[0] > 150, y < 14) << y << " " << orthographic;
+      EXPECT_EQ(picture.pixel(80, 60)[1] > 150, y > 14);
+    }
+}
+
+TEST_F(Mesh, FarFromTheOriginTheTubeStaysWhereItIs) {
+  const Vec3 far{3e6, -2e6, 1e6};
+  FramePacket near_packet = along_y(), far_packet = along_y();
+  near_packet.tubes = {tube_of({-4, 10, 12}, {34, 14, 20}, 1, {1, 0.5, 0})};
+  far_packet.tubes = {tube_of(far + Vec3(-4, 10, 12), far + Vec3(34, 14, 20), 1, {1, 0.5, 0})};
+  far_packet.view.position += far;
+  far_packet.view.target += far;
+  EXPECT_LE(max_difference(draw(near_packet), draw(far_packet, {}, "far")), 2);
+}
+
+TEST_F(Mesh, CursorIsDrawn) {
+  FramePacket packet = along_y();
+  CursorItem cursor;
+  cursor.probe = {15.5, 10, 15.5};
+  cursor.proxies = {{19, 10, 15.5}};
+  cursor.active = {true};
+  cursor.size = 1;
+  packet.cursors = {cursor};
+  const Picture picture = draw(packet, {}, "cursor");
+  int covered = 0;
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) covered += picture.rgba[i] + picture.rgba[i + 1] + picture.rgba[i + 2] > 30;
+  EXPECT_GT(covered, 60);
+}
+
+}  // namespace
+}  // namespace catena::test

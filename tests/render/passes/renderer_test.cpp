@@ -1,0 +1,136 @@
+#include <cmath>
+
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+class Frames : public PictureTest {};
+
+TEST_F(Frames, EmptyPacketIsTheBackground) {
+  FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
+  packet.background = {0.2f, 0.4f, 0.6f, 1};
+  const Picture picture = draw(packet);
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
+    ASSERT_EQ(picture.rgba[i], 51);
+    ASSERT_EQ(picture.rgba[i + 1], 102);
+    ASSERT_EQ(picture.rgba[i + 2], 153);
+    ASSERT_EQ(picture.rgba[i + 3], 255);
+  }
+  packet.background = {1, 1, 1, 0};
+  const Picture clear = draw(packet);
+  for (const std::uint8_t byte : clear.rgba) ASSERT_EQ(byte, 0);
+}
+
+TEST_F(Frames, PassesAreMadeForWhatIsThere) {
+  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  draw(packet);
+  EXPECT_EQ(renderer_->stats().pipelines, 1u);  // compose
+  EXPECT_EQ(renderer_->stats().mirrors, 0u);
+  const auto grid = make_grid({16, 16, 16}, [](const Vec3& p) { return p.x / 16; });
+  packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
+  draw(packet);
+  EXPECT_EQ(renderer_->stats().pipelines, 3u);  // volume, compose over it
+  TubeItem tube;
+  tube.points = {{0, 0, 0}, {16, 16, 16}};
+  tube.radius = 1;
+  packet.volumes.clear();
+  packet.tubes = {tube};
+  draw(packet);
+  EXPECT_EQ(renderer_->stats().pipelines, 5u);  // mesh, compose over it
+  EXPECT_EQ(renderer_->stats().mirrors, 0u);
+}
+
+TEST_F(Frames, TheSecondFrameUploadsNothing) {
+  const auto grid = make_grid({40, 40, 40}, [](const Vec3& p) { return p.x / 40; });
+  FramePacket packet = packet_of({60, -70, 50}, {20, 20, 20});
+  packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.1}})};
+  IsosurfaceItem wall;
+  wall.grid = grid;
+  wall.level = 0.7;
+  packet.isosurfaces = {wall};
+  wall.opacity = 0.5f;
+  wall.level = 0.3;
+  packet.isosurfaces.push_back(wall);
+  TubeItem tube;
+  tube.points = {{0, 0, 0}, {40, 40, 40}};
+  tube.radius = 1;
+  packet.tubes = {tube};
+  CursorItem cursor;
+  cursor.size = 1;
+  packet.cursors = {cursor};
+  draw(packet);
+  const RenderStats first = renderer_->stats();
+  EXPECT_GT(first.uploads, 3u);
+  EXPECT_GT(first.upload_bytes, 40u * 40 * 40 * 2);
+  packet.view.position.x += 3;
+  draw(packet);
+  const RenderStats second = renderer_->stats();
+  EXPECT_EQ(second.uploads, first.uploads);
+  EXPECT_EQ(second.pipelines, first.pipelines);
+  EXPECT_LE(second.gpu_bytes, first.gpu_bytes);
+  // an edit of the transfer function leaves the values where they are
+  packet.volumes[0].transfer.extinctions[1][1] = 0.2;
+  draw(packet);
+  EXPECT_GT(renderer_->stats().uploads, second.uploads);
+  EXPECT_LT(renderer_->stats().upload_bytes - second.upload_bytes, 100000u);
+}
+
+TEST_F(Frames, WhatIsNoLongerNamedIsFreed) {
+  FramePacket packet = packet_of({60, -70, 50}, {20, 20, 20});
+  draw(packet);
+  const std::uint64_t empty = renderer_->stats().gpu_bytes;
+  packet.volumes = {volume_item(make_grid({64, 64, 64}, [](const Vec3& p) { return p.x / 64; }), {{0, 0}, {1, 0.1}})};
+  draw(packet);
+  const std::uint64_t full = renderer_->stats().gpu_bytes;
+  EXPECT_GT(full, empty + 64 * 64 * 64 * 2);
+  EXPECT_EQ(renderer_->stats().mirrors, 1u);
+  packet.volumes.clear();
+  draw(packet);
+  draw(packet);
+  EXPECT_EQ(renderer_->stats().mirrors, 0u);
+  EXPECT_LT(renderer_->stats().gpu_bytes, full - 64 * 64 * 64 * 2);
+}
+
+TEST_F(Frames, TransparentPicturesKeepStraightAlpha) {
+  const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  packet.volumes = {volume_item(grid, {{0, 0.01}, {1, 0.01}}, {1, 0.5f, 0})};
+  const Picture clear = draw(packet, {}, "clear");
+  packet.background = {0, 0, 0, 1};
+  const Picture black = draw(packet, {}, "black");
+  for (std::uint32_t y = 0; y < 120; ++y)
+    for (std::uint32_t x = 0; x < 160; ++x) {
+      const std::uint8_t* c = clear.pixel(x, y);
+      const std::uint8_t* b = black.pixel(x, y);
+      ASSERT_EQ(b[3], 255);
+      for (int i = 0; i < 3; ++i) ASSERT_NEAR(b[i], c[i] * c[3] / 255.0, 1.01);
+    }
+  EXPECT_NEAR(clear.pixel(80, 60)[0], 255, 1);
+}
+
+TEST_F(Frames, ResizeAndRepeat) {
+  const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
+  const Picture first = draw(packet);
+  packet.width = 33;
+  packet.height = 71;
+  EXPECT_EQ(draw(packet).rgba.size(), 33u * 71 * 4);
+  packet.width = 160;
+  packet.height = 120;
+  EXPECT_EQ(max_difference(first, draw(packet)), 0);
+}
+
+TEST_F(Frames, ImpossibleSizesAreRefused) {
+  FramePacket packet = packet_of({30, -40, 30}, {8, 8, 8});
+  packet.width = 1 << 20;
+  const auto drawn = renderer_->draw(packet);
+  ASSERT_FALSE(drawn);
+  EXPECT_NE(drawn.error().message.find("1048576 x 120"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace catena::test
