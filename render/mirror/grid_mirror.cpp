@@ -148,7 +148,8 @@ class Builder {
     mirror_.origin = origin;
     mirror_.box_lo = Vec3(lo_.x - origin.x, lo_.y - origin.y, lo_.z - origin.z);
     mirror_.box_hi = Vec3(hi_.x - origin.x, hi_.y - origin.y, hi_.z - origin.z);
-    mirror_.bricks = {(hi_.x - origin.x + kBrick - 1) / kBrick, (hi_.y - origin.y + kBrick - 1) / kBrick, (hi_.z - origin.z + kBrick - 1) / kBrick};
+    mirror_.bricks = {(hi_.x - origin.x + kBrick - 1) / kBrick, (hi_.y - origin.y + kBrick - 1) / kBrick,
+                      (hi_.z - origin.z + kBrick - 1) / kBrick};
     mirror_.ranges.assign(std::size_t(mirror_.bricks[0]) * mirror_.bricks[1] * mirror_.bricks[2], BrickRange{});
   }
 
@@ -268,8 +269,8 @@ class Builder {
     slots_[1] = std::min(most, std::uint32_t(std::ceil(std::sqrt(total / slots_[0]))));
     slots_[2] = std::uint32_t(std::ceil(total / (double(slots_[0]) * slots_[1])));
     if (slots_[2] > most)
-      return Error{fmt::format("the grid \"{}\" has {} leaves to draw, expected at most {} on this device", grid_.name(), brick_of_slot_.size(),
-                               std::uint64_t(most) * most * most)};
+      return Error{fmt::format("the grid \"{}\" has {} leaves to draw, expected at most {} on this device", grid_.name(),
+                               brick_of_slot_.size(), std::uint64_t(most) * most * most)};
     for (std::size_t i = 0; i < count; ++i)
       mirror_.slots[i] = linear[i] % slots_[0] | linear[i] / slots_[0] % slots_[1] << 8 | linear[i] / slots_[0] / slots_[1] << 16;
     return Done{};
@@ -283,31 +284,33 @@ class Builder {
     constexpr std::size_t mask_bytes = std::size_t(kBrick) * kBrick * kBrick;
     std::vector<std::uint8_t> mask(mirror_.masked ? mask_bytes * sx * sy * sz : 0);
     const std::size_t texel = encoder_.texel(), width = std::size_t(sx) * kApron, height = std::size_t(sy) * kApron;
-    CATENA_CHECK(vk::upload_planes(device_, mirror_.values, kApron, [&, bx = bx, by = by, sx = sx, sy = sy](std::uint32_t first, std::uint32_t count, std::byte* out) {
-      const std::size_t begin_slot = std::size_t(first / kApron) * sx * sy;
-      const std::size_t end_slot = std::min(brick_of_slot_.size(), begin_slot + std::size_t(count / kApron) * sx * sy);
-      std::memset(out, 0, width * height * count * texel);
-      parallel_for(end_slot - begin_slot, 8, [&](std::size_t begin, std::size_t end) {
-        Block block;
-        for (std::size_t slot = begin_slot + begin; slot < begin_slot + end; ++slot) {
-          const std::size_t brick = brick_of_slot_[slot];
-          const int x = int(brick % std::size_t(bx)), y = int(brick / std::size_t(bx) % std::size_t(by)), z = int(brick / std::size_t(bx) / std::size_t(by));
-          const Index3 origin = leaf(x, y, z);
-          block.read(grid_, origin, {kApron, kApron, kApron}, mirror_.masked);
-          mirror_.ranges[brick] = clipped_range(block, origin);
-          const std::size_t ox = slot % sx * kApron, oy = slot / sx % sy * kApron, oz = (slot - begin_slot) / sx / sy * kApron;
-          for (int k = 0; k < kApron; ++k)
-            for (int j = 0; j < kApron; ++j)
-              encoder_.write(&block.values[block.at(0, j, k)], kApron, out + (((oz + k) * height + oy + j) * width + ox) * texel);
-          if (mask.empty()) continue;
-          const std::size_t mw = std::size_t(sx) * kBrick, mh = std::size_t(sy) * kBrick;
-          for (int k = 0; k < kBrick; ++k)
-            for (int j = 0; j < kBrick; ++j)
-              std::copy_n(&block.valid[block.at(0, j, k)], kBrick,
-                          &mask[((slot / sx / sy * kBrick + k) * mh + slot / sx % sy * kBrick + j) * mw + slot % sx * kBrick]);
-        }
-      });
-    }));
+    CATENA_CHECK(vk::upload_planes(
+        device_, mirror_.values, kApron, [&, bx = bx, by = by, sx = sx, sy = sy](std::uint32_t first, std::uint32_t count, std::byte* out) {
+          const std::size_t begin_slot = std::size_t(first / kApron) * sx * sy;
+          const std::size_t end_slot = std::min(brick_of_slot_.size(), begin_slot + std::size_t(count / kApron) * sx * sy);
+          std::memset(out, 0, width * height * count * texel);
+          parallel_for(end_slot - begin_slot, 8, [&](std::size_t begin, std::size_t end) {
+            Block block;
+            for (std::size_t slot = begin_slot + begin; slot < begin_slot + end; ++slot) {
+              const std::size_t brick = brick_of_slot_[slot];
+              const int x = int(brick % std::size_t(bx)), y = int(brick / std::size_t(bx) % std::size_t(by)),
+                        z = int(brick / std::size_t(bx) / std::size_t(by));
+              const Index3 origin = leaf(x, y, z);
+              block.read(grid_, origin, {kApron, kApron, kApron}, mirror_.masked);
+              mirror_.ranges[brick] = clipped_range(block, origin);
+              const std::size_t ox = slot % sx * kApron, oy = slot / sx % sy * kApron, oz = (slot - begin_slot) / sx / sy * kApron;
+              for (int k = 0; k < kApron; ++k)
+                for (int j = 0; j < kApron; ++j)
+                  encoder_.write(&block.values[block.at(0, j, k)], kApron, out + (((oz + k) * height + oy + j) * width + ox) * texel);
+              if (mask.empty()) continue;
+              const std::size_t mw = std::size_t(sx) * kBrick, mh = std::size_t(sy) * kBrick;
+              for (int k = 0; k < kBrick; ++k)
+                for (int j = 0; j < kBrick; ++j)
+                  std::copy_n(&block.valid[block.at(0, j, k)], kBrick,
+                              &mask[((slot / sx / sy * kBrick + k) * mh + slot / sx % sy * kBrick + j) * mw + slot % sx * kBrick]);
+            }
+          });
+        }));
     for (std::size_t i = 0; i < is_constant_.size(); ++i)
       if (is_constant_[i]) mirror_.ranges[i] = {constant_value_[i], constant_value_[i]};
     if (mask.empty()) return Done{};

@@ -31,17 +31,17 @@ struct BrickRange {
 };
 
 struct GridMirror {
-  bool drawable = false;                ///< false: thinner than a cell along some axis, nothing below is set
+  bool drawable = false;  ///< false: thinner than a cell along some axis, nothing below is set
   bool atlas = false;
-  bool masked = false;                  ///< there is a mask image
-  field::Index3 origin;                 ///< index = origin + local
-  Vec3 box_lo{0.0}, box_hi{0.0};        ///< the domain, local
-  std::array<std::int32_t, 3> bricks{}; ///< an axis
+  bool masked = false;                   ///< there is a mask image
+  field::Index3 origin;                  ///< index = origin + local
+  Vec3 box_lo{0.0}, box_hi{0.0};         ///< the domain, local
+  std::array<std::int32_t, 3> bricks{};  ///< an axis
   float offset = 0, scale = 1;
   vk::Image values;
-  vk::Image mask;                       ///< R8_UINT a cell: dense like `values`; atlas in 8^3 bricks at the same slots
-  std::vector<BrickRange> ranges;       ///< x fastest
-  std::vector<std::uint32_t> slots;     ///< atlas: x | y << 8 | z << 16, in bricks
+  vk::Image mask;                    ///< R8_UINT a cell: dense like `values`; atlas in 8^3 bricks at the same slots
+  std::vector<BrickRange> ranges;    ///< x fastest
+  std::vector<std::uint32_t> slots;  ///< atlas: x | y << 8 | z << 16, in bricks
 
   std::size_t brick_index(int x, int y, int z) const { return (std::size_t(z) * bricks[1] + y) * bricks[0] + x; }
   std::uint64_t bytes() const { return values.bytes() + mask.bytes(); }

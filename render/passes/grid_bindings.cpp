@@ -9,7 +9,9 @@ constexpr std::uint32_t kValues = 3, kMaps = kValues + MAX_GRIDS, kMasks = kMaps
 
 }  // namespace
 
-std::uint32_t BoundGrid::flags() const { return (mirror->atlas ? 1u : 0u) | (mirror->masked ? 2u : 0u) | (shaded ? 4u : 0u) | (skips ? 8u : 0u); }
+std::uint32_t BoundGrid::flags() const {
+  return (mirror->atlas ? 1u : 0u) | (mirror->masked ? 2u : 0u) | (shaded ? 4u : 0u) | (skips ? 8u : 0u);
+}
 
 void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -19,7 +21,8 @@ void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count) {
   }
 }
 
-void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const BoundGrid> grids, std::uint32_t count, const vk::Sampler& linear) {
+void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const BoundGrid> grids, std::uint32_t count,
+                       const vk::Sampler& linear) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const BoundGrid& g = grids[i < grids.size() ? i : 0];
     bindings.push_back({kValues + i, vk::Resource::sampled, nullptr, &g.mirror->values, &linear});

@@ -21,7 +21,8 @@ struct BoundGrid {
 
 /// The pipeline's slots for `count` grids, and what to push for them: grid i, or the first one where there are fewer.
 void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count);
-void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const BoundGrid> grids, std::uint32_t count, const vk::Sampler& linear);
+void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const BoundGrid> grids, std::uint32_t count,
+                       const vk::Sampler& linear);
 
 /// A uniform buffer that the host writes each frame.
 template <class Data>

@@ -94,7 +94,8 @@ struct Renderer::Parts {
 
   Result<Work> sort(const FramePacket& packet, const RenderSettings& settings);
   Outcome prepare(const FramePacket& packet, const Work& work);
-  Outcome record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work, const CameraRays& rays);
+  Outcome record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work,
+                 const CameraRays& rays);
 };
 
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
@@ -114,7 +115,8 @@ Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettin
   work.meshes = !packet.tubes.empty() || !packet.cursors.empty();
   mirrors->begin_frame();
   const auto mirror = [&](const field::ScalarGrid& grid) {
-    const bool surface = std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), [&](const auto& item) { return item.grid.get() == &grid; });
+    const bool surface =
+        std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), [&](const auto& item) { return item.grid.get() == &grid; });
     const bool float32 = settings.texels == TexelFormat::r32f || (settings.texels == TexelFormat::automatic && surface);
     return mirrors->get(grid, {float32, settings.layout});
   };
@@ -137,7 +139,8 @@ Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettin
   if (work.volumes.size() > MAX_VOLUMES)
     return Error{fmt::format("the scene has {} volumes, expected at most {}", work.volumes.size(), MAX_VOLUMES)};
   if (work.translucent_surfaces.size() > MAX_SURFACES)
-    return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", work.translucent_surfaces.size(), MAX_SURFACES)};
+    return Error{
+        fmt::format("the scene has {} translucent isosurfaces, expected at most {}", work.translucent_surfaces.size(), MAX_SURFACES)};
   return work;
 }
 

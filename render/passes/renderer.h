@@ -23,11 +23,11 @@ class Swapchain;
 enum class TexelFormat { automatic, r16f, r32f };
 
 struct RenderSettings {
-  double step_voxels = 1;                             ///< in smallest voxel edges
-  double termination = 1.0 / 512;                     ///< a ray ends when less than this gets through
-  TexelFormat texels = TexelFormat::automatic;        ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
+  double step_voxels = 1;                       ///< in smallest voxel edges
+  double termination = 1.0 / 512;               ///< a ray ends when less than this gets through
+  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
   MirrorLayout layout = MirrorLayout::automatic;
-  bool skip = true;                                   ///< leap over bricks that the transfer function leaves empty
+  bool skip = true;  ///< leap over bricks that the transfer function leaves empty
 };
 RenderSettings draft_settings();      ///< step 2
 RenderSettings balanced_settings();   ///< step 1
@@ -35,8 +35,8 @@ RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
 
 struct RenderStats {
   std::string device, driver;
-  std::uint64_t gpu_bytes = 0;            ///< held now
-  std::uint64_t uploads = 0;              ///< copies to the device so far
+  std::uint64_t gpu_bytes = 0;  ///< held now
+  std::uint64_t uploads = 0;    ///< copies to the device so far
   std::uint64_t upload_bytes = 0;
   std::uint64_t pipelines = 0;            ///< created so far
   std::uint64_t mirrors = 0;              ///< grids mirrored now

@@ -12,7 +12,7 @@ namespace catena::render {
 
 struct TransferLut {
   std::vector<glm::vec4> entries;
-  float lo = 0, per_value = 0;  ///< index = (value - lo) * per_value, clamped to 0..last
+  float lo = 0, per_value = 0;                ///< index = (value - lo) * per_value, clamped to 0..last
   std::vector<std::uint32_t> visible_before;  ///< how many entries before i have sigma > 0
 
   std::uint32_t last() const { return std::uint32_t(entries.size()) - 1; }

@@ -120,7 +120,8 @@ Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const
   // draw
   std::uint32_t flags = 0;
   for (std::size_t i = 0; i < bound.size(); ++i) flags |= bound[i].flags() << (4 * i);
-  CATENA_TRY(const vk::Pipeline* pipe, pipeline(flags, std::uint32_t(volumes_.size()), std::uint32_t(surfaces_.size()), opaque_depth != nullptr));
+  CATENA_TRY(const vk::Pipeline* pipe,
+             pipeline(flags, std::uint32_t(volumes_.size()), std::uint32_t(surfaces_.size()), opaque_depth != nullptr));
   std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                     {1, vk::Resource::buffer, &tables_, nullptr, nullptr},
                                     {2, vk::Resource::texture, nullptr, opaque_depth ? opaque_depth : &none, nullptr}};

@@ -23,8 +23,8 @@ class VolumePass {
   static Result<VolumePass> create(vk::Device& device);
   Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
   /// Within a pass over the volume target. `opaque_depth` null: nothing opaque; `none` is bound instead.
-  Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const vk::Image* opaque_depth,
-                 const vk::Image& none);
+  Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                 const vk::Image* opaque_depth, const vk::Image& none);
 
  private:
   struct Volume {

@@ -62,8 +62,8 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
   std::uint32_t version = VK_API_VERSION_1_0;
   CATENA_VK(vkEnumerateInstanceVersion(&version), "ask the loader's version");
   if (version < VK_API_VERSION_1_3)
-    return Error{fmt::format("the Vulkan loader has version {}.{}, expected 1.3 or newer (package libvulkan1)", VK_API_VERSION_MAJOR(version),
-                             VK_API_VERSION_MINOR(version))};
+    return Error{fmt::format("the Vulkan loader has version {}.{}, expected 1.3 or newer (package libvulkan1)",
+                             VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version))};
 
   // layers and extensions
   std::vector<const char*> layers, extensions;
@@ -112,7 +112,8 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
 Instance::~Instance() {
   if (surface_) vkDestroySurfaceKHR(instance_, surface_, nullptr);
   if (messenger_) {
-    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    const auto destroy =
+        reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
     if (destroy) destroy(instance_, messenger_, nullptr);
   }
   if (instance_) vkDestroyInstance(instance_, nullptr);

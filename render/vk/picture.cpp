@@ -1,36 +1,15 @@
 #include <fmt/format.h>
 #include <png.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <csetjmp>
-#include <cstdio>
-#include <cstring>
 
+#include "engine/base/output_file.h"
 #include "render/vk/picture.h"
 
 namespace catena::render {
 namespace {
 
 Error file_error(const std::string& path, const std::string& what) { return Error{fmt::format("{}: {}", path, what)}; }
-
-class File {
- public:
-  File(const std::string& path, const char* mode) : file_(std::fopen(path.c_str(), mode)) {}
-  ~File() { close(); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  std::FILE* get() const { return file_; }
-  bool close() {
-    const bool good = !file_ || std::fclose(file_) == 0;
-    file_ = nullptr;
-    return good;
-  }
-
- private:
-  std::FILE* file_;
-};
 
 /// Everything goes through one memory block, so that the file system is met once and libpng's errors are only ours.
 struct Sink {
@@ -54,15 +33,6 @@ bool encode(png_structp png, png_infop info, Sink* sink, std::uint32_t width, st
   return true;
 }
 
-Outcome write_bytes(const std::string& path, const std::vector<png_byte>& bytes) {
-  File file(path, "wb");
-  if (!file.get()) return file_error(path, fmt::format("cannot be written: {}", std::strerror(errno)));
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size() || std::fflush(file.get()) != 0)
-    return file_error(path, fmt::format("cannot be written: {}", std::strerror(errno)));
-  if (!file.close()) return file_error(path, fmt::format("cannot be written: {}", std::strerror(errno)));
-  return Done{};
-}
-
 }  // namespace
 
 Outcome write_png(const std::string& path, const Picture& picture, bool alpha) {
@@ -80,30 +50,21 @@ Outcome write_png(const std::string& path, const Picture& picture, bool alpha) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   Sink sink;
-  const bool good = info && encode(png, info, &sink, picture.width, picture.height, alpha ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, rows.data());
+  const bool good =
+      info && encode(png, info, &sink, picture.width, picture.height, alpha ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, rows.data());
   png_destroy_write_struct(&png, &info);
   if (!good) return file_error(path, "the picture cannot be encoded as PNG");
 
-  // a device or a pipe is written straight; a file appears complete or not at all
-  struct stat status {};
-  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) return write_bytes(path, sink.bytes);
-  const std::string beside = fmt::format("{}.{}.part", path, getpid());
-  if (auto written = write_bytes(beside, sink.bytes); !written) {
-    std::remove(beside.c_str());
-    return Error{fmt::format("{}: {}", path, written.error().message.substr(beside.size() + 2))};
-  }
-  if (std::rename(beside.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
-    std::remove(beside.c_str());
-    return file_error(path, "cannot be written: " + reason);
-  }
-  return Done{};
+  CATENA_TRY(OutputFile file, OutputFile::open(path));
+  file.write({reinterpret_cast<const char*>(sink.bytes.data()), sink.bytes.size()});
+  return file.commit();
 }
 
 Result<Picture> read_png(const std::string& path) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&image, path.c_str())) return file_error(path, fmt::format("is not a readable PNG: {}", image.message));
+  if (!png_image_begin_read_from_file(&image, path.c_str()))
+    return file_error(path, fmt::format("is not a readable PNG: {}", image.message));
   image.format = PNG_FORMAT_RGBA;
   Picture picture{image.width, image.height, std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
   if (!png_image_finish_read(&image, nullptr, picture.rgba.data(), 0, nullptr)) {

@@ -44,7 +44,8 @@ struct Specialization {
   std::vector<VkSpecializationMapEntry> entries;
   VkSpecializationInfo info{};
   explicit Specialization(const std::vector<std::uint32_t>& constants) {
-    for (std::uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, std::uint32_t(i * sizeof(std::uint32_t)), sizeof(std::uint32_t)});
+    for (std::uint32_t i = 0; i < constants.size(); ++i)
+      entries.push_back({i, std::uint32_t(i * sizeof(std::uint32_t)), sizeof(std::uint32_t)});
     info.mapEntryCount = std::uint32_t(entries.size());
     info.pMapEntries = entries.data();
     info.dataSize = constants.size() * sizeof(std::uint32_t);
@@ -58,11 +59,16 @@ struct Specialization {
 
 VkDescriptorType descriptor_type(Resource resource) {
   switch (resource) {
-    case Resource::uniform: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    case Resource::buffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case Resource::sampled: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    case Resource::texture: return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    case Resource::storage_image: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    case Resource::uniform:
+      return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case Resource::buffer:
+      return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    case Resource::sampled:
+      return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case Resource::texture:
+      return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    case Resource::storage_image:
+      return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
   }
   return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }

@@ -30,8 +30,8 @@ struct GraphicsInfo {
   std::vector<Slot> slots;
   std::vector<std::uint32_t> constants;  ///< specialisation constants 0, 1, 2, .. of the fragment shader
   std::vector<VkFormat> colors;
-  bool depth = false;                    ///< D32F, reversed: greater is nearer
-  std::uint32_t vertex_stride = 0;       ///< 0: no vertex buffer
+  bool depth = false;               ///< D32F, reversed: greater is nearer
+  std::uint32_t vertex_stride = 0;  ///< 0: no vertex buffer
   std::vector<VertexAttribute> attributes;
 };
 

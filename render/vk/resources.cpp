@@ -12,7 +12,8 @@ namespace {
 std::string mebibytes(VkDeviceSize bytes) { return fmt::format("{:.1f} MiB", double(bytes) / double(1 << 20)); }
 
 /// The first memory type that is allowed and has all of `required`, one with `preferred` before others.
-std::optional<std::uint32_t> memory_type(const Device& device, std::uint32_t allowed, VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) {
+std::optional<std::uint32_t> memory_type(const Device& device, std::uint32_t allowed, VkMemoryPropertyFlags required,
+                                         VkMemoryPropertyFlags preferred) {
   VkPhysicalDeviceMemoryProperties memory{};
   vkGetPhysicalDeviceMemoryProperties(device.physical(), &memory);
   for (const VkMemoryPropertyFlags wanted : {required | preferred, required})
@@ -82,15 +83,22 @@ void Buffer::release() {
 
 VkDeviceSize texel_bytes(VkFormat format) {
   switch (format) {
-    case VK_FORMAT_R8_UINT: return 1;
-    case VK_FORMAT_R16_SFLOAT: return 2;
+    case VK_FORMAT_R8_UINT:
+      return 1;
+    case VK_FORMAT_R16_SFLOAT:
+      return 2;
     case VK_FORMAT_R32_SFLOAT:
     case VK_FORMAT_R32_UINT:
     case VK_FORMAT_D32_SFLOAT:
-    case VK_FORMAT_R8G8B8A8_UNORM: return 4;
-    case VK_FORMAT_R16G16B16A16_SFLOAT: return 8;
-    case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
-    default: CATENA_ASSERT(!"a format without a size here"); return 0;
+    case VK_FORMAT_R8G8B8A8_UNORM:
+      return 4;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return 16;
+    default:
+      CATENA_ASSERT(!"a format without a size here");
+      return 0;
   }
 }
 
@@ -105,8 +113,8 @@ Result<Image> Image::create(Device& device, const ImageInfo& info) {
       vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.type, VK_IMAGE_TILING_OPTIMAL, info.usage, 0, &limits);
   const auto& e = info.extent;
   if (supported != VK_SUCCESS || e.width > limits.maxExtent.width || e.height > limits.maxExtent.height || e.depth > limits.maxExtent.depth)
-    return Error{fmt::format("an image of {} x {} x {} does not fit the device {}, expected at most {} x {} x {}", e.width, e.height, e.depth,
-                             device.info().name, limits.maxExtent.width, limits.maxExtent.height, limits.maxExtent.depth)};
+    return Error{fmt::format("an image of {} x {} x {} does not fit the device {}, expected at most {} x {} x {}", e.width, e.height,
+                             e.depth, device.info().name, limits.maxExtent.width, limits.maxExtent.height, limits.maxExtent.depth)};
 
   Image self;
   self.device_ = &device;

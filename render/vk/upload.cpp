@@ -31,8 +31,7 @@ Result<Buffer> upload_buffer(Device& device, std::span<const std::byte> bytes, V
   CATENA_TRY(Buffer buffer, Buffer::create(device, bytes.size(), usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, Memory::device));
   CATENA_TRY(Commands commands, Commands::begin(device));
   commands.copy(staging, buffer, bytes.size());
-  commands.barrier(buffer, kTransferWrite,
-                   {VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT});
+  commands.barrier(buffer, kTransferWrite, {VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT});
   CATENA_CHECK(commands.finish());
   return buffer;
 }

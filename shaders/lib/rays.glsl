@@ -15,16 +15,23 @@ LocalRay local_ray(int i, vec2 q) {
 // World vector of one unit of depth along the ray of pixel place q (y down).
 vec3 world_direction(vec2 q) { return frame.forward + frame.right * (q.x * frame.slope.x) - frame.up * (q.y * frame.slope.y); }
 
-vec3 safe_inverse(vec3 d) {
-  const vec3 least = vec3(1e-30);
-  return 1.0 / mix(d, mix(-least, least, greaterThanEqual(d, vec3(0.0))), lessThan(abs(d), least));
-}
+#define LEAST_DIRECTION 1e-30
+
+// 1 / d; a component of zero counts as a tiny positive one, as in forward_of.
+vec3 safe_inverse(vec3 d) { return 1.0 / mix(d, vec3(LEAST_DIRECTION), lessThan(abs(d), vec3(LEAST_DIRECTION))); }
+bvec3 forward_of(vec3 d) { return greaterThan(d, vec3(-LEAST_DIRECTION)); }
 
 // Exact entry and exit of the domain; entry >= exit where the ray misses it.
 vec2 domain_interval(int i, LocalRay ray) {
   const vec3 inverse = safe_inverse(ray.direction);
   const vec3 a = (frame.grids[i].lo - ray.origin) * inverse, b = (frame.grids[i].hi - ray.origin) * inverse;
-  const vec3 near = min(a, b), far = max(a, b);
+  vec3 near = min(a, b), far = max(a, b);
+  for (int axis = 0; axis < 3; ++axis)
+    if (abs(ray.direction[axis]) < LEAST_DIRECTION) {
+      const bool inside = ray.origin[axis] >= frame.grids[i].lo[axis] && ray.origin[axis] <= frame.grids[i].hi[axis];
+      near[axis] = inside ? -NO_DEPTH : NO_DEPTH;
+      far[axis] = -near[axis];
+    }
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
@@ -38,6 +45,6 @@ float buffer_depth(float t) {
 float leave_empty(LocalRay ray, vec3 p, ivec3 brick, int d) {
   const vec3 inverse = safe_inverse(ray.direction);
   const vec3 lo = vec3((brick - (d - 1)) * BRICK), hi = vec3((brick + d) * BRICK);
-  const vec3 t = (mix(lo, hi, greaterThan(ray.direction, vec3(0.0))) - p) * inverse;
+  const vec3 t = (mix(lo, hi, forward_of(ray.direction)) - p) * inverse;
   return min(min(t.x, t.y), t.z);
 }

@@ -62,68 +62,92 @@ float first_root(vec4 c) {
   return -1.0;
 }
 
-// The first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH if there is none.
+// A walk along a ray through the cells of a grid.
+struct Walk {
+  ivec3 cell;
+  float t, leave;  // depths at which the ray enters and leaves the cell
+  int side;        // of the level, where the last cell was left: 1, -1; 0 unknown
+  bool done;
+  vec4 lo, hi;     // the corners, less the level
+};
+
+void leave_cell(inout Walk walk, LocalRay ray, vec3 inverse, bvec3 forward, ivec3 first, ivec3 last) {
+  const vec3 leave = (mix(vec3(walk.cell), vec3(walk.cell + 1), forward) - ray.origin) * inverse;
+  const ivec3 towards = ivec3(mix(vec3(-1.0), vec3(1.0), forward));
+  const bool x = leave.x <= min(leave.y, leave.z), y = !x && leave.y <= leave.z;
+  walk.cell += ivec3(x ? towards.x : 0, y ? towards.y : 0, x || y ? 0 : towards.z);
+  walk.t = walk.leave;
+  walk.done = any(lessThan(walk.cell, first)) || any(greaterThan(walk.cell, last));
+}
+
+// Leaps to where the ray leaves the empty bricks around the walk's cell.
+void leave_bricks(inout Walk walk, LocalRay ray, vec3 inverse, bvec3 forward, ivec3 first, ivec3 last, int distance) {
+  const ivec3 brick = walk.cell >> 3;
+  const ivec3 lo = (brick - (distance - 1)) * BRICK, hi = (brick + distance) * BRICK;
+  const vec3 leave = (mix(vec3(lo), vec3(hi), forward) - ray.origin) * inverse;
+  const float out_at = min(min(leave.x, leave.y), leave.z);
+  const ivec3 inside = clamp(ivec3(floor(ray.origin + out_at * ray.direction)), max(lo, first), min(hi - 1, last));
+  const ivec3 beyond = ivec3(mix(vec3(lo - 1), vec3(hi), forward));
+  const bool x = leave.x == out_at, y = !x && leave.y == out_at;
+  walk.cell = ivec3(x ? beyond.x : inside.x, y ? beyond.y : inside.y, x || y ? inside.z : beyond.z);
+  walk.t = max(walk.t, out_at);
+  walk.side = 0;
+  walk.done = any(lessThan(walk.cell, first)) || any(greaterThan(walk.cell, last));
+}
+
+// The first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH if there is none. An inner loop walks to
+// the next cell whose corners lie on both sides, the outer one solves its cubic: on a driver that executes both sides of every
+// branch this keeps the solver out of the walk.
 float first_crossing(int i, LocalRay ray, float from, float to) {
   const float level = frame.grids[i].level;
   const ivec3 first = ivec3(frame.grids[i].lo), last = ivec3(frame.grids[i].hi) - 1;
   const vec3 inverse = safe_inverse(ray.direction);
-  const bvec3 forward = greaterThan(ray.direction, vec3(0.0));
-  const ivec3 towards = ivec3(mix(vec3(-1.0), vec3(1.0), forward));
-  const vec3 ahead = mix(vec3(0.0), vec3(1.0), forward);
-  float t = from;
-  ivec3 cell = cell_of(i, ray.origin + t * ray.direction);
-  int side = 0;  // of the level, where the last cell was left; 0: unknown
-  const ivec3 extent = last - first;
-  for (int guard = 2 * (extent.x + extent.y + extent.z) + 8; guard > 0 && t < to; --guard) {
-    const uint word = brick_word(i, cell >> 3);
-    vec3 leave;
-    if (empty_distance(word) > 0) {
-      // leap over the empty bricks
-      const int d = empty_distance(word);
-      const ivec3 brick = cell >> 3;
-      const ivec3 lo = (brick - (d - 1)) * BRICK, hi = (brick + d) * BRICK;
-      leave = (mix(vec3(lo), vec3(hi), forward) - ray.origin) * inverse;
-      const float out_at = min(min(leave.x, leave.y), leave.z);
-      const ivec3 next = clamp(ivec3(floor(ray.origin + out_at * ray.direction)), max(lo, first), min(hi - 1, last));
-      cell = next;
-      if (leave.x == out_at) cell.x = forward.x ? hi.x : lo.x - 1;
-      else if (leave.y == out_at) cell.y = forward.y ? hi.y : lo.y - 1;
-      else cell.z = forward.z ? hi.z : lo.z - 1;
-      t = max(t, out_at);
-      side = 0;
-    } else {
-      leave = (vec3(cell) + ahead - ray.origin) * inverse;
-      const float out_at = clamp(min(min(leave.x, leave.y), leave.z), t, to);
-      if (cell_is_valid(i, cell)) {
-        vec4 lo, hi;
-        cell_corners(i, cell, lo, hi);
-        lo -= level;
-        hi -= level;
-        const vec4 low = min(lo, hi), high = max(lo, hi);
-        const float least = min(min(low.x, low.y), min(low.z, low.w)), greatest = max(max(high.x, high.y), max(high.z, high.w));
-        if (least < 0.0 && greatest >= 0.0) {
-          const vec3 a = clamp(ray.origin + t * ray.direction - vec3(cell), 0.0, 1.0);
-          const vec3 b = clamp(ray.origin + out_at * ray.direction - vec3(cell), 0.0, 1.0);
-          const vec4 c = cell_cubic(lo, hi, a, b);
-          // rounding at a face must not open a gap
-          if (side != 0 && side != (c.x >= 0.0 ? 1 : -1)) return t;
-          const float u = first_root(c);
-          if (u >= 0.0) return mix(t, out_at, u);
-          side = c.w >= 0.0 ? 1 : -1;
-        } else {
-          const int here = least >= 0.0 ? 1 : -1;
-          if (side != 0 && side != here) return t;
-          side = here;
-        }
+  const bvec3 forward = forward_of(ray.direction);
+  Walk walk;
+  walk.cell = cell_of(i, ray.origin + from * ray.direction);
+  walk.t = walk.leave = from;
+  walk.side = 0;
+  walk.done = false;
+  float found = NO_DEPTH;
+  while (found == NO_DEPTH && !walk.done && walk.t < to) {
+    bool candidate = false;
+    while (!candidate && !walk.done && walk.t < to) {
+      const int distance = empty_distance(brick_word(i, walk.cell >> 3));
+      if (distance > 0) {
+        leave_bricks(walk, ray, inverse, forward, first, last, distance);
       } else {
-        side = 0;
+        const vec3 leave = (mix(vec3(walk.cell), vec3(walk.cell + 1), forward) - ray.origin) * inverse;
+        walk.leave = clamp(min(min(leave.x, leave.y), leave.z), walk.t, to);
+        cell_corners(i, walk.cell, walk.lo, walk.hi);
+        walk.lo -= level;
+        walk.hi -= level;
+        const vec4 low = min(walk.lo, walk.hi), high = max(walk.lo, walk.hi);
+        const bool above = min(min(low.x, low.y), min(low.z, low.w)) >= 0.0, below = max(max(high.x, high.y), max(high.z, high.w)) < 0.0;
+        const int here = above ? 1 : below ? -1 : 0;
+        bool valid = true;
+        if (grid_is_masked(i)) valid = cell_is_valid(i, walk.cell);
+        // also where rounding at a face hid the change of sign
+        candidate = valid && (here == 0 || here == -walk.side);
+        if (!candidate) {
+          walk.side = valid ? here : 0;
+          leave_cell(walk, ray, inverse, forward, first, last);
+        }
       }
-      if (leave.x <= min(leave.y, leave.z)) cell.x += towards.x;
-      else if (leave.y <= leave.z) cell.y += towards.y;
-      else cell.z += towards.z;
-      t = out_at;
     }
-    if (any(lessThan(cell, first)) || any(greaterThan(cell, last))) return NO_DEPTH;
+    if (candidate) {
+      const vec3 a = clamp(ray.origin + walk.t * ray.direction - vec3(walk.cell), 0.0, 1.0);
+      const vec3 b = clamp(ray.origin + walk.leave * ray.direction - vec3(walk.cell), 0.0, 1.0);
+      const vec4 c = cell_cubic(walk.lo, walk.hi, a, b);
+      const int entered = c.x >= 0.0 ? 1 : -1;
+      if (walk.side == -entered) {
+        found = walk.t;
+      } else {
+        const float u = first_root(c);
+        if (u >= 0.0) found = mix(walk.t, walk.leave, u);
+        walk.side = c.w >= 0.0 ? 1 : -1;
+        leave_cell(walk, ray, inverse, forward, first, last);
+      }
+    }
   }
-  return NO_DEPTH;
+  return found;
 }

@@ -40,7 +40,8 @@ double cpu_crossing(const field::ScalarGrid& grid, const Ray& ray, double level,
   return HUGE_VAL;
 }
 
-void expect_depths(Renderer& renderer, const FramePacket& packet, const field::ScalarGrid& grid, double level, double voxel, int least_hits) {
+void expect_depths(Renderer& renderer, const FramePacket& packet, const field::ScalarGrid& grid, double level, double voxel,
+                   int least_hits) {
   const auto depth = renderer.read_depth();
   ASSERT_TRUE(depth);
   const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
@@ -87,8 +88,9 @@ TEST_F(Isosurface, SphereDepthAgreesWithTheField) {
 
 TEST_F(Isosurface, RoughFieldOnATurnedGrid) {
   const Mat3 linear = Mat3(0.8, 0.3, 0, -0.4, 1.1, 0.2, 0.1, 0, 1.7);
-  const auto grid = make_grid({28, 24, 20}, [](const Vec3& p) { return std::sin(0.9 * p.x) + std::cos(0.8 * p.y) + std::sin(0.7 * p.z + 0.3 * p.x); },
-                              field::Mapping::from_linear(linear, {-500, 40, 3}));
+  const auto grid = make_grid(
+      {28, 24, 20}, [](const Vec3& p) { return std::sin(0.9 * p.x) + std::cos(0.8 * p.y) + std::sin(0.7 * p.z + 0.3 * p.x); },
+      field::Mapping::from_linear(linear, {-500, 40, 3}));
   const Vec3 centre = grid->mapping().world_from_index({13.5, 11.5, 9.5});
   FramePacket packet = packet_of(centre + Vec3(60, -50, 40), centre, 30);
   packet.isosurfaces = {surface_item(grid, 0.3)};
@@ -186,7 +188,8 @@ TEST_F(Isosurface, OpaqueEndsTheVolume) {
 TEST_F(Isosurface, MaskedCellsHaveNoSurface) {
   const Vec3 c(15.5);
   const auto valid = [](const Vec3& p) { return p.z < 16; };
-  const auto grid = make_grid({32, 32, 32}, [&](const Vec3& p) { return norm(p - c); }, {}, valid);
+  const auto grid = make_grid(
+      {32, 32, 32}, [&](const Vec3& p) { return norm(p - c); }, {}, valid);
   FramePacket packet = packet_of({70, -50, 40}, c, 25);
   packet.isosurfaces = {surface_item(grid, 11)};
   draw(packet, {}, "bowl");

@@ -1,35 +1,19 @@
 /// The mirror against the truth: values that the GPU reads against those of the grid on the CPU, at 10,000 random points.
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <random>
-#include <sstream>
 
 #include "render/mirror/brick_map.h"
 #include "render/vk/commands.h"
 #include "render/vk/upload.h"
 #include "shaders/shared/frame.h"
 #include "tests/render/support/frames.h"
+#include "tests/render/support/spirv.h"
 
 namespace catena::test {
 namespace {
 
 using namespace catena::render;
-
-/// The words of a compiled shader, as the build folder holds them for #include.
-std::vector<std::uint32_t> shader_words(const std::string& name) {
-  std::ifstream in(std::string(CATENA_BINARY_DIR) + "/spirv/spirv/" + name + ".inc");
-  std::vector<std::uint32_t> words;
-  std::string line;
-  while (std::getline(in, line)) {
-    if (line.find("//") != std::string::npos) continue;
-    std::istringstream items(line);
-    std::string item;
-    while (std::getline(items, item, ','))
-      if (item.find("0x") != std::string::npos) words.push_back(std::uint32_t(std::stoul(item.substr(item.find("0x")), nullptr, 16)));
-  }
-  return words;
-}
 
 class Sampling : public testing::Test {
  protected:
@@ -49,7 +33,7 @@ class Sampling : public testing::Test {
     EXPECT_FALSE(words.empty());
     vk::ComputeInfo info;
     info.shader = words;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::buffer},
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer},   {2, vk::Resource::buffer},
                   {3, vk::Resource::sampled}, {11, vk::Resource::texture}, {19, vk::Resource::texture}};
     info.constants = {(mirror.atlas ? 1u : 0u) | (mirror.masked ? 2u : 0u)};
     auto pipeline = vk::Pipeline::create(*device_, info);
@@ -72,9 +56,10 @@ class Sampling : public testing::Test {
     auto commands = vk::Commands::begin(*device_);
     EXPECT_TRUE(commands);
     const vk::Image& mask = mirror.masked ? mirror.mask : map->image;
-    const vk::Binding bindings[] = {{0, vk::Resource::uniform, &*uniform, nullptr, nullptr},  {1, vk::Resource::buffer, &*positions, nullptr, nullptr},
-                                    {2, vk::Resource::buffer, &*values, nullptr, nullptr},    {3, vk::Resource::sampled, nullptr, &mirror.values, &*linear},
-                                    {11, vk::Resource::texture, nullptr, &map->image, nullptr}, {19, vk::Resource::texture, nullptr, &mask, nullptr}};
+    const vk::Binding bindings[] = {
+        {0, vk::Resource::uniform, &*uniform, nullptr, nullptr},    {1, vk::Resource::buffer, &*positions, nullptr, nullptr},
+        {2, vk::Resource::buffer, &*values, nullptr, nullptr},      {3, vk::Resource::sampled, nullptr, &mirror.values, &*linear},
+        {11, vk::Resource::texture, nullptr, &map->image, nullptr}, {19, vk::Resource::texture, nullptr, &mask, nullptr}};
     commands->bind(*pipeline, bindings);
     commands->dispatch((std::uint32_t(local.size()) + 63) / 64, 1, 1);
     commands->barrier(*values, vk::kComputeWrite, vk::kHostRead);
@@ -131,7 +116,8 @@ double wavy(const Vec3& p) { return 40 * std::sin(0.31 * p.x + 0.2 * p.y) * std:
 TEST_F(Sampling, Float32) {
   const auto grid = make_grid({64, 64, 64}, wavy);
   const double range = grid->max_value() - grid->min_value();
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) expect_close(*grid, {true, layout}, [&](double) { return 1e-5 * range; });
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+    expect_close(*grid, {true, layout}, [&](double) { return 1e-5 * range; });
 }
 
 TEST_F(Sampling, HalfRounding) {
@@ -163,7 +149,8 @@ TEST_F(Sampling, AnOddBoxInTheAtlas) {
 
 TEST_F(Sampling, MaskedCells) {
   const auto grid = make_grid({40, 40, 40}, wavy, {}, [](const Vec3& p) { return norm(p - Vec3(17, 20, 22)) < 19; });
-  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+    expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
 }
 
 }  // namespace

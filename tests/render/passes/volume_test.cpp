@@ -64,10 +64,12 @@ TEST_F(Volume, EyeInsideTheBox) {
 
 TEST_F(Volume, AnisotropicRotatedAndFarFromTheOrigin) {
   const double a = 0.4, b = -0.9;
-  const Mat3 turn = Mat3(std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a), 0, 0, 0, 1) * Mat3(1, 0, 0, 0, std::cos(b), std::sin(b), 0, -std::sin(b), std::cos(b));
+  const Mat3 turn = Mat3(std::cos(a), std::sin(a), 0, -std::sin(a), std::cos(a), 0, 0, 0, 1) *
+                    Mat3(1, 0, 0, 0, std::cos(b), std::sin(b), 0, -std::sin(b), std::cos(b));
   const Mat3 linear = turn * Mat3(0.5, 0, 0, 0, 1.25, 0, 0.3, 0, 3);
   const Vec3 far{-8200.5, 1e5, 77.25};
-  const auto grid = make_grid({30, 14, 9}, [](const Vec3&) { return 1.0; }, field::Mapping::from_linear(linear, far));
+  const auto grid = make_grid(
+      {30, 14, 9}, [](const Vec3&) { return 1.0; }, field::Mapping::from_linear(linear, far));
   const Vec3 centre = grid->mapping().world_from_index({14.5, 6.5, 4});
   FramePacket packet = packet_of(centre + Vec3(31, -44, 25), centre, 35);
   packet.volumes = {volume_item(grid, {{0, 0.08}, {1, 0.08}})};
@@ -85,6 +87,19 @@ TEST_F(Volume, Orthographic) {
   const Picture picture = draw(packet, {}, "box");
   expect_alpha(picture, packet, 1, [&](const Ray& ray) { return 0.1 * chord(*grid, ray.origin, ray.direction); });
   EXPECT_GT(covered(picture), 3000);
+}
+
+TEST_F(Volume, AlongAnAxis) {
+  const auto grid = make_grid({16, 16, 16}, [](const Vec3& p) { return p.x > 9 && p.x < 12 && p.z > 3 ? 1.0 : 0.0; });
+  FramePacket packet = packet_of({7.5, -30, 7.5}, {7.5, 0, 7.5});
+  packet.view.orthographic = true;
+  packet.view.height = 20;
+  packet.volumes = {volume_item(grid, {{0, 0.1}, {1, 0.1}})};
+  expect_alpha(draw(packet), packet, 1, [&](const Ray& ray) { return 0.1 * chord(*grid, ray.origin, ray.direction); });
+  packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.1}})};
+  RenderSettings all;
+  all.skip = false;
+  EXPECT_EQ(max_difference(draw(packet, {}, "bars"), draw(packet, all)), 0);
 }
 
 TEST_F(Volume, LinearSigmaIsExact) {
@@ -131,7 +146,8 @@ TEST_F(Volume, GaussianMatchesItsIntegral) {
 
 TEST_F(Volume, SkippingChangesNothing) {
   const Vec3 c(20, 40, 30);
-  const auto grid = make_grid({64, 56, 48}, [&](const Vec3& p) { return std::max(0.0, 1 - norm(p - c) / 11) + (p.x > 55 && p.z < 9 ? 0.7 : 0.0); });
+  const auto grid =
+      make_grid({64, 56, 48}, [&](const Vec3& p) { return std::max(0.0, 1 - norm(p - c) / 11) + (p.x > 55 && p.z < 9 ? 0.7 : 0.0); });
   FramePacket packet = packet_of({110, -90, 80}, {31, 27, 23}, 28);
   packet.volumes = {volume_item(grid, {{0, 0}, {0.1, 0}, {1, 0.3}})};
   packet.volumes[0].transfer.colors = {{0, 0.1, 0.2, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
@@ -149,7 +165,8 @@ TEST_F(Volume, SkippingChangesNothing) {
 }
 
 TEST_F(Volume, DenseAndAtlasDrawTheSame) {
-  const auto grid = make_grid({37, 45, 29}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.4 * p.x) * std::cos(0.3 * p.y + 0.2 * p.z); });
+  const auto grid =
+      make_grid({37, 45, 29}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.4 * p.x) * std::cos(0.3 * p.y + 0.2 * p.z); });
   FramePacket packet = packet_of({80, -70, 60}, {18, 22, 14});
   packet.volumes = {volume_item(grid, {{0, 0}, {0.5, 0}, {1, 0.3}})};
   packet.volumes[0].shade = true;
@@ -163,7 +180,8 @@ TEST_F(Volume, DenseAndAtlasDrawTheSame) {
 TEST_F(Volume, MaskedCellsAreTransparent) {
   // cells with a corner at x > 15 do not count: the box ends at x = 15
   const auto valid = [](const Vec3& p) { return p.x <= 15; };
-  const auto grid = make_grid({32, 16, 16}, [](const Vec3&) { return 0.5; }, {}, valid);
+  const auto grid = make_grid(
+      {32, 16, 16}, [](const Vec3&) { return 0.5; }, {}, valid);
   const auto half = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
   FramePacket packet = packet_of({55, -40, 35}, {10, 8, 8});
   packet.volumes = {volume_item(grid, {{0, 0.2}, {1, 0.2}})};
@@ -190,7 +208,8 @@ TEST_F(Volume, NotANumberIsTransparent) {
 }
 
 TEST_F(Volume, EarlyTerminationCostsLittle) {
-  const auto grid = make_grid({48, 48, 48}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.5 * p.x + 0.3 * p.y) * std::cos(0.4 * p.z); });
+  const auto grid =
+      make_grid({48, 48, 48}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.5 * p.x + 0.3 * p.y) * std::cos(0.4 * p.z); });
   FramePacket packet = packet_of({120, -80, 90}, {23.5, 23.5, 23.5});
   packet.background = {0, 0, 0, 1};
   packet.volumes = {volume_item(grid, {{0, 0}, {1, 0.8}})};
@@ -202,15 +221,15 @@ TEST_F(Volume, EarlyTerminationCostsLittle) {
 
 TEST_F(Volume, TwoVolumesAddTheirSigmas) {
   const auto a = make_grid({20, 20, 20}, [](const Vec3&) { return 0.5; });
-  const auto b = make_grid({20, 20, 20}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(Mat3(1.5), {9.3, 4, -2}));
+  const auto b = make_grid(
+      {20, 20, 20}, [](const Vec3&) { return 0.5; }, field::Mapping::from_linear(Mat3(1.5), {9.3, 4, -2}));
   FramePacket packet = packet_of({90, -70, 60}, {14, 12, 10});
   packet.volumes = {volume_item(a, {{0, 0.05}, {1, 0.05}}), volume_item(b, {{0, 0.03}, {1, 0.03}})};
   for (const bool skip : {true, false}) {
     RenderSettings settings;
     settings.skip = skip;
-    expect_alpha(draw(packet, settings, "two"), packet, 1, [&](const Ray& ray) {
-      return 0.05 * chord(*a, ray.origin, ray.direction) + 0.03 * chord(*b, ray.origin, ray.direction);
-    });
+    expect_alpha(draw(packet, settings, "two"), packet, 1,
+                 [&](const Ray& ray) { return 0.05 * chord(*a, ray.origin, ray.direction) + 0.03 * chord(*b, ray.origin, ray.direction); });
   }
 }
 

@@ -1,0 +1,99 @@
+#include "render/mirror/brick_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/support/vulkan.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+TEST(BrickMap, DistancesAreThoseOfASearch) {
+  std::mt19937 random(5);
+  for (const int density : {0, 1, 3, 100}) {
+    const std::array<std::int32_t, 3> n{9, 7, 11};
+    std::vector<std::uint8_t> active(9 * 7 * 11);
+    for (auto& a : active) a = int(random() % 200) < density;
+    const auto distance = brick_distances(n, active);
+    for (int i = 0; i < int(active.size()); ++i) {
+      int nearest = 255;
+      for (int j = 0; j < int(active.size()); ++j)
+        if (active[j])
+          nearest = std::min(nearest, std::max({std::abs(i % 9 - j % 9), std::abs(i / 9 % 7 - j / 9 % 7), std::abs(i / 63 - j / 63)}));
+      ASSERT_EQ(distance[i], nearest);
+    }
+  }
+}
+
+class GridMirrors : public testing::Test {
+ protected:
+  void SetUp() override {
+    use_lavapipe();
+    auto device = vk::Device::create({true, "cpu", {}});
+    ASSERT_TRUE(device) << device.error().message;
+    device_ = std::move(*device);
+  }
+  void TearDown() override {
+    for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
+  }
+  std::unique_ptr<vk::Device> device_;
+};
+
+std::shared_ptr<const field::ScalarGrid> grid_of(int n, const std::function<float(int, int, int)>& f) {
+  std::vector<float> values;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) values.push_back(f(x, y, z));
+  return field::make_scalar_grid("g", {}, {n, n, n}, values);
+}
+
+TEST_F(GridMirrors, RangesCoverTheCornersOfABricksCells) {
+  const auto grid = grid_of(21, [](int x, int y, int z) { return float(x + 100 * y + 10000 * z); });
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+    const auto mirror = make_grid_mirror(*device_, *grid, {true, layout});
+    ASSERT_TRUE(mirror);
+    ASSERT_EQ(mirror->bricks, (std::array<std::int32_t, 3>{3, 3, 3}));
+    for (int z = 0; z < 3; ++z)
+      for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 3; ++x) {
+          const BrickRange& r = mirror->ranges[mirror->brick_index(x, y, z)];
+          const auto end = [](int b) { return std::min(20, 8 * b + 8); };
+          EXPECT_EQ(r.least, float(8 * x + 800 * y + 80000 * z));
+          EXPECT_EQ(r.greatest, float(end(x) + 100 * end(y) + 10000 * end(z)));
+        }
+  }
+}
+
+TEST_F(GridMirrors, DenseGridsStayDense) {
+  const auto grid = grid_of(72, [](int x, int y, int z) { return float(x * y + z + 1); });
+  const auto mirror = make_grid_mirror(*device_, *grid, {});
+  ASSERT_TRUE(mirror);
+  EXPECT_FALSE(mirror->atlas);
+  EXPECT_EQ(mirror->values.info().extent.width, 72u);
+  EXPECT_EQ(mirror->values.info().format, VK_FORMAT_R16_SFLOAT);
+}
+
+TEST_F(GridMirrors, ThinGridsAreNotDrawable) {
+  const auto grid = field::make_scalar_grid("thin", {}, {5, 5, 1}, std::vector<float>(25, 1.0f));
+  const auto mirror = make_grid_mirror(*device_, *grid, {});
+  ASSERT_TRUE(mirror);
+  EXPECT_FALSE(mirror->drawable);
+}
+
+TEST_F(GridMirrors, ActiveBricksAreThoseAsked) {
+  const auto grid = grid_of(33, [](int x, int, int) { return float(x); });
+  const auto mirror = make_grid_mirror(*device_, *grid, {true, MirrorLayout::dense});
+  ASSERT_TRUE(mirror);
+  const auto map = make_brick_map(*device_, *mirror, [](const BrickRange& r) { return r.greatest > 25; });
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->total, 64u);
+  EXPECT_EQ(map->active, 16u);
+}
+
+}  // namespace
+}  // namespace catena::test

@@ -1,0 +1,85 @@
+/// One struct, two languages: the offsets that the shader compiler chose against those of C++.
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+#include "shaders/shared/frame.h"
+#include "tests/render/support/spirv.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render::shared;
+
+#define EXPECT_OFFSET(Struct, member)                                            \
+  EXPECT_EQ(found.at(#member), offsetof(Struct, member)) << #Struct "." #member; \
+  ++compared
+
+TEST(SharedStructs, FrameAndGridData) {
+  for (const char* shader : {"blend.frag", "volume.frag", "isosurface.frag", "sample.comp"}) {
+    auto all = struct_offsets(shader_words(shader));
+    std::size_t compared = 0;
+    {
+      const auto& found = all["GridData"];
+      EXPECT_OFFSET(GridData, origin);
+      EXPECT_OFFSET(GridData, origin_x);
+      EXPECT_OFFSET(GridData, origin_y);
+      EXPECT_OFFSET(GridData, direction);
+      EXPECT_OFFSET(GridData, direction_x);
+      EXPECT_OFFSET(GridData, direction_y);
+      EXPECT_OFFSET(GridData, lo);
+      EXPECT_OFFSET(GridData, hi);
+      EXPECT_OFFSET(GridData, texel);
+      EXPECT_OFFSET(GridData, world_gradient);
+      EXPECT_OFFSET(GridData, value_offset);
+      EXPECT_OFFSET(GridData, value_scale);
+      EXPECT_OFFSET(GridData, table_start);
+      EXPECT_OFFSET(GridData, table_last);
+      EXPECT_OFFSET(GridData, table_lo);
+      EXPECT_OFFSET(GridData, table_per_value);
+      EXPECT_OFFSET(GridData, level);
+      EXPECT_OFFSET(GridData, opacity);
+      EXPECT_OFFSET(GridData, color);
+      EXPECT_EQ(found.at("[]"), sizeof(GridData));
+      EXPECT_EQ(found.size(), compared + 1);
+    }
+    compared = 0;
+    const auto& found = all["FrameData"];
+    EXPECT_OFFSET(FrameData, half_size);
+    EXPECT_OFFSET(FrameData, slope);
+    EXPECT_OFFSET(FrameData, right);
+    EXPECT_OFFSET(FrameData, up);
+    EXPECT_OFFSET(FrameData, forward);
+    EXPECT_OFFSET(FrameData, reference_depth);
+    EXPECT_OFFSET(FrameData, front);
+    EXPECT_OFFSET(FrameData, depth_near);
+    EXPECT_OFFSET(FrameData, depth_far);
+    EXPECT_OFFSET(FrameData, orthographic);
+    EXPECT_OFFSET(FrameData, step_world);
+    EXPECT_OFFSET(FrameData, termination);
+    EXPECT_OFFSET(FrameData, grids);
+    EXPECT_EQ(found.size(), compared);
+  }
+}
+
+TEST(SharedStructs, MeshFrameData) {
+  auto all = struct_offsets(shader_words("mesh.vert"));
+  const auto& found = all["MeshFrameData"];
+  std::size_t compared = 0;
+  EXPECT_OFFSET(MeshFrameData, view_from_world);
+  EXPECT_OFFSET(MeshFrameData, offset);
+  EXPECT_OFFSET(MeshFrameData, offset_depth);
+  EXPECT_OFFSET(MeshFrameData, scale);
+  EXPECT_OFFSET(MeshFrameData, depth_near);
+  EXPECT_OFFSET(MeshFrameData, depth_far);
+  EXPECT_OFFSET(MeshFrameData, orthographic);
+  EXPECT_EQ(found.size(), compared);
+}
+
+TEST(SharedStructs, ComposeData) {
+  auto all = struct_offsets(shader_words("compose.frag"));
+  EXPECT_EQ(all["ComposeData"].at("background"), offsetof(ComposeData, background));
+}
+
+}  // namespace
+}  // namespace catena::test

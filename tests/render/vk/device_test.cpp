@@ -1,0 +1,111 @@
+#include "render/vk/device.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "render/vk/commands.h"
+#include "tests/support/vulkan.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+class Device : public testing::Test {
+ protected:
+  void SetUp() override {
+    use_lavapipe();
+    auto device = vk::Device::create({true, "cpu", {}});
+    ASSERT_TRUE(device) << device.error().message;
+    device_ = std::move(*device);
+  }
+  void expect_silence() const {
+    for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
+  }
+  std::unique_ptr<vk::Device> device_;
+};
+
+TEST_F(Device, SaysWhatItIs) {
+  EXPECT_FALSE(device_->info().name.empty());
+  EXPECT_FALSE(device_->info().driver.empty());
+  EXPECT_TRUE(device_->info().is_cpu());
+  EXPECT_GT(device_->info().memory_bytes, 0u);
+  const auto lines = vk::list_devices();
+  ASSERT_TRUE(lines);
+  EXPECT_GE(lines->size(), 1u);
+}
+
+TEST_F(Device, AnUnknownChoiceNamesWhatThereIs) {
+  const auto other = vk::Device::create({false, "no such device", {}});
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("no such device"), std::string::npos);
+  EXPECT_NE(other.error().message.find(device_->info().name), std::string::npos);
+}
+
+TEST_F(Device, ValidationMessagesAreCounted) {
+  EXPECT_EQ(device_->messages().count(), 0u);
+  // a buffer for nothing is misuse that no driver minds
+  const auto buffer = vk::Buffer::create(*device_, 64, 0, vk::Memory::upload);
+  EXPECT_GT(device_->messages().count(), 0u);
+  EXPECT_FALSE(device_->messages().texts().front().empty());
+}
+
+TEST_F(Device, UploadAndReadBack) {
+  vk::ImageInfo info;
+  info.extent = {7, 5, 1};
+  info.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  auto image = vk::Image::create(*device_, info);
+  auto from = vk::Buffer::create(*device_, 7 * 5 * 4, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, vk::Memory::upload);
+  auto to = vk::Buffer::create(*device_, 7 * 5 * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback);
+  ASSERT_TRUE(image && from && to);
+  for (std::size_t i = 0; i < from->bytes().size(); ++i) from->bytes()[i] = std::byte(i);
+  auto commands = vk::Commands::begin(*device_);
+  ASSERT_TRUE(commands);
+  commands->use(*image, vk::kTransferWrite);
+  commands->copy(*from, 0, *image, {0, 0, 0}, {7, 5, 1});
+  commands->copy(*image, *to);
+  ASSERT_TRUE(commands->finish());
+  EXPECT_EQ(std::memcmp(from->bytes().data(), to->bytes().data(), 7 * 5 * 4), 0);
+  EXPECT_EQ(device_->counters().uploads, 1u);
+  EXPECT_EQ(device_->counters().upload_bytes, 7u * 5 * 4);
+  expect_silence();
+}
+
+TEST_F(Device, ResourcesWaitForTheTimeline) {
+  const std::uint64_t before = device_->counters().bytes;
+  auto from = vk::Buffer::create(*device_, 1 << 20, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, vk::Memory::upload);
+  auto to = vk::Buffer::create(*device_, 1 << 20, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::device);
+  ASSERT_TRUE(from && to);
+  EXPECT_GE(device_->counters().bytes, before + (2 << 20));
+  auto commands = vk::Commands::begin(*device_);
+  ASSERT_TRUE(commands);
+  commands->copy(*from, *to, 1 << 20);
+  const auto value = commands->submit();
+  ASSERT_TRUE(value);
+  *from = vk::Buffer();
+  *to = vk::Buffer();
+  // moved-from temporaries carry the old ones away; they are held until the copy has passed
+  EXPECT_GE(device_->retired(), 2u);
+  EXPECT_GE(device_->counters().bytes, before + (2 << 20));
+  ASSERT_TRUE(device_->wait(*value));
+  EXPECT_EQ(device_->retired(), 0u);
+  EXPECT_EQ(device_->counters().bytes, before);
+  expect_silence();
+}
+
+TEST_F(Device, AnImpossibleImageIsOneSentence) {
+  vk::ImageInfo info;
+  info.type = VK_IMAGE_TYPE_3D;
+  info.format = VK_FORMAT_R32_SFLOAT;
+  info.extent = {100000, 2, 2};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  const auto image = vk::Image::create(*device_, info);
+  ASSERT_FALSE(image);
+  EXPECT_NE(image.error().message.find("100000 x 2 x 2"), std::string::npos);
+  EXPECT_EQ(image.error().message.find('\n'), std::string::npos);
+  expect_silence();
+}
+
+}  // namespace
+}  // namespace catena::test
