@@ -51,8 +51,8 @@ using Outcome = Result<Done>;
 #define CATENA_CONCAT_(a, b) a##b
 #define CATENA_CONCAT(a, b) CATENA_CONCAT_(a, b)
 #define CATENA_TRY_(temporary, declaration, expression) \
-  auto temporary = (expression);                         \
-  if (!temporary) return temporary.error();              \
+  auto temporary = (expression);                        \
+  if (!temporary) return temporary.error();             \
   declaration = std::move(*temporary)
 #define CATENA_TRY(declaration, expression) CATENA_TRY_(CATENA_CONCAT(try_result_, __LINE__), declaration, expression)
 #define CATENA_CHECK(expression) \

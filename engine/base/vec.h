@@ -1,9 +1,9 @@
 /// Vectors and matrices of the whole house: GLM in double precision (floats begin at the GPU).
 #pragma once
-#include <glm/mat3x3.hpp>
-#include <glm/vec3.hpp>
 #include <algorithm>
 #include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
 
 namespace catena {
 

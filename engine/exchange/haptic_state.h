@@ -14,21 +14,21 @@ enum class Status : std::uint8_t { ok, free, released, budget, critical, boundar
 const char* status_word(Status status);  ///< OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE
 
 struct LinkReport {
-  Vec3 proxy{0.0};           ///< world units
-  Vec3 force_n{0.0};         ///< this link's own share, before the limit
-  double residual = 0;       ///< distance from the constraint, world units
-  double weight = 0;         ///< w_i of the force law, 0..1
+  Vec3 proxy{0.0};      ///< world units
+  Vec3 force_n{0.0};    ///< this link's own share, before the limit
+  double residual = 0;  ///< distance from the constraint, world units
+  double weight = 0;    ///< w_i of the force law, 0..1
   std::int32_t evaluations = 0;
   Status status = Status::ok;
-  bool active = false;       ///< enabled and not released
+  bool active = false;  ///< enabled and not released
 };
 
 struct HapticState {
   // written by the tick
   std::uint64_t tick = 0;
   double t_s = 0;
-  Vec3 probe{0.0};     ///< world units
-  Vec3 force_n{0.0};   ///< on the hand, after the limit, world axes
+  Vec3 probe{0.0};    ///< world units
+  Vec3 force_n{0.0};  ///< on the hand, after the limit, world axes
   std::uint32_t buttons = 0;
   std::int32_t link_count = 0;
   std::array<LinkReport, kMaxLinks> links{};

@@ -54,8 +54,8 @@ ValidMask mask_tree(const Index3& size, std::span<const std::uint8_t> valid) {
 Result<std::shared_ptr<const ScalarGrid>> try_make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
                                                                std::span<const float> values, std::span<const std::uint8_t> valid) {
   CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && values.size() == count_of(size));
-  const auto tree =
-      dense_tree<openvdb::FloatTree>(size, all_finite(values), [&](auto& leaf, openvdb::Index at, std::size_t n) { leaf.setValueOn(at, values[n]); });
+  const auto tree = dense_tree<openvdb::FloatTree>(size, all_finite(values),
+                                                   [&](auto& leaf, openvdb::Index at, std::size_t n) { leaf.setValueOn(at, values[n]); });
   return scalar_from_tree(std::move(name), mapping, *tree, mask_tree(size, valid));
 }
 

@@ -18,15 +18,15 @@ struct Name {
 
 /// A field of the scene: where it comes from, and the field itself once something has asked for it.
 struct FieldSource {
-  json::Node where;                          ///< its place in the scene file, for messages
-  std::optional<field::LoadRequest> file;    ///< either this
-  bool grid_is_a_wish = false;               ///< a replaced file may lack the grid that the first one had
-  std::string analytic;                      ///< or this
+  json::Node where;                        ///< its place in the scene file, for messages
+  std::optional<field::LoadRequest> file;  ///< either this
+  bool grid_is_a_wish = false;             ///< a replaced file may lack the grid that the first one had
+  std::string analytic;                    ///< or this
   field::AnalyticParameters parameters;
-  int resolution = 128;                      ///< analytic fields are drawn from a sampled grid: nodes an axis
+  int resolution = 128;  ///< analytic fields are drawn from a sampled grid: nodes an axis
   std::array<double, 2> box{-2, 2};
-  field::AnyField loaded;                    ///< exact (the hand's)
-  field::AnyField drawn;                     ///< a grid (the eye's); the same object for files
+  field::AnyField loaded;  ///< exact (the hand's)
+  field::AnyField drawn;   ///< a grid (the eye's); the same object for files
 };
 
 struct Rgb {
@@ -49,7 +49,7 @@ struct TransferFunction {
   };
   std::vector<ColorPoint> colors;
   std::vector<OpacityPoint> opacities;
-  double opacity_unit = 0;         ///< world length; 0: the smallest voxel edge of the drawn grid
+  double opacity_unit = 0;  ///< world length; 0: the smallest voxel edge of the drawn grid
   std::vector<ExtinctionPoint> extinctions;
 };
 
@@ -72,11 +72,11 @@ struct StreamlineSet {
   Entity field;
   json::Node where;
   std::vector<Vec3> seeds;
-  double radius = 0;               ///< 0: fitted to the domain
+  double radius = 0;  ///< 0: fitted to the domain
   Rgb color{1.0f, 0.3f, 0.2f};
-  bool line = false;               ///< "kind": "line"
+  bool line = false;  ///< "kind": "line"
   double min_speed = 0;
-  double length = 0;               ///< 0: 10 L, each direction
+  double length = 0;  ///< 0: 10 L, each direction
 };
 
 /// The cursor: what the hand holds, as the last tick left it. Written by the cursor system, drawn as a glyph.
@@ -85,7 +85,7 @@ struct Cursor {
   std::vector<Vec3> proxies;
   std::vector<bool> active;
   Vec3 force_n{0.0};
-  double size = 0;                 ///< glyph radius, world units; 0: fitted
+  double size = 0;  ///< glyph radius, world units; 0: fitted
   bool visible = false;
 };
 
@@ -105,7 +105,7 @@ struct Coupling {
 struct Workspace {
   double metres_per_unit = 1;
   Vec3 origin{0.0};
-  Mat3 rotation{1.0};              ///< world from hand
+  Mat3 rotation{1.0};  ///< world from hand
   bool given = false;
 };
 
@@ -113,8 +113,8 @@ struct Camera {
   Vec3 position{0.0, -8.0, 3.0}, target{0.0}, up{0.0, 0.0, 1.0};
   double fovy_deg = 30;
   bool orthographic = false;
-  double height = 1;               ///< orthographic: world units from bottom to top
-  bool given = false;              ///< false: fitted to what is drawn
+  double height = 1;   ///< orthographic: world units from bottom to top
+  bool given = false;  ///< false: fitted to what is drawn
 };
 
 struct Background {

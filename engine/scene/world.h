@@ -73,7 +73,9 @@ class World {
     return p != nullptr && p->contains(e);
   }
   template <class T>
-  T& get(Entity e) { return pool<T>().get(e); }
+  T& get(Entity e) {
+    return pool<T>().get(e);
+  }
   template <class T>
   const T& get(Entity e) const {
     const auto* p = find_pool<T>();
@@ -81,7 +83,9 @@ class World {
     return p->get(e);
   }
   template <class T>
-  void remove(Entity e) { pool<T>().remove(e); }
+  void remove(Entity e) {
+    pool<T>().remove(e);
+  }
   template <class T>
   std::size_t count() const {
     const auto* p = find_pool<T>();

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -54,16 +53,25 @@ struct Include {
   std::string from, to;  ///< paths from the repository root
 };
 
+// the path of an #include line, or nothing
+std::string included_path(const std::string& line) {
+  const auto hash = line.find_first_not_of(" \t");
+  if (hash == std::string::npos || line[hash] != '#') return {};
+  const auto word = line.find_first_not_of(" \t", hash + 1);
+  if (word == std::string::npos || line.compare(word, 7, "include") != 0) return {};
+  const auto open = line.find_first_of("\"<", word), close = line.find_first_of("\">", open + 1);
+  return open == std::string::npos || close == std::string::npos ? std::string() : line.substr(open + 1, close - open - 1);
+}
+
 std::vector<Include> all_includes(const std::string& top) {
   std::vector<Include> found;
-  const std::regex pattern("^\\s*#\\s*include\\s*[\"<]([^\">]+)[\">]");
   for (const auto& entry : fs::recursive_directory_iterator(std::string(CATENA_SOURCE_DIR) + "/" + top)) {
     const std::string extension = entry.path().extension().string();
     if (extension != ".h" && extension != ".cpp") continue;
     std::ifstream in(entry.path());
-    std::smatch match;
     for (std::string line; std::getline(in, line);)
-      if (std::regex_search(line, match, pattern)) found.push_back({fs::relative(entry.path(), CATENA_SOURCE_DIR).string(), match[1]});
+      if (const std::string path = included_path(line); !path.empty())
+        found.push_back({fs::relative(entry.path(), CATENA_SOURCE_DIR).string(), path});
   }
   return found;
 }
