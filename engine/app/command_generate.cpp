@@ -25,6 +25,7 @@ struct Options {
   std::array<double, 2> box{-2, 2};
   double scale = 1;
   std::vector<double> direction{1, 0, 0};
+  bool direction_given = false;
 };
 
 Outcome check(const Options& o) {
@@ -38,6 +39,7 @@ Outcome check(const Options& o) {
     return Error{fmt::format("--box {} {}: expected two finite numbers, LO < HI", to_text(o.box[0]), to_text(o.box[1]))};
   if (!std::isfinite(o.scale) || o.scale == 0)
     return Error{fmt::format("--scale {}: expected a finite number other than 0", to_text(o.scale))};
+  if (o.direction_given && o.name != "uniform") return Error{"--direction: belongs to uniform, not to " + o.name};
   const Vec3 d(o.direction[0], o.direction[1], o.direction[2]);
   if (!is_finite(d) || norm(d) == 0) return Error{"--direction: expected three finite numbers, not all zero"};
   if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
@@ -55,9 +57,7 @@ Outcome generate(const Options& o) {
     parameters.direction = Vec3(o.direction[0], o.direction[1], o.direction[2]);
     if (parts.size() > 1) parameters.part = std::string(part);
     CATENA_TRY(const field::AnyField exact, field::make_analytic(o.name, parameters));
-    field::AnyField sampled;
-    if (exact.scalar) sampled.scalar = field::sample_on_grid(*exact.scalar, o.resolution, o.box[0], o.box[1]);
-    if (exact.vector) sampled.vector = field::sample_on_grid(*exact.vector, o.resolution, o.box[0], o.box[1]);
+    CATENA_TRY(const field::AnyField sampled, field::try_sample_on_grid(exact, o.resolution, o.box[0], o.box[1]));
     items.push_back({sampled, std::string(part)});
     progress.at(static_cast<double>(items.size()));
   }
@@ -78,8 +78,11 @@ void add_generate(CLI::App& program, Work& chosen) {
   command->add_option("--resolution", options->resolution, "nodes an axis, both ends included")->required();
   command->add_option("--box", options->box, "LO HI: the cube to sample")->capture_default_str();
   command->add_option("--scale", options->scale, "multiplies the values")->capture_default_str();
-  command->add_option("--direction", options->direction, "of `uniform`")->expected(3)->capture_default_str();
-  command->callback([&chosen, options] { chosen = [options] { return generate(*options); }; });
+  CLI::Option* direction = command->add_option("--direction", options->direction, "of `uniform`")->expected(3)->capture_default_str();
+  command->callback([&chosen, options, direction] {
+    options->direction_given = direction->count() > 0;
+    chosen = [options] { return generate(*options); };
+  });
 }
 
 }  // namespace catena::app

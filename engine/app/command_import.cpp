@@ -23,6 +23,7 @@ struct Options {
 Outcome import_file(const Options& o) {
   CATENA_CHECK(check_output(o.output, {o.input}));
   if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
+  if (!o.input.ends_with(".raw") && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
   field::LoadRequest request;
   request.path = o.input;
   request.grid = o.grid;

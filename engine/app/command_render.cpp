@@ -90,7 +90,7 @@ Outcome render_pictures(const Options& o) {
   if (!o.probe.empty()) inputs.push_back(o.probe);
   CATENA_CHECK(check_output(o.output, inputs));
   if (!o.stats.empty()) CATENA_CHECK(check_output(o.stats, inputs));
-  if (o.stats == o.output) return Error{o.stats + ": --stats and -o name one file: expected two"};
+  if (!o.stats.empty() && same_file(o.stats, o.output)) return Error{o.stats + ": --stats and -o name one file: expected two"};
 
   // the chain is checked with the picture: one scene, two senses
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));

@@ -95,7 +95,7 @@ Outcome replay_scene(const Options& options) {
   CATENA_CHECK(check_output(options.output, inputs));
   if (!options.stats.empty()) {
     CATENA_CHECK(check_output(options.stats, inputs));
-    if (options.stats == options.output) return Error{options.stats + ": --stats and -o name one file: expected two"};
+    if (same_file(options.stats, options.output)) return Error{options.stats + ": --stats and -o name one file: expected two"};
   }
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));

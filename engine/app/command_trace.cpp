@@ -93,6 +93,8 @@ Outcome trace_lines(const Options& options) {
   if (!std::isfinite(options.length) || !std::isfinite(options.min_speed))
     return Error{"--length and --min-speed: expected finite numbers"};
   const bool vtp = options.output.ends_with(".vtp");
+  if (!vtp && !options.output.ends_with(".csv") && !options.output.starts_with("/dev/"))
+    return Error{options.output + ": expected an output that ends in .csv or .vtp"};
   std::vector<std::string> inputs;
   CATENA_TRY(const field::VectorFieldPtr field, vector_field(options, inputs));
   inputs.push_back(options.seeds);
@@ -108,9 +110,7 @@ Outcome trace_lines(const Options& options) {
   Progress progress("trace", static_cast<double>(seeds.size()));
   for (std::size_t i = 0; i < seeds.size(); ++i) {
     auto curve = flow::trace(flow, seeds[i], trace_options);
-    if (!curve)
-      return Error{fmt::format("{}: seed {} ({} {} {}): {}", options.seeds, i, to_text(seeds[i].x), to_text(seeds[i].y),
-                               to_text(seeds[i].z), curve.error().message)};
+    if (!curve) return Error{fmt::format("{}:{}: {}", options.seeds, i + 2, curve.error().message)};  // the rows follow the header
     knots += (*curve)->knots().size();
     ++ends[flow::end_word((*curve)->first_end())];
     ++ends[flow::end_word((*curve)->last_end())];

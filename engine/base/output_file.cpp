@@ -20,6 +20,13 @@ bool written_directly(const std::string& path) {
 }
 }  // namespace
 
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code code;
+  if (written_directly(a)) return false;
+  if (fs::exists(a, code) && fs::exists(b, code)) return fs::equivalent(a, b, code);
+  return fs::weakly_canonical(a, code) == fs::weakly_canonical(b, code);
+}
+
 Outcome check_output(const std::string& path, const std::vector<std::string>& inputs) {
   std::error_code code;
   if (path.empty()) return Error{"the output's name is empty: expected a file name"};
@@ -27,9 +34,7 @@ Outcome check_output(const std::string& path, const std::vector<std::string>& in
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   if (!fs::is_directory(folder, code)) return Error{path + ": the folder " + folder.string() + " does not exist"};
   for (const std::string& input : inputs) {
-    const bool same =
-        fs::exists(path, code) ? fs::equivalent(path, input, code) : fs::weakly_canonical(path, code) == fs::weakly_canonical(input, code);
-    if (same && !written_directly(path)) return Error{path + ": is also an input: expected another name for the output"};
+    if (same_file(path, input)) return Error{path + ": is also an input: expected another name for the output"};
   }
   return Done{};
 }
@@ -48,7 +53,14 @@ OutputFile::~OutputFile() {
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-Result<OutputFile> OutputFile::open(const std::string& path) {
+Result<OutputFile> OutputFile::open(const std::string& name) {
+  // through a link to the file that it names
+  std::error_code code;
+  std::string path = name;
+  if (fs::is_symlink(name, code) && !written_directly(name)) {
+    path = fs::weakly_canonical(name, code).string();
+    if (code) return Error{name + ": cannot write: " + code.message()};
+  }
   const std::string temporary = written_directly(path) ? std::string() : path + ".part" + std::to_string(::getpid());
   std::FILE* file = std::fopen((temporary.empty() ? path : temporary).c_str(), "wb");
   if (file == nullptr) return cannot_write(path, errno);

@@ -14,6 +14,9 @@ namespace catena {
 /// one of the inputs.
 Outcome check_output(const std::string& path, const std::vector<std::string>& inputs);
 
+/// Two names of one place, whether or not it exists yet. Devices and pipes are nobody's own.
+bool same_file(const std::string& a, const std::string& b);
+
 class OutputFile {
  public:
   static Result<OutputFile> open(const std::string& path);

@@ -77,9 +77,9 @@ constexpr ScalarFormula formulas[] = {
     {"torus", torus, 0, inf},
     {"constant", constant, 1, 1},
     {"linear", linear, -inf, inf},
-    {"gaussian", gaussian, 0, 1},
+    {"gaussian", gaussian, std::numeric_limits<double>::min(), 1},  // 0 is not attained
     {"marschner-lobb", marschner_lobb, 0, 1},
-    {"tanh", plateau, -1, 1},
+    {"tanh", plateau, -1 + 0x1p-53, 1 - 0x1p-53},  // nor are -1 and 1
 };
 
 }  // namespace

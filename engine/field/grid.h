@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/field/field.h"
 
 namespace catena::field {
@@ -82,5 +83,8 @@ std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mappi
 /// Samples any field at `resolution` nodes an axis, both ends included, over the cube lo..hi (the grid `generate` writes).
 std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi);
 std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi);
+/// The same for what a user asks for: an error where the samples hold nothing (too coarse for the field's domain) or do not
+/// fit into 32-bit floats.
+Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi);
 
 }  // namespace catena::field

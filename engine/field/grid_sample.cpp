@@ -1,9 +1,11 @@
 // Any field sampled on a cube of nodes. Nodes that the field does not cover are marked invalid.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/base/numbers.h"
 #include "engine/base/parallel_for.h"
-#include "engine/field/grid.h"
+#include "engine/field/grid_make.h"
 
 namespace catena::field {
 namespace {
@@ -44,10 +46,7 @@ std::span<const std::uint8_t> mask(const std::vector<std::uint8_t>& valid) {
   return all ? std::span<const std::uint8_t>{} : std::span<const std::uint8_t>(valid);
 }
 
-}  // namespace
-
-std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi) {
-  const Nodes n = nodes(resolution, lo, hi);
+Result<std::shared_ptr<const ScalarGrid>> sample_scalar(const ScalarField& field, const Nodes& n) {
   std::vector<float> values(n.count);
   std::vector<std::uint8_t> valid(n.count);
   for_nodes(n, [&](std::size_t at, const Vec3& world, Cursor& cursor) {
@@ -55,11 +54,10 @@ std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int r
     values[at] = static_cast<float>(s.value);
     valid[at] = s.inside;
   });
-  return make_scalar_grid(field.name(), n.mapping, n.size, values, mask(valid));
+  return try_make_scalar_grid(field.name(), n.mapping, n.size, values, mask(valid));
 }
 
-std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi) {
-  const Nodes n = nodes(resolution, lo, hi);
+Result<std::shared_ptr<const VectorGrid>> sample_vector(const VectorField& field, const Nodes& n) {
   std::vector<float> values(3 * n.count);
   std::vector<std::uint8_t> valid(n.count);
   for_nodes(n, [&](std::size_t at, const Vec3& world, Cursor& cursor) {
@@ -67,7 +65,41 @@ std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int r
     for (int a = 0; a < 3; ++a) values[3 * at + a] = static_cast<float>(s.value[a]);
     valid[at] = s.inside;
   });
-  return make_vector_grid(field.name(), n.mapping, n.size, values, mask(valid));
+  return try_make_vector_grid(field.name(), n.mapping, n.size, values, mask(valid));
+}
+
+}  // namespace
+
+std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi) {
+  return sample_scalar(field, nodes(resolution, lo, hi)).value();
+}
+
+std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi) {
+  return sample_vector(field, nodes(resolution, lo, hi)).value();
+}
+
+Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi) {
+  const std::string what =
+      "field \"" + field.get()->name() + "\", " + std::to_string(resolution) + " nodes an axis from " + to_text(lo) + " to " + to_text(hi);
+  const double spacing = (hi - lo) / (resolution - 1);
+  if (!std::isfinite(spacing) || !(lo + spacing > lo))
+    return Error{what + ": the spacing is not a usable number; a smaller or larger box was expected"};
+  AnyField sampled;
+  GridStats stats;
+  if (field.scalar) {
+    auto grid = sample_scalar(*field.scalar, nodes(resolution, lo, hi));
+    if (!grid) return Error{what + ": the grid " + grid.error().message};
+    sampled.scalar = *grid;
+    stats = (*grid)->stats();
+  } else {
+    auto grid = sample_vector(*field.vector, nodes(resolution, lo, hi));
+    if (!grid) return Error{what + ": the grid " + grid.error().message};
+    sampled.vector = *grid;
+    stats = (*grid)->stats();
+  }
+  if (stats.nan_count > 0)
+    return Error{what + ": " + std::to_string(stats.nan_count) + " samples do not fit into 32-bit floats; smaller values were expected"};
+  return sampled;
 }
 
 }  // namespace catena::field

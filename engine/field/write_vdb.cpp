@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <glm/matrix.hpp>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -45,6 +47,11 @@ Result<openvdb::GridCPtrVec> grids_of(const std::string& path, const std::vector
   openvdb::MaskTree::Ptr mask;
   const Field* masked = nullptr;
   for (const WriteItem& item : items) {
+    // OpenVDB takes smaller voxels for flat ones
+    const double volume = std::fabs(glm::determinant(item.field.get()->mapping().world_from_index_linear));
+    if (!(volume > 3e-15) || !std::isfinite(volume))
+      return Error{fmt::format(
+          "{}: a .vdb cannot hold voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length", path, volume)};
     // the grid
     const ScalarGrid* scalar = item.field.scalar ? item.field.scalar->grid() : nullptr;
     const VectorGrid* vector = item.field.vector ? item.field.vector->grid() : nullptr;

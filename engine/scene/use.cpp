@@ -67,12 +67,13 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
   CATENA_TRY(const field::AnyField loaded, use_field(scene, field, where));
   FieldSource& source = scene.world.get<FieldSource>(field);
   if (source.drawn.get() == nullptr) {
-    if (loaded.get()->is_grid())
+    if (loaded.get()->is_grid()) {
       source.drawn = loaded;
-    else if (loaded.scalar)
-      source.drawn.scalar = field::sample_on_grid(*loaded.scalar, source.resolution, source.box[0], source.box[1]);
-    else
-      source.drawn.vector = field::sample_on_grid(*loaded.vector, source.resolution, source.box[0], source.box[1]);
+    } else {
+      const auto drawn = field::try_sample_on_grid(loaded, source.resolution, source.box[0], source.box[1]);
+      if (!drawn) return json::error_at(source.where, drawn.error().message);
+      source.drawn = *drawn;
+    }
   }
   if (source.drawn.scalar)
     scene.world.each<Volume>([&](Entity, Volume& volume) {

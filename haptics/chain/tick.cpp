@@ -41,6 +41,20 @@ void advance_link(const Link& spec, const Vec3& incoming, bool on, bool first_ti
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
 
+// The force's direction where it is too large for a double: every term scaled down before it is formed.
+Vec3 huge_force(const Program& program, const Vec3& probe, double dt, const ChainState& state) noexcept {
+  constexpr double small = 1e-160;
+  Vec3 incoming = probe, force(0.0);
+  for (std::size_t i = 0; i < program.links.size(); ++i) {
+    const LinkState& link = state.links[i];
+    force += (link.proxy * small - incoming * small) * (link.weight * program.links[i].stiffness_n_per_m * program.metres_per_unit * small);
+    incoming = link.proxy;
+  }
+  if (state.has_probe && dt > 0)
+    force -= (probe * small - state.last_probe * small) * (program.coupling.damping_ns_per_m * program.metres_per_unit / dt * small);
+  return force;
+}
+
 void report(const Program& program, const ChainState& state, const Vec3* link_forces, exchange::HapticState& out) noexcept {
   out.tick = state.ticks;
   out.t_s = state.last_t_s;
@@ -93,7 +107,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   if (state.has_probe && dt > 0) force -= (probe.position - state.last_probe) * (program.coupling.damping_ns_per_m * s / dt);
   const double magnitude = norm(force);
   if (!std::isfinite(magnitude)) {
-    force = is_finite(force) ? direction(force) * program.coupling.max_force_n : Vec3(0.0);
+    force = direction(huge_force(program, probe.position, dt, state)) * program.coupling.max_force_n;
   } else if (magnitude > program.coupling.max_force_n) {
     force *= program.coupling.max_force_n / magnitude;
   }

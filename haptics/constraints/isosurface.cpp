@@ -4,6 +4,7 @@
 
 #include "haptics/constraints/isosurface_analytic.h"
 #include "haptics/constraints/isosurface_cell_walk.h"
+#include "haptics/constraints/isosurface_descent.h"
 #include "haptics/constraints/isosurface_reach.h"
 #include "haptics/constraints/surface_side.h"
 
@@ -12,6 +13,11 @@ namespace {
 
 constexpr double kSearchRadius = 2;  // of L
 constexpr int kFirstWalk = 32;       // fetches before a walk asks for the coarse method
+constexpr int kQuick = 24;           // fetches before a formula asks for the descent
+constexpr int kSlidePart = 120;       // fetches of a descent before the probe is projected afresh
+constexpr int kSight = 16;           // fetches on the line of sight
+constexpr int kForLevel = 24;        // fetches kept for the way back to the level
+constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
 
 /// What the link remembers: the rules' part, the point held, the curvature learned.
 struct Memory {
@@ -35,18 +41,16 @@ class LevelSurface final : public Surface {
 
   Hold place(const Vec3& probe) noexcept override {
     const LevelPoint start = look(probe);
-    Reached reached = reach_along_gradient(field_, start, Vec3(0.0), kSearchRadius * field_.length());
-    if (!reached.found) {
-      // where the march ended it may be much closer to the level
-      const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
-      reached = reach_by_scan(field_, closer ? reached.at : start);
-      if (!reached.found && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
-    }
-    return reached.found ? settle(reached.at, probe, Curvature{}) : Hold{};
+    const Reached reached = project(start, kSearchRadius * field_.length());
+    if (!reached.found) return {};
+    const Hold hold = settle(reached.at, probe, Curvature{});
+    // further away than the field says: something nearer may be in sight
+    const bool far = norm(probe - hold.proxy) > 1.05 * std::fabs(start.distance);
+    return field_.grid() || !far ? hold : settle_in_sight(start, hold);
   }
 
   Hold slide(const Vec3& probe) noexcept override {
-    if (!field_.grid()) return settle_formula(memory_.at, probe, memory_.curvature);
+    if (!field_.grid()) return settle_formula(memory_.at, probe, memory_.curvature, true);
     const Vec3 p = world_of(*field_.grid(), memory_.cell);
     if (memory_.side.fresh && norm(probe - memory_.side.probe) > 2 * field_.voxel()) {
       const LevelPoint start = field_.at(p);
@@ -88,26 +92,88 @@ class LevelSurface final : public Surface {
 
   /// From a point on the level to the closest point.
   Hold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
-    if (!field_.grid()) return settle_formula(start, probe, curvature);
+    if (!field_.grid()) return settle_formula(start, probe, curvature, false);
     return settle_grid(cell_point(*field_.grid(), start.p), start, probe);
   }
 
-  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature) noexcept {
-    const LevelPoint before = at;
-    constexpr int kForLevel = 24;  // fetches kept for the way back to the level
-    const ClosestGoal goal{1e-8 * field_.length(), 1e-12 * field_.length(), kEvaluationCap - field_.evaluations() - kForLevel};
-    Closest how = closest_point(field_, probe, goal, at, curvature);
-    if (how != Closest::converged && std::fabs(at.distance) > 1e-11 * field_.length()) {
-      const Reached reached = reach_along_gradient(field_, at, at.n, field_.length(), 0);
-      if (reached.found) at = reached.at;
+  /// From anywhere to the level, without an earlier point.
+  Reached project(const LevelPoint& start, double radius) noexcept {
+    Reached reached = reach_along_gradient(field_, start, Vec3(0.0), radius);
+    if (reached.found) return reached;
+    if (!field_.grid()) {
+      const Reached near = reach_by_scan(field_, start, true);
+      if (near.found) return near;
     }
-    // lost: the last point on the level is kept
-    if (std::fabs(at.distance) > 1e-9 * field_.length() && std::fabs(before.distance) < std::fabs(at.distance)) at = before;
+    // where the march ended it may be much closer to the level
+    const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
+    reached = reach_by_scan(field_, closer ? reached.at : start);
+    if (!reached.found && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
+    return reached;
+  }
+
+  /// The quick iteration; then down the surface from the better end of it; then once more from a fresh projection.
+  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool afresh) noexcept {
+    LevelPoint best = at;
+    Closest how = closest_point(field_, probe, goal(kQuick), at, curvature);
+    if (how == Closest::converged) return hold_formula(at, how, curvature);
+    at = relevelled(at);
+    if (nearer(best, at, probe)) at = best;
+    afresh = afresh || !usable(at);
+    how = usable(at) ? descend(field_, probe, goal(afresh ? kSlidePart : kEvaluationCap), at, curvature) : Closest::stuck;
+    if (how == Closest::converged || !afresh || field_.spent(3 * kForLevel)) return hold_formula(at, how, curvature);
+
+    const Reached fresh = project(field_.at(probe), kSearchRadius * field_.length());
+    if (!fresh.found) return hold_formula(at, how, curvature);
+    best = fresh.at;
+    Curvature other;
+    const Closest again = descend(field_, probe, goal(kEvaluationCap), best, other);
+    if (!nearer(best, at, probe)) return hold_formula(at, how, curvature);
+    return hold_formula(best, again, other);
+  }
+
+  /// From a point between the probe and what is held, if the level is met there.
+  Hold settle_in_sight(const LevelPoint& probe, const Hold& hold) noexcept {
+    const LevelPoint before = memory_.at;
+    if (field_.spent(kSight + 2 * kForLevel)) return hold;
+    LevelPoint a = probe;
+    for (int i = 1; i < kSight; ++i) {
+      const LevelPoint b = field_.at(probe.p + (hold.proxy - probe.p) * (i * (1.0 / kSight)));
+      if (a.valid && b.valid && (a.sigma < 0) != (b.sigma < 0)) {
+        const Reached root = root_between(field_, a, b);
+        if (!root.found) return hold;
+        LevelPoint at = root.at;
+        Curvature curvature;
+        const Closest how = descend(field_, probe.p, goal(kEvaluationCap), at, curvature);
+        if (nearer(at, before, probe.p)) return hold_formula(at, how, curvature);
+        return hold;
+      }
+      a = b;
+    }
+    return hold;
+  }
+
+  Hold hold_formula(const LevelPoint& at, Closest how, const Curvature& curvature) noexcept {
     memory_.at = at;
     memory_.curvature = curvature;
     memory_.normal = at.n;
-    const Status status = how == Closest::converged ? Status::ok : how == Closest::spent ? Status::budget : Status::critical;
+    const Status status = how == Closest::converged ? Status::ok : degenerate(at) ? Status::critical : Status::budget;
     return {true, at.p, std::fabs(at.distance), status};
+  }
+
+  ClosestGoal goal(int most) noexcept {
+    return {1e-8 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel)};
+  }
+  bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
+  /// No gradient, not finite, or so flat that the level is lost in round-off.
+  bool degenerate(const LevelPoint& a) const noexcept { return !a.valid || a.plateau || a.round_off > kOnLevel * field_.length(); }
+  bool nearer(const LevelPoint& a, const LevelPoint& b, const Vec3& probe) const noexcept {
+    if (usable(a) != usable(b)) return usable(a);
+    return usable(a) ? norm(probe - a.p) < norm(probe - b.p) : std::fabs(a.distance) < std::fabs(b.distance);
+  }
+  LevelPoint relevelled(const LevelPoint& a) noexcept {
+    if (std::fabs(a.distance) <= 1e-11 * field_.length() || !a.valid || a.plateau) return a;
+    const Reached reached = reach_along_gradient(field_, a, a.n, field_.length(), 0);
+    return reached.found ? reached.at : a;
   }
 
   /// Far along the surface first as if it were smooth, then exactly, cell by cell.

@@ -6,8 +6,9 @@ namespace {
 constexpr double kShrink = 0.35;
 constexpr int kSlow = 12;  // steps
 
-/// SR1 update from one accepted step, on the tangent plane of its end.
-void learn(const LevelPoint& from, const LevelPoint& to, double length, Curvature& b) {
+}  // namespace
+
+void learn_curvature(const LevelPoint& from, const LevelPoint& to, double length, Curvature& b) noexcept {
   const auto on_plane = [&](const Vec3& v) { return v - to.n * dot(to.n, v); };
   const Vec3 sigma = on_plane(to.p - from.p), y = on_plane(to.n - from.n);
   const Vec3 r = on_plane(y - b.times(sigma));
@@ -23,9 +24,8 @@ void learn(const LevelPoint& from, const LevelPoint& to, double length, Curvatur
   if (!(most <= 1e4 / length)) b = Curvature{};
 }
 
-/// The curvature by two more fetches, where learning it is too slow.
-Curvature measure(LevelField& field, const LevelPoint& at, double length) {
-  const double h = 1e-6 * length;
+Curvature measure_curvature(LevelField& field, const LevelPoint& at) noexcept {
+  const double h = 1e-6 * field.length();
   Vec3 t1, t2;
   tangents(at.n, t1, t2);
   const LevelPoint p1 = field.at(at.p + t1 * h), p2 = field.at(at.p + t2 * h);
@@ -35,8 +35,6 @@ Curvature measure(LevelField& field, const LevelPoint& at, double length) {
   const auto entry = [&](int i, int k) { return b11 * t1[i] * t1[k] + b12 * (t1[i] * t2[k] + t2[i] * t1[k]) + b22 * t2[i] * t2[k]; };
   return {entry(0, 0), entry(1, 1), entry(2, 2), entry(1, 2), entry(0, 2), entry(0, 1)};
 }
-
-}  // namespace
 
 void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept {
   // eigenvalues of [m11 m12; m12 m22] and the eigenvector (c, s) of the first
@@ -66,7 +64,7 @@ Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& g
   for (int step_count = 0;; ++step_count) {
     // slow: the surface is nearly a sphere around the probe, and the step hangs on the curvature's last digits
     if (step_count >= kSlow && (step_count - kSlow) % 6 == 0) {
-      curvature = measure(field, a, length);
+      curvature = measure_curvature(field, a);
       least = std::max(0.1 * least, 1e-4);
     }
     const Vec3 e = probe - a.p;
@@ -123,7 +121,7 @@ Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& g
         }
       }
       if (trial == 2) {
-        curvature = measure(field, a, length);
+        curvature = measure_curvature(field, a);
         u = newton();
         continue;
       }
@@ -144,7 +142,7 @@ Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& g
       continue;
     }
     const double moved = norm(u);
-    learn(a, c, length, curvature);
+    learn_curvature(a, c, length, curvature);
     trust = std::max(4 * moved, 1e-3 * length);
     a = c;
   }

@@ -28,6 +28,12 @@ enum class Closest { converged, stuck, spent };
 /// Moves `at` (valid, not a plateau) to the closest point; `at` is the best point found whatever comes back.
 Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& goal, LevelPoint& at, Curvature& curvature) noexcept;
 
+/// SR1 update of b from one accepted step, on the tangent plane of its end.
+void learn_curvature(const LevelPoint& from, const LevelPoint& to, double length, Curvature& b) noexcept;
+
+/// The curvature at a point by two more fetches, where learning it is too slow.
+Curvature measure_curvature(LevelField& field, const LevelPoint& at) noexcept;
+
 /// M u = t in two dimensions, eigenvalues taken as |.| >= least: always a descent direction.
 void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept;
 

@@ -75,7 +75,7 @@ Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const V
   return {a.valid && !a.plateau && on_level(field, a), a};
 }
 
-Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept {
+Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only) noexcept {
   constexpr std::array<double, 8> kRadii{1.0 / 64, 1.0 / 35, 1.0 / 20, 1.0 / 11, 1.0 / 6, 0.3, 0.55, 1.0};
   std::array<LevelPoint, 27> last;
   last.fill(centre);
@@ -83,7 +83,9 @@ Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept {
   for (const double part : kRadii) {
     for (int k = 0; k < 27; ++k) {
       if (k == 13 || field.spent(kReserve)) continue;
-      const Vec3 d = direction(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+      const Vec3 towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      if (axes_only && dot(towards, towards) > 1) continue;
+      const Vec3 d = direction(towards);
       const Vec3 wanted = centre.p + d * (part * field.length());
       if (max_abs(field.clamped(wanted) - wanted) > 0) continue;
       const LevelPoint here = field.at(wanted);

@@ -18,8 +18,9 @@ Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept;
 /// `reserve`: fetches left to others. Not found: `at` is where the march ended, if it is valid.
 Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius, int reserve = 32) noexcept;
 
-/// Looks along 26 directions, near before far, up to L from the centre. Not found: `at` is the sample nearest in value.
-Reached reach_by_scan(LevelField& field, const LevelPoint& centre) noexcept;
+/// Looks along 26 directions, or along the 6 axes only, near before far, up to L from the centre. Not found: `at` is the sample
+/// nearest in value.
+Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only = false) noexcept;
 
 /// The first crossing of the segment from..to, seen with steps of march_step (at most 64).
 Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept;

@@ -54,7 +54,7 @@ const std::vector<Key>& common_keys() {
   static const std::vector<Key> keys{
       {"name", "string", true, "unique; names the columns of the tick CSV", R"("pattern": "^[a-z][a-z0-9_]*$")"},
       {"type", "string", true, "which constraint"},
-      {"stiffness", "number", false, "N/m; default: the coupling's", kPositiveSchema},
+      {"stiffness", "number", false, "N/m; default: the coupling's", kNotNegativeSchema},
       {"on", "object", false, "its switch: {button: n} or {force_above: newtons}",
        R"("properties": {"button": {"type": "integer", "minimum": 1}, "force_above": {"type": "number", "exclusiveMinimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 1)"}};
   return keys;

@@ -30,6 +30,7 @@ struct Key {
 
 inline constexpr std::string_view kVec3Schema = R"("items": {"type": "number"}, "minItems": 3, "maxItems": 3)";
 inline constexpr std::string_view kPositiveSchema = R"("exclusiveMinimum": 0)";
+inline constexpr std::string_view kNotNegativeSchema = R"("minimum": 0)";
 inline constexpr std::string_view kFreeSchema = R"("enum": ["none", "above", "below"])";
 
 struct ConstraintType {

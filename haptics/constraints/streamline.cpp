@@ -13,7 +13,6 @@ constexpr std::string_view kMethodSchema = R"("enum": ["linear", "euler", "rk2",
 constexpr std::string_view kFollowSchema = R"("enum": ["selected", "online"])";
 constexpr std::string_view kKindSchema = R"("enum": ["vector", "line"])";
 constexpr std::string_view kToleranceSchema = R"("exclusiveMinimum": 0, "exclusiveMaximum": 1)";
-constexpr std::string_view kNotNegativeSchema = R"("minimum": 0)";
 
 /// An online line needs a direction at its seed before the first tick.
 Outcome check_seed(const json::Node& where, const OnlineSpec& spec, const std::string& name) {

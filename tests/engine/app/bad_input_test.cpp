@@ -89,6 +89,10 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"UnknownField", chain("{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"q\", \"level\": 1}"), {":3:", "\"q\""}},
         Bad{"WrongKindOfField", chain("{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"v\", \"level\": 1}"), {":3:", "scalar"}},
         Bad{"LevelNotAttained", chain("{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"s\", \"level\": -1}"), {":3:", "level"}},
+        Bad{"LevelOnlyApproached",
+            "{\"fields\": {\"g\": {\"analytic\": \"gaussian\"}}, \"chain\": [\n{\"name\": \"a\", \"type\": \"isosurface\", \"field\": "
+            "\"g\", \"level\": 0}]}",
+            {":2:", "level"}},
         Bad{"NoLevel", chain("{\"name\": \"a\", \"type\": \"isosurface\", \"field\": \"s\"}"), {":3:", "level"}},
         Bad{"NegativeRelease", surface(", \"release\": -0.1"), {":3:", "release"}},
         Bad{"NanRelease", surface(", \"release\": NaN"), {":3:"}}, Bad{"HugeNumber", surface(", \"release\": 1e999"), {":3:"}},
@@ -161,6 +165,11 @@ TEST_F(BadArguments, Generate) {
   refused({"generate", "uniform", "-o", o, "--resolution", "8", "--direction", "0", "0", "0"}, o, {"direction"});
   refused({"generate", "sphere", "-o", folder_ / "none/o.vdb", "--resolution", "8"}, folder_ / "none/o.vdb", {"none"});
   refused({"generate", "sphere", "-o", "/dev/full", "--resolution", "8"}, {}, {"/dev/full"});
+  refused({"generate", "left-ventricle", "-o", o, "--resolution", "2"}, o, {"fibre", "2 nodes"});
+  refused({"generate", "circle", "-o", o, "--resolution", "4", "--scale", "1e39"}, o, {"circle"});
+  refused({"generate", "circle", "-o", o, "--resolution", "4", "--box", "-1e39", "1e39"}, o, {"32-bit"});
+  refused({"generate", "circle", "-o", o, "--resolution", "4", "--box", "-1e308", "1e308"}, o, {"circle"});
+  refused({"generate", "circle", "-o", o, "--resolution", "4", "--direction", "1", "0", "0"}, o, {"direction"});
 }
 
 TEST_F(BadArguments, OutputsThatCannotBe) {
@@ -169,6 +178,7 @@ TEST_F(BadArguments, OutputsThatCannotBe) {
   refused({"replay", s, "--probe", p, "-o", "/dev/full"}, {}, {"/dev/full", "space"});
   refused({"replay", s, "--probe", p, "-o", folder_ / "o.csv", "--stats", "/dev/full"}, folder_ / "o.csv", {"/dev/full"});
   refused({"replay", s, "--probe", p, "-o", p}, {}, {"input"});
+  refused({"replay", s, "--probe", p, "-o", folder_ / "o.csv", "--stats", folder_ / "./o.csv"}, folder_ / "o.csv", {"one file"});
   refused({"replay", s, "--probe", p, "-o", s}, {}, {"input"});
   refused({"replay", s, "--probe", p, "-o", folder_.path()}, {}, {"folder"});
   refused({"render", s, "-o", "/dev/full", "--size", "8x8"}, {}, {"/dev/full"});
@@ -185,6 +195,9 @@ TEST_F(BadArguments, TraceRenderInfo) {
   test::write_file(folder_ / "bad.csv", "x,y,z\n1,0\n");
   refused({"trace", s, "--field", "v", "--seeds", folder_ / "bad.csv", "-o", o}, o, {"bad.csv:2"});
   refused({"trace", s, "--field", "v", "--seeds", folder_ / "none.csv", "-o", o}, o, {"none.csv"});
+  refused({"trace", s, "--field", "v", "--seeds", seeds, "-o", folder_ / "o.xyz"}, folder_ / "o.xyz", {".csv or .vtp"});
+  test::write_file(folder_ / "zero.csv", "x,y,z\n1,0,0\n0,0,1\n");
+  refused({"trace", s, "--field", "v", "--seeds", folder_ / "zero.csv", "-o", o}, o, {"zero.csv:3:"});
   refused({"trace", s, "--field", "v", "--seeds", seeds, "-o", o, "--length", "nan"}, o, {"length"});
   refused({"trace", s, "--field", "v", "--seeds", seeds, "-o", o, "--length", "-1"}, o, {"length"});
   refused({"render", s, "-o", folder_ / "o.png", "--size", "0x5"}, folder_ / "o.png", {"size"});

@@ -1,6 +1,8 @@
 /// `generate`, `info`, `import` from the outside.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
@@ -37,6 +39,31 @@ TEST(Generate, EveryNameOfTheContractWorks) {
     EXPECT_EQ(run.exit_code, 0) << name << ": " << run.err;
     EXPECT_TRUE(test::exists(out)) << name;
   }
+}
+
+TEST(Generate, VoxelsSmallerThanAVdbCanHoldAreRefusedInOneSentence) {
+  const test::TemporaryFolder folder;
+  const auto run =
+      test::run_program(CATENA_PROGRAM, {"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-2e-9", "2e-9"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("unit of length"), std::string::npos) << run.err;
+  EXPECT_FALSE(test::exists(folder / "a.vdb"));
+  EXPECT_EQ(test::run_program(CATENA_PROGRAM, {"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-4e-5", "4e-5"})
+                .exit_code,
+            0);
+}
+
+TEST(Generate, WritesThroughALink) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "real.csv", "old");
+  std::filesystem::create_symlink(folder / "real.csv", folder / "link.csv");
+  test::write_file(folder / "s.json", "{}");
+  test::write_file(folder / "p.csv", "t,x,y,z\n0,0,0,0\n");
+  ASSERT_EQ(
+      test::run_program(CATENA_PROGRAM, {"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "link.csv"}).exit_code,
+      0);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
+  EXPECT_NE(test::read_file(folder / "real.csv"), "old");
 }
 
 TEST(Import, NiftiOfTheDistributionBecomesAVdb) {

@@ -68,6 +68,17 @@ TEST(Tick, ForceIsLimitedAndKeepsItsDirection) {
   EXPECT_NEAR(run.out.force_n.z, 8 / std::sqrt(2.0), 1e-14);
 }
 
+TEST(Tick, AForceBeyondDoublesIsStillLimitedInItsDirection) {
+  Hand run;
+  run.program.links = {hold_height("a", 1)};
+  run.step(0, {0, 0, -1.7e308});
+  EXPECT_DOUBLE_EQ(run.out.force_n.z, 8);
+  run.program.coupling.damping_ns_per_m = 1;
+  run.step(1e-3, {1.7e308, 0, 1});
+  EXPECT_NEAR(norm(run.out.force_n), 8, 1e-12);
+  EXPECT_LT(run.out.force_n.x, 0);
+}
+
 TEST(Tick, BadProbeHoldsProxiesAndGivesNoForce) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
