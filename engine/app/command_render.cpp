@@ -78,6 +78,19 @@ void orbit(render::View& view, double degrees) {
   view.position = view.target + turn(view.position - view.target);
 }
 
+// "1 volume, 3 streamlines, the cursor"
+std::string what_is_drawn(const render::FramePacket& packet) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : many);
+  };
+  add(packet.volumes.size(), "volume", "volumes");
+  add(packet.isosurfaces.size(), "isosurface", "isosurfaces");
+  add(packet.tubes.size(), "streamline", "streamlines");
+  add(packet.cursors.size(), "cursor", "cursors");
+  return text.empty() ? "nothing" : text;
+}
+
 Outcome render_pictures(const Options& o) {
   CATENA_TRY(const Size size, parse_size(o.size));
   if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
@@ -123,7 +136,7 @@ Outcome render_pictures(const Options& o) {
   const render::Picture first = read_back();
   stats.first_frame_ms = ms_since_process_start();
   stats.device = (*renderer)->stats().device;
-  fmt::print("{}: {}x{} on {}\n", o.output, size.width, size.height, stats.device);
+  fmt::print("{}: {}x{}, {}, on {}\n", o.output, size.width, size.height, what_is_drawn(packet), stats.device);
 
   // the reported frames come after a few unreported ones
   const bool transparent = packet.background[3] < 1;

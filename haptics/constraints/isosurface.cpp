@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kSearchRadius = 2;  // of L
 constexpr int kFirstWalk = 32;       // fetches before a walk asks for the coarse method
-constexpr int kQuick = 24;           // fetches before a formula asks for the descent
-constexpr int kSlidePart = 120;       // fetches of a descent before the probe is projected afresh
+constexpr int kQuick = 200;          // fetches before a formula asks for the descent
+constexpr int kQuickRefusals = 8;    // in a row, likewise
 constexpr int kSight = 16;           // fetches on the line of sight
-constexpr int kForLevel = 24;        // fetches kept for the way back to the level
+constexpr int kForLevel = 12;        // fetches kept for the way back to the level
 constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
 
 /// What the link remembers: the rules' part, the point held, the curvature learned.
@@ -50,7 +50,7 @@ class LevelSurface final : public Surface {
   }
 
   Hold slide(const Vec3& probe) noexcept override {
-    if (!field_.grid()) return settle_formula(memory_.at, probe, memory_.curvature, true);
+    if (!field_.grid()) return settle_formula(memory_.at, probe, memory_.curvature);
     const Vec3 p = world_of(*field_.grid(), memory_.cell);
     if (memory_.side.fresh && norm(probe - memory_.side.probe) > 2 * field_.voxel()) {
       const LevelPoint start = field_.at(p);
@@ -92,7 +92,7 @@ class LevelSurface final : public Surface {
 
   /// From a point on the level to the closest point.
   Hold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
-    if (!field_.grid()) return settle_formula(start, probe, curvature, false);
+    if (!field_.grid()) return settle_formula(start, probe, curvature);
     return settle_grid(cell_point(*field_.grid(), start.p), start, probe);
   }
 
@@ -111,30 +111,31 @@ class LevelSurface final : public Surface {
     return reached;
   }
 
-  /// The quick iteration; then down the surface from the better end of it; then once more from a fresh projection.
-  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool afresh) noexcept {
+  /// The quick iteration; then down the surface from the better end of it; where that is stuck, from a fresh projection.
+  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature) noexcept {
     LevelPoint best = at;
-    Closest how = closest_point(field_, probe, goal(kQuick), at, curvature);
-    if (how == Closest::converged) return hold_formula(at, how, curvature);
+    if (closest_point(field_, probe, goal(kQuick), at, curvature) == Closest::converged)
+      return hold_formula(at, Closest::converged, probe, curvature);
     at = relevelled(at);
-    if (nearer(best, at, probe)) at = best;
-    afresh = afresh || !usable(at);
-    how = usable(at) ? descend(field_, probe, goal(afresh ? kSlidePart : kEvaluationCap), at, curvature) : Closest::stuck;
-    if (how == Closest::converged || !afresh || field_.spent(3 * kForLevel)) return hold_formula(at, how, curvature);
+    if (nearer(best, at, probe)) at = usable(best) ? best : relevelled(best);
+    Closest how = Closest::stuck;
+    if (usable(at)) how = descend(field_, probe, goal(kEvaluationCap), at, curvature);
+    if (how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
 
     const Reached fresh = project(field_.at(probe), kSearchRadius * field_.length());
-    if (!fresh.found) return hold_formula(at, how, curvature);
+    if (!fresh.found) return hold_formula(at, how, probe, curvature);
     best = fresh.at;
     Curvature other;
     const Closest again = descend(field_, probe, goal(kEvaluationCap), best, other);
-    if (!nearer(best, at, probe)) return hold_formula(at, how, curvature);
-    return hold_formula(best, again, other);
+    best = relevelled(best);
+    if (!nearer(best, at, probe)) return hold_formula(at, how, probe, curvature);
+    return hold_formula(best, again, probe, other);
   }
 
   /// From a point between the probe and what is held, if the level is met there.
   Hold settle_in_sight(const LevelPoint& probe, const Hold& hold) noexcept {
     const LevelPoint before = memory_.at;
-    if (field_.spent(kSight + 2 * kForLevel)) return hold;
+    if (field_.spent(kSight + 4 * kForLevel)) return hold;
     LevelPoint a = probe;
     for (int i = 1; i < kSight; ++i) {
       const LevelPoint b = field_.at(probe.p + (hold.proxy - probe.p) * (i * (1.0 / kSight)));
@@ -144,7 +145,7 @@ class LevelSurface final : public Surface {
         LevelPoint at = root.at;
         Curvature curvature;
         const Closest how = descend(field_, probe.p, goal(kEvaluationCap), at, curvature);
-        if (nearer(at, before, probe.p)) return hold_formula(at, how, curvature);
+        if (nearer(at, before, probe.p)) return hold_formula(at, how, probe.p, curvature);
         return hold;
       }
       a = b;
@@ -152,20 +153,34 @@ class LevelSurface final : public Surface {
     return hold;
   }
 
-  Hold hold_formula(const LevelPoint& at, Closest how, const Curvature& curvature) noexcept {
+  Hold hold_formula(LevelPoint at, Closest how, const Vec3& probe, const Curvature& curvature) noexcept {
+    Status status = Status::ok;
+    if (how != Closest::converged) {
+      at = relevelled(at);
+      // not there yet is no reason to give up: only where the surface itself does
+      const bool idle = how == Closest::stuck || norm(at.p - memory_.at.p) <= 1e-12 * field_.length();
+      status = degenerate(at) || (idle && usable(at) && kink(at, probe)) ? Status::critical : Status::budget;
+    }
     memory_.at = at;
     memory_.curvature = curvature;
     memory_.normal = at.n;
-    const Status status = how == Closest::converged ? Status::ok : degenerate(at) ? Status::critical : Status::budget;
     return {true, at.p, std::fabs(at.distance), status};
   }
 
   ClosestGoal goal(int most) noexcept {
-    return {1e-8 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel)};
+    return {1e-8 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
+            kQuickRefusals};
   }
   bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
   /// No gradient, not finite, or so flat that the level is lost in round-off.
   bool degenerate(const LevelPoint& a) const noexcept { return !a.valid || a.plateau || a.round_off > kOnLevel * field_.length(); }
+  /// The normal jumps within 2e-9 L.
+  bool kink(const LevelPoint& a, const Vec3& probe) noexcept {
+    const Vec3 e = probe - a.p, way = direction(e - a.n * dot(a.n, e)) * (1e-9 * field_.length());
+    if (field_.spent(2)) return false;
+    const LevelPoint ahead = field_.at(a.p + way), behind = field_.at(a.p - way);
+    return !ahead.valid || !behind.valid || ahead.plateau || behind.plateau || dot(ahead.n, behind.n) < 0.9;
+  }
   bool nearer(const LevelPoint& a, const LevelPoint& b, const Vec3& probe) const noexcept {
     if (usable(a) != usable(b)) return usable(a);
     return usable(a) ? norm(probe - a.p) < norm(probe - b.p) : std::fabs(a.distance) < std::fabs(b.distance);

@@ -3,11 +3,13 @@
 /// Keys: `field`, `level`, `free` (none | above | below, by field value), `release`; the rules are those of surface_side.h.
 ///   reach (isosurface_reach.h)          from anywhere to the level: march, bracket, Illinois; then a scan of 26 directions
 ///   closest (isosurface_analytic.h)     formulas: Newton with the surface's curvature, SR1
+///   descent (isosurface_descent.h)      formulas with folds, where that is stuck: down on the surface, in a trust region
 ///   cell walk (isosurface_cell_walk.h)  grids: exact within each trilinear cell, from cell to cell
 /// Search radius: 2 L around the first probe (the probe clamped to the domain on grids) along the gradient, then L along 26
 /// directions. Off the level by at most 1e-11 L (formulas), 1e-9 L (grids); from the closest point by at most 1e-6 L.
-/// Status: OK; FREE; RELEASED; BUDGET (257 fetches spent, goes on next tick); BOUNDARY (on a wall of the domain, the mask, or
-/// voxels that are not finite); CRITICAL (the gradient vanishes, or a value is not finite); NO_SURFACE (probe passed through).
+/// Status: OK; FREE; RELEASED; BUDGET (not at the closest point yet: goes on next tick); BOUNDARY (on a wall of the domain, the
+/// mask, or voxels that are not finite); CRITICAL (the gradient vanishes or jumps there, or a value is not finite);
+/// NO_SURFACE (probe passed through).
 #pragma once
 #include "haptics/constraints/registry.h"
 

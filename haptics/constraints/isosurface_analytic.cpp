@@ -96,7 +96,7 @@ Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& g
     bool accepted = false;
     double pull = 1;
     LevelPoint c;
-    for (int trial = 0; trial < 24; ++trial) {
+    for (int trial = 0; trial < goal.refusals; ++trial) {
       if (field.spent() || field.evaluations() - first >= goal.most) {
         at = a;
         return Closest::spent;

@@ -21,6 +21,7 @@ struct ClosestGoal {
   double tangential = 0;  ///< stop at |t|, world units
   double off_level = 0;   ///< and |l|
   int most = 128;         ///< fetches
+  int refusals = 24;      ///< in a row: stuck
 };
 
 enum class Closest { converged, stuck, spent };

@@ -100,7 +100,8 @@ Closest descend(LevelField& field, const Vec3& probe, const ClosestGoal& goal, L
     }
     trust = 0.3 * size;
     if (trust > 1e-13 * length) continue;
-    const bool fine = tangential <= std::max(1e-7 * length, goal.tangential) && std::fabs(a.distance) <= std::max(4e-12 * length, level_goal);
+    const bool fine =
+        tangential <= std::max(1e-7 * length, goal.tangential) && std::fabs(a.distance) <= std::max(4e-12 * length, level_goal);
     return fine ? Closest::converged : Closest::stuck;
   }
 }

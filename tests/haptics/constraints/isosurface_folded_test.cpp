@@ -1,0 +1,222 @@
+// Folded and steep formulas: the marschner-lobb ripples (radius of curvature down to L / 2000) and the far flank of a gaussian.
+// Judged by formulas of this file, not by the field's own. A proxy is good: OK, off the level by at most 1e-11 L, tangential
+// residual at most 1e-6 L; it may take 20 still ticks, then it rests bit for bit.
+#include <numbers>
+
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+constexpr double kLength = 4, kPi = std::numbers::pi;
+
+struct Formula {
+  const char* name;
+  double (*value)(const Vec3&);
+  Vec3 (*gradient)(const Vec3&);
+};
+
+double ripple_phase(double r) { return 12 * kPi * std::cos(kPi * r / 2); }
+double ripples(const Vec3& p) { return 0.4 * (1 - std::sin(kPi * p.z / 2)) + 0.1 * (1 + std::cos(ripple_phase(std::hypot(p.x, p.y)))); }
+Vec3 ripples_gradient(const Vec3& p) {
+  const double r = std::hypot(p.x, p.y);
+  const double by_r = 0.1 * std::sin(ripple_phase(r)) * 6 * kPi * kPi * std::sin(kPi * r / 2);
+  return {r > 0 ? by_r * p.x / r : 0, r > 0 ? by_r * p.y / r : 0, -0.2 * kPi * std::cos(kPi * p.z / 2)};
+}
+double bell(const Vec3& p) { return std::exp(-2 * (p.x * p.x + p.y * p.y + p.z * p.z)); }
+Vec3 bell_gradient(const Vec3& p) { return p * (-4 * bell(p)); }
+
+const Formula kRipples{"marschner-lobb", ripples, ripples_gradient}, kBell{"gaussian", bell, bell_gradient};
+
+struct Count {
+  int runs = 0, late = 0, bad = 0, restless = 0, no_minimum = 0;
+  double worst_off = 0, worst_tangential = 0;
+  Spread evaluations;
+  std::string text() {
+    char line[240];
+    std::snprintf(line, sizeof line,
+                  "%d runs: %d not in the first tick, %d bad, %d moved at rest, %d no minimum; off level %.2g L, tangential %.2g L; "
+                  "evaluations p50 %d p99 %d max %d",
+                  runs, late, bad, restless, no_minimum, worst_off, worst_tangential, evaluations.at(0.5), evaluations.at(0.99),
+                  evaluations.at(1));
+    return line;
+  }
+};
+
+class Judge {
+ public:
+  Judge(const Formula& formula, double level) : formula_(formula), level_(level) {}
+
+  /// One new probe and the still ticks after it.
+  void run(Rig& rig, const Vec3& probe) {
+    rig.tick(probe);
+    ++count.runs;
+    count.evaluations.add(rig.state.evaluations);
+    bool good = is_good(rig.state, probe);
+    count.late += !good;
+    for (int i = 0; i < 20 && !good; ++i) {
+      EXPECT_EQ(rig.state.status, Status::budget) << "given up at " << probe.x << " " << probe.y << " " << probe.z;
+      EXPECT_LE(rig.state.evaluations, kEvaluationCap);
+      rig.tick(probe);
+      good = is_good(rig.state, probe);
+    }
+    count.bad += !good;
+    if (!good) return;
+    const Vec3 proxy = rig.state.proxy;
+    rig.tick(probe);
+    count.restless += !same_bits(rig.state.proxy, proxy) || rig.state.evaluations != 0;
+    count.no_minimum += !is_minimum(proxy, probe);
+  }
+
+  Count count;
+
+ private:
+  bool is_good(const LinkState& state, const Vec3& probe) {
+    const Vec3 g = formula_.gradient(state.proxy), e = probe - state.proxy;
+    const double slope = std::sqrt(dot(g, g));
+    const Vec3 n = g * (1 / slope);
+    const double off = std::fabs(formula_.value(state.proxy) - level_) / slope / kLength;
+    const Vec3 t = e - n * dot(n, e);
+    const double tangential = std::sqrt(dot(t, t)) / kLength;
+    if (state.status != Status::ok || !(off <= 1e-11) || !(tangential <= 1e-6)) return false;
+    count.worst_off = std::max(count.worst_off, off);
+    count.worst_tangential = std::max(count.worst_tangential, tangential);
+    return true;
+  }
+
+  /// No neighbour on the surface, 2e-6 L away in eight directions, is nearer to the probe.
+  bool is_minimum(const Vec3& proxy, const Vec3& probe) const {
+    const Vec3 n = direction(formula_.gradient(proxy));
+    const Vec3 a = direction(cross(n, std::fabs(n.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0))), b = cross(n, a);
+    for (int k = 0; k < 8; ++k) {
+      Vec3 q = proxy + (a * std::cos(kPi * k / 4) + b * std::sin(kPi * k / 4)) * (2e-6 * kLength);
+      for (int i = 0; i < 4; ++i) {
+        const Vec3 g = formula_.gradient(q);
+        q = q - g * ((formula_.value(q) - level_) / dot(g, g));
+      }
+      if (norm(probe - q) < norm(probe - proxy) - 1e-12 * kLength) return false;
+    }
+    return true;
+  }
+
+  Formula formula_;
+  double level_;
+};
+
+TEST(FoldedIsosurface, RipplesFromColdStarts) {
+  const auto constraint = isosurface(analytic("marschner-lobb"), 0.5);
+  Judge judge(kRipples, 0.5);
+  Random random(21);
+  for (int i = 0; i < 2000; ++i) {
+    Rig rig(constraint);
+    judge.run(rig, random.box(1));
+  }
+  EXPECT_EQ(judge.count.bad + judge.count.restless + judge.count.no_minimum, 0) << judge.count.text();
+  EXPECT_LE(judge.count.late, judge.count.runs / 100) << judge.count.text();
+  RecordProperty("figures", judge.count.text());
+}
+
+TEST(FoldedIsosurface, RipplesAfterJumps) {
+  for (const double level : {0.3, 0.5}) {
+    Rig rig(isosurface(analytic("marschner-lobb"), level));
+    Judge judge(kRipples, level);
+    Random random(22);
+    Vec3 probe(0.2, -0.1, 0.3);
+    for (int i = 0; i < 2000; ++i) {
+      Vec3 next;
+      do next = probe + random.unit() * random.in(0.02, 1.5);
+      while (max_abs(next) > 1);
+      probe = next;
+      judge.run(rig, probe);
+    }
+    EXPECT_EQ(judge.count.bad + judge.count.restless + judge.count.no_minimum, 0) << judge.count.text();
+    EXPECT_LE(judge.count.late, judge.count.runs / 20) << judge.count.text();
+    RecordProperty(level < 0.4 ? "figures_low" : "figures", judge.count.text());
+  }
+}
+
+TEST(FoldedIsosurface, RipplesAfterJumpsFromSideToSide) {
+  Rig rig(isosurface(analytic("marschner-lobb"), 0.5));
+  Judge judge(kRipples, 0.5);
+  Random random(26);
+  for (int i = 0; i < 2000; ++i) judge.run(rig, random.box(1.5));
+  EXPECT_EQ(judge.count.bad + judge.count.restless + judge.count.no_minimum, 0) << judge.count.text();
+  EXPECT_LE(judge.count.late, judge.count.runs * 15 / 100) << judge.count.text();  // a hundred ridges on the way
+  RecordProperty("figures", judge.count.text());
+}
+
+TEST(FoldedIsosurface, AHandOnTheRipples) {
+  Rig rig(isosurface(analytic("marschner-lobb"), 0.5));
+  Judge judge(kRipples, 0.5);
+  Random random(23);
+  Vec3 probe(0.4, 0.1, 0.3), velocity = random.unit() * 5e-4;
+  for (int i = 0; i < 4000; ++i) {
+    velocity = direction(velocity + random.unit() * 5e-5) * 5e-4;
+    if (norm(probe + velocity) > 0.8) velocity = velocity * -1.0;
+    probe = probe + velocity;
+    judge.run(rig, probe);
+  }
+  EXPECT_EQ(judge.count.bad + judge.count.restless, 0) << judge.count.text();
+  EXPECT_LE(judge.count.late, judge.count.runs / 200) << judge.count.text();
+  RecordProperty("figures", judge.count.text());
+}
+
+TEST(FoldedIsosurface, AStartAboveTheRipplesIsNotStuckBehindThem) {
+  Rig rig(isosurface(analytic("marschner-lobb"), 0.5));
+  Judge judge(kRipples, 0.5);
+  const Vec3 probe(-0.7, 0.9, 0.8);
+  judge.run(rig, probe);
+  EXPECT_EQ(judge.count.late + judge.count.bad, 0);
+  EXPECT_LE(norm(probe - rig.state.proxy), 0.66);  // the level is 0.640 away
+}
+
+TEST(FoldedIsosurface, ABellsFarFlankAfterJumps) {
+  for (const double level : {1e-5, 1e-3, 0.01}) {
+    Rig rig(isosurface(analytic("gaussian"), level));
+    Judge judge(kBell, level);
+    Random random(24);
+    double worst = 0;
+    const double radius = std::sqrt(-0.5 * std::log(level));
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 probe = random.box(2);
+      judge.run(rig, probe);
+      // near the centre every point of the sphere is as close, to the residual that is allowed
+      worst = std::max(worst, norm(rig.state.proxy - direction(probe) * radius) * std::min(norm(probe) / radius, 1.0));
+    }
+    EXPECT_EQ(judge.count.bad + judge.count.restless, 0) << level << ": " << judge.count.text();
+    EXPECT_EQ(judge.count.late, 0) << level << ": " << judge.count.text();
+    EXPECT_LE(worst, 1e-6 * kLength) << level;
+    RecordProperty("figures", judge.count.text());
+  }
+}
+
+TEST(FoldedIsosurface, AJumpAcrossTheBellIsNotStuckOnItsWay) {
+  Rig rig(isosurface(analytic("gaussian"), 1e-5));
+  Judge judge(kBell, 1e-5);
+  judge.run(rig, {1.32, -0.01, 0.77});
+  judge.run(rig, {-0.64, 0.09, -1.14});
+  EXPECT_EQ(judge.count.late + judge.count.bad + judge.count.restless, 0) << judge.count.text();
+}
+
+TEST(FoldedIsosurface, OnlyADegenerateSurfaceIsGivenUp) {
+  // the ring |x| = 1 in z = 0 is no surface
+  int given_up = 0;
+  Random random(25);
+  for (int i = 0; i < 50; ++i) {
+    Rig rig(isosurface(analytic("torus"), 0));
+    for (int k = 0; k < 5; ++k) {
+      const Vec3 probe = random.box(1.5);
+      for (int still = 0; still < 20; ++still) rig.tick(probe);
+      ASSERT_TRUE(is_finite(rig.state.proxy));
+      ASSERT_TRUE(rig.state.status == Status::critical || rig.state.status == Status::no_surface) << i;
+      if (rig.state.status == Status::no_surface) continue;
+      ++given_up;
+      EXPECT_NEAR(std::hypot(rig.state.proxy.x, rig.state.proxy.y), 1, 1e-8);
+      EXPECT_EQ(rig.state.evaluations, 0);
+    }
+  }
+  EXPECT_GT(given_up, 0);
+}
+
+}  // namespace
+}  // namespace catena::haptics::test
