@@ -185,7 +185,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--frames", options->frames, "how many frames to draw and time")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--orbit", options->orbit_deg, "turn by so many degrees over the frames");
   command->add_option("--probe", options->probe, "probe path, CSV: the cursor is drawn where the hand is at its end");
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]");
+  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--stats", options->stats, "figures, JSON");
   command->add_flag("--validation", options->validation, "run with the Vulkan validation layers and count their messages");
   command->callback([&chosen, options] { chosen = [options] { return render_pictures(*options); }; });

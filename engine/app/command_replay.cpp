@@ -135,7 +135,7 @@ void add_replay(CLI::App& program, Work& chosen) {
   command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons]")->required();
   command->add_option("-o,--output", options->output, "ticks, CSV")->required();
   command->add_option("--stats", options->stats, "figures, JSON");
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]");
+  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback([&chosen, options] { chosen = [options] { return replay_scene(*options); }; });
 }
 

@@ -38,7 +38,7 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   CLI::App* command = program.add_subcommand("view", "an interactive window: orbit, and the mouse as the hand");
   command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
   command->add_option("--device", options->device, "what holds the probe")->check(CLI::IsMember({"mouse"}))->capture_default_str();
-  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]");
+  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
   command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");

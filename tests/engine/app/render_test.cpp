@@ -149,6 +149,11 @@ TEST(Render, AFieldCanBeReplacedFromTheCommandLine) {
       program({"render", folder / "s.json", "-o", folder / "b.png", "--size", "64x48", "--field", "d=" + (folder / "b.vdb") + ":plane"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(test::read_file(folder / "a.png"), test::read_file(folder / "b.png"));
+  // before the scene, too: the option takes one value
+  const auto first =
+      program({"render", "--field", "d=" + (folder / "b.vdb") + ":plane", folder / "s.json", "-o", folder / "c.png", "--size", "64x48"});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(test::read_file(folder / "c.png"), test::read_file(folder / "b.png"));
 }
 
 TEST(Render, CombustorIsSeenAndFeltFromOneScene) {
