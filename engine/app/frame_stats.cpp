@@ -2,20 +2,14 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <set>
 
+#include "engine/base/quantile.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
 
 namespace {
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())))];
-}
-
 std::string json_string(const std::string& text) {
   std::string out = "\"";
   for (const char c : one_line(text)) {
@@ -26,16 +20,20 @@ std::string json_string(const std::string& text) {
 }
 }  // namespace
 
-double FrameStats::median_ms() const { return quantile(frame_ms, 0.5); }
+double FrameStats::median_ms() const {
+  std::vector<double> times = frame_ms;
+  return quantile(times, 0.5);
+}
 
 std::string FrameStats::json() const {
+  std::vector<double> times = frame_ms;
   return fmt::format(
       "{{\n  \"device\": {},\n  \"driver\": {},\n  \"frames\": {},\n"
       "  \"frame_ms\": {{\"median\": {:.3f}, \"p99\": {:.3f}, \"max\": {:.3f}}},\n"
       "  \"first_frame_ms\": {:.3f},\n  \"load_ms\": {:.3f},\n  \"mirror_ms\": {:.3f},\n  \"encode_ms\": {:.3f},\n"
       "  \"cpu_bytes\": {},\n  \"gpu_bytes\": {},\n  \"validation_messages\": {}\n}}\n",
-      json_string(device), json_string(driver), frame_ms.size(), median_ms(), quantile(frame_ms, 0.99), quantile(frame_ms, 1),
-      first_frame_ms, load_ms, mirror_ms, encode_ms, cpu_bytes, gpu_bytes, validation_messages);
+      json_string(device), json_string(driver), frame_ms.size(), median_ms(), quantile(times, 0.99), quantile(times, 1), first_frame_ms,
+      load_ms, mirror_ms, encode_ms, cpu_bytes, gpu_bytes, validation_messages);
 }
 
 std::uint64_t field_bytes(const scene::Scene& scene) {

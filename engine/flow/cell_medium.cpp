@@ -77,18 +77,9 @@ Stop CellMedium::seed(const Vec3& place, Vec3& u) {
   Vec3 q, w;
   if (!begin(place, Vec3(0.0), 1, q)) return Stop::outside;
   if (flow_.line) {
-    // the nearest corner decides the side, so that opposite signs do not cancel
-    const field::VectorCell cell = grid_->cell(base_, cursor_);
-    const Vec3 f = q - lo_;
-    double nearest = -1;
-    for (int c = 0; c < 8; ++c) {
-      const double weight = ((c & 1) ? f.x : 1 - f.x) * ((c & 2) ? f.y : 1 - f.y) * ((c & 4) ? f.z : 1 - f.z);
-      const Vec3 side = direction(cell.corner[static_cast<std::size_t>(c)]);
-      if (weight > nearest && max_abs(side) > 0) {
-        nearest = weight;
-        motion_ = side;
-      }
-    }
+    // zero keeps what begin() set
+    const Vec3 side = nearest_side(grid_->cell(base_, cursor_), q - lo_);
+    if (max_abs(side) > 0) motion_ = side;
     enter(base_);
   }
   return rate(q, w, u);

@@ -19,6 +19,10 @@ Stop seed_direction(const Flow& flow, const Vec3& seed, field::Cursor& cursor, V
   const Vec3 index = grid->mapping().index_from_world(seed);
   const field::VectorCell cell = grid->cell(grid->base_of(index), cursor);
   const Vec3 f = index - Vec3(cell.base.x, cell.base.y, cell.base.z);
+  return direction_at(flow, seed, nearest_side(cell, f), cursor, u);
+}
+
+Vec3 nearest_side(const field::VectorCell& cell, const Vec3& f) noexcept {
   Vec3 reference(0.0);
   double nearest = -1;
   for (int c = 0; c < 8; ++c) {
@@ -29,7 +33,7 @@ Stop seed_direction(const Flow& flow, const Vec3& seed, field::Cursor& cursor, V
       reference = side;
     }
   }
-  return direction_at(flow, seed, reference, cursor, u);
+  return reference;
 }
 
 }  // namespace catena::flow

@@ -21,4 +21,8 @@ Stop direction_at(const Flow& flow, const Vec3& p, const Vec3& reference, field:
 /// is the reference, so that opposite signs within the cell do not cancel.
 Stop seed_direction(const Flow& flow, const Vec3& seed, field::Cursor& cursor, Vec3& u) noexcept;
 
+/// A line field's side at the place `f` of a cell, without a tangent to align with: the direction of the corner nearest to it
+/// that moves at all, so that opposite signs do not cancel. Zero where no corner moves.
+Vec3 nearest_side(const field::VectorCell& cell, const Vec3& f) noexcept;
+
 }  // namespace catena::flow

@@ -1,23 +1,13 @@
 #include "haptics/servo/replay.h"
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
 #include "engine/base/clock.h"
+#include "engine/base/quantile.h"
 #include "haptics/chain/state_hash.h"
 
 namespace catena::haptics {
-
-namespace {
-template <class T>
-T quantile(std::vector<T>& values, double q) {
-  if (values.empty()) return T{};
-  const auto k = std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
-  return values[k];
-}
-}  // namespace
 
 ReplayStats replay(const Program& program, std::span<const ProbeSample> path,
                    const std::function<bool(const exchange::HapticState&)>& on_tick) {

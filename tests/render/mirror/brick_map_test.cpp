@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/support/vulkan.h"
+#include "tests/render/support/device_fixture.h"
 
 namespace catena::test {
 namespace {
@@ -30,18 +30,9 @@ TEST(BrickMap, DistancesAreThoseOfASearch) {
   }
 }
 
-class GridMirrors : public testing::Test {
+class GridMirrors : public DeviceFixture {
  protected:
-  void SetUp() override {
-    use_lavapipe();
-    auto device = vk::Device::create({true, "cpu", {}});
-    ASSERT_TRUE(device) << device.error().message;
-    device_ = std::move(*device);
-  }
-  void TearDown() override {
-    for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
-  }
-  std::unique_ptr<vk::Device> device_;
+  void TearDown() override { expect_silence(); }
 };
 
 std::shared_ptr<const field::ScalarGrid> grid_of(int n, const std::function<float(int, int, int)>& f) {

@@ -7,6 +7,7 @@
 #include "render/vk/commands.h"
 #include "render/vk/upload.h"
 #include "shaders/shared/frame.h"
+#include "tests/render/support/device_fixture.h"
 #include "tests/render/support/frames.h"
 #include "tests/render/support/spirv.h"
 
@@ -15,18 +16,9 @@ namespace {
 
 using namespace catena::render;
 
-class Sampling : public testing::Test {
+class Sampling : public DeviceFixture {
  protected:
-  void SetUp() override {
-    use_lavapipe();
-    auto device = vk::Device::create({true, "cpu", {}});
-    ASSERT_TRUE(device) << device.error().message;
-    device_ = std::move(*device);
-  }
-  void TearDown() override {
-    EXPECT_EQ(device_->messages().count(), 0u);
-    for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
-  }
+  void TearDown() override { expect_silence(); }
 
   std::vector<float> sample(const GridMirror& mirror, const std::vector<glm::vec3>& local) {
     const auto words = shader_words("sample.comp");
@@ -107,8 +99,6 @@ class Sampling : public testing::Test {
     EXPECT_GT(compared, 2000);
     EXPECT_LE(worst, 1.0);
   }
-
-  std::unique_ptr<vk::Device> device_;
 };
 
 double wavy(const Vec3& p) { return 40 * std::sin(0.31 * p.x + 0.2 * p.y) * std::cos(0.23 * p.z) + 0.37 * p.y - 20; }

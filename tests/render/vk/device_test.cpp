@@ -5,26 +5,14 @@
 #include <cstring>
 
 #include "render/vk/commands.h"
-#include "tests/support/vulkan.h"
+#include "tests/render/support/device_fixture.h"
 
 namespace catena::test {
 namespace {
 
 using namespace catena::render;
 
-class Device : public testing::Test {
- protected:
-  void SetUp() override {
-    use_lavapipe();
-    auto device = vk::Device::create({true, "cpu", {}});
-    ASSERT_TRUE(device) << device.error().message;
-    device_ = std::move(*device);
-  }
-  void expect_silence() const {
-    for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
-  }
-  std::unique_ptr<vk::Device> device_;
-};
+class Device : public DeviceFixture {};
 
 TEST_F(Device, SaysWhatItIs) {
   EXPECT_FALSE(device_->info().name.empty());

@@ -1,0 +1,27 @@
+/// A bare device on lavapipe with the validation layer on; what it said is a failure.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "render/vk/device.h"
+#include "tests/support/vulkan.h"
+
+namespace catena::test {
+
+class DeviceFixture : public testing::Test {
+ protected:
+  void SetUp() override {
+    use_lavapipe();
+    auto device = render::vk::Device::create({true, "cpu", {}});
+    ASSERT_TRUE(device) << device.error().message;
+    device_ = std::move(*device);
+  }
+  void expect_silence() const {
+    EXPECT_EQ(device_->messages().count(), 0u);
+    for (const std::string& text : device_->messages().texts()) ADD_FAILURE() << text;
+  }
+  std::unique_ptr<render::vk::Device> device_;
+};
+
+}  // namespace catena::test
