@@ -61,6 +61,7 @@ Result<std::optional<Vec3>> get_optional_vec3(const Node& object, std::string_vi
 /// A node itself as a number, a vector of three numbers, or rows of `width` numbers.
 Result<double> as_number(const Node& node, std::string_view what, Range range = Range::any);
 Result<Vec3> as_vec3(const Node& node, std::string_view what);
+Result<std::string> as_string(const Node& node, std::string_view what);
 Result<std::vector<std::vector<double>>> as_rows(const Node& node, std::string_view what, std::size_t width);
 
 }  // namespace catena::json

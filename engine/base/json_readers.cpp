@@ -111,12 +111,16 @@ Result<bool> get_boolean(const Node& object, std::string_view key, bool fallback
   return node->boolean;
 }
 
+Result<std::string> as_string(const Node& node, std::string_view what) {
+  if (node.kind != Kind::string) return unlike(node, what, "a string");
+  if (node.string.find('\0') != std::string::npos) return unlike(node, what, "a string without zero bytes");
+  return node.string;
+}
+
 Result<std::string> require_string(const Node& object, std::string_view key) {
   const Node* node = object.find(key);
   if (node == nullptr) return missing(object, key, "a string");
-  if (node->kind != Kind::string) return unlike(*node, key, "a string");
-  if (node->string.find('\0') != std::string::npos) return unlike(*node, key, "a string without zero bytes");
-  return node->string;
+  return as_string(*node, key);
 }
 
 Result<std::string> get_string(const Node& object, std::string_view key, std::string fallback) {

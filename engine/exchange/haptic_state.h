@@ -14,13 +14,23 @@ enum class Status : std::uint8_t { ok, free, released, budget, critical, boundar
 const char* status_word(Status status);  ///< OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE
 
 struct LinkReport {
-  Vec3 proxy{0.0};      ///< world units
-  Vec3 force_n{0.0};    ///< this link's own share, before the limit
-  double residual = 0;  ///< distance from the constraint, world units
-  double weight = 0;    ///< w_i of the force law, 0..1
+  Vec3 proxy{0.0};               ///< world units
+  Vec3 force_n{0.0};             ///< this link's own share, before the limit
+  double residual = 0;           ///< distance from the constraint, world units
+  double weight = 0;             ///< w_i of the force law, 0..1
+  double stiffness_n_per_m = 0;  ///< k_i of this tick
+  double gap = 0;                ///< |p_i - p_(i-1)|, world units
+  double leaving = 0;            ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
   std::int32_t evaluations = 0;
   Status status = Status::ok;
   bool active = false;  ///< enabled and not released
+  bool left = false;    ///< the hand has left the feature: leaving >= 1, or let go
+
+  /// Stored in the link's spring, joules.
+  double energy_j(double metres_per_unit) const {
+    const double stretch_m = metres_per_unit * gap;
+    return 0.5 * weight * stiffness_n_per_m * stretch_m * stretch_m;
+  }
 };
 
 struct HapticState {
@@ -31,6 +41,7 @@ struct HapticState {
   Vec3 force_n{0.0};  ///< on the hand, after the limit, world axes
   std::uint32_t buttons = 0;
   std::int32_t link_count = 0;
+  std::int32_t mode = -1;  ///< the mode of operation; -1: none, all links as listed
   std::array<LinkReport, kMaxLinks> links{};
   // written by the servo
   std::uint64_t program_epoch = 0;  ///< the newest program that the tick has run

@@ -95,6 +95,13 @@ struct Link {
   json::Node node;
 };
 
+/// A mode of operation: while its switch is on, these links run in this order. The switch is read by haptics/extract.
+struct Mode {
+  std::string name;
+  std::vector<std::string> links;
+  json::Node node;
+};
+
 struct Coupling {
   double stiffness_n_per_m = 500;
   double damping_ns_per_m = 0;

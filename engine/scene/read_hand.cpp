@@ -78,6 +78,30 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
+/// Whether its links exist is checked where the program is made: a link may stand for several.
+Outcome read_modes(Scene& scene, const json::Node& node) {
+  if (node.kind != json::Kind::array) return json::error_at(node, "\"modes\" is no array; an array of modes was expected");
+  for (const json::Node& item : node.items) {
+    CATENA_CHECK(json::expect_object(item, item.label));
+    CATENA_CHECK(json::only_keys(item, {"name", "links", "on"}));
+    CATENA_TRY(const std::string name, json::require_string(item, "name"));
+    bool twice = false;
+    scene.world.each<Mode>([&](Entity, const Mode& other) { twice = twice || other.name == name; });
+    if (twice) return json::error_at(*item.find("name"), "duplicate mode name " + in_quotes(name) + "; unique names were expected");
+    const json::Node* links = item.find("links");
+    if (links == nullptr || links->kind != json::Kind::array)
+      return json::error_at(links ? *links : item, "a mode needs \"links\": an array of link names, in the order of the chain");
+    if (item.find("on") == nullptr) return json::error_at(item, "a mode needs \"on\": {\"button\": n} or {\"force_above\": N}");
+    Mode mode{name, {}, item};
+    for (const json::Node& link : links->items) {
+      CATENA_TRY(std::string link_name, json::as_string(link, "links"));
+      mode.links.push_back(std::move(link_name));
+    }
+    scene.world.emplace<Mode>(scene.world.create(), std::move(mode));
+  }
+  return Done{};
+}
+
 Outcome read_coupling(Scene& scene, const json::Node& node) {
   CATENA_CHECK(json::expect_object(node, "coupling"));
   CATENA_CHECK(json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s"}));

@@ -15,6 +15,7 @@ Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<Fiel
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
 
 Outcome read_chain(Scene& scene, const json::Node& node);
+Outcome read_modes(Scene& scene, const json::Node& node);
 Outcome read_coupling(Scene& scene, const json::Node& node);
 Outcome read_workspace(Scene& scene, const json::Node& node);
 

@@ -22,6 +22,9 @@ inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, 
 struct LinkState {
   Vec3 proxy{0.0};
   double residual = 0;           ///< distance from the constraint, world units
+  double limit = 0;              ///< |probe - proxy| at which the link slips or lets go now, world units; 0: never
+  double dt_s = 0;               ///< since the last tick; 0 in the first
+  double stiffness_n_per_m = 0;  ///< k_i of this tick
   std::int32_t evaluations = 0;  ///< of this tick
   Status status = Status::ok;
   bool started = false;
@@ -29,6 +32,7 @@ struct LinkState {
   bool on = false;                                   ///< its switch
   double weight = 1;                                 ///< w_i
   alignas(16) std::array<std::byte, 1024> memory{};  ///< the constraint's own, zero at start; see memory_of
+  alignas(16) std::array<std::byte, 128> outer{};    ///< of a constraint that wraps another one, zero at start
 
   bool active() const { return on && !released; }
 };
@@ -41,8 +45,25 @@ T& memory_of(LinkState& state) {
   return *std::launder(reinterpret_cast<T*>(state.memory.data()));
 }
 
+/// The same for a constraint that wraps another one, which keeps `memory`.
+template <class T>
+T& outer_of(LinkState& state) {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(state.outer) && alignof(T) <= 16);
+  return *std::launder(reinterpret_cast<T*>(state.outer.data()));
+}
+
 struct LinkScratch {
-  std::array<field::Cursor, 3> cursors{};
+  std::array<field::Cursor, 4> cursors{};  ///< the constraint's
+  field::Cursor parameter{}, stiffness{};  ///< of its parameters, of the link's stiffness
+};
+
+/// A constraint near a place, as the baselines of the paper's section 3 see it: a haptic primitive.
+///   point: p = origin;   line: p = origin + s axis;   plane: axis . (p - origin) = 0
+struct Primitive {
+  enum class Kind { point, line, plane };
+  Kind kind = Kind::point;
+  Vec3 origin{0.0};
+  Vec3 axis{0.0};  ///< unit: the line's direction, the plane's normal
 };
 
 class Constraint {
@@ -59,6 +80,19 @@ class Constraint {
   /// One tick: moves state.proxy by the (finite) incoming probe; sets status, residual, released and adds to evaluations.
   /// Where the constraint does not hold (released, free side, no surface) the proxy equals the probe bit for bit.
   virtual void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept = 0;
+
+  /// The linear primitive that stands for the constraint near `at`; its fetches count. False: it has none (friction, forces), or
+  /// none here. `state` is the link's own, as advance left it.
+  virtual bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept {
+    (void)at, (void)state, (void)scratch, (void)out;
+    return false;
+  }
+  /// True where `primitive` is implemented: what the baselines can combine.
+  virtual bool has_primitive() const noexcept { return false; }
+
+  /// Places the proxy at the closest feature, wherever it was, while a link that snaps waits to take hold: called every tick
+  /// instead of advance. A constraint with many local minima may take several ticks over the search.
+  virtual void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept { start(probe, state, scratch); }
 
   /// Its domain length L, for tolerances and tests.
   virtual double domain_length() const noexcept { return 4; }

@@ -7,36 +7,71 @@
 #include <vector>
 
 #include "haptics/chain/constraint.h"
+#include "haptics/chain/parameter.h"
 
 namespace catena::haptics {
 
-/// "on": {"button": n} (n = 1 is bit 0) or {"force_above": newtons}; neither: always on.
+/// "on": {"button": n} (n = 1 is bit 0), with "toggle": each press turns it over; or {"force_above": newtons}, until the force
+/// is at most "force_below" (default: the same). Neither: always on. The force is the last tick's.
 struct Switch {
-  int button = 0;            ///< 0: none
+  int button = 0;  ///< 0: none
+  bool toggle = false;
   double force_above_n = 0;  ///< 0: none
+  double force_below_n = 0;
+};
+
+/// "indicate": how the hand is told that it leaves the link's feature, beside the report of every link (paper, section 2).
+///   m = |p_i - p_(i-1)| / at;  the link is left where m >= 1 or it has let go
+///   detent: a pulse of `amplitude` towards the feature when m passes 1 either way, linear to zero over `duration`
+///   vibration: a triangle wave of `amplitude` and `frequency` along the gap while m >= from
+struct Indication {
+  enum class Cue { none, detent, vibration };
+  Cue cue = Cue::none;
+  double at = 0;  ///< world units; 0: where the link slips or lets go
+  double from = 0.8;
+  double amplitude_n = 0.5;
+  double frequency_hz = 150;
+  double duration_s = 0.02;
 };
 
 struct Link {
   std::string name;
   std::shared_ptr<const Constraint> constraint;
-  double stiffness_n_per_m = 500;
+  Parameter stiffness_n_per_m = 500;
+  Switch on;
+  Indication indication;
+  double release = 0;        ///< baselines only: lets go where |probe - proxy| >= release, world units; 0: never
+  std::uint64_t recipe = 0;  ///< what it was built from: links of the same name and recipe keep their state; 0: of the same object
+};
+
+/// A mode of operation (section 6.2): while its switch is on, these links run, in this order; the others are off.
+struct Mode {
+  std::string name;
+  std::vector<int> links;  ///< indices into Program::links
   Switch on;
 };
+
+/// How the links make one force: the proxy chain, or one of the baselines that the paper compares it with.
+enum class Combination { chain, pipe, balance, closest, linear };
 
 struct Coupling {
   double stiffness_n_per_m = 500;
   double damping_ns_per_m = 0;
   double max_force_n = 8;
   double ramp_s = 0;
+  Combination combination = Combination::chain;
 };
 
 struct Program {
   std::uint64_t epoch = 0;
   std::vector<Link> links;  ///< at most kMaxLinks
+  std::vector<Mode> modes;  ///< at most kMaxModes; the first whose switch is on orders the chain; none: all links as listed
   Coupling coupling;
   double metres_per_unit = 1;    ///< S: metres of hand a world unit
   Vec3 workspace_origin{0.0};    ///< world position of the device's origin
   Mat3 workspace_rotation{1.0};  ///< world from device axes
 };
+
+inline constexpr int kMaxModes = 8;
 
 }  // namespace catena::haptics

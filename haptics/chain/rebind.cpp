@@ -2,15 +2,36 @@
 
 namespace catena::haptics {
 
+namespace {
+
+bool keeps(const Link& from, const Link& to) noexcept {
+  return from.name == to.name && (from.recipe != 0 ? from.recipe == to.recipe : from.constraint == to.constraint);
+}
+
+}  // namespace
+
 void rebind(const Program& from, const Program& to, ChainState& state, ChainScratch& scratch) noexcept {
-  const std::array<LinkState, kMaxLinks> old = state.links;
+  const ChainState old = state;
   scratch = ChainScratch{};
+  state.fade.replaced = true;
+  state.fade.shares = old.fade.shares;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxLinks); ++i) {
     state.links[i] = LinkState{};
+    state.indications[i] = IndicationState{};
+    state.switches.link_on[i] = false;
     if (i >= to.links.size()) continue;
     for (std::size_t k = 0; k < from.links.size(); ++k) {
-      if (from.links[k].name == to.links[i].name && from.links[k].constraint == to.links[i].constraint) state.links[i] = old[k];
+      if (!keeps(from.links[k], to.links[i])) continue;
+      state.links[i] = old.links[k];
+      state.indications[i] = old.indications[k];
+      state.switches.link_on[i] = old.switches.link_on[k];
     }
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxModes); ++i) {
+    state.switches.mode_on[i] = false;
+    if (i >= to.modes.size()) continue;
+    for (std::size_t k = 0; k < from.modes.size(); ++k)
+      if (from.modes[k].name == to.modes[i].name) state.switches.mode_on[i] = old.switches.mode_on[k];
   }
 }
 

@@ -1,4 +1,4 @@
-/// A new program takes over: links of the same name and the same constraint object keep their state, all others start anew
+/// A new program takes over: links of the same name and the same recipe (or constraint object) keep their state, all others start anew
 /// in the next tick. Haptic thread: no allocation.
 #pragma once
 #include "haptics/chain/tick.h"

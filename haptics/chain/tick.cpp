@@ -4,50 +4,53 @@ namespace catena::haptics {
 
 namespace {
 
-bool switched_on(const Switch& on, std::uint32_t buttons, double last_force_n) noexcept {
-  if (on.button > 0) return ((buttons >> (on.button - 1)) & 1u) != 0;
-  if (on.force_above_n > 0) return last_force_n > on.force_above_n;
-  return true;
-}
-
-void pass_through(const Vec3& incoming, LinkState& link) noexcept {
-  link.proxy = incoming;
-  link.residual = 0;
+void switch_off(LinkState& link) noexcept {
+  link.on = link.started = link.released = false;
+  link.residual = link.limit = link.weight = 0;
+  link.evaluations = 0;
   link.status = Status::free;
-  link.released = false;
-  link.weight = 0;
 }
 
-// One link: its switch, its start, its advance, its weight (the ramp after a switch).
-void advance_link(const Link& spec, const Vec3& incoming, bool on, bool first_tick, double ramp_step, LinkState& link,
+// One link that is on: its start, its advance, its weight (the ramp after a switch).
+void advance_link(const Link& spec, const Vec3& incoming, bool first_tick, double dt, double ramp_step, LinkState& link,
                   LinkScratch& scratch) noexcept {
   link.evaluations = 0;
-  if (!on) {
-    link.on = false;
-    link.started = false;
-    pass_through(incoming, link);
-    return;
-  }
+  link.dt_s = dt;
   if (!link.started) {
     link.on = true;
     link.started = true;
     link.released = false;
     link.status = Status::ok;
     link.weight = first_tick ? 1 : 0;
+    link.limit = 0;
+    link.proxy = incoming;
     link.memory.fill(std::byte{0});
+    link.outer.fill(std::byte{0});
+    link.stiffness_n_per_m = spec.stiffness_n_per_m.at(incoming, scratch.stiffness, link.evaluations);
     spec.constraint->start(incoming, link, scratch);
+  } else {
+    link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness, link.evaluations);
   }
   spec.constraint->advance(incoming, link, scratch);
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
 
+// Links that are off pass their probe through: the proxy before them in the scene's order, where no mode orders the chain.
+void pass_through(const Program& program, const Order& order, const Vec3& probe, ChainState& state) noexcept {
+  Vec3 before = probe;
+  for (std::size_t i = 0; i < program.links.size(); ++i) {
+    if (!state.links[i].on) state.links[i].proxy = before;
+    if (order.mode < 0) before = state.links[i].proxy;
+  }
+}
+
 // The force's direction where it is too large for a double: every term scaled down before it is formed.
-Vec3 huge_force(const Program& program, const Vec3& probe, double dt, const ChainState& state) noexcept {
+Vec3 huge_force(const Program& program, const Order& order, const Vec3& probe, double dt, const ChainState& state) noexcept {
   constexpr double small = 1e-160;
   Vec3 incoming = probe, force(0.0);
-  for (std::size_t i = 0; i < program.links.size(); ++i) {
-    const LinkState& link = state.links[i];
-    force += (link.proxy * small - incoming * small) * (link.weight * program.links[i].stiffness_n_per_m * program.metres_per_unit * small);
+  for (int k = 0; k < order.count; ++k) {
+    const LinkState& link = state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)])];
+    force += (link.proxy * small - incoming * small) * (link.weight * link.stiffness_n_per_m * program.metres_per_unit * small);
     incoming = link.proxy;
   }
   if (state.has_probe && dt > 0)
@@ -55,59 +58,88 @@ Vec3 huge_force(const Program& program, const Vec3& probe, double dt, const Chai
   return force;
 }
 
-void report(const Program& program, const ChainState& state, const Vec3* link_forces, exchange::HapticState& out) noexcept {
+void report(const Program& program, const ChainState& state, exchange::HapticState& out) noexcept {
   out.tick = state.ticks;
   out.t_s = state.last_t_s;
   out.force_n = state.force_n;
   out.link_count = static_cast<std::int32_t>(program.links.size());
+  out.mode = state.fade.order.mode;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkState& link = state.links[i];
-    out.links[i] = {link.proxy, link_forces[i], link.residual, link.weight, link.evaluations, link.status, link.active()};
+    exchange::LinkReport& to = out.links[i];
+    to.proxy = link.proxy;
+    to.residual = link.residual;
+    to.weight = link.weight;
+    to.stiffness_n_per_m = link.stiffness_n_per_m;
+    to.evaluations = link.evaluations;
+    to.status = link.status;
+    to.active = link.active();
   }
+}
+
+void hold_all(const Program& program, ChainState& state, exchange::HapticState& out) noexcept {
+  for (std::size_t i = 0; i < program.links.size(); ++i) {
+    state.links[i].status = Status::bad_probe;
+    state.links[i].evaluations = 0;
+    out.links[i].force_n = Vec3(0.0);
+  }
+  state.force_n = Vec3(0.0);
+  ++state.ticks;
+  report(program, state, out);
 }
 
 }  // namespace
 
 void tick(const Program& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch, exchange::HapticState& out) noexcept {
-  std::array<Vec3, kMaxLinks> link_forces{};
   out.probe = probe.position;
   out.buttons = probe.buttons;
   out.program_epoch = program.epoch;
-
-  // a bad probe holds everything
-  if (!is_finite(probe.position) || !std::isfinite(probe.t_s)) {
-    for (std::size_t i = 0; i < program.links.size(); ++i) {
-      state.links[i].status = Status::bad_probe;
-      state.links[i].evaluations = 0;
-    }
-    state.force_n = Vec3(0.0);
-    ++state.ticks;
-    report(program, state, link_forces.data(), out);
-    return;
-  }
+  if (!is_finite(probe.position) || !std::isfinite(probe.t_s)) return hold_all(program, state, out);
 
   const double dt = state.has_probe ? probe.t_s - state.last_t_s : 0;
   const double ramp_step = program.coupling.ramp_s > 0 ? dt / program.coupling.ramp_s : 1;
-  const double last_force_n = norm(state.force_n);
   const double s = program.metres_per_unit;
+  const Order order = step_switches(program, probe.buttons, norm(state.force_n), state.switches);
+
+  for (std::size_t i = 0; i < program.links.size(); ++i)
+    if (!order.contains(i)) switch_off(state.links[i]);
 
   // the chain: each proxy is the next link's probe
-  Vec3 incoming = probe.position;
-  Vec3 force(0.0);
-  for (std::size_t i = 0; i < program.links.size(); ++i) {
-    const Link& spec = program.links[i];
+  std::array<Vec3, kMaxLinks> gaps{}, shares{};
+  Vec3 incoming = probe.position, force(0.0), cues(0.0);
+  const auto couple = [&](std::size_t i) {
     LinkState& link = state.links[i];
-    advance_link(spec, incoming, switched_on(spec.on, probe.buttons, last_force_n), !state.has_probe, ramp_step, link, scratch.links[i]);
-    link_forces[i] = (link.proxy - incoming) * (link.weight * spec.stiffness_n_per_m * s);
-    force += link_forces[i];
+    gaps[i] = link.proxy - incoming;
+    shares[i] = gaps[i] * (link.weight * link.stiffness_n_per_m * s);
+    force += shares[i];
     incoming = link.proxy;
+  };
+  for (int k = 0; k < order.count; ++k) {
+    const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
+    advance_link(program.links[i], incoming, !state.has_probe, dt, ramp_step, state.links[i], scratch.links[i]);
+    couple(i);
   }
+  pass_through(program, order, probe.position, state);
+  if (state.has_probe) {
+    force += step_fade(state.fade, order, shares, ramp_step);
+  } else {
+    state.fade.order = order;
+    state.fade.shares = shares;
+  }
+
+  // what the links tell of the hand
+  for (std::size_t i = 0; i < program.links.size(); ++i) {
+    out.links[i].force_n = shares[i];
+    out.links[i].gap = norm(gaps[i]);
+    cues += indicate(program.links[i].indication, state.links[i], gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
+  }
+  force += cues;
 
   // the coupling's damping, then the limit with the direction kept
   if (state.has_probe && dt > 0) force -= (probe.position - state.last_probe) * (program.coupling.damping_ns_per_m * s / dt);
   const double magnitude = norm(force);
   if (!std::isfinite(magnitude)) {
-    force = direction(huge_force(program, probe.position, dt, state)) * program.coupling.max_force_n;
+    force = direction(huge_force(program, order, probe.position, dt, state)) * program.coupling.max_force_n;
   } else if (magnitude > program.coupling.max_force_n) {
     force *= program.coupling.max_force_n / magnitude;
   }
@@ -117,7 +149,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   state.last_t_s = probe.t_s;
   state.has_probe = true;
   ++state.ticks;
-  report(program, state, link_forces.data(), out);
+  report(program, state, out);
 }
 
 }  // namespace catena::haptics

@@ -221,25 +221,27 @@ class LevelSurface final : public Surface {
 
 class Isosurface final : public Constraint {
  public:
-  Isosurface(field::ScalarFieldPtr field, double level, const SideRules& rules) : field_(std::move(field)), level_(level), rules_(rules) {}
+  Isosurface(field::ScalarFieldPtr field, double level, const SideSpec& rules) : field_(std::move(field)), level_(level), rules_(rules) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     Memory& memory = memory_of<Memory>(state);
     memory = Memory{};
+    const SideRules rules = rules_.at(probe, state, scratch);
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), memory);
-    start_on(surface, rules_, probe, memory.side, state);
+    start_on(surface, rules, probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     Memory& memory = memory_of<Memory>(state);
+    const SideRules rules = rules_.now(state, scratch);
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), memory);
-    advance_on(surface, rules_, probe, memory.side, state);
+    advance_on(surface, rules, probe, memory.side, state);
   }
   double domain_length() const noexcept override { return field_->length(); }
 
  private:
   field::ScalarFieldPtr field_;
   double level_;
-  SideRules rules_;
+  SideSpec rules_;
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
@@ -252,7 +254,7 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
   if (!(level >= least && level <= most))
     return json::error_at(*link.find("level"), fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}",
                                                            level, name, least, most));
-  CATENA_TRY(const SideRules rules, read_side_rules(link, true));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
   return std::shared_ptr<const Constraint>(std::make_shared<Isosurface>(any.scalar, level, rules));
 }
 
@@ -264,7 +266,7 @@ ConstraintType isosurface_constraint() {
           {{"field", "string", true, "a scalar field of the scene"},
            {"level", "number", true, "the field's value on the surface"},
            {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema},
-           {"release", "number", false, "lets go at this depth, world units", kPositiveSchema}},
+           {"release", "parameter", false, "lets go at this depth, world units", kPositiveSchema}},
           build};
 }
 

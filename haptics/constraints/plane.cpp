@@ -28,27 +28,27 @@ class PlaneSurface final : public Surface {
 
 class Plane final : public Constraint {
  public:
-  Plane(const Vec3& point, const Vec3& normal, const SideRules& rules) : point_(point), normal_(normal), rules_(rules) {}
-  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+  Plane(const Vec3& point, const Vec3& normal, const SideSpec& rules) : point_(point), normal_(normal), rules_(rules) {}
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     PlaneSurface surface(point_, normal_);
-    start_on(surface, rules_, probe, memory_of<SideMemory>(state), state);
+    start_on(surface, rules_.at(probe, state, scratch), probe, memory_of<SideMemory>(state), state);
   }
-  void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     PlaneSurface surface(point_, normal_);
-    advance_on(surface, rules_, probe, memory_of<SideMemory>(state), state);
+    advance_on(surface, rules_.now(state, scratch), probe, memory_of<SideMemory>(state), state);
   }
 
  private:
   Vec3 point_, normal_;
-  SideRules rules_;
+  SideSpec rules_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext&) {
+Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 point, json::require_vec3(link, "point"));
   CATENA_TRY(const Vec3 given, json::require_vec3(link, "normal"));
   const Vec3 normal = direction(given);
   if (!(max_abs(normal) > 0)) return json::error_at(*link.find("normal"), "\"normal\" is zero; expected a vector of non-zero length");
-  CATENA_TRY(const SideRules rules, read_side_rules(link, true));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
   return std::shared_ptr<const Constraint>(std::make_shared<Plane>(point, normal, rules));
 }
 
@@ -60,7 +60,7 @@ ConstraintType plane_constraint() {
           {{"point", "array", true, "a point of the plane, world units", kVec3Schema},
            {"normal", "array", true, "its normal, any length but zero", kVec3Schema},
            {"free", "string", false, "the side where the hand moves freely: above is where the normal points to", kFreeSchema},
-           {"release", "number", false, "lets go at this depth, world units", kPositiveSchema}},
+           {"release", "parameter", false, "lets go at this depth, world units", kPositiveSchema}},
           build};
 }
 

@@ -22,24 +22,24 @@ class PointSurface final : public Surface {
 
 class Point final : public Constraint {
  public:
-  Point(const Vec3& position, const SideRules& rules) : position_(position), rules_(rules) {}
-  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+  Point(const Vec3& position, const SideSpec& rules) : position_(position), rules_(rules) {}
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     PointSurface surface(position_);
-    start_on(surface, rules_, probe, memory_of<SideMemory>(state), state);
+    start_on(surface, rules_.at(probe, state, scratch), probe, memory_of<SideMemory>(state), state);
   }
-  void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     PointSurface surface(position_);
-    advance_on(surface, rules_, probe, memory_of<SideMemory>(state), state);
+    advance_on(surface, rules_.now(state, scratch), probe, memory_of<SideMemory>(state), state);
   }
 
  private:
   Vec3 position_;
-  SideRules rules_;
+  SideSpec rules_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext&) {
+Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 position, json::require_vec3(link, "position"));
-  CATENA_TRY(const SideRules rules, read_side_rules(link, false));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
   return std::shared_ptr<const Constraint>(std::make_shared<Point>(position, rules));
 }
 
@@ -49,7 +49,7 @@ ConstraintType point_constraint() {
   return {"point",
           "section 3",
           {{"position", "array", true, "the point, world units", kVec3Schema},
-           {"release", "number", false, "lets go at this distance, world units", kPositiveSchema}},
+           {"release", "parameter", false, "lets go at this distance, world units", kPositiveSchema}},
           build};
 }
 

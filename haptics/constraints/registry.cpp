@@ -10,7 +10,15 @@
 namespace catena::haptics {
 namespace {
 
+/// A parameter: a number, or an object (read_parameter.h).
+std::string parameter(const Key& key) {
+  return fmt::format(
+      R"("{0}": {{"description": "{1}", "oneOf": [{{"type": "number"{2}{3}}}, {{"type": "object", "required": ["field", "map"], "properties": {{"field": {{"type": "string"}}, "map": {{"type": "array", "minItems": 1}}, "of": {{"enum": ["value", "gradient", "magnitude"]}}, "normalise": {{"type": "boolean"}}, "outside": {{"type": "number"}}}}, "additionalProperties": false}}]}})",
+      key.name, key.help, key.schema.empty() ? "" : ", ", key.schema);
+}
+
 std::string property(const Key& key) {
+  if (key.type == "parameter") return parameter(key);
   return fmt::format(R"("{}": {{"type": "{}", "description": "{}"{}{}}})", key.name, key.type, key.help, key.schema.empty() ? "" : ", ",
                      key.schema);
 }
@@ -54,9 +62,11 @@ const std::vector<Key>& common_keys() {
   static const std::vector<Key> keys{
       {"name", "string", true, "unique; names the columns of the tick CSV", R"("pattern": "^[a-z][a-z0-9_]*$")"},
       {"type", "string", true, "which constraint"},
-      {"stiffness", "number", false, "N/m; default: the coupling's", kNotNegativeSchema},
-      {"on", "object", false, "its switch: {button: n} or {force_above: newtons}",
-       R"("properties": {"button": {"type": "integer", "minimum": 1}, "force_above": {"type": "number", "exclusiveMinimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 1)"}};
+      {"stiffness", "parameter", false, "N/m; default: the coupling's", kNotNegativeSchema},
+      {"on", "object", false, "its switch: {button: n, toggle: true} or {force_above: newtons, force_below: newtons}",
+       R"("properties": {"button": {"type": "integer", "minimum": 1, "maximum": 32}, "toggle": {"type": "boolean"}, "force_above": {"type": "number", "exclusiveMinimum": 0}, "force_below": {"type": "number", "minimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 2)"},
+      {"indicate", "object", false, "how the hand is told that it leaves the feature",
+       R"("properties": {"cue": {"enum": ["none", "detent", "vibration"]}, "at": {"type": "number", "exclusiveMinimum": 0}, "from": {"type": "number", "minimum": 0, "maximum": 1}, "amplitude": {"type": "number", "minimum": 0}, "frequency": {"type": "number", "exclusiveMinimum": 0}, "duration": {"type": "number", "exclusiveMinimum": 0}}, "additionalProperties": false)"}};
   return keys;
 }
 

@@ -1,5 +1,7 @@
 #include "haptics/constraints/surface_side.h"
 
+#include "haptics/constraints/read_parameter.h"
+
 namespace catena::haptics {
 namespace {
 
@@ -68,15 +70,14 @@ Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, co
 
 }  // namespace
 
-Result<SideRules> read_side_rules(const json::Node& link, bool has_sides) {
-  SideRules rules;
+Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context) {
+  SideSpec spec;
   if (has_sides) {
     CATENA_TRY(const int side, json::get_choice(link, "free", 0, {"none", "above", "below"}));
-    rules.free = static_cast<FreeSide>(side);
+    spec.free = static_cast<FreeSide>(side);
   }
-  CATENA_TRY(const auto release, json::get_optional_number(link, "release", json::Range::positive));
-  rules.release = release.value_or(0);
-  return rules;
+  CATENA_TRY(spec.release, get_parameter(link, "release", 0.0, json::Range::positive, context));
+  return spec;
 }
 
 void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
@@ -99,6 +100,7 @@ void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideM
 }
 
 void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
+  state.limit = rules.release;
   // a resting probe, or a proxy that somebody else has moved meanwhile
   const bool untouched = !memory.fresh || same_bits(memory.proxy, state.proxy);
   if (memory.fresh && untouched && memory.settled && same_bits(memory.probe, probe)) {

@@ -8,8 +8,8 @@
 /// the sheet's near face, and stays caught until it comes back, or is 0.02 L away, or released.
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
-#include "engine/base/json.h"
-#include "haptics/chain/constraint.h"
+#include "haptics/chain/parameter.h"
+#include "haptics/constraints/registry.h"
 
 namespace catena::haptics {
 
@@ -20,8 +20,21 @@ struct SideRules {
   double release = 0;  ///< 0: never lets go
 };
 
+/// The rules as the scene states them: `release` may follow a field, asked at the last proxy.
+struct SideSpec {
+  FreeSide free = FreeSide::none;
+  Parameter release;
+
+  SideRules now(LinkState& state, LinkScratch& scratch) const noexcept {
+    return {free, release.at(state.proxy, scratch.parameter, state.evaluations)};
+  }
+  SideRules at(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept {
+    return {free, release.at(probe, scratch.parameter, state.evaluations)};
+  }
+};
+
 /// Reads `free` (if asked for) and `release`.
-Result<SideRules> read_side_rules(const json::Node& link, bool has_sides);
+Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context);
 
 struct SideValue {
   double value = 0;     ///< value - level

@@ -32,7 +32,10 @@ Link make_link(const char* name, const char* text) {
   const auto node = json::parse(text, "bench");
   auto built = build_constraint(*node, context);
   CATENA_ASSERT(static_cast<bool>(built));
-  return {name, *built, 500, {}};
+  Link link;
+  link.name = name;
+  link.constraint = *built;
+  return link;
 }
 
 // a hand at 0.2 units/s with tremor, near the curve and the surface

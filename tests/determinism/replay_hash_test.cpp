@@ -54,7 +54,7 @@ constexpr const char* kGridOnline = R"({"fields": {"v": {"file": "circle.vdb"}, 
 
 const Recorded kRecorded[] = {
     {"circle", kCircle, 0x609d8539e109214d}, {"circle_online", kCircleOnline, 0x95e0775dbacd31d3},
-    {"sphere", kSphere, 0x4a5465667050ae74}, {"chain", kChain, 0x8b161b8dd3a9d1a1},
+    {"sphere", kSphere, 0x4a5465667050ae74}, {"chain", kChain, 0x70cf14c60ae6a356},
     {"grids", kGrids, 0xe74048e48824af15},   {"grid_online", kGridOnline, 0xde9c593d62a4b946},
 };
 

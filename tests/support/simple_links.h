@@ -25,7 +25,11 @@ class HoldHeight final : public haptics::Constraint {
 };
 
 inline haptics::Link hold_height(const std::string& name, double height, double stiffness = 500) {
-  return {name, std::make_shared<HoldHeight>(height), stiffness, {}};
+  haptics::Link link;
+  link.name = name;
+  link.constraint = std::make_shared<HoldHeight>(height);
+  link.stiffness_n_per_m = stiffness;
+  return link;
 }
 
 }  // namespace catena::test

@@ -55,10 +55,10 @@ TEST(ExtractProgram, CopiesCouplingSwitchesAndOrder) {
   ASSERT_EQ(program.links.size(), 3u);
   EXPECT_EQ(program.links[0].name, "b");
   EXPECT_EQ(program.links[0].on.button, 2);
-  EXPECT_EQ(program.links[0].stiffness_n_per_m, 300);
-  EXPECT_EQ(program.links[1].stiffness_n_per_m, 0);
+  EXPECT_EQ(program.links[0].stiffness_n_per_m.least(), 300);
+  EXPECT_EQ(program.links[1].stiffness_n_per_m.least(), 0);
   EXPECT_EQ(program.links[1].on.force_above_n, 1.5);
-  EXPECT_EQ(program.links[2].stiffness_n_per_m, 70);
+  EXPECT_EQ(program.links[2].stiffness_n_per_m.least(), 70);
   EXPECT_NE(program.links[0].constraint, nullptr);
 }
 

@@ -1,0 +1,20 @@
+/// The paper's third requirement (section 2): every link tells when the hand leaves its feature, as a figure and as a cue.
+/// The model is beside Indication in program.h. Triangle waves and straight ramps only, so that bits repeat.
+/// Haptic thread: no allocation, lock or throw.
+#pragma once
+#include "haptics/chain/program.h"
+
+namespace catena::haptics {
+
+struct IndicationState {
+  double pulse = 0;  ///< 1..0, what is left of a detent
+  Vec3 way{0.0};     ///< unit, towards the feature
+  bool left = false;
+  bool fresh = false;  ///< `left` means something
+};
+
+/// Fills in the report's leaving and left from its gap; returns the cue's force. `gap` = p_i - p_(i-1), world units.
+Vec3 indicate(const Indication& indication, const LinkState& link, const Vec3& gap, double t_s, double dt_s, IndicationState& state,
+              exchange::LinkReport& report) noexcept;
+
+}  // namespace catena::haptics

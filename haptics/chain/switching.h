@@ -1,0 +1,31 @@
+/// Which links run in this tick, and in which order: switches by button or by force, and the modes of operation (section 6.2).
+/// Haptic thread: no allocation, lock or throw.
+#pragma once
+#include "haptics/chain/program.h"
+
+namespace catena::haptics {
+
+/// What the switches remember.
+struct SwitchState {
+  std::uint32_t buttons = 0;  ///< of the last tick
+  std::array<bool, kMaxLinks> link_on{};
+  std::array<bool, kMaxModes> mode_on{};
+};
+
+/// The links that run, in order; the others pass their probe through.
+struct Order {
+  std::array<std::int8_t, kMaxLinks> links{};
+  std::int8_t count = 0;
+  std::int8_t mode = -1;
+  bool operator==(const Order&) const = default;
+  bool contains(std::size_t link) const noexcept {
+    for (int k = 0; k < count; ++k)
+      if (links[static_cast<std::size_t>(k)] == static_cast<int>(link)) return true;
+    return false;
+  }
+};
+
+/// Steps all switches by the buttons now and the last tick's force; returns the order of the links that are switched on.
+Order step_switches(const Program& program, std::uint32_t buttons, double last_force_n, SwitchState& state) noexcept;
+
+}  // namespace catena::haptics
