@@ -1,9 +1,10 @@
-/// catena replay SCENE --probe PATH.csv -o TICKS.csv [--stats FILE.json]
+/// catena replay SCENE --probe PATH.csv -o TICKS.csv [--details LINKS.csv] [--stats FILE.json]
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "engine/app/command.h"
 #include "engine/app/probe_samples.h"
@@ -18,7 +19,7 @@ namespace catena::app {
 namespace {
 
 struct Options {
-  std::string scene, probe, output, stats;
+  std::string scene, probe, output, details, stats;
   std::vector<std::string> fields;
 };
 
@@ -51,6 +52,37 @@ void append_row(std::string& line, const exchange::HapticState& state) {
   line += '\n';
 }
 
+// What every link tells beside its proxy: how far the hand is from leaving its feature, its share, its work.
+std::string details_header(const haptics::Program& program) {
+  std::string line = "t,mode";
+  for (const haptics::Link& link : program.links)
+    line += fmt::format(
+        ",{0}_gap,{0}_leaving,{0}_left,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy", link.name);
+  return line + "\n";
+}
+
+void append_details(std::string& line, const haptics::Program& program, const exchange::HapticState& state) {
+  append_text(line, state.t_s);
+  line += ',';
+  if (state.mode >= 0) line += program.modes[static_cast<std::size_t>(state.mode)].name;
+  for (int i = 0; i < state.link_count; ++i) {
+    const exchange::LinkReport& link = state.links[static_cast<std::size_t>(i)];
+    const auto number = [&](double value) {
+      line += ',';
+      append_text(line, value);
+    };
+    number(link.gap);
+    number(link.leaving);
+    line += link.left ? ",1" : ",0";
+    number(link.residual);
+    number(link.stiffness_n_per_m);
+    number(link.weight);
+    append_vector(line, link.force_n);
+    number(link.energy_j(program.metres_per_unit));
+  }
+  line += '\n';
+}
+
 // What the hand felt, for a person to read.
 struct Felt {
   double max_force_n = 0, mean_force_n = 0;
@@ -61,11 +93,9 @@ struct Felt {
     const double force = norm(state.force_n);
     max_force_n = std::max(max_force_n, force);
     mean_force_n += force;
-    Vec3 incoming = state.probe;
     for (std::size_t i = 0; i < static_cast<std::size_t>(state.link_count); ++i) {
-      max_gap[i] = std::max(max_gap[i], norm(state.links[i].proxy - incoming));
+      max_gap[i] = std::max(max_gap[i], state.links[i].gap);
       ++statuses[i][exchange::status_word(state.links[i].status)];
-      incoming = state.links[i].proxy;
     }
   }
   void print(const haptics::Program& program, const haptics::ReplayStats& stats) const {
@@ -93,16 +123,26 @@ Outcome replay_scene(const Options& options) {
   std::vector<std::string> inputs = inputs_of(scene);
   inputs.push_back(options.probe);
   CATENA_CHECK(check_output(options.output, inputs));
-  if (!options.stats.empty()) {
-    CATENA_CHECK(check_output(options.stats, inputs));
-    if (same_file(options.stats, options.output)) return Error{options.stats + ": --stats and -o name one file: expected two"};
+  const std::pair<const char*, const std::string&> more[] = {{"--details", options.details}, {"--stats", options.stats}};
+  for (const auto& [option, path] : more) {
+    if (path.empty()) continue;
+    CATENA_CHECK(check_output(path, inputs));
+    if (same_file(path, options.output)) return Error{fmt::format("{}: {} and -o name one file: expected two", path, option)};
   }
+  if (!options.details.empty() && !options.stats.empty() && same_file(options.details, options.stats))
+    return Error{options.details + ": --details and --stats name one file: expected two"};
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));
   const std::vector<haptics::ProbeSample> path = probe_samples(rows);
 
   CATENA_TRY(OutputFile ticks, OutputFile::open(options.output));
   ticks.write(header(*program));
+  std::optional<OutputFile> details, json;
+  if (!options.details.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.details));
+    details.emplace(std::move(file));
+    details->write(details_header(*program));
+  }
   Felt felt;
   Progress progress("replay", static_cast<double>(path.size()));
   std::string line;
@@ -110,18 +150,25 @@ Outcome replay_scene(const Options& options) {
     line.clear();
     append_row(line, state);
     ticks.write(line);
+    if (details) {
+      line.clear();
+      append_details(line, *program, state);
+      details->write(line);
+    }
     felt.add(state);
     if (state.tick % 1024 == 0) progress.at(static_cast<double>(state.tick));
     return true;
   });
 
-  if (options.stats.empty()) {
-    CATENA_CHECK(ticks.commit());
-  } else {
-    CATENA_TRY(OutputFile json, OutputFile::open(options.stats));
-    json.write(stats_json(stats));
-    CATENA_CHECK(commit_all({&ticks, &json}));
+  std::vector<OutputFile*> files{&ticks};
+  if (details) files.push_back(&*details);
+  if (!options.stats.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.stats));
+    json.emplace(std::move(file));
+    json->write(stats_json(stats));
+    files.push_back(&*json);
   }
+  CATENA_CHECK(commit_all(files));
   felt.print(*program, stats);
   return Done{};
 }
@@ -134,6 +181,7 @@ void add_replay(CLI::App& program, Work& chosen) {
   command->add_option("SCENE", options->scene, "the scene file (.json)")->required();
   command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons]")->required();
   command->add_option("-o,--output", options->output, "ticks, CSV")->required();
+  command->add_option("--details", options->details, "what every link tells beside: gap, leaving, share, energy; CSV");
   command->add_option("--stats", options->stats, "figures, JSON");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback([&chosen, options] { chosen = [options] { return replay_scene(*options); }; });

@@ -84,6 +84,7 @@ struct Cursor {
   Vec3 probe{0.0};
   std::vector<Vec3> proxies;
   std::vector<bool> active;
+  std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it
   Vec3 force_n{0.0};
   double size = 0;  ///< glyph radius, world units; 0: fitted
   bool visible = false;

@@ -85,6 +85,9 @@ Outcome read_modes(Scene& scene, const json::Node& node) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(json::only_keys(item, {"name", "links", "on"}));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
+    if (!is_name(name))
+      return json::error_at(*item.find("name"),
+                            "mode name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
     bool twice = false;
     scene.world.each<Mode>([&](Entity, const Mode& other) { twice = twice || other.name == name; });
     if (twice) return json::error_at(*item.find("name"), "duplicate mode name " + in_quotes(name) + "; unique names were expected");

@@ -13,10 +13,12 @@ void update_cursor(Scene& scene, const exchange::HapticState& state) {
   const int links = std::clamp(state.link_count, 0, exchange::kMaxLinks);
   cursor.proxies.clear();
   cursor.active.clear();
+  cursor.leaving.clear();
   for (int i = 0; i < links; ++i) {
     const exchange::LinkReport& link = state.links[static_cast<std::size_t>(i)];
     cursor.proxies.push_back(link.proxy);
     cursor.active.push_back(link.active);
+    cursor.leaving.push_back(link.left ? 1.0 : std::clamp(link.leaving, 0.0, 1.0));
   }
 }
 

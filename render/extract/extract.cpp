@@ -126,8 +126,9 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   for (const TubeItem& tube : packet.tubes) widest_tube = std::max(widest_tube, tube.radius);
   scene.world.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
     if (!cursor.visible || !is_finite(cursor.probe)) return;
-    CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size};
+    CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving};
     item.active.resize(item.proxies.size(), true);
+    item.leaving.resize(item.proxies.size(), 0.0);
     if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
     packet.cursors.push_back(std::move(item));
   });

@@ -57,7 +57,8 @@ struct CursorItem {
   std::vector<Vec3> proxies;
   std::vector<bool> active;
   Vec3 force_n{0.0};
-  double size = 0;  ///< radius of the probe's ball, world units
+  double size = 0;              ///< radius of the probe's ball, world units
+  std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it; empty: all 0
 };
 
 struct FramePacket {

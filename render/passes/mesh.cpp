@@ -23,7 +23,8 @@ struct Vertex {
 bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
 bool same(const TubeItem& a, const TubeItem& b) { return a.radius == b.radius && same(a.color, b.color) && a.points == b.points; }
 bool same(const CursorItem& a, const CursorItem& b) {
-  return a.probe == b.probe && a.proxies == b.proxies && a.active == b.active && a.force_n == b.force_n && a.size == b.size;
+  return a.probe == b.probe && a.proxies == b.proxies && a.active == b.active && a.force_n == b.force_n && a.size == b.size &&
+         a.leaving == b.leaving;
 }
 template <class Items>
 bool same(const Items& a, const Items& b) {

@@ -212,14 +212,41 @@ Color link_color(std::size_t i, bool active) {
   return active ? c : Color{0.4f * c.r, 0.4f * c.g, 0.4f * c.b};
 }
 
+Color leaving_color(double leaving) {
+  constexpr Color on{0.65f, 0.65f, 0.65f}, near{0.90f, 0.62f, 0.00f}, gone{0.84f, 0.15f, 0.00f};
+  const auto t = static_cast<float>(std::clamp(leaving, 0.0, 1.0));
+  const auto mix = [](const Color& a, const Color& b, float f) {
+    return Color{a.r + (b.r - a.r) * f, a.g + (b.g - a.g) * f, a.b + (b.b - a.b) * f};
+  };
+  return t < 0.5f ? mix(on, near, 2 * t) : mix(near, gone, 2 * t - 1);
+}
+
 double cursor_arrow_length(double force_n, double size) {
   if (!(force_n > 1e-9) || !(size > 0)) return 0;
   return size * std::clamp(2.5 * force_n, 2.0, 16.0);
 }
 
+namespace {
+/// Three rings around a place where a link has let go: seen from any side.
+void add_rings(Shape& shape, const Vec3& centre, double radius, double thickness, const Color& color) {
+  constexpr int steps = 32;
+  for (int axis = 0; axis < 3; ++axis) {
+    TubeItem ring{{}, thickness, color};
+    for (int k = 0; k <= steps; ++k) {
+      const double angle = 2 * kPi * (k % steps) / steps;
+      Vec3 p(0.0);
+      p[(axis + 1) % 3] = radius * std::cos(angle);
+      p[(axis + 2) % 3] = radius * std::sin(angle);
+      ring.points.push_back(centre + p);
+    }
+    add_tube(shape, ring, 8);
+  }
+}
+}  // namespace
+
 void add_cursor(Shape& shape, const CursorItem& cursor) {
   if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
-  const Color white{0.95f, 0.95f, 0.95f}, grey{0.65f, 0.65f, 0.65f}, lime{0.60f, 0.95f, 0.25f};
+  const Color white{0.95f, 0.95f, 0.95f}, lime{0.60f, 0.95f, 0.25f};
   add_ball(shape, cursor.probe, cursor.size, white);
 
   // every proxy, joined to the one before; radii fall a little, so that balls in one place do not fight
@@ -229,7 +256,11 @@ void add_cursor(Shape& shape, const CursorItem& cursor) {
     const bool active = i < cursor.active.size() && cursor.active[i];
     const double radius = cursor.size * (0.9 - 0.03 * static_cast<double>(std::min<std::size_t>(i, 8)));
     add_ball(shape, cursor.proxies[i], radius, link_color(i, active));
-    add_cylinder(shape, before, cursor.proxies[i], 0.18 * cursor.size, active ? grey : Color{0.3f, 0.3f, 0.3f});
+    const double leaving = i < cursor.leaving.size() ? cursor.leaving[i] : 0;
+    add_cylinder(shape, before, cursor.proxies[i], (0.18 + 0.2 * std::clamp(leaving, 0.0, 1.0)) * cursor.size,
+                 active ? leaving_color(leaving) : Color{0.3f, 0.3f, 0.3f});
+    if (!active && leaving >= 1)
+      add_rings(shape, cursor.proxies[i], cursor.size * (1.5 + 0.35 * static_cast<double>(i)), 0.12 * cursor.size, leaving_color(1));
     before = cursor.proxies[i];
   }
 

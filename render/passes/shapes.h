@@ -39,8 +39,14 @@ void add_cone(Shape& shape, const Vec3& base, const Vec3& tip, double radius, co
 /// The colour of link i's proxy: a colour-blind-safe sequence (Okabe and Ito); dim while the link is not active.
 Color link_color(std::size_t i, bool active);
 
-/// Probe ball, a ball a proxy (larger than a tube of the fitted radius: it covers the line it sits on), thin cylinders
+/// The link between a proxy and its probe: grey on the feature, over amber to red where the hand is about to leave it (Okabe
+/// and Ito's, told apart by the colour-blind).
+Color leaving_color(double leaving);
+
+/// Probe ball, a ball a proxy (larger than a tube of the fitted radius: it covers the line it sits on), cylinders
 /// probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length, along F, from the probe.
+/// A link that the hand is leaving: its cylinder takes leaving_color and gets thicker; one that has let go: three rings of
+/// leaving_color(1) around the place where it would hold.
 void add_cursor(Shape& shape, const CursorItem& cursor);
 /// 2.5 glyph radii a newton, between 2 (anything felt can be seen) and 16 radii; 0 without a force.
 double cursor_arrow_length(double force_n, double size);

@@ -183,7 +183,7 @@ TEST(Shapes, BallCylinderConeAreClosedAndOutward) {
   EXPECT_TRUE(none.vertices.empty());
 }
 
-CursorItem cursor() { return {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {1.0, 2.0, 0.0}}, {true, false}, {0.0, 0.0, 3.0}, 0.1}; }
+CursorItem cursor() { return {{0.0, 0.0, 0.0}, {{1.0, 0.0, 0.0}, {1.0, 2.0, 0.0}}, {true, false}, {0.0, 0.0, 3.0}, 0.1, {}}; }
 
 TEST(Shapes, CursorShowsEveryProxyAndTheForce) {
   Shape shape;
@@ -208,6 +208,30 @@ TEST(Shapes, CursorShowsEveryProxyAndTheForce) {
   EXPECT_GT(first, 50);
   EXPECT_GT(second, 50);
   EXPECT_NEAR(highest, cursor_arrow_length(3, 0.1), 1e-12);
+}
+
+int vertices_of(const Shape& shape, const Color& c) {
+  int count = 0;
+  for (const MeshVertex& v : shape.vertices) count += v.color.r == c.r && v.color.g == c.g && v.color.b == c.b;
+  return count;
+}
+
+TEST(Shapes, ALinkThatTheHandIsLeavingIsSeen) {
+  CursorItem item = cursor();
+  Shape calm, near, gone;
+  add_cursor(calm, item);
+  item.leaving = {0.5, 0};
+  add_cursor(near, item);
+  item.leaving = {0, 1};  // link 1 is not active: it has let go
+  add_cursor(gone, item);
+  EXPECT_GT(vertices_of(calm, leaving_color(0)), 0);
+  EXPECT_EQ(vertices_of(near, leaving_color(0)), 0);
+  EXPECT_GT(vertices_of(near, leaving_color(0.5)), 0);
+  EXPECT_EQ(vertices_of(calm, leaving_color(1)), 0);
+  EXPECT_GT(vertices_of(gone, leaving_color(1)), 100) << "rings around the place";
+  expect_closed(gone);
+  expect_outward(gone);
+  EXPECT_GT(leaving_color(1).r - leaving_color(1).g, 0.5f);
 }
 
 TEST(Shapes, ArrowLengthFollowsTheForceWithinLimits) {
