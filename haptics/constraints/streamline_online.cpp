@@ -14,6 +14,7 @@ using Mode = OnlineMemory::Mode;
 constexpr double kConverged = 1e-12, kLongestStep = 0.1, kFirstTrust = 0.02;
 constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15, kCalm = 1e-3, kNear = 0.02;
 constexpr int kSearches = 2;  ///< for a zero, a tick
+constexpr int kHalvings = 4;  ///< on the way to a wall, before the rest is tried as a whole
 
 /// One tick of one link.
 class Tick {
@@ -147,6 +148,7 @@ class Tick {
     double limit = memory_.trust;  // longest step from here that may still do
     double bad = -1;               // distance ahead at which a step was seen to fail, while > 0
     double bad_way = 0;
+    int halvings = 0;  // steps taken since, where it failed outside
     for (int i = 0; i < 2 * kEvaluationCap; ++i) {
       const Vec3 e = x_ - state_.proxy;
       const double g = dot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
@@ -157,7 +159,7 @@ class Tick {
       // the step: Newton with the curvature, within the trust radius and the bracket
       double h = std::fabs(g) / std::max(std::fabs(1 - dot(memory_.curvature, e)), 0.1);
       h = std::min(std::min(h, limit), kLongestStep * length_);
-      if (bad > 0) h = std::min(h, std::max(0.5 * bad, kSmallest * length_));
+      if (bad > 0) h = std::min(h, halvings >= kHalvings ? bad : std::max(0.5 * bad, kSmallest * length_));
       if (!affordable()) return;
       flow::Step step = try_step(way * h);
 
@@ -167,6 +169,7 @@ class Tick {
         limit = 0.5 * h;
         bad = h;
         bad_way = way;
+        halvings = 1;
         continue;
       }
       if (step.stop != Stop::none) {
@@ -176,6 +179,7 @@ class Tick {
         limit = 0.5 * h;
         bad = h;
         bad_way = way;
+        halvings = 0;
         continue;
       }
 
@@ -212,7 +216,9 @@ class Tick {
       }
       accept(step, way * h, grown);
       limit = memory_.trust;
-      if (bad > 0) bad = std::max(bad - h, kSmallest * length_);
+      // a stage may lie outside though the line does not: now and then the rest is tried as a whole
+      if (halvings > 0) halvings = halvings >= kHalvings ? 0 : halvings + 1;
+      if (bad > 0) bad = bad > h ? std::max(bad - h, kSmallest * length_) : -1;
       if (norm(memory_.curvature) * kCapture * length_ > 1 && capture(way)) return;
     }
     state_.status = Status::budget;

@@ -6,6 +6,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kHandStep = 0.02;  // of L: longest step, and deepest hold, for thin sheets
+constexpr double kThrough = 1e-6;   // of L: closer than this to the face, a probe on the free side has come out of it
 constexpr double kRearmPart = 0.1;  // of release
 
 bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
@@ -54,12 +55,15 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
   leave(hold.proxy, hold.residual, hold.status, state);
 }
 
-/// A thin sheet between the last probe and this one, both on the free side: the held point on its near face, if any.
+/// A thin sheet between the probe, on the free side, and where it came from: the held point on its near face, if any.
 Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory) {
   const double reach = kHandStep * surface.domain_length();
   Hold hold;
-  if (memory.sheet && memory.holding) {
-    hold = surface.slide(probe);
+  if (memory.holding) {
+    // caught before, or pushed through within the sheet
+    const bool pushed = surface.march_step() > 0 && norm(probe - memory.probe) <= reach;
+    if (memory.sheet || pushed) hold = surface.slide(probe);
+    if (!memory.sheet && norm(probe - hold.proxy) <= kThrough * surface.domain_length()) hold.found = false;
   } else if (memory.fresh && memory.status == Status::free && memory.known && surface.march_step() > 0) {
     const double step = norm(probe - memory.probe);
     if (step > surface.march_step() && step <= reach) hold = surface.cross(memory.probe, probe);

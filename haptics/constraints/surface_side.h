@@ -4,8 +4,8 @@
 ///   release: the link lets go in the tick in which |probe - proxy| >= release. A one-sided link takes hold again when its
 ///   probe is on the free side, a two-sided one when the probe crosses the level or comes within 0.1 release of it.
 ///   A one-sided link whose first probe is deeper than release starts released.
-/// Thin sheets: a one-sided probe that passes a sheet within one step of at most 0.02 L (a hand, not a jump) is caught on
-/// the sheet's near face, and stays caught until it comes back, or is 0.02 L away, or released.
+/// Thin sheets: a one-sided probe that passes a sheet, within one step of at most 0.02 L (a hand, not a jump) or by being pushed
+/// through it step by step, is held on the sheet's near face until it comes back, or is 0.02 L away, or released.
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/chain/parameter.h"

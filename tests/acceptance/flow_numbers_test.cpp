@@ -1,0 +1,160 @@
+// Acceptance numbers 1 to 4: the advection function, and what the hand feels of it.
+#include <random>
+
+#include "engine/flow/curve.h"
+#include "tests/acceptance/chain_rig.h"
+#include "tests/acceptance/reference.h"
+#include "tests/engine/flow/fields.h"
+
+namespace catena::acceptance {
+namespace {
+
+using catena::test::analytic_vector;
+using catena::test::lambda_field;
+using flow::Method;
+
+/// Drift, in mm, of a hand that goes once round the circle of R = 50 mm at 1 kHz.
+double drift_of_a_lap(const std::string& method, double speed) {
+  const double radius = 0.05, step = speed * 1e-3;
+  ChainRig chain(program_of(R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline", "field": "v",
+                               "seed": [0.05, 0, 0], "method": ")" +
+                            method + R"("}]})"));
+  double worst = 0;
+  const int ticks = static_cast<int>(std::ceil(2 * M_PI * radius / step));
+  for (int i = 0; i <= ticks; ++i) {
+    const double angle = std::min(step * i / radius, 2 * M_PI);
+    chain.to({radius * std::cos(angle), radius * std::sin(angle), 0});
+    EXPECT_EQ(chain.status(), Status::ok) << method << " tick " << i;
+    worst = std::max(worst, std::fabs(norm(chain.proxy()) - radius));
+  }
+  return 1e3 * worst;
+}
+
+TEST(Number1, CircleDriftPerLap) {
+  const double euler = drift_of_a_lap("euler", 0.2), linear = drift_of_a_lap("linear", 0.2), rk3 = drift_of_a_lap("rk3", 0.2),
+               rkf34 = drift_of_a_lap("rkf34", 0.2), dp54 = drift_of_a_lap("dp54", 0.2);
+  attained("Euler, 0.2 m/s, mm a lap", euler);
+  attained("Eqs. 1-2 as printed, 0.2 m/s, mm a lap", linear);
+  attained("RK3, 0.2 m/s, mm a lap", rk3);
+  attained("RKF3(4), 0.2 m/s, mm a lap", rkf34);
+  attained("DP5(4), 0.2 m/s, mm a lap", dp54);
+  EXPECT_NEAR(euler, 0.63, 0.02);
+  EXPECT_NEAR(linear, 0.63, 0.02);
+  EXPECT_LE(rk3, 2e-6);
+  EXPECT_LE(rkf34, 5e-7);
+  EXPECT_LE(dp54, 5e-7);
+}
+
+TEST(Number1, EulerDriftsByPiTimesTheStep) {
+  for (const auto& [speed, drift] : {std::pair{0.05, 0.157}, std::pair{1.0, 3.24}}) {
+    const double euler = drift_of_a_lap("euler", speed);
+    attained("Euler, " + std::to_string(speed) + " m/s, mm a lap", euler);
+    EXPECT_NEAR(euler, drift, 0.03 * drift);
+  }
+}
+
+// Figure 2's other half: under a still hand with 1 mm of tremor Euler creeps away, the paper's method stays.
+TEST(Number1, TremorOfAStillHandForAMinute) {
+  for (const char* method : {"euler", "rkf34"}) {
+    ChainRig chain(program_of(std::string(R"({"fields": {"v": {"analytic": "circle"}}, "chain": [{"name": "c", "type": "streamline",
+                               "field": "v", "seed": [0.05, 0, 0], "method": ")") +
+                              method + R"("}]})"));
+    double worst = 0;
+    for (int i = 0; i < 60000; ++i) {
+      const double angle = 1e-3 / 0.05 * std::sin(2 * M_PI * 9 * 1e-3 * i);
+      chain.to({0.05 * std::cos(angle), 0.05 * std::sin(angle), 0});
+      worst = std::max(worst, 1e3 * std::fabs(norm(chain.proxy()) - 0.05));
+    }
+    attained(std::string(method) + ", mm after a minute of tremor", worst);
+    if (std::string(method) == "euler")
+      EXPECT_GT(worst, 0.5);
+    else
+      EXPECT_LE(worst, 5e-6);
+  }
+}
+
+TEST(Number2, ObservedOrdersOnAbc) {
+  const auto field = analytic_vector("abc");
+  const flow::Flow flow{field.get()};
+  const Vec3 start(0.3, -0.7, 0.4);
+  const Vec3 exact = march(abc, R3(start), 1, 20000).rounded();
+  const struct {
+    Method method;
+    int order, steps;
+  } cases[] = {{Method::euler, 1, 4000}, {Method::rk2, 2, 400}, {Method::rk3, 3, 160},
+               {Method::rkf34, 3, 160},  {Method::rk4, 4, 80},  {Method::dp54, 5, 40}};
+  for (const auto& c : cases) {
+    const auto error = [&](int steps) {
+      Vec3 p = start;
+      field::Cursor cursor;
+      for (int i = 0; i < steps; ++i)
+        p += flow::advect(flow, p, 1.0 / steps, c.method, std::numeric_limits<double>::infinity(), cursor).displacement;
+      return norm(p - exact);
+    };
+    const double order = std::log2(error(c.steps) / error(2 * c.steps));
+    attained(std::string("observed order of ") + flow::method_word(c.method), order);
+    EXPECT_NEAR(order, c.order, 0.1) << flow::method_word(c.method);
+  }
+}
+
+TEST(Number3, ThereAndBackOnAbc) {
+  const auto field = lambda_field([](const Vec3& p) { return unit(abc(R3(p))).rounded(); });
+  const flow::Flow flow{field.get()};
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> place(-M_PI, M_PI);
+  double rkf34 = 0, dp54 = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p(place(random), place(random), place(random));
+    for (const auto& [method, worst] : {std::pair{Method::rkf34, &rkf34}, std::pair{Method::dp54, &dp54}}) {
+      field::Cursor cursor;
+      const Vec3 there = p + flow::advect(flow, p, 1, method, 1e-9, cursor).displacement;
+      const Vec3 back = there + flow::advect(flow, there, -1, method, 1e-9, cursor).displacement;
+      *worst = std::max(*worst, norm(back - p));
+    }
+  }
+  attained("RKF3(4), tolerance 1e-9, worst of 500", rkf34);
+  attained("DP5(4), tolerance 1e-9, worst of 500", dp54);
+  EXPECT_LE(rkf34, 1e-6);
+  EXPECT_LE(dp54, 2e-8);
+}
+
+/// Hill's vortex on `nodes` an axis of [-1.2, 1.2]^3, followed for 3.2 from (0.5, 0, 0). On a grid as in the formula the line comes
+/// round, by the symmetry of the vortex, after 1.77: the second lap repeats the first.
+void expect_grid_floor(int nodes, double floor) {
+  const auto grid = field::sample_on_grid(*analytic_vector("hill"), nodes, -1.2, 1.2);
+  const Vec3 seed(0.5, 0, 0);
+
+  // the selected line
+  flow::TraceOptions options;
+  options.length = 3.2;
+  const auto curve = flow::trace({grid.get()}, seed, options);
+  ASSERT_TRUE(curve);
+  ASSERT_TRUE((*curve)->closed() || (*curve)->knots().back().s >= 3.2 - 1e-9);
+  double selected = 0;
+  for (int i = 0; i <= 3200; ++i) selected = std::max(selected, hill_distance((*curve)->position(1e-3 * i), 0.5L));
+
+  // a hand that follows on line, ahead of the proxy on the line's own course
+  haptics::test::Fields fields;
+  fields.named["v"].vector = grid;
+  ChainRig chain(program_of({haptics::test::build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0],
+                                                      "follow": "online"})",
+                                                  fields)}));
+  double online = 0;
+  for (int i = 0; i <= 1600; ++i) {
+    chain.to((*curve)->position(2e-3 * i));
+    ASSERT_EQ(chain.status(), Status::ok);
+    online = std::max(online, hill_distance(chain.proxy(), 0.5L));
+  }
+  attained("selected, cross-track error / 3.2, nodes " + std::to_string(nodes), selected / 3.2);
+  attained("on line, cross-track error / 3.2, nodes " + std::to_string(nodes), online / 3.2);
+  EXPECT_NEAR(selected / 3.2, floor, 0.2 * floor);
+  EXPECT_NEAR(online / 3.2, floor, 0.2 * floor);
+}
+
+TEST(Number4, GridFloorOfHillsVortex32) { expect_grid_floor(32, 1.2e-3); }
+TEST(Number4, GridFloorOfHillsVortex64) { expect_grid_floor(64, 2.8e-4); }
+TEST(Number4, GridFloorOfHillsVortex128) { expect_grid_floor(128, 7.1e-5); }
+TEST(Number4, GridFloorOfHillsVortex256) { expect_grid_floor(256, 1.8e-5); }
+
+}  // namespace
+}  // namespace catena::acceptance

@@ -1,0 +1,76 @@
+/// The examples of every constraint type, and the fields that they name: what the conformance and the endurance tests run over.
+/// A new type adds its row to examples().
+#pragma once
+#include <limits>
+
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+
+/// Examples by type, without name and type. Fields: see fields().
+inline std::map<std::string, std::vector<std::string>> examples() {
+  return {
+      {"point", {R"("position": [0.3, -0.2, 0.1])", R"("position": [0, 0, 0], "release": 0.4)"}},
+      {"plane",
+       {R"("point": [0.1, 0, 0], "normal": [1, 2, 3])", R"("point": [0.1, 0, 0], "normal": [1, 2, 3], "free": "above", "release": 0.3)",
+        R"("point": [0, 0, 0], "normal": [0, 0, -1], "free": "below")", R"("point": [0, 0, 0], "normal": [0, 1, 0], "release": 0.1)"}},
+      {"isosurface",
+       {R"("field": "sphere", "level": 1)", R"("field": "sphere", "level": 1, "free": "above")",
+        R"("field": "torus", "level": 0.4, "free": "below", "release": 0.2)", R"("field": "torus", "level": 0.3)",
+        R"("field": "gaussian", "level": 0.5, "release": 0.3)", R"("field": "tanh", "level": 0.9, "free": "below")",
+        R"("field": "marschner-lobb", "level": 0.5)", R"("field": "constant", "level": 1)", R"("field": "sphere_grid", "level": 1)",
+        R"("field": "sphere_grid", "level": 0.05)", R"("field": "torus_grid", "level": 0.4, "free": "above", "release": 0.2)",
+        R"("field": "boxes_grid", "level": 0.9, "free": "below")", R"("field": "noise_grid", "level": 0.1)",
+        R"("field": "noise_grid", "level": 0.1, "free": "above", "release": 0.1)", R"("field": "broken_grid", "level": 0.5)",
+        R"("field": "broken_grid", "level": 0.5, "free": "above")"}},
+      {"streamline",
+       {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "saddle", "seed": [0.5, 0.2, 0.1])", R"("field": "circle")",
+        R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",
+        R"("field": "circle", "seed": [0.5, 0, 0], "method": "rk4")", R"("field": "circle_grid", "seed": [0.5, 0, 0])",
+        R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")"}},
+  };
+}
+
+inline const Fields& fields() {
+  static const Fields all = [] {
+    Fields made;
+    for (const char* name : {"sphere", "torus", "gaussian", "tanh", "marschner-lobb", "constant"}) made.named[name].scalar = analytic(name);
+    for (const char* name : {"circle", "saddle", "hill"}) made.named[name].vector = field::make_analytic(name)->vector;
+    made.named["sphere_grid"].scalar = sampled("sphere", 25);
+    made.named["torus_grid"].scalar = sampled("torus", 33);
+    made.named["circle_grid"].vector = field::sample_on_grid(*made.named["circle"].vector, 24, -2, 2);
+    Mat3 boxes(0.0);
+    boxes[0] = Vec3(0.1, 0.02, 0);
+    boxes[1] = Vec3(-0.05, 0.25, 0);
+    boxes[2] = Vec3(0, 0.03, 0.4);
+    made.named["boxes_grid"].scalar =
+        grid_of(field::Mapping::from_linear(boxes, Vec3(-1.2, -1.8, -2)), {30, 15, 10}, [](const Vec3& p) { return norm(p); });
+    Random random(99);
+    made.named["noise_grid"].scalar =
+        grid_of(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, [&](const Vec3&) { return random.in(-1, 1); });
+    made.named["broken_grid"].scalar = grid_of(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, [&](const Vec3&) {
+      const double v = random.in(0, 1);
+      return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
+    });
+    return made;
+  }();
+  return all;
+}
+
+struct Example {
+  std::string type, body;
+};
+inline void PrintTo(const Example& e, std::ostream* out) { *out << e.type << " {" << e.body << "}"; }
+
+inline std::vector<Example> all_examples() {
+  std::vector<Example> out;
+  const auto table = examples();
+  for (const ConstraintType& type : registry()) {
+    const auto it = table.find(std::string(type.type));
+    if (it == table.end()) continue;
+    for (const std::string& body : it->second) out.push_back({it->first, body});
+  }
+  return out;
+}
+
+}  // namespace catena::haptics::test
