@@ -58,7 +58,7 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
 Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory) {
   const double reach = kHandStep * surface.domain_length();
   Hold hold;
-  if (memory.sheet && memory.holding) {
+  if (memory.holding && (memory.sheet || surface.follows_through())) {
     hold = surface.slide(probe);
   } else if (memory.fresh && memory.status == Status::free && memory.known && surface.march_step() > 0) {
     const double step = norm(probe - memory.probe);
