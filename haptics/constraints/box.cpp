@@ -11,6 +11,7 @@ struct BoxShape {
   Vec3 center;
   Vec3 half;
   Mat3 world_from_box;  // orthonormal
+  bool catches;         // free above: a thin box is not slipped through
 };
 
 /// A side of the box: axis 0..2, sign -1 or +1; sign 0: none.
@@ -38,7 +39,8 @@ class BoxSurface final : public Surface {
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
     const Vec3 a = to_box(from), b = to_box(probe);
     const double before = value(a);
-    Face face = before < 0 ? Face{0, 0} : entry_face(a, b);
+    Face face{0, 0};
+    if (before > 0 || (before == 0 && shape_.catches)) face = entry_face(a, b);
     if (before <= 0 && face.sign == 0) face = exit_face(a, b);
     if (face.sign == 0) return {};
     memory_.face = face;
@@ -50,7 +52,7 @@ class BoxSurface final : public Surface {
   }
   Vec3 normal() const noexcept override { return normal_; }
   double march_step() const noexcept override { return std::numeric_limits<double>::min(); }
-  bool follows_through() const noexcept override { return true; }
+  bool follows_through() const noexcept override { return shape_.catches; }
   double domain_length() const noexcept override { return std::max(kSceneLength, 2 * max_abs(shape_.half)); }
 
   /// A face's plane; from outside an edge's line or the corner.
@@ -138,7 +140,7 @@ class BoxSurface final : public Surface {
     lateral[face.axis] = 0;
     Vec3 q, n(0.0);
     for (int i = 0; i < 3; ++i) q[i] = std::clamp(y[i], -shape_.half[i], shape_.half[i]);
-    if (max_abs(lateral) > 0) {
+    if (max_abs(lateral) > 0 || (!shape_.catches && value(y) > 0)) {
       if (!(face.sign * y[face.axis] >= shape_.half[face.axis])) face = nearest_face(y);
       n = direction(y - q);
     } else {
@@ -171,7 +173,7 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
     rotation = orthonormal(given);
   }
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
-  return make_closed_form<BoxSurface>({center, size * 0.5, rotation}, rules);
+  return make_closed_form<BoxSurface>({center, size * 0.5, rotation, rules.free == FreeSide::above}, rules);
 }
 
 constexpr std::string_view kSizeSchema = R"("items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3)";

@@ -10,6 +10,7 @@ namespace {
 struct SphereShape {
   Vec3 center;
   double radius;
+  bool catches;  // free above: a thin sphere is not passed within one tick
 };
 
 class SphereSurface final : public Surface {
@@ -19,7 +20,7 @@ class SphereSurface final : public Surface {
     Vec3 normal;  // at the point held; against the way in while a thin sphere is held on its near half
   };
   SphereSurface(const Shape& shape, Memory& memory, const SideMemory& side)
-      : center_(shape.center), radius_(shape.radius), memory_(memory), side_(side) {}
+      : center_(shape.center), radius_(shape.radius), catches_(shape.catches), memory_(memory), side_(side) {}
 
   SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
 
@@ -38,7 +39,7 @@ class SphereSurface final : public Surface {
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
     const double before = height(from), after = height(probe);
     if (before <= 0 && after <= 0) return {};
-    if (before < 0 || after <= 0) return place(probe);
+    if (before < 0 || after <= 0 || (before == 0 && !catches_)) return place(probe);
 
     // both outside: where the segment enters
     const Vec3 u = from - center_, way = direction(probe - from);
@@ -46,7 +47,7 @@ class SphereSurface final : public Surface {
     if (!(apart < radius_)) return {};
     const double s = middle - std::sqrt((radius_ - apart) * (radius_ + apart));
     if (!(s >= -1e-9 * radius_ && s <= norm(probe - from))) return {};
-    if (side_.status != Status::free) return place(probe);
+    if (!catches_) return place(probe);
     memory_.normal = -way;
     return near_side(probe);
   }
@@ -78,6 +79,7 @@ class SphereSurface final : public Surface {
 
   Vec3 center_;
   double radius_;
+  bool catches_;
   Memory& memory_;
   const SideMemory& side_;
   Vec3 normal_{0.0};
@@ -87,7 +89,7 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
   CATENA_TRY(const Vec3 center, json::require_vec3(link, "center"));
   CATENA_TRY(const double radius, json::require_number(link, "radius", json::Range::positive));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
-  return make_closed_form<SphereSurface>({center, radius}, rules);
+  return make_closed_form<SphereSurface>({center, radius, rules.free == FreeSide::above}, rules);
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 ///   probe is on the free side, a two-sided one when the probe crosses the level or comes within 0.1 release of it.
 ///   A one-sided link whose first probe is deeper than release starts released.
 /// Thin sheets: a one-sided probe that passes a sheet within one step of at most 0.02 L (a hand, not a jump) is caught on
-/// the sheet's near face, and stays caught until it comes back, or is 0.02 L away, or released.
+/// the sheet's near face, and stays caught until it comes back, or is 0.02 L away, or released. A surface may hold the same
+/// way where the hand stops within the sheet on its way through (follows_through).
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/chain/parameter.h"

@@ -151,6 +151,37 @@ TEST(Box, TheTwoSidedProxyGoesRoundAnEdgeWithoutAJump) {
   EXPECT_TRUE(same_bits(rig.tick({0.4, 0, 0.46}).proxy, Vec3(0.5, 0, 0.46)));
 }
 
+TEST(Box, TheTwoSidedProxyIsTheClosestPointOutsideAndKeepsItsFaceInside) {
+  Random random(7);
+  for (int i = 0; i < 60; ++i) {
+    const Made box = random_box(random);
+    Rig rig(build(text(box)));
+    Vec3 y = random.box(1), held(0.0);
+    bool was_inside = false;
+    for (int k = 0; k < 2000; ++k) {
+      for (int axis = 0; axis < 3; ++axis) y[axis] = std::clamp(y[axis] + random.in(-0.05, 0.05), -1.2, 1.2);
+      const Vec3 probe = box.world(y);
+      const Vec3 proxy = rig.tick(probe).proxy, q = box.local(proxy);
+      const double value = brute_value(box, probe);
+      if (std::fabs(value) < 1e-9) continue;
+      ASSERT_LE(rig.state.residual, 2e-15);
+      if (value > 0) {
+        ASSERT_NEAR(norm(probe - proxy), value, 4e-15);
+      } else {
+        // a projection onto one face, and always the same one
+        Vec3 face(0.0);
+        for (int axis = 0; axis < 3; ++axis)
+          if (std::fabs(q[axis] - y[axis]) > 1e-13) face[axis] = q[axis] > 0 ? 1 : -1;
+        ASSERT_LE(dot(face, face), 1);
+        ASSERT_EQ(dot(face, held), was_inside && dot(held, held) > 0 ? dot(face, face) : 0);
+        if (dot(face, face) > 0) held = face;
+      }
+      was_inside = value < 0;
+      if (!was_inside) held = Vec3(0.0);
+    }
+  }
+}
+
 TEST(Box, FreeMeansTheProbeBitForBitAndHeldMeansBehind) {
   Random random(9);
   for (int i = 0; i < 60; ++i) {
