@@ -62,6 +62,8 @@ Result<std::optional<Vec3>> get_optional_vec3(const Node& object, std::string_vi
 Result<double> as_number(const Node& node, std::string_view what, Range range = Range::any);
 Result<Vec3> as_vec3(const Node& node, std::string_view what);
 Result<std::string> as_string(const Node& node, std::string_view what);
+/// A rotation: three rows of three numbers, nine numbers (row by row), or {"axis": [x, y, z], "angle_deg": a}; orthonormal to 1e-6.
+Result<Mat3> as_rotation(const Node& node, std::string_view what);
 Result<std::vector<std::vector<double>>> as_rows(const Node& node, std::string_view what, std::size_t width);
 
 }  // namespace catena::json

@@ -7,48 +7,6 @@ namespace {
 
 constexpr std::size_t kMostLinks = exchange::kMaxLinks;
 
-/// A rotation as three rows of three numbers, nine numbers (row by row), or {"axis": [x, y, z], "angle_deg": a}.
-Result<Mat3> read_rotation(const json::Node& node) {
-  const std::string expected = "three orthonormal rows of three numbers, or {\"axis\": [x, y, z], \"angle_deg\": a}, were expected";
-  if (node.kind == json::Kind::object) {
-    CATENA_CHECK(json::only_keys(node, {"axis", "angle_deg"}));
-    CATENA_TRY(const Vec3 axis, json::require_vec3(node, "axis"));
-    if (norm(axis) == 0) return json::error_at(*node.find("axis"), "\"axis\" is zero; a vector other than [0, 0, 0] was expected");
-    CATENA_TRY(const double angle_deg, json::require_number(node, "angle_deg"));
-    // Rodrigues: R e = e cos a + (u x e) sin a + u (u . e)(1 - cos a)
-    const Vec3 u = direction(axis);
-    const double angle = angle_deg * (3.14159265358979323846 / 180.0), c = std::cos(angle), s = std::sin(angle);
-    Mat3 rotation(1.0);
-    for (int i = 0; i < 3; ++i) {
-      Vec3 e(0.0);
-      e[i] = 1;
-      rotation[i] = e * c + cross(u, e) * s + u * (u[i] * (1 - c));
-    }
-    return rotation;
-  }
-  const bool flat = node.kind == json::Kind::array && node.items.size() == 9;
-  if (node.kind != json::Kind::array || (!flat && node.items.size() != 3))
-    return json::error_at(node, "\"rotation\" has the wrong shape; " + expected);
-  Mat3 rotation(1.0);
-  for (int row = 0; row < 3; ++row) {
-    Vec3 values(0.0);
-    if (flat) {
-      for (int i = 0; i < 3; ++i) {
-        CATENA_TRY(values[i], json::as_number(node.items[static_cast<std::size_t>(3 * row + i)], "rotation"));
-      }
-    } else {
-      CATENA_TRY(values, json::as_vec3(node.items[static_cast<std::size_t>(row)], "rotation"));
-    }
-    for (int column = 0; column < 3; ++column) rotation[column][row] = values[column];
-  }
-  double worst = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) worst = std::max(worst, std::fabs(dot(rotation[i], rotation[j]) - (i == j ? 1.0 : 0.0)));
-  if (!(worst <= 1e-6) || dot(cross(rotation[0], rotation[1]), rotation[2]) < 0)
-    return json::error_at(node, "\"rotation\" is no rotation; " + expected);
-  return rotation;
-}
-
 }  // namespace
 
 /// Names, types and the field that a link names are checked here; its other keys by the constraint of its type, where the
@@ -124,7 +82,7 @@ Outcome read_workspace(Scene& scene, const json::Node& node) {
   w.given = node.find("metres_per_unit") != nullptr;
   CATENA_TRY(w.origin, json::get_vec3(node, "origin", w.origin));
   if (const json::Node* rotation = node.find("rotation")) {
-    CATENA_TRY(w.rotation, read_rotation(*rotation));
+    CATENA_TRY(w.rotation, json::as_rotation(*rotation, "rotation"));
   }
   return Done{};
 }

@@ -1,13 +1,19 @@
 #include "haptics/constraints/plane.h"
 
-#include "haptics/constraints/surface_side.h"
+#include "haptics/constraints/closed_form.h"
 
 namespace catena::haptics {
 namespace {
 
+struct PlaneShape {
+  Vec3 point, normal;
+};
+
 class PlaneSurface final : public Surface {
  public:
-  PlaneSurface(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal) {}
+  using Shape = PlaneShape;
+  using Memory = NoMemory;
+  PlaneSurface(const Shape& shape, Memory&, const SideMemory&) : point_(shape.point), normal_(shape.normal) {}
   SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
   Hold place(const Vec3& probe) noexcept override {
     // a second projection takes off what rounding left
@@ -19,28 +25,15 @@ class PlaneSurface final : public Surface {
   Hold cross(const Vec3&, const Vec3& probe) noexcept override { return place(probe); }
   Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
   Vec3 normal() const noexcept override { return normal_; }
-  double domain_length() const noexcept override { return 4; }
+  double domain_length() const noexcept override { return kSceneLength; }
+  bool primitive(const Vec3& at, Primitive& out) noexcept {
+    out = {Primitive::Kind::plane, place(at).proxy, normal_};
+    return true;
+  }
 
  private:
   double height(const Vec3& at) const { return dot(normal_, at - point_); }
   Vec3 point_, normal_;
-};
-
-class Plane final : public Constraint {
- public:
-  Plane(const Vec3& point, const Vec3& normal, const SideSpec& rules) : point_(point), normal_(normal), rules_(rules) {}
-  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    PlaneSurface surface(point_, normal_);
-    start_on(surface, rules_.at(probe, state, scratch), probe, memory_of<SideMemory>(state), state);
-  }
-  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    PlaneSurface surface(point_, normal_);
-    advance_on(surface, rules_.now(state, scratch), probe, memory_of<SideMemory>(state), state);
-  }
-
- private:
-  Vec3 point_, normal_;
-  SideSpec rules_;
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
@@ -49,7 +42,7 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
   const Vec3 normal = direction(given);
   if (!(max_abs(normal) > 0)) return json::error_at(*link.find("normal"), "\"normal\" is zero; expected a vector of non-zero length");
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
-  return std::shared_ptr<const Constraint>(std::make_shared<Plane>(point, normal, rules));
+  return make_closed_form<PlaneSurface>({point, normal}, rules);
 }
 
 }  // namespace

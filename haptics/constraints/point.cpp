@@ -1,46 +1,21 @@
 #include "haptics/constraints/point.h"
 
-#include "haptics/constraints/surface_side.h"
+#include "haptics/constraints/closed_form.h"
 
 namespace catena::haptics {
 namespace {
 
-class PointSurface final : public Surface {
- public:
-  explicit PointSurface(const Vec3& position) : position_(position) {}
-  SideValue side(const Vec3&) noexcept override { return {}; }
-  Hold place(const Vec3&) noexcept override { return {true, position_, 0, Status::ok}; }
-  Hold slide(const Vec3& probe) noexcept override { return place(probe); }
-  Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
-  Hold near_by(const Vec3& probe, double limit) noexcept override { return norm(probe - position_) <= limit ? place(probe) : Hold{}; }
-  Vec3 normal() const noexcept override { return Vec3(0.0); }
-  double domain_length() const noexcept override { return 4; }
-
- private:
-  Vec3 position_;
-};
-
-class Point final : public Constraint {
- public:
-  Point(const Vec3& position, const SideSpec& rules) : position_(position), rules_(rules) {}
-  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    PointSurface surface(position_);
-    start_on(surface, rules_.at(probe, state, scratch), probe, memory_of<SideMemory>(state), state);
-  }
-  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    PointSurface surface(position_);
-    advance_on(surface, rules_.now(state, scratch), probe, memory_of<SideMemory>(state), state);
-  }
-
- private:
-  Vec3 position_;
-  SideSpec rules_;
+struct PointShape {
+  Vec3 position;
+  Hold closest(const Vec3&) const noexcept { return {true, position, 0, Status::ok}; }
+  Primitive primitive(const Vec3&) const noexcept { return {Primitive::Kind::point, position, Vec3(0.0)}; }
+  double length() const noexcept { return kSceneLength; }
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 position, json::require_vec3(link, "position"));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
-  return std::shared_ptr<const Constraint>(std::make_shared<Point>(position, rules));
+  return make_closed_form<Feature<PointShape>>({position}, rules);
 }
 
 }  // namespace

@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "haptics/constraints/box.h"
 #include "haptics/constraints/isosurface.h"
+#include "haptics/constraints/line.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
+#include "haptics/constraints/polyline.h"
+#include "haptics/constraints/segment.h"
+#include "haptics/constraints/sphere.h"
 #include "haptics/constraints/streamline.h"
 
 namespace catena::haptics {
@@ -19,6 +24,10 @@ std::string parameter(const Key& key) {
 
 std::string property(const Key& key) {
   if (key.type == "parameter") return parameter(key);
+  if (key.type == "rotation")
+    return fmt::format(
+        R"("{}": {{"description": "{}", "oneOf": [{{"type": "array", "minItems": 3, "maxItems": 9}}, {{"type": "object", "required": ["axis", "angle_deg"], "properties": {{"axis": {{"type": "array", {}}}, "angle_deg": {{"type": "number"}}}}, "additionalProperties": false}}]}})",
+        key.name, key.help, kVec3Schema);
   return fmt::format(R"("{}": {{"type": "{}", "description": "{}"{}{}}})", key.name, key.type, key.help, key.schema.empty() ? "" : ", ",
                      key.schema);
 }
@@ -48,7 +57,9 @@ std::string known_types() {
 }  // namespace
 
 const std::vector<ConstraintType>& registry() {
-  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint(), streamline_constraint()};
+  static const std::vector<ConstraintType> list{point_constraint(),    line_constraint(),       segment_constraint(),
+                                                polyline_constraint(), plane_constraint(),      sphere_constraint(),
+                                                box_constraint(),      isosurface_constraint(), streamline_constraint()};
   return list;
 }
 

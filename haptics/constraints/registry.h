@@ -22,7 +22,7 @@ struct BuildContext {
 
 struct Key {
   std::string_view name;
-  std::string_view type;  ///< JSON Schema: number, string, boolean, array; or "parameter": a number or a map over a field
+  std::string_view type;  ///< JSON Schema: number, string, boolean, array; "parameter": a number or a map over a field; "rotation"
   bool required;
   std::string_view help;
   std::string_view schema = {};  ///< more JSON Schema of the value, such as a range: `"exclusiveMinimum": 0`

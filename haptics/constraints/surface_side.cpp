@@ -61,7 +61,7 @@ Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, co
   Hold hold;
   if (memory.holding) {
     // caught before, or pushed through within the sheet
-    const bool pushed = surface.march_step() > 0 && norm(probe - memory.probe) <= reach;
+    const bool pushed = surface.follows_through() || (surface.march_step() > 0 && norm(probe - memory.probe) <= reach);
     if (memory.sheet || pushed) hold = surface.slide(probe);
     if (!memory.sheet && norm(probe - hold.proxy) <= kThrough * surface.domain_length()) hold.found = false;
   } else if (memory.fresh && memory.status == Status::free && memory.known && surface.march_step() > 0) {

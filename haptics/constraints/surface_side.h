@@ -66,6 +66,8 @@ class Surface {
   virtual Vec3 normal() const noexcept = 0;
   /// Two crossings closer than this within one tick are not looked for; 0: there are none.
   virtual double march_step() const noexcept { return 0; }
+  /// True where `slide` keeps the face held on the far side too: then a thin body that is passed slowly holds as a sheet does.
+  virtual bool follows_through() const noexcept { return false; }
   virtual double domain_length() const noexcept = 0;
 };
 

@@ -7,6 +7,20 @@
 
 namespace catena::haptics::test {
 
+/// A polyline of many corners, near and far from each other.
+inline std::string zigzag(int points) {
+  Random random(5);
+  std::string text = "\"points\": [";
+  Vec3 p(0.0);
+  for (int i = 0; i < points; ++i) {
+    p = p * 0.99 + random.box(0.2);
+    char corner[96];
+    std::snprintf(corner, sizeof corner, "%s[%.17g, %.17g, %.17g]", i ? ", " : "", p.x, p.y, p.z);
+    text += corner;
+  }
+  return text + "]";
+}
+
 /// Examples by type, without name and type. Fields: see fields().
 inline std::map<std::string, std::vector<std::string>> examples() {
   return {
@@ -14,6 +28,25 @@ inline std::map<std::string, std::vector<std::string>> examples() {
       {"plane",
        {R"("point": [0.1, 0, 0], "normal": [1, 2, 3])", R"("point": [0.1, 0, 0], "normal": [1, 2, 3], "free": "above", "release": 0.3)",
         R"("point": [0, 0, 0], "normal": [0, 0, -1], "free": "below")", R"("point": [0, 0, 0], "normal": [0, 1, 0], "release": 0.1)"}},
+      {"line",
+       {R"("point": [0.1, 0, 0.2], "direction": [1, -2, 3])", R"("point": [0, 0, 0], "direction": [0, 1e-200, 0], "release": 0.3)"}},
+      {"segment",
+       {R"("from": [-0.5, 0.1, 0], "to": [0.7, 0.3, 0.2])", R"("from": [0, 0, 0], "to": [0.5, 0, 0], "release": 0.3)",
+        R"("from": [0, 0, 0], "to": [5e-324, 0, 0])", R"("from": [-1e300, 0, 0], "to": [1e300, 1, 0])"}},
+      {"polyline",
+       {R"("points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.5]])",
+        R"("points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.5]], "closed": true, "release": 0.4)",
+        R"("points": [[0, 0, 0], [1, 0, 0], [1, 0, 0], [0, 0, 0], [0.5, 0, 1e-200]], "closed": true)", zigzag(30000)}},
+      {"sphere",
+       {R"("center": [0.1, 0, 0], "radius": 0.8)", R"("center": [0, 0, 0], "radius": 1, "free": "above", "release": 0.2)",
+        R"("center": [0, 0, 0], "radius": 1, "free": "below")", R"("center": [0, 0, 0], "radius": 0.01, "free": "above")",
+        R"("center": [0, 0, 0], "radius": 0.5, "release": 0.3)"}},
+      {"box",
+       {R"("center": [0.1, 0, 0], "size": [1, 0.8, 0.6])",
+        R"("center": [0, 0, 0], "size": [1, 1, 1], "rotation": {"axis": [1, 2, 3], "angle_deg": 40}, "free": "above", "release": 0.2)",
+        R"("center": [0, 0, 0], "size": [2, 1, 1.5], "free": "below")",
+        R"("center": [0, 0, 0], "size": [1, 1, 0.001], "rotation": [1, 0, 0, 0, 0.6, -0.8, 0, 0.8, 0.6], "free": "above")",
+        R"("center": [0, 0, 0], "size": [1, 1, 0.5], "release": 0.1)"}},
       {"isosurface",
        {R"("field": "sphere", "level": 1)", R"("field": "sphere", "level": 1, "free": "above")",
         R"("field": "torus", "level": 0.4, "free": "below", "release": 0.2)", R"("field": "torus", "level": 0.3)",
@@ -60,7 +93,7 @@ inline const Fields& fields() {
 struct Example {
   std::string type, body;
 };
-inline void PrintTo(const Example& e, std::ostream* out) { *out << e.type << " {" << e.body << "}"; }
+inline void PrintTo(const Example& e, std::ostream* out) { *out << e.type << " {" << e.body.substr(0, 300) << "}"; }
 
 inline std::vector<Example> all_examples() {
   std::vector<Example> out;

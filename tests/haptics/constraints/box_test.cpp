@@ -1,0 +1,365 @@
+#include <array>
+
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+struct Made {
+  Vec3 center{0.0}, size{1.0};
+  Mat3 turn{1.0};  ///< world from box
+  Vec3 world(const Vec3& y) const { return center + turn * y; }
+  Vec3 local(const Vec3& x) const { return glm::transpose(turn) * (x - center); }
+};
+
+Made random_box(Random& random, bool axis_aligned = false) {
+  Made box;
+  box.center = random.box(1);
+  box.size = {random.in(0.1, 2), random.in(0.1, 2), random.in(0.1, 2)};
+  if (!axis_aligned) {
+    const Vec3 x = random.unit(), z = direction(cross(x, random.unit()));
+    box.turn = Mat3(x, cross(z, x), z);
+  }
+  return box;
+}
+
+std::string text(const Made& b, const std::string& more = "") {
+  char out[600];
+  std::snprintf(out, sizeof out,
+                R"({"name": "a", "type": "box", "center": [%.17g, %.17g, %.17g], "size": [%.17g, %.17g, %.17g],)"
+                R"("rotation": [[%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g], [%.17g, %.17g, %.17g]])",
+                b.center.x, b.center.y, b.center.z, b.size.x, b.size.y, b.size.z, b.turn[0].x, b.turn[1].x, b.turn[2].x, b.turn[0].y,
+                b.turn[1].y, b.turn[2].y, b.turn[0].z, b.turn[1].z, b.turn[2].z);
+  return out + more + "}";
+}
+
+/// The distance to the surface: the nearest of the six rectangles.
+double brute_distance(const Made& b, const Vec3& x) {
+  const Vec3 y = b.local(x);
+  double least = 1e300;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-0.5, 0.5}) {
+      Vec3 q;
+      for (int i = 0; i < 3; ++i) q[i] = i == axis ? side * b.size[i] : std::min(std::max(y[i], -0.5 * b.size[i]), 0.5 * b.size[i]);
+      least = std::min(least, norm(y - q));
+    }
+  return least;
+}
+
+double brute_value(const Made& b, const Vec3& x) {
+  const Vec3 y = b.local(x);
+  bool inside = true;
+  for (int i = 0; i < 3; ++i) inside = inside && std::fabs(y[i]) < 0.5 * b.size[i];
+  return inside ? -brute_distance(b, x) : brute_distance(b, x);
+}
+
+TEST(Box, StartsAtTheClosestPoint) {
+  Random random(1);
+  for (int i = 0; i < 200; ++i) {
+    const Made box = random_box(random, i % 4 == 0);
+    const auto made = build(text(box));
+    for (int k = 0; k < 40; ++k) {
+      Rig rig(made);
+      const Vec3 probe =
+          k % 2 ? box.center + random.box(3) : box.world(Vec3(random.in(-0.5, 0.5), random.in(-0.5, 0.5), random.in(-0.5, 0.5)) * box.size);
+      rig.tick(probe);
+      ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(box, probe), 3e-15);
+      ASSERT_LE(brute_distance(box, rig.state.proxy), 2e-15);
+      ASSERT_LE(rig.state.residual, 2e-15);
+      ASSERT_EQ(rig.state.status, Status::ok);
+    }
+  }
+}
+
+TEST(Box, IsExactAtFacesEdgesAndCorners) {
+  Rig rig(build(text({Vec3(0.0), Vec3(1, 2, 3)})));
+  EXPECT_TRUE(same_bits(rig.tick({0.1, 5, 0.2}).proxy, Vec3(0.1, 1, 0.2)));
+  EXPECT_TRUE(same_bits(rig.tick({0.7, 5, 0.2}).proxy, Vec3(0.5, 1, 0.2)));
+  EXPECT_TRUE(same_bits(rig.tick({0.7, 5, -2}).proxy, Vec3(0.5, 1, -1.5)));
+  EXPECT_EQ(rig.state.residual, 0);
+  for (const double far : {1e16, 1e160, 1e300}) {
+    EXPECT_TRUE(same_bits(rig.tick(Vec3(far, far, far)).proxy, Vec3(0.5, 1, 1.5))) << far;
+    EXPECT_TRUE(same_bits(rig.tick(Vec3(far, 0.25, -far)).proxy, Vec3(0.5, 0.25, -1.5))) << far;
+  }
+}
+
+TEST(Box, FromOutsideTheProxyNeverMovesFurtherThanTheProbe) {
+  Random random(5);
+  for (int i = 0; i < 40; ++i) {
+    const Made box = random_box(random);
+    Rig rig(build(text(box)));
+    // a circle around, that stays outside
+    const Vec3 u = random.unit(), v = direction(cross(u, random.unit()));
+    const double radius = 0.6 * norm(box.size);
+    Vec3 last_probe = box.center + u * radius, last = rig.tick(last_probe).proxy;
+    for (int k = 1; k <= 3000; ++k) {
+      const Vec3 probe = box.center + (u * std::cos(k * 2.1e-3) + v * std::sin(k * 2.1e-3)) * radius;
+      const Vec3 proxy = rig.tick(probe).proxy;
+      ASSERT_LE(norm(proxy - last), norm(probe - last_probe) * (1 + 1e-9) + 1e-15);
+      ASSERT_NEAR(norm(proxy - probe), brute_distance(box, probe), 2e-15 * 4);
+      last = proxy;
+      last_probe = probe;
+    }
+  }
+}
+
+TEST(Box, FromInsideTheFaceHeldStaysHeld) {
+  // no jump across the middle planes: within the box the proxy follows on its face
+  Random random(6);
+  for (int i = 0; i < 40; ++i) {
+    const Made box = random_box(random);
+    Rig rig(build(text(box, R"(, "free": "above")")));
+    Vec3 y(0, 0, 0.51 * box.size.z);
+    ASSERT_EQ(rig.tick(box.world(y)).status, Status::free);
+    y.z = 0.499 * box.size.z;
+    Vec3 last_probe = box.world(y), last = rig.tick(last_probe).proxy;
+    for (int k = 0; k < 500; ++k) {
+      for (int axis = 0; axis < 3; ++axis)
+        y[axis] = std::clamp(y[axis] + random.in(-0.02, 0.02), -0.499 * box.size[axis], 0.499 * box.size[axis]);
+      const Vec3 probe = box.world(y), proxy = rig.tick(probe).proxy;
+      ASSERT_EQ(rig.state.status, Status::ok);
+      ASSERT_LE(norm(proxy - box.world({y.x, y.y, 0.5 * box.size.z})), 2e-15);
+      ASSERT_LE(norm(proxy - last), norm(probe - last_probe) + 1e-15);
+      last = proxy;
+      last_probe = probe;
+    }
+  }
+}
+
+TEST(Box, OverAnEdgeTheHandComesFreeWhereItLeavesTheBox) {
+  Rig rig(build(text({Vec3(0.0), Vec3(1, 1, 1)}, R"(, "free": "above")")));
+  rig.tick({0.3, 0, 0.6});
+  for (double x = 0.3; x < 0.5; x += 0.001) {
+    ASSERT_EQ(rig.tick({x, 0, 0.49}).status, Status::ok);
+    ASSERT_TRUE(same_bits(rig.state.proxy, Vec3(x, 0, 0.5)));
+  }
+  EXPECT_EQ(rig.tick({0.5001, 0, 0.49}).status, Status::free);
+  EXPECT_EQ(rig.tick({0.4999, 0, 0.49}).status, Status::ok);  // back in by the side
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.5, 0, 0.49)));
+}
+
+TEST(Box, TheTwoSidedProxyGoesRoundAnEdgeWithoutAJump) {
+  Rig rig(build(text({Vec3(0.0), Vec3(1, 1, 1)})));
+  Vec3 last = rig.tick({0.3, 0, 0.6}).proxy;
+  for (int i = 0; i <= 1000; ++i) {
+    const double angle = i * 1.5707963e-3;
+    const Vec3 proxy = rig.tick({0.45 + 0.15 * std::sin(angle), 0, 0.45 + 0.15 * std::cos(angle)}).proxy;
+    ASSERT_LE(norm(proxy - last), i > 0 ? 2.4e-4 : 1);
+    last = proxy;
+  }
+  EXPECT_LE(norm(last - Vec3(0.5, 0, 0.45)), 1e-7);
+  EXPECT_TRUE(same_bits(rig.tick({0.4, 0, 0.46}).proxy, Vec3(0.5, 0, 0.46)));
+}
+
+TEST(Box, TheTwoSidedProxyIsTheClosestPointOutsideAndKeepsItsFaceInside) {
+  Random random(7);
+  for (int i = 0; i < 60; ++i) {
+    const Made box = random_box(random);
+    Rig rig(build(text(box)));
+    Vec3 y = random.box(1), held(0.0);
+    bool was_inside = false;
+    for (int k = 0; k < 2000; ++k) {
+      for (int axis = 0; axis < 3; ++axis) y[axis] = std::clamp(y[axis] + random.in(-0.05, 0.05), -1.2, 1.2);
+      const Vec3 probe = box.world(y);
+      const Vec3 proxy = rig.tick(probe).proxy, q = box.local(proxy);
+      const double value = brute_value(box, probe);
+      if (std::fabs(value) < 1e-9) continue;
+      ASSERT_LE(rig.state.residual, 2e-15);
+      if (value > 0) {
+        ASSERT_NEAR(norm(probe - proxy), value, 4e-15);
+      } else {
+        // a projection onto one face, and always the same one
+        Vec3 face(0.0);
+        for (int axis = 0; axis < 3; ++axis)
+          if (std::fabs(q[axis] - y[axis]) > 1e-13) face[axis] = q[axis] > 0 ? 1 : -1;
+        ASSERT_LE(dot(face, face), 1);
+        ASSERT_EQ(dot(face, held), was_inside && dot(held, held) > 0 ? dot(face, face) : 0);
+        if (dot(face, face) > 0) held = face;
+      }
+      was_inside = value < 0;
+      if (!was_inside) held = Vec3(0.0);
+    }
+  }
+}
+
+TEST(Box, FreeMeansTheProbeBitForBitAndHeldMeansBehind) {
+  Random random(9);
+  for (int i = 0; i < 60; ++i) {
+    const Made box = random_box(random);
+    for (const bool above : {true, false}) {
+      const auto made = build(text(box, above ? R"(, "free": "above")" : R"(, "free": "below")"));
+      for (int k = 0; k < 30; ++k) {
+        Rig rig(made);
+        const Vec3 probe = box.center + random.box(1.2);
+        const double value = brute_value(box, probe);
+        if (std::fabs(value) < 1e-12) continue;
+        rig.tick(probe);
+        if ((value > 0) == above) {
+          ASSERT_EQ(rig.state.status, Status::free);
+          ASSERT_TRUE(same_bits(rig.state.proxy, probe));
+        } else {
+          ASSERT_EQ(rig.state.status, Status::ok);
+          ASSERT_NEAR(norm(probe - rig.state.proxy), std::fabs(value), 3e-15);
+        }
+      }
+    }
+  }
+}
+
+TEST(Box, AFastHandIsHeldOnTheFaceByWhichItCameIn) {
+  Random random(10);
+  for (int i = 0; i < 2000; ++i) {
+    const Made box = random_box(random);
+    Rig rig(build(text(box, R"(, "free": "above")")));
+    const int axis = i % 3;
+    Vec3 outside(random.in(-0.4, 0.4), random.in(-0.4, 0.4), random.in(-0.4, 0.4)), inside = outside;
+    outside[axis] = 0.51;
+    inside[axis] = -0.45;  // nearer to the opposite face
+    rig.tick(box.world(outside * box.size));
+    ASSERT_EQ(rig.tick(box.world(inside * box.size)).status, Status::ok);
+    inside[axis] = 0.5;
+    ASSERT_LE(norm(rig.state.proxy - box.world(inside * box.size)), 2e-15);
+  }
+}
+
+TEST(Box, AThinOneHoldsSlowAndFastHands) {
+  // 0.02 L = 0.08 with L = 4
+  Random random(11);
+  for (int i = 0; i < 300; ++i) {
+    Made box = random_box(random, i % 3 == 0);
+    const int axis = i % 3;
+    box.size = Vec3(1.0);
+    box.size[axis] = 0.001;
+    const double side = i % 2 ? 1 : -1, step = i < 100 ? 0.0002 : random.in(0.0002, 0.08);
+    Rig rig(build(text(box, R"(, "free": "above")")));
+    Vec3 y = random.box(0.4);
+    y[axis] = side * (0.0005 + random.in(1e-6, step));
+    ASSERT_EQ(rig.tick(box.world(y)).status, Status::free);
+    // through the box, and as far behind the face as it holds
+    while (side * (y[axis] - side * step) > 0.0005 - 0.0799) {
+      y[axis] -= side * step;
+      rig.tick(box.world(y));
+      if (side * y[axis] > 0.0005) {
+        ASSERT_EQ(rig.state.status, Status::free);
+        continue;
+      }
+      Vec3 held = y;
+      held[axis] = side * 0.0005;
+      ASSERT_EQ(rig.state.status, Status::ok) << "step " << step << " at " << y[axis];
+      ASSERT_LE(norm(rig.state.proxy - box.world(held)), 2e-15);
+    }
+    // back: free again in front of that face
+    y[axis] = side * 0.00051;
+    ASSERT_EQ(rig.tick(box.world(y)).status, Status::free);
+    // and let go further behind
+    y[axis] = -side * 0.03;
+    ASSERT_EQ(rig.tick(box.world(y)).status, Status::ok);
+    y[axis] = -side * 0.0801;
+    ASSERT_EQ(rig.tick(box.world(y)).status, Status::free);
+  }
+}
+
+TEST(Box, BehindAThinOneTheHandComesFreeBesideIt) {
+  Rig rig(build(text({Vec3(0.0), Vec3(1, 1, 0.001)}, R"(, "free": "above")")));
+  rig.tick({0.48, 0, 0.02});
+  EXPECT_EQ(rig.tick({0.49, 0, -0.02}).status, Status::ok);
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.49, 0, 0.0005)));
+  EXPECT_EQ(rig.tick({0.51, 0, -0.02}).status, Status::free);
+  EXPECT_EQ(rig.tick({0.49, 0, -0.02}).status, Status::free);  // now it is below
+  EXPECT_EQ(rig.tick({0.49, 0, 0.02}).status, Status::ok);     // and is held from there
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.49, 0, -0.0005)));
+}
+
+TEST(Box, ACornerCutWithinOneTickIsFree) {
+  Rig rig(build(text({Vec3(0.0), Vec3(1, 1, 1)}, R"(, "free": "above")")));
+  rig.tick({0.49, 0, 0.51});
+  EXPECT_EQ(rig.tick({0.51, 0, 0.485}).status, Status::free);
+}
+
+TEST(Box, StartingOnTheSurfaceItIsNotSlippedThrough) {
+  Rig rig(build(text({Vec3(0, 0, -0.0005), Vec3(1, 1, 0.001)}, R"(, "free": "above")")));
+  EXPECT_EQ(rig.tick({0.1, 0.1, 0}).status, Status::free);
+  EXPECT_EQ(rig.tick({0.1, 0.1, -0.05}).status, Status::ok);
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, 0.1, 0)));
+}
+
+TEST(Box, OneSidedReleaseAndReArm) {
+  Rig rig(build(text({Vec3(0.0), Vec3(2, 2, 2)}, R"(, "free": "above", "release": 0.25)")));
+  EXPECT_EQ(rig.tick({0, 0, 1.1}).status, Status::free);
+  EXPECT_EQ(rig.tick({0, 0, 0.76}).status, Status::ok);
+  EXPECT_EQ(rig.state.limit, 0.25);
+  EXPECT_EQ(rig.tick({0, 0, 0.75}).status, Status::released);
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0, 0, 0.75)));
+  EXPECT_EQ(rig.tick({0, 0, 0.99}).status, Status::released);
+  EXPECT_EQ(rig.tick({0, 0, 1.01}).status, Status::free);
+  EXPECT_EQ(rig.tick({0, 0, 0.99}).status, Status::ok);
+  Rig deep(build(text({Vec3(0.0), Vec3(2, 2, 2)}, R"(, "free": "above", "release": 0.25)")));
+  EXPECT_EQ(deep.tick({0.1, 0, 0.7}).status, Status::released);
+}
+
+TEST(Box, TwoSidedReleaseAndReArm) {
+  Rig rig(build(text({Vec3(0.0), Vec3(2, 2, 2)}, R"(, "release": 0.25)")));
+  EXPECT_EQ(rig.tick({0, 0, 1.2}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0, 0, 1.3}).status, Status::released);
+  EXPECT_EQ(rig.tick({1.3, 1.3, 1.3}).status, Status::released);
+  EXPECT_EQ(rig.tick({1.02, 1.02, 0}).status, Status::released);  // 0.028 from an edge
+  EXPECT_EQ(rig.tick({1.01, 1.01, 0}).status, Status::ok);        // 0.014
+  EXPECT_EQ(rig.tick({1.3, 1.3, 0}).status, Status::released);
+  EXPECT_EQ(rig.tick({0.9, 0, 0}).status, Status::ok);     // crossed
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(1, 0, 0)));  // through y = 1 beside the box, then in at x = 1
+  // through and out again within one tick
+  Rig thin(build(text({Vec3(0.0), Vec3(1, 1, 0.01)}, R"(, "release": 0.25)")));
+  thin.tick({0, 0, 0.1});
+  EXPECT_EQ(thin.tick({0, 0, 0.3}).status, Status::released);
+  EXPECT_EQ(thin.tick({0, 0, -0.1}).status, Status::ok);
+}
+
+TEST(Box, ItsPrimitiveIsAPlaneALineOrAPoint) {
+  Rig rig(build(text({Vec3(0.0), Vec3(2, 2, 2)})));
+  Primitive primitive;
+  rig.tick({0, 0, 1.2});
+  ASSERT_TRUE(rig.constraint->primitive({0.3, 0.2, 0.8}, rig.state, rig.scratch, primitive));
+  EXPECT_EQ(primitive.kind, Primitive::Kind::plane);
+  EXPECT_TRUE(same_bits(primitive.origin, Vec3(0.3, 0.2, 1)));
+  EXPECT_EQ(norm(primitive.axis - Vec3(0, 0, 1)), 0);
+  ASSERT_TRUE(rig.constraint->primitive({1.3, 0.2, 1.4}, rig.state, rig.scratch, primitive));
+  EXPECT_EQ(primitive.kind, Primitive::Kind::line);
+  EXPECT_TRUE(same_bits(primitive.origin, Vec3(1, 0.2, 1)));
+  EXPECT_EQ(norm(primitive.axis - Vec3(0, 1, 0)), 0);
+  ASSERT_TRUE(rig.constraint->primitive({1.3, -1.2, 1.4}, rig.state, rig.scratch, primitive));
+  EXPECT_EQ(primitive.kind, Primitive::Kind::point);
+  EXPECT_TRUE(same_bits(primitive.origin, Vec3(1, -1, 1)));
+}
+
+TEST(Box, AllFormsOfARotationAreOne) {
+  const std::string head = R"({"name": "a", "type": "box", "center": [0, 0, 0], "size": [1, 2, 3], "rotation": )";
+  Rig rows(build(head + "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]}")), flat(build(head + "[0, -1, 0, 1, 0, 0, 0, 0, 1]}"));
+  Rig angle(build(head + R"({"axis": [0, 0, 5], "angle_deg": 90}})"));
+  EXPECT_TRUE(same_bits(rows.tick({9, 9, 9}).proxy, Vec3(1, 0.5, 1.5)));
+  EXPECT_TRUE(same_bits(flat.tick({9, 9, 9}).proxy, Vec3(1, 0.5, 1.5)));
+  EXPECT_LE(norm(angle.tick({9, 9, 9}).proxy - Vec3(1, 0.5, 1.5)), 1e-15);
+}
+
+TEST(Box, ARoughRotationIsMadeExact) {
+  Rig rig(build(R"({"name": "a", "type": "box", "center": [0, 0, 0], "size": [2, 2, 2],
+      "rotation": [0.6000002, -0.8, 0, 0.8, 0.5999999, 0, 0, 1e-7, 1]})"));
+  Random random(3);
+  for (int i = 0; i < 100; ++i) EXPECT_LE(rig.tick(random.box(3)).residual, 1e-15);
+}
+
+TEST(Box, RefusesBadKeys) {
+  const auto flat = try_build("{\"name\": \"a\", \"type\": \"box\", \"center\": [0, 0, 0],\n \"size\": [1, 0, 1]}");
+  ASSERT_FALSE(flat);
+  EXPECT_EQ(flat.error().message.rfind("scene.json:2:", 0), 0u) << flat.error().message;
+  const std::string head = R"({"name": "a", "type": "box", "center": [0, 0, 0], "size": [1, 1, 1])";
+  EXPECT_TRUE(try_build(head + "}"));
+  EXPECT_FALSE(try_build(head + R"(, "rotation": [1, 0, 0, 0, 2, 0, 0, 0, 1]})"));
+  EXPECT_FALSE(try_build(head + R"(, "rotation": [1, 0, 0, 0, 1, 0, 0, 0, -1]})"));
+  EXPECT_FALSE(try_build(head + R"(, "rotation": 3})"));
+  EXPECT_FALSE(try_build(head + R"(, "rotation": {"axis": [0, 0, 0], "angle_deg": 3}})"));
+  EXPECT_FALSE(try_build(head + R"(, "free": "left"})"));
+  EXPECT_FALSE(try_build(R"({"name": "a", "type": "box", "center": [0, 0, 0]})"));
+}
+
+}  // namespace
+}  // namespace catena::haptics::test

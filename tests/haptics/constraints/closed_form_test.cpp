@@ -1,0 +1,112 @@
+// What all closed forms share: hostile probes, hostile sizes, a proxy on its feature to round-off, energy, primitives.
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+struct Kind {
+  const char* type;
+  const char* body;
+};
+const Kind kKinds[] = {
+    {"point", R"("position": [0.3, -0.2, 0.1])"},
+    {"line", R"("point": [0.3, -0.2, 0.1], "direction": [1, 2, 3])"},
+    {"segment", R"("from": [0.3, -0.2, 0.1], "to": [-1, 2, 0.7])"},
+    {"polyline", R"("points": [[0.3, -0.2, 0.1], [-1, 2, 0.7], [1, 1, 1], [0, 0, 2]])"},
+    {"polyline", R"("points": [[0.3, -0.2, 0.1], [-1, 2, 0.7], [1, 1, 1], [0, 0, 2]], "closed": true)"},
+    {"plane", R"("point": [0.3, -0.2, 0.1], "normal": [1, 2, 3])"},
+    {"sphere", R"("center": [0.3, -0.2, 0.1], "radius": 0.7)"},
+    {"box", R"("center": [0.3, -0.2, 0.1], "size": [1, 0.5, 2], "rotation": {"axis": [1, 2, 3], "angle_deg": 50})"},
+};
+
+ConstraintPtr make(const Kind& kind, const std::string& more = "") {
+  return build(std::string(R"({"name": "a", "type": ")") + kind.type + "\", " + kind.body + more + "}");
+}
+
+/// Any finite number: all magnitudes, both signs, zeros and denormals.
+double hostile(Random& random) {
+  static const double some[] = {0.0, -0.0, 5e-324, -5e-324, 2e-308, 1e-160, 1e-16, 0.5, 1, -1, 1e16, 1e154, 1e160, 1e300, -1e300};
+  const double pick = random.in(0, 1);
+  if (pick < 0.4) return some[static_cast<std::size_t>(random.in(0, 15))];
+  if (pick < 0.7) return random.in(-3, 3);
+  const double exponent = random.in(-320, 300);
+  return (random.in(0, 1) < 0.5 ? -1 : 1) * std::pow(10.0, exponent);
+}
+
+TEST(ClosedForms, HostileProbesGiveAFeaturePointToRoundOff) {
+  for (const Kind& kind : kKinds) {
+    Random random(17);
+    Rig rig(make(kind));
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 probe(hostile(random), hostile(random), hostile(random));
+      rig.tick(probe);
+      ASSERT_TRUE(is_finite(rig.state.proxy)) << kind.type << " " << i;
+      ASSERT_EQ(rig.state.status, Status::ok) << kind.type << " " << i;
+      ASSERT_LE(rig.state.residual, 1e-15 * std::max(1.0, norm(rig.state.proxy))) << kind.type << " " << i;
+      ASSERT_EQ(rig.state.evaluations, 0);
+      const Vec3 proxy = rig.state.proxy;
+      ASSERT_TRUE(same_bits(rig.tick(probe).proxy, proxy)) << kind.type << " " << i;
+    }
+  }
+}
+
+TEST(ClosedForms, HostileProbesOfReleasingAndOneSidedLinks) {
+  for (const Kind& kind : kKinds) {
+    for (const char* more : {R"(, "release": 0.4)", R"(, "free": "above")", R"(, "free": "below", "release": 1e100)"}) {
+      const bool surface = kind.type == std::string("plane") || kind.type == std::string("sphere") || kind.type == std::string("box");
+      if (!surface && std::string(more).find("free") != std::string::npos) continue;
+      Random random(18);
+      Rig rig(make(kind, more));
+      for (int i = 0; i < 20000; ++i) {
+        const Vec3 probe(hostile(random), hostile(random), hostile(random));
+        rig.tick(probe);
+        ASSERT_TRUE(is_finite(rig.state.proxy)) << kind.type << more << " " << i;
+        if (rig.state.status != Status::ok) {
+          ASSERT_TRUE(rig.state.status == Status::free || rig.state.status == Status::released);
+          ASSERT_TRUE(same_bits(rig.state.proxy, probe)) << kind.type << more << " " << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(ClosedForms, ASmallLoopStoresNoEnergy) {
+  for (const Kind& kind : kKinds) {
+    Random random(19);
+    Rig rig(make(kind));
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 centre = random.box(2), u = random.unit() * 0.002, v = random.unit() * 0.002;
+      double before = 0;
+      for (int k = 0; k <= 200; ++k) {
+        const double angle = k * 6.283185307179586e-2;
+        rig.tick(centre + u * std::cos(angle) + v * std::sin(angle));
+        if (k == 100) before = norm(rig.state.proxy - (centre + u));
+      }
+      ASSERT_LE(norm(rig.state.proxy - (centre + u)), before + 1e-12) << kind.type;
+    }
+  }
+}
+
+TEST(ClosedForms, ThePrimitiveTouchesTheProxyAndHoldsTheProbeThere) {
+  for (const Kind& kind : kKinds) {
+    Random random(20);
+    Rig rig(make(kind));
+    ASSERT_TRUE(rig.constraint->has_primitive()) << kind.type;
+    for (int i = 0; i < 500; ++i) {
+      const Vec3 probe = random.box(2);
+      rig.tick(probe);
+      Primitive primitive;
+      ASSERT_TRUE(rig.constraint->primitive(probe, rig.state, rig.scratch, primitive)) << kind.type;
+      // the projection of the probe onto it is the proxy
+      Vec3 p = primitive.origin;
+      const Vec3 e = probe - primitive.origin;
+      if (primitive.kind == Primitive::Kind::line) p += primitive.axis * dot(primitive.axis, e);
+      if (primitive.kind == Primitive::Kind::plane) p += e - primitive.axis * dot(primitive.axis, e);
+      ASSERT_LE(norm(p - rig.state.proxy), 5e-15) << kind.type;
+      ASSERT_NEAR(norm(primitive.axis), primitive.kind == Primitive::Kind::point ? 0 : 1, 1e-15) << kind.type;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace catena::haptics::test

@@ -1,0 +1,254 @@
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+std::string polyline(const std::vector<Vec3>& points, const std::string& more = "") {
+  std::string text = R"({"name": "a", "type": "polyline", "points": [)";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    char one[96];
+    std::snprintf(one, sizeof one, "%s[%.17g, %.17g, %.17g]", i ? ", " : "", points[i].x, points[i].y, points[i].z);
+    text += one;
+  }
+  return text + "]" + more + "}";
+}
+
+const std::string kClosed = R"(, "closed": true)";
+
+/// The closest point of all pieces, in extended precision.
+double brute_distance(const std::vector<Vec3>& points, bool closed, const Vec3& x) {
+  long double least = 1e300L;
+  for (std::size_t k = 0; k + (closed ? 0 : 1) < points.size(); ++k) {
+    const Vec3 &a = points[k], &b = points[(k + 1) % points.size()];
+    long double up = 0, down = 0, sum = 0;
+    for (int i = 0; i < 3; ++i) {
+      const long double d = static_cast<long double>(b[i]) - a[i];
+      up += (static_cast<long double>(x[i]) - a[i]) * d;
+      down += d * d;
+    }
+    const long double t = std::clamp(up / down, 0.0L, 1.0L);
+    for (int i = 0; i < 3; ++i) {
+      const long double e = x[i] - (a[i] + t * (static_cast<long double>(b[i]) - a[i]));
+      sum += e * e;
+    }
+    least = std::min(least, sum);
+  }
+  return static_cast<double>(std::sqrt(least));
+}
+
+std::vector<Vec3> walk(Random& random, int count, double step) {
+  std::vector<Vec3> points{random.box(1)};
+  for (int i = 1; i < count; ++i) points.push_back(points.back() * 0.99 + random.box(step));
+  return points;
+}
+
+TEST(Polyline, StartsAtTheClosestPlace) {
+  Random random(1);
+  for (const int count : {2, 3, 5, 40, 400}) {
+    for (const bool closed : {false, true}) {
+      if (closed && count < 3) continue;
+      const auto points = walk(random, count, 0.3);
+      const auto made = build(polyline(points, closed ? kClosed : ""));
+      for (int i = 0; i < 100; ++i) {
+        Rig rig(made);
+        const Vec3 probe = random.box(2);
+        rig.tick(probe);
+        ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, closed, probe), 2e-15);
+        ASSERT_LE(rig.state.residual, 1e-15);
+        ASSERT_EQ(rig.state.status, Status::ok);
+      }
+    }
+  }
+}
+
+TEST(Polyline, DoesNotChangeOverToAPartThatItMerelyPasses) {
+  // a hairpin: two runs 0.2 apart, joined far away
+  const std::vector<Vec3> hairpin{{0, 0, 0}, {5, 0, 0}, {5, 0.2, 0}, {0, 0.2, 0}};
+  Rig rig(build(polyline(hairpin)));
+  rig.tick({1, -0.05, 0});
+  for (int i = 0; i <= 300; ++i) {
+    const Vec3 probe(1 + 0.01 * i, 0.19, 0);  // 0.01 from the other run
+    ASSERT_TRUE(same_bits(rig.tick(probe).proxy, Vec3(probe.x, 0, 0)));
+  }
+  // round the end the local minimum vanishes
+  EXPECT_TRUE(same_bits(rig.tick({5.1, 0.1, 0}).proxy, Vec3(5, 0.1, 0)));
+  EXPECT_TRUE(same_bits(rig.tick({5.1, 0.3, 0}).proxy, Vec3(5, 0.2, 0)));
+  EXPECT_TRUE(same_bits(rig.tick({4, 0.01, 0}).proxy, Vec3(4, 0.2, 0)));  // on the other run now
+}
+
+TEST(Polyline, HoldsAtCornersBitForBit) {
+  Rig rig(build(polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})));
+  EXPECT_TRUE(same_bits(rig.tick({1.2, -0.3, 0.1}).proxy, Vec3(1, 0, 0)));
+  EXPECT_EQ(rig.state.residual, 0);
+  EXPECT_TRUE(same_bits(rig.tick({1.4, -1e-9, 0.1}).proxy, Vec3(1, 0, 0)));
+  EXPECT_TRUE(same_bits(rig.tick({1.4, 0.25, 0.1}).proxy, Vec3(1, 0.25, 0)));
+  EXPECT_TRUE(same_bits(rig.tick({0.25, -0.5, 0}).proxy, Vec3(0.25, 0, 0)));
+  EXPECT_TRUE(same_bits(rig.tick({-3, 0, 0}).proxy, Vec3(0, 0, 0)));  // the open end
+  EXPECT_EQ(rig.state.status, Status::ok);
+  EXPECT_TRUE(same_bits(rig.tick({1, 7, 0}).proxy, Vec3(1, 1, 0)));
+}
+
+TEST(Polyline, LeavesACornerByTheSteeperSide) {
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  for (const bool from_above : {false, true}) {
+    Rig rig(build(polyline(points)));
+    // to the corner from either side: what follows is the same
+    rig.tick(from_above ? Vec3(1, 0.5, 0) : Vec3(0.5, 0, 0));
+    ASSERT_TRUE(same_bits(rig.tick({1.1, -0.1, 0}).proxy, Vec3(1, 0, 0)));
+    EXPECT_TRUE(same_bits(rig.tick({0.5, 0.25, 0}).proxy, Vec3(0.5, 0, 0)));
+    ASSERT_TRUE(same_bits(rig.tick({1.1, -0.1, 0}).proxy, Vec3(1, 0, 0)));
+    EXPECT_TRUE(same_bits(rig.tick({0.75, 0.5, 0}).proxy, Vec3(1, 0.5, 0)));
+  }
+}
+
+TEST(Polyline, AClosedOneWrapsAndRepeatsItsBits) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 24; ++i) points.emplace_back(std::cos(i * 0.2617993877991494), std::sin(i * 0.2617993877991494), 0.1 * (i % 2));
+  Rig rig(build(polyline(points, kClosed)));
+  std::vector<Vec3> first;
+  Vec3 last(0.0);
+  for (int lap = 0; lap < 4; ++lap) {
+    const bool back = lap == 2;
+    for (int k = 0; k < 1000; ++k) {
+      const int i = back ? 999 - k : k;
+      const Vec3 probe(1.5 * std::cos(i * 6.283185307179586e-3), 1.5 * std::sin(i * 6.283185307179586e-3), 0.05);
+      rig.tick(probe);
+      if (lap == 0) first.push_back(rig.state.proxy);
+      ASSERT_TRUE(same_bits(rig.state.proxy, first[static_cast<std::size_t>(i)])) << lap << " " << i;
+      ASSERT_LE(norm(rig.state.proxy - last), lap + k > 0 ? 0.02 : 2);
+      last = rig.state.proxy;
+    }
+  }
+}
+
+TEST(Polyline, FromOutsideAConvexOneTheProxyNeverMovesFurtherThanTheProbe) {
+  const std::vector<Vec3> square{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  Rig rig(build(polyline(square, kClosed)));
+  Vec3 last_probe(2, 0, 0), last = rig.tick(last_probe).proxy;
+  for (int i = 1; i < 8000; ++i) {
+    const Vec3 probe(2 * std::cos(i * 2e-3), 2 * std::sin(i * 2e-3), 0.3 * std::sin(i * 1e-2)), proxy = rig.tick(probe).proxy;
+    ASSERT_LE(norm(proxy - last), norm(probe - last_probe) * (1 + 1e-12));
+    last = proxy;
+    last_probe = probe;
+  }
+}
+
+TEST(Polyline, RepeatedPointsCountOnce) {
+  const std::vector<Vec3> once{{0, 0, 0}, {1, 0, 0}, {1, 1, 1}},
+      twice{{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 1}, {1, 1, 1}};
+  auto ring = once;
+  ring.push_back(once.front());
+  Rig a(build(polyline(once))), b(build(polyline(twice))), c(build(polyline(once, kClosed))), d(build(polyline(ring, kClosed)));
+  Random random(2);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 probe = random.box(1.5);
+    ASSERT_TRUE(same_bits(a.tick(probe).proxy, b.tick(probe).proxy));
+    ASSERT_TRUE(same_bits(c.tick(probe).proxy, d.tick(probe).proxy));
+  }
+}
+
+TEST(Polyline, ALongWalkTakesSeveralTicksAndArrives) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 100000; ++i) points.emplace_back(i * 1e-4, 0, 0);
+  Rig rig(build(polyline(points)));
+  rig.tick({0, 0, 1});
+  int ticks = 0;
+  do {
+    rig.tick({9.99995, 0, 1});
+    ++ticks;
+  } while (rig.state.status == Status::budget && ticks < 100);
+  EXPECT_EQ(rig.state.status, Status::ok);
+  EXPECT_NEAR(ticks, 100000.0 / 4096, 2);
+  EXPECT_NEAR(rig.state.proxy.x, 9.99995, 1e-4);
+  rig.tick({0.3, 0, 1});
+  EXPECT_EQ(rig.state.status, Status::budget);
+}
+
+TEST(Polyline, SeekFindsTheClosestPlaceAnywhere) {
+  Random random(3);
+  const auto points = walk(random, 20000, 0.05);
+  const auto made = build(polyline(points));
+  Rig rig(made);
+  rig.tick(random.box(1));
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 probe = random.box(1);
+    int ticks = 0;
+    do {
+      made->seek(probe, rig.state, rig.scratch);
+      ++ticks;
+    } while ((rig.state.status == Status::budget || ticks < 2) && ticks < 200);
+    ASSERT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, false, probe), 1e-15);
+    // and once it is taken, it is followed from there
+    const Vec3 found = rig.state.proxy;
+    rig.tick(probe);
+    ASSERT_TRUE(same_bits(rig.state.proxy, found));
+  }
+}
+
+TEST(Polyline, ASeekThatTheHandInterruptsStillEnds) {
+  Random random(4);
+  const auto points = walk(random, 20000, 0.05);
+  const auto made = build(polyline(points));
+  Rig rig(made);
+  rig.tick(random.box(1));
+  Vec3 probe(0.0);
+  for (int i = 0; i < 3000; ++i) {
+    probe += random.box(0.001);
+    made->seek(probe, rig.state, rig.scratch);
+    ASSERT_TRUE(rig.state.status == Status::ok || rig.state.status == Status::budget);
+  }
+  for (int i = 0; i < 200; ++i) made->seek(probe, rig.state, rig.scratch);
+  EXPECT_NEAR(norm(probe - rig.state.proxy), brute_distance(points, false, probe), 1e-15);
+}
+
+TEST(Polyline, LetsGoAtReleaseAndTakesHoldOfAnyPart) {
+  const std::vector<Vec3> hairpin{{0, 0, 0}, {5, 0, 0}, {5, 3, 0}, {0, 3, 0}};
+  Rig rig(build(polyline(hairpin, R"(, "release": 0.5)")));
+  EXPECT_EQ(rig.tick({1, 0.49, 0}).status, Status::ok);
+  EXPECT_EQ(rig.tick({1, 0.5, 0}).status, Status::released);
+  EXPECT_EQ(rig.tick({1, 0.051, 0}).status, Status::released);
+  EXPECT_EQ(rig.tick({1, 2.949, 0}).status, Status::released);
+  EXPECT_EQ(rig.tick({1, 2.951, 0}).status, Status::ok);
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(1, 3, 0)));
+}
+
+TEST(Polyline, FarProbes) {
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 2, 0.5}};
+  for (const double far : {1e20, 1e160, 1e300}) {
+    Rig rig(build(polyline(points)));
+    EXPECT_TRUE(same_bits(rig.tick(Vec3(0.1, 1, 0.2) * far).proxy, points[3])) << far;
+    EXPECT_TRUE(same_bits(rig.tick(Vec3(-1, -1, 0) * far).proxy, points[0])) << far;
+    EXPECT_TRUE(same_bits(rig.tick(Vec3(1, -0.2, 0) * far).proxy, points[1])) << far;
+    EXPECT_EQ(rig.state.status, Status::ok);
+  }
+}
+
+TEST(Polyline, ItsPrimitiveIsALineAndAtACornerAPoint) {
+  Rig rig(build(polyline({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})));
+  rig.tick({0.5, -0.1, 0});
+  Primitive primitive;
+  ASSERT_TRUE(rig.constraint->primitive({0.25, -0.1, 0}, rig.state, rig.scratch, primitive));
+  EXPECT_EQ(primitive.kind, Primitive::Kind::line);
+  EXPECT_TRUE(same_bits(primitive.origin, Vec3(0.25, 0, 0)));
+  EXPECT_TRUE(same_bits(primitive.axis, Vec3(1, 0, 0)));
+  ASSERT_TRUE(rig.constraint->primitive({1.1, -0.1, 0}, rig.state, rig.scratch, primitive));
+  EXPECT_EQ(primitive.kind, Primitive::Kind::point);
+  EXPECT_TRUE(same_bits(primitive.origin, Vec3(1, 0, 0)));
+  EXPECT_TRUE(same_bits(rig.tick({0.5, -0.1, 0}).proxy, Vec3(0.5, 0, 0)));  // asking has moved nothing
+}
+
+TEST(Polyline, RefusesBadKeys) {
+  const auto one = try_build("{\"name\": \"a\", \"type\": \"polyline\",\n \"points\": [[0, 0, 0], [0, 0, 0]]}");
+  ASSERT_FALSE(one);
+  EXPECT_EQ(one.error().message.rfind("scene.json:2:", 0), 0u) << one.error().message;
+  EXPECT_FALSE(try_build(R"({"name": "a", "type": "polyline"})"));
+  EXPECT_FALSE(try_build(polyline({})));
+  EXPECT_FALSE(try_build(polyline({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, kClosed)));
+  EXPECT_FALSE(try_build(polyline({{0, 0, 0}, {1e-305, 0, 0}})));
+  EXPECT_FALSE(try_build(polyline({{-1e308, 0, 0}, {1e308, 0, 0}})));
+  EXPECT_FALSE(try_build(polyline({{0, 0, 0}, {1, 0, 0}}, R"(, "closed": 1)")));
+  EXPECT_FALSE(try_build(R"({"name": "a", "type": "polyline", "points": [[0, 0], [1, 1]]})"));
+}
+
+}  // namespace
+}  // namespace catena::haptics::test
