@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "haptics/constraints/drag.h"
+#include "haptics/constraints/friction.h"
 #include "haptics/constraints/isosurface.h"
+#include "haptics/constraints/modulated_friction.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
 #include "haptics/constraints/streamline.h"
+#include "haptics/constraints/texture.h"
 
 namespace catena::haptics {
 namespace {
@@ -48,7 +52,9 @@ std::string known_types() {
 }  // namespace
 
 const std::vector<ConstraintType>& registry() {
-  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint(), streamline_constraint()};
+  static const std::vector<ConstraintType> list{
+      point_constraint(), plane_constraint(),    isosurface_constraint(),         streamline_constraint(),
+      drag_constraint(),  friction_constraint(), modulated_friction_constraint(), texture_constraint()};
   return list;
 }
 
