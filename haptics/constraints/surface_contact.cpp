@@ -130,8 +130,9 @@ bool Contact::slide_to(double distance) noexcept {
     return std::fabs(at_probe_.distance) <= kAccepted * length() || relevel(memory_.here);
   }
 
-  // both conditions at once, from the chord
-  LevelPoint a = field_->at(probe_ - direction(e0) * distance);
+  // both conditions at once, from the proxy; from the chord where that is far
+  const bool near = usable(memory_.here) && norm(e0) - distance <= 0.5 * distance;
+  LevelPoint a = near ? memory_.here : field_->at(probe_ - direction(e0) * distance);
   for (int i = 0; i < kRounds && usable(a) && !spent(kForLevel); ++i) {
     const Vec3 e = probe_ - a.p;
     const double gap = norm(e), across = dot(e, a.n);
@@ -141,9 +142,14 @@ bool Contact::slide_to(double distance) noexcept {
     }
     const Vec3 tangential = e - a.n * across;
     const double along = norm(tangential);
+    // |e + l n - b t| = r
     double b = 0;
-    if (along > kLevelled * gap) b = (0.5 * (gap - distance) * (gap + distance) + a.distance * across) / along;
-    b = std::min(std::max(b, -0.5 * gap), 0.5 * gap);
+    if (along > kLevelled * gap) {
+      const double level_gap = norm(e + a.n * a.distance), c = (level_gap - distance) * (level_gap + distance);
+      const double rest = along * along - c;
+      b = rest > 0 ? c / (along + std::sqrt(rest)) : along;
+      b = std::min(std::max(b, -0.5 * gap), gap);
+    }
     if (i >= kPatient) b *= 0.5;
     a = field_->at(a.p + direction(tangential) * b - a.n * a.distance);
   }

@@ -5,7 +5,7 @@
 ///              Where x comes on to the level the proxy starts from x, at rest.
 ///   sliding    to |x - p| = r within 1e-13 L, on the level within 1e-12 L or its round-off; in space in closed form. Newton on
 ///              both at once, one fetch an iteration:  p += b t - l n,  l = (s - level) / |grad s|,  t = e - (e.n) n over its norm,
-///              b = ((|e|^2 - r^2) / 2 + l e.n) / e.t,  e = x - p
+///              |e + l n - b t| = r,  e = x - p
 ///   lost       where that fails (a jump to another sheet, the mask or broken voxels between) the proxy starts from x again:
 ///              NO_SURFACE in that tick, the probe passed through.
 ///   broken     a field that is not finite at x: the probe passed through, CRITICAL.
