@@ -98,7 +98,8 @@ class Tick {
       if (!(excess > std::max(kAlong * length_, 4e-16 * norm(e)))) return moved;
       complete = false;
       if (steps_ >= kSteps || contact_.spent(kForStep)) return moved;
-      const double wanted = std::min(excess / std::min(std::max(memory_.rate, 0.1), 10.0), longest);
+      const double rate = memory_.rate != 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;
+      const double wanted = std::min(excess / rate, longest);
       const double h = g > 0 ? wanted : -wanted;
 
       // the direction half way
@@ -122,11 +123,14 @@ class Tick {
       const Vec3 e2 = contact_.probe() - to.p;
       const double g2 = dot(e2, there.t.d);
       memory_.bend = norm(there.t.d - d) / wanted;
-      if (!(std::fabs(g2) <= 0.5 * std::fabs(g) || norm(e2) < norm(e))) {
+      const double slope = (g - g2) / h, beyond = (g > 0 ? g - g2 : g2 - g) - excess;
+      const bool nearer = std::fabs(g2) <= 0.5 * std::fabs(g) || norm(e2) < norm(e);
+      if (!nearer || beyond > 0.25 * excess) {
+        if (slope > rate) memory_.rate = slope;
         if (!shorten(longest, wanted)) return moved;
         continue;
       }
-      memory_.rate = (g - g2) / h;
+      memory_.rate = slope;
       contact_.move_to(to);
       arrive(there);
       longest = std::min(2 * longest, kLongest * length_);
