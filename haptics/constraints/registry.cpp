@@ -5,6 +5,7 @@
 #include "haptics/constraints/drag.h"
 #include "haptics/constraints/friction.h"
 #include "haptics/constraints/isosurface.h"
+#include "haptics/constraints/modes.h"
 #include "haptics/constraints/modulated_friction.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
@@ -27,7 +28,9 @@ std::string property(const Key& key) {
                      key.schema);
 }
 
-std::string link_schema(const ConstraintType& type) {
+/// Of a constraint, or of a ready-made mode.
+template <class Type>
+std::string link_schema(const Type& type) {
   std::string properties = fmt::format(R"("type": {{"const": "{}", "description": "{}"}})", type.type, type.paper);
   std::string required = R"("type")";
   const auto add = [&](const Key& key) {
@@ -46,6 +49,7 @@ std::string link_schema(const ConstraintType& type) {
 std::string known_types() {
   std::string list;
   for (const ConstraintType& type : registry()) list += (list.empty() ? "" : ", ") + std::string(type.type);
+  for (const ReadyMode& mode : ready_modes()) list += ", " + std::string(mode.type);
   return list;
 }
 
@@ -79,6 +83,7 @@ const std::vector<Key>& common_keys() {
 std::string chain_schema() {
   std::string links;
   for (const ConstraintType& type : registry()) links += (links.empty() ? "" : ",\n") + link_schema(type);
+  for (const ReadyMode& mode : ready_modes()) links += ",\n" + link_schema(mode);
   return fmt::format(
       "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"chain\",\n  \"type\": \"array\",\n"
       "  \"maxItems\": {},\n  \"items\": {{ \"oneOf\": [\n{}\n  ] }}\n}}\n",
