@@ -11,11 +11,13 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAlong = 1e-10, kLongest = 0.1, kShortest = 1e-12;  // of L: slack of e.d, steps
-constexpr double kTurn = 0.02;                                       // of the tangent over half a step
-constexpr double kStraight = 1e-14;                                  // of L: an error that needs no midpoint
-constexpr double kThreshold = 0.005;                                 // of L: default
-constexpr int kSteps = 24, kTrials = 40, kRounds = 8;
+constexpr double kAlong = 1e-10, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d, steps
+constexpr double kTurn = 0.02, kBent = 0.3;                         // of the tangent, of the normal over half a step
+constexpr double kCorner = 0.5, kCornerError = 1e-6;                // a sharp turn, if it costs less than that times L
+constexpr double kShort = 1e-3;                                     // of L: so short that the surface may have a crease
+constexpr double kStraight = 1e-14;                                 // of L: an error that needs no midpoint
+constexpr double kThreshold = 0.005;                                // of L: default
+constexpr int kTrials = 32, kRounds = 8;
 constexpr int kForStep = 40;  // fetches that a step and a slide may need
 
 struct Spec {
@@ -39,6 +41,7 @@ struct Memory {
   Vec3 side;        ///< the last direction: line fields are turned to it
   double rate;      ///< -d(e.d)/ds of the last step: 1 - kappa N.e
   double bend;      ///< |dd/ds| of the last step
+  int blocked;      ///< the line ends here towards this sign of d
 };
 
 /// One tick of one link.
@@ -81,7 +84,7 @@ class Tick {
       complete = true;
       if (!contact_.slide_to(tau)) return false;
       arrive(heading_at(contact_.here()));
-      if (!memory_.heading.known() || contact_.spent(kForStep)) return true;
+      if (!memory_.heading.known() || memory_.blocked != 0 || contact_.spent(kForStep)) return true;
     }
     return true;
   }
@@ -89,25 +92,30 @@ class Tick {
   /// Follows the streamline until |e.d| <= b. True: it moved.
   bool follow(double tau, bool& complete) noexcept {
     bool moved = false;
-    double longest = kLongest * length_;
-    for (int trial = 0; trial < kTrials && memory_.heading.known(); ++trial) {
+    Reach reach;
+    const int blocked = memory_.blocked;
+    memory_.blocked = 0;
+    while (memory_.heading.known()) {
       const Vec3 d = memory_.heading.t.d, e = contact_.gap(), p = contact_.proxy();
       const double g = dot(e, d), f = memory_.heading.t.factor;
       const double excess = std::fabs(g) - tau * (1 - f) / f;
       complete = true;
       if (!(excess > std::max(kAlong * length_, 4e-16 * norm(e)))) return moved;
       complete = false;
-      if (steps_ >= kSteps || contact_.spent(kForStep)) return moved;
+      if (trials_++ >= kTrials || contact_.spent(kForStep)) return moved;
       const double rate = memory_.rate != 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;
-      const double wanted = std::min(excess / rate, longest);
-      const double h = g > 0 ? wanted : -wanted;
+      // where the line ended in the last tick, near before far
+      if (!moved && reach.longest == 0) reach.longest = (blocked == (g > 0 ? 1 : -1) ? 4 * kShortest : kLongest) * length_;
+      const double size = std::min(excess / rate, reach.longest), h = g > 0 ? size : -size;
 
       // the direction half way
       Vec3 middle = d;
       if (memory_.bend * h * h > 8 * kStraight * length_ || !(memory_.bend > 0)) {
-        const Heading half = heading_at(contact_.look(p + d * (0.5 * h), false));
-        if (!half.known() || norm(half.t.d - d) > kTurn) {
-          if (!shorten(longest, wanted)) return stop_at(half, complete, moved);
+        const LevelPoint halfway = contact_.look(p + d * (0.5 * h), false);
+        const Heading half = heading_at(halfway);
+        const double turn = turn_to(halfway, half, size);
+        if (turn > most_turn(kTurn, size)) {
+          if (!refuse(reach, turn, size)) return stop_at(half, h, complete, moved);
           continue;
         }
         middle = half.t.d;
@@ -116,37 +124,69 @@ class Tick {
       // the step
       const LevelPoint to = contact_.look(p + middle * h, true);
       const Heading there = heading_at(to);
-      if (!to.valid || !there.known()) {
-        if (!shorten(longest, wanted)) return stop_at(there, complete, moved);
+      const double turn = to.valid ? turn_to(to, there, size) : 2;
+      if (turn > most_turn(3 * kTurn, size)) {
+        if (!refuse(reach, turn, size)) return stop_at(there, h, complete, moved);
         continue;
       }
       const Vec3 e2 = contact_.probe() - to.p;
-      const double g2 = dot(e2, there.t.d);
-      memory_.bend = norm(there.t.d - d) / wanted;
-      const double slope = (g - g2) / h, beyond = (g > 0 ? g - g2 : g2 - g) - excess;
+      const double g2 = dot(e2, there.t.d), slope = (g - g2) / h, beyond = (g > 0 ? g - g2 : g2 - g) - excess;
       const bool nearer = std::fabs(g2) <= 0.5 * std::fabs(g) || norm(e2) < norm(e);
+      memory_.bend = turn / size;
       if (!nearer || beyond > 0.25 * excess) {
         if (slope > rate) memory_.rate = slope;
-        if (!shorten(longest, wanted)) return moved;
+        // a corner of the line may be the closest point
+        if (++reach.overshoots > 1) reach.corner = size;
+        if ((turn > 3 * kTurn && beyond > 0) || !refuse(reach, 0, size)) {
+          memory_.blocked = h > 0 ? 1 : -1;
+          complete = true;
+          return moved;
+        }
         continue;
       }
       memory_.rate = slope;
       contact_.move_to(to);
       arrive(there);
-      longest = std::min(2 * longest, kLongest * length_);
+      accept(reach, size);
       moved = true;
-      ++steps_;
     }
     return moved;
   }
 
-  /// Half the step; false: too short to go on.
-  bool shorten(double& longest, double tried) const noexcept {
-    longest = 0.5 * tried;
-    return longest > kShortest * length_;
+  /// How far a step may go, world units; and where a corner of the line is known to lie, ahead of the proxy.
+  struct Reach {
+    double longest = 0;
+    double corner = 0;   ///< within this distance; 0: none known
+    double turn = 0;     ///< refused last
+    int overshoots = 0;  ///< of the closest point
+  };
+
+  /// By how much the line turns from the proxy to `to`, seen along the surface; 2 where it ends.
+  double turn_to(const LevelPoint& to, const Heading& there, double size) const noexcept {
+    if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.here().n) > kBent)) return 2;
+    const Vec3& here = memory_.heading.t.d;
+    return norm(there.t.d - direction(here - to.n * dot(here, to.n)));
   }
+  /// What a step may turn: a corner is crossed where that costs little.
+  double most_turn(double smooth, double size) const noexcept { return std::max(smooth, std::min(kCorner, kCornerError * length_ / size)); }
+  /// Half the step; a turn that does not lessen with it is a corner. False: too short to go on.
+  bool refuse(Reach& reach, double turn, double size) const noexcept {
+    if (reach.corner > 0 || (reach.turn > 0 && turn > 0.7 * reach.turn)) reach.corner = size;
+    reach.turn = turn;
+    reach.longest = 0.5 * size;
+    return reach.longest > kShortest * length_;
+  }
+  void accept(Reach& reach, double size) const noexcept {
+    reach.turn = 0;
+    reach.longest = std::min(4 * reach.longest, kLongest * length_);
+    if (!(reach.corner > 0)) return;
+    reach.corner -= size;
+    if (reach.corner > kShortest * length_) reach.longest = std::min(reach.corner, std::max(0.5 * reach.corner, kCornerError * length_));
+  }
+
   /// The line ends here: hold.
-  bool stop_at(const Heading& why, bool& complete, bool moved) noexcept {
+  bool stop_at(const Heading& why, double step, bool& complete, bool moved) noexcept {
+    memory_.blocked = step > 0 ? 1 : -1;
     complete = true;
     ending_ = why.status != Status::ok ? why.status : Status::critical;
     return moved;
@@ -177,7 +217,7 @@ class Tick {
   Memory& memory_;
   Contact contact_;
   double length_;
-  int steps_ = 0;               ///< along the line, in this tick
+  int trials_ = 0;              ///< of steps along the line, in this tick
   Status ending_ = Status::ok;  ///< why the line ends, if it does
 };
 
