@@ -103,10 +103,11 @@ class Tick {
       if (!(excess > std::max(kAlong * length_, 4e-16 * norm(e)))) return moved;
       complete = false;
       if (trials_++ >= kTrials || contact_.spent(kForStep)) return moved;
-      const double rate = memory_.rate != 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;
+      const double rate = memory_.rate > 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;
       // where the line ended in the last tick, near before far
       if (!moved && reach.longest == 0) reach.longest = (blocked == (g > 0 ? 1 : -1) ? 4 * kShortest : kLongest) * length_;
-      const double size = std::min(excess / rate, reach.longest), h = g > 0 ? size : -size;
+      const double even = memory_.bend > 0 ? std::max(1.8 * kTurn / memory_.bend, 4 * kShortest * length_) : reach.longest;
+      const double size = std::min(std::min(excess / rate, even), reach.longest), h = g > 0 ? size : -size;
 
       // the direction half way
       Vec3 middle = d;
@@ -171,7 +172,7 @@ class Tick {
   double most_turn(double smooth, double size) const noexcept { return std::max(smooth, std::min(kCorner, kCornerError * length_ / size)); }
   /// Half the step; a turn that does not lessen with it is a corner. False: too short to go on.
   bool refuse(Reach& reach, double turn, double size) const noexcept {
-    if (reach.corner > 0 || (reach.turn > 0 && turn > 0.7 * reach.turn)) reach.corner = size;
+    if (reach.corner > 0 || (reach.turn > 0 && turn > 0.9 * reach.turn)) reach.corner = size;
     reach.turn = turn;
     reach.longest = 0.5 * size;
     return reach.longest > kShortest * length_;
