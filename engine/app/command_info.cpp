@@ -7,6 +7,7 @@
 #include "engine/app/command.h"
 #include "engine/base/numbers.h"
 #include "engine/field/load.h"
+#include "haptics/constraints/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
 
@@ -70,7 +71,8 @@ Outcome describe_scene(const std::string& path) {
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     const haptics::ConstraintType* type = haptics::find_constraint(link.type);
-    fmt::print("link {}: {} ({})\n", link.name, link.type, type == nullptr ? "" : type->paper);
+    const haptics::ReadyMode* mode = haptics::find_ready_mode(link.type);
+    fmt::print("link {}: {} ({})\n", link.name, link.type, type ? type->paper : mode ? mode->paper : "");
   });
   fmt::print("coupling: {} N/m, {} N s/m, at most {} N\n", to_text(program->coupling.stiffness_n_per_m),
              to_text(program->coupling.damping_ns_per_m), to_text(program->coupling.max_force_n));

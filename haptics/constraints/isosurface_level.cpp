@@ -14,6 +14,7 @@ LevelPoint LevelField::at(const Vec3& world) noexcept {
   out.valid = out.finite && (sample.inside || !field_.is_grid());
   if (!out.finite) return out;
   const double slope = norm(sample.gradient);
+  out.slope = slope;
   out.sigma = sample.value - level_;
   out.n = direction(sample.gradient);
   out.distance = out.sigma / slope;

@@ -11,6 +11,7 @@ struct LevelPoint {
   double sigma = 0;
   Vec3 n{0.0};
   double distance = 0;   ///< 0 on a plateau
+  double slope = 0;      ///< |grad s|
   double round_off = 0;  ///< a distance below this is noise
   bool valid = false;    ///< finite, and inside the domain and mask
   bool finite = false;

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include "haptics/constraints/box.h"
+#include "haptics/constraints/drag.h"
+#include "haptics/constraints/friction.h"
 #include "haptics/constraints/isosurface.h"
 #include "haptics/constraints/line.h"
+#include "haptics/constraints/modes.h"
+#include "haptics/constraints/modulated_friction.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
 #include "haptics/constraints/polyline.h"
 #include "haptics/constraints/segment.h"
 #include "haptics/constraints/sphere.h"
 #include "haptics/constraints/streamline.h"
+#include "haptics/constraints/texture.h"
 
 namespace catena::haptics {
 namespace {
@@ -32,7 +37,9 @@ std::string property(const Key& key) {
                      key.schema);
 }
 
-std::string link_schema(const ConstraintType& type) {
+/// Of a constraint, or of a ready-made mode.
+template <class Type>
+std::string link_schema(const Type& type) {
   std::string properties = fmt::format(R"("type": {{"const": "{}", "description": "{}"}})", type.type, type.paper);
   std::string required = R"("type")";
   const auto add = [&](const Key& key) {
@@ -51,15 +58,28 @@ std::string link_schema(const ConstraintType& type) {
 std::string known_types() {
   std::string list;
   for (const ConstraintType& type : registry()) list += (list.empty() ? "" : ", ") + std::string(type.type);
+  for (const ReadyMode& mode : ready_modes()) list += ", " + std::string(mode.type);
   return list;
 }
 
 }  // namespace
 
 const std::vector<ConstraintType>& registry() {
-  static const std::vector<ConstraintType> list{point_constraint(),    line_constraint(),       segment_constraint(),
-                                                polyline_constraint(), plane_constraint(),      sphere_constraint(),
-                                                box_constraint(),      isosurface_constraint(), streamline_constraint()};
+  static const std::vector<ConstraintType> list{
+      point_constraint(),               //
+      line_constraint(),                //
+      segment_constraint(),             //
+      polyline_constraint(),            //
+      plane_constraint(),               //
+      sphere_constraint(),              //
+      box_constraint(),                 //
+      isosurface_constraint(),          //
+      streamline_constraint(),          //
+      drag_constraint(),                //
+      friction_constraint(),            //
+      modulated_friction_constraint(),  //
+      texture_constraint(),             //
+  };
   return list;
 }
 
@@ -84,6 +104,7 @@ const std::vector<Key>& common_keys() {
 std::string chain_schema() {
   std::string links;
   for (const ConstraintType& type : registry()) links += (links.empty() ? "" : ",\n") + link_schema(type);
+  for (const ReadyMode& mode : ready_modes()) links += ",\n" + link_schema(mode);
   return fmt::format(
       "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"chain\",\n  \"type\": \"array\",\n"
       "  \"maxItems\": {},\n  \"items\": {{ \"oneOf\": [\n{}\n  ] }}\n}}\n",

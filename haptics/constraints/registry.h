@@ -44,7 +44,7 @@ const std::vector<ConstraintType>& registry();
 const ConstraintType* find_constraint(std::string_view type);
 /// The keys that every link takes: name, type, stiffness, on.
 const std::vector<Key>& common_keys();
-/// The JSON Schema of a chain, printed from the registry.
+/// The JSON Schema of a chain, printed from the registry and the ready-made modes (modes.h).
 std::string chain_schema();
 
 /// Builds one link's constraint: looks the type up, refuses unknown keys, calls its build.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/base/hash.h"
+#include "haptics/constraints/modes.h"
 #include "haptics/constraints/read_parameter.h"
 #include "haptics/constraints/registry.h"
 
@@ -64,38 +65,63 @@ void add_recipe(const json::Node& node, Fnv1a& recipe) {
   }
 }
 
-Result<Link> make_link(const scene::Link& from, const Coupling& coupling, const BuildContext& context) {
+Result<Link> make_link(const json::Node& from, const Coupling& coupling, const BuildContext& context) {
   Link link;
   Fnv1a recipe;
-  add_recipe(from.node, recipe);
+  add_recipe(from, recipe);
   BuildContext noting = context;
   noting.field = [&](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
     CATENA_TRY(field::AnyField field, context.field(where, name));
     recipe.add(field.get()->version());
     return field;
   };
-  link.name = from.name;
-  CATENA_TRY(link.stiffness_n_per_m, get_parameter(from.node, "stiffness", coupling.stiffness_n_per_m, json::Range::not_negative, noting));
-  CATENA_TRY(link.on, read_switch(from.node));
-  CATENA_TRY(link.indication, read_indication(from.node));
-  CATENA_TRY(link.constraint, build_constraint(from.node, noting));
+  link.name = from.find("name")->string;
+  CATENA_TRY(link.stiffness_n_per_m, get_parameter(from, "stiffness", coupling.stiffness_n_per_m, json::Range::not_negative, noting));
+  CATENA_TRY(link.on, read_switch(from));
+  CATENA_TRY(link.indication, read_indication(from));
+  CATENA_TRY(link.constraint, build_constraint(from, noting));
   link.recipe = recipe.value;
   return link;
 }
 
-Result<Mode> make_mode(const scene::Mode& from, const std::vector<Link>& links) {
+/// The links that a name stands for: indices into the program's. A mode's links have names of their own, too.
+using LinksOf = std::vector<std::pair<std::string, std::vector<int>>>;
+
+/// Adds the link, or the links of a ready-made mode.
+Outcome add_links(const scene::Link& from, const BuildContext& context, Program& program, LinksOf& links_of) {
+  CATENA_TRY(const std::vector<json::Node> nodes, expand_link(from.node));
+  std::vector<int> indices;
+  for (const json::Node& node : nodes) {
+    if (program.links.size() >= static_cast<std::size_t>(kMaxLinks))
+      return json::error_at(from.node, "the chain is too long; at most " + std::to_string(kMaxLinks) + " links were expected");
+    CATENA_TRY(Link link, make_link(node, program.coupling, context));
+    for (const Link& other : program.links)
+      if (other.name == link.name)
+        return json::error_at(from.node, "duplicate link name \"" + link.name + "\" (of the mode \"" + from.name +
+                                             "\" or a link beside it); unique names were expected");
+    indices.push_back(static_cast<int>(program.links.size()));
+    if (nodes.size() > 1) links_of.push_back({link.name, {indices.back()}});
+    program.links.push_back(std::move(link));
+  }
+  links_of.emplace_back(from.name, std::move(indices));
+  return Done{};
+}
+
+Result<Mode> make_mode(const scene::Mode& from, const LinksOf& links_of) {
   Mode mode{from.name, {}, {}};
   CATENA_TRY(mode.on, read_switch(from.node));
   const std::vector<json::Node>& items = from.node.find("links")->items;
   for (std::size_t k = 0; k < from.links.size(); ++k) {
-    int found = -1;
-    for (std::size_t i = 0; i < links.size(); ++i)
-      if (links[i].name == from.links[k]) found = static_cast<int>(i);
-    if (found < 0)
+    const std::vector<int>* found = nullptr;
+    for (const auto& [name, links] : links_of)
+      if (name == from.links[k]) found = &links;
+    if (found == nullptr)
       return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\", which is no link of the chain");
-    if (std::find(mode.links.begin(), mode.links.end(), found) != mode.links.end())
-      return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\" twice");
-    mode.links.push_back(found);
+    for (const int link : *found) {
+      if (std::find(mode.links.begin(), mode.links.end(), link) != mode.links.end())
+        return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\" twice");
+      mode.links.push_back(link);
+    }
   }
   return mode;
 }
@@ -121,18 +147,14 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene) {
   // links in the order of the scene, then the modes that order them
   std::vector<scene::Link> links;
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) { links.push_back(link); });
-  for (const scene::Link& from : links) {
-    if (program->links.size() >= static_cast<std::size_t>(kMaxLinks))
-      return json::error_at(from.node, "the chain is too long; at most " + std::to_string(kMaxLinks) + " links were expected");
-    CATENA_TRY(Link link, make_link(from, program->coupling, context));
-    program->links.push_back(std::move(link));
-  }
+  LinksOf links_of;
+  for (const scene::Link& from : links) CATENA_CHECK(add_links(from, context, *program, links_of));
   std::vector<scene::Mode> modes;
   scene.world.each<scene::Mode>([&](scene::Entity, const scene::Mode& mode) { modes.push_back(mode); });
   for (const scene::Mode& from : modes) {
     if (program->modes.size() >= static_cast<std::size_t>(kMaxModes))
       return json::error_at(from.node, "too many modes; at most " + std::to_string(kMaxModes) + " were expected");
-    CATENA_TRY(Mode mode, make_mode(from, program->links));
+    CATENA_TRY(Mode mode, make_mode(from, links_of));
     program->modes.push_back(std::move(mode));
   }
   program->epoch = ++newest_epoch;

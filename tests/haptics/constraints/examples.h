@@ -61,6 +61,24 @@ inline std::map<std::string, std::vector<std::string>> examples() {
         R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",
         R"("field": "circle", "seed": [0.5, 0, 0], "method": "rk4")", R"("field": "circle_grid", "seed": [0.5, 0, 0])",
         R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")"}},
+      {"drag",
+       {R"("threshold": 0.05)", R"("threshold": 0)", R"("threshold": {"field": "sphere_grid", "map": [[0, 0.01], [2, 0.2]]})",
+        R"("threshold": 0.02, "surface": "sphere", "level": 1)", R"("threshold": 0.02, "surface": "broken_grid", "level": 0.5)",
+        R"("threshold": 0.1, "surface": "constant", "level": 1)"}},
+      {"friction",
+       {R"("field": "circle", "threshold": 0.05)", R"("field": "hill")", R"("field": "saddle", "threshold": 0.3)",
+        R"("field": "circle_grid", "kind": "line")", R"("field": "circle", "threshold": 0, "surface": "sphere")",
+        R"("field": "hill", "surface": "sphere", "level": 1)", R"("field": "broken_vectors", "threshold": 0.1)",
+        R"("field": "broken_vectors", "kind": "line", "surface": "broken_grid")",
+        R"("field": "circle_grid", "surface": "noise_grid", "level": 0.1)"}},
+      {"modulated_friction",
+       {R"("field": "circle", "surface": "sphere", "tau_min": 0.01, "tau_max": 0.2)",
+        R"("field": "saddle", "surface": "sphere", "tau_min": 0.3, "tau_max": 0.01, "law": "printed")",
+        R"("field": "hill", "surface": "torus_grid", "level": 0.4)", R"("field": "broken_vectors", "surface": "broken_grid")",
+        R"("field": "broken_vectors", "kind": "line", "surface": "broken_grid", "level": 0.5)"}},
+      {"texture",
+       {R"("threshold": 0.05, "wavelength": 0.1)", R"("threshold": 0.05, "wavelength": 1e-12, "amplitude": 1)",
+        R"("threshold": 0.02, "wavelength": 0.2, "surface": "torus", "level": 0.4)"}},
   };
 }
 
@@ -85,6 +103,13 @@ inline const Fields& fields() {
       const double v = random.in(0, 1);
       return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
     });
+    std::vector<float> vectors;
+    for (int i = 0; i < 3 * 21 * 21 * 21; ++i) {
+      const double v = random.in(-1, 1);
+      vectors.push_back(std::fabs(v) < 0.01 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(v));
+    }
+    made.named["broken_vectors"].vector =
+        field::make_vector_grid("made", field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, vectors);
     return made;
   }();
   return all;

@@ -1,0 +1,34 @@
+/// Ready-made modes: one item of a scene's chain that stands for several links, in order.      (paper, section 6.1)
+///   anisotropic_friction   NAME_surface    isosurface: the hand on a level of a scalar field (p_s)
+///                          NAME_direction  friction across the tangential part of a vector field (p_c)
+///                          NAME_friction   friction modulated by the field's angle to the surface, Eqs. 7-9 (p_f)
+/// A mode is an entry of a table: which of its keys go to which link, under which name. Common keys (stiffness, on) go to all
+/// links, `indicate` to the first. Values keep their file and line, so that errors name the place in the scene.
+/// Off the tick.
+#pragma once
+#include "haptics/constraints/registry.h"
+
+namespace catena::haptics {
+
+struct ReadyMode {
+  struct Handed {
+    std::string_view from, to;  ///< the mode's key, the link's key
+  };
+  struct Part {
+    std::string_view suffix, type;
+    std::vector<Handed> keys;
+  };
+  std::string_view type;   ///< the word in the scene file
+  std::string_view paper;  ///< equations and sections it comes from
+  std::vector<Key> keys;   ///< its own, beside the common ones
+  std::vector<Part> parts;
+};
+
+const std::vector<ReadyMode>& ready_modes();
+const ReadyMode* find_ready_mode(std::string_view type);
+
+/// The links that an item of the chain stands for: itself where it is a constraint, or the parts of a mode. Checks a mode's
+/// keys and that the required ones are there; the constraints check the values.
+Result<std::vector<json::Node>> expand_link(const json::Node& item);
+
+}  // namespace catena::haptics

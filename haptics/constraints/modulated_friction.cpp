@@ -1,0 +1,114 @@
+#include "haptics/constraints/modulated_friction.h"
+
+#include <fmt/format.h>
+
+#include "engine/field/magnitude.h"
+#include "engine/flow/direction.h"
+#include "haptics/constraints/read_parameter.h"
+#include "haptics/constraints/safe_direction.h"
+#include "haptics/constraints/surface_contact.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kLeast = 0.001, kMost = 0.01;  // of L: defaults
+
+struct Spec {
+  field::VectorFieldPtr field;
+  bool line = false, printed = false;
+  double largest_speed = 0, largest_slope = 0;  ///< X of v and of grad s
+  Parameter least, most;                        ///< tau_min, tau_max
+  ContactSpec contact;
+};
+
+struct Memory {
+  ContactMemory contact;
+  Vec3 side;     ///< line fields are turned to it
+  double angle;  ///< u at the proxy
+};
+
+class ModulatedFriction final : public Constraint {
+ public:
+  explicit ModulatedFriction(Spec spec) : spec_(std::move(spec)) {}
+
+  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+    memory_of<Memory>(state) = Memory{};
+    state.proxy = probe;
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    Memory& memory = memory_of<Memory>(state);
+    Contact contact(spec_.contact, probe, memory.contact, state, scratch);
+    if (!contact.begin()) return;
+    const Vec3 before = contact.proxy();
+    if (contact.placed_anew()) memory.angle = angle(contact.here(), memory, state, scratch);
+    const double least = spec_.least.at(before, scratch.parameter, state.evaluations);
+    const double most = spec_.most.at(before, scratch.parameter, state.evaluations);
+    const double u = memory.angle, part = spec_.printed ? 1 - u : std::fabs(u);
+    const double tau = safe_threshold((1 - part) * least + part * most);
+    if (norm(contact.gap()) > tau) {
+      if (!contact.slide_to(tau)) return contact.lose();
+      memory.angle = angle(contact.here(), memory, state, scratch);
+    }
+    contact.end(tau, Status::ok);
+  }
+  double domain_length() const noexcept override { return spec_.contact.length; }
+
+ private:
+  /// u of Eqs. 8-9.
+  double angle(const LevelPoint& at, Memory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
+    field::Cursor& cursor = scratch.cursors[1];
+    if (spec_.line && !(max_abs(memory.side) > 0)) {
+      ++state.evaluations;
+      flow::seed_direction({spec_.field.get(), true, 0}, at.p, cursor, memory.side);
+    }
+    ++state.evaluations;
+    const field::VectorSample v = spec_.field->sample(at.p, cursor, spec_.line ? &memory.side : nullptr);
+    if (!v.inside || !at.finite) return 0;
+    const SafeDirection field = safe_direction(v.value, spec_.largest_speed);
+    const SafeDirection surface = safe_direction(at.n * at.slope, spec_.largest_slope);
+    if (spec_.line && field.factor > 0) memory.side = field.d;
+    const double u = field.factor * surface.factor * dot(field.d, surface.d);
+    return std::min(std::max(spec_.line ? std::fabs(u) : u, -1.0), 1.0);
+  }
+
+  Spec spec_;
+};
+
+Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+  Spec spec;
+  CATENA_TRY(const std::string name, json::require_string(link, "field"));
+  CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
+  if (!any.vector)
+    return json::error_at(*link.find("field"),
+                          fmt::format("field \"{}\" is a scalar field; modulated_friction needs a vector field", name));
+  spec.field = any.vector;
+  CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
+  spec.line = kind == 1;
+  CATENA_TRY(const int law, json::get_choice(link, "law", 0, {"safe", "printed"}));
+  spec.printed = law == 1;
+  CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::required, context));
+  const double length = spec.contact.length;
+  CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::Range::not_negative, context));
+  CATENA_TRY(spec.most, get_parameter(link, "tau_max", kMost * length, json::Range::not_negative, context));
+  spec.largest_speed = field::largest_magnitude(*any.vector);
+  spec.largest_slope = field::largest_gradient(*spec.contact.surface);
+  return std::shared_ptr<const Constraint>(std::make_shared<ModulatedFriction>(std::move(spec)));
+}
+
+}  // namespace
+
+ConstraintType modulated_friction_constraint() {
+  return {
+      "modulated_friction",
+      "section 6.1, Eqs. 7-9",
+      {{"field", "string", true, "a vector field of the scene: its angle to the surface sets the threshold"},
+       {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
+       {"surface", "string", true, "a scalar field: its gradient is the normal"},
+       kLevelKey,
+       {"tau_min", "parameter", false, "the threshold where the field is tangential, world units; default 0.001 L", kNotNegativeSchema},
+       {"tau_max", "parameter", false, "the threshold where the field is normal, world units; default 0.01 L", kNotNegativeSchema},
+       {"law", "string", false, "safe: harder the more normal the field; printed: Eq. 7 to the letter", R"("enum": ["safe", "printed"])"}},
+      build};
+}
+
+}  // namespace catena::haptics

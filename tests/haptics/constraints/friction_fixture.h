@@ -1,0 +1,38 @@
+/// A hand that stays on a surface, for the friction links: the proxies of an isosurface link along a random walk.
+#pragma once
+#include "haptics/constraints/isosurface_level.h"
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+
+/// `step`: of the hand, world units a tick. Starts near `from`.
+inline std::vector<Vec3> walk_on(const field::ScalarFieldPtr& surface, double level, const Vec3& from, double step, int ticks,
+                                 std::uint64_t seed) {
+  Rig rig(isosurface(surface, level));
+  Random random(seed);
+  std::vector<Vec3> path;
+  Vec3 hand = from, v = random.unit() * step;
+  for (int i = 0; i < ticks; ++i) {
+    v = direction(v + random.unit() * (0.2 * step)) * step;
+    rig.tick(hand + v);
+    // the hand goes along with the surface, a little above it
+    hand = rig.state.proxy;
+    if (rig.state.status == Status::ok) path.push_back(hand);
+    if (rig.state.status != Status::ok) v = -v;
+  }
+  return path;
+}
+
+/// |s - level| / |grad s|.
+inline double off_level(const field::ScalarField& surface, double level, const Vec3& p) {
+  field::Cursor cursor;
+  const field::ScalarSample s = surface.sample(p, cursor);
+  return std::fabs(s.value - level) / norm(s.gradient);
+}
+
+inline Vec3 normal_at(const field::ScalarField& surface, const Vec3& p) {
+  field::Cursor cursor;
+  return direction(surface.sample(p, cursor).gradient);
+}
+
+}  // namespace catena::haptics::test

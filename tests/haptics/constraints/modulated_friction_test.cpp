@@ -1,0 +1,155 @@
+#include <limits>
+
+#include "tests/haptics/constraints/friction_fixture.h"
+
+namespace catena::haptics::test {
+namespace {
+
+class Formula final : public field::VectorField {
+ public:
+  explicit Formula(std::function<Vec3(const Vec3&)> f) : f_(std::move(f)) { set_domain("formula", {}, {Vec3(-2.0), Vec3(2.0)}); }
+  field::VectorSample sample(const Vec3& p, field::Cursor&, const Vec3* reference) const noexcept override {
+    const Vec3 v = f_(p);
+    return {reference && dot(v, *reference) < 0 ? -v : v, is_finite(v)};
+  }
+
+ private:
+  std::function<Vec3(const Vec3&)> f_;
+};
+
+/// On the sphere |x| = 1 with v = cos(angle) n + sin(angle) tangent, times `scale`.
+Fields at_angle(double angle, double scale = 1, double slope = 1) {
+  Fields fields;
+  fields.named["s"].scalar = analytic("sphere", slope);
+  fields.named["v"].vector = std::make_shared<Formula>([angle, scale](const Vec3& p) {
+    const Vec3 n = direction(p), t = direction(cross(n, Vec3(0.3, -0.2, 1)));
+    return (n * std::cos(angle) + t * std::sin(angle)) * scale;
+  });
+  return fields;
+}
+
+std::string modulated(double least, double most, const std::string& more = "") {
+  char text[120];
+  std::snprintf(text, sizeof text, R"("tau_min": %.17g, "tau_max": %.17g)", least, most);
+  return std::string(R"({"name": "a", "type": "modulated_friction", "field": "v", "surface": "s", )") + text + more + "}";
+}
+
+TEST(ModulatedFriction, TheThresholdFollowsTheAngle) {
+  for (const double angle : {0.0, 0.3, 0.8, 1.5707963267948966, 2.0, 3.1, 3.141592653589793}) {
+    const double u = std::cos(angle);
+    for (const bool printed : {false, true}) {
+      const double expected = printed ? u * 0.01 + (1 - u) * 0.1 : (1 - std::fabs(u)) * 0.01 + std::fabs(u) * 0.1;
+      for (const char* level : {"", R"(, "level": 1)"}) {
+        Rig rig(build(modulated(0.01, 0.1, std::string(level) + (printed ? R"(, "law": "printed")" : "")), at_angle(angle)));
+        const Vec3 a = direction(Vec3(1, 0.4, 0.2)), b = direction(Vec3(1, 0.4, 0.5));
+        rig.tick(a);
+        EXPECT_NEAR(rig.state.limit, expected, 1e-12) << angle << level << printed;
+        rig.tick(b);
+        EXPECT_NEAR(rig.state.limit, expected, 1e-12);
+        EXPECT_NEAR(norm(b - rig.state.proxy), std::min(expected, norm(b - a)), 1e-12);
+        if (*level != 0) {
+          EXPECT_NEAR(norm(rig.state.proxy), 1, 1e-11);
+        }
+      }
+    }
+  }
+}
+
+// the text of the paper: a field along the normal is the hardest to follow; Eq. 7 as printed says the easiest
+TEST(ModulatedFriction, AlongTheNormalIsTheHardest) {
+  Rig safe(build(modulated(0.01, 0.1), at_angle(0))), inward(build(modulated(0.01, 0.1), at_angle(3.141592653589793)));
+  Rig printed(build(modulated(0.01, 0.1, R"(, "law": "printed")"), at_angle(0)));
+  for (Rig* rig : {&safe, &inward, &printed}) rig->tick({0, 0, 1});
+  EXPECT_NEAR(safe.state.limit, 0.1, 1e-12);
+  EXPECT_NEAR(inward.state.limit, 0.1, 1e-12);
+  EXPECT_NEAR(printed.state.limit, 0.01, 1e-12);
+}
+
+// the angle is taken before the proxy moves: the slide goes by the old place's threshold
+TEST(ModulatedFriction, AsAtTheProxyBeforeItMoves) {
+  Fields fields;
+  fields.named["s"].scalar = analytic("plane");
+  fields.named["v"].vector = std::make_shared<Formula>([](const Vec3& p) { return Vec3(p.x < 0.5 ? 1 : 0, 0, p.x < 0.5 ? 0 : 1); });
+  Rig rig(build(modulated(0.01, 0.1, R"(, "level": 0)"), fields));
+  rig.tick({0.4, 0, 0});
+  rig.tick({0.7, 0, 0});
+  EXPECT_NEAR(rig.state.limit, 0.01, 1e-12);
+  EXPECT_NEAR(rig.state.proxy.x, 0.69, 1e-12);
+  rig.tick({0.75, 0, 0});
+  EXPECT_NEAR(rig.state.limit, 0.1, 1e-12);
+  EXPECT_NEAR(rig.state.proxy.x, 0.69, 1e-12);
+}
+
+// 1e-300..1e300 in both fields: the same; nothing, NaN, infinity: u = 0
+TEST(ModulatedFriction, SafeNormalisation) {
+  for (const double scale : {1e-300, 1e-160, 1.0, 1e160, 1e300})
+    for (const double slope : {1e-300, 1.0, 1e300}) {
+      Rig rig(build(modulated(0.01, 0.1), at_angle(0.5, scale, slope)));
+      rig.tick({0, 0.6, 0.8});
+      const double u = std::cos(0.5);
+      EXPECT_NEAR(rig.state.limit, (1 - u) * 0.01 + u * 0.1, 1e-12) << scale << " " << slope;
+    }
+  for (const double bad : {0.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Fields fields;
+    fields.named["s"].scalar = analytic("sphere");
+    fields.named["v"].vector = std::make_shared<Formula>([bad](const Vec3&) { return Vec3(bad); });
+    Rig safe(build(modulated(0.01, 0.1), fields)), printed(build(modulated(0.01, 0.1, R"(, "law": "printed")"), fields));
+    for (Rig* rig : {&safe, &printed}) {
+      rig->tick({0, 0.6, 0.8});
+      rig->tick({0.6, 0, 0.8});
+      EXPECT_TRUE(is_finite(rig->state.proxy));
+    }
+    EXPECT_EQ(safe.state.limit, 0.01);
+    EXPECT_EQ(printed.state.limit, 0.1);
+  }
+}
+
+// Eq. 7 for u < 0 leaves the range; it must not leave the numbers
+TEST(ModulatedFriction, ThePrintedLawIsNeverNegative) {
+  const std::string law = R"(, "law": "printed")";
+  Rig above(build(modulated(0.01, 0.1, law), at_angle(3.141592653589793)));
+  above.tick({0, 0, 1});
+  EXPECT_NEAR(above.state.limit, 2 * 0.1 - 0.01, 1e-12);
+  Rig below(build(modulated(0.5, 0.1, law), at_angle(3.141592653589793)));
+  below.tick({0, 0, 1});
+  EXPECT_EQ(below.state.limit, 0);
+  below.tick({0, 0.6, 0.8});
+  EXPECT_LE(norm(below.state.proxy - Vec3(0, 0.6, 0.8)), 1e-15);
+}
+
+TEST(ModulatedFriction, LineFieldsHaveNoSign) {
+  for (const double angle : {0.4, 2.741592653589793}) {
+    Rig rig(build(modulated(0.01, 0.1, R"(, "kind": "line", "law": "printed")"), at_angle(angle)));
+    rig.tick({0, 0, 1});
+    EXPECT_NEAR(rig.state.limit, std::cos(0.4) * 0.01 + (1 - std::cos(0.4)) * 0.1, 1e-12);
+  }
+}
+
+TEST(ModulatedFriction, AsksTheFieldOnlyWhereTheProxyMoves) {
+  Rig rig(build(modulated(0.05, 0.1, R"(, "level": 1)"), at_angle(0.7)));
+  rig.tick({0, 0, 1});
+  rig.tick({0, 0.01, std::sqrt(1 - 1e-4)});
+  EXPECT_EQ(rig.state.evaluations, 1);  // is the probe on the surface?
+  rig.tick({0, 0.01, std::sqrt(1 - 1e-4)});
+  EXPECT_EQ(rig.state.evaluations, 0);
+}
+
+TEST(ModulatedFriction, RefusesBadKeys) {
+  const Fields fields = at_angle(0);
+  const auto refused = [&](const std::string& text, const std::string& what) {
+    const auto made = try_build(text, fields);
+    ASSERT_FALSE(made) << text;
+    EXPECT_EQ(made.error().message.rfind("scene.json:1: ", 0), 0u) << made.error().message;
+    EXPECT_NE(made.error().message.find(what), std::string::npos) << made.error().message;
+  };
+  refused(R"({"name": "a", "type": "modulated_friction", "field": "v"})", "surface");
+  refused(R"({"name": "a", "type": "modulated_friction", "surface": "s"})", "field");
+  refused(R"({"name": "a", "type": "modulated_friction", "surface": "s", "field": "s"})", "scalar field");
+  refused(R"({"name": "a", "type": "modulated_friction", "surface": "v", "field": "v"})", "vector field");
+  refused(modulated(-1, 1), "tau_min");
+  refused(modulated(0, 1, R"(, "law": "paper")"), "law");
+  refused(modulated(0, 1, R"(, "level": -1)"), "not attained");
+}
+
+}  // namespace
+}  // namespace catena::haptics::test
