@@ -9,9 +9,7 @@ struct LineShape {
   Vec3 point, axis;  // axis: unit
 
   Hold closest(const Vec3& probe) const noexcept {
-    // a second projection takes off what rounding left
-    double s = dot(axis, probe - point);
-    s += dot(axis, probe - (point + axis * s));
+    const double s = dot(axis, probe - point);
     const Vec3 proxy = point + axis * s, away = proxy - point;
     return {true, proxy, norm(away - axis * dot(axis, away)), Status::ok};
   }

@@ -8,8 +8,8 @@
 namespace catena::haptics {
 namespace {
 
-constexpr int kFirstVisits = 2048;
-constexpr int kVisits = 256;
+constexpr int kFirstVisits = 1024;
+constexpr int kVisits = 128;
 constexpr int kPieces = 4096;
 constexpr double kLeastExtent = 1e-300, kMostExtent = 1e300;
 

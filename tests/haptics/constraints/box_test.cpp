@@ -307,6 +307,9 @@ TEST(Box, TwoSidedReleaseAndReArm) {
   EXPECT_EQ(rig.tick({1.3, 1.3, 0}).status, Status::released);
   EXPECT_EQ(rig.tick({0.9, 0, 0}).status, Status::ok);     // crossed
   EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(1, 0, 0)));  // through y = 1 beside the box, then in at x = 1
+  // past an edge, which the segment misses
+  EXPECT_EQ(rig.tick({0.5, 0, 1.3}).status, Status::released);
+  EXPECT_EQ(rig.tick({1.2, 0, 0.9}).status, Status::released);
   // through and out again within one tick
   Rig thin(build(text({Vec3(0.0), Vec3(1, 1, 0.01)}, R"(, "release": 0.25)")));
   thin.tick({0, 0, 0.1});

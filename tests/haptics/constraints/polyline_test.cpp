@@ -212,6 +212,21 @@ TEST(Polyline, LetsGoAtReleaseAndTakesHoldOfAnyPart) {
   EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(1, 3, 0)));
 }
 
+TEST(Polyline, OnceTakenItIsFollowedAlsoWhereTheSearchWasNotThrough) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 50000; ++i) points.emplace_back(0.03 * std::cos(i * 1.2566e-4), 0.03 * std::sin(i * 1.2566e-4), 0);
+  Rig rig(build(polyline(points, R"(, "release": 0.5)")));
+  ASSERT_EQ(rig.tick({0.04, 0, 0}).status, Status::ok);
+  ASSERT_EQ(rig.tick({1, 0, 0}).status, Status::released);
+  // at the centre all places are as near, and all within a tenth
+  ASSERT_EQ(rig.tick({0, 0, 1e-9}).status, Status::ok);
+  const Vec3 taken = rig.state.proxy;
+  for (int i = 1; i < 50; ++i) {
+    ASSERT_EQ(rig.tick({0, 0, 1e-9 * i}).status, Status::ok) << i;
+    ASSERT_LE(norm(rig.state.proxy - taken), 1e-3);
+  }
+}
+
 TEST(Polyline, FarProbes) {
   const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 2, 0.5}};
   for (const double far : {1e20, 1e160, 1e300}) {
