@@ -5,6 +5,7 @@
 #include "haptics/constraints/isosurface.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
+#include "haptics/constraints/snap.h"
 #include "haptics/constraints/streamline.h"
 
 namespace catena::haptics {
@@ -63,6 +64,9 @@ const std::vector<Key>& common_keys() {
       {"name", "string", true, "unique; names the columns of the tick CSV", R"("pattern": "^[a-z][a-z0-9_]*$")"},
       {"type", "string", true, "which constraint"},
       {"stiffness", "parameter", false, "N/m; default: the coupling's", kNotNegativeSchema},
+      {"snap", "parameter", false, "starts apart and takes hold within this distance of the feature, world units", kPositiveSchema},
+      {"release", "parameter", false, "lets go at this distance of the probe from the proxy, world units; default: 2 snap, or never",
+       kPositiveSchema},
       {"on", "object", false, "its switch: {button: n, toggle: true} or {force_above: newtons, force_below: newtons}",
        R"("properties": {"button": {"type": "integer", "minimum": 1, "maximum": 32}, "toggle": {"type": "boolean"}, "force_above": {"type": "number", "exclusiveMinimum": 0}, "force_below": {"type": "number", "minimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 2)"},
       {"indicate", "object", false, "how the hand is told that it leaves the feature",
@@ -89,7 +93,8 @@ Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& lin
   for (const Key& key : common_keys()) keys.push_back(key.name);
   for (const Key& key : type->keys) keys.push_back(key.name);
   CATENA_CHECK(json::only_keys(link, keys));
-  return type->build(link, context);
+  CATENA_TRY(std::shared_ptr<const Constraint> made, type->build(link, context));
+  return wrap_snap(link, type->releases_itself, std::move(made), context);
 }
 
 }  // namespace catena::haptics

@@ -28,7 +28,7 @@ std::map<std::string, std::vector<std::string>> examples() {
        {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "saddle", "seed": [0.5, 0.2, 0.1])", R"("field": "circle")",
         R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",
         R"("field": "circle", "seed": [0.5, 0, 0], "method": "rk4")", R"("field": "circle_grid", "seed": [0.5, 0, 0])",
-        R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")"}},
+        R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "release": 0.5)"}},
   };
 }
 
@@ -70,6 +70,11 @@ std::vector<Example> all_examples() {
     const auto it = table.find(std::string(type.type));
     if (it == table.end()) continue;
     for (const std::string& body : it->second) out.push_back({it->first, body});
+  }
+  // each of them once more, snapping
+  for (std::size_t i = 0, n = out.size(); i < n; ++i) {
+    const bool has_release = out[i].body.find("\"release\"") != std::string::npos;
+    out.push_back({out[i].type, out[i].body + (has_release ? R"(, "snap": 0.05)" : R"(, "snap": 0.1, "release": 0.3)")});
   }
   return out;
 }
