@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kSnapPart = 0.1, kReleasePart = 2, kMostSnap = 0.9;
 
+constexpr int kMostBeforeSearch = 64;  // fetches: with more already spent, the search waits for the next tick
+
 struct SnapMemory {
   Vec3 hidden{0.0};  ///< the constraint's proxy while apart
   bool apart;
@@ -38,15 +40,18 @@ class Snap final : public Constraint {
     state.released = false;
     if (!memory.apart) {
       inner_->advance(probe, state, scratch);
-      if (!(norm(probe - state.proxy) >= distances.release)) return settle(memory, distances, state);
+      const bool stays = state.status != Status::no_surface && !(norm(probe - state.proxy) >= distances.release);
+      if (stays) return settle(memory, distances, state);
       memory.hidden = state.proxy;
     }
 
-    // apart: where is the feature, and is it within reach
+    // apart: where is the feature, and is it within reach; a search out of budget has found nothing
+    const bool lets_go = !memory.apart;
     state.proxy = memory.hidden;
-    inner_->seek(probe, state, scratch);
-    const bool found = state.evaluations < kEvaluationCap;  // a search out of budget has found nothing
-    if (found && norm(probe - state.proxy) <= distances.snap) {
+    const bool affordable = state.evaluations <= (lets_go ? kMostBeforeSearch : kEvaluationCap - 1);
+    if (affordable) inner_->seek(probe, state, scratch);
+    const bool searched = affordable && state.evaluations < kEvaluationCap;
+    if (searched && norm(probe - state.proxy) <= distances.snap) {
       inner_->advance(probe, state, scratch);
       if (!(norm(probe - state.proxy) >= distances.release)) return settle(memory, distances, state);
     }
@@ -55,8 +60,8 @@ class Snap final : public Constraint {
     state.proxy = probe;
     state.residual = 0;
     state.limit = distances.release;
-    state.released = true;
-    state.status = Status::released;
+    state.released = searched || !lets_go;
+    state.status = state.released ? Status::released : Status::budget;
   }
 
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
