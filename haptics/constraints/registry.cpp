@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "haptics/constraints/gradient_force.h"
 #include "haptics/constraints/isosurface.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
 #include "haptics/constraints/snap.h"
 #include "haptics/constraints/streamline.h"
+#include "haptics/constraints/viscosity.h"
 
 namespace catena::haptics {
 namespace {
@@ -49,7 +51,8 @@ std::string known_types() {
 }  // namespace
 
 const std::vector<ConstraintType>& registry() {
-  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint(), streamline_constraint()};
+  static const std::vector<ConstraintType> list{point_constraint(),      plane_constraint(),     isosurface_constraint(),
+                                                streamline_constraint(), viscosity_constraint(), gradient_force_constraint()};
   return list;
 }
 

@@ -38,6 +38,7 @@ class Snap final : public Constraint {
     SnapMemory& memory = outer_of<SnapMemory>(state);
     const Distances distances = at_last_proxy(state, scratch);
     state.released = false;
+    state.limit = 0;
     if (!memory.apart) {
       inner_->advance(probe, state, scratch);
       const bool stays = state.status != Status::no_surface && !(norm(probe - state.proxy) >= distances.release);
@@ -83,7 +84,7 @@ class Snap final : public Constraint {
     memory.apart = state.status == Status::no_surface;
     memory.hidden = state.proxy;
     state.released = state.status == Status::released;
-    state.limit = distances.release;
+    if (!(state.limit > 0 && state.limit < distances.release)) state.limit = distances.release;
   }
 
   std::shared_ptr<const Constraint> inner_;

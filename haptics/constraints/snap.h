@@ -7,7 +7,8 @@
 /// `release` alone: starts held, snap = 0.1 release; a type that releases by itself then keeps its own rule. Both may follow a
 /// field; where release falls to snap or less, snap counts as 0.9 release. World units.
 /// On the free side of a one-sided surface, and where there is no feature, the status is the constraint's.
-/// `limit` = release. Haptic thread: no allocation, lock or throw. The wrapper's state is LinkState::outer.
+/// `limit` = release, or the constraint's own where that is smaller. Haptic thread: no allocation, lock or throw. The wrapper's state is
+/// LinkState::outer.
 #pragma once
 #include "haptics/chain/parameter.h"
 #include "haptics/constraints/registry.h"
