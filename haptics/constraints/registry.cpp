@@ -9,6 +9,7 @@
 #include "haptics/constraints/snap.h"
 #include "haptics/constraints/streamline.h"
 #include "haptics/constraints/viscosity.h"
+#include "haptics/constraints/vortex_core.h"
 
 namespace catena::haptics {
 namespace {
@@ -52,7 +53,8 @@ std::string known_types() {
 
 const std::vector<ConstraintType>& registry() {
   static const std::vector<ConstraintType> list{point_constraint(),      plane_constraint(),     isosurface_constraint(),
-                                                streamline_constraint(), viscosity_constraint(), gradient_force_constraint()};
+                                                streamline_constraint(), viscosity_constraint(), gradient_force_constraint(),
+                                                vortex_core_constraint()};
   return list;
 }
 

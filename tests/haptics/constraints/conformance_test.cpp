@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine/base/allocation_guard.h"
+#include "tests/engine/flow/fields.h"
 #include "tests/haptics/constraints/rig.h"
 
 namespace catena::haptics::test {
@@ -31,6 +32,10 @@ std::map<std::string, std::vector<std::string>> examples() {
         R"("field": "broken_grid", "displacement": 0.1, "towards": "high")",
         R"("field": "constant", "displacement": 0.1, "towards": "low")",
         R"("field": "sphere_grid", "displacement": {"field": "sphere_grid", "map": [[0, 0], [1, 0.2]]}, "towards": "low")"}},
+      {"vortex_core",
+       {R"("field": "helix")", R"("field": "rankine", "radius": 0.2)", R"("field": "lamb-oseen", "search": 1)", R"("field": "hill")",
+        R"("field": "saddle")", R"("field": "circle_grid", "radius": 0.1)", R"("field": "noise_vectors")",
+        R"("field": "broken_vectors", "radius": 0.05)"}},
       {"streamline",
        {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "saddle", "seed": [0.5, 0.2, 0.1])", R"("field": "circle")",
         R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",
@@ -43,7 +48,8 @@ const Fields& fields() {
   static const Fields all = [] {
     Fields made;
     for (const char* name : {"sphere", "torus", "gaussian", "tanh", "marschner-lobb", "constant"}) made.named[name].scalar = analytic(name);
-    for (const char* name : {"circle", "saddle", "hill"}) made.named[name].vector = field::make_analytic(name)->vector;
+    for (const char* name : {"circle", "saddle", "hill", "helix", "rankine", "lamb-oseen"})
+      made.named[name].vector = field::make_analytic(name)->vector;
     made.named["sphere_grid"].scalar = sampled("sphere", 25);
     made.named["torus_grid"].scalar = sampled("torus", 33);
     made.named["circle_grid"].vector = field::sample_on_grid(*made.named["circle"].vector, 24, -2, 2);
@@ -59,6 +65,11 @@ const Fields& fields() {
     made.named["broken_grid"].scalar = grid_of(field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, [&](const Vec3&) {
       const double v = random.in(0, 1);
       return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
+    });
+    const auto nodes = field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0));
+    made.named["noise_vectors"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3&) { return random.box(1); });
+    made.named["broken_vectors"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3& p) {
+      return random.in(0, 1) < 0.03 ? Vec3(std::numeric_limits<double>::quiet_NaN()) : Vec3(-p.y, p.x, 0.1);
     });
     return made;
   }();
