@@ -171,6 +171,37 @@ TEST(Fade, TheSameBitsAgainAndNoAllocation) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
+TEST(Fade, NoJumpWhereAForceOrdersTheChain) {
+  Program program = test::order_program(0.02);
+  for (Link& link : program.links) link.on = {};
+  program.modes = {{"pressed", {2, 3, 0, 1}, {.force_above_n = 70, .force_below_n = 55}}};
+  ChainHand hand(program);
+  hand.step(Vec3(0.0));
+  int changes = 0;
+  double largest = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double way = i < 2000 ? i / 2000.0 : 2 - i / 2000.0;
+    const Vec3 before = hand.out.force_n;
+    const std::int32_t mode = hand.out.mode;
+    hand.step(kProbe * (1.5 * way));
+    changes += hand.out.mode != mode;
+    largest = std::max(largest, norm(hand.out.force_n - before));
+  }
+  EXPECT_EQ(changes, 2) << "once in, once out";
+  EXPECT_LE(largest, 1.5 * 2 * 200 / 20.0 + 2);  // both orders' shares over the ramp, and the hand's own motion
+  ChainHand at_once(program);
+  at_once.program.coupling.ramp_s = 0;
+  at_once.step(Vec3(0.0));
+  double jump = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 before = at_once.out.force_n;
+    at_once.step(kProbe * (1.5 * i / 2000.0));
+    jump = std::max(jump, norm(at_once.out.force_n - before));
+  }
+  std::printf("ordered by force: %.2f N a tick with the ramp, %.2f N at once\n", largest, jump);
+  EXPECT_GT(jump, 4 * largest);
+}
+
 TEST(Fade, ForcesBeyondDoublesLeaveNothingBehind) {
   ChainHand hand(test::order_program(0.02));
   hand.step({1e308, -1e308, 1e308}, 3);
