@@ -8,7 +8,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr int kIterations = 8, kHalvings = 40;
+constexpr int kIterations = 32, kHalvings = 40;
 constexpr int kTrials = 100;          // fetches a search
 constexpr double kConverged = 1e-12;  // of L, across the axis
 constexpr double kAlong = 1e-9;       // of L, along it

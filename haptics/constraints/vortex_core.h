@@ -2,7 +2,7 @@
 ///   axis w = curl v / |curl v|;  core: v - w (w . v) = 0 in a plane across w where the flow swirls (complex eigenvalues of the
 ///   in-plane velocity gradient A: (tr A)^2 < 4 det A), after Sujudi and Haimes with the vorticity for the real eigenvector.
 ///   The core's place c in the plane through the probe x: Newton, w . (x - c) = 0 and A d = -v in the plane, from the last c;
-///   steps no longer than `search`, halved where they do not come nearer; <= 8 iterations a tick, then BUDGET and on from there.
+///   steps no longer than `search`, halved where they do not come nearer; <= 32 iterations, then BUDGET and on from there.
 ///   On grids the axis turns by a step from cell to cell; where the probe's plane meets the core at such a face, c is on it.
 ///   |x - c| <= radius: FREE.  Beyond: p = c + radius (x - c) / |x - c|, on the tube's wall (radius 0: on the core).
 /// Keys: `field` (vector), `radius` (>= 0, default 0), `search` (longest distance of the core from the probe, default 0.1 L or
