@@ -91,7 +91,8 @@ class Constraint {
   virtual bool has_primitive() const noexcept { return false; }
 
   /// Places the proxy at the closest feature, wherever it was, while a link that snaps waits to take hold: called every tick
-  /// instead of advance. A constraint with many local minima may take several ticks over the search.
+  /// instead of advance, and before the first start (`memory` is zero then). A constraint with many local minima may take
+  /// several ticks over the search.
   virtual void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept { start(probe, state, scratch); }
 
   /// Its domain length L, for tolerances and tests.

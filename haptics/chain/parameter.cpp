@@ -8,13 +8,25 @@ namespace catena::haptics {
 
 namespace {
 
+/// (x - lo) / (hi - lo) for lo <= x <= hi, lo < hi, without overflow.
+double part(double x, double lo, double hi) noexcept {
+  const double span = hi - lo;
+  return std::isfinite(span) ? (x - lo) / span : (0.5 * x - 0.5 * lo) / (0.5 * hi - 0.5 * lo);
+}
+
 double piecewise_linear(const std::vector<ParameterMap::Point>& points, double x) noexcept {
-  if (x <= points.front().value) return points.front().output;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const ParameterMap::Point &a = points[i - 1], &b = points[i];
-    if (x < b.value) return a.output + (b.output - a.output) * ((x - a.value) / (b.value - a.value));
-  }
-  return points.back().output;
+  const auto after =
+      std::upper_bound(points.begin(), points.end(), x, [](double value, const ParameterMap::Point& p) { return value < p.value; });
+  if (after == points.begin()) return points.front().output;
+  const ParameterMap::Point& a = *(after - 1);
+  if (after == points.end() || x == a.value) return a.output;
+  const double t = part(x, a.value, after->value);
+  return (1 - t) * a.output + t * after->output;
+}
+
+double normalised(double x, double lo, double hi) noexcept {
+  if (!(hi > lo)) return 0;
+  return part(std::clamp(x, lo, hi), lo, hi);
 }
 
 }  // namespace
@@ -34,7 +46,7 @@ double Parameter::of_field(const Vec3& world, field::Cursor& cursor, std::int32_
     if (!sample.inside) return map.outside;
   }
   if (!std::isfinite(x)) return map.outside;
-  if (map.normalise) x = map.span > 0 ? std::clamp(x / map.span - map.lo / map.span, 0.0, 1.0) : 0.0;
+  if (map.normalise) x = normalised(x, map.lo, map.hi);
   return piecewise_linear(map.points, x);
 }
 

@@ -2,7 +2,7 @@
 /// field at a place, piecewise linear.
 ///   of a scalar field: its value, or |grad s|; of a vector field: |v|.
 ///   normalise: the map's abscissae run 0..1 over the field's range, (s - min) / (max - min), |v| / X or |grad s| / X with X the
-///   field's largest magnitude; a field without range gives 0 (safe normalisation).
+///   field's largest magnitude, clamped to 0..1; a field without range gives 0 (safe normalisation, at any scale).
 /// Beyond the map's ends their outputs hold. Where the field says nothing (outside, not finite) it is `outside`.
 /// One evaluation a call where a field is asked, counted; none where the link's budget is spent (then `outside`).
 /// Haptic thread: no allocation, lock or throw.
@@ -22,7 +22,7 @@ struct ParameterMap {
   field::AnyField field;
   By by = By::value;
   bool normalise = false;
-  double lo = 0, span = 0;    ///< what `normalise` takes off and divides by; span 0: the result is 0
+  double lo = 0, hi = 0;      ///< `normalise` maps them to 0 and 1; where hi > lo does not hold, all is 0
   std::vector<Point> points;  ///< values rising, at least one
   double outside = 0;
 };

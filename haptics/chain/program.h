@@ -21,9 +21,10 @@ struct Switch {
 };
 
 /// "indicate": how the hand is told that it leaves the link's feature, beside the report of every link (paper, section 2).
-///   m = |p_i - p_(i-1)| / at;  the link is left where m >= 1 or it has let go
-///   detent: a pulse of `amplitude` towards the feature when m passes 1 either way, linear to zero over `duration`
+///   m = |p_i - p_(i-1)| / at, 1 where the link has let go;  left: from m >= 1 (but for round-off) until m < 0.95
+///   detent: a pulse of `amplitude` towards the feature when the link is left and when it is back, linear to zero over `duration`
 ///   vibration: a triangle wave of `amplitude` and `frequency` along the gap while m >= from
+/// Both times w_i, and faded out with the link's share where it is switched off.
 struct Indication {
   enum class Cue { none, detent, vibration };
   Cue cue = Cue::none;

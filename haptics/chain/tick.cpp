@@ -82,6 +82,8 @@ void hold_all(const Program& program, ChainState& state, exchange::HapticState& 
     state.links[i].status = Status::bad_probe;
     state.links[i].evaluations = 0;
     out.links[i].force_n = Vec3(0.0);
+    out.links[i].gap = out.links[i].leaving = 0;
+    out.links[i].left = state.indications[i].left;
   }
   state.force_n = Vec3(0.0);
   ++state.ticks;
@@ -96,7 +98,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   out.program_epoch = program.epoch;
   if (!is_finite(probe.position) || !std::isfinite(probe.t_s)) return hold_all(program, state, out);
 
-  const double dt = state.has_probe ? probe.t_s - state.last_t_s : 0;
+  const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_t_s) : 0;
   const double ramp_step = program.coupling.ramp_s > 0 ? dt / program.coupling.ramp_s : 1;
   const double s = program.metres_per_unit;
   const Order order = step_switches(program, probe.buttons, norm(state.force_n), state.switches);
@@ -120,18 +122,21 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
     couple(i);
   }
   pass_through(program, order, probe.position, state);
-  if (state.has_probe) {
-    force += step_fade(state.fade, order, shares, ramp_step);
-  } else {
-    state.fade.order = order;
-    state.fade.shares = shares;
-  }
 
-  // what the links tell of the hand
+  // what the links tell of the hand, and what fades out after a change of the order
+  std::array<Vec3, kMaxLinks> felt = shares;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     out.links[i].force_n = shares[i];
     out.links[i].gap = norm(gaps[i]);
-    cues += indicate(program.links[i].indication, state.links[i], gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
+    const Vec3 cue = indicate(program.links[i].indication, state.links[i], gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
+    felt[i] += cue;
+    cues += cue;
+  }
+  if (state.has_probe) {
+    force += step_fade(state.fade, order, felt, ramp_step);
+  } else {
+    state.fade.order = order;
+    state.fade.shares = felt;
   }
   force += cues;
 

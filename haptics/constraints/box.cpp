@@ -186,9 +186,9 @@ ConstraintType box_constraint() {
           {{"center", "array", true, "world units", kVec3Schema},
            {"size", "array", true, "its three edges, world units", kSizeSchema},
            {"rotation", "rotation", false, "world from box: three rows of three numbers, nine numbers, or {axis, angle_deg}"},
-           {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema},
-           {"release", "parameter", false, "lets go at this depth, world units", kPositiveSchema}},
-          build};
+           {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema}},
+          build,
+          true};
 }
 
 }  // namespace catena::haptics

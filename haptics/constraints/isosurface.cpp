@@ -265,9 +265,9 @@ ConstraintType isosurface_constraint() {
           "Eqs. 5-6",
           {{"field", "string", true, "a scalar field of the scene"},
            {"level", "number", true, "the field's value on the surface"},
-           {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema},
-           {"release", "parameter", false, "lets go at this depth, world units", kPositiveSchema}},
-          build};
+           {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema}},
+          build,
+          true};
 }
 
 }  // namespace catena::haptics

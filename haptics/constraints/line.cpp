@@ -33,9 +33,9 @@ ConstraintType line_constraint() {
   return {"line",
           "section 3",
           {{"point", "array", true, "a point of the line, world units", kVec3Schema},
-           {"direction", "array", true, "its direction, any length but zero", kVec3Schema},
-           {"release", "parameter", false, "lets go at this distance, world units", kPositiveSchema}},
-          build};
+           {"direction", "array", true, "its direction, any length but zero", kVec3Schema}},
+          build,
+          true};
 }
 
 }  // namespace catena::haptics

@@ -17,9 +17,8 @@ ReadyMode anisotropic_friction() {
        {"tau_min", "parameter", false, "along the field where it is tangential, world units; default 0.001 L", kNotNegativeSchema},
        {"tau_max", "parameter", false, "along the field where it is normal, world units; default 0.01 L", kNotNegativeSchema},
        {"law", "string", false, "safe: harder the more normal the field; printed: Eq. 7 to the letter", R"("enum": ["safe", "printed"])"},
-       {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema},
-       {"release", "parameter", false, "the surface lets go at this depth, world units", kPositiveSchema}},
-      {{"surface", "isosurface", {{"surface", "field"}, {"level", "level"}, {"free", "free"}, {"release", "release"}}},
+       {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema}},
+      {{"surface", "isosurface", {{"surface", "field"}, {"level", "level"}, {"free", "free"}}},
        {"direction",
         "friction",
         {{"field", "field"}, {"kind", "kind"}, {"threshold", "threshold"}, {"surface", "surface"}, {"level", "level"}}},
@@ -88,7 +87,8 @@ Result<std::vector<json::Node>> expand_link(const json::Node& item) {
     link.members.emplace_back("name", word(*item.find("name"), "name", fmt::format("{}_{}", name, part.suffix)));
     link.members.emplace_back("type", word(*type, "type", std::string(part.type)));
     for (const Key& key : common_keys()) {
-      if (key.name == "name" || key.name == "type" || (key.name == "indicate" && !links.empty())) continue;
+      const bool of_all = key.name == "stiffness" || key.name == "on";
+      if (key.name == "name" || key.name == "type" || !(of_all || links.empty())) continue;
       if (const json::Node* value = item.find(key.name)) link.members.emplace_back(key.name, *value);
     }
     for (const auto& [from, to] : part.keys)

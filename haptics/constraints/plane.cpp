@@ -52,9 +52,9 @@ ConstraintType plane_constraint() {
           "section 3",
           {{"point", "array", true, "a point of the plane, world units", kVec3Schema},
            {"normal", "array", true, "its normal, any length but zero", kVec3Schema},
-           {"free", "string", false, "the side where the hand moves freely: above is where the normal points to", kFreeSchema},
-           {"release", "parameter", false, "lets go at this depth, world units", kPositiveSchema}},
-          build};
+           {"free", "string", false, "the side where the hand moves freely: above is where the normal points to", kFreeSchema}},
+          build,
+          true};
 }
 
 }  // namespace catena::haptics

@@ -21,11 +21,7 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
 }  // namespace
 
 ConstraintType point_constraint() {
-  return {"point",
-          "section 3",
-          {{"position", "array", true, "the point, world units", kVec3Schema},
-           {"release", "parameter", false, "lets go at this distance, world units", kPositiveSchema}},
-          build};
+  return {"point", "section 3", {{"position", "array", true, "the point, world units", kVec3Schema}}, build, true};
 }
 
 }  // namespace catena::haptics

@@ -155,9 +155,9 @@ ConstraintType polyline_constraint() {
   return {"polyline",
           "section 3",
           {{"points", "array", true, "its corners in order, world units", kPointsSchema},
-           {"closed", "boolean", false, "the last point joins the first; default false"},
-           {"release", "parameter", false, "lets go at this distance, world units", kPositiveSchema}},
-          build};
+           {"closed", "boolean", false, "the last point joins the first; default false"}},
+          build,
+          true};
 }
 
 }  // namespace catena::haptics

@@ -1,5 +1,6 @@
 #include "haptics/constraints/polyline_search.h"
 
+#include <cstring>
 #include <limits>
 
 namespace catena::haptics {
@@ -71,12 +72,18 @@ void PolylineSearch::search(const std::vector<Straight>& pieces, const Vec3& pro
   };
   const auto of_piece = [&](std::size_t k) { return key(pieces[k].at(pieces[k].along(probe))); };
 
+  const bool rests = state.any && std::memcmp(&state.probe, &probe, sizeof probe) == 0;
+  state.visits = 0;
   if (!state.open) {
+    if (rests && state.whole && state.depth == 0) return;
     state.stack[0] = 0;
     state.depth = 1;
+    state.whole = true;
+  } else if (!rests) {
+    state.whole = false;
   }
+  state.probe = probe;
   double least = state.any ? of_piece(state.best) : kInfinite;
-  state.visits = 0;
   while (state.depth > 0 && state.visits < most_visits) {
     ++state.visits;
     const std::uint32_t node = state.stack[static_cast<std::size_t>(--state.depth)];
@@ -97,6 +104,11 @@ void PolylineSearch::search(const std::vector<Straight>& pieces, const Vec3& pro
     const bool left_first = !(of_box(right) < of_box(left));
     state.stack[static_cast<std::size_t>(state.depth++)] = left_first ? right : left;
     state.stack[static_cast<std::size_t>(state.depth++)] = left_first ? left : right;
+  }
+  if (state.depth == 0 && rests && !state.whole) {
+    state.stack[0] = 0;
+    state.depth = 1;
+    state.whole = true;
   }
   state.open = state.depth > 0;
 }

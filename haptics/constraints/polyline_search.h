@@ -15,11 +15,13 @@ namespace catena::haptics {
 /// Plain data; zero is the state before the first search.
 struct SearchState {
   std::array<std::uint32_t, 40> stack;  ///< nodes still to visit
+  Vec3 probe;                           ///< of the last call
   std::int32_t depth;
   std::int32_t visits;  ///< of the last call: its work
   std::uint32_t best;   ///< the piece of the closest place so far
   bool any;             ///< `best` means something
   bool open;            ///< not through yet
+  bool whole;           ///< all of it for one probe
 };
 
 class PolylineSearch {
@@ -28,8 +30,9 @@ class PolylineSearch {
   /// Of at least one piece, all finite, with an extent whose inverse is finite.
   explicit PolylineSearch(const std::vector<Straight>& pieces);
 
-  /// Goes on with an open search or begins one, from the best piece known. Visits at most `most_visits` nodes; at least one
-  /// leaf is seen by the first. Afterwards state.best is the closest piece seen, state.open tells whether any is left.
+  /// Goes on with an open search or begins one, from the best piece known. A probe that rests is searched for once, whole. Visits at most
+  /// `most_visits` nodes; at least one leaf is seen by the first. Afterwards state.best is the closest piece seen, state.open tells whether
+  /// any is left.
   void search(const std::vector<Straight>& pieces, const Vec3& probe, int most_visits, SearchState& state) const noexcept;
 
   double extent() const noexcept { return 2 * radius_; }  ///< the longest edge of the box around all

@@ -7,16 +7,20 @@
 namespace catena::haptics {
 namespace {
 
-/// What `normalise` takes off and divides by.
-void set_scale(ParameterMap& map) {
+/// What `normalise` maps to 0 and 1.
+Outcome set_scale(const json::Node& node, const std::string& name, ParameterMap& map) {
   if (map.by == ParameterMap::By::value) {
-    const double lo = map.field.scalar->min_value(), hi = map.field.scalar->max_value();
-    const bool bounded = std::isfinite(lo) && std::isfinite(hi);
-    map.lo = bounded ? lo : 0;
-    map.span = bounded ? hi - lo : 0;
-    return;
+    map.lo = map.field.scalar->min_value();
+    map.hi = map.field.scalar->max_value();
+    if (!std::isfinite(map.lo) || !std::isfinite(map.hi))
+      return json::error_at(*node.find("normalise"),
+                            fmt::format("field \"{}\" has no finite range to normalise by; \"map\" over its values, "
+                                        "without \"normalise\", was expected",
+                                        name));
+    return Done{};
   }
-  map.span = map.field.scalar ? field::largest_gradient(*map.field.scalar) : field::largest_magnitude(*map.field.vector);
+  map.hi = map.field.scalar ? field::largest_gradient(*map.field.scalar) : field::largest_magnitude(*map.field.vector);
+  return Done{};
 }
 
 Result<Parameter> read_map(const json::Node& node, std::string_view key, json::Range range, const BuildContext& context) {
@@ -33,7 +37,7 @@ Result<Parameter> read_map(const json::Node& node, std::string_view key, json::R
     return json::error_at(*node.find("of"), fmt::format("\"{}\" is a {} field; \"of\": {} was expected", name, vector ? "vector" : "scalar",
                                                         vector ? "\"magnitude\"" : "\"value\" or \"gradient\""));
   CATENA_TRY(map->normalise, json::get_boolean(node, "normalise", false));
-  if (map->normalise) set_scale(*map);
+  if (map->normalise) CATENA_CHECK(set_scale(node, name, *map));
 
   // the points
   const json::Node* points = node.find("map");

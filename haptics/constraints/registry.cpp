@@ -5,6 +5,7 @@
 #include "haptics/constraints/box.h"
 #include "haptics/constraints/drag.h"
 #include "haptics/constraints/friction.h"
+#include "haptics/constraints/gradient_force.h"
 #include "haptics/constraints/isosurface.h"
 #include "haptics/constraints/line.h"
 #include "haptics/constraints/modes.h"
@@ -13,9 +14,12 @@
 #include "haptics/constraints/point.h"
 #include "haptics/constraints/polyline.h"
 #include "haptics/constraints/segment.h"
+#include "haptics/constraints/snap.h"
 #include "haptics/constraints/sphere.h"
 #include "haptics/constraints/streamline.h"
 #include "haptics/constraints/texture.h"
+#include "haptics/constraints/viscosity.h"
+#include "haptics/constraints/vortex_core.h"
 
 namespace catena::haptics {
 namespace {
@@ -66,19 +70,22 @@ std::string known_types() {
 
 const std::vector<ConstraintType>& registry() {
   static const std::vector<ConstraintType> list{
-      point_constraint(),               //
-      line_constraint(),                //
-      segment_constraint(),             //
-      polyline_constraint(),            //
-      plane_constraint(),               //
-      sphere_constraint(),              //
-      box_constraint(),                 //
-      isosurface_constraint(),          //
-      streamline_constraint(),          //
-      drag_constraint(),                //
-      friction_constraint(),            //
+      point_constraint(),  //
+      line_constraint(),  //
+      segment_constraint(),  //
+      polyline_constraint(),  //
+      plane_constraint(),  //
+      sphere_constraint(),  //
+      box_constraint(),  //
+      isosurface_constraint(),  //
+      streamline_constraint(),  //
+      drag_constraint(),  //
+      friction_constraint(),  //
       modulated_friction_constraint(),  //
-      texture_constraint(),             //
+      texture_constraint(),  //
+      viscosity_constraint(),  //
+      gradient_force_constraint(),  //
+      vortex_core_constraint(),  //
   };
   return list;
 }
@@ -94,6 +101,9 @@ const std::vector<Key>& common_keys() {
       {"name", "string", true, "unique; names the columns of the tick CSV", R"("pattern": "^[a-z][a-z0-9_]*$")"},
       {"type", "string", true, "which constraint"},
       {"stiffness", "parameter", false, "N/m; default: the coupling's", kNotNegativeSchema},
+      {"snap", "parameter", false, "starts apart and takes hold within this distance of the feature, world units", kPositiveSchema},
+      {"release", "parameter", false, "lets go at this distance of the probe from the proxy, world units; default: 2 snap, or never",
+       kPositiveSchema},
       {"on", "object", false, "its switch: {button: n, toggle: true} or {force_above: newtons, force_below: newtons}",
        R"("properties": {"button": {"type": "integer", "minimum": 1, "maximum": 32}, "toggle": {"type": "boolean"}, "force_above": {"type": "number", "exclusiveMinimum": 0}, "force_below": {"type": "number", "minimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 2)"},
       {"indicate", "object", false, "how the hand is told that it leaves the feature",
@@ -121,7 +131,8 @@ Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& lin
   for (const Key& key : common_keys()) keys.push_back(key.name);
   for (const Key& key : type->keys) keys.push_back(key.name);
   CATENA_CHECK(json::only_keys(link, keys));
-  return type->build(link, context);
+  CATENA_TRY(std::shared_ptr<const Constraint> made, type->build(link, context));
+  return wrap_snap(link, type->releases_itself, std::move(made), context);
 }
 
 }  // namespace catena::haptics

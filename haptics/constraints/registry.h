@@ -38,16 +38,17 @@ struct ConstraintType {
   std::string_view paper;  ///< equations and sections it comes from
   std::vector<Key> keys;   ///< its own keys, beside name, type, on, stiffness
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
+  bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
 };
 
 const std::vector<ConstraintType>& registry();
 const ConstraintType* find_constraint(std::string_view type);
-/// The keys that every link takes: name, type, stiffness, on.
+/// The keys that every link takes: name, type, stiffness, on, indicate, snap, release.
 const std::vector<Key>& common_keys();
 /// The JSON Schema of a chain, printed from the registry and the ready-made modes (modes.h).
 std::string chain_schema();
 
-/// Builds one link's constraint: looks the type up, refuses unknown keys, calls its build.
+/// Builds one link's constraint: looks the type up, refuses unknown keys, calls its build, wraps it where it snaps or releases.
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context);
 
 }  // namespace catena::haptics

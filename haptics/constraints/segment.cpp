@@ -38,9 +38,9 @@ ConstraintType segment_constraint() {
   return {"segment",
           "section 3",
           {{"from", "array", true, "its first end, world units", kVec3Schema},
-           {"to", "array", true, "its other end, world units", kVec3Schema},
-           {"release", "parameter", false, "lets go at this distance, world units", kPositiveSchema}},
-          build};
+           {"to", "array", true, "its other end, world units", kVec3Schema}},
+          build,
+          true};
 }
 
 }  // namespace catena::haptics

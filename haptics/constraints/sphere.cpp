@@ -99,9 +99,9 @@ ConstraintType sphere_constraint() {
           "section 3",
           {{"center", "array", true, "world units", kVec3Schema},
            {"radius", "number", true, "world units", kPositiveSchema},
-           {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema},
-           {"release", "parameter", false, "lets go at this depth, world units", kPositiveSchema}},
-          build};
+           {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema}},
+          build,
+          true};
 }
 
 }  // namespace catena::haptics

@@ -262,6 +262,13 @@ class OnlineStreamline final : public Constraint {
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     Tick(spec_, probe, state, scratch).run();
   }
+  /// With a seed it stays on that line, moving along it; without one it takes hold where the hand is.
+  void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    Tick tick(spec_, probe, state, scratch);
+    const bool fresh = memory_of<OnlineMemory>(state).trust == 0;
+    if (fresh || !spec_.seed) tick.begin(spec_.seed.value_or(probe));
+    if (spec_.seed) tick.run();
+  }
   double domain_length() const noexcept override { return spec_.field->length(); }
 
  private:

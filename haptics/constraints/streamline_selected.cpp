@@ -1,16 +1,18 @@
 #include "haptics/constraints/streamline_selected.h"
 
 #include "engine/flow/hermite.h"
+#include "engine/flow/nearest.h"
 
 namespace catena::haptics {
 namespace {
 
 constexpr std::int32_t kKnotCap = 4096;
+constexpr double kFarSquared = 1e100;
 constexpr double kFar = 1e280;  ///< beyond, only the probe's direction counts, and products would overflow
 
 class SelectedStreamline final : public Constraint {
  public:
-  explicit SelectedStreamline(flow::CurvePtr curve) : curve_(std::move(curve)), intervals_(curve_->knots().size() - 1) {
+  explicit SelectedStreamline(flow::CurvePtr curve) : curve_(std::move(curve)), nearest_(curve_), intervals_(curve_->knots().size() - 1) {
     seed_interval_ = curve_->interval_of(0);
   }
 
@@ -72,6 +74,13 @@ class SelectedStreamline final : public Constraint {
     place(memory, k, theta >= 1 ? b.s : a.s + theta * h, state);
   }
 
+  /// The nearest place of the whole curve.
+  void seek(const Vec3& far_probe, LinkState& state, LinkScratch&) const noexcept override {
+    const flow::NearestPlace found = nearest_.at(max_abs(far_probe) > kFarSquared ? direction(far_probe) * kFarSquared : far_probe);
+    state.status = Status::ok;
+    place(memory_of<SelectedMemory>(state), found.interval, found.s, state);
+  }
+
   double domain_length() const noexcept override { return curve_->domain_length(); }
 
  private:
@@ -100,6 +109,7 @@ class SelectedStreamline final : public Constraint {
   }
 
   flow::CurvePtr curve_;
+  flow::NearestOnCurve nearest_;
   std::size_t intervals_;
   std::size_t seed_interval_ = 0;
 };

@@ -2,7 +2,8 @@
 ///   g(s) = (x - c(s)) . c'(s);  march knot by knot to where g changes sign, then the root of g on that interval's Hermite.
 /// The root is always bracketed by the interval's two knots, so it does not depend on where the proxy came from: sweeping there
 /// and back gives the same bits. Open ends hold with BOUNDARY or CRITICAL; closed curves wrap. At most 4096 knots a tick, then
-/// BUDGET, and on from there in the next. Haptic thread: no allocation, lock or throw.
+/// BUDGET, and on from there in the next. While a link that snaps is apart it seeks the nearest place of the whole curve
+/// (engine/flow/nearest.h). Haptic thread: no allocation, lock or throw.
 #pragma once
 #include "engine/flow/curve.h"
 #include "haptics/chain/constraint.h"

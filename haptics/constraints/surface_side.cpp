@@ -80,6 +80,7 @@ Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const B
     CATENA_TRY(const int side, json::get_choice(link, "free", 0, {"none", "above", "below"}));
     spec.free = static_cast<FreeSide>(side);
   }
+  if (link.find("snap") != nullptr) return spec;  // snap.h lets go
   CATENA_TRY(spec.release, get_parameter(link, "release", 0.0, json::Range::positive, context));
   return spec;
 }

@@ -33,7 +33,7 @@ struct SideSpec {
   }
 };
 
-/// Reads `free` (if asked for) and `release`.
+/// Reads `free` (if asked for) and `release` (which is not the surface's where the link has `snap`: snap.h).
 Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context);
 
 struct SideValue {

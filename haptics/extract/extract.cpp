@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/base/hash.h"
+#include "engine/base/numbers.h"
 #include "haptics/constraints/modes.h"
 #include "haptics/constraints/read_parameter.h"
 #include "haptics/constraints/registry.h"
@@ -46,6 +47,7 @@ Result<Indication> read_indication(const json::Node& link) {
   out.cue = static_cast<Indication::Cue>(cue);
   CATENA_TRY(out.at, json::get_number(*node, "at", out.at, json::Range::positive));
   CATENA_TRY(out.from, json::get_number(*node, "from", out.from, json::Range::not_negative));
+  if (out.from > 1) return json::error_at(*node->find("from"), "\"from\" is " + to_text(out.from) + "; a number from 0 to 1 was expected");
   CATENA_TRY(out.amplitude_n, json::get_number(*node, "amplitude", out.amplitude_n, json::Range::not_negative));
   CATENA_TRY(out.frequency_hz, json::get_number(*node, "frequency", out.frequency_hz, json::Range::positive));
   CATENA_TRY(out.duration_s, json::get_number(*node, "duration", out.duration_s, json::Range::positive));

@@ -117,6 +117,22 @@ TEST(Tick, ASwitchedOffLinkPassesItsProbeThroughBitForBit) {
   }
 }
 
+TEST(Tick, TimeThatRunsBackCountsAsNone) {
+  Hand run;
+  run.program.links = {hold_height("a", 1)};
+  run.program.links[0].on.button = 1;
+  run.program.coupling.ramp_s = 0.25;
+  run.program.coupling.damping_ns_per_m = 5;
+  run.program.coupling.max_force_n = 1e9;
+  run.step(1, {0, 0, 0});
+  run.step(1.125, {0, 0, 0}, 1);
+  EXPECT_DOUBLE_EQ(run.out.links[0].weight, 0.5);
+  run.step(0.5, {0.1, 0, 0}, 1);
+  EXPECT_DOUBLE_EQ(run.out.links[0].weight, 0.5);
+  EXPECT_EQ(run.out.force_n.x, 0);
+  EXPECT_DOUBLE_EQ(run.out.force_n.z, 250);
+}
+
 TEST(Tick, ALinkCanWaitForAForce) {
   Hand run;
   run.program.links = {hold_height("a", 1, 5), hold_height("b", 2, 5)};

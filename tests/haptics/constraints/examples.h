@@ -3,6 +3,7 @@
 #pragma once
 #include <limits>
 
+#include "tests/engine/flow/fields.h"
 #include "tests/haptics/constraints/rig.h"
 
 namespace catena::haptics::test {
@@ -56,11 +57,22 @@ inline std::map<std::string, std::vector<std::string>> examples() {
         R"("field": "boxes_grid", "level": 0.9, "free": "below")", R"("field": "noise_grid", "level": 0.1)",
         R"("field": "noise_grid", "level": 0.1, "free": "above", "release": 0.1)", R"("field": "broken_grid", "level": 0.5)",
         R"("field": "broken_grid", "level": 0.5, "free": "above")"}},
+      {"viscosity",
+       {R"("time": 0.05)", R"("time": 0)", R"("coefficient": 2)", R"("time": {"field": "gaussian", "map": [[0, 0], [1, 1]]})"}},
+      {"gradient_force",
+       {R"("field": "gaussian", "displacement": 0.1, "towards": "high")", R"("field": "sphere", "displacement": 0.1, "towards": "low")",
+        R"("field": "broken_grid", "displacement": 0.1, "towards": "high")",
+        R"("field": "constant", "displacement": 0.1, "towards": "low")",
+        R"("field": "sphere_grid", "displacement": {"field": "sphere_grid", "map": [[0, 0], [1, 0.2]]}, "towards": "low")"}},
+      {"vortex_core",
+       {R"("field": "helix")", R"("field": "rankine", "radius": 0.2)", R"("field": "lamb-oseen", "search": 1)", R"("field": "hill")",
+        R"("field": "saddle")", R"("field": "circle_grid", "radius": 0.1)", R"("field": "noise_vectors")",
+        R"("field": "broken_circle", "radius": 0.05)"}},
       {"streamline",
        {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "saddle", "seed": [0.5, 0.2, 0.1])", R"("field": "circle")",
         R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",
         R"("field": "circle", "seed": [0.5, 0, 0], "method": "rk4")", R"("field": "circle_grid", "seed": [0.5, 0, 0])",
-        R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")"}},
+        R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "release": 0.5)"}},
       {"drag",
        {R"("threshold": 0.05)", R"("threshold": 0)", R"("threshold": {"field": "sphere_grid", "map": [[0, 0.01], [2, 0.2]]})",
         R"("threshold": 0.02, "surface": "sphere", "level": 1)", R"("threshold": 0.02, "surface": "broken_grid", "level": 0.5)",
@@ -86,7 +98,8 @@ inline const Fields& fields() {
   static const Fields all = [] {
     Fields made;
     for (const char* name : {"sphere", "torus", "gaussian", "tanh", "marschner-lobb", "constant"}) made.named[name].scalar = analytic(name);
-    for (const char* name : {"circle", "saddle", "hill"}) made.named[name].vector = field::make_analytic(name)->vector;
+    for (const char* name : {"circle", "saddle", "hill", "helix", "rankine", "lamb-oseen"})
+      made.named[name].vector = field::make_analytic(name)->vector;
     made.named["sphere_grid"].scalar = sampled("sphere", 25);
     made.named["torus_grid"].scalar = sampled("torus", 33);
     made.named["circle_grid"].vector = field::sample_on_grid(*made.named["circle"].vector, 24, -2, 2);
@@ -110,6 +123,11 @@ inline const Fields& fields() {
     }
     made.named["broken_vectors"].vector =
         field::make_vector_grid("made", field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0)), {21, 21, 21}, vectors);
+    const auto nodes = field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0));
+    made.named["noise_vectors"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3&) { return random.box(1); });
+    made.named["broken_circle"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3& p) {
+      return random.in(0, 1) < 0.03 ? Vec3(std::numeric_limits<double>::quiet_NaN()) : Vec3(-p.y, p.x, 0.1);
+    });
     return made;
   }();
   return all;
@@ -127,6 +145,11 @@ inline std::vector<Example> all_examples() {
     const auto it = table.find(std::string(type.type));
     if (it == table.end()) continue;
     for (const std::string& body : it->second) out.push_back({it->first, body});
+  }
+  // each of them once more, snapping
+  for (std::size_t i = 0, n = out.size(); i < n; ++i) {
+    const bool has_release = out[i].body.find("\"release\"") != std::string::npos;
+    out.push_back({out[i].type, out[i].body + (has_release ? R"(, "snap": 0.05)" : R"(, "snap": 0.1, "release": 0.3)")});
   }
   return out;
 }

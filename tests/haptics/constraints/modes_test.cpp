@@ -24,7 +24,7 @@ TEST(Modes, AnisotropicFrictionIsThreeLinks) {
   const char* names[] = {"skin_surface", "skin_direction", "skin_friction"};
   const char* types[] = {"isosurface", "friction", "modulated_friction"};
   const std::vector<std::string> keys[] = {
-      {"name", "type", "stiffness", "on", "indicate", "field", "level", "free", "release"},
+      {"name", "type", "stiffness", "release", "on", "indicate", "field", "level", "free"},
       {"name", "type", "stiffness", "on", "field", "kind", "threshold", "surface", "level"},
       {"name", "type", "stiffness", "on", "field", "kind", "surface", "level", "tau_min", "tau_max", "law"}};
   for (std::size_t i = 0; i < 3; ++i) {

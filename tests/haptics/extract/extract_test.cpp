@@ -110,6 +110,145 @@ TEST(ExtractProgram, CommonKeysAreChecked) {
   expect_error(point_with("\"on\": {\"buton\": 1}"), 3, {"unknown key \"buton\"", "did you mean \"button\"?"});
 }
 
+TEST(ExtractProgram, ReadsSwitches) {
+  scene::Scene scene = scene_of(R"({"chain": [
+    {"name": "a", "type": "point", "position": [0, 0, 0], "on": {"button": 3, "toggle": true}},
+    {"name": "b", "type": "point", "position": [0, 0, 0], "on": {"force_above": 2, "force_below": 0.5}},
+    {"name": "c", "type": "point", "position": [0, 0, 0], "on": {"force_above": 2}},
+    {"name": "d", "type": "point", "position": [0, 0, 0]}]})");
+  const auto program = extract_program(scene);
+  ASSERT_TRUE(program) << program.error().message;
+  const std::vector<Link>& links = (*program)->links;
+  EXPECT_EQ(links[0].on.button, 3);
+  EXPECT_TRUE(links[0].on.toggle);
+  EXPECT_EQ(links[1].on.force_above_n, 2);
+  EXPECT_EQ(links[1].on.force_below_n, 0.5);
+  EXPECT_EQ(links[2].on.force_below_n, 2);
+  EXPECT_EQ(links[3].on.button, 0);
+  EXPECT_EQ(links[3].on.force_above_n, 0);
+}
+
+TEST(ExtractProgram, SwitchErrorsNameTheirLine) {
+  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"force_below\": 2}"), 4, {"\"force_below\" is above", "expected"});
+  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"force_below\": -2}"), 4, {"\"force_below\" is -2", ">= 0"});
+  expect_error(point_with("\"on\": {\"button\": 1,\n\"force_below\": 2}"), 4, {"\"force_below\" belongs to \"force_above\""});
+  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"toggle\": true}"), 4, {"\"toggle\" belongs to \"button\""});
+  expect_error(point_with("\"on\": {\"button\": 1,\n\"toggle\": 1}"), 4, {"toggle"});
+  expect_error(point_with("\"on\": {\"toggle\": true}"), 3, {"neither"});
+}
+
+TEST(ExtractProgram, ReadsIndications) {
+  scene::Scene scene = scene_of(R"({"chain": [
+    {"name": "a", "type": "point", "position": [0, 0, 0], "indicate": {"cue": "detent", "at": 0.2, "amplitude": 0.7, "duration": 0.03}},
+    {"name": "b", "type": "point", "position": [0, 0, 0], "indicate": {"cue": "vibration", "from": 0.5, "frequency": 80}},
+    {"name": "c", "type": "point", "position": [0, 0, 0], "indicate": {}},
+    {"name": "d", "type": "point", "position": [0, 0, 0]}]})");
+  const auto program = extract_program(scene);
+  ASSERT_TRUE(program) << program.error().message;
+  const std::vector<Link>& links = (*program)->links;
+  EXPECT_EQ(links[0].indication.cue, Indication::Cue::detent);
+  EXPECT_EQ(links[0].indication.at, 0.2);
+  EXPECT_EQ(links[0].indication.amplitude_n, 0.7);
+  EXPECT_EQ(links[0].indication.duration_s, 0.03);
+  EXPECT_EQ(links[1].indication.cue, Indication::Cue::vibration);
+  EXPECT_EQ(links[1].indication.from, 0.5);
+  EXPECT_EQ(links[1].indication.frequency_hz, 80);
+  EXPECT_EQ(links[2].indication.cue, Indication::Cue::none);
+  EXPECT_EQ(links[3].indication.cue, Indication::Cue::none);
+}
+
+TEST(ExtractProgram, IndicationErrorsNameTheirLine) {
+  const auto bad = [](const std::string& keys, std::initializer_list<const char*> parts) {
+    expect_error(point_with("\"indicate\": {\n" + keys + "}"), 4, parts);
+  };
+  bad("\"cue\": \"bell\"", {"cue", "detent", "vibration"});
+  bad("\"at\": 0", {"\"at\" is 0", "> 0"});
+  bad("\"from\": -0.1", {"\"from\" is -0.1"});
+  bad("\"from\": 1.5", {"\"from\" is 1.5", "0 to 1"});
+  bad("\"amplitude\": -1", {"\"amplitude\" is -1", ">= 0"});
+  bad("\"frequency\": 0", {"\"frequency\" is 0", "> 0"});
+  bad("\"duration\": 0", {"\"duration\" is 0", "> 0"});
+  bad("\"kue\": 1", {"unknown key \"kue\"", "cue"});
+  expect_error(point_with("\"indicate\": true"), 3, {"indicate", "object"});
+}
+
+/// Two links on lines 2 and 3, `modes` from line 4.
+std::string with_modes(const std::string& modes) {
+  return "{\"chain\": [\n{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0]},\n"
+         "{\"name\": \"b\", \"type\": \"point\", \"position\": [0, 0, 1]}], \"modes\": [\n" +
+         modes + "]}";
+}
+
+TEST(ExtractProgram, ReadsModesInOrder) {
+  scene::Scene scene = scene_of(with_modes(R"({"name": "m", "links": ["b", "a"], "on": {"button": 1, "toggle": true}},
+      {"name": "n", "links": [], "on": {"force_above": 3}})"));
+  const auto program = extract_program(scene);
+  ASSERT_TRUE(program) << program.error().message;
+  const std::vector<Mode>& modes = (*program)->modes;
+  ASSERT_EQ(modes.size(), 2u);
+  EXPECT_EQ(modes[0].name, "m");
+  EXPECT_EQ(modes[0].links, (std::vector<int>{1, 0}));
+  EXPECT_EQ(modes[0].on.button, 1);
+  EXPECT_TRUE(modes[0].on.toggle);
+  EXPECT_TRUE(modes[1].links.empty());
+  EXPECT_EQ(modes[1].on.force_above_n, 3);
+}
+
+TEST(ExtractProgram, ModeErrorsNameTheirLine) {
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"z\"], \"on\": {\"button\": 1}}"), 5, {"\"m\"", "\"z\"", "no link"});
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"a\"], \"on\": {\"button\": 1}}"), 5, {"\"a\" twice"});
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"on\": {}}"), 5, {"neither"});
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"on\": {\"button\": 40}}"), 5, {"from 1 to 32"});
+  std::string nine;
+  for (int i = 0; i < 9; ++i)
+    nine += std::string(i ? ",\n" : "") + "{\"name\": \"m" + std::to_string(i) + "\", \"links\": [], \"on\": {\"button\": 1}}";
+  expect_error(with_modes(nine), 12, {"too many modes", "8"});
+}
+
+TEST(ExtractProgram, AModesOwnFormIsCheckedWhereTheSceneIsRead) {
+  const auto fails = [](const std::string& mode, std::initializer_list<const char*> parts) {
+    const auto scene = scene::parse_scene(with_modes(mode), "scene.json");
+    ASSERT_FALSE(scene) << mode;
+    EXPECT_TRUE(scene.error().message.starts_with("scene.json:4: ")) << scene.error().message;
+    for (const char* part : parts) EXPECT_NE(scene.error().message.find(part), std::string::npos) << scene.error().message;
+  };
+  fails(R"({"name": "m", "on": {"button": 1}})", {"links"});
+  fails(R"({"name": "m", "links": "a", "on": {"button": 1}})", {"links"});
+  fails(R"({"name": "m", "links": [1], "on": {"button": 1}})", {"links"});
+  fails(R"({"name": "m", "links": ["a"]})", {"\"on\""});
+  fails(R"({"links": ["a"], "on": {"button": 1}})", {"name"});
+  fails(R"({"name": "m", "links": [], "on": {"button": 1}, "off": 1})", {"unknown key \"off\""});
+  fails(R"({"name": "m", "links": [], "on": {"button": 1}}, {"name": "m", "links": [], "on": {"button": 1}})", {"duplicate mode name"});
+  fails("3", {"object"});
+}
+
+TEST(ExtractProgram, AStiffnessFollowsAField) {
+  scene::Scene scene = scene_of(R"({"fields": {"z": {"analytic": "plane"}}, "chain": [{"name": "a", "type": "point", "position": [0, 0, 0],
+    "stiffness": {"field": "z", "map": [[0, 100], [1, 300]], "outside": 50}}]})");
+  const auto program = extract_program(scene);
+  ASSERT_TRUE(program) << program.error().message;
+  EXPECT_EQ((*program)->links[0].stiffness_n_per_m.least(), 50);
+  EXPECT_EQ((*program)->links[0].stiffness_n_per_m.most(), 300);
+  expect_error(point_with("\"stiffness\": {\"field\": \"z\",\n\"map\": [[0, 1]]}"), 3, {"z"});
+  expect_error(
+      "{\"fields\": {\"z\": {\"analytic\": \"plane\"}}, \"chain\": [{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0],\n"
+      "\"stiffness\": {\"field\": \"z\",\n\"map\": [[0, -1]]}}]}",
+      3, {"\"stiffness\" is -1", ">= 0"});
+}
+
+TEST(ExtractProgram, TheRecipeIsTheLinksTextAndItsFields) {
+  const auto recipes = [](const std::string& more) {
+    scene::Scene scene = scene_of(point_with(more));
+    const auto program = extract_program(scene);
+    EXPECT_TRUE(program) << program.error().message;
+    return (*program)->links[0].recipe;
+  };
+  EXPECT_EQ(recipes("\"release\": 1"), recipes("\"release\": 1"));
+  EXPECT_NE(recipes("\"release\": 1"), recipes("\"release\": 2"));
+  EXPECT_NE(recipes("\"release\": 1"), recipes("\"snap\": 1"));
+  EXPECT_NE(recipes("\"release\": 1"), 0u);
+}
+
 TEST(ExtractProgram, LinkErrorsNameTheirLine) {
   expect_error("{\"chain\": [\n{\"name\": \"a\", \"type\": \"pont\"}]}", 2, {"\"pont\"", "point", "expected"});
   expect_error(point_with("\"levle\": 3"), 3, {"unknown key \"levle\""});

@@ -1,0 +1,14 @@
+/// A viscous fluid about the hand: the proxy p follows the probe x with the relaxation time T.
+///   dp/dt = (x - p) / T;  implicit Euler, stable for every step: p <- p + (x - p) dt / (T + dt)
+/// At a steady velocity v the gap is v T exactly, and the force k S T v: with k_i the link's stiffness, a damper of
+/// b = k_i T N s/m. At rest the proxy comes to the probe and stays on it bit for bit.
+/// Keys: `time` T, seconds, >= 0, or `coefficient` b, N s/m (T = b / k_i; 0 where k_i is 0); either may follow a field.
+/// Status OK; residual 0; never slips. Haptic thread: no allocation, lock or throw.
+#pragma once
+#include "haptics/constraints/registry.h"
+
+namespace catena::haptics {
+
+ConstraintType viscosity_constraint();
+
+}  // namespace catena::haptics

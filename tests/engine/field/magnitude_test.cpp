@@ -1,0 +1,62 @@
+#include "engine/field/magnitude.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/field/analytic.h"
+#include "tests/engine/field/field_helpers.h"
+
+namespace catena::field {
+namespace {
+
+TEST(Magnitude, OfFormulasOverTheirBox) {
+  EXPECT_DOUBLE_EQ(largest_magnitude(*make_analytic("circle")->vector), std::sqrt(8.0));
+  EXPECT_DOUBLE_EQ(largest_magnitude(*make_analytic("uniform", {.scale = 3, .part = {}})->vector), 3);
+  EXPECT_DOUBLE_EQ(largest_gradient(*make_analytic("linear")->scalar), std::sqrt(3.0));
+  EXPECT_EQ(largest_gradient(*make_analytic("constant")->scalar), 0);
+  for (const double scale : {1e-300, 1e300}) {
+    EXPECT_NEAR(largest_magnitude(*make_analytic("circle", {.scale = scale, .part = {}})->vector) / scale, std::sqrt(8.0), 1e-14);
+    EXPECT_NEAR(largest_gradient(*make_analytic("linear", {.scale = scale, .part = {}})->scalar) / scale, std::sqrt(3.0), 1e-14);
+  }
+}
+
+TEST(Magnitude, OfGridsIsThatOfTheirCells) {
+  for (const Mapping& mapping : test::mappings()) {
+    const test::Block block = test::random_block({6, 5, 4}, 3);
+    const auto grid = make_scalar_grid("g", mapping, block.size, block.values);
+    double truth = 0;
+    for (int z = 0; z < 3; ++z)
+      for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 5; ++x) {
+          // central differences over one voxel are the trilinear gradient in the centre
+          const Vec3 c(x + 0.5, y + 0.5, z + 0.5);
+          Vec3 g;
+          for (int a = 0; a < 3; ++a) {
+            Vec3 e(0.0);
+            e[a] = 0.25;
+            g[a] = 2 * (block.trilinear(c + e) - block.trilinear(c - e));
+          }
+          truth = std::max(truth, norm(mapping.world_gradient(g)));
+        }
+    EXPECT_NEAR(largest_gradient(*grid), truth, 1e-5 * truth);
+  }
+}
+
+TEST(Magnitude, SkipsWhatIsNotFinite) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> values{0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9, 0, 1, 2, nan, 4, 9};
+  const auto grid = make_scalar_grid("g", Mapping{}, {6, 2, 2}, values);
+  EXPECT_DOUBLE_EQ(largest_gradient(*grid), 5);
+  std::vector<float> xyz;
+  for (const float v : values) xyz.insert(xyz.end(), {v, 0, 0});
+  EXPECT_DOUBLE_EQ(largest_magnitude(*make_vector_grid("v", Mapping{}, {6, 2, 2}, xyz)), 9);
+}
+
+TEST(Magnitude, OfAFlatGridIsZero) {
+  const std::vector<float> values(27, 4.0F);
+  EXPECT_EQ(largest_gradient(*make_scalar_grid("g", Mapping{}, {3, 3, 3}, values)), 0);
+}
+
+}  // namespace
+}  // namespace catena::field

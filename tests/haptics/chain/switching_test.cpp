@@ -1,0 +1,149 @@
+#include "haptics/chain/switching.h"
+
+#include "tests/haptics/chain/order_links.h"
+
+namespace catena::haptics {
+namespace {
+
+using test::ChainHand;
+using test::hold_plane;
+
+std::string word(const Order& order) {
+  std::string out;
+  for (int k = 0; k < order.count; ++k) out += static_cast<char>('a' + order.links[static_cast<std::size_t>(k)]);
+  return out;
+}
+
+Program with(const Switch& on) {
+  Program program;
+  program.links = {hold_plane("a", {0, 0, 1}, 0)};
+  program.links[0].on = on;
+  return program;
+}
+
+TEST(Switching, WithoutSwitchesAllLinksRunAsListed) {
+  Program program = test::order_program(0);
+  program.modes.clear();
+  for (Link& link : program.links) link.on = {};
+  SwitchState state;
+  EXPECT_EQ(word(step_switches(program, 0, 0, state)), "abcd");
+  EXPECT_EQ(step_switches(program, ~0u, 99, state).mode, -1);
+  program.links.clear();
+  EXPECT_EQ(word(step_switches(program, 0, 0, state)), "");
+}
+
+TEST(Switching, AButtonHoldsAndEveryOneOfThem32Works) {
+  for (int button = 1; button <= 32; ++button) {
+    const Program program = with({.button = button});
+    SwitchState state;
+    const std::uint32_t bit = 1u << (button - 1);
+    EXPECT_EQ(step_switches(program, ~bit, 0, state).count, 0);
+    EXPECT_EQ(step_switches(program, bit, 0, state).count, 1);
+    EXPECT_EQ(step_switches(program, bit, 0, state).count, 1);
+    EXPECT_EQ(step_switches(program, 0, 0, state).count, 0);
+  }
+}
+
+TEST(Switching, AToggleTurnsOverOnEachPressAlone) {
+  const Program program = with({.button = 2, .toggle = true});
+  SwitchState state;
+  const std::pair<std::uint32_t, int> steps[] = {{0, 0}, {2, 1}, {2, 1}, {3, 1}, {1, 1}, {0, 1},
+                                                 {2, 0}, {2, 0}, {0, 0}, {1, 0}, {3, 1}, {0, 1}};
+  for (const auto& [buttons, on] : steps) EXPECT_EQ(step_switches(program, buttons, 0, state).count, on) << buttons;
+}
+
+TEST(Switching, AForceSwitchesWithHysteresis) {
+  const Program program = with({.force_above_n = 3, .force_below_n = 1});
+  SwitchState state;
+  const std::pair<double, int> steps[] = {{0, 0}, {3, 0}, {3.001, 1}, {2, 1}, {1.001, 1}, {1, 0}, {2.9, 0}, {8, 1}, {0, 0}};
+  for (const auto& [force, on] : steps) EXPECT_EQ(step_switches(program, 0, force, state).count, on) << force;
+  const Program same = with({.force_above_n = 3, .force_below_n = 3});
+  SwitchState other;
+  EXPECT_EQ(step_switches(same, 0, 3.1, other).count, 1);
+  EXPECT_EQ(step_switches(same, 0, 3, other).count, 0);
+}
+
+TEST(Switching, ModesOrderTheLinksAndTheFirstOneWins) {
+  const Program program = test::order_program(0);
+  SwitchState state;
+  EXPECT_EQ(word(step_switches(program, 0, 0, state)), "ac");
+  EXPECT_EQ(word(step_switches(program, 3, 0, state)), "abcd");
+  const Order turned = step_switches(program, 4 + 3, 0, state);
+  EXPECT_EQ(word(turned), "dcba");
+  EXPECT_EQ(turned.mode, 0);
+  EXPECT_EQ(word(step_switches(program, 4, 0, state)), "ca") << "a link's own switch still counts";
+  const Order few = step_switches(program, 8 + 3, 0, state);
+  EXPECT_EQ(word(few), "ca");
+  EXPECT_EQ(few.mode, 1);
+  EXPECT_EQ(step_switches(program, 8 + 4, 0, state).mode, 0);
+  EXPECT_EQ(step_switches(program, 0, 0, state).mode, -1);
+}
+
+TEST(Switching, AModeByForceAndAModeByToggle) {
+  Program program = test::order_program(0);
+  program.modes[0].on = {.force_above_n = 2, .force_below_n = 1};
+  program.modes[1].on = {.button = 4, .toggle = true};
+  SwitchState state;
+  EXPECT_EQ(step_switches(program, 0, 2.5, state).mode, 0);
+  EXPECT_EQ(step_switches(program, 8, 1.5, state).mode, 0);
+  EXPECT_EQ(step_switches(program, 0, 0.5, state).mode, 1) << "the toggle was pressed meanwhile";
+  EXPECT_EQ(step_switches(program, 8, 0.5, state).mode, -1);
+}
+
+TEST(Switching, EightLinksAndEightModes) {
+  Program program;
+  for (int i = 0; i < kMaxLinks; ++i) program.links.push_back(hold_plane(std::string(1, static_cast<char>('a' + i)), {0, 1, i + 1.0}, 0));
+  for (int m = 0; m < kMaxModes; ++m) program.modes.push_back({"m" + std::to_string(m), {7 - m, m}, {.button = m + 1}});
+  program.modes[4].links = {7, 6, 5, 4, 3, 2, 1, 0};
+  SwitchState state;
+  EXPECT_EQ(word(step_switches(program, 0, 0, state)), "abcdefgh");
+  EXPECT_EQ(word(step_switches(program, 1u << 4, 0, state)), "hgfedcba");
+  EXPECT_EQ(word(step_switches(program, 1u << 7, 0, state)), "ah");
+}
+
+TEST(Switching, TheChainRunsInTheModesOrder) {
+  Program program = test::order_program(0);
+  ChainHand hand(program);
+  const Vec3 probe(0.3, 0.4, 0.5);
+  hand.step(probe, 3 + 4);
+  EXPECT_EQ(hand.out.mode, 0);
+  // each proxy lies on its own plane, projected from the one before it in the mode's order
+  Vec3 before = probe;
+  for (const int i : {3, 2, 1, 0}) {
+    LinkState alone;
+    LinkScratch scratch;
+    program.links[static_cast<std::size_t>(i)].constraint->advance(before, alone, scratch);
+    EXPECT_EQ(hand.out.links[static_cast<std::size_t>(i)].proxy, alone.proxy) << i;
+    before = alone.proxy;
+  }
+  // links outside the mode are off and pass the probe through
+  hand.step(probe, 3 + 8);
+  EXPECT_FALSE(hand.out.links[1].active);
+  EXPECT_EQ(hand.out.links[1].proxy, probe);
+  EXPECT_EQ(hand.out.links[1].weight, 0);
+}
+
+TEST(Switching, RebindKeepsTogglesAndModesOfTheSameName) {
+  Program program = test::order_program(0);
+  program.links[1].on = {.button = 1, .toggle = true};
+  program.modes[1].on = {.button = 4, .toggle = true};
+  ChainHand hand(program);
+  const Vec3 probe(0.3, 0.4, 0.5);
+  hand.step(probe, 1);
+  hand.step(probe, 8);
+  EXPECT_EQ(hand.out.mode, 1);
+  Program next = program;
+  std::swap(next.links[0], next.links[1]);
+  std::swap(next.modes[0], next.modes[1]);
+  for (Mode& mode : next.modes)
+    for (int& i : mode.links) i = i < 2 ? 1 - i : i;
+  hand.replace(next);
+  hand.step(probe, 0);
+  EXPECT_EQ(hand.out.mode, 0);
+  hand.step(probe, 8);
+  EXPECT_EQ(hand.out.mode, -1);
+  EXPECT_TRUE(hand.out.links[0].active) << "b was toggled on";
+}
+
+}  // namespace
+}  // namespace catena::haptics

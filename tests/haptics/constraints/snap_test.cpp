@@ -1,0 +1,239 @@
+#include "haptics/constraints/snap.h"
+
+#include "engine/base/allocation_guard.h"
+#include "haptics/constraints/streamline_selected.h"
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+const std::string kPoint = R"({"name": "a", "type": "point", "position": [0, 0, 0])";
+
+Fields flow_fields() {
+  Fields fields;
+  for (const char* name : {"circle", "uniform", "abc"}) fields.named[name].vector = field::make_analytic(name)->vector;
+  for (const char* name : {"sphere", "gaussian"}) fields.named[name].scalar = analytic(name);
+  return fields;
+}
+
+bool apart(const Rig& rig, const Vec3& probe) {
+  return rig.state.status == Status::released && rig.state.released && !rig.state.active() && same_bits(rig.state.proxy, probe);
+}
+bool held(const Rig& rig) { return rig.state.status == Status::ok && !rig.state.released && rig.state.active(); }
+
+TEST(Snap, TakesHoldWithinSnapAndLetsGoAtRelease) {
+  Rig rig(build(kPoint + R"(, "snap": 0.1, "release": 0.3})"));
+  const auto at = [&](double x) {
+    rig.tick({x, 0, 0});
+    return Vec3(x, 0, 0);
+  };
+  EXPECT_TRUE(apart(rig, at(0.5)));
+  EXPECT_TRUE(apart(rig, at(std::nextafter(0.1, 1.0))));
+  EXPECT_EQ(rig.state.residual, 0);
+  at(0.1);
+  EXPECT_TRUE(held(rig));
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.0)));
+  EXPECT_EQ(rig.state.limit, 0.3);
+  at(std::nextafter(0.3, 0.0));
+  EXPECT_TRUE(held(rig));
+  EXPECT_TRUE(apart(rig, at(0.3)));
+  EXPECT_TRUE(apart(rig, at(0.11)));
+  at(-0.1);
+  EXPECT_TRUE(held(rig));
+}
+
+TEST(Snap, StartsHeldOnlyWithinSnap) {
+  Rig near(build(kPoint + R"(, "snap": 0.1})")), far(build(kPoint + R"(, "snap": 0.1})"));
+  near.tick({0.09, 0, 0});
+  EXPECT_TRUE(held(near));
+  far.tick({0.15, 0, 0});
+  EXPECT_TRUE(apart(far, {0.15, 0, 0}));
+  // release is twice snap where nothing is said
+  near.tick({0.199, 0, 0});
+  EXPECT_TRUE(held(near));
+  near.tick({0.2, 0, 0});
+  EXPECT_TRUE(apart(near, {0.2, 0, 0}));
+}
+
+TEST(Snap, NoChatterUnderTremorSmallerThanTheGap) {
+  for (const double boundary : {0.1, 0.3}) {
+    Rig rig(build(kPoint + R"(, "snap": 0.1, "release": 0.3})"));
+    Random random(5);
+    int changes = 0;
+    bool was = false;
+    // in to the boundary with tremor of up to 0.09, a long while there, then away
+    for (int i = 0; i < 4000; ++i) {
+      const double way = i < 1000 ? 0.001 * i : i < 3000 ? 1.0 : 0.001 * (i - 2000);
+      const double x = boundary == 0.1 ? 1.0 - 0.9 * std::min(way, 1.0) : 0.3 * way;
+      rig.tick({x + random.in(-0.09, 0.09), 0, 0});
+      if (i > 0 && rig.state.released != was) ++changes;
+      was = rig.state.released;
+    }
+    EXPECT_EQ(changes, 1) << boundary;
+  }
+}
+
+TEST(Snap, SweepsInAndOutWithHysteresis) {
+  // a streamline: a straight line along x
+  Rig rig(
+      build(R"({"name": "a", "type": "streamline", "field": "uniform", "seed": [0, 0, 0], "snap": 0.2, "release": 0.5})", flow_fields()));
+  std::vector<double> takes, lets;
+  bool was = true;
+  for (int i = 0; i < 4000; ++i) {
+    const double phase = (i % 2000) * 0.001;
+    const double y = phase < 1 ? 1 - phase : phase - 1;
+    const Vec3 probe(0.2, y, 0);
+    rig.tick(probe);
+    if (rig.state.released && !was) lets.push_back(y);
+    if (!rig.state.released && was) takes.push_back(y);
+    was = rig.state.released;
+    if (rig.state.released) {
+      ASSERT_TRUE(apart(rig, probe));
+    } else {
+      ASSERT_LE(norm(rig.state.proxy - Vec3(0.2, 0, 0)), 1e-12);
+    }
+  }
+  ASSERT_EQ(takes.size(), 2u);
+  ASSERT_EQ(lets.size(), 2u);
+  for (const double y : takes) EXPECT_NEAR(y, 0.2, 1e-12);
+  for (const double y : lets) EXPECT_NEAR(y, 0.5, 1e-12);
+}
+
+TEST(Snap, ReleaseAloneStartsHeldAndTakesHoldWithinATenth) {
+  Rig rig(build(R"({"name": "a", "type": "streamline", "field": "uniform", "seed": [0, 0, 0], "release": 0.5})", flow_fields()));
+  rig.tick({0, 0.4, 0});
+  EXPECT_TRUE(held(rig));
+  rig.tick({0, 0.5, 0});
+  EXPECT_TRUE(apart(rig, {0, 0.5, 0}));
+  rig.tick({1, 0.051, 0});
+  EXPECT_TRUE(apart(rig, {1, 0.051, 0}));
+  rig.tick({1, 0.05, 0});
+  EXPECT_TRUE(held(rig));
+  EXPECT_LE(norm(rig.state.proxy - Vec3(1, 0, 0)), 1e-12);
+}
+
+TEST(Snap, SurfacesThatReleaseByThemselvesKeepTheirRuleWithoutSnap) {
+  const std::string floor = R"({"name": "a", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "release": 0.25)";
+  Rig own(build(floor + "}")), snaps(build(floor + R"(, "snap": 0.1})"));
+  for (Rig* rig : {&own, &snaps}) {
+    EXPECT_EQ(rig->tick({0, 0, 0.1}).status, Status::free);
+    EXPECT_TRUE(same_bits(rig->state.proxy, Vec3(0, 0, 0.1)));
+    EXPECT_TRUE(rig->state.active());
+    EXPECT_EQ(rig->tick({0, 0, -0.2}).status, Status::ok);
+    EXPECT_TRUE(same_bits(rig->state.proxy, Vec3(0, 0, 0)));
+    EXPECT_EQ(rig->tick({0, 0, -0.25}).status, Status::released);
+    EXPECT_EQ(rig->tick({0, 0, -0.2}).status, Status::released);
+  }
+  // its own rule waits for the free side, snap takes hold within reach
+  EXPECT_EQ(own.tick({0, 0, -0.05}).status, Status::released);
+  EXPECT_EQ(snaps.tick({0, 0, -0.05}).status, Status::ok);
+  EXPECT_TRUE(same_bits(snaps.state.proxy, Vec3(0, 0, 0)));
+  EXPECT_EQ(own.tick({0, 0, 0.05}).status, Status::free);
+  EXPECT_EQ(snaps.tick({0, 0, 0.05}).status, Status::free);
+}
+
+TEST(Snap, ASurfaceIsFoundWhereverTheHandWentMeanwhile) {
+  Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "sphere", "level": 1, "snap": 0.05, "release": 0.2})", flow_fields()));
+  Random random(6);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 away = random.unit() * 1.5, onto = random.unit();
+    rig.tick(away);
+    ASSERT_TRUE(apart(rig, away)) << i;
+    rig.tick(onto * 1.06);
+    ASSERT_TRUE(apart(rig, onto * 1.06)) << i;
+    rig.tick(onto * 1.04);
+    ASSERT_TRUE(held(rig)) << i;
+    ASSERT_LE(norm(rig.state.proxy - onto), 1e-8) << i;
+    ASSERT_LE(rig.state.evaluations, kEvaluationCap);
+  }
+}
+
+TEST(Snap, ASelectedStreamlineTakesHoldOfItsClosestPlace) {
+  const Fields fields = flow_fields();
+  const ConstraintPtr link = build(R"({"name": "a", "type": "streamline", "field": "circle", "seed": [1, 0, 0], "snap": 0.1})", fields);
+  Rig rig(link);
+  Random random(7);
+  for (int i = 0; i < 300; ++i) {
+    const double a = random.in(-3.14, 3.14);
+    const Vec3 place(std::cos(a), std::sin(a), 0);
+    rig.tick(place * 0.79);
+    ASSERT_TRUE(apart(rig, place * 0.79));
+    rig.tick(place * 1.09);
+    ASSERT_TRUE(held(rig)) << i;
+    ASSERT_LE(norm(rig.state.proxy - place), 1e-9) << i;
+  }
+}
+
+TEST(Snap, AnOnlineStreamlineWithoutSeedTakesHoldWhereTheHandIs) {
+  Rig rig(build(R"({"name": "a", "type": "streamline", "field": "uniform", "snap": 0.1, "release": 0.3})", flow_fields()));
+  rig.tick({0, 0.5, 0});
+  EXPECT_TRUE(held(rig));
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0, 0.5, 0)));
+  rig.tick({0.2, 0.7, 0});
+  EXPECT_LE(norm(rig.state.proxy - Vec3(0.2, 0.5, 0)), 1e-11);
+  // pulled off, it goes on from the line through the hand
+  rig.tick({0.2, 0.81, 0});
+  EXPECT_TRUE(held(rig));
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.2, 0.81, 0)));
+}
+
+TEST(Snap, AnOnlineStreamlineWithASeedStaysOnItsLine) {
+  Rig rig(build(R"({"name": "a", "type": "streamline", "field": "circle", "seed": [1, 0, 0], "follow": "online", "snap": 0.1})",
+                flow_fields()));
+  for (int i = 0; i <= 300; ++i) {
+    const double a = 0.01 * i;
+    rig.tick(Vec3(std::cos(a), std::sin(a), 0) * 0.5);
+    ASSERT_TRUE(rig.state.released);
+  }
+  rig.tick(Vec3(std::cos(3.0), std::sin(3.0), 0) * 0.95);
+  EXPECT_TRUE(held(rig));
+  EXPECT_LE(norm(rig.state.proxy - Vec3(std::cos(3.0), std::sin(3.0), 0)), 1e-7);
+}
+
+TEST(Snap, FollowsAField) {
+  // gaussian: 1 at the origin, falling off; both distances from it, release never under snap
+  Rig rig(build(kPoint + R"(, "snap": {"field": "gaussian", "map": [[0, 0.2], [1, 0.4]]},
+      "release": {"field": "gaussian", "map": [[0, 0.1], [1, 0.1]]}})",
+                flow_fields()));
+  rig.tick({0.095, 0, 0});
+  EXPECT_TRUE(apart(rig, {0.095, 0, 0}));
+  EXPECT_EQ(rig.state.evaluations, 2);
+  rig.tick({0.08, 0, 0});
+  EXPECT_TRUE(held(rig));
+  rig.tick({0.1, 0, 0});
+  EXPECT_TRUE(apart(rig, {0.1, 0, 0}));
+}
+
+TEST(Snap, WithoutASurfaceTheProbePassesThrough) {
+  Fields fields;
+  fields.named["f"].scalar = analytic("constant");
+  Rig rig(build(R"({"name": "a", "type": "isosurface", "field": "f", "level": 1, "snap": 0.1})", fields));
+  EXPECT_EQ(rig.tick({0.1, 0.2, 0.3}).status, Status::no_surface);
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, 0.2, 0.3)));
+  EXPECT_FALSE(rig.state.released);
+}
+
+TEST(Snap, AllocatesNothing) {
+  Rig rig(build(R"({"name": "a", "type": "streamline", "field": "abc", "seed": [0.1, 0.2, 0.3], "snap": 0.1})", flow_fields()));
+  Random random(8);
+  AllocationGuard guard;
+  for (int i = 0; i < 1000; ++i) rig.tick(random.box(2));
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST(Snap, RefusesBadKeys) {
+  const auto fails = [](const std::string& more, int line, const char* part) {
+    const auto made = try_build(kPoint + more);
+    ASSERT_FALSE(made) << more;
+    EXPECT_EQ(made.error().message.rfind("scene.json:" + std::to_string(line) + ":", 0), 0u) << made.error().message;
+    EXPECT_NE(made.error().message.find(part), std::string::npos) << made.error().message;
+  };
+  fails(",\n\"snap\": 0}", 2, "\"snap\" is 0");
+  fails(",\n\"snap\": \"x\"}", 2, "\"snap\"");
+  fails(",\n\"snap\": 0.1,\n\"release\": 0.1}", 3, "\"release\" is 0.1; a number > \"snap\"");
+  fails(",\n\"snap\": 0.1,\n\"release\": -1}", 3, "\"release\" is -1");
+  fails(",\n\"snap\": {\"field\": \"none\", \"map\": [[0, 1]]}}", 2, "none");
+}
+
+}  // namespace
+}  // namespace catena::haptics::test

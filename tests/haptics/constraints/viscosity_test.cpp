@@ -1,0 +1,96 @@
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+Rig viscous(const std::string& keys, double dt, double stiffness = 0, const Fields& fields = {}) {
+  Rig rig(build(R"({"name": "a", "type": "viscosity", )" + keys + "}", fields));
+  rig.state.dt_s = dt;
+  rig.state.stiffness_n_per_m = stiffness;
+  return rig;
+}
+
+TEST(Viscosity, SteadyMotionLagsByVelocityTimesTime) {
+  for (const double dt : {1e-3, 1e-4, 0.02})
+    for (const double time : {0.0, 1e-3, 0.05, 0.4}) {
+      Rig rig = viscous("\"time\": " + std::to_string(time), dt);
+      const Vec3 v(0.3, -0.1, 0.2);
+      const int ticks = static_cast<int>(50 * (time + dt) / dt);
+      for (int i = 0; i <= ticks; ++i) rig.tick(v * (dt * i));
+      EXPECT_LE(norm(v * (dt * ticks) - rig.state.proxy - v * time), 1e-12) << dt << " " << time;
+      EXPECT_EQ(rig.state.status, Status::ok);
+      EXPECT_EQ(rig.state.evaluations, 0);
+    }
+}
+
+TEST(Viscosity, ACoefficientIsTheDampersOwn) {
+  // b = 6 N s/m at k = 200 N/m: T = 0.03 s; force k (x - p) = b v
+  Rig rig = viscous("\"coefficient\": 6", 1e-3, 200);
+  for (int i = 0; i <= 3000; ++i) rig.tick({0.5e-3 * i, 0, 0});
+  EXPECT_NEAR(200 * (1.5 - rig.state.proxy.x), 6 * 0.5, 1e-10);
+  Rig limp = viscous("\"coefficient\": 6", 1e-3, 0);
+  limp.tick({0, 0, 0});
+  limp.tick({1, 0, 0});
+  EXPECT_TRUE(same_bits(limp.state.proxy, Vec3(1, 0, 0)));
+}
+
+TEST(Viscosity, ConvergesAndThenRestsOnTheProbeBitForBit) {
+  for (const double dt : {1e-3, 1.0, 1e6}) {
+    Rig rig = viscous("\"time\": 0.01", dt);
+    rig.tick({0, 0, 0});
+    const Vec3 probe(0.3, 1.7, -1e-9);
+    double last = norm(probe);
+    int ticks = 0;
+    for (; ticks < 2000 && !same_bits(rig.state.proxy, probe); ++ticks) {
+      rig.tick(probe);
+      ASSERT_LE(norm(probe - rig.state.proxy), last);  // never overshoots
+      last = norm(probe - rig.state.proxy);
+    }
+    EXPECT_LT(ticks, 2000) << dt;
+    for (int i = 0; i < 10; ++i) {
+      rig.tick(probe);
+      EXPECT_TRUE(same_bits(rig.state.proxy, probe));
+    }
+  }
+}
+
+TEST(Viscosity, NoTimeStepHoldsTheProxyAndExtremesStayFinite) {
+  Rig rig = viscous("\"time\": 0.01", 0);
+  rig.tick({0, 0, 0});
+  rig.tick({1, 2, 3});
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.0)));
+  for (const double dt : {1e-300, 1e-3, 1e300, std::numeric_limits<double>::infinity(), -1.0})
+    for (const char* time : {"1e-300", "1", "1e300"}) {
+      Rig far = viscous(std::string("\"time\": ") + time, dt);
+      for (const double x : {1.7e308, -1.7e308, 0.0, 1e-320, -1.7e308, 1.0}) {
+        far.tick({x, -x, 1});
+        ASSERT_TRUE(is_finite(far.state.proxy)) << dt << " " << time << " " << x;
+      }
+    }
+}
+
+TEST(Viscosity, ThickensWithAField) {
+  Fields fields;
+  fields.named["f"].scalar = analytic("plane");
+  Rig rig = viscous(R"("time": {"field": "f", "map": [[0, 0.01], [1, 0.03]]})", 1e-3, 0, fields);
+  const double v = 0.2;
+  for (int i = 0; i <= 4000; ++i) rig.tick({v * 1e-3 * i, 0, 0.5});
+  EXPECT_NEAR(v * 4 - rig.state.proxy.x, v * 0.02, 1e-12);
+  EXPECT_EQ(rig.state.evaluations, 1);
+}
+
+TEST(Viscosity, RefusesBadKeys) {
+  const auto fails = [](const std::string& keys, const char* part) {
+    const auto made = try_build("{\"name\": \"a\",\n\"type\": \"viscosity\"" + keys + "}");
+    ASSERT_FALSE(made) << keys;
+    EXPECT_EQ(made.error().message.rfind("scene.json:", 0), 0u) << made.error().message;
+    EXPECT_NE(made.error().message.find(part), std::string::npos) << made.error().message;
+  };
+  fails("", "neither");
+  fails(", \"time\": 1, \"coefficient\": 1", "both");
+  fails(", \"time\": -1", ">= 0");
+  fails(", \"coefficient\": \"x\"", "coefficient");
+}
+
+}  // namespace
+}  // namespace catena::haptics::test

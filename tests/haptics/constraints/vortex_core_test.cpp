@@ -1,0 +1,220 @@
+#include "engine/field/load.h"
+#include "tests/engine/flow/fields.h"
+#include "tests/haptics/constraints/rig.h"
+#include "tests/support/support.h"
+
+namespace catena::haptics::test {
+namespace {
+
+ConstraintPtr core_of(field::VectorFieldPtr field, const std::string& more = "") {
+  Fields fields;
+  fields.named["v"].vector = std::move(field);
+  return build(R"({"name": "a", "type": "vortex_core", "field": "v")" + more + "}", fields);
+}
+
+field::VectorFieldPtr formula(const char* name, double scale = 1) { return catena::test::analytic_vector(name, scale); }
+
+TEST(VortexCore, IsTheZAxisOfStraightVortices) {
+  Random random(1);
+  for (const char* name : {"helix", "rankine", "lamb-oseen", "circle"})
+    for (const double scale : {1.0, -1.0, 1e-300, 1e300}) {
+      Rig rig(core_of(formula(name, scale), R"(, "search": 0.6)"));
+      for (int i = 0; i < 100; ++i) {
+        const Vec3 x(random.in(-0.4, 0.4), random.in(-0.4, 0.4), random.in(-1.5, 1.5));
+        rig.tick(x);
+        ASSERT_EQ(rig.state.status, Status::ok) << name << " " << scale << " " << i;
+        ASSERT_LE(norm(rig.state.proxy - Vec3(0, 0, x.z)), 4e-12 * 4) << name << " " << scale;
+        ASSERT_LE(rig.state.residual, 4e-12);
+        ASSERT_EQ(rig.state.limit, 0.6);
+      }
+    }
+}
+
+TEST(VortexCore, TheTubeIsFreeInsideAndAWallOutside) {
+  Rig rig(core_of(formula("helix"), R"(, "radius": 0.2)"));
+  rig.tick({0.1, -0.1, 0.3});
+  EXPECT_EQ(rig.state.status, Status::free);
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.1, -0.1, 0.3)));
+  EXPECT_TRUE(rig.state.active());
+  for (int i = 0; i < 100; ++i) {
+    const double a = 0.0628 * i;
+    const Vec3 out(std::cos(a), std::sin(a), 0);
+    const Vec3 x = out * 0.35 + Vec3(0, 0, 0.01 * i);
+    rig.tick(x);
+    ASSERT_EQ(rig.state.status, Status::ok);
+    ASSERT_LE(norm(rig.state.proxy - (out * 0.2 + Vec3(0, 0, 0.01 * i))), 1e-11);
+  }
+  // too far from the core (0.1 L = 0.4)
+  rig.tick({0.41, 0, 0});
+  EXPECT_EQ(rig.state.status, Status::no_surface);
+  EXPECT_TRUE(same_bits(rig.state.proxy, Vec3(0.41, 0, 0)));
+}
+
+TEST(VortexCore, OfHillsVortexIsARing) {
+  // stagnation ring r = 1 / sqrt 2, z = 0
+  Rig rig(core_of(formula("hill"), R"(, "search": 0.3)"));
+  Random random(2);
+  int most = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double a = 0.02 * i, r = 0.7 + random.in(-0.15, 0.15), z = random.in(-0.15, 0.15);
+    const Vec3 x(r * std::cos(a), r * std::sin(a), z);
+    rig.tick(x);
+    most = std::max(most, rig.state.evaluations);
+    ASSERT_EQ(rig.state.status, Status::ok) << i;
+    const Vec3 ring = Vec3(std::cos(a), std::sin(a), 0) * std::sqrt(0.5);
+    ASSERT_LE(norm(rig.state.proxy - ring), 1e-9) << i;
+  }
+  EXPECT_LE(most, 70);
+}
+
+TEST(VortexCore, OfASampledTiltedVortex) {
+  // a helical vortex about the line through c along w, on a rotated grid: linear, so that sampling is exact but for floats
+  const Vec3 w = direction(Vec3(0.3, -0.2, 1)), c(0.2, 0.1, -0.05);
+  const auto flow = [&](const Vec3& p) { return 2.0 * cross(w, p - c) + 0.5 * w; };
+  Mat3 axes(Vec3(0.08, 0.06, 0) * 1.0, Vec3(-0.06, 0.08, 0), Vec3(0, 0.01, 0.11));
+  const auto grid = catena::test::grid_of(field::Mapping::from_linear(axes, Vec3(-1.0, -2.2, -1.6)), {40, 40, 32}, flow);
+  Rig rig(core_of(grid, R"(, "search": 0.5)"));
+  Random random(3);
+  for (int i = 0; i < 300; ++i) {
+    const double s = random.in(-0.5, 0.5);
+    const Vec3 off = cross(w, random.unit()) * 0.3, x = c + w * s + off;
+    rig.tick(x);
+    ASSERT_EQ(rig.state.status, Status::ok) << i;
+    ASSERT_LE(norm(rig.state.proxy - (c + w * s)), 2e-6) << i;
+    ASSERT_LE(rig.state.evaluations, 14) << i;
+  }
+}
+
+TEST(VortexCore, FollowsACurvedCoreOnAGrid) {
+  // Hill's ring sampled: within a few hundredths of a voxel of the ring
+  const auto grid = field::sample_on_grid(*formula("hill"), 65, -1.2, 1.2);
+  Rig rig(core_of(grid));
+  double worst = 0;
+  double longest = 0;
+  int most = 0, unfinished = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double a = 0.004 * i;
+    const Vec3 before = rig.state.proxy;
+    const Vec3 ring = Vec3(std::cos(a), std::sin(a), 0) * std::sqrt(0.5);
+    rig.tick(ring * 1.1 + Vec3(0, 0, 0.08));
+    most = std::max(most, rig.state.evaluations);
+    if (i > 0) longest = std::max(longest, norm(rig.state.proxy - before));
+    unfinished += rig.state.status != Status::ok;
+    worst = std::max(worst, norm(rig.state.proxy - ring));
+  }
+  std::printf("sampled ring: off by %.2e, longest step %.2e, of %.2e voxel, evaluations <= %d, unfinished %d of 3000\n", worst, longest,
+              2.4 / 64, most, unfinished);
+  EXPECT_LE(longest, 3 * 0.004 * std::sqrt(0.5)) << "no jumps from cell to cell";
+  EXPECT_LE(worst, 0.2 * 2.4 / 64);
+  EXPECT_EQ(unfinished, 0);
+}
+
+TEST(VortexCore, WithoutSwirlTheProbePassesThrough) {
+  Random random(4);
+  for (const char* name : {"uniform", "saddle", "node"})
+    for (const double scale : {1.0, 1e-300, 1e300})
+      for (const bool sampled : {false, true}) {
+        if (sampled && scale != 1) continue;
+        const auto field = formula(name, scale);
+        Rig rig(core_of(sampled ? field::sample_on_grid(*field, 17, -2, 2) : field));
+        for (int i = 0; i < 50; ++i) {
+          const Vec3 x = random.box(1.9);
+          rig.tick(x);
+          ASSERT_EQ(rig.state.status, Status::no_surface) << name << " " << scale << " " << sampled;
+          ASSERT_TRUE(same_bits(rig.state.proxy, x));
+        }
+      }
+  // outside the solid core of Rankine's vortex the flow has no curl
+  Rig rig(core_of(formula("rankine"), R"(, "search": 2)"));
+  EXPECT_EQ(rig.tick({1.3, 0, 0}).status, Status::no_surface);
+}
+
+TEST(VortexCore, EndsAtTheWallOfTheDomain) {
+  Rig rig(core_of(field::sample_on_grid(*formula("helix"), 17, -2, 2)));
+  for (int i = 0; i <= 60; ++i) rig.tick({0.1, 0.05, 1.5 + 0.01 * i});
+  EXPECT_EQ(rig.state.status, Status::boundary);
+  EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 2)), 0.02);
+  EXPECT_LE(rig.state.proxy.z, 2);
+  rig.tick({0.1, 0.05, 1.9});
+  EXPECT_EQ(rig.state.status, Status::ok);
+  EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 1.9)), 1e-6);
+}
+
+TEST(VortexCore, SnapsAndReleases) {
+  Rig rig(core_of(formula("helix"), R"(, "search": 1, "snap": 0.1, "release": 0.3)"));
+  EXPECT_EQ(rig.tick({0.2, 0, 0}).status, Status::released);
+  EXPECT_EQ(rig.tick({0.09, 0, 0.2}).status, Status::ok);
+  EXPECT_LE(norm(rig.state.proxy - Vec3(0, 0, 0.2)), 1e-11);
+  EXPECT_EQ(rig.tick({0.29, 0, 0.2}).status, Status::ok);
+  EXPECT_EQ(rig.tick({0.31, 0, 0.2}).status, Status::released);
+}
+
+TEST(VortexCore, OnRealDataIsBoundedAndRests) {
+  const std::string path = catena::test::shared_data("combustor_cfd.vdb");
+  if (path.empty()) GTEST_SKIP() << "combustor_cfd.vdb is not beside the checkout";
+  field::LoadRequest request;
+  request.path = path;
+  request.grid = "velocity";
+  const auto velocity = field::load(request)->vector;
+  Rig rig(core_of(velocity, R"(, "search": 1)"));
+  Random random(5);
+  const field::Box& box = velocity->index_box();
+  Spread evaluations;
+  int held = 0, unfinished = 0, jumps = 0, ticks = 0;
+  for (int walk = 0; walk < 200; ++walk) {
+    Vec3 x =
+        velocity->mapping().world_from_index({random.in(box.lo.x, box.hi.x), random.in(box.lo.y, box.hi.y), random.in(box.lo.z, box.hi.z)});
+    const Vec3 way = random.unit() * 0.01;
+    Status was = Status::no_surface;
+    for (int i = 0; i < 100; ++i, x += way, ++ticks) {
+      const Vec3 before = rig.state.proxy;
+      rig.tick(x);
+      ASSERT_TRUE(is_finite(rig.state.proxy));
+      evaluations.add(rig.state.evaluations);
+      const bool holds = rig.state.status != Status::no_surface;
+      held += holds;
+      unfinished += rig.state.status == Status::budget;
+      jumps += holds && was != Status::no_surface && norm(rig.state.proxy - before) > 0.1;
+      was = rig.state.status;
+      if (rig.state.status == Status::budget || i % 10 > 0) continue;
+      const Vec3 rest = rig.state.proxy;
+      rig.tick(x);
+      ASSERT_TRUE(same_bits(rig.state.proxy, rest));
+    }
+  }
+  std::printf("combustor: held %.1f %%, unfinished %.2f %%, jumps %.2f %%, evaluations p50 %d p99 %d max %d\n", 100.0 * held / ticks,
+              100.0 * unfinished / ticks, 100.0 * jumps / ticks, evaluations.at(0.5), evaluations.at(0.99), evaluations.at(1));
+  EXPECT_LE(evaluations.at(1), 200);
+  EXPECT_GT(held, ticks / 100);
+  EXPECT_LE(unfinished, ticks / 200);
+}
+
+TEST(VortexCore, StandsForALineInTheBaselines) {
+  Rig rig(core_of(formula("helix")));
+  rig.tick({0.1, 0.2, 0.3});
+  Primitive line;
+  ASSERT_TRUE(rig.constraint->has_primitive());
+  ASSERT_TRUE(rig.constraint->primitive({0.1, 0.2, 0.3}, rig.state, rig.scratch, line));
+  EXPECT_EQ(line.kind, Primitive::Kind::line);
+  EXPECT_LE(norm(cross(line.axis, Vec3(0, 0, 1))), 1e-9);
+  EXPECT_FALSE(core_of(formula("helix"), R"(, "radius": 0.1)")->has_primitive());
+}
+
+TEST(VortexCore, RefusesBadKeys) {
+  Fields fields;
+  fields.named["v"].vector = formula("helix");
+  fields.named["s"].scalar = analytic("sphere");
+  const auto fails = [&](const std::string& keys, const char* part) {
+    const auto made = try_build("{\"name\": \"a\", \"type\": \"vortex_core\",\n" + keys + "}", fields);
+    ASSERT_FALSE(made) << keys;
+    EXPECT_EQ(made.error().message.rfind("scene.json:2:", 0), 0u) << made.error().message;
+    EXPECT_NE(made.error().message.find(part), std::string::npos) << made.error().message;
+  };
+  fails(R"("field": "s")", "vector field");
+  fails(R"("field": "v", "radius": -1)", "radius");
+  fails(R"("field": "v", "search": 0)", "search");
+  fails(R"("field": "v", "radius": 0.3, "search": 0.3)", "> \"radius\"");
+}
+
+}  // namespace
+}  // namespace catena::haptics::test
