@@ -96,7 +96,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   out.program_epoch = program.epoch;
   if (!is_finite(probe.position) || !std::isfinite(probe.t_s)) return hold_all(program, state, out);
 
-  const double dt = state.has_probe ? probe.t_s - state.last_t_s : 0;
+  const double dt = state.has_probe ? std::max(probe.t_s - state.last_t_s, 0.0) : 0;
   const double ramp_step = program.coupling.ramp_s > 0 ? dt / program.coupling.ramp_s : 1;
   const double s = program.metres_per_unit;
   const Order order = step_switches(program, probe.buttons, norm(state.force_n), state.switches);
