@@ -55,6 +55,23 @@ TEST(Tick, DampingUsesTheTimeBetweenSamplesAndIsZeroAtTickZero) {
   EXPECT_DOUBLE_EQ(run.out.force_n.x, -2 * 0.1 * 3 / 0.5);
 }
 
+TEST(Tick, AClockThatGoesBackStandsStill) {
+  Hand run;
+  run.program.links = {hold_height("a", 1)};
+  run.program.links[0].on.button = 1;
+  run.program.coupling.ramp_s = 0.02;
+  run.program.coupling.damping_ns_per_m = 2;
+  run.step(0, {0, 0, 0});
+  run.step(1.00, {0, 0, 0});
+  run.step(1.01, {0, 0, 0}, 1);
+  EXPECT_NEAR(run.out.links[0].weight, 0.5, 1e-12);
+  run.step(0.5, {0, 1, 0}, 1);
+  EXPECT_NEAR(run.out.links[0].weight, 0.5, 1e-12);
+  EXPECT_EQ(run.out.force_n.y, 0);
+  run.step(0.505, {0, 1, 0}, 1);
+  EXPECT_NEAR(run.out.links[0].weight, 0.75, 1e-12);
+}
+
 TEST(Tick, ForceIsLimitedAndKeepsItsDirection) {
   Hand run;
   run.program.links = {hold_height("a", 1)};
