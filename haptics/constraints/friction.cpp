@@ -40,7 +40,8 @@ struct Memory {
   Heading heading;  ///< at the proxy
   Vec3 side;        ///< the last direction: line fields are turned to it
   double rate;      ///< -d(e.d)/ds of the last step: 1 - kappa N.e
-  double bend;      ///< |dd/ds| of the last step
+  double bend;      ///< |dd/ds| of the last step, along the surface
+  double arch;      ///< |dn/ds| of it
   int blocked;      ///< the line ends here towards this sign of d
 };
 
@@ -58,7 +59,7 @@ class Tick {
   void run() noexcept {
     if (!contact_.begin()) return;
     const double tau = safe_threshold(spec_.threshold.at(contact_.proxy(), scratch_.parameter, state_.evaluations));
-    if (contact_.placed_anew()) arrive(heading_at(contact_.here()));
+    if (contact_.placed_anew() || memory_.heading.status == Status::budget) arrive(heading_at(contact_.here()));
     bool lost = false, complete = true;
     if (memory_.heading.known()) {
       lost = !slip(tau, complete);
@@ -111,7 +112,7 @@ class Tick {
 
       // the direction half way
       Vec3 middle = d;
-      if (memory_.bend * h * h > 8 * kStraight * length_ || !(memory_.bend > 0)) {
+      if ((memory_.bend + memory_.arch) * h * h > 8 * kStraight * length_ || !(memory_.bend > 0)) {
         const LevelPoint halfway = contact_.look(p + d * (0.5 * h), false);
         const Heading half = heading_at(halfway);
         const double turn = turn_to(halfway, half, size);
@@ -134,6 +135,7 @@ class Tick {
       const double g2 = dot(e2, there.t.d), slope = (g - g2) / h, beyond = (g > 0 ? g - g2 : g2 - g) - excess;
       const bool nearer = std::fabs(g2) <= 0.5 * std::fabs(g) || norm(e2) < norm(e);
       memory_.bend = turn / size;
+      memory_.arch = norm(to.n - contact_.here().n) / size;
       if (!nearer || beyond > 0.25 * excess) {
         if (slope > rate) memory_.rate = slope;
         // a corner of the line may be the closest point
@@ -199,6 +201,7 @@ class Tick {
   }
 
   Heading heading_at(const LevelPoint& at) noexcept {
+    if (contact_.spent(2)) return {{}, Status::budget};
     if (!at.valid && !(contact_.has_normal() && at.finite)) return {{}, Status::boundary};
     field::Cursor& cursor = scratch_.cursors[1];
     if (spec_.line && !(max_abs(memory_.side) > 0)) {
