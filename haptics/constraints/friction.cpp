@@ -11,12 +11,12 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAlong = 1e-10, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d, steps
-constexpr double kTurn = 0.02, kBent = 0.3;                         // of the tangent, of the normal over half a step
-constexpr double kCorner = 0.5, kCornerError = 1e-6;                // a sharp turn, if it costs less than that times L
-constexpr double kShort = 1e-3;                                     // of L: so short that the surface may have a crease
-constexpr double kStraight = 1e-14;                                 // of L: an error that needs no midpoint
-constexpr double kThreshold = 0.005;                                // of L: default
+constexpr double kAlong = 1e-8, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d, steps
+constexpr double kTurn = 0.02, kBent = 0.3;                        // of the tangent, of the normal over half a step
+constexpr double kCorner = 0.5, kCornerError = 1e-6;               // a sharp turn, if it costs less than that times L
+constexpr double kShort = 1e-3;                                    // of L: so short that the surface may have a crease
+constexpr double kStraight = 1e-14;                                // of L: an error that needs no midpoint
+constexpr double kThreshold = 0.005;                               // of L: default
 constexpr int kTrials = 32, kRounds = 8;
 constexpr int kForStep = 40;  // fetches that a step and a slide may need
 
@@ -168,7 +168,9 @@ class Tick {
   double turn_to(const LevelPoint& to, const Heading& there, double size) const noexcept {
     if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.here().n) > kBent)) return 2;
     const Vec3& here = memory_.heading.t.d;
-    return norm(there.t.d - direction(here - to.n * dot(here, to.n)));
+    const Vec3 flat = here - to.n * dot(here, to.n);
+    const double size_of_it = norm(flat);
+    return size_of_it > 0 ? norm(there.t.d - flat * (1 / size_of_it)) : 2;
   }
   /// What a step may turn: a corner is crossed where that costs little.
   double most_turn(double smooth, double size) const noexcept { return std::max(smooth, std::min(kCorner, kCornerError * length_ / size)); }
