@@ -11,12 +11,12 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAlong = 1e-10, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d, steps
-constexpr double kTurn = 0.02, kBent = 0.3;                         // of the tangent, of the normal over half a step
-constexpr double kCorner = 0.5, kCornerError = 1e-6;                // a sharp turn, if it costs less than that times L
-constexpr double kShort = 1e-3;                                     // of L: so short that the surface may have a crease
-constexpr double kStraight = 1e-14;                                 // of L: an error that needs no midpoint
-constexpr double kThreshold = 0.005;                                // of L: default
+constexpr double kAlong = 1e-8, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d, steps
+constexpr double kTurn = 0.02, kBent = 0.3;                        // of the tangent, of the normal over half a step
+constexpr double kCorner = 0.5, kCornerError = 1e-6;               // a sharp turn, if it costs less than that times L
+constexpr double kShort = 1e-3;                                    // of L: so short that the surface may have a crease
+constexpr double kStraight = 1e-14;                                // of L: an error that needs no midpoint
+constexpr double kThreshold = 0.005;                               // of L: default
 constexpr int kTrials = 32, kRounds = 8;
 constexpr int kForStep = 40;  // fetches that a step and a slide may need
 
@@ -40,7 +40,8 @@ struct Memory {
   Heading heading;  ///< at the proxy
   Vec3 side;        ///< the last direction: line fields are turned to it
   double rate;      ///< -d(e.d)/ds of the last step: 1 - kappa N.e
-  double bend;      ///< |dd/ds| of the last step
+  double bend;      ///< |dd/ds| of the last step, along the surface
+  double arch;      ///< |dn/ds| of it
   int blocked;      ///< the line ends here towards this sign of d
 };
 
@@ -58,7 +59,7 @@ class Tick {
   void run() noexcept {
     if (!contact_.begin()) return;
     const double tau = safe_threshold(spec_.threshold.at(contact_.proxy(), scratch_.parameter, state_.evaluations));
-    if (contact_.placed_anew()) arrive(heading_at(contact_.here()));
+    if (contact_.placed_anew() || memory_.heading.status == Status::budget) arrive(heading_at(contact_.here()));
     bool lost = false, complete = true;
     if (memory_.heading.known()) {
       lost = !slip(tau, complete);
@@ -111,7 +112,7 @@ class Tick {
 
       // the direction half way
       Vec3 middle = d;
-      if (memory_.bend * h * h > 8 * kStraight * length_ || !(memory_.bend > 0)) {
+      if ((memory_.bend + memory_.arch) * h * h > 8 * kStraight * length_ || !(memory_.bend > 0)) {
         const LevelPoint halfway = contact_.look(p + d * (0.5 * h), false);
         const Heading half = heading_at(halfway);
         const double turn = turn_to(halfway, half, size);
@@ -134,6 +135,7 @@ class Tick {
       const double g2 = dot(e2, there.t.d), slope = (g - g2) / h, beyond = (g > 0 ? g - g2 : g2 - g) - excess;
       const bool nearer = std::fabs(g2) <= 0.5 * std::fabs(g) || norm(e2) < norm(e);
       memory_.bend = turn / size;
+      memory_.arch = norm(to.n - contact_.here().n) / size;
       if (!nearer || beyond > 0.25 * excess) {
         if (slope > rate) memory_.rate = slope;
         // a corner of the line may be the closest point
@@ -166,7 +168,9 @@ class Tick {
   double turn_to(const LevelPoint& to, const Heading& there, double size) const noexcept {
     if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.here().n) > kBent)) return 2;
     const Vec3& here = memory_.heading.t.d;
-    return norm(there.t.d - direction(here - to.n * dot(here, to.n)));
+    const Vec3 flat = here - to.n * dot(here, to.n);
+    const double size_of_it = norm(flat);
+    return size_of_it > 0 ? norm(there.t.d - flat * (1 / size_of_it)) : 2;
   }
   /// What a step may turn: a corner is crossed where that costs little.
   double most_turn(double smooth, double size) const noexcept { return std::max(smooth, std::min(kCorner, kCornerError * length_ / size)); }
@@ -199,6 +203,7 @@ class Tick {
   }
 
   Heading heading_at(const LevelPoint& at) noexcept {
+    if (contact_.spent(2)) return {{}, Status::budget};
     if (!at.valid && !(contact_.has_normal() && at.finite)) return {{}, Status::boundary};
     field::Cursor& cursor = scratch_.cursors[1];
     if (spec_.line && !(max_abs(memory_.side) > 0)) {

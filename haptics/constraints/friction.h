@@ -2,14 +2,18 @@
 ///   e = x - p,  d = v_t / |v_t|,  v_t = v - (v.n) n (n: the surface's normal; without a surface v_t = v)
 ///   along d     the proxy follows the streamline of v_t until |e.d| <= b,  b = tau (1 - f) / f, f the safe normalisation's factor
 ///   across      it stays while |e| <= tau, then slides to |e| = tau; both in turn until both hold (at most 8 times)
-/// With f = 1 - 1e-12, the field's usual place, b is nothing and motion along d is free. Where v_t is ill-defined (v = 0, v
-/// along n) f goes to 0, b beyond tau, and what is left is the isotropic drag. A large tau makes a streamline link of it.
-/// Steps along d: midpoint rule in arc length; along the surface the line turns by at most 0.02 in half a step, or, at a crease
-/// of a grid, costs at most 1e-6 L; at most 32 steps and trials a tick, each brought back to the level; drift of a lap of R = 0.05 at 0.2
-/// units/s and 1 kHz: 1.3e-9 (Euler, Eqs. 1-2: 0.63e-3). Keys: `field`, `kind` (line: v ~ -v, corners aligned with the last d), `threshold`
-/// (tau; default 0.005 L; asked at the proxy before it moves), `surface`, `level` (none: the surface only gives n). On a level: the rules
-/// of surface_contact.h. Status: OK; BUDGET (not at the end of the line yet: goes on next tick); BOUNDARY, CRITICAL (v unknown or not
-/// finite at p: isotropic drag); FREE, NO_SURFACE. Haptic thread; every fetch counted.
+/// With f = 1 - 1e-12, the field's usual place, b is nothing: motion along d is free, e.d within 1e-8 L. Where v_t is
+/// ill-defined (v = 0, v along n) f goes to 0 and b beyond tau: the isotropic drag. A large tau makes a streamline link of it.
+///
+/// Steps along d: midpoint rule in arc length; along the surface the line turns by at most 0.02 in half a step or, at a crease
+/// of a grid, costs at most 1e-6 L; at most 32 steps and trials a tick, each brought back to the level.
+/// Drift of a lap of R = 0.05 at 0.2 units/s and 1 kHz: 1.3e-9 (Euler, Eqs. 1-2: 0.63e-3).
+///
+/// Keys: `field`; `kind` (line: v ~ -v, corners aligned with the last d); `threshold` (tau, default 0.005 L, asked at the proxy
+/// before it moves); `surface`; `level` (none: the surface only gives n). On a level: the rules of surface_contact.h.
+///
+/// Status: OK; BUDGET (not there yet along the line: goes on next tick); BOUNDARY, CRITICAL (the line ends ahead, or v is unknown
+/// or not finite at p: isotropic drag); FREE, NO_SURFACE. Haptic thread; every fetch counted.
 #pragma once
 #include "haptics/constraints/registry.h"
 

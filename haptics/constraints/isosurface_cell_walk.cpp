@@ -28,16 +28,15 @@ class Cells {
       const double b = at[static_cast<std::size_t>(a)];
       if (b < box.lo[a] || b > last) return nullptr;
     }
-    for (std::size_t k = 0; k < cells_.size() && k < count_; ++k)
-      if (cells_[k].base == base) return cells_[k].valid ? &cells_[k] : nullptr;
+    for (std::size_t k = 0; k < kCells && k < count_; ++k)
+      if (slot(k)->base == base) return slot(k)->valid ? slot(k) : nullptr;
     if (field_.spent() || field_.evaluations() >= last_) {
       spent_ = true;
       return nullptr;
     }
     ++field_.evaluations();
-    field::ScalarCell& cell = cells_[count_ % cells_.size()];
+    field::ScalarCell& cell = *new (slot(count_ % kCells)) field::ScalarCell(grid_.cell(base, field_.cursor()));
     ++count_;
-    cell = grid_.cell(base, field_.cursor());
     cell.base = base;
     for (const double c : cell.corner) cell.valid = cell.valid && std::isfinite(c);
     return cell.valid ? &cell : nullptr;
@@ -48,7 +47,12 @@ class Cells {
   LevelField& field_;
   const field::ScalarGrid& grid_;
   int last_;
-  std::array<field::ScalarCell, 32> cells_{};
+  // raw bytes: most ticks need one cell, and clearing 32 would cost as much as the walk
+  static constexpr std::size_t kCells = 32;
+  field::ScalarCell* slot(std::size_t k) {
+    return std::launder(reinterpret_cast<field::ScalarCell*>(&bytes_[k * sizeof(field::ScalarCell)]));
+  }
+  alignas(field::ScalarCell) std::array<std::byte, kCells * sizeof(field::ScalarCell)> bytes_;
   std::size_t count_ = 0;
   bool spent_ = false;
 };

@@ -5,6 +5,11 @@
 namespace catena::haptics {
 
 PieceFrame::PieceFrame(const field::Mapping& mapping, unsigned held_axes) noexcept {
+  // nothing held: the span is all of space
+  if (held_axes == 0) {
+    count = 3;
+    return;
+  }
   // Gram-Schmidt
   for (int a = 0; a < 3; ++a) {
     held[static_cast<std::size_t>(a)] = (held_axes >> a & 1u) != 0;

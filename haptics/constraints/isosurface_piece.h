@@ -7,8 +7,8 @@ namespace catena::haptics {
 
 /// The geometry of the free axes: an orthonormal basis of the span of their columns of J.
 struct PieceFrame {
-  int count = 0;  ///< dimensions of the span
-  std::array<Vec3, 3> q{};
+  int count = 0;            ///< dimensions of the span
+  std::array<Vec3, 3> q{};  ///< not set where count is 3
   std::array<bool, 3> held{};
 
   PieceFrame(const field::Mapping& mapping, unsigned held_axes) noexcept;

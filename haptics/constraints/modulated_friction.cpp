@@ -56,6 +56,7 @@ class ModulatedFriction final : public Constraint {
  private:
   /// u of Eqs. 8-9.
   double angle(const LevelPoint& at, Memory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
+    if (state.evaluations + 2 >= kEvaluationCap) return memory.angle;
     field::Cursor& cursor = scratch.cursors[1];
     if (spec_.line && !(max_abs(memory.side) > 0)) {
       ++state.evaluations;

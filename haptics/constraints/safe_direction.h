@@ -16,12 +16,12 @@ struct SafeDirection {
 inline SafeDirection safe_direction(const Vec3& v, double largest, const Vec3& normal = Vec3(0.0)) noexcept {
   const double m = max_abs(v);
   if (!(m > 0) || !is_finite(v) || !(largest > 0)) return {};
-  Vec3 w{v.x / m, v.y / m, v.z / m};
+  Vec3 w = m > 1e-300 ? v * (1 / m) : Vec3(v.x / m, v.y / m, v.z / m);
   w = w - normal * dot(w, normal);
   const double r = std::sqrt(dot(w, w));
   if (!(r > 0)) return {};
   const double q = std::min(m / largest * r, 1e3);
-  return {Vec3(w.x / r, w.y / r, w.z / r), q * q / (q * q + 1e-12)};
+  return {w * (1 / r), q * q / (q * q + 1e-12)};
 }
 
 }  // namespace catena::haptics

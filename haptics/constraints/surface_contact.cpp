@@ -16,6 +16,33 @@ constexpr double kLevelled = 0.1;  // e.t / |e|: below, sliding does not shorten
 bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 bool usable(const LevelPoint& a) { return a.valid && !a.plateau; }
 
+/// LevelField::at with one division; the same up to rounding.
+LevelPoint fetch(LevelField& field, const Vec3& world) noexcept {
+  LevelPoint out;
+  out.p = field.clamped(world);
+  if (field.spent()) return out;
+  ++field.evaluations();
+  const field::ScalarSample sample = field.field().sample(out.p, field.cursor());
+  out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
+  out.valid = out.finite && (sample.inside || field.grid() == nullptr);
+  if (!out.finite) return out;
+  out.slope = norm(sample.gradient);
+  out.sigma = sample.value - field.level();
+  if (out.slope > 1e-280 && out.slope < 1e280) {
+    const double by = 1 / out.slope;
+    out.n = sample.gradient * by;
+    out.distance = out.sigma * by;
+    out.round_off = 4e-16 * (std::fabs(sample.value) + std::fabs(field.level())) * by + 4e-16 * max_abs(out.p);
+  } else {
+    out.n = direction(sample.gradient);
+    out.distance = out.sigma / out.slope;
+    out.round_off = 4e-16 * (std::fabs(sample.value) + std::fabs(field.level())) / out.slope + 4e-16 * max_abs(out.p);
+  }
+  out.plateau = !(out.slope > 0) || !std::isfinite(out.distance) || !std::isfinite(out.round_off);
+  if (out.plateau) out.distance = out.round_off = 0, out.n = Vec3(0.0);
+  return out;
+}
+
 }  // namespace
 
 Result<ContactSpec> read_contact(const json::Node& link, SurfaceKey rule, const BuildContext& context) {
@@ -71,7 +98,8 @@ bool Contact::begin() noexcept {
   }
 
   // is the incoming probe on the level?
-  at_probe_ = field_->at(probe_);
+  LevelField near_probe(*spec_.surface, *spec_.level, probe_cursor_, state_.evaluations);
+  at_probe_ = fetch(near_probe, probe_);
   if (!at_probe_.finite) return pass(Status::critical);
   const double off = norm(at_probe_.p - probe_) + std::fabs(at_probe_.distance);
   if (at_probe_.plateau || !(off <= std::max(kTouch * length(), at_probe_.round_off))) return pass(Status::free);
@@ -90,7 +118,7 @@ LevelPoint Contact::look(const Vec3& wanted, bool on_level) noexcept {
     a.valid = a.finite = is_finite(wanted);
     return a;
   }
-  a = field_->at(wanted);
+  a = fetch(*field_, wanted);
   if (!spec_.level) {
     a.p = wanted;
     a.distance = 0;
@@ -105,7 +133,7 @@ LevelPoint Contact::look(const Vec3& wanted, bool on_level) noexcept {
 
 bool Contact::relevel(LevelPoint& a) noexcept {
   for (int i = 0; i < kNewton && !this->on_level(a); ++i) {
-    const LevelPoint b = field_->at(a.p - a.n * a.distance);
+    const LevelPoint b = fetch(*field_, a.p - a.n * a.distance);
     if (!usable(b) || std::fabs(b.distance) > 0.5 * std::fabs(a.distance)) break;
     a = b;
   }
@@ -132,7 +160,7 @@ bool Contact::slide_to(double distance) noexcept {
 
   // both conditions at once, from the proxy; from the chord where that is far
   const bool near = usable(memory_.here) && norm(e0) - distance <= 0.5 * distance;
-  LevelPoint a = near ? memory_.here : field_->at(probe_ - direction(e0) * distance);
+  LevelPoint a = near ? memory_.here : fetch(*field_, probe_ - direction(e0) * distance);
   for (int i = 0; i < kRounds && usable(a) && !spent(kForLevel); ++i) {
     const Vec3 e = probe_ - a.p;
     const double gap = norm(e), across = dot(e, a.n);
@@ -151,7 +179,7 @@ bool Contact::slide_to(double distance) noexcept {
       b = std::min(std::max(b, -0.5 * gap), gap);
     }
     if (i >= kPatient) b *= 0.5;
-    a = field_->at(a.p + direction(tangential) * b - a.n * a.distance);
+    a = fetch(*field_, a.p + tangential * (along > 0 ? b / along : 0.0) - a.n * a.distance);
   }
 
   // a crease, or a sheet that bends away: on the level at least, and not further off than before

@@ -48,7 +48,8 @@ class Contact {
         probe_(probe),
         memory_(memory),
         state_(state),
-        field_(spec.surface.get(), spec.level.value_or(0), scratch.cursors[0], state.evaluations) {}
+        field_(spec.surface.get(), spec.level.value_or(0), scratch.cursors[0], state.evaluations),
+        probe_cursor_(scratch.cursors[2]) {}
 
   /// False: nothing is left to do in this tick, the state is complete.
   bool begin() noexcept;
@@ -96,6 +97,7 @@ class Contact {
   ContactMemory& memory_;
   LinkState& state_;
   Ground field_;
+  field::Cursor& probe_cursor_;  ///< the probe's cell is often another one than the proxy's
   LevelPoint at_probe_;
   bool placed_ = false;
 };
