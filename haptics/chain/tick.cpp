@@ -1,8 +1,12 @@
 #include "haptics/chain/tick.h"
 
+#include "haptics/chain/begin_link.h"
+
 namespace catena::haptics {
 
 namespace {
+
+bool is_single(const Program& program) noexcept { return program.coupling.combination != Combination::chain; }
 
 void switch_off(LinkState& link) noexcept {
   link.on = link.started = link.released = false;
@@ -17,17 +21,7 @@ void advance_link(const Link& spec, const Vec3& incoming, bool first_tick, doubl
   link.evaluations = 0;
   link.dt_s = dt;
   if (!link.started) {
-    link.on = true;
-    link.started = true;
-    link.released = false;
-    link.status = Status::ok;
-    link.weight = first_tick ? 1 : 0;
-    link.limit = 0;
-    link.proxy = incoming;
-    link.memory.fill(std::byte{0});
-    link.outer.fill(std::byte{0});
-    link.stiffness_n_per_m = spec.stiffness_n_per_m.at(incoming, scratch.stiffness, link.evaluations);
-    spec.constraint->start(incoming, link, scratch);
+    begin_link(spec, incoming, first_tick, link, scratch);
   } else {
     link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness, link.evaluations);
   }
@@ -44,11 +38,32 @@ void pass_through(const Program& program, const Order& order, const Vec3& probe,
   }
 }
 
+// A baseline's tick: one proxy for all links. Returns K S (p - x).
+Vec3 one_proxy(const Program& program, const Order& order, const Vec3& probe, double dt, ChainState& state, ChainScratch& scratch,
+               std::array<Vec3, kMaxLinks>& gaps, std::array<Vec3, kMaxLinks>& shares) noexcept {
+  SingleTick single{program, order, probe, dt, !state.has_probe, state.single, state.links, scratch.links};
+  const bool same_order = order == state.fade.order;
+  advance_single_proxy(single, same_order);
+  const Vec3 gap = state.single.proxy - probe;
+  for (std::size_t i = 0; i < kMaxLinks; ++i) {
+    const LinkState& link = state.links[i];
+    if (!state.links[i].on || !state.single.watches[i].holds) continue;
+    gaps[i] = gap;
+    shares[i] = gap * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
+  }
+  // a switch moves the one proxy, so that all of the force's step fades
+  if (!same_order) state.fade.replaced = true;
+  return gap * (program.coupling.stiffness_n_per_m * program.metres_per_unit);
+}
+
 // The force's direction where it is too large for a double: every term scaled down before it is formed.
 Vec3 huge_force(const Program& program, const Order& order, const Vec3& probe, double dt, const ChainState& state) noexcept {
   constexpr double small = 1e-160;
   Vec3 incoming = probe, force(0.0);
-  for (int k = 0; k < order.count; ++k) {
+  const bool single = is_single(program);
+  if (single && order.count > 0)
+    force = (state.single.proxy * small - probe * small) * (program.coupling.stiffness_n_per_m * program.metres_per_unit * small);
+  for (int k = 0; k < order.count && !single; ++k) {
     const LinkState& link = state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)])];
     force += (link.proxy * small - incoming * small) * (link.weight * link.stiffness_n_per_m * program.metres_per_unit * small);
     incoming = link.proxy;
@@ -67,7 +82,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkState& link = state.links[i];
     exchange::LinkReport& to = out.links[i];
-    to.proxy = link.proxy;
+    to.proxy = is_single(program) ? state.single.proxy : link.proxy;
     to.residual = link.residual;
     to.weight = link.weight;
     to.stiffness_n_per_m = link.stiffness_n_per_m;
@@ -114,12 +129,15 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
     force += shares[i];
     incoming = link.proxy;
   };
-  for (int k = 0; k < order.count; ++k) {
-    const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
-    advance_link(program.links[i], incoming, !state.has_probe, dt, ramp_step, state.links[i], scratch.links[i]);
-    couple(i);
-  }
-  pass_through(program, order, probe.position, state);
+  if (is_single(program)) {
+    force = one_proxy(program, order, probe.position, dt, state, scratch, gaps, shares);
+  } else
+    for (int k = 0; k < order.count; ++k) {
+      const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
+      advance_link(program.links[i], incoming, !state.has_probe, dt, ramp_step, state.links[i], scratch.links[i]);
+      couple(i);
+    }
+  if (!is_single(program)) pass_through(program, order, probe.position, state);
   if (state.has_probe) {
     force += step_fade(state.fade, order, shares, ramp_step);
   } else {

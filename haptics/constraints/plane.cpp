@@ -37,6 +37,11 @@ class Plane final : public Constraint {
     PlaneSurface surface(point_, normal_);
     advance_on(surface, rules_.now(state, scratch), probe, memory_of<SideMemory>(state), state);
   }
+  bool has_primitive() const noexcept override { return true; }
+  bool primitive(const Vec3&, LinkState&, LinkScratch&, Primitive& out) const noexcept override {
+    out = {Primitive::Kind::plane, point_, normal_};
+    return true;
+  }
 
  private:
   Vec3 point_, normal_;

@@ -31,6 +31,11 @@ class Point final : public Constraint {
     PointSurface surface(position_);
     advance_on(surface, rules_.now(state, scratch), probe, memory_of<SideMemory>(state), state);
   }
+  bool has_primitive() const noexcept override { return true; }
+  bool primitive(const Vec3&, LinkState&, LinkScratch&, Primitive& out) const noexcept override {
+    out = {Primitive::Kind::point, position_, Vec3(0.0)};
+    return true;
+  }
 
  private:
   Vec3 position_;
