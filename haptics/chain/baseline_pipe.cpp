@@ -16,7 +16,11 @@ constexpr double kSatisfied = 1e-11, kLongest = 0.25;  // of L
 double pass(SingleTick& tick, Vec3& p, std::array<bool, kMaxLinks>& holds) noexcept {
   std::array<Vec3, kMaxLinks> left{};
   tick.each([&](std::size_t i) {
+    // on the edge of its free side is still held, where the last pass held it
+    Primitive edge;
+    const bool held = holds[i];
     holds[i] = tick.apply(i, p);
+    if (held && !holds[i]) holds[i] = tick.primitive(i, p, edge) && distance_to(edge, p) <= kSatisfied * tick.length;
     p = tick.links[i].proxy;
     left[i] = p;
   });

@@ -132,6 +132,18 @@ TEST(Pipe, MeetsCurvedConstraints) {
   }
 }
 
+TEST(Pipe, HoldsOnTheEdgeOfTwoFreeSides) {
+  Hand hand(Combination::pipe);
+  hand.add(plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")")).one_sided = true;
+  hand.add(plane({0, 0, 0}, {0, 1, 0}, R"(, "free": "above")")).one_sided = true;
+  expect_near(hand.at({0.25, -0.5, -0.125}), {0.25, 0, 0}, 0);
+  EXPECT_EQ(hand.out.links[0].status, Status::ok);
+  EXPECT_EQ(hand.out.links[1].status, Status::ok);
+  expect_near(hand.at({0.25, 0.5, -0.125}), {0.25, 0.5, 0}, 0);
+  EXPECT_EQ(hand.out.links[1].status, Status::free);
+  expect_near(hand.at({0.25, 0.5, 0.5}), {0.25, 0.5, 0.5}, 0);
+}
+
 TEST(Pipe, WithoutAnIntersectionEndsInBudget) {
   Hand hand(Combination::pipe);
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
