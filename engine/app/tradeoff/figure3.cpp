@@ -230,9 +230,9 @@ plot for [i in "2 5 3 4 1"] 'figure3-series.csv' every ::1 using 3:(column(8+4*(
   dashtype dash[int(i)] linecolor rgb colour[int(i)] title label[int(i)]
 
 set output 'figure3-path.png'
-set terminal pngcairo size 1500,430 font 'DejaVu Sans,12' linewidth 1.5
+set terminal pngcairo size 1500,480 font 'DejaVu Sans,12' linewidth 1.5
 unset title
-set multiplot layout 1,3 title "A line through a plane at 30 degrees: the probe goes down the line" font ',15' margins 0.06,0.985,0.28,0.86 spacing 0.06,0.1
+set multiplot layout 1,3 title "A line through a plane at 30 degrees: the probe goes down the line" font ',15' margins 0.06,0.985,0.31,0.83 spacing 0.06,0.1
 set key outside bottom center horizontal spacing 1.2
 set xrange [-0.22:0.03]
 set yrange [-0.13:0.03]

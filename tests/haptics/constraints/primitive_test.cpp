@@ -26,7 +26,7 @@ TEST(Primitive, OfAStreamlineIsTheTangentAtTheFoot) {
       Primitive line;
       ASSERT_TRUE(rig.constraint->primitive({0.4 * std::cos(b), 0.4 * std::sin(b), 0}, rig.state, rig.scratch, line));
       EXPECT_EQ(line.kind, Primitive::Kind::line);
-      EXPECT_LE(norm(line.origin - Vec3(0.5 * std::cos(b), 0.5 * std::sin(b), 0.25)), *more ? 1e-8 : 1e-10);  // online: 1e-9 L a step
+      EXPECT_LE(norm(line.origin - Vec3(0.5 * std::cos(b), 0.5 * std::sin(b), 0.25)), *more ? 1e-7 : 1e-8);  // online: 4e-9 a step, summed
       EXPECT_LE(norm(line.axis - Vec3(-std::sin(b), std::cos(b), 0)), 1e-7);
       EXPECT_TRUE(same_bits(rig.state.proxy, before.proxy));
       EXPECT_LE(rig.state.evaluations, kEvaluationCap);
@@ -61,7 +61,7 @@ TEST(Primitive, OfAnOpenEndIsAPoint) {
 
 TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneFetch) {
   for (const auto& sphere : {analytic("sphere"), sampled("sphere", 64)}) {
-    const double tolerance = sphere->is_grid() ? 5e-3 : 1e-15;
+    const double tolerance = sphere->is_grid() ? 1e-2 : 1e-15;
     Rig rig(isosurface(sphere, 1));
     Random random(3);
     for (int i = 0; i < 100; ++i) {
