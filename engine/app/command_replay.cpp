@@ -61,11 +61,9 @@ struct Felt {
     const double force = norm(state.force_n);
     max_force_n = std::max(max_force_n, force);
     mean_force_n += force;
-    Vec3 incoming = state.probe;
     for (std::size_t i = 0; i < static_cast<std::size_t>(state.link_count); ++i) {
-      max_gap[i] = std::max(max_gap[i], norm(state.links[i].proxy - incoming));
+      max_gap[i] = std::max(max_gap[i], state.links[i].gap);
       ++statuses[i][exchange::status_word(state.links[i].status)];
-      incoming = state.links[i].proxy;
     }
   }
   void print(const haptics::Program& program, const haptics::ReplayStats& stats) const {

@@ -200,6 +200,22 @@ TEST(Balance, OfALineAPlaneAndAPointHasAClosedForm) {
   expect_near(hand.at(x), {(500 * 3 + 250 * 1) / 1250.0, 500 * 2 / 2000.0, (500 * 4 + 500 * 1) / 2000.0}, 1e-13);
 }
 
+TEST(Balance, OfAnyPrimitivesIsTheMinimumOfTheEnergy) {
+  Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 n = random.unit(), m = random.unit(), t = random.unit(), o = random.box(1), q = random.box(1), x = random.box(2);
+    const double k[] = {random.in(1, 1000), random.in(1, 1000), random.in(1, 1000)};
+    Hand hand(Combination::balance);
+    hand.add(plane(o, n), k[0]);
+    hand.add(plane(q, m), k[1]);
+    hand.add(line(o, t), k[2]);
+    hand.at(x);
+    const Vec3 p = hand.at(x), e = p - o;  // the foot on the line is exact either way
+    const Vec3 gradient = 500.0 * (p - x) + k[0] * dot(n, e) * n + k[1] * dot(m, p - q) * m + k[2] * (e - dot(t, e) * t);
+    EXPECT_LE(norm(gradient), 1e-8) << i;
+  }
+}
+
 TEST(Balance, LeavesBothConstraintsWhereTheChainLeavesNone) {
   const double a = 30 * M_PI / 180;
   Hand hand(Combination::balance);
