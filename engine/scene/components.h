@@ -103,11 +103,15 @@ struct Mode {
   json::Node node;
 };
 
+/// How the links make one force: the chain, or a baseline of the paper (haptics/chain/baseline.h).
+enum class CouplingMethod { chain, pipe, balance, closest, linear };
+
 struct Coupling {
   double stiffness_n_per_m = 500;
   double damping_ns_per_m = 0;
   double max_force_n = 8;
   std::optional<double> ramp_s;
+  CouplingMethod method = CouplingMethod::chain;
 };
 
 struct Workspace {

@@ -65,12 +65,14 @@ Outcome read_modes(Scene& scene, const json::Node& node) {
 
 Outcome read_coupling(Scene& scene, const json::Node& node) {
   CATENA_CHECK(json::expect_object(node, "coupling"));
-  CATENA_CHECK(json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s"}));
+  CATENA_CHECK(json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s", "method"}));
   Coupling& c = scene.coupling;
   CATENA_TRY(c.stiffness_n_per_m, json::get_number(node, "stiffness", c.stiffness_n_per_m, json::Range::not_negative));
   CATENA_TRY(c.damping_ns_per_m, json::get_number(node, "damping", c.damping_ns_per_m, json::Range::not_negative));
   CATENA_TRY(c.max_force_n, json::get_number(node, "max_force", c.max_force_n, json::Range::not_negative));
   CATENA_TRY(c.ramp_s, json::get_optional_number(node, "ramp_s", json::Range::not_negative));
+  CATENA_TRY(const int method, json::get_choice(node, "method", 0, {"chain", "pipe", "balance", "closest", "linear"}));
+  c.method = static_cast<CouplingMethod>(method);
   return Done{};
 }
 

@@ -42,6 +42,7 @@ struct Link {
   Switch on;
   Indication indication;
   double release = 0;        ///< baselines only: lets go where |probe - proxy| >= release, world units; 0: never
+  bool one_sided = false;    ///< baselines only: it has a free side
   std::uint64_t recipe = 0;  ///< what it was built from: links of the same name and recipe keep their state; 0: of the same object
 };
 

@@ -14,16 +14,19 @@ void rebind(const Program& from, const Program& to, ChainState& state, ChainScra
   const ChainState old = state;
   scratch = ChainScratch{};
   state.fade.replaced = true;
+  if (from.coupling.combination != to.coupling.combination) state.single = SingleProxy{};
   state.fade.shares = old.fade.shares;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxLinks); ++i) {
     state.links[i] = LinkState{};
     state.indications[i] = IndicationState{};
+    state.single.watches[i] = {};
     state.switches.link_on[i] = false;
     if (i >= to.links.size()) continue;
     for (std::size_t k = 0; k < from.links.size(); ++k) {
       if (!keeps(from.links[k], to.links[i])) continue;
       state.links[i] = old.links[k];
       state.indications[i] = old.indications[k];
+      if (from.coupling.combination == to.coupling.combination) state.single.watches[i] = old.single.watches[k];
       state.switches.link_on[i] = old.switches.link_on[k];
     }
   }

@@ -1,8 +1,19 @@
 #include "haptics/chain/tick.h"
 
+#include "haptics/chain/begin_link.h"
+
 namespace catena::haptics {
 
 namespace {
+
+/// What the links give, by link and in all.
+struct Coupled {
+  std::array<Vec3, kMaxLinks> gaps{};      ///< p_i - p_(i-1), world units
+  std::array<Vec3, kMaxLinks> shares_n{};  ///< of the force
+  Vec3 force_n{0.0};
+};
+
+bool is_single(const Program& program) noexcept { return program.coupling.combination != Combination::chain; }
 
 void switch_off(LinkState& link) noexcept {
   link.on = link.started = link.released = false;
@@ -17,17 +28,7 @@ void advance_link(const Link& spec, const Vec3& incoming, bool first_tick, doubl
   link.evaluations = 0;
   link.dt_s = dt;
   if (!link.started) {
-    link.on = true;
-    link.started = true;
-    link.released = false;
-    link.status = Status::ok;
-    link.weight = first_tick ? 1 : 0;
-    link.limit = 0;
-    link.proxy = incoming;
-    link.memory.fill(std::byte{0});
-    link.outer.fill(std::byte{0});
-    link.stiffness_n_per_m = spec.stiffness_n_per_m.at(incoming, scratch.stiffness, link.evaluations);
-    spec.constraint->start(incoming, link, scratch);
+    begin_link(spec, incoming, first_tick, link, scratch);
   } else {
     link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness, link.evaluations);
   }
@@ -44,11 +45,52 @@ void pass_through(const Program& program, const Order& order, const Vec3& probe,
   }
 }
 
+// A baseline's tick: one proxy for all links. Returns K S (p - x).
+Coupled one_proxy(const Program& program, const Order& order, const Vec3& probe, double dt, ChainState& state,
+                  ChainScratch& scratch) noexcept {
+  SingleTick single{program, order, probe, dt, !state.has_probe, state.single, state.links, scratch.links};
+  const bool same_order = order == state.fade.order;
+  advance_single_proxy(single, same_order);
+  Coupled out;
+  const Vec3 gap = state.single.proxy - probe;
+  for (std::size_t i = 0; i < kMaxLinks; ++i) {
+    const LinkState& link = state.links[i];
+    if (!link.on || !state.single.watches[i].holds) continue;
+    out.gaps[i] = gap;
+    out.shares_n[i] = gap * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
+  }
+  // a switch moves the one proxy, so that all of the force's step fades
+  if (!same_order) state.fade.replaced = true;
+  out.force_n = gap * (program.coupling.stiffness_n_per_m * program.metres_per_unit);
+  return out;
+}
+
+// The chain: each proxy is the next link's probe.
+Coupled chain(const Program& program, const Order& order, const Vec3& probe, double dt, double ramp_step, ChainState& state,
+              ChainScratch& scratch) noexcept {
+  Coupled out;
+  Vec3 incoming = probe;
+  for (int k = 0; k < order.count; ++k) {
+    const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
+    LinkState& link = state.links[i];
+    advance_link(program.links[i], incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
+    out.gaps[i] = link.proxy - incoming;
+    out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
+    out.force_n += out.shares_n[i];
+    incoming = link.proxy;
+  }
+  pass_through(program, order, probe, state);
+  return out;
+}
+
 // The force's direction where it is too large for a double: every term scaled down before it is formed.
 Vec3 huge_force(const Program& program, const Order& order, const Vec3& probe, double dt, const ChainState& state) noexcept {
   constexpr double small = 1e-160;
   Vec3 incoming = probe, force(0.0);
-  for (int k = 0; k < order.count; ++k) {
+  const bool single = is_single(program);
+  if (single && order.count > 0)
+    force = (state.single.proxy * small - probe * small) * (program.coupling.stiffness_n_per_m * program.metres_per_unit * small);
+  for (int k = 0; k < order.count && !single; ++k) {
     const LinkState& link = state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)])];
     force += (link.proxy * small - incoming * small) * (link.weight * link.stiffness_n_per_m * program.metres_per_unit * small);
     incoming = link.proxy;
@@ -67,7 +109,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkState& link = state.links[i];
     exchange::LinkReport& to = out.links[i];
-    to.proxy = link.proxy;
+    to.proxy = is_single(program) ? state.single.proxy : link.proxy;
     to.residual = link.residual;
     to.weight = link.weight;
     to.stiffness_n_per_m = link.stiffness_n_per_m;
@@ -106,29 +148,17 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   for (std::size_t i = 0; i < program.links.size(); ++i)
     if (!order.contains(i)) switch_off(state.links[i]);
 
-  // the chain: each proxy is the next link's probe
-  std::array<Vec3, kMaxLinks> gaps{}, shares{};
-  Vec3 incoming = probe.position, force(0.0), cues(0.0);
-  const auto couple = [&](std::size_t i) {
-    LinkState& link = state.links[i];
-    gaps[i] = link.proxy - incoming;
-    shares[i] = gaps[i] * (link.weight * link.stiffness_n_per_m * s);
-    force += shares[i];
-    incoming = link.proxy;
-  };
-  for (int k = 0; k < order.count; ++k) {
-    const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
-    advance_link(program.links[i], incoming, !state.has_probe, dt, ramp_step, state.links[i], scratch.links[i]);
-    couple(i);
-  }
-  pass_through(program, order, probe.position, state);
+  const Coupled coupled = is_single(program) ? one_proxy(program, order, probe.position, dt, state, scratch)
+                                             : chain(program, order, probe.position, dt, ramp_step, state, scratch);
 
   // what the links tell of the hand, and what fades out after a change of the order
-  std::array<Vec3, kMaxLinks> felt = shares;
+  Vec3 force = coupled.force_n, cues(0.0);
+  std::array<Vec3, kMaxLinks> felt = coupled.shares_n;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
-    out.links[i].force_n = shares[i];
-    out.links[i].gap = norm(gaps[i]);
-    const Vec3 cue = indicate(program.links[i].indication, state.links[i], gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
+    out.links[i].force_n = coupled.shares_n[i];
+    out.links[i].gap = norm(coupled.gaps[i]);
+    const Vec3 cue =
+        indicate(program.links[i].indication, state.links[i], coupled.gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
     felt[i] += cue;
     cues += cue;
   }

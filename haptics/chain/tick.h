@@ -2,8 +2,10 @@
 ///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
 ///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
 ///   plus what fades out after a switch (fade.h) and the cues of links that the hand leaves (indication.h), if any
+/// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
 /// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE. A clock that goes back stands still for a tick.
 #pragma once
+#include "haptics/chain/baseline.h"
 #include "haptics/chain/fade.h"
 #include "haptics/chain/indication.h"
 
@@ -20,6 +22,7 @@ struct ChainState {
   std::array<IndicationState, kMaxLinks> indications{};
   SwitchState switches;
   Fade fade;
+  SingleProxy single;  ///< baselines
   Vec3 last_probe{0.0};
   double last_t_s = 0;
   Vec3 force_n{0.0};

@@ -236,6 +236,17 @@ class Isosurface final : public Constraint {
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), memory);
     advance_on(surface, rules, probe, memory.side, state);
   }
+  bool has_primitive() const noexcept override { return true; }
+  /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.
+  bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
+    const LevelPoint here = LevelField(*field_, level_, scratch.cursors[0], state.evaluations).at(at);
+    if (!here.valid || here.plateau) {
+      state.status = here.finite && !here.valid ? Status::boundary : Status::critical;
+      return false;
+    }
+    out = {Primitive::Kind::plane, here.p - here.n * here.distance, here.n};
+    return true;
+  }
   double domain_length() const noexcept override { return field_->length(); }
 
  private:

@@ -269,9 +269,41 @@ class OnlineStreamline final : public Constraint {
     if (fresh || !spec_.seed) tick.begin(spec_.seed.value_or(probe));
     if (spec_.seed) tick.run();
   }
+  bool has_primitive() const noexcept override { return true; }
+  /// The tangent at the foot of `at`; where the line is held, that point. At the proxy itself the direction is fetched anew,
+  /// for somebody else may have moved it.
+  bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
+    if (std::memcmp(&at, &state.proxy, sizeof at) == 0) return here(at, state, scratch, out);
+    LinkState foot = state;
+    Tick(spec_, at, foot, scratch).run();
+    state.evaluations = foot.evaluations;
+    out = line_or_point(foot);
+    return memory_of<OnlineMemory>(foot).mode != Mode::seeking;
+  }
   double domain_length() const noexcept override { return spec_.field->length(); }
 
  private:
+  static Primitive line_or_point(LinkState& state) noexcept {
+    const OnlineMemory& memory = memory_of<OnlineMemory>(state);
+    const bool line = memory.mode == Mode::following;
+    return {line ? Primitive::Kind::line : Primitive::Kind::point, state.proxy, line ? memory.t : Vec3(0.0)};
+  }
+  bool here(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept {
+    OnlineMemory& memory = memory_of<OnlineMemory>(state);
+    if (memory.mode == Mode::following) {
+      Vec3 u;
+      ++state.evaluations;
+      const Stop stop = flow::direction_at({spec_.field.get(), spec_.line, spec_.min_speed}, at, memory.t, scratch.cursors[0], u);
+      if (stop != Stop::none) {
+        state.status = stop == Stop::outside ? Status::boundary : Status::critical;
+        return false;
+      }
+      memory.t = u;
+    }
+    out = line_or_point(state);
+    return memory.mode != Mode::seeking;
+  }
+
   OnlineSpec spec_;
 };
 

@@ -81,6 +81,18 @@ class SelectedStreamline final : public Constraint {
     place(memory_of<SelectedMemory>(state), found.interval, found.s, state);
   }
 
+  bool has_primitive() const noexcept override { return true; }
+  /// The tangent at the foot of `at`; an open end is a point.
+  bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
+    LinkState foot = state;
+    advance(at, foot, scratch);
+    const SelectedMemory& memory = memory_of<SelectedMemory>(foot);
+    Vec3 p, derivative;
+    curve_->evaluate_in(memory.interval, memory.s, p, derivative);
+    const bool ends = foot.status == Status::boundary || foot.status == Status::critical;
+    out = {ends ? Primitive::Kind::point : Primitive::Kind::line, p, ends ? Vec3(0.0) : direction(derivative)};
+    return true;
+  }
   double domain_length() const noexcept override { return curve_->domain_length(); }
 
  private:

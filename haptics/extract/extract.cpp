@@ -67,10 +67,42 @@ void add_recipe(const json::Node& node, Fnv1a& recipe) {
   }
 }
 
+/// A baseline lets go by itself (haptics/chain/baseline.h): "release" goes from the constraint's node to the link. Its linear
+/// method knows of a streamline only what the field says at the proxy.
+Result<json::Node> node_for_baseline(const json::Node& from, Combination combination, Link& link) {
+  json::Node node = from;
+  const ConstraintType* type = find_constraint(from.find("type")->string);
+  if (type == nullptr) return node;
+  const auto has = [&](std::string_view key) {
+    return std::any_of(type->keys.begin(), type->keys.end(), [&](const Key& k) { return k.name == key; });
+  };
+  if (const json::Node* snap = from.find("snap"))
+    return json::error_at(*snap, "\"snap\" needs a proxy of the link's own; \"method\": \"chain\" was expected in \"coupling\"");
+  if (const json::Node* release = from.find("release"); release != nullptr) {
+    if (release->kind == json::Kind::object)
+      return json::error_at(*release,
+                            "\"release\" follows a field; a number was expected, for \"coupling\" has a \"method\" other than chain");
+    CATENA_TRY(link.release, json::as_number(*release, "release", json::Range::positive));
+    std::erase_if(node.members, [](const auto& member) { return member.first == "release"; });
+  }
+  if (const json::Node* side = from.find("free"); side != nullptr && has("free")) link.one_sided = side->string != "none";
+  if (combination == Combination::linear && has("follow") && node.find("follow") == nullptr && node.find("method") == nullptr) {
+    json::Node online;
+    online.kind = json::Kind::string;
+    online.line = node.line;
+    online.file = node.file;
+    online.label = "follow";
+    online.string = "online";
+    node.members.emplace_back("follow", online);
+  }
+  return node;
+}
+
 Result<Link> make_link(const json::Node& from, const Coupling& coupling, const BuildContext& context) {
   Link link;
   Fnv1a recipe;
   add_recipe(from, recipe);
+  if (coupling.combination != Combination::chain) recipe.add(static_cast<int>(coupling.combination));
   BuildContext noting = context;
   noting.field = [&](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
     CATENA_TRY(field::AnyField field, context.field(where, name));
@@ -81,7 +113,16 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
   CATENA_TRY(link.stiffness_n_per_m, get_parameter(from, "stiffness", coupling.stiffness_n_per_m, json::Range::not_negative, noting));
   CATENA_TRY(link.on, read_switch(from));
   CATENA_TRY(link.indication, read_indication(from));
-  CATENA_TRY(link.constraint, build_constraint(from, noting));
+  if (coupling.combination == Combination::chain) {
+    CATENA_TRY(link.constraint, build_constraint(from, noting));
+  } else {
+    CATENA_TRY(const json::Node node, node_for_baseline(from, coupling.combination, link));
+    CATENA_TRY(link.constraint, build_constraint(node, noting));
+    if (!link.constraint->has_primitive())
+      return json::error_at(*from.find("type"), "a \"" + from.find("type")->string +
+                                                    "\" link has no linear primitive, which the coupling's \"method\" needs; a chain "
+                                                    "(\"method\": \"chain\") was expected");
+  }
   link.recipe = recipe.value;
   return link;
 }
@@ -142,6 +183,7 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene) {
   program->coupling.damping_ns_per_m = scene.coupling.damping_ns_per_m;
   program->coupling.max_force_n = scene.coupling.max_force_n;
   program->coupling.ramp_s = scene.coupling.ramp_s.value_or(0);
+  program->coupling.combination = static_cast<Combination>(scene.coupling.method);
   program->metres_per_unit = scene.workspace.metres_per_unit;
   program->workspace_origin = scene.workspace.origin;
   program->workspace_rotation = scene.workspace.rotation;

@@ -16,7 +16,7 @@ const std::string kScene = R"({ // a scene that touches every reader
   "chain": [{"name": "a", "type": "point", "position": [0, 0, 0], "release": 0.5, "on": {"button": 1}},
             {"name": "b", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "stiffness": 20},
             {"name": "s", "type": "isosurface", "field": "density", "level": 0.45, "free": "below", "release": 0.05}],
-  "coupling": {"stiffness": 500, "damping": 1.0, "max_force": 8, "ramp_s": 0.1},
+  "coupling": {"stiffness": 500, "damping": 1.0, "max_force": 8, "ramp_s": 0.1, "method": "balance"},
   "workspace": {"metres_per_unit": 0.05, "origin": [1, 2, 3], "rotation": {"axis": [0, 0, 1], "angle_deg": 30}},
   "camera": {"position": [8, -32, 38], "target": [8.25, 0, 29.8], "up": [0, 0, 1], "fovy_deg": 30},
   "volumes": [{"field": "density", "color": [[0.2, 0.1, 0.1, 0.4], [0.7, 0.9, 0.2, 0.1]], "opacity": [[0.2, 0.0], [0.7, 0.1]],

@@ -37,6 +37,59 @@ TEST(ExtractProgram, AnEmptyChainIsAProgram) {
   EXPECT_EQ((*program)->metres_per_unit, 1);
 }
 
+TEST(ExtractProgram, ABaselineTakesReleaseFromTheConstraint) {
+  const std::string link =
+      R"({"chain": [{"name": "a", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "free": "above", "release": 0.25}],
+    "coupling": {"method": ")";
+  const char* words[] = {"chain", "pipe", "balance", "closest", "linear"};
+  std::uint64_t recipes[5] = {};
+  for (int i = 0; i < 5; ++i) {
+    scene::Scene scene = scene_of(link + words[i] + "\"}}");
+    const auto program = extract_program(scene);
+    ASSERT_TRUE(program) << program.error().message;
+    EXPECT_EQ((*program)->coupling.combination, static_cast<Combination>(i));
+    EXPECT_EQ((*program)->links[0].release, i == 0 ? 0 : 0.25);
+    EXPECT_EQ((*program)->links[0].one_sided, i != 0);
+    recipes[i] = (*program)->links[0].recipe;
+    for (int k = 0; k < i; ++k) EXPECT_NE(recipes[i], recipes[k]);
+  }
+}
+
+TEST(ExtractProgram, TheLinearBaselineFollowsTheFieldAtTheProxy) {
+  scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "saddle"}}, "coupling": {"method": "linear"},
+    "chain": [{"name": "a", "type": "streamline", "field": "v", "seed": [1, 1, 0]}]})");
+  const auto program = extract_program(scene);
+  ASSERT_TRUE(program) << program.error().message;
+  const Constraint& streamline = *(*program)->links[0].constraint;
+  LinkState state;
+  LinkScratch scratch;
+  streamline.start({1, 1, 0}, state, scratch);
+  state.proxy = {1, 0.5, 0};  // drifted off: the tangent is the field's there, (x, -y)
+  Primitive line;
+  ASSERT_TRUE(streamline.primitive(state.proxy, state, scratch, line));
+  EXPECT_LE(norm(line.axis - direction(Vec3(1, -0.5, 0))), 1e-15);
+}
+
+TEST(ExtractProgram, RefusesWhatABaselineCannotDo) {
+  const std::string map = "\"release\": {\"field\": \"s\", \"map\": [[0, 1]]}";
+  expect_error(
+      "{\"fields\": {\"s\": {\"analytic\": \"sphere\"}}, \"coupling\": {\"method\": \"pipe\"}, \"chain\": [\n"
+      "{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0],\n" +
+          map + "}]}",
+      3, {"release", "a number was expected"});
+  expect_error(
+      "{\"fields\": {\"v\": {\"analytic\": \"circle\"}}, \"coupling\": {\"method\": \"pipe\"}, \"chain\": [\n"
+      "{\"name\": \"a\", \"type\": \"streamline\", \"field\": \"v\",\n\"release\": 0}]}",
+      3, {"release"});
+  expect_error(
+      "{\"coupling\": {\"method\": \"pipe\"}, \"chain\": [\n"
+      "{\"name\": \"a\", \"type\": \"point\", \"position\": [0, 0, 0],\n\"release\": 0}]}",
+      3, {"release", "> 0"});
+  auto scene = scene::parse_scene("{\"coupling\":\n{\"method\": \"pipes\"}}", "scene.json");
+  ASSERT_FALSE(scene);
+  EXPECT_TRUE(scene.error().message.starts_with("scene.json:2: ")) << scene.error().message;
+}
+
 TEST(ExtractProgram, CopiesCouplingSwitchesAndOrder) {
   scene::Scene scene = scene_of(R"({"coupling": {"stiffness": 300, "damping": 2, "max_force": 5, "ramp_s": 0.5},
     "workspace": {"metres_per_unit": 0.01, "origin": [1, 2, 3]},

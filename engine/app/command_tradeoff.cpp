@@ -1,0 +1,44 @@
+/// catena tradeoff --figure 2|3 -o DIR
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "engine/app/command.h"
+#include "engine/app/tradeoff/figures.h"
+
+namespace catena::app {
+
+namespace {
+
+struct Options {
+  int figure = 0;
+  std::string output;
+};
+
+Outcome tradeoff(const Options& options) {
+  if (options.figure == 0)
+    return Error{
+        "tradeoff: expected --figure 2 (drift of the methods from a streamline) or --figure 3 (a penetrable surface and a curve: "
+        "the chain beside its baselines)"};
+  CATENA_TRY(ResultFolder folder, ResultFolder::open(options.output));
+  CATENA_CHECK(options.figure == 2 ? figure2(folder) : figure3(folder));
+  CATENA_CHECK(folder.commit());
+  fmt::print("{}:", options.output);
+  for (const std::string& name : folder.names()) fmt::print(" {}", name);
+  fmt::print("\n");
+  return Done{};
+}
+
+}  // namespace
+
+void add_tradeoff(CLI::App& program, Work& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("tradeoff", "the figures of the paper as tables and plots");
+  command->add_option("--figure", options->figure, "2: drift from a streamline; 3: a penetrable surface and a curve")
+      ->check(CLI::IsMember({2, 3}));
+  command->add_option("-o,--output", options->output, "a folder for tables (CSV), the gnuplot script and plots (PNG)")->required();
+  command->callback([&chosen, options] { chosen = [options] { return tradeoff(*options); }; });
+}
+
+}  // namespace catena::app

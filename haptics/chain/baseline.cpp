@@ -1,0 +1,162 @@
+#include "haptics/chain/baseline.h"
+
+#include "haptics/chain/begin_link.h"
+
+namespace catena::haptics {
+
+namespace {
+
+constexpr double kRearmPart = 0.1;  // of release
+
+bool same_bits(const Vec3& a, const Vec3& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+/// Where the probe is, seen from a surface that has let go. True: it has crossed it since the last time.
+bool note_side(SingleTick& tick, std::size_t i) noexcept {
+  SingleProxy::Watch& watch = tick.single.watches[i];
+  Primitive primitive;
+  if (!tick.primitive(i, tick.probe, primitive) || primitive.kind != Primitive::Kind::plane) {
+    watch.known = false;
+    return false;
+  }
+  const double height = dot(primitive.axis, tick.probe - primitive.origin);
+  const bool crossed = watch.known && (height < 0) != (watch.height < 0);
+  watch.height = height;
+  watch.known = true;
+  return crossed;
+}
+
+bool takes_hold_again(SingleTick& tick, std::size_t i) noexcept {
+  const Link& spec = tick.program.links[i];
+  const bool near = tick.apply(i, tick.probe);
+  if (spec.one_sided) return tick.links[i].status == Status::free;
+  const bool crossed = note_side(tick, i);
+  return near && (crossed || norm(tick.probe - tick.links[i].proxy) <= kRearmPart * spec.release);
+}
+
+/// Starts the links that have just been switched on. False: none has.
+bool begin_links(SingleTick& tick) noexcept {
+  SingleProxy& single = tick.single;
+  const Combination combination = tick.program.coupling.combination;
+  const bool any_tick = combination == Combination::linear, at_proxy = any_tick || combination == Combination::balance;
+  const bool first = !single.started;
+  bool begun = false;
+  if (first) single.proxy = tick.probe;
+  for (int k = 0; k < tick.order.count; ++k) {
+    const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
+    LinkState& link = tick.links[i];
+    tick.length = std::max(tick.length, tick.program.links[i].constraint->domain_length());
+    link.dt_s = tick.dt_s;
+    link.evaluations = 0;
+    if (link.started) continue;
+    begun = true;
+    single.watches[i] = {};
+    begin_link(tick.program.links[i], at_proxy ? single.proxy : tick.probe, tick.first_tick, link, tick.scratch[i]);
+    // what is not corrected later must begin on the constraint
+    if ((any_tick || (at_proxy && first)) && is_finite(link.proxy)) single.proxy = link.proxy;
+  }
+  single.started = true;
+  return begun;
+}
+
+Vec3 proxy_of(SingleTick& tick) noexcept {
+  switch (tick.program.coupling.combination) {
+    case Combination::balance:
+      return balance(tick);
+    case Combination::closest:
+      return closest(tick);
+    case Combination::linear:
+      return linear(tick);
+    default:
+      return pipe(tick);
+  }
+}
+
+/// Lets go of the links whose release the proxy has reached. False: of none.
+bool let_go(SingleTick& tick, const Vec3& p) noexcept {
+  const double stretch = norm(tick.probe - p);
+  bool any = false;
+  tick.each([&](std::size_t i) {
+    const double release = tick.program.links[i].release;
+    if (!tick.holds[i] || !(release > 0) || !(stretch >= release)) return;
+    any = true;
+    tick.single.watches[i].released = true;
+    note_side(tick, i);
+  });
+  return any;
+}
+
+}  // namespace
+
+bool SingleTick::apply(std::size_t i, const Vec3& incoming) noexcept {
+  LinkState& link = links[i];
+  link.released = false;
+  program.links[i].constraint->advance(incoming, link, scratch[i]);
+  if (!is_finite(link.proxy)) {
+    link.proxy = incoming;
+    link.status = Status::critical;
+    return false;
+  }
+  return link.status != Status::free && link.status != Status::no_surface;
+}
+
+bool SingleTick::primitive(std::size_t i, const Vec3& at, Primitive& out) noexcept {
+  LinkState& link = links[i];
+  const Status before = link.status;
+  if (link.evaluations < kEvaluationCap && program.links[i].constraint->primitive(at, link, scratch[i], out) && is_finite(out.origin) &&
+      is_finite(out.axis))
+    return true;
+  if (link.status == before) link.status = link.evaluations < kEvaluationCap ? Status::critical : Status::budget;
+  return false;
+}
+
+void advance_single_proxy(SingleTick& tick, bool same_order) noexcept {
+  SingleProxy& single = tick.single;
+  const bool begun = begin_links(tick);
+  if (single.settled && same_order && !begun && same_bits(single.probe, tick.probe)) return;
+
+  // links that have let go
+  const bool is_linear = tick.program.coupling.combination == Combination::linear;
+  for (int k = 0; k < tick.order.count; ++k) {
+    const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
+    SingleProxy::Watch& watch = single.watches[i];
+    if (!watch.released || !takes_hold_again(tick, i)) continue;
+    watch = {};
+    if (is_linear) single.proxy = tick.links[i].proxy;
+  }
+
+  // the proxy; again without those that let go
+  const Vec3 before = single.proxy;
+  Vec3 p = tick.probe;
+  for (int round = 0; round <= kMaxLinks; ++round) {
+    single.proxy = before;
+    tick.holds.fill(false);
+    p = proxy_of(tick);
+    if (!let_go(tick, p)) break;
+  }
+  int count = 0;
+  for (const bool holds : tick.holds) count += holds ? 1 : 0;
+  if (count == 0) p = tick.probe;
+  if (!is_finite(p)) p = before;
+
+  // what the links report
+  bool spent = false;
+  for (int k = 0; k < tick.order.count; ++k) {
+    const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
+    LinkState& link = tick.links[i];
+    SingleProxy::Watch& watch = single.watches[i];
+    watch.holds = tick.holds[i];
+    link.released = watch.released;
+    link.limit = tick.program.links[i].release;
+    link.weight = tick.holds[i] ? 1.0 / count : 0;
+    link.stiffness_n_per_m = tick.program.coupling.stiffness_n_per_m;
+    if (watch.released) link.status = Status::released;
+    if (!tick.holds[i]) link.residual = 0;
+    spent = spent || link.status == Status::budget;
+  }
+  single.proxy = p;
+  single.probe = tick.probe;
+  const Combination combination = tick.program.coupling.combination;
+  single.settled = !spent && (combination == Combination::pipe || combination == Combination::closest);
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,21 @@
+/// A link that has just been switched on: everything anew, then the constraint's own start. Haptic thread.
+#pragma once
+#include "haptics/chain/program.h"
+
+namespace catena::haptics {
+
+inline void begin_link(const Link& spec, const Vec3& incoming, bool first_tick, LinkState& link, LinkScratch& scratch) noexcept {
+  link.on = true;
+  link.started = true;
+  link.released = false;
+  link.status = Status::ok;
+  link.weight = first_tick ? 1 : 0;
+  link.limit = 0;
+  link.proxy = incoming;
+  link.memory.fill(std::byte{0});
+  link.outer.fill(std::byte{0});
+  link.stiffness_n_per_m = spec.stiffness_n_per_m.at(incoming, scratch.stiffness, link.evaluations);
+  spec.constraint->start(incoming, link, scratch);
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,400 @@
+#include "haptics/chain/baseline.h"
+
+#include <limits>
+
+#include "engine/base/allocation_guard.h"
+#include "engine/base/numbers.h"
+#include "haptics/chain/tick.h"
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::test {
+namespace {
+
+constexpr Combination kAll[] = {Combination::pipe, Combination::balance, Combination::closest, Combination::linear};
+
+struct Hand {
+  explicit Hand(Combination combination) {
+    program.coupling.combination = combination;
+    program.coupling.max_force_n = 1e9;
+  }
+  Link& add(ConstraintPtr constraint, double stiffness = 500) {
+    Link link;
+    link.name = std::string(1, static_cast<char>('a' + program.links.size()));
+    link.constraint = std::move(constraint);
+    link.stiffness_n_per_m = stiffness;
+    program.links.push_back(link);
+    return program.links.back();
+  }
+  const Vec3& at(const Vec3& probe, std::uint32_t buttons = 0) {
+    tick(program, {t, probe, buttons}, state, scratch, out);
+    t += 1e-3;
+    return out.links[0].proxy;
+  }
+  Program program;
+  ChainState state;
+  ChainScratch scratch;
+  exchange::HapticState out;
+  double t = 0;
+};
+
+std::string text(const Vec3& v) { return "[" + to_text(v.x) + "," + to_text(v.y) + "," + to_text(v.z) + "]"; }
+ConstraintPtr plane(const Vec3& point, const Vec3& normal, const std::string& more = "") {
+  return build(R"({"name": "a", "type": "plane", "point": )" + text(point) + R"(, "normal": )" + text(normal) + more + "}");
+}
+ConstraintPtr point(const Vec3& position) { return build(R"({"name": "a", "type": "point", "position": )" + text(position) + "}"); }
+/// A streamline of a uniform field: a straight line.
+ConstraintPtr line(const Vec3& seed, const Vec3& along, const std::string& more = "") {
+  Fields fields;
+  fields.named["v"] = *field::make_analytic("uniform", {.scale = 1, .direction = along, .part = {}});
+  return build(R"({"name": "a", "type": "streamline", "field": "v", "seed": )" + text(seed) + more + "}", fields);
+}
+ConstraintPtr circle(double radius, const std::string& more = "") {
+  Fields fields;
+  fields.named["v"] = *field::make_analytic("circle");
+  return build(R"({"name": "a", "type": "streamline", "field": "v", "seed": )" + text({radius, 0, 0}) + more + "}", fields);
+}
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) { EXPECT_LE(norm(a - b), tolerance) << text(a) << " " << text(b); }
+
+TEST(Span, ShortestWayOntoAllAndWhatIsLeftFree) {
+  Random random(5);
+  for (int i = 0; i < 1000; ++i) {
+    const Primitive a{Primitive::Kind::plane, random.box(1), random.unit()}, b{Primitive::Kind::plane, random.box(1), random.unit()};
+    const Vec3 from = random.box(2), axis = cross(a.axis, b.axis);
+    if (norm(axis) < 0.1) continue;
+    Span span;
+    span.add(a, from);
+    span.add(b, from);
+    const Vec3 p = from + span.move();
+    EXPECT_LE(distance_to(a, p) + distance_to(b, p), 1e-13);
+    EXPECT_NEAR(dot(axis, span.move()), 0, 1e-13);
+    EXPECT_LE(norm(span.across(axis) - axis), 1e-13);
+    span.add({Primitive::Kind::line, random.box(1), random.unit()}, p);
+    EXPECT_EQ(span.across(Vec3(1, 2, 3)), Vec3(0.0));
+  }
+}
+
+TEST(Pipe, MeetsTwoPlanesAtTheNearestPointOfTheirLine) {
+  Random random(1);
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 n = random.unit(), m = random.unit(), o = random.box(1);
+    const Vec3 along = direction(cross(n, m));
+    if (norm(cross(n, m)) < 0.1) continue;
+    Hand hand(Combination::pipe);
+    hand.add(plane(o, n));
+    hand.add(plane(o, m));
+    const Vec3 x = random.box(2);
+    expect_near(hand.at(x), o + along * dot(along, x - o), 1e-10);
+    EXPECT_EQ(hand.out.links[0].status, Status::ok);
+    EXPECT_TRUE(same_bits(hand.out.links[0].proxy, hand.out.links[1].proxy));
+    expect_near(hand.out.force_n, 500.0 * (hand.out.links[0].proxy - x), 1e-9);
+  }
+}
+
+TEST(Pipe, MeetsThreePlanesAndAPlaneWithALine) {
+  Hand corner(Combination::pipe);
+  corner.add(plane({1, 0, 0}, {1, 0, 0}));
+  corner.add(plane({0, 2, 0}, {0.3, 1, 0}));
+  corner.add(plane({0, 0, 3}, {0.2, 0.4, 1}));
+  const Vec3 p = corner.at({5, 5, 5});
+  EXPECT_NEAR(p.x, 1, 1e-11);
+  EXPECT_NEAR(p.y, 2 - 0.3, 1e-11);
+  EXPECT_NEAR(p.z, 3 - 0.2 - 0.4 * 1.7, 1e-11);
+  for (const double degrees : {2.0, 5.0, 20.0, 60.0, 90.0}) {
+    const double a = degrees * M_PI / 180;
+    for (const char* more : {"", R"(, "follow": "online")"}) {
+      Hand hand(Combination::pipe);
+      hand.add(line({0.5 * std::cos(a), 0, 0.5 * std::sin(a)}, {std::cos(a), 0, std::sin(a)}, more));
+      hand.add(plane({0, 0, 0}, {0, 0, 1}));
+      expect_near(hand.at({-0.03 * std::cos(a), 0.01, -0.03 * std::sin(a)}), Vec3(0.0), 1e-10 / std::sin(a));
+      EXPECT_EQ(hand.out.links[1].status, Status::ok) << degrees;
+    }
+  }
+}
+
+TEST(Pipe, MeetsCurvedConstraints) {
+  Hand hand(Combination::pipe);  // a circle in z = 0.3 and a plane across it
+  Fields fields;
+  fields.named["v"] = *field::make_analytic("circle");
+  hand.add(build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.8, 0, 0.3]})", fields));
+  hand.add(plane({0.4, 0, 0}, {1, 0, 0}));
+  expect_near(hand.at({0.5, 0.7, 0.2}), {0.4, std::sqrt(0.64 - 0.16), 0.3}, 1e-9);
+  EXPECT_EQ(hand.out.links[0].status, Status::ok);
+  for (const auto& sphere : {analytic("sphere"), sampled("sphere", 64)}) {
+    Hand two(Combination::pipe);
+    two.add(isosurface(sphere, 1));
+    two.add(plane({0, 0, 0.6}, {0, 0, 1}));
+    const Vec3 p = two.at({1, 0.5, 0.9});
+    EXPECT_NEAR(p.z, 0.6, 1e-10);
+    EXPECT_NEAR(norm(p), 1, sphere->is_grid() ? 1e-3 : 1e-10);
+    EXPECT_EQ(two.out.links[0].status, Status::ok);
+    EXPECT_LE(two.out.links[0].residual, 4e-11);
+  }
+}
+
+TEST(Pipe, HoldsOnTheEdgeOfTwoFreeSides) {
+  Hand hand(Combination::pipe);
+  hand.add(plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")")).one_sided = true;
+  hand.add(plane({0, 0, 0}, {0, 1, 0}, R"(, "free": "above")")).one_sided = true;
+  expect_near(hand.at({0.25, -0.5, -0.125}), {0.25, 0, 0}, 0);
+  EXPECT_EQ(hand.out.links[0].status, Status::ok);
+  EXPECT_EQ(hand.out.links[1].status, Status::ok);
+  expect_near(hand.at({0.25, 0.5, -0.125}), {0.25, 0.5, 0}, 0);
+  EXPECT_EQ(hand.out.links[1].status, Status::free);
+  expect_near(hand.at({0.25, 0.5, 0.5}), {0.25, 0.5, 0.5}, 0);
+}
+
+TEST(Pipe, WithoutAnIntersectionEndsInBudget) {
+  Hand hand(Combination::pipe);
+  hand.add(plane({0, 0, 0}, {0, 0, 1}));
+  hand.add(plane({0, 0, 1}, {0, 0, 1}));
+  const Vec3 p = hand.at({0, 0, 3});
+  EXPECT_EQ(hand.out.links[0].status, Status::budget);
+  EXPECT_TRUE(is_finite(p));
+}
+
+TEST(Pipe, ReleasesByTheStretchOfTheOneProxyNotByTheDepth) {
+  const double a = 30 * M_PI / 180;
+  Hand hand(Combination::pipe);
+  hand.add(line({0.5 * std::cos(a), 0, 0.5 * std::sin(a)}, {std::cos(a), 0, std::sin(a)}));
+  Link& floor = hand.add(plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")"));
+  floor.release = 0.05;
+  floor.one_sided = true;
+  const auto along = [&](double s) { return Vec3(s * std::cos(a), 0, s * std::sin(a)); };
+  expect_near(hand.at(along(0.1)), along(0.1), 1e-10);
+  EXPECT_EQ(hand.out.links[1].status, Status::free);
+  EXPECT_EQ(hand.out.links[1].force_n, Vec3(0.0));
+  expect_near(hand.at(along(-0.049)), Vec3(0.0), 1e-10);
+  EXPECT_EQ(hand.out.links[1].status, Status::ok);
+  EXPECT_TRUE(hand.out.links[1].active);
+  expect_near(hand.at(along(-0.051)), along(-0.051), 1e-10);  // in the tick that reaches it, at half that depth
+  EXPECT_EQ(hand.out.links[1].status, Status::released);
+  EXPECT_FALSE(hand.out.links[1].active);
+  EXPECT_TRUE(hand.out.links[0].active);
+  hand.at(along(-0.001));  // near is not enough for one side
+  EXPECT_EQ(hand.out.links[1].status, Status::released);
+  hand.at(along(0.01));
+  EXPECT_EQ(hand.out.links[1].status, Status::free);
+  EXPECT_TRUE(hand.out.links[1].active);
+  expect_near(hand.at(along(-0.02)), Vec3(0.0), 1e-10);
+}
+
+TEST(Balance, IsTheWeightedMeanOfTwoPlanes) {
+  Hand hand(Combination::balance);
+  hand.program.coupling.stiffness_n_per_m = 400;
+  hand.add(plane({0, 0, 0}, {0, 0, 1}), 100);
+  hand.add(plane({0, 0, 1}, {0, 0, 1}), 300);
+  expect_near(hand.at({0.2, 0.3, 3}), {0.2, 0.3, (400 * 3 + 300 * 1) / 800.0}, 1e-14);
+  EXPECT_NEAR(hand.out.force_n.z, 400 * (1.875 - 3), 1e-11);
+  EXPECT_NEAR(hand.out.links[1].residual, 0.875, 1e-14);
+  EXPECT_NEAR(norm(hand.out.links[0].force_n + hand.out.links[1].force_n - hand.out.force_n), 0, 1e-11);
+}
+
+TEST(Balance, OfALineAPlaneAndAPointHasAClosedForm) {
+  Hand hand(Combination::balance);
+  hand.add(line({0, 0, 0}, {1, 0, 0}), 1000);
+  hand.add(plane({1, 0, 0}, {1, 0, 0}), 250);
+  hand.add(point({0, 0, 1}), 500);
+  const Vec3 x(3, 2, 4);
+  // per axis: K x + the springs that act on it
+  expect_near(hand.at(x), {(500 * 3 + 250 * 1) / 1250.0, 500 * 2 / 2000.0, (500 * 4 + 500 * 1) / 2000.0}, 1e-13);
+}
+
+TEST(Balance, OfAnyPrimitivesIsTheMinimumOfTheEnergy) {
+  Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 n = random.unit(), m = random.unit(), t = random.unit(), o = random.box(1), q = random.box(1), x = random.box(2);
+    const double k[] = {random.in(1, 1000), random.in(1, 1000), random.in(1, 1000)};
+    Hand hand(Combination::balance);
+    hand.add(plane(o, n), k[0]);
+    hand.add(plane(q, m), k[1]);
+    hand.add(line(o, t), k[2]);
+    hand.at(x);
+    const Vec3 p = hand.at(x), e = p - o;  // the foot on the line is exact either way
+    const Vec3 gradient = 500.0 * (p - x) + k[0] * dot(n, e) * n + k[1] * dot(m, p - q) * m + k[2] * (e - dot(t, e) * t);
+    EXPECT_LE(norm(gradient), 1e-8) << i;
+  }
+}
+
+TEST(Balance, LeavesBothConstraintsWhereTheChainLeavesNone) {
+  const double a = 30 * M_PI / 180;
+  Hand hand(Combination::balance);
+  hand.add(line({0, 0, 0}, {std::cos(a), 0, std::sin(a)}), 10);
+  hand.add(plane({0, 0, 0}, {0, 0, 1}));
+  const Vec3 p = hand.at({-0.05 * std::cos(a), 0, -0.05 * std::sin(a)});
+  EXPECT_GT(hand.out.links[0].residual, 0.005);
+  EXPECT_LT(p.z, -0.005);
+}
+
+TEST(Closest, IsTheNearestOfTwoLines) {
+  Hand hand(Combination::closest);
+  hand.add(line({0, 0, 0}, {1, 0, 0}));
+  hand.add(line({0, 0, 1}, {0, 1, 0}));
+  expect_near(hand.at({0.3, 0.1, 0.2}), {0.3, 0, 0}, 1e-12);
+  expect_near(hand.at({0.3, 0.1, 0.9}), {0, 0.1, 1}, 1e-12);
+  EXPECT_EQ(hand.out.links[0].force_n, Vec3(0.0));
+  EXPECT_NE(hand.out.links[1].force_n, Vec3(0.0));
+  EXPECT_TRUE(same_bits(hand.out.links[0].proxy, hand.out.links[1].proxy));
+}
+
+TEST(Linear, MovesAlongWhatThePrimitivesLeaveFree) {
+  Hand hand(Combination::linear);
+  hand.add(plane({0, 0, 0}, {0, 0, 1}));
+  expect_near(hand.at({1, 2, 3}), {1, 2, 0}, 1e-14);
+  hand.add(plane({0, 0, 0}, {0, 1, 0}));
+  const Vec3 p = hand.at({4, 5, 6});
+  EXPECT_NEAR(p.x, 4, 1e-14);
+  EXPECT_NEAR(p.y, 0, 1e-14);  // put on the plane that was added
+  Hand fixed(Combination::linear);
+  fixed.add(point({1, 1, 1}));
+  expect_near(fixed.at({4, 5, 6}), {1, 1, 1}, 0);
+}
+
+TEST(Linear, DriftsOffACircleAsTheFollowModeDoes) {
+  Hand hand(Combination::linear), follow(Combination::chain);
+  hand.add(circle(0.05, R"(, "follow": "online")"));
+  follow.add(circle(0.05, R"(, "method": "linear")"));
+  double worst = 0;
+  for (int k = 0; k <= 1571; ++k) {
+    const double angle = 0.2 * 1e-3 * k / 0.05;
+    const Vec3 x(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0);
+    expect_near(hand.at(x), follow.at(x), 1e-15);
+    worst = std::max(worst, norm(hand.out.links[0].proxy) - 0.05);
+  }
+  EXPECT_NEAR(worst, 0.63e-3, 0.02e-3);
+}
+
+TEST(Linear, DriftsOffASphere) {
+  Hand hand(Combination::linear);
+  hand.add(isosurface(analytic("sphere"), 1));
+  double worst = 0;
+  for (int k = 0; k <= 100; ++k) worst = std::max(worst, std::fabs(norm(hand.at({std::cos(0.01 * k), std::sin(0.01 * k), 0.1})) - 1));
+  EXPECT_GT(worst, 1e-4);
+  EXPECT_LT(worst, 1e-1);
+}
+
+TEST(Baseline, TwoSidedLinksTakeHoldAgainNearOrAcross) {
+  for (const Combination combination : kAll) {
+    Hand hand(combination);
+    hand.add(plane({0, 0, 0}, {0, 0, 1}), 1e6).release = 0.25;
+    hand.at({0, 0, 0.2});
+    EXPECT_EQ(hand.out.links[0].status, Status::ok);
+    expect_near(hand.at({0, 0, 0.3}), {0, 0, 0.3}, 0);
+    EXPECT_EQ(hand.out.links[0].status, Status::released);
+    hand.at({0, 0, 0.026});
+    EXPECT_EQ(hand.out.links[0].status, Status::released);
+    expect_near(hand.at({0, 0, 0.024}), Vec3(0.0), 2e-5);
+    EXPECT_EQ(hand.out.links[0].status, Status::ok);
+    hand.at({0, 0, 0.3});
+    expect_near(hand.at({0, 0, -0.1}), Vec3(0.0), 1e-4);
+    EXPECT_EQ(hand.out.links[0].status, Status::ok);
+  }
+}
+
+TEST(Baseline, FreeSidesAreFree) {
+  for (const Combination combination : kAll) {
+    for (const ConstraintPtr& floor :
+         {plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")"), isosurface(analytic("plane"), 0, R"(, "free": "above")")}) {
+      Hand hand(combination);
+      hand.add(floor, 1e6).one_sided = true;
+      EXPECT_TRUE(same_bits(hand.at({0.1, 0.2, 0.3}), Vec3(0.1, 0.2, 0.3)));
+      EXPECT_EQ(hand.out.links[0].status, Status::free);
+      EXPECT_EQ(hand.out.force_n, Vec3(0.0));
+      expect_near(hand.at({0.1, 0.2, -0.3}), {0.1, 0.2, 0}, 2e-4);  // within the tick that crosses
+      EXPECT_EQ(hand.out.links[0].status, Status::ok);
+      EXPECT_TRUE(same_bits(hand.at({0.1, 0.2, 1e-9}), Vec3(0.1, 0.2, 1e-9)));
+    }
+  }
+}
+
+TEST(Baseline, SwitchedLinksJoinAndLeave) {
+  for (const Combination combination : kAll) {
+    Hand hand(combination);
+    hand.add(plane({0, 0, 0}, {0, 0, 1}), 1e6);
+    hand.add(plane({0, 0, 0}, {0, 1, 0}), 1e6).on.button = 1;
+    const bool nearest = combination == Combination::closest;
+    expect_near(hand.at({1, 2, 3}), {1, 2, 0}, 2e-3);
+    expect_near(hand.at({1, 2, 3}, 1), {1, 0, nearest ? 3.0 : 0.0}, 2e-3);
+    expect_near(hand.at({1, 2, 3}, 0), {1, 2, 0}, 2e-3);
+    EXPECT_FALSE(hand.out.links[1].active);
+    EXPECT_TRUE(same_bits(hand.out.links[0].proxy, hand.out.links[1].proxy));
+  }
+}
+
+TEST(Baseline, ASwitchFadesTheForceInsteadOfJumping) {
+  Hand hand(Combination::pipe);
+  hand.program.coupling.ramp_s = 0.02;
+  hand.add(plane({0, 0, 0}, {0, 0, 1}));
+  hand.add(plane({0, 0, 0}, {0, 1, 0})).on.button = 1;
+  hand.at({0, 0.01, 0.01});
+  Vec3 last = hand.out.force_n;
+  for (int k = 0; k < 60; ++k) {
+    hand.at({0, 0.01, 0.01}, k / 25 % 2 == 0 ? 1 : 0);
+    EXPECT_LE(norm(hand.out.force_n - last), 500 * 0.01 * 0.0501 + 1e-12) << k;
+    last = hand.out.force_n;
+  }
+}
+
+TEST(Baseline, ARestingProbeRests) {
+  for (const Combination combination : {Combination::pipe, Combination::closest}) {
+    Hand hand(combination);
+    hand.add(line({0.2, 0.1, 0}, {1, 0.4, 0.2}, R"(, "method": "rkf34")"));
+    hand.add(isosurface(sampled("sphere", 32), 0.9));
+    hand.add(plane({0.1, 0, 0}, {1, 0.3, 0})).on.button = 1;
+    Random random(3);
+    int budget = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Vec3 x = random.box(1);
+      const Vec3 p = hand.at(x);
+      if (hand.out.links[0].status == Status::budget && ++budget > 0) continue;
+      for (int k = 0; k < 3; ++k) EXPECT_TRUE(same_bits(hand.at(x), p)) << static_cast<int>(combination) << " " << i;
+    }
+    EXPECT_LE(budget, 5);
+  }
+}
+
+TEST(Baseline, StaysFiniteBoundedAndAllocatesNothing) {
+  const double wild[] = {0.0, -0.0, 5e-324, 1e-300, 1e-9, 0.4, 3, 1e9, 1e160, 1e300, 1.7e308};
+  for (const Combination combination : kAll) {
+    Hand hand(combination);
+    hand.add(circle(0.7, R"(, "method": "rkf34")"));
+    Link& shell = hand.add(isosurface(sampled("sphere", 32), 0.8, R"(, "free": "above")"));
+    shell.one_sided = true;
+    shell.release = 0.3;
+    hand.add(plane({0.1, 0, 0}, {1, 0.3, 0})).release = 0.5;
+    hand.add(line({0, 0, 0.2}, {1, 1, 1})).on.button = 2;
+    hand.add(point({0, 0, 0})).on.button = 3;
+    hand.program.coupling.damping_ns_per_m = 1;
+    hand.program.coupling.max_force_n = 8;
+    Random random(7);
+    for (int i = 0; i < 3000; ++i) {
+      Vec3 x = random.box(1);
+      if (i % 3 == 0) x = {wild[random.engine() % 11], -wild[random.engine() % 11], wild[random.engine() % 11]};
+      const AllocationGuard guard;
+      hand.at(x, static_cast<std::uint32_t>(random.engine() & 7));
+      ASSERT_EQ(guard.count(), 0u);
+      for (const auto& link : {hand.out.links[0], hand.out.links[1], hand.out.links[2], hand.out.links[3], hand.out.links[4]}) {
+        ASSERT_TRUE(is_finite(link.proxy)) << static_cast<int>(combination) << " " << i;
+        ASSERT_LE(link.evaluations, kEvaluationCap);
+      }
+      ASSERT_TRUE(is_finite(hand.out.force_n));
+      ASSERT_LE(norm(hand.out.force_n), 8 * (1 + 1e-12));
+    }
+    const Vec3 before = hand.out.links[0].proxy;
+    hand.at({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+    EXPECT_TRUE(same_bits(hand.out.links[0].proxy, before));
+    EXPECT_EQ(hand.out.links[0].status, Status::bad_probe);
+    EXPECT_EQ(hand.out.force_n, Vec3(0.0));
+  }
+}
+
+TEST(Baseline, NoLinksIsFreeMotion) {
+  for (const Combination combination : kAll) {
+    Hand hand(combination);
+    hand.at({1, 2, 3});
+    EXPECT_EQ(hand.out.force_n, Vec3(0.0));
+  }
+}
+
+}  // namespace
+}  // namespace catena::haptics::test
