@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "haptics/constraints/isosurface.h"
+#include "haptics/constraints/mesh.h"
 #include "haptics/constraints/plane.h"
 #include "haptics/constraints/point.h"
 #include "haptics/constraints/streamline.h"
@@ -48,7 +49,8 @@ std::string known_types() {
 }  // namespace
 
 const std::vector<ConstraintType>& registry() {
-  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint(), streamline_constraint()};
+  static const std::vector<ConstraintType> list{point_constraint(), plane_constraint(), isosurface_constraint(), streamline_constraint(),
+                                                mesh_constraint()};
   return list;
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/base/allocation_guard.h"
 #include "tests/haptics/constraints/rig.h"
+#include "tests/support/mesh_shapes.h"
 
 namespace catena::haptics::test {
 namespace {
@@ -24,6 +25,11 @@ std::map<std::string, std::vector<std::string>> examples() {
         R"("field": "boxes_grid", "level": 0.9, "free": "below")", R"("field": "noise_grid", "level": 0.1)",
         R"("field": "noise_grid", "level": 0.1, "free": "above", "release": 0.1)", R"("field": "broken_grid", "level": 0.5)",
         R"("field": "broken_grid", "level": 0.5, "free": "above")"}},
+      {"mesh",
+       {R"("mesh": "box")", R"("mesh": "box", "free": "above")", R"("mesh": "box", "free": "below", "release": 0.2)",
+        R"("mesh": "sheet", "free": "above", "release": 0.3)", R"("mesh": "sheet", "release": 0.1)", R"("mesh": "book", "free": "above")",
+        R"("mesh": "book")", R"("mesh": "sphere", "free": "above")", R"("mesh": "sphere")", R"("mesh": "plate", "free": "above")",
+        R"("mesh": "plate", "free": "below")"}},
       {"streamline",
        {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "saddle", "seed": [0.5, 0.2, 0.1])", R"("field": "circle")",
         R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",
@@ -53,6 +59,16 @@ const Fields& fields() {
       const double v = random.in(0, 1);
       return v < 0.03 ? std::numeric_limits<double>::quiet_NaN() : v < 0.04 ? std::numeric_limits<double>::infinity() : v;
     });
+    made.meshes["box"] = catena::test::mesh_of(catena::test::box_soup());
+    made.meshes["sheet"] = catena::test::mesh_of(catena::test::sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
+    made.meshes["sphere"] = catena::test::mesh_of(catena::test::sphere_soup(12));
+    made.meshes["plate"] = catena::test::mesh_of(catena::test::box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
+    // three leaves at one spine, one of them turned over
+    mesh::Soup book;
+    catena::test::add_quad(book, {0, -1, 0}, {1, -1, 0.2}, {1, 1, 0.2}, {0, 1, 0});
+    catena::test::add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
+    catena::test::add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
+    made.meshes["book"] = catena::test::mesh_of(std::move(book));
     return made;
   }();
   return all;

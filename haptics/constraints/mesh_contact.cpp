@@ -1,0 +1,262 @@
+#include "haptics/constraints/mesh_contact.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kStill = 1e-14;        // moves shorter than this are none
+constexpr double kSlack = 2e-14;        // of a face's outline: closes the seams
+constexpr double kBehind = 4 * kGap;    // so far behind a face it still holds: heals what rounding did
+constexpr double kTouching = 8 * kGap;  // height and outline of a face that is touched; shorter moves leave none
+constexpr double kReach = 31;           // of one tick; the mesh is 1 long
+
+struct Plane {
+  Vec3 normal{0.0};
+  double offset = 0;  ///< of the plane to stay in front of
+};
+
+struct Solution {
+  Vec3 q{0.0};
+  std::array<int, 3> binding{};
+  int count = 0;
+  bool found = false;
+};
+
+class Planes {
+ public:
+  void add(const Plane& plane) { planes_[static_cast<std::size_t>(count_++)] = plane; }
+
+  /// The point closest to x in front of all planes: the best of all that one, two or three of them define.
+  Solution closest(const Vec3& x) const noexcept {
+    Solution best;
+    bool free = true;
+    for (int i = 0; i < count_; ++i) free = free && gap(i, x) >= -kGap;
+    if (free) return {x, {}, 0, true};
+    double least = 0;
+    const auto offer = [&](const Vec3& q, std::array<int, 3> binding, int count) {
+      for (int i = 0; i < count_; ++i)
+        if (gap(i, q) < -0.25 * kGap) return;
+      const double distance2 = dot(q - x, q - x);
+      if (best.found && distance2 >= least) return;
+      best = {q, binding, count, true};
+      least = distance2;
+    };
+    for (int a = 0; a < count_; ++a) {
+      if (gap(a, x) > 0) continue;
+      Vec3 q = x - gap(a, x) * normal(a);
+      q -= gap(a, q) * normal(a);
+      offer(q, {a, 0, 0}, 1);
+    }
+    for (int a = 0; a < count_; ++a)
+      for (int b = a + 1; b < count_; ++b) on_line(x, a, b, offer);
+    for (int a = 0; a < count_; ++a)
+      for (int b = a + 1; b < count_; ++b)
+        for (int c = b + 1; c < count_; ++c) at_corner(a, b, c, offer);
+    return best;
+  }
+
+ private:
+  const Vec3& normal(int i) const { return planes_[static_cast<std::size_t>(i)].normal; }
+  double gap(int i, const Vec3& p) const { return dot(normal(i), p) - planes_[static_cast<std::size_t>(i)].offset; }
+
+  template <class Offer>
+  void on_line(const Vec3& x, int a, int b, Offer&& offer) const noexcept {
+    const Vec3 along = cross(normal(a), normal(b));
+    const double det = dot(along, along), c = dot(normal(a), normal(b));
+    if (!(det > 1e-24)) return;
+    Vec3 q = x;
+    for (int pass = 0; pass < 2; ++pass) {
+      const double ra = -gap(a, q), rb = -gap(b, q);
+      const double la = (ra - c * rb) / det, lb = (rb - c * ra) / det;
+      if (pass == 0 && (la < 0 || lb < 0)) return;
+      q += la * normal(a) + lb * normal(b);
+    }
+    offer(q, {a, b, 0}, 2);
+  }
+
+  template <class Offer>
+  void at_corner(int a, int b, int c, Offer&& offer) const noexcept {
+    const Vec3 bc = cross(normal(b), normal(c)), ca = cross(normal(c), normal(a)), ab = cross(normal(a), normal(b));
+    const double det = dot(normal(a), bc);
+    if (!(std::fabs(det) > 1e-12)) return;
+    Vec3 q(0.0);
+    for (int pass = 0; pass < 3; ++pass) q -= (gap(a, q) * bc + gap(b, q) * ca + gap(c, q) * ab) / det;
+    offer(q, {a, b, c}, 3);
+  }
+
+  std::array<Plane, GodObject::kMost> planes_{};
+  int count_ = 0;
+};
+
+class Mover {
+ public:
+  Mover(const mesh::TriangleMesh& mesh, double outside, GodObject& god) : mesh_(mesh), outside_(outside), god_(god) {}
+
+  GodMove run(const Vec3& x) noexcept {
+    if (!enter_box(x)) return {true, true};
+    const Vec3 way = x - god_.p;
+    const bool far = max_abs(way) > kReach;
+    const Vec3 target = far ? god_.p + way * (kReach / max_abs(way)) : x;
+    const Vec3 start = god_.p;
+    drop_left();
+    for (int move = 0; move < kMoves; ++move) {
+      const Solution to = planes().closest(target);
+      if (!to.found) return done(true);
+      note(to);
+      const Vec3 step = to.q - god_.p;
+      if (max_abs(step) <= kStill) {
+        if (to.count == 0) return {true, true};
+        return done(true);
+      }
+      const Hit hit = sweep(to.q);
+      god_.p = hit.part >= 1 ? to.q : god_.p + hit.part * step;
+      const bool moved = hit.part * max_abs(step) > kTouching;
+      if (hit.face != kNone) {
+        if (moved) drop_left();
+        touch(hit.face);
+        continue;
+      }
+      if (hit.part < 1) return done(false);
+      if (to.count == 0) {
+        god_.p = x;
+        god_.count = god_.binding = 0;
+        return {true, true};
+      }
+      if (all_touch() || !moved) return done(true);
+      drop_left();
+    }
+    return done(max_abs(god_.p - start) <= kStill);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  struct Hit {
+    double part = 1;
+    std::uint32_t face = kNone;
+  };
+
+  double height(std::uint32_t f, const Vec3& p) const { return outside_ * mesh_.face(f).height(p); }
+  GodMove done(bool complete) const { return {false, complete}; }
+
+  /// From far away to where the way to x enters the box around the mesh. False: it never does, and p is at x.
+  bool enter_box(const Vec3& x) noexcept {
+    if (max_abs(god_.p) <= 1) return true;
+    double in = 0, out = 1;
+    for (int i = 0; i < 3; ++i) {
+      const double from = god_.p[i], d = x[i] - from;
+      if (d == 0) {
+        if (std::fabs(from) > 1) out = -1;
+        continue;
+      }
+      const double a = (-1 - from) / d, b = (1 - from) / d;
+      in = std::max(in, std::min(a, b));
+      out = std::min(out, std::max(a, b));
+    }
+    god_.count = god_.binding = 0;
+    if (in > out) {
+      god_.p = x;
+      return false;
+    }
+    god_.p += in * (x - god_.p);
+    return true;
+  }
+
+  bool touches(std::uint32_t f) const { return std::fabs(height(f, god_.p)) <= kTouching && mesh_.face(f).covers(god_.p, kTouching); }
+  bool all_touch() const {
+    for (int i = 0; i < god_.count; ++i)
+      if (!touches(god_.faces[static_cast<std::size_t>(i)])) return false;
+    return true;
+  }
+  /// Forgets the faces that it has left. Those met since the last real move are kept: around a corner they all count.
+  void drop_left() noexcept {
+    int kept = 0;
+    for (int i = 0; i < god_.count; ++i) {
+      const std::uint32_t f = god_.faces[static_cast<std::size_t>(i)];
+      if (touches(f)) god_.faces[static_cast<std::size_t>(kept++)] = f;
+    }
+    god_.count = kept;
+  }
+  void touch(std::uint32_t face) noexcept {
+    if (god_.count == GodObject::kMost) {
+      int highest = 0;
+      for (int i = 1; i < god_.count; ++i)
+        if (height(god_.faces[static_cast<std::size_t>(i)], god_.p) > height(god_.faces[static_cast<std::size_t>(highest)], god_.p))
+          highest = i;
+      god_.faces[static_cast<std::size_t>(highest)] = god_.faces[static_cast<std::size_t>(--god_.count)];
+    }
+    god_.faces[static_cast<std::size_t>(god_.count++)] = face;
+  }
+  Planes planes() const noexcept {
+    Planes out;
+    for (int i = 0; i < god_.count; ++i) {
+      const mesh::Face& face = mesh_.face(god_.faces[static_cast<std::size_t>(i)]);
+      out.add({outside_ * face.normal, outside_ * face.offset + kGap});
+    }
+    return out;
+  }
+  void note(const Solution& to) noexcept {
+    god_.binding = to.count;
+    for (int i = 0; i < to.count; ++i)
+      god_.normals[static_cast<std::size_t>(i)] =
+          outside_ * mesh_.face(god_.faces[static_cast<std::size_t>(to.binding[static_cast<std::size_t>(i)])]).normal;
+  }
+
+  /// Wholly behind a face that is touched: what stays in front of that one never meets it. So convex edges do not stop the slide.
+  bool is_covered(std::uint32_t f) const noexcept {
+    for (int i = 0; i < god_.count; ++i) {
+      const std::uint32_t a = god_.faces[static_cast<std::size_t>(i)];
+      if (a == f) return true;
+      if (height(a, mesh_.corner(f, 0)) <= 0.25 * kGap && height(a, mesh_.corner(f, 1)) <= 0.25 * kGap &&
+          height(a, mesh_.corner(f, 2)) <= 0.25 * kGap)
+        return true;
+    }
+    return false;
+  }
+
+  /// The first face in the way to q that is met from its outer side. Where the nodes run out, of a shorter way (part < 1, no face).
+  Hit sweep(const Vec3& q) noexcept {
+    double reach = 1;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      Hit hit;
+      if (sweep_part(god_.p + reach * (q - god_.p), hit)) {
+        hit.part *= reach;
+        return hit;
+      }
+      reach *= 1.0 / 64;
+    }
+    return {0, kNone};
+  }
+
+  bool sweep_part(const Vec3& q, Hit& hit) noexcept {
+    const Vec3 from = god_.p;
+    Vec3 to = q;
+    const auto meet = [&](std::uint32_t f) {
+      const double h0 = height(f, from), h1 = height(f, q);
+      if (!(h1 < 0 && h1 < h0 && h0 >= -kBehind)) return;
+      const double part = h0 <= kGap ? 0 : (h0 - kGap) / (h0 - h1);
+      if (part > hit.part || (part == hit.part && f > hit.face)) return;
+      const double crossing = h0 <= 0 ? 0 : h0 / (h0 - h1);
+      const Vec3 at = from + crossing * (q - from);
+      if (!mesh_.face(f).covers(at, kSlack) || is_covered(f)) return;
+      hit = {part, f};
+      to = at;
+    };
+    int nodes = nodes_ / 2;
+    nodes_ -= nodes;
+    const bool complete = mesh_.bvh().segment(from, to, kBehind, nodes, meet);
+    nodes_ += std::max(nodes, 0);
+    return complete;
+  }
+
+  const mesh::TriangleMesh& mesh_;
+  double outside_;
+  GodObject& god_;
+  int nodes_ = kNodes;
+};
+
+}  // namespace
+
+GodMove move_god_object(const mesh::TriangleMesh& mesh, double outside, const Vec3& x, GodObject& god) noexcept {
+  return Mover(mesh, outside, god).run(x);
+}
+
+}  // namespace catena::haptics
