@@ -69,7 +69,7 @@ TEST_F(Mesh, BoxHasItsSilhouetteColourAndDepth) {
   ASSERT_TRUE(depth);
   for (std::uint32_t y = 0; y < 120; ++y)
     for (std::uint32_t x = 0; x < 160; ++x) {
-      const double u = (x + 0.5 - 80) * 0.1, v = (60 - y - 0.5) * 0.1;
+      const double u = (x - 79.5) * 0.1, v = (59.5 - y) * 0.1;
       const bool inside = u > -2 && u < 3 && v > -1 && v < 1.5;
       const std::uint8_t* p = picture.pixel(x, y);
       // facing the eye: 0.9 of the colour and the whole highlight
