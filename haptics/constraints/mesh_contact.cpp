@@ -7,7 +7,10 @@ constexpr double kStill = 1e-14;        // moves shorter than this are none
 constexpr double kSlack = 2e-14;        // of a face's outline: closes the seams
 constexpr double kBehind = 4 * kGap;    // so far behind a face it still holds: heals what rounding did
 constexpr double kTouching = 8 * kGap;  // height and outline of a face that is touched; shorter moves leave none
-constexpr double kReach = 31;           // of one tick; the mesh is 1 long
+constexpr double kSlip = 1e-9;          // past a vertex: at least so far
+constexpr double kAtVertex = 64 * kGap;
+constexpr std::size_t kMostFan = 12;  // faces at a vertex that are tried
+constexpr double kReach = 31;         // of one tick; the mesh is 1 long
 
 struct Plane {
   Vec3 normal{0.0};
@@ -105,6 +108,7 @@ class Mover {
       const Vec3 step = to.q - god_.p;
       if (max_abs(step) <= kStill) {
         if (to.count == 0) return {true, true};
+        if (slip_past(to, target)) continue;
         return done(true);
       }
       const Hit hit = sweep(to.q);
@@ -121,7 +125,10 @@ class Mover {
         god_.count = god_.binding = 0;
         return {true, true};
       }
-      if (all_touch() || !moved) return done(true);
+      if (all_touch() || !moved) {
+        if (slip_past(to, target)) continue;
+        return done(true);
+      }
       drop_left();
     }
     return done(max_abs(god_.p - start) <= kStill);
@@ -133,6 +140,42 @@ class Mover {
     double part = 1;
     std::uint32_t face = kNone;
   };
+
+  /// Where several faces bind at a vertex, some of them may end there (a saddle): the way can be open over a face or an edge of its
+  /// fan. What is in that way is seen by the sweep.
+  bool slip_past(const Solution& at, const Vec3& target) noexcept {
+    if (at.count < 2) return false;
+    const std::uint32_t face = god_.faces[static_cast<std::size_t>(at.binding[0])];
+    int corner = -1;
+    for (int k = 0; k < 3; ++k)
+      if (max_abs(mesh_.corner(face, k) - god_.p) <= kAtVertex) corner = k;
+    if (corner < 0) return false;
+    const auto fan = mesh_.fan(mesh_.triangles()[face][static_cast<std::size_t>(corner)]);
+    const std::size_t count = std::min<std::size_t>(fan.size(), kMostFan);
+    const GodObject before = god_;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = i; j < count; ++j) {
+        god_.faces[0] = fan[i];
+        god_.faces[1] = fan[j];
+        god_.count = i == j ? 1 : 2;
+        if (i != j && !share_edge(fan[i], fan[j])) continue;
+        const Solution to = planes().closest(target);
+        const Vec3 step = to.q - god_.p;
+        const bool nearer = to.found && dot(to.q - target, to.q - target) < dot(god_.p - target, god_.p - target);
+        const Hit hit = nearer ? sweep(to.q) : Hit{0, kNone};
+        if (hit.part * max_abs(step) > kSlip) {
+          god_.p += hit.part * step;
+          drop_left();
+          if (hit.face != kNone) touch(hit.face);
+          return true;
+        }
+      }
+    god_ = before;
+    return false;
+  }
+  bool share_edge(std::uint32_t f, std::uint32_t g) const {
+    return mesh_.across(f, 0) == g || mesh_.across(f, 1) == g || mesh_.across(f, 2) == g;
+  }
 
   double height(std::uint32_t f, const Vec3& p) const { return outside_ * mesh_.face(f).height(p); }
   GodMove done(bool complete) const { return {false, complete}; }
