@@ -1,5 +1,7 @@
 #include "haptics/constraints/mesh_contact.h"
 
+#include "haptics/constraints/mesh_planes.h"
+
 namespace catena::haptics {
 namespace {
 
@@ -11,84 +13,6 @@ constexpr double kSlip = 1e-9;          // past a vertex: at least so far
 constexpr double kAtVertex = 64 * kGap;
 constexpr std::size_t kMostFan = 12;  // faces at a vertex that are tried
 constexpr double kReach = 31;         // of one tick; the mesh is 1 long
-
-struct Plane {
-  Vec3 normal{0.0};
-  double offset = 0;  ///< of the plane to stay in front of
-};
-
-struct Solution {
-  Vec3 q{0.0};
-  std::array<int, 3> binding{};
-  int count = 0;
-  bool found = false;
-};
-
-class Planes {
- public:
-  void add(const Plane& plane) { planes_[static_cast<std::size_t>(count_++)] = plane; }
-
-  /// The point closest to x in front of all planes: the best of all that one, two or three of them define.
-  Solution closest(const Vec3& x) const noexcept {
-    Solution best;
-    bool free = true;
-    for (int i = 0; i < count_; ++i) free = free && gap(i, x) >= -kGap;
-    if (free) return {x, {}, 0, true};
-    double least = 0;
-    const auto offer = [&](const Vec3& q, std::array<int, 3> binding, int count) {
-      for (int i = 0; i < count_; ++i)
-        if (gap(i, q) < -0.25 * kGap) return;
-      const double distance2 = dot(q - x, q - x);
-      if (best.found && distance2 >= least) return;
-      best = {q, binding, count, true};
-      least = distance2;
-    };
-    for (int a = 0; a < count_; ++a) {
-      if (gap(a, x) > 0) continue;
-      Vec3 q = x - gap(a, x) * normal(a);
-      q -= gap(a, q) * normal(a);
-      offer(q, {a, 0, 0}, 1);
-    }
-    for (int a = 0; a < count_; ++a)
-      for (int b = a + 1; b < count_; ++b) on_line(x, a, b, offer);
-    for (int a = 0; a < count_; ++a)
-      for (int b = a + 1; b < count_; ++b)
-        for (int c = b + 1; c < count_; ++c) at_corner(a, b, c, offer);
-    return best;
-  }
-
- private:
-  const Vec3& normal(int i) const { return planes_[static_cast<std::size_t>(i)].normal; }
-  double gap(int i, const Vec3& p) const { return dot(normal(i), p) - planes_[static_cast<std::size_t>(i)].offset; }
-
-  template <class Offer>
-  void on_line(const Vec3& x, int a, int b, Offer&& offer) const noexcept {
-    const Vec3 along = cross(normal(a), normal(b));
-    const double det = dot(along, along), c = dot(normal(a), normal(b));
-    if (!(det > 1e-24)) return;
-    Vec3 q = x;
-    for (int pass = 0; pass < 2; ++pass) {
-      const double ra = -gap(a, q), rb = -gap(b, q);
-      const double la = (ra - c * rb) / det, lb = (rb - c * ra) / det;
-      if (pass == 0 && (la < 0 || lb < 0)) return;
-      q += la * normal(a) + lb * normal(b);
-    }
-    offer(q, {a, b, 0}, 2);
-  }
-
-  template <class Offer>
-  void at_corner(int a, int b, int c, Offer&& offer) const noexcept {
-    const Vec3 bc = cross(normal(b), normal(c)), ca = cross(normal(c), normal(a)), ab = cross(normal(a), normal(b));
-    const double det = dot(normal(a), bc);
-    if (!(std::fabs(det) > 1e-12)) return;
-    Vec3 q(0.0);
-    for (int pass = 0; pass < 3; ++pass) q -= (gap(a, q) * bc + gap(b, q) * ca + gap(c, q) * ab) / det;
-    offer(q, {a, b, c}, 3);
-  }
-
-  std::array<Plane, GodObject::kMost> planes_{};
-  int count_ = 0;
-};
 
 class Mover {
  public:
@@ -232,7 +156,7 @@ class Mover {
     Planes out;
     for (int i = 0; i < god_.count; ++i) {
       const mesh::Face& face = mesh_.face(god_.faces[static_cast<std::size_t>(i)]);
-      out.add({outside_ * face.normal, outside_ * face.offset + kGap});
+      out.add(outside_ * face.normal, outside_ * face.offset + kGap);
     }
     return out;
   }

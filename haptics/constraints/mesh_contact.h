@@ -3,6 +3,7 @@
 ///     q = argmin |q - x|  subject to  n_i . q - d_i >= gap  for the faces i that it touches (up to three of them bind)
 ///   straight, until the first face in the way (a segment through the hierarchy), which is then touched too; and so on until it
 ///   arrives. It never crosses a face from its outer side, however thin the part and however fast the hand.
+/// At a vertex where faces bind that end there (a saddle) it also tries the faces and edges of the fan one by one.
 /// The gap of 2.5e-13 keeps it outside in spite of rounding; |q - x| falls with every move, so that it settles in corners.
 /// All in the mesh's own frame (mesh.h). Haptic thread: no allocation, lock or throw; at most kMoves moves and kNodes nodes a tick.
 #pragma once

@@ -281,6 +281,25 @@ TEST(Mesh, TwoSidedIsTheClosestPointOfConvexMeshes) {
   }
 }
 
+/// Two halves of a sheet whose seam does not share vertices, and is 1e-8 wide.
+TEST(Mesh, SeamsThatDoNotQuiteMeetAreCrossed) {
+  mesh::Soup soup;
+  add_quad(soup, {-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0});
+  add_quad(soup, {1e-8, -1, 0}, {1, -1, 0}, {1, 0.3, 0}, {1e-8, 0.3, 0});
+  add_quad(soup, {1e-8, 0.3, 0}, {1, 0.3, 0}, {1, 1, 0}, {1e-8, 1, 0});
+  const auto sheet = mesh_of(std::move(soup));
+  for (const char* side : {R"(, "free": "above")", ""}) {
+    Rig rig(felt(sheet, side));
+    rig.tick({-0.5, 0.2, 0.1});
+    for (int i = 0; i < 1000; ++i) {
+      const Vec3 probe(-0.5 + 1e-3 * i, 0.2, -0.05);
+      rig.tick(probe);
+      ASSERT_EQ(rig.state.status, Status::ok) << side << i;
+      ASSERT_LE(norm(rig.state.proxy - Vec3(probe.x, 0.2, 0)), 1.1e-8) << side << i;
+    }
+  }
+}
+
 TEST(Mesh, TwoSidedStaysOnItsSideOfAThinPlate) {
   Rig rig(felt(mesh_of(box_soup({-1, -1, -5e-4}, {1, 1, 5e-4})), ""));
   rig.tick({0, 0, 0.5});
