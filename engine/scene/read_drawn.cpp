@@ -67,6 +67,15 @@ Result<TransferFunction> read_transfer(const json::Node& node) {
   return transfer;
 }
 
+/// Empty where `path` is a mesh file that is there.
+std::string mesh_fault(const std::string& path) {
+  std::error_code code;
+  if (!mesh::is_mesh_file(path)) return in_quotes(path) + " has an unknown kind; a .stl or .obj file was expected";
+  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist; a .stl or .obj file was expected";
+  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file; a .stl or .obj file was expected";
+  return {};
+}
+
 /// Calls read(item) for each object of an array.
 template <class Read>
 Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
@@ -116,15 +125,6 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
     scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));
     return Done{};
   });
-}
-
-/// Empty where `path` is a mesh file that is there.
-static std::string mesh_fault(const std::string& path) {
-  std::error_code code;
-  if (!mesh::is_mesh_file(path)) return in_quotes(path) + " has an unknown kind; a .stl or .obj file was expected";
-  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist; a .stl or .obj file was expected";
-  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file; a .stl or .obj file was expected";
-  return {};
 }
 
 Outcome read_meshes(Scene& scene, const json::Node& node) {
