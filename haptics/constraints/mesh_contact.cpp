@@ -138,7 +138,11 @@ class Mover {
     int kept = 0;
     for (int i = 0; i < god_.count; ++i) {
       const std::uint32_t f = god_.faces[static_cast<std::size_t>(i)];
-      if (touches(f)) god_.faces[static_cast<std::size_t>(kept++)] = f;
+      if (touches(f)) {
+        god_.faces[static_cast<std::size_t>(kept++)] = f;
+      } else {
+        left_ = f;
+      }
     }
     god_.count = kept;
   }
@@ -207,6 +211,8 @@ class Mover {
       hit = {part, f};
       to = at;
     };
+    // beyond the face just left its neighbours are the likely ones: met first, they shorten the way
+    for (int k = 0; left_ != kNone && k < 3; ++k) meet(mesh_.across(left_, k));
     int nodes = nodes_ / 2;
     nodes_ -= nodes;
     const bool complete = mesh_.bvh().segment(from, to, kBehind, nodes, meet);
@@ -217,6 +223,7 @@ class Mover {
   const mesh::TriangleMesh& mesh_;
   double outside_;
   GodObject& god_;
+  std::uint32_t left_ = kNone;  ///< the face that it slid off last
   int nodes_ = kNodes;
 };
 
