@@ -36,6 +36,7 @@ std::vector<std::string> inputs_of(const scene::Scene& scene) {
   scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
     if (source.file) inputs.push_back(source.file->path);
   });
+  scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) { inputs.push_back(source.path); });
   return inputs;
 }
 

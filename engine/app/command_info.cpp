@@ -1,4 +1,5 @@
-/// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; or what a scene holds.
+/// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; a mesh's triangles, box and open edges; or
+/// what a scene holds.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -7,6 +8,7 @@
 #include "engine/app/command.h"
 #include "engine/base/numbers.h"
 #include "engine/field/load.h"
+#include "engine/mesh/load.h"
 #include "haptics/constraints/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
@@ -55,6 +57,24 @@ Outcome describe_file(const std::string& path) {
   return Done{};
 }
 
+void print_mesh(const mesh::TriangleMesh& mesh, const char* indent) {
+  fmt::print("{}triangles    {}{}\n", indent, mesh.triangles().size(),
+             mesh.dropped() == 0 ? "" : fmt::format(" ({} without an area dropped)", mesh.dropped()));
+  fmt::print("{}vertices     {}\n", indent, mesh.vertices().size());
+  fmt::print("{}world box    {} .. {}   (L = {})\n", indent, text(mesh.lowest()), text(mesh.highest()), to_text(mesh.length()));
+  fmt::print("{}open edges   {}\n", indent, mesh.open_edges());
+  fmt::print("{}other edges  {} with more than two faces, {} whose faces disagree on the outside\n", indent, mesh.crowded_edges(),
+             mesh.turned_edges());
+  fmt::print("{}bytes        {} ({})\n", indent, mesh.bytes(), human_bytes(static_cast<double>(mesh.bytes())));
+}
+
+Outcome describe_mesh(const std::string& path) {
+  CATENA_TRY(const mesh::MeshPtr mesh, mesh::load_mesh(path));
+  fmt::print("{}: triangle mesh\n", path);
+  print_mesh(*mesh, "  ");
+  return Done{};
+}
+
 Outcome describe_scene(const std::string& path) {
   CATENA_TRY(scene::Scene scene, open_scene(path));
   std::vector<std::pair<scene::Entity, json::Node>> fields;
@@ -68,6 +88,13 @@ Outcome describe_scene(const std::string& path) {
     if (any.scalar) fmt::print(", values {}..{}", to_text(any.scalar->min_value()), to_text(any.scalar->max_value()));
     fmt::print(", {}\n", human_bytes(static_cast<double>(any.get()->bytes())));
   }
+  std::vector<scene::Entity> meshes;
+  scene.world.each<scene::MeshSource>([&](scene::Entity e, const scene::MeshSource&) { meshes.push_back(e); });
+  for (const scene::Entity e : meshes) {
+    CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, e));
+    fmt::print("mesh {}: {}\n", scene.world.get<scene::Name>(e).value, scene.world.get<scene::MeshSource>(e).path);
+    print_mesh(*mesh, "  ");
+  }
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     const haptics::ConstraintType* type = haptics::find_constraint(link.type);
@@ -76,8 +103,8 @@ Outcome describe_scene(const std::string& path) {
   });
   fmt::print("coupling: {} N/m, {} N s/m, at most {} N\n", to_text(program->coupling.stiffness_n_per_m),
              to_text(program->coupling.damping_ns_per_m), to_text(program->coupling.max_force_n));
-  fmt::print("drawn: {} volumes, {} isosurfaces, {} streamline sets\n", scene.world.count<scene::Volume>(),
-             scene.world.count<scene::Isosurface>(), scene.world.count<scene::StreamlineSet>());
+  fmt::print("drawn: {} volumes, {} isosurfaces, {} meshes, {} streamline sets\n", scene.world.count<scene::Volume>(),
+             scene.world.count<scene::Isosurface>(), scene.world.count<scene::SurfaceMesh>(), scene.world.count<scene::StreamlineSet>());
   return Done{};
 }
 
@@ -87,7 +114,7 @@ void add_info(CLI::App& program, Work& chosen) {
   auto path = std::make_shared<std::string>();
   auto schema = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
-  command->add_option("FILE", *path, "a data file (.vdb .nii .nii.gz) or a scene (.json)");
+  command->add_option("FILE", *path, "a data file (.vdb .nii .nii.gz), a triangle mesh (.stl .obj) or a scene (.json)");
   command->add_flag("--schema", *schema, "print the JSON Schema of a scene's chain instead");
   command->callback([&chosen, path, schema] {
     chosen = [path, schema]() -> Outcome {
@@ -96,6 +123,7 @@ void add_info(CLI::App& program, Work& chosen) {
         return Done{};
       }
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
+      if (mesh::is_mesh_file(*path)) return describe_mesh(*path);
       return is_scene_file(*path) ? describe_scene(*path) : describe_file(*path);
     };
   });

@@ -46,6 +46,9 @@ std::uint64_t field_bytes(const scene::Scene& scene) {
     add(source.loaded);
     add(source.drawn);
   });
+  scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
+    if (source.loaded) bytes += source.loaded->bytes();
+  });
   return bytes;
 }
 

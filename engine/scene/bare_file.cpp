@@ -53,9 +53,29 @@ std::vector<Vec3> lattice_seeds(const field::VectorField& field) {
   return seeds;
 }
 
+Result<Scene> scene_for_mesh(const std::string& path) {
+  CATENA_TRY(mesh::MeshPtr mesh, mesh::load_mesh(path));
+  Scene scene;
+  scene.path = path;
+  scene.cursor = scene.world.create();
+  scene.world.emplace<Cursor>(scene.cursor);
+  MeshSource source;
+  source.path = path;
+  source.loaded = std::move(mesh);
+  source.where.file = std::make_shared<const std::string>(path);
+  SurfaceMesh surface;
+  surface.mesh = scene.world.create();
+  surface.where = source.where;
+  scene.world.emplace<Name>(surface.mesh, {"mesh"});
+  scene.world.emplace<MeshSource>(surface.mesh, std::move(source));
+  scene.world.emplace<SurfaceMesh>(scene.world.create(), std::move(surface));
+  return scene;
+}
+
 }  // namespace
 
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid) {
+  if (mesh::is_mesh_file(path)) return scene_for_mesh(path);
   if (path.ends_with(".raw"))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
   field::LoadRequest request;

@@ -8,6 +8,7 @@
 #include "engine/base/json.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
+#include "engine/mesh/load.h"
 #include "engine/scene/world.h"
 
 namespace catena::scene {
@@ -66,6 +67,21 @@ struct Isosurface {
   double level = 0;
   Rgb color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
+};
+
+/// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.
+struct MeshSource {
+  json::Node where;
+  std::string path;
+  mesh::Placement placement;  ///< world = scale * file + offset
+  mesh::MeshPtr loaded;       ///< felt and drawn: one object
+};
+
+/// A mesh that is drawn.
+struct SurfaceMesh {
+  Entity mesh;
+  json::Node where;
+  Rgb color{0.8f, 0.8f, 0.9f};
 };
 
 struct StreamlineSet {

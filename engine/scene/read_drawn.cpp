@@ -1,3 +1,5 @@
+#include <filesystem>
+
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/read_parts.h"
@@ -65,6 +67,15 @@ Result<TransferFunction> read_transfer(const json::Node& node) {
   return transfer;
 }
 
+/// Empty where `path` is a mesh file that is there.
+std::string mesh_fault(const std::string& path) {
+  std::error_code code;
+  if (!mesh::is_mesh_file(path)) return in_quotes(path) + " has an unknown kind; a .stl or .obj file was expected";
+  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist; a .stl or .obj file was expected";
+  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file; a .stl or .obj file was expected";
+  return {};
+}
+
 /// Calls read(item) for each object of an array.
 template <class Read>
 Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
@@ -112,6 +123,39 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
     if (surface.opacity > 1)
       return json::error_at(*item.find("opacity"), "\"opacity\" is " + to_text(surface.opacity) + "; a number from 0 to 1 was expected");
     scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));
+    return Done{};
+  });
+}
+
+Outcome read_meshes(Scene& scene, const json::Node& node) {
+  return each_item(node, "meshes", [&](const json::Node& item) -> Outcome {
+    CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "opacity"}));
+    CATENA_TRY(const std::string name, json::require_string(item, "name"));
+    if (!is_name(name))
+      return json::error_at(*item.find("name"),
+                            "mesh name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+    if (find_mesh(scene, name))
+      return json::error_at(*item.find("name"), "a second mesh is called " + in_quotes(name) + "; a name of its own was expected");
+    MeshSource source;
+    source.where = item;
+    CATENA_TRY(const std::string file, json::require_string(item, "file"));
+    source.path = resolved_path(scene.path, file);
+    if (const std::string fault = mesh_fault(source.path); !fault.empty())
+      return json::error_at(*item.find("file"), "mesh " + in_quotes(name) + ": file " + fault);
+    CATENA_TRY(source.placement.scale, json::get_number(item, "scale", 1, json::Range::positive));
+    CATENA_TRY(source.placement.offset, json::get_vec3(item, "offset", source.placement.offset));
+    SurfaceMesh surface;
+    surface.where = item;
+    CATENA_TRY(surface.color, get_color(item, "color", surface.color));
+    CATENA_TRY(const double opacity, json::get_number(item, "opacity", 1));
+    if (opacity != 1)
+      return json::error_at(*item.find("opacity"), "\"opacity\" of a mesh is " + to_text(opacity) +
+                                                       "; meshes are drawn opaque: 1, or \"drawn\": false, was expected");
+    CATENA_TRY(const bool drawn, json::get_boolean(item, "drawn", true));
+    surface.mesh = scene.world.create();
+    scene.world.emplace<Name>(surface.mesh, {name});
+    scene.world.emplace<MeshSource>(surface.mesh, std::move(source));
+    if (drawn) scene.world.emplace<SurfaceMesh>(scene.world.create(), std::move(surface));
     return Done{};
   });
 }

@@ -27,11 +27,6 @@ std::string file_fault(const std::string& path) {
   return {};
 }
 
-std::string resolve(const std::string& scene_path, const std::string& file) {
-  const fs::path path(file);
-  return path.is_absolute() ? file : (fs::path(scene_path).parent_path() / path).string();
-}
-
 // ---- fields from files ----
 
 Result<field::RawLayout> read_raw_layout(const json::Node& node) {
@@ -57,7 +52,7 @@ Result<field::RawLayout> read_raw_layout(const json::Node& node) {
 Outcome read_file_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_TRY(const std::string file, json::require_string(node, "file"));
   LoadRequest request;
-  request.path = resolve(scene_path, file);
+  request.path = resolved_path(scene_path, file);
   if (is_raw(file)) {
     CATENA_CHECK(json::only_keys(node, {"file", "shape", "spacing", "origin", "type"}));
     CATENA_TRY(request.raw, read_raw_layout(node));
@@ -169,6 +164,11 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
 }
 
 }  // namespace
+
+std::string resolved_path(const std::string& scene_path, const std::string& file) {
+  const fs::path path(file);
+  return path.is_absolute() ? file : (fs::path(scene_path).parent_path() / path).string();
+}
 
 bool is_name(std::string_view text) {
   if (text.empty() || text[0] < 'a' || text[0] > 'z') return false;

@@ -10,6 +10,9 @@ namespace catena::scene {
 /// [a-z][a-z0-9_]*, and for links none of the words that the tick CSV uses itself.
 bool is_name(std::string_view text);
 
+/// Relative paths start at the scene file's folder.
+std::string resolved_path(const std::string& scene_path, const std::string& file);
+
 Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides);
 /// The entity of the field that member `key` of `object` names; an error lists the known ones.
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
@@ -21,6 +24,7 @@ Outcome read_workspace(Scene& scene, const json::Node& node);
 
 Outcome read_volumes(Scene& scene, const json::Node& node);
 Outcome read_isosurfaces(Scene& scene, const json::Node& node);
+Outcome read_meshes(Scene& scene, const json::Node& node);
 Outcome read_streamlines(Scene& scene, const json::Node& node);
 Outcome read_cursor(Scene& scene, const json::Node& node);
 

@@ -43,7 +43,7 @@ struct FieldOverride {
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
 Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// A bare data file: its (first usable) scalar grid as a volume with a transfer function from its histogram, a vector grid
-/// as streamlines; the camera is fitted.
+/// as streamlines, a triangle mesh as it is; the camera is fitted.
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {});
 
 Entity find_field(const Scene& scene, std::string_view name);
@@ -53,6 +53,10 @@ Result<field::AnyField> use_field(Scene& scene, const std::string& name, const j
 /// The same as a grid that can be drawn (analytic fields are sampled once). Volumes over the field that state no colours or
 /// no opacity get theirs from its histogram.
 Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where);
+Entity find_mesh(const Scene& scene, std::string_view name);
+/// Loads on first use: the hand's and the eye's mesh are one object.
+Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh);
+Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where);
 /// The one curve of (field, flow, seed, length).
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);
 

@@ -82,6 +82,32 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
   return source.drawn;
 }
 
+Entity find_mesh(const Scene& scene, std::string_view name) {
+  Entity found;
+  scene.world.each<MeshSource>([&](Entity e, const MeshSource&) {
+    if (scene.world.get<Name>(e).value == name) found = e;
+  });
+  return found;
+}
+
+Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh) {
+  MeshSource& source = scene.world.get<MeshSource>(mesh);
+  if (source.loaded) return source.loaded;
+  auto loaded = mesh::load_mesh(source.path, source.placement);
+  if (!loaded && source.where.line == 0) return loaded.error();
+  if (!loaded) return json::error_at(source.where, "mesh " + in_quotes(scene.world.get<Name>(mesh).value) + ": " + loaded.error().message);
+  source.loaded = *loaded;
+  return source.loaded;
+}
+
+Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where) {
+  if (const Entity mesh = find_mesh(scene, name)) return use_mesh(scene, mesh);
+  std::vector<std::string_view> names;
+  scene.world.each<MeshSource>([&](Entity e, const MeshSource&) { names.push_back(scene.world.get<Name>(e).value); });
+  return json::error_at(where, "unknown mesh " + in_quotes(name) + "; one of the scene's \"meshes\" was expected: " +
+                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+}
+
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length) {
   CATENA_ASSERT(flow.field != nullptr);
   if (!is_finite(seed)) return json::error_at(where, "the seed is not finite; three finite numbers [x, y, z] were expected");

@@ -2,7 +2,7 @@
 ///   ClosedForm<S>  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
 ///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start).
 ///   Feature<S>     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
-/// `seek` is `start` with the memory kept. A primitive is given while the link holds: none where the hand is free or released.
+/// `seek` is `start` with the memory kept. A primitive is given on the free side too, but none where the link has let go.
 /// Haptic thread: no allocation, lock, or throw.
 #pragma once
 #include "haptics/constraints/surface_side.h"
@@ -31,7 +31,7 @@ class ClosedForm final : public Constraint {
     advance_on(surface, rules_.now(state, scratch), probe, memory.side, state);
   }
   bool primitive(const Vec3& at, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
-    if (state.released || state.status == Status::free || state.status == Status::no_surface) return false;
+    if (state.released || state.status == Status::no_surface) return false;
     Memory copy = memory_of<Memory>(state);
     return S(shape_, copy.own, copy.side).primitive(at, out);
   }

@@ -8,6 +8,7 @@
 #include "haptics/constraints/gradient_force.h"
 #include "haptics/constraints/isosurface.h"
 #include "haptics/constraints/line.h"
+#include "haptics/constraints/mesh.h"
 #include "haptics/constraints/modes.h"
 #include "haptics/constraints/modulated_friction.h"
 #include "haptics/constraints/plane.h"
@@ -70,22 +71,23 @@ std::string known_types() {
 
 const std::vector<ConstraintType>& registry() {
   static const std::vector<ConstraintType> list{
-      point_constraint(),  //
-      line_constraint(),  //
-      segment_constraint(),  //
-      polyline_constraint(),  //
-      plane_constraint(),  //
-      sphere_constraint(),  //
-      box_constraint(),  //
-      isosurface_constraint(),  //
-      streamline_constraint(),  //
-      drag_constraint(),  //
-      friction_constraint(),  //
+      point_constraint(),               //
+      line_constraint(),                //
+      segment_constraint(),             //
+      polyline_constraint(),            //
+      plane_constraint(),               //
+      sphere_constraint(),              //
+      box_constraint(),                 //
+      mesh_constraint(),                //
+      isosurface_constraint(),          //
+      streamline_constraint(),          //
+      drag_constraint(),                //
+      friction_constraint(),            //
       modulated_friction_constraint(),  //
-      texture_constraint(),  //
-      viscosity_constraint(),  //
-      gradient_force_constraint(),  //
-      vortex_core_constraint(),  //
+      texture_constraint(),             //
+      viscosity_constraint(),           //
+      gradient_force_constraint(),      //
+      vortex_core_constraint(),         //
   };
   return list;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/base/json.h"
 #include "engine/flow/curve.h"
+#include "engine/mesh/mesh.h"
 #include "haptics/chain/constraint.h"
 
 namespace catena::haptics {
@@ -18,6 +19,8 @@ struct BuildContext {
   /// The one curve object of (field, flow, seed): the same that is drawn.
   std::function<Result<flow::CurvePtr>(const json::Node& where, const std::string& field_name, const flow::Flow& flow, const Vec3& seed)>
       curve;
+  /// The one mesh object of that name: the same that is drawn.
+  std::function<Result<mesh::MeshPtr>(const json::Node& where, const std::string& name)> mesh;
 };
 
 struct Key {

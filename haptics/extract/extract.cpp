@@ -54,7 +54,7 @@ Result<Indication> read_indication(const json::Node& link) {
   return out;
 }
 
-/// What a link was built from: its text, and the versions of its fields.
+/// What a link was built from: its text, and the versions of its fields and meshes.
 void add_recipe(const json::Node& node, Fnv1a& recipe) {
   recipe.add(static_cast<int>(node.kind));
   recipe.add(node.boolean);
@@ -108,6 +108,11 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
     CATENA_TRY(field::AnyField field, context.field(where, name));
     recipe.add(field.get()->version());
     return field;
+  };
+  noting.mesh = [&](const json::Node& where, const std::string& name) -> Result<mesh::MeshPtr> {
+    CATENA_TRY(mesh::MeshPtr mesh, context.mesh(where, name));
+    recipe.add(mesh->version());
+    return mesh;
   };
   link.name = from.find("name")->string;
   CATENA_TRY(link.stiffness_n_per_m, get_parameter(from, "stiffness", coupling.stiffness_n_per_m, json::Range::not_negative, noting));
@@ -177,6 +182,7 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene) {
   context.curve = [&scene](const json::Node& where, const std::string&, const flow::Flow& flow, const Vec3& seed) {
     return scene::use_curve(scene, flow, seed, where);
   };
+  context.mesh = [&scene](const json::Node& where, const std::string& name) { return scene::use_mesh(scene, name, where); };
 
   auto program = std::make_shared<Program>();
   program->coupling.stiffness_n_per_m = scene.coupling.stiffness_n_per_m;

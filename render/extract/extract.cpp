@@ -77,6 +77,31 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
   return Done{};
 }
 
+/// What this room keeps beside a SurfaceMesh: its triangles as plain data, made once.
+struct PlainMesh {
+  std::shared_ptr<const MeshGeometry> geometry;
+  std::uint64_t version = 0;
+};
+
+/// The drawn mesh is the felt one: the same object of the scene.
+Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
+    const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
+    CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
+    if (!scene.world.has<PlainMesh>(e)) scene.world.emplace<PlainMesh>(e);
+    PlainMesh& plain = scene.world.get<PlainMesh>(e);
+    if (plain.version != mesh->version()) {
+      auto geometry = std::make_shared<MeshGeometry>();
+      geometry->vertices = mesh->vertices();
+      geometry->triangles.reserve(3 * mesh->triangles().size());
+      for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
+      plain = {std::move(geometry), mesh->version()};
+    }
+    packet.meshes.push_back({plain.geometry, color_of(surface.color)});
+  }
+  return Done{};
+}
+
 /// What this room keeps beside a StreamlineSet: each curve as a polyline, made once.
 struct FlatCurves {
   std::vector<flow::CurvePtr> curves;
@@ -117,9 +142,14 @@ Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
 void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   Bounds drawn = packet_bounds(packet);
   if (drawn.empty()) {
-    // nothing but the cursor: its size follows the fields that the hand feels
+    // nothing but the cursor: its size follows the fields and meshes that the hand feels
     scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
       if (const field::Field* field = source.loaded.get()) drawn.add(domain_bounds(*field));
+    });
+    scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
+      if (!source.loaded) return;
+      drawn.add(source.loaded->lowest());
+      drawn.add(source.loaded->highest());
     });
   }
   double widest_tube = 0;
@@ -146,6 +176,8 @@ Bounds packet_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));
   for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(domain_bounds(*surface.grid));
+  for (const MeshItem& mesh : packet.meshes)
+    for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
   for (const TubeItem& tube : packet.tubes)
     for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
   for (const CursorItem& cursor : packet.cursors) {
@@ -164,6 +196,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};
   CATENA_CHECK(extract_volumes(scene, packet));
   CATENA_CHECK(extract_isosurfaces(scene, packet));
+  CATENA_CHECK(extract_meshes(scene, packet));
   CATENA_CHECK(extract_streamlines(scene, packet));
   extract_cursors(scene, packet);
   packet.view = view_of(scene, packet);

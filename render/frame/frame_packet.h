@@ -44,6 +44,17 @@ struct IsosurfaceItem {
   float opacity = 1;
 };
 
+/// Triangles as they are, each lit by its own normal: what the hand feels. Made once a mesh, shared by frames.
+struct MeshGeometry {
+  std::vector<Vec3> vertices;
+  std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
+};
+
+struct MeshItem {
+  std::shared_ptr<const MeshGeometry> geometry;
+  Color color;
+};
+
 /// A tube around a polyline, already flattened from the curve finely enough for its radius.
 struct TubeItem {
   std::vector<Vec3> points;
@@ -67,6 +78,7 @@ struct FramePacket {
   std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
   std::vector<VolumeItem> volumes;
   std::vector<IsosurfaceItem> isosurfaces;
+  std::vector<MeshItem> meshes;
   std::vector<TubeItem> tubes;
   std::vector<CursorItem> cursors;
 };

@@ -21,6 +21,7 @@ struct Vertex {
 };
 
 bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
+bool same(const MeshItem& a, const MeshItem& b) { return a.geometry == b.geometry && same(a.color, b.color); }
 bool same(const TubeItem& a, const TubeItem& b) { return a.radius == b.radius && same(a.color, b.color) && a.points == b.points; }
 bool same(const CursorItem& a, const CursorItem& b) {
   return a.probe == b.probe && a.proxies == b.proxies && a.active == b.active && a.force_n == b.force_n && a.size == b.size &&
@@ -49,6 +50,12 @@ Result<MeshPass> MeshPass::create(vk::Device& device) {
 }
 
 Outcome MeshPass::prepare(const FramePacket& packet) {
+  if (!built_ || !same(packet.meshes, built_meshes_)) {
+    Shape shape;
+    for (const MeshItem& mesh : packet.meshes) add_mesh(shape, mesh);
+    CATENA_CHECK(upload(meshes_, shape));
+    built_meshes_ = packet.meshes;
+  }
   if (!built_ || !same(packet.tubes, built_tubes_)) {
     Bounds bounds;
     for (const TubeItem& tube : packet.tubes)
@@ -85,13 +92,14 @@ Outcome MeshPass::upload(Mesh& mesh, const Shape& shape) {
 }
 
 Bounds MeshPass::bounds() const {
-  Bounds all = tubes_.bounds;
+  Bounds all = meshes_.bounds;
+  all.add(tubes_.bounds);
   all.add(cursors_.bounds);
   return all;
 }
 
 Outcome MeshPass::record(vk::Commands& commands, const CameraRays& rays) {
-  for (Mesh* mesh : {&tubes_, &cursors_}) {
+  for (Mesh* mesh : {&meshes_, &tubes_, &cursors_}) {
     if (mesh->index_count == 0) continue;
     CATENA_CHECK(write_uniform(*device_, mesh->uniform, rays.mesh(mesh->origin)));
     const vk::Binding binding{0, vk::Resource::uniform, &mesh->uniform, nullptr, nullptr};

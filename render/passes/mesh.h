@@ -1,4 +1,5 @@
-/// Tubes and glyphs: lit triangles into the opaque targets. Meshes are built and uploaded again only when the shapes change.
+/// Triangle meshes, tubes and glyphs: lit triangles into the opaque targets. Meshes are built and uploaded again only when the shapes
+/// change.
 #pragma once
 #include "render/passes/camera_rays.h"
 #include "render/passes/shapes.h"
@@ -27,7 +28,8 @@ class MeshPass {
 
   vk::Device* device_ = nullptr;
   vk::Pipeline pipeline_;
-  Mesh tubes_, cursors_;
+  Mesh meshes_, tubes_, cursors_;
+  std::vector<MeshItem> built_meshes_;
   std::vector<TubeItem> built_tubes_;
   std::vector<CursorItem> built_cursors_;
   bool built_ = false;

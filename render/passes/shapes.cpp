@@ -167,6 +167,22 @@ void add_tube(Shape& shape, const TubeItem& tube, int sides) {
   add_round_cap(shape, rings.back(), last, tube.radius, sides, tube.color, true);
 }
 
+void add_mesh(Shape& shape, const MeshItem& mesh) {
+  CATENA_ASSERT(mesh.geometry != nullptr && mesh.geometry->triangles.size() % 3 == 0);
+  const std::vector<Vec3>& vertices = mesh.geometry->vertices;
+  const std::vector<std::uint32_t>& triangles = mesh.geometry->triangles;
+  shape.vertices.reserve(shape.vertices.size() + triangles.size());
+  shape.triangles.reserve(shape.triangles.size() + triangles.size());
+  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
+    const Vec3 &a = vertices[triangles[i]], &b = vertices[triangles[i + 1]], &c = vertices[triangles[i + 2]];
+    const Vec3 normal = direction(cross(direction(b - a), direction(c - a)));
+    if (max_abs(normal) == 0) continue;
+    const std::uint32_t first = add_vertex(shape, a, normal, mesh.color);
+    add_vertex(shape, b, normal, mesh.color);
+    add_triangle(shape, first, first + 1, add_vertex(shape, c, normal, mesh.color));
+  }
+}
+
 void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides) {
   CATENA_ASSERT(is_finite(centre) && sides >= 4);
   if (!(radius > 0) || !std::isfinite(radius)) return;

@@ -31,6 +31,9 @@ int tube_sides(double radius, double scene_size);
 /// Closed: the last point repeats the first. Non-finite points are a bug of the caller.
 void add_tube(Shape& shape, const TubeItem& tube, int sides);
 
+/// Appends a mesh, flat: three vertices a triangle, with its normal. Triangles without an area are left out.
+void add_mesh(Shape& shape, const MeshItem& mesh);
+
 void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides = 20);
 /// With flat ends. Nothing if a and b coincide.
 void add_cylinder(Shape& shape, const Vec3& a, const Vec3& b, double radius, const Color& color, int sides = 12);

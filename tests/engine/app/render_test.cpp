@@ -127,6 +127,44 @@ TEST(Render, ABareFileMakesAPictureByItself) {
   }
 }
 
+/// A text STL of a tetrahedron: described, drawn by itself, and felt through the program.
+TEST(Render, ABareMeshMakesAPictureAndIsDescribed) {
+  const test::TemporaryFolder folder;
+  const char* corners[4] = {"0 0 0", "1 0 0", "0 1 0", "0 0 1"};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  std::string text = "solid t\n";
+  for (const auto& f : faces) {
+    text += "facet normal 0 0 0 outer loop";
+    for (const int v : f) text += std::string(" vertex ") + corners[v];
+    text += " endloop endfacet\n";
+  }
+  test::write_file(folder / "t.stl", text + "endsolid\n");
+  const auto info = program({"info", folder / "t.stl"});
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  for (const char* part : {"triangles    4", "vertices     4", "world box    0 0 0 .. 1 1 1", "open edges   0"})
+    EXPECT_NE(info.out.find(part), std::string::npos) << info.out;
+  const auto run = program({"render", folder / "t.stl", "-o", folder / "o.png", "--size", "128x96"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("1 mesh"), std::string::npos) << run.out;
+  const auto picture = render::read_png(folder / "o.png");
+  ASSERT_TRUE(picture);
+  int lit = 0;
+  for (std::uint32_t y = 0; y < 96; ++y)
+    for (std::uint32_t x = 0; x < 128; ++x) lit += picture->pixel(x, y)[0] > 30;
+  EXPECT_GT(lit, 128 * 96 / 20);
+  EXPECT_TRUE(render::write_png(std::string(CATENA_BINARY_DIR) + "/app-bare-mesh.png", *picture, false));
+
+  // seen and felt in one scene: pushed 0.1 into the slanted face
+  test::write_file(folder / "s.json", R"({"meshes": [{"name": "t", "file": "t.stl", "color": [0.9, 0.5, 0.3]}],
+    "chain": [{"name": "touch", "type": "mesh", "mesh": "t", "free": "above"}], "coupling": {"stiffness": 100, "damping": 0}})");
+  test::write_file(folder / "p.csv", "t,x,y,z\n0,1,1,1\n0.001,0.3,0.3,0.3\n");
+  const auto felt = program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "o.csv"});
+  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  const std::string csv = test::read_file(folder / "o.csv");
+  EXPECT_NE(csv.find("1,OK,0,3.3333333333"), std::string::npos) << csv;
+  EXPECT_EQ(program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.stl"}).exit_code, 2) << "an input is kept";
+}
+
 TEST(Render, AnOrbitNumbersItsPictures) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json",

@@ -156,6 +156,61 @@ TEST(SceneForFile, Errors) {
   }
 }
 
+const std::string kQuad = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
+TEST(UseMesh, IsLoadedOnceAndPlaced) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "quad.obj", kQuad);
+  auto scene = parse_scene(R"({"meshes": [{"name": "a", "file": "quad.obj", "scale": 3, "offset": [0, 0, 5], "color": [1, 0, 0]},
+                                          {"name": "b", "file": "quad.obj", "drawn": false}]})",
+                           folder / "s.json");
+  ASSERT_TRUE(scene) << message_of(scene);
+  EXPECT_EQ(scene->world.count<MeshSource>(), 2u);
+  EXPECT_EQ(scene->world.count<SurfaceMesh>(), 1u);
+  const auto a = use_mesh(*scene, "a", {}), again = use_mesh(*scene, "a", {}), b = use_mesh(*scene, "b", {});
+  ASSERT_TRUE(a) << message_of(a);
+  EXPECT_EQ(*a, *again);
+  EXPECT_NE(*a, *b);
+  EXPECT_EQ((*a)->lowest(), Vec3(0, 0, 5));
+  EXPECT_EQ((*a)->highest(), Vec3(6, 3, 5));
+  EXPECT_EQ((*b)->length(), 2);
+  EXPECT_NE(message_of(use_mesh(*scene, "c", {})).find("one of the scene's \"meshes\" was expected: a, b"), std::string::npos);
+}
+
+TEST(UseMesh, BadMeshesAreRefusedWithTheirLine) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "quad.obj", kQuad);
+  test::write_file(folder / "torn.stl", "solid a\nfacet");
+  const auto refused = [&](const std::string& item, const char* part) {
+    const auto scene = parse_scene("{\"meshes\": [\n" + item + "]}", folder / "s.json");
+    const std::string message = message_of(scene);
+    EXPECT_TRUE(message.starts_with((folder / "s.json") + ":2: ")) << message;
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  refused(R"({"name": "a", "file": "none.stl"})", "does not exist; a .stl or .obj file was expected");
+  refused(R"({"name": "a", "file": "quad.ply"})", "unknown kind");
+  refused(R"({"name": "A", "file": "quad.obj"})", "is not allowed");
+  refused(R"({"name": "a", "file": "quad.obj", "opacity": 0.5})", "\"opacity\" of a mesh is 0.5; meshes are drawn opaque");
+  refused(R"({"name": "a", "file": "quad.obj", "scale": 0})", "scale");
+  refused(R"({"name": "a", "file": "quad.obj", "colour": [1, 0, 0]})", "colour");
+  refused(R"({"name": "a", "file": "quad.obj"}, {"name": "a", "file": "quad.obj"})", "a second mesh is called \"a\"");
+  auto torn = parse_scene("{\"meshes\": [\n{\"name\": \"a\", \"file\": \"torn.stl\"}]}", folder / "s.json");
+  ASSERT_TRUE(torn);
+  const std::string message = message_of(use_mesh(*torn, "a", {}));
+  EXPECT_TRUE(message.starts_with((folder / "s.json") + ":2: mesh \"a\": ")) << message;
+  EXPECT_NE(message.find("torn.stl:2: the file ends too early; \"normal\" was expected"), std::string::npos) << message;
+}
+
+TEST(SceneForFile, AMeshIsDrawnAsItIs) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "quad.obj", kQuad);
+  auto scene = scene_for_file(folder / "quad.obj");
+  ASSERT_TRUE(scene) << message_of(scene);
+  EXPECT_EQ(scene->world.count<SurfaceMesh>(), 1u);
+  EXPECT_FALSE(scene->camera.given);
+  EXPECT_EQ(message_of(scene_for_file(folder / "none.obj")).find((folder / "none.obj") + ": "), 0u);
+}
+
 TEST(SceneForFile, RealScansAreTransparentInTheAir) {
   for (const auto& [name, air, tissue] : {std::tuple{"cranium_ct.vdb", -1000.0, 1500.0}, std::tuple{"colin27_brain_mr.vdb", 0.0, 100.0}}) {
     const std::string path = test::shared_data(name);

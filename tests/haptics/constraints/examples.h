@@ -5,6 +5,7 @@
 
 #include "tests/engine/flow/fields.h"
 #include "tests/haptics/constraints/rig.h"
+#include "tests/support/mesh_shapes.h"
 
 namespace catena::haptics::test {
 
@@ -57,6 +58,11 @@ inline std::map<std::string, std::vector<std::string>> examples() {
         R"("field": "boxes_grid", "level": 0.9, "free": "below")", R"("field": "noise_grid", "level": 0.1)",
         R"("field": "noise_grid", "level": 0.1, "free": "above", "release": 0.1)", R"("field": "broken_grid", "level": 0.5)",
         R"("field": "broken_grid", "level": 0.5, "free": "above")"}},
+      {"mesh",
+       {R"("mesh": "box")", R"("mesh": "box", "free": "above")", R"("mesh": "box", "free": "below", "release": 0.2)",
+        R"("mesh": "sheet", "free": "above", "release": 0.3)", R"("mesh": "sheet", "release": 0.1)", R"("mesh": "book", "free": "above")",
+        R"("mesh": "book")", R"("mesh": "sphere", "free": "above")", R"("mesh": "sphere")", R"("mesh": "plate", "free": "above")",
+        R"("mesh": "plate", "free": "below")"}},
       {"viscosity",
        {R"("time": 0.05)", R"("time": 0)", R"("coefficient": 2)", R"("time": {"field": "gaussian", "map": [[0, 0], [1, 1]]})"}},
       {"gradient_force",
@@ -128,6 +134,16 @@ inline const Fields& fields() {
     made.named["broken_circle"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3& p) {
       return random.in(0, 1) < 0.03 ? Vec3(std::numeric_limits<double>::quiet_NaN()) : Vec3(-p.y, p.x, 0.1);
     });
+    made.meshes["box"] = catena::test::mesh_of(catena::test::box_soup());
+    made.meshes["sheet"] = catena::test::mesh_of(catena::test::sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
+    made.meshes["sphere"] = catena::test::mesh_of(catena::test::sphere_soup(12));
+    made.meshes["plate"] = catena::test::mesh_of(catena::test::box_soup({-1, -1, -5e-4}, {1, 1, 5e-4}));
+    // three leaves at one spine, one of them turned over
+    mesh::Soup book;
+    catena::test::add_quad(book, {0, -1, 0}, {1, -1, 0.2}, {1, 1, 0.2}, {0, 1, 0});
+    catena::test::add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
+    catena::test::add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
+    made.meshes["book"] = catena::test::mesh_of(std::move(book));
     return made;
   }();
   return all;

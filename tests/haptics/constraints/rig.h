@@ -39,11 +39,17 @@ std::shared_ptr<const field::ScalarGrid> grid_of(const field::Mapping& mapping, 
 
 struct Fields {
   std::map<std::string, field::AnyField> named;
+  std::map<std::string, mesh::MeshPtr> meshes;
   BuildContext context() const {
     BuildContext c;
     c.field = [this](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
       const auto it = named.find(name);
       if (it == named.end()) return json::error_at(where, "no field " + name);
+      return it->second;
+    };
+    c.mesh = [this](const json::Node& where, const std::string& name) -> Result<mesh::MeshPtr> {
+      const auto it = meshes.find(name);
+      if (it == meshes.end()) return json::error_at(where, "no mesh " + name);
       return it->second;
     };
     c.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };

@@ -150,6 +150,22 @@ TEST(ExtractProgram, ASelectedLinkHoldsTheDrawnCurve) {
   }
 }
 
+TEST(ExtractProgram, AMeshLinkHoldsTheDrawnMesh) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "quad.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  scene::Scene scene = scene_of(R"({"meshes": [{"name": "floor", "file": "quad.obj", "scale": 2}],
+    "chain": [{"name": "a", "type": "mesh", "mesh": "floor", "free": "above"}]})",
+                                folder / "s.json");
+  const auto program = extract_program(scene);
+  ASSERT_TRUE(program) << program.error().message;
+  EXPECT_EQ((*program)->links[0].constraint->domain_length(), 4);
+  const auto again = extract_program(scene);
+  ASSERT_TRUE(again);
+  EXPECT_EQ((*program)->links[0].recipe, (*again)->links[0].recipe);
+  expect_error("{\"chain\": [\n{\"name\": \"a\", \"type\": \"mesh\",\n\"mesh\": \"skull\"}]}", 3,
+               {"unknown mesh \"skull\"", "it has none"});
+}
+
 TEST(ExtractProgram, CommonKeysAreChecked) {
   expect_error(point_with("\"stiffness\": -1"), 3, {"\"stiffness\" is -1", ">= 0 was expected"});
   expect_error(point_with("\"stiffness\": \"x\""), 3, {"\"stiffness\"", "finite number"});

@@ -38,6 +38,23 @@ TEST(Extract, AnEmptySceneIsABackgroundAndAView) {
   EXPECT_TRUE(is_finite(packet.view.position));
 }
 
+TEST(Extract, AMeshIsOneObjectInEveryFrame) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "quad.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  auto scene = scene::parse_scene(
+      R"({"meshes": [{"name": "a", "file": "quad.obj", "color": [1, 0, 0]}, {"name": "b", "file": "quad.obj", "drawn": false}]})",
+      folder / "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const FramePacket one = packet_of(*scene), two = packet_of(*scene);
+  ASSERT_EQ(one.meshes.size(), 1u);
+  EXPECT_EQ(one.meshes[0].geometry, two.meshes[0].geometry);
+  EXPECT_EQ(one.meshes[0].geometry->triangles.size(), 6u);
+  EXPECT_EQ(one.meshes[0].color.r, 1.0f);
+  // the fitted camera looks at its middle
+  EXPECT_LE(norm(one.view.target - Vec3(1, 0.5, 0)), 1e-6);
+  EXPECT_NEAR(packet_bounds(one).diagonal(), std::sqrt(5.0), 1e-12);
+}
+
 TEST(Extract, TransparentBackgroundHasNoAlpha) {
   scene::Scene scene = scene_of(R"({"fields": {}, "chain": [], "background": "transparent"})");
   EXPECT_EQ(packet_of(scene).background[3], 0.0f);

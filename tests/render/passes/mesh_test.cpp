@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "tests/render/support/frames.h"
+#include "tests/support/mesh_shapes.h"
 
 namespace catena::test {
 namespace {
@@ -47,6 +48,57 @@ TEST_F(Mesh, DepthOfATubeIsExact) {
   // 68 from the eye; a tube of flat facets is a little thinner
   EXPECT_NEAR(depth->depth[60 * 160 + 80], 68, 0.1);
   EXPECT_TRUE(std::isinf(depth->depth[2 * 160 + 80]));
+}
+
+MeshItem item_of(const mesh::Soup& soup, Color color) {
+  auto geometry = std::make_shared<MeshGeometry>();
+  geometry->vertices = soup.vertices;
+  for (const mesh::Triangle& t : soup.triangles) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
+  return {geometry, color};
+}
+
+/// A box seen along y, in parallel: a rectangle with sharp edges, one colour, one depth.
+TEST_F(Mesh, BoxHasItsSilhouetteColourAndDepth) {
+  FramePacket packet = packet_of({0, -10, 0}, {0, 0, 0});
+  packet.background = {0, 0, 0, 1};
+  packet.view.orthographic = true;
+  packet.view.height = 12;  // 0.1 a pixel
+  packet.meshes = {item_of(box_soup({-2, 1, -1}, {3, 4, 1.5}), {1, 0.5, 0})};
+  const Picture picture = draw(packet, {}, "box");
+  const auto depth = renderer_->read_depth();
+  ASSERT_TRUE(depth);
+  for (std::uint32_t y = 0; y < 120; ++y)
+    for (std::uint32_t x = 0; x < 160; ++x) {
+      const double u = (x - 79.5) * 0.1, v = (59.5 - y) * 0.1;
+      const bool inside = u > -2 && u < 3 && v > -1 && v < 1.5;
+      const std::uint8_t* p = picture.pixel(x, y);
+      // facing the eye: 0.9 of the colour and the whole highlight
+      ASSERT_NEAR(p[0], inside ? 255 : 0, 1) << x << " " << y;
+      ASSERT_NEAR(p[1], inside ? 255 * (0.9 * 0.5 + 0.2) : 0, 1) << x << " " << y;
+      ASSERT_NEAR(p[2], inside ? 255 * 0.2 : 0, 1) << x << " " << y;
+      const float d = depth->depth[y * 160 + x];
+      ASSERT_EQ(std::isfinite(d), inside) << x << " " << y;
+      if (inside) {
+        ASSERT_NEAR(d, 11, 1e-5);
+      }
+    }
+}
+
+/// Turned by 60 degrees the face is lit by its own normal: 0.2 + 0.7 cos of the colour, no smoothing over the edge.
+TEST_F(Mesh, FacesAreLitByTheirOwnNormals) {
+  FramePacket packet = packet_of({0, -10, 0}, {0, 0, 0});
+  packet.background = {0, 0, 0, 1};
+  packet.view.orthographic = true;
+  packet.view.height = 12;
+  mesh::Soup roof;
+  const double rise = 4 * std::sqrt(3.0);
+  add_quad(roof, {0, 0, -4}, {4, rise, -4}, {4, rise, 4}, {0, 0, 4});
+  add_quad(roof, {0, 0, -4}, {0, 0, 4}, {-4, 0, 4}, {-4, 0, -4});
+  packet.meshes = {item_of(roof, {0, 0, 1})};
+  const Picture picture = draw(packet, {}, "roof");
+  for (const std::uint32_t x : {81u, 100u, 118u}) EXPECT_NEAR(picture.pixel(x, 60)[2], 255 * (0.2 + 0.7 * 0.5), 1.5) << x;
+  for (const std::uint32_t x : {42u, 60u, 78u}) EXPECT_EQ(picture.pixel(x, 60)[2], 255) << x;
+  EXPECT_EQ(picture.pixel(125, 60)[2], 0);
 }
 
 TEST_F(Mesh, NearerTubeHidesTheFartherOne) {

@@ -1,0 +1,28 @@
+/// Reads triangle meshes: STL (binary and ASCII) and OBJ. Corners are joined as they lie; stored normals, colours, texture
+/// coordinates, groups and materials are not used: the outside is where the corners run counter-clockwise.
+/// OBJ polygons become fans. Refused, with one line "FILE: place: what; what was expected": numbers that are not finite, indices of
+/// vertices that are not there, a file that ends too early or is longer than it says, more than kMostTriangles. Off the tick.
+#pragma once
+#include <string_view>
+
+#include "engine/mesh/mesh.h"
+
+namespace catena::mesh {
+
+inline constexpr std::size_t kMostTriangles = 20'000'000;
+
+bool is_mesh_file(std::string_view path);  ///< by its ending: .stl, .obj (any case)
+
+/// world = scale * file + offset
+struct Placement {
+  double scale = 1;
+  Vec3 offset{0.0};
+};
+
+Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement = {});
+
+/// The contents of a file; `name` begins every message.
+Result<Soup> parse_stl(std::string_view bytes, const std::string& name);
+Result<Soup> parse_obj(std::string_view text, const std::string& name);
+
+}  // namespace catena::mesh

@@ -1,0 +1,201 @@
+#include "engine/mesh/mesh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+
+namespace catena::mesh {
+namespace {
+
+std::atomic<std::uint64_t> next_version{1};
+
+constexpr double kSmallest = 1e-100, kLargest = 1e100;
+
+/// Vertices of equal coordinates become one (-0 is 0).
+void weld(Soup& soup) {
+  for (Vec3& v : soup.vertices) v = v + Vec3(0.0);
+  std::vector<std::uint32_t> order(soup.vertices.size()), renamed(soup.vertices.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto before = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3 &u = soup.vertices[a], &v = soup.vertices[b];
+    return u.x != v.x ? u.x < v.x : u.y != v.y ? u.y < v.y : u.z != v.z ? u.z < v.z : a < b;
+  };
+  std::sort(order.begin(), order.end(), before);
+  std::uint32_t first = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || soup.vertices[order[i]] != soup.vertices[first]) first = order[i];
+    renamed[order[i]] = first;
+  }
+  for (Triangle& t : soup.triangles)
+    for (std::uint32_t& v : t) v = renamed[v];
+}
+
+/// Twice the area over the longest edge.
+double height_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 u = b - a, v = c - a, w = c - b;
+  const double longest = std::sqrt(std::max({dot(u, u), dot(v, v), dot(w, w)}));
+  return longest > 0 ? norm(cross(u, v)) / longest : 0;
+}
+
+/// Only the vertices that a triangle names, in their old order.
+void compact(std::vector<Vec3>& vertices, std::vector<Triangle>& triangles) {
+  std::vector<std::uint32_t> renamed(vertices.size(), 0);
+  for (const Triangle& t : triangles)
+    for (const std::uint32_t v : t) renamed[v] = 1;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (renamed[i] == 0) continue;
+    vertices[count] = vertices[i];
+    renamed[i] = count++;
+  }
+  vertices.resize(count);
+  vertices.shrink_to_fit();
+  for (Triangle& t : triangles)
+    for (std::uint32_t& v : t) v = renamed[v];
+}
+
+}  // namespace
+
+Result<MeshPtr> make_mesh(Soup soup, const std::string& name) {
+  const auto failed = [&](const std::string& what) { return Error{one_line(name + ": " + what)}; };
+  for (const Triangle& t : soup.triangles)
+    for (const std::uint32_t v : t)
+      if (v >= soup.vertices.size()) return failed("a triangle names a vertex that is not there; a whole mesh was expected");
+  for (const Vec3& v : soup.vertices)
+    if (!is_finite(v)) return failed("a vertex is not finite; finite numbers were expected");
+  auto self = std::make_shared<TriangleMesh>();
+  self->name_ = name;
+  self->version_ = next_version.fetch_add(1);
+
+  // the box of what triangles name, and the exact scale
+  Vec3 lo(INFINITY), hi(-INFINITY);
+  for (const Triangle& t : soup.triangles)
+    for (const std::uint32_t i : t) {
+      const Vec3& v = soup.vertices[i];
+      lo = {std::min(lo.x, v.x), std::min(lo.y, v.y), std::min(lo.z, v.z)};
+      hi = {std::max(hi.x, v.x), std::max(hi.y, v.y), std::max(hi.z, v.z)};
+    }
+  if (soup.triangles.empty()) return failed("holds no triangle; at least one was expected");
+  const double length = max_abs(hi * 0.5 - lo * 0.5) * 2;
+  if (!(max_abs(hi) <= kLargest && max_abs(lo) <= kLargest && length >= kSmallest))
+    return failed("is " + to_text(length) + " long; a size from 1e-100 to 1e100 was expected");
+  int exponent = 0;
+  const double part = std::frexp(length, &exponent);
+  self->scale_ = std::ldexp(1.0, part == 0.5 ? exponent - 1 : exponent);
+  self->inverse_scale_ = 1 / self->scale_;
+  // a centre of few digits, so that differences with float coordinates stay exact
+  for (int i = 0; i < 3; ++i) {
+    const double step = self->scale_ / 64;
+    self->centre_[i] = std::round((0.5 * (lo[i] + hi[i])) / step) * step;
+  }
+
+  // weld, drop what has no area
+  weld(soup);
+  std::vector<Triangle> kept;
+  kept.reserve(soup.triangles.size());
+  for (const Triangle& t : soup.triangles) {
+    const bool distinct = t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+    const double height = height_of(self->own(soup.vertices[t[0]]), self->own(soup.vertices[t[1]]), self->own(soup.vertices[t[2]]));
+    if (distinct && height > kThinnest) kept.push_back(t);
+  }
+  self->dropped_ = soup.triangles.size() - kept.size();
+  if (kept.empty()) return failed("all " + std::to_string(self->dropped_) + " triangles have no area; a surface was expected");
+  compact(soup.vertices, kept);
+  self->vertices_ = std::move(soup.vertices);
+  self->lowest_ = Vec3(INFINITY);
+  self->highest_ = Vec3(-INFINITY);
+  self->own_vertices_.reserve(self->vertices_.size());
+  for (const Vec3& v : self->vertices_) {
+    self->lowest_ = {std::min(self->lowest_.x, v.x), std::min(self->lowest_.y, v.y), std::min(self->lowest_.z, v.z)};
+    self->highest_ = {std::max(self->highest_.x, v.x), std::max(self->highest_.y, v.y), std::max(self->highest_.z, v.z)};
+    self->own_vertices_.push_back(self->own(v));
+  }
+  self->length_ = max_abs(self->highest_ - self->lowest_);
+
+  // the hierarchy orders the faces
+  std::vector<FaceBox> boxes;
+  boxes.reserve(kept.size());
+  for (const Triangle& t : kept) {
+    const Vec3 &a = self->own_vertices_[t[0]], &b = self->own_vertices_[t[1]], &c = self->own_vertices_[t[2]];
+    boxes.push_back({{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})},
+                     {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})}});
+  }
+  std::vector<std::uint32_t> order;
+  self->bvh_.build(boxes, order);
+  self->triangles_.reserve(kept.size());
+  for (const std::uint32_t f : order) self->triangles_.push_back(kept[f]);
+  self->measure_faces();
+  self->connect();
+  return MeshPtr(std::move(self));
+}
+
+void TriangleMesh::measure_faces() {
+  faces_.resize(triangles_.size());
+  vertex_normals_.assign(vertices_.size(), Vec3(0.0));
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f) {
+    Face& face = faces_[f];
+    const std::array<Vec3, 3> v{corner(f, 0), corner(f, 1), corner(f, 2)};
+    face.normal = direction(cross(v[1] - v[0], v[2] - v[0]));
+    face.offset = (dot(face.normal, v[0]) + dot(face.normal, v[1]) + dot(face.normal, v[2])) / 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = v[k], &b = v[(k + 1) % 3], &c = v[(k + 2) % 3];
+      face.side[k] = direction(cross(face.normal, b - a));
+      face.limit[k] = 0.5 * (dot(face.side[k], a) + dot(face.side[k], b));
+      const Vec3 u = direction(b - a), w = direction(c - a);
+      vertex_normals_[triangles_[f][k]] += std::atan2(norm(cross(u, w)), dot(u, w)) * face.normal;
+    }
+  }
+  for (Vec3& n : vertex_normals_) n = direction(n);
+}
+
+void TriangleMesh::connect() {
+  struct Edge {
+    std::uint32_t a, b, face;
+    std::uint8_t k;
+    bool forward;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * triangles_.size());
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f)
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = triangles_[f][k], b = triangles_[f][(k + 1u) % 3u];
+      edges.push_back({std::min(a, b), std::max(a, b), f, k, a < b});
+    }
+  std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
+    return x.a != y.a ? x.a < y.a : x.b != y.b ? x.b < y.b : x.face != y.face ? x.face < y.face : x.k < y.k;
+  });
+  across_.resize(triangles_.size());
+  border_.assign(vertices_.size(), 0);
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end].a == edges[i].a && edges[end].b == edges[i].b) ++end;
+    for (std::size_t j = i; j < end; ++j) across_[edges[j].face][edges[j].k] = edges[j + 1 < end ? j + 1 : i].face;
+    if (end - i == 1) border_[edges[i].a] = border_[edges[i].b] = 1;
+    open_edges_ += end - i == 1 ? 1 : 0;
+    crowded_edges_ += end - i > 2 ? 1 : 0;
+    turned_edges_ += end - i == 2 && edges[i].forward == edges[i + 1].forward ? 1 : 0;
+    i = end;
+  }
+
+  // faces around each vertex
+  fan_starts_.assign(vertices_.size() + 1, 0);
+  for (const Triangle& t : triangles_)
+    for (const std::uint32_t v : t) ++fan_starts_[v + 1];
+  std::partial_sum(fan_starts_.begin(), fan_starts_.end(), fan_starts_.begin());
+  fans_.resize(3 * triangles_.size());
+  std::vector<std::uint32_t> next(fan_starts_.begin(), fan_starts_.end() - 1);
+  for (std::uint32_t f = 0; f < triangles_.size(); ++f)
+    for (const std::uint32_t v : triangles_[f]) fans_[next[v]++] = f;
+}
+
+std::size_t TriangleMesh::bytes() const {
+  const auto of = [](const auto& list) { return list.size() * sizeof(list[0]); };
+  return of(vertices_) + of(own_vertices_) + of(vertex_normals_) + of(triangles_) + of(across_) + of(faces_) + of(fans_) + of(fan_starts_) +
+         of(border_) + bvh_.bytes();
+}
+
+}  // namespace catena::mesh

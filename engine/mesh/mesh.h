@@ -1,0 +1,101 @@
+/// A triangle mesh that can be felt and seen: welded, indexed, with its neighbourhoods and a hierarchy of boxes. Immutable;
+/// open edges, non-manifold edges and turned faces are allowed and counted.
+/// World units in `vertices`, double precision. What a tick reads is in the mesh's own frame:
+///   own = (world - centre) / scale,  scale = the power of two at or above L, so that scaling is exact and own lies in [-1/2, 1/2]^3
+/// Made off the tick; reading is safe from every thread, without allocation.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/base/vec.h"
+#include "engine/mesh/bvh.h"
+
+namespace catena::mesh {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// What a reader found: not welded, not checked beyond its numbers.
+struct Soup {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+};
+
+/// One face in the mesh's own frame: normal . x = offset, and within its outline where side[k] . x >= limit[k] for all edges k
+/// (from corner k to corner k + 1; side[k] is unit, in the plane, pointing inwards).
+struct Face {
+  Vec3 normal{0.0};  ///< unit; the corners run counter-clockwise seen from where it points
+  double offset = 0;
+  std::array<Vec3, 3> side{};
+  std::array<double, 3> limit{};
+
+  double height(const Vec3& p) const { return dot(normal, p) - offset; }
+  bool covers(const Vec3& p, double tolerance) const {
+    return dot(side[0], p) - limit[0] >= -tolerance && dot(side[1], p) - limit[1] >= -tolerance && dot(side[2], p) - limit[2] >= -tolerance;
+  }
+};
+
+class TriangleMesh {
+ public:
+  const std::string& name() const { return name_; }
+  std::uint64_t version() const { return version_; }  ///< unique in the process
+  double length() const { return length_; }           ///< L: the longest edge of the bounding box, world units
+  const Vec3& lowest() const { return lowest_; }
+  const Vec3& highest() const { return highest_; }
+  std::size_t bytes() const;
+
+  const std::vector<Vec3>& vertices() const { return vertices_; }
+  const std::vector<Triangle>& triangles() const { return triangles_; }  ///< in the order of the hierarchy, not of the file
+  std::size_t dropped() const { return dropped_; }                       ///< triangles without an area
+  std::size_t open_edges() const { return open_edges_; }
+  std::size_t crowded_edges() const { return crowded_edges_; }  ///< with more than two faces
+  std::size_t turned_edges() const { return turned_edges_; }    ///< whose two faces disagree on the outside
+
+  // the mesh's own frame
+  double scale() const { return scale_; }
+  Vec3 own(const Vec3& world) const { return (world - centre_) * inverse_scale_; }
+  Vec3 world(const Vec3& own) const { return centre_ + own * scale_; }
+  const Face& face(std::uint32_t f) const { return faces_[f]; }
+  const Vec3& corner(std::uint32_t f, int k) const { return own_vertices_[triangles_[f][static_cast<std::size_t>(k)]]; }
+  const Bvh& bvh() const { return bvh_; }
+  /// The next face around edge k (from corner k to k + 1), in a ring; f itself at an open edge.
+  std::uint32_t across(std::uint32_t f, int k) const { return across_[f][static_cast<std::size_t>(k)]; }
+  /// All faces at a vertex.
+  std::span<const std::uint32_t> fan(std::uint32_t vertex) const {
+    return std::span(fans_).subspan(fan_starts_[vertex], fan_starts_[vertex + 1] - fan_starts_[vertex]);
+  }
+  bool on_border(std::uint32_t vertex) const { return border_[vertex] != 0; }
+  /// The mean of the faces' normals, weighted by their angles: its sign tells inside from outside (Baerentzen and Aanaes).
+  const Vec3& vertex_normal(std::uint32_t vertex) const { return vertex_normals_[vertex]; }
+
+ private:
+  friend Result<std::shared_ptr<const TriangleMesh>> make_mesh(Soup soup, const std::string& name);
+  void connect();
+  void measure_faces();
+
+  std::string name_;
+  std::uint64_t version_ = 0;
+  double length_ = 0, scale_ = 1, inverse_scale_ = 1;
+  Vec3 centre_{0.0}, lowest_{0.0}, highest_{0.0};
+  std::vector<Vec3> vertices_, own_vertices_, vertex_normals_;
+  std::vector<Triangle> triangles_, across_;
+  std::vector<Face> faces_;
+  std::vector<std::uint32_t> fans_, fan_starts_;
+  std::vector<std::uint8_t> border_;
+  std::size_t dropped_ = 0, open_edges_ = 0, crowded_edges_ = 0, turned_edges_ = 0;
+  Bvh bvh_;
+};
+
+using MeshPtr = std::shared_ptr<const TriangleMesh>;
+
+inline constexpr double kThinnest = 1e-10;  ///< of L: the height below which a triangle has no area
+
+/// Welds vertices of equal coordinates, drops triangles without an area and builds the rest. Refused: no triangle left, numbers that
+/// are not finite, a size beyond 1e-100..1e100. The message begins with `name`.
+Result<MeshPtr> make_mesh(Soup soup, const std::string& name);
+
+}  // namespace catena::mesh
