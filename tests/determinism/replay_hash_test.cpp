@@ -52,10 +52,56 @@ constexpr const char* kGridOnline = R"({"fields": {"v": {"file": "circle.vdb"}, 
   "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.4},
             {"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0.02, 0.03], "method": "rk4"}]})";
 
+constexpr const char* kShapes = R"({"fields": {},
+  "chain": [{"name": "path", "type": "polyline", "points": [[0.7, 0, 0], [0, 0.7, 0.1], [-0.7, 0, 0], [0, -0.6, 0]], "closed": true},
+            {"name": "rail", "type": "segment", "from": [-0.5, -0.4, 0], "to": [0.6, 0.5, 0.2], "snap": 0.2, "release": 0.35},
+            {"name": "axis", "type": "line", "point": [0, 0, 0.1], "direction": [1, 1, 0], "stiffness": 90, "release": 0.5},
+            {"name": "ball", "type": "sphere", "center": [0.1, 0, 0], "radius": 0.4, "free": "above"},
+            {"name": "case", "type": "box", "center": [0, 0, 0], "size": [0.9, 0.8, 0.7], "free": "below", "release": 0.3}]})";
+constexpr const char* kFriction = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "chain": [{"name": "drag", "type": "drag", "threshold": 0.02},
+            {"name": "along", "type": "friction", "field": "v", "threshold": 0.05},
+            {"name": "rough", "type": "texture", "threshold": 0.01, "amplitude": 0.8, "wavelength": 0.07},
+            {"name": "oil", "type": "viscosity", "time": 0.004}], "coupling": {"stiffness": 250, "damping": 0.5}})";
+constexpr const char* kAnisotropic = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "skin", "type": "anisotropic_friction", "surface": "s", "level": 0.5, "field": "v", "threshold": 0.03,
+             "tau_min": 0.002, "tau_max": 0.04, "free": "above", "release": 0.4}]})";
+constexpr const char* kDriven = R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "pull", "type": "gradient_force", "field": "s", "displacement": 0.05, "towards": "high"},
+            {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search": 0.6,
+             "stiffness": {"field": "s", "map": [[0.2, 100], [0.8, 400]]}},
+            {"name": "drag", "type": "drag", "threshold": {"field": "v", "normalise": true, "map": [[0, 0.001], [1, 0.03]]}}]})";
+constexpr const char* kModes = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "snap": 0.1, "release": 0.25,
+             "indicate": {"cue": "vibration", "amplitude": 0.3, "frequency": 130}},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "release": 0.3, "indicate": {"cue": "detent"}},
+            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "on": {"force_above": 20, "force_below": 5}}],
+  "modes": [{"name": "swapped", "links": ["surface", "curve"], "on": {"button": 1, "toggle": true}}],
+  "coupling": {"ramp_s": 0.05, "max_force": 100}})";
+constexpr const char* kMesh = R"({"fields": {}, "meshes": [{"name": "wedge", "file": "wedge.obj", "scale": 2.6}],
+  "chain": [{"name": "touch", "type": "mesh", "mesh": "wedge", "free": "above", "release": 0.3}]})";
+constexpr const char* kPipe = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.55, "release": 0.25},
+            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 1, 4]}], "coupling": {"method": "pipe"}})";
+constexpr const char* kBalance = R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})";
+
 const Recorded kRecorded[] = {
-    {"circle", kCircle, 0x609d8539e109214d}, {"circle_online", kCircleOnline, 0x95e0775dbacd31d3},
-    {"sphere", kSphere, 0x4a5465667050ae74}, {"chain", kChain, 0x70cf14c60ae6a356},
-    {"grids", kGrids, 0xe74048e48824af15},   {"grid_online", kGridOnline, 0xde9c593d62a4b946},
+    {"circle", kCircle, 0x609d8539e109214d},
+    {"circle_online", kCircleOnline, 0x95e0775dbacd31d3},
+    {"sphere", kSphere, 0x4a5465667050ae74},
+    {"chain", kChain, 0x70cf14c60ae6a356},
+    {"shapes", kShapes, 0},
+    {"friction", kFriction, 0},
+    {"anisotropic", kAnisotropic, 0},
+    {"driven", kDriven, 0},
+    {"modes", kModes, 0},
+    {"mesh", kMesh, 0},
+    {"pipe", kPipe, 0},
+    {"balance", kBalance, 0},
+    {"grids", kGrids, 0xe74048e48824af15},
+    {"grid_online", kGridOnline, 0xde9c593d62a4b946},
 };
 
 std::string fmt_hash(std::uint64_t hash) {
@@ -70,6 +116,8 @@ std::shared_ptr<const Program> program_of(const Recorded& recorded, const test::
         CATENA_PROGRAM, {"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
+  test::write_file(folder / "wedge.obj",
+                   "v -0.4 -0.4 -0.3\nv 0.4 -0.4 -0.3\nv 0 0.5 -0.3\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   auto scene = scene::parse_scene(recorded.scene, folder / "scene.json");
   EXPECT_TRUE(scene) << scene.error().message;
   auto program = extract_program(*scene);

@@ -1,0 +1,94 @@
+/// What the benchmarks of the tick share: fields sampled on 256^3, links from JSON, a hand's path, quantiles as counters.
+#pragma once
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/field/analytic.h"
+#include "engine/field/grid.h"
+#include "haptics/constraints/registry.h"
+#include "haptics/servo/replay.h"
+
+namespace catena::bench {
+
+using namespace catena::haptics;
+
+/// An analytic field on 256 nodes an axis of the box -2..2 (hill: -1.2..1.2), made once.
+inline const field::AnyField& grid_256(const std::string& name) {
+  static std::map<std::string, field::AnyField> made;
+  field::AnyField& grid = made[name];
+  if (grid.get() != nullptr) return grid;
+  const auto formula = field::make_analytic(name);
+  CATENA_ASSERT(static_cast<bool>(formula));
+  const double half = name == "hill" ? 1.2 : 2;
+  if (formula->scalar) grid.scalar = field::sample_on_grid(*formula->scalar, 256, -half, half);
+  if (formula->vector) grid.vector = field::sample_on_grid(*formula->vector, 256, -half, half);
+  return grid;
+}
+
+inline BuildContext context_256() {
+  BuildContext context;
+  context.field = [](const json::Node&, const std::string& name) -> Result<field::AnyField> { return grid_256(name); };
+  context.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };
+  return context;
+}
+
+inline Link make_link(const json::Node& node, const BuildContext& context) {
+  auto built = build_constraint(node, context);
+  CATENA_ASSERT(static_cast<bool>(built));
+  Link link;
+  link.name = node.find("name")->string;
+  link.constraint = *built;
+  return link;
+}
+
+inline Link make_link(const std::string& text) { return make_link(*json::parse(text, "bench"), context_256()); }
+
+/// A hand at about 0.2 units/s with tremor, for 20 s at 1 kHz, around `centre`.
+inline std::vector<ProbeSample> hand_path(const Vec3& centre = Vec3(0.6, 0, 0), double radius = 0.2) {
+  std::vector<ProbeSample> path;
+  for (int k = 0; k < 20000; ++k) {
+    const double t = 1e-3 * k, a = 0.4 * t, r = radius * (0.6 + 0.4 * std::sin(0.37 * a));
+    path.push_back({t,
+                    centre + Vec3(r * std::cos(a) + 0.002 * std::sin(60 * t), r * std::sin(1.1 * a),
+                                  0.3 * std::sin(0.7 * a) + 0.002 * std::cos(57 * t)),
+                    0});
+  }
+  return path;
+}
+
+/// Ticks of the program along the path; nanoseconds a tick and evaluations a link as counters.
+inline void run_chain(benchmark::State& state, const Program& program, const std::vector<ProbeSample>& path = hand_path()) {
+  ReplayStats last;
+  for (auto _ : state) last = replay(program, path, [](const exchange::HapticState&) { return true; });
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * path.size()));
+  state.counters["p50_ns"] = last.tick_ns_p50;
+  state.counters["p99_ns"] = last.tick_ns_p99;
+  state.counters["p999_ns"] = last.tick_ns_p999;
+  state.counters["max_ns"] = last.tick_ns_max;
+
+  std::vector<std::vector<int>> evaluations(program.links.size());
+  int over_budget = 0;
+  replay(program, path, [&](const exchange::HapticState& tick) {
+    for (std::size_t i = 0; i < evaluations.size(); ++i) {
+      evaluations[i].push_back(tick.links[i].evaluations);
+      over_budget += tick.links[i].status == exchange::Status::budget;
+    }
+    return true;
+  });
+  for (std::size_t i = 0; i < evaluations.size(); ++i) {
+    std::vector<int>& e = evaluations[i];
+    std::sort(e.begin(), e.end());
+    const std::string& name = program.links[i].name;
+    state.counters[name + "_e50"] = e[e.size() / 2];
+    state.counters[name + "_e99"] = e[e.size() * 99 / 100];
+    state.counters[name + "_emax"] = e.back();
+  }
+  state.counters["over_budget"] = over_budget;
+}
+
+}  // namespace catena::bench
