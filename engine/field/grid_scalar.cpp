@@ -10,7 +10,8 @@ constexpr auto finite_corner = [](double v) { return std::isfinite(v); };
 
 ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const Index3& base, Cursor& cursor) {
   ScalarWalk& walk = walk_of<ScalarWalk>(cursor, &grid, grid.version(), storage);
-  if (!walk.filled || !(walk.base == base)) fetch(walk, storage, base, to_corner, finite_corner);
+  if (!walk.filled || !(walk.base == base)) [[unlikely]]
+    fetch(walk, storage, base, to_corner, finite_corner);
   return walk;
 }
 

@@ -10,7 +10,8 @@ constexpr auto finite_corner = [](const Vec3& v) { return is_finite(v); };
 
 VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const Index3& base, Cursor& cursor) {
   VectorWalk& walk = walk_of<VectorWalk>(cursor, &grid, grid.version(), storage);
-  if (!walk.filled || !(walk.base == base)) fetch(walk, storage, base, to_corner, finite_corner);
+  if (!walk.filled || !(walk.base == base)) [[unlikely]]
+    fetch(walk, storage, base, to_corner, finite_corner);
   return walk;
 }
 
