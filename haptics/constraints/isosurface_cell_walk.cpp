@@ -1,7 +1,5 @@
 #include "haptics/constraints/isosurface_cell_walk.h"
 
-#include "haptics/constraints/isosurface_piece.h"
-
 namespace catena::haptics {
 namespace {
 
@@ -209,7 +207,7 @@ Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
   return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
 }
 
-WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint& at) noexcept {
+WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at) noexcept {
   const field::ScalarGrid& grid = *field.grid();
   const field::Mapping& mapping = grid.mapping();
   const double length = field.length();
@@ -237,7 +235,7 @@ WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint&
       const field::ScalarCell* cell = cells.find(here.base);
       if (!cell) return;
       for_subsets(corner.faces, [&](unsigned held) {
-        const Piece piece(mapping, *cell, field.level(), held | corner.flat);
+        const Piece piece(mapping, *cell, field.level(), frames.of[held | corner.flat]);
         const PieceSample s = piece.sample(here.f);
         if (!s.usable) return;
         if (!usable || (flip == 0 && held == 0)) {
@@ -278,10 +276,10 @@ WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint&
     // follow it
     CellPoint next = corner.seen_from(best.upper);
     const Vec3 before = next.f;
-    const Piece piece(mapping, *best.cell, field.level(), best.held | corner.flat);
+    const Piece piece(mapping, *best.cell, field.level(), frames.of[best.held | corner.flat]);
     const Followed how = follow(piece, mapping, probe, length, field.voxel(), next.f, best.s, best.t);
     const unsigned faces = Corner(grid.index_box(), next).faces;
-    if (how == Followed::converged && corner.faces == 0 && faces == 0 && norm(best.t) <= kRelease * length) {
+    if (how == Followed::converged && faces == 0 && norm(best.t) <= kRelease * length) {
       // within the cell no other piece meets the point
       at = next;
       return {Status::ok, std::fabs(best.s.distance), best.s.n};

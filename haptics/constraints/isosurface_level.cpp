@@ -24,11 +24,8 @@ LevelPoint LevelField::at(const Vec3& world) noexcept {
   return out;
 }
 
-Vec3 LevelField::clamped(const Vec3& world) const noexcept {
-  if (grid_ == nullptr) return world;
+Vec3 LevelField::nearest(const Vec3& index) const noexcept {
   const field::Box& box = field_.index_box();
-  const Vec3 index = field_.mapping().index_from_world(world);
-  if (box.contains(index)) return world;
   const Vec3 inside{std::min(std::max(index.x, box.lo.x), box.hi.x), std::min(std::max(index.y, box.lo.y), box.hi.y),
                     std::min(std::max(index.z, box.lo.z), box.hi.z)};
   return field_.mapping().world_from_index(inside);

@@ -28,7 +28,11 @@ class LevelField {
   bool spent(int reserve = 0) const noexcept { return evaluations_ + reserve >= kEvaluationCap; }
 
   /// The nearest point of a grid's box, in index space; a formula has no walls.
-  Vec3 clamped(const Vec3& world) const noexcept;
+  Vec3 clamped(const Vec3& world) const noexcept {
+    if (grid_ == nullptr) return world;
+    const Vec3 index = field_.mapping().index_from_world(world);
+    return field_.index_box().contains(index) ? world : nearest(index);
+  }
   double level() const noexcept { return level_; }
   double length() const noexcept { return field_.length(); }
   /// Half a voxel; a 256th of L for formulas.
@@ -41,6 +45,7 @@ class LevelField {
   std::int32_t& evaluations() noexcept { return evaluations_; }
 
  private:
+  Vec3 nearest(const Vec3& index) const noexcept;
   const field::ScalarField& field_;
   const field::ScalarGrid* grid_;  ///< the same, or none
   double level_;

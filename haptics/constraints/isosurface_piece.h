@@ -27,6 +27,12 @@ struct PieceFrame {
   }
 };
 
+/// All of a grid's, by the bits of the held axes: made once.
+struct PieceFrames {
+  std::array<PieceFrame, 8> of;
+  explicit PieceFrames(const field::Mapping& m) noexcept : of{{{m, 0}, {m, 1}, {m, 2}, {m, 3}, {m, 4}, {m, 5}, {m, 6}, {m, 7}}} {}
+};
+
 struct PieceSample {
   double sigma = 0;
   double slope = 0;     ///< |Q'grad s|
@@ -37,8 +43,8 @@ struct PieceSample {
 
 class Piece {
  public:
-  Piece(const field::Mapping& mapping, const field::ScalarCell& cell, double level, unsigned held_axes) noexcept
-      : mapping_(mapping), cell_(cell), level_(level), frame_(mapping, held_axes) {}
+  Piece(const field::Mapping& mapping, const field::ScalarCell& cell, double level, const PieceFrame& frame) noexcept
+      : mapping_(mapping), cell_(cell), level_(level), frame_(frame) {}
 
   const PieceFrame& frame() const noexcept { return frame_; }
   Vec3 world(const Vec3& f) const noexcept {
@@ -59,7 +65,7 @@ class Piece {
   const field::Mapping& mapping_;
   const field::ScalarCell& cell_;
   double level_;
-  PieceFrame frame_;
+  const PieceFrame& frame_;
 };
 
 // The hot path is in the header: a walk samples a few times a tick.

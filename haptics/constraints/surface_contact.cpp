@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/field/grid.h"
 #include "haptics/constraints/isosurface_reach.h"
 
 namespace catena::haptics {
@@ -22,9 +23,10 @@ LevelPoint fetch(LevelField& field, const Vec3& world) noexcept {
   out.p = field.clamped(world);
   if (field.spent()) return out;
   ++field.evaluations();
-  const field::ScalarSample sample = field.field().sample(out.p, field.cursor());
+  const field::ScalarGrid* grid = field.grid();
+  const field::ScalarSample sample = grid ? grid->sample(out.p, field.cursor()) : field.field().sample(out.p, field.cursor());
   out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
-  out.valid = out.finite && (sample.inside || field.grid() == nullptr);
+  out.valid = out.finite && (sample.inside || grid == nullptr);
   if (!out.finite) return out;
   out.slope = norm(sample.gradient);
   out.sigma = sample.value - field.level();
