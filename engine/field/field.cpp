@@ -13,8 +13,12 @@ void Field::set_domain(std::string name, const Mapping& mapping, const Box& inde
   index_box_ = index_box;
   version_ = next_version.fetch_add(1);
   const Vec3 size = index_box.hi - index_box.lo;
-  length_ = 0;
-  for (int a = 0; a < 3; ++a) length_ = std::max(length_, norm(mapping.world_from_index_linear[a]) * size[a]);
+  length_ = longest_edge_ = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double edge = norm(mapping.world_from_index_linear[a]);
+    longest_edge_ = std::max(longest_edge_, edge);
+    length_ = std::max(length_, edge * size[a]);
+  }
 }
 
 }  // namespace catena::field

@@ -42,8 +42,9 @@ class Field {
   const std::string& name() const { return name_; }   ///< the grid's or the formula's name
   std::uint64_t version() const { return version_; }  ///< unique in the process; the key of mirrors
   const Mapping& mapping() const { return mapping_; }
-  const Box& index_box() const { return index_box_; }  ///< of voxel centres; analytic: the box -2..2
-  double length() const { return length_; }            ///< L: the longest edge of the domain box, world units; analytic: 4
+  const Box& index_box() const { return index_box_; }    ///< of voxel centres; analytic: the box -2..2
+  double length() const { return length_; }              ///< L: the longest edge of the domain box, world units; analytic: 4
+  double longest_edge() const { return longest_edge_; }  ///< of a voxel, world units
   virtual bool is_grid() const noexcept { return false; }
   virtual std::size_t bytes() const noexcept { return 0; }
 
@@ -55,7 +56,7 @@ class Field {
   std::uint64_t version_ = 0;
   Mapping mapping_;
   Box index_box_;
-  double length_ = 0;
+  double length_ = 0, longest_edge_ = 0;
 };
 
 class ScalarGrid;

@@ -5,12 +5,13 @@ namespace catena::field {
 namespace {
 
 using VectorWalk = Walk<nanovdb::Vec3f, Vec3>;
-Vec3 to_corner(const nanovdb::Vec3f& v) { return {v[0], v[1], v[2]}; }
-bool finite_corner(const Vec3& v) { return is_finite(v); }
+constexpr auto to_corner = [](const nanovdb::Vec3f& v) { return Vec3(v[0], v[1], v[2]); };
+constexpr auto finite_corner = [](const Vec3& v) { return is_finite(v); };
 
 VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const Index3& base, Cursor& cursor) {
   VectorWalk& walk = walk_of<VectorWalk>(cursor, &grid, grid.version(), storage);
-  if (!walk.filled || !(walk.base == base)) fetch(walk, storage, base, to_corner, finite_corner);
+  if (!walk.filled || !(walk.base == base)) [[unlikely]]
+    fetch(walk, storage, base, to_corner, finite_corner);
   return walk;
 }
 

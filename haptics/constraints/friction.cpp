@@ -112,7 +112,12 @@ class Tick {
 
       // the direction half way
       Vec3 middle = d;
-      if ((memory_.bend + memory_.arch) * h * h > 8 * kStraight * length_ || !(memory_.bend > 0)) {
+      const double bent = memory_.bend + memory_.arch;
+      const bool straight = memory_.bend > 0 && bent * h * h <= 8 * kStraight * length_;
+      const bool learned = bent * bent * h * h * (size + norm(p - last_.from)) <= 4 * kStraight * length_;
+      if (!straight && last_.known && learned) {
+        middle = d + last_.turn * (0.5 * h);
+      } else if (!straight) {
         const LevelPoint halfway = contact_.look(p + d * (0.5 * h), false);
         const Heading half = heading_at(halfway);
         const double turn = turn_to(halfway, half, size);
@@ -148,6 +153,7 @@ class Tick {
         continue;
       }
       memory_.rate = slope;
+      last_ = {true, p, (there.t.d - d) * (1 / h)};
       contact_.move_to(to);
       arrive(there);
       accept(reach, size);
@@ -223,6 +229,11 @@ class Tick {
   Memory& memory_;
   Contact contact_;
   double length_;
+  /// The last step of this tick: where from, and dd/ds. A short step goes on with that.
+  struct {
+    bool known = false;
+    Vec3 from{0.0}, turn{0.0};
+  } last_;
   int trials_ = 0;              ///< of steps along the line, in this tick
   Status ending_ = Status::ok;  ///< why the line ends, if it does
 };

@@ -5,9 +5,9 @@
 /// With f = 1 - 1e-12, the field's usual place, b is nothing: motion along d is free, e.d within 1e-8 L. Where v_t is
 /// ill-defined (v = 0, v along n) f goes to 0 and b beyond tau: the isotropic drag. A large tau makes a streamline link of it.
 ///
-/// Steps along d: midpoint rule in arc length; along the surface the line turns by at most 0.02 in half a step or, at a crease
-/// of a grid, costs at most 1e-6 L; at most 32 steps and trials a tick, each brought back to the level.
-/// Drift of a lap of R = 0.05 at 0.2 units/s and 1 kHz: 1.3e-9 (Euler, Eqs. 1-2: 0.63e-3).
+/// Steps along d: midpoint rule in arc length (where the last step tells the turn to 1e-14 L, by that); along the surface the line turns by
+/// at most 0.02 in half a step or, at a crease of a grid, costs at most 1e-6 L; at most 32 steps and trials a tick, each brought back to
+/// the level. Drift of a lap of R = 0.05 at 0.2 units/s and 1 kHz: 1.3e-9 (Euler, Eqs. 1-2: 0.63e-3).
 ///
 /// Keys: `field`; `kind` (line: v ~ -v, corners aligned with the last d); `threshold` (tau, default 0.005 L, asked at the proxy
 /// before it moves); `surface`; `level` (none: the surface only gives n). On a level: the rules of surface_contact.h.

@@ -30,7 +30,7 @@ struct Memory {
 
 class LevelSurface final : public Surface {
  public:
-  LevelSurface(const LevelField& field, Memory& memory) : field_(field), memory_(memory) {}
+  LevelSurface(const LevelField& field, const PieceFrames& frames, Memory& memory) : field_(field), frames_(frames), memory_(memory) {}
 
   SideValue side(const Vec3& at) noexcept override {
     here_ = field_.at(at);
@@ -57,7 +57,7 @@ class LevelSurface final : public Surface {
       if (start.valid && !start.plateau) return settle_grid(memory_.cell, start, probe);
     }
     CellPoint cell = memory_.cell;
-    WalkResult walk = walk_cells(field_, probe, kFirstWalk, cell);
+    WalkResult walk = walk_cells(field_, frames_, probe, kFirstWalk, cell);
     if (walk.status == Status::budget && !field_.spent()) {
       const LevelPoint start = field_.at(world_of(*field_.grid(), cell));
       return settle_grid(cell, start, probe);
@@ -202,7 +202,7 @@ class LevelSurface final : public Surface {
       const Reached reached = reach_along_gradient(field_, at, at.n, 2 * voxel);
       if (reached.found && reached.at.valid && norm(probe - reached.at.p) < norm(e)) cell = cell_point(*field_.grid(), reached.at.p);
     }
-    const WalkResult walk = walk_cells(field_, probe, kEvaluationCap, cell);
+    const WalkResult walk = walk_cells(field_, frames_, probe, kEvaluationCap, cell);
     return hold_cell(cell, walk);
   }
 
@@ -213,6 +213,7 @@ class LevelSurface final : public Surface {
   }
 
   LevelField field_;
+  const PieceFrames& frames_;
   Memory& memory_;
   LevelPoint here_;
   Vec3 asked_{0.0};
@@ -221,19 +222,20 @@ class LevelSurface final : public Surface {
 
 class Isosurface final : public Constraint {
  public:
-  Isosurface(field::ScalarFieldPtr field, double level, const SideSpec& rules) : field_(std::move(field)), level_(level), rules_(rules) {}
+  Isosurface(field::ScalarFieldPtr field, double level, const SideSpec& rules)
+      : field_(std::move(field)), level_(level), rules_(rules), frames_(field_->mapping()) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     Memory& memory = memory_of<Memory>(state);
     memory = Memory{};
     const SideRules rules = rules_.at(probe, state, scratch);
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), frames_, memory);
     start_on(surface, rules, probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     Memory& memory = memory_of<Memory>(state);
     const SideRules rules = rules_.now(state, scratch);
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), frames_, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }
   bool has_primitive() const noexcept override { return true; }
@@ -253,6 +255,7 @@ class Isosurface final : public Constraint {
   field::ScalarFieldPtr field_;
   double level_;
   SideSpec rules_;
+  PieceFrames frames_;
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {

@@ -1,7 +1,5 @@
 #include "haptics/constraints/isosurface_cell_walk.h"
 
-#include "haptics/constraints/isosurface_piece.h"
-
 namespace catena::haptics {
 namespace {
 
@@ -91,18 +89,28 @@ struct Corner {
   }
 };
 
+/// The empty set first, then every subset of `mask`, rising.
+template <class Visit>
+void for_subsets(unsigned mask, const Visit& visit) {
+  unsigned subset = 0;
+  do {
+    visit(subset);
+    subset = (subset - mask) & mask;
+  } while (subset != 0);
+}
+
 enum class Followed { converged, landed, blocked };
 
-/// Moves f within one piece towards the closest point, until it converges or meets a face of the cell.
-Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& probe, double length, double voxel, Vec3& f) {
+/// Moves f within one piece towards the closest point, until it converges or meets a face of the cell. `s` and `t` are the sample
+/// and the tangential part at f, on the way in, and on the way out where it converged.
+Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& probe, double length, double voxel, Vec3& f, PieceSample& s,
+                Vec3& t) {
   const auto gain = [&](const Vec3& from, const Vec3& to) {
     const Vec3 dp = mapping.world_from_index_linear * (to - from);
     return dot(dp, probe - piece.world(from)) - 0.5 * dot(dp, dp);
   };
   for (int i = 0; i < 40; ++i) {
-    const PieceSample s = piece.sample(f);
     if (!s.usable) return Followed::blocked;
-    const Vec3 t = piece.tangential(f, probe, s);
     const double size = norm(t);
     if (size <= std::max(kConverged * length, 1e-15 * norm(probe - piece.world(f)))) return Followed::converged;
     Vec3 u = piece.newton(f, probe, s, t);
@@ -174,6 +182,8 @@ Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& p
       return Followed::landed;
     }
     if (!accepted) return size <= kRelease * length ? Followed::converged : Followed::blocked;
+    s = piece.sample(f);
+    t = piece.tangential(f, probe, s);
   }
   return Followed::converged;
 }
@@ -197,7 +207,7 @@ Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
   return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
 }
 
-WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint& at) noexcept {
+WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at) noexcept {
   const field::ScalarGrid& grid = *field.grid();
   const field::Mapping& mapping = grid.mapping();
   const double length = field.length();
@@ -210,48 +220,46 @@ WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint&
     // every piece that meets the point: the steepest feasible descent
     const Corner corner(grid.index_box(), at);
     const unsigned own = corner.upper();
-    double steepest = kRelease * length;
-    unsigned best_upper = 0, best_held = 0;
-    const field::ScalarCell* best_cell = nullptr;
+    struct {
+      double size;
+      unsigned upper, held;
+      const field::ScalarCell* cell;
+      PieceSample s;
+      Vec3 t;
+    } best{kRelease * length, 0, 0, nullptr, {}, Vec3(0.0)};
     bool usable = false, pulled = false;
     remaining = 0;
-    for (unsigned flip = 0; flip < 8; ++flip) {
-      if ((flip & ~corner.faces) != 0) continue;
+    for_subsets(corner.faces, [&](unsigned flip) {
       const unsigned upper = own ^ flip;
       const CellPoint here = corner.seen_from(upper);
       const field::ScalarCell* cell = cells.find(here.base);
-      if (!cell) continue;
-      for (unsigned subset = 0; subset < 8; ++subset) {
-        if ((subset & ~corner.faces) != 0) continue;
-        const Piece piece(mapping, *cell, field.level(), subset | corner.flat);
+      if (!cell) return;
+      for_subsets(corner.faces, [&](unsigned held) {
+        const Piece piece(mapping, *cell, field.level(), frames.of[held | corner.flat]);
         const PieceSample s = piece.sample(here.f);
-        if (!s.usable) continue;
-        if (!usable || (flip == 0 && subset == 0)) {
+        if (!s.usable) return;
+        if (!usable || (flip == 0 && held == 0)) {
           result.residual = std::fabs(s.distance);
           result.normal = s.n;
         }
         usable = true;
         const Vec3 t = piece.tangential(here.f, probe, s);
-        const Vec3 d = piece.frame().index_step(mapping, t);
         const double size = norm(t);
-        bool feasible = size > kRelease * length;
-        for (int a = 0; a < 3 && size > kRelease * length; ++a) {
-          if (!(corner.faces >> a & 1u) || (subset >> a & 1u)) continue;
+        if (!(size > kRelease * length)) return;
+        const Vec3 d = piece.frame().index_step(mapping, t);
+        bool feasible = true;
+        for (int a = 0; a < 3; ++a) {
+          if (!(corner.faces >> a & 1u) || (held >> a & 1u)) continue;
           if (here.f[a] == 0 ? d[a] >= 0 : d[a] <= 0) continue;
           feasible = false;
           // pulled across a face with nothing behind it
-          if (subset == 0 && size > 1e-7 * length && !cells.find(corner.seen_from(upper ^ (1u << a)).base)) pulled = true;
+          if (held == 0 && size > 1e-7 * length && !cells.find(corner.seen_from(upper ^ (1u << a)).base)) pulled = true;
         }
-        if (!feasible) continue;
+        if (!feasible) return;
         remaining = std::max(remaining, size);
-        if (size > steepest && !(exhausted >> (upper * 8 + subset) & 1u)) {
-          steepest = size;
-          best_upper = upper;
-          best_held = subset;
-          best_cell = cell;
-        }
-      }
-    }
+        if (size > best.size && !(exhausted >> (upper * 8 + held) & 1u)) best = {size, upper, held, cell, s, t};
+      });
+    });
     if (cells.spent()) {
       result.status = Status::budget;
       return result;
@@ -260,20 +268,26 @@ WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint&
       result.status = Status::critical;
       return result;
     }
-    if (!best_cell) {
+    if (!best.cell) {
       result.status = remaining > kAccepted * length ? Status::budget : pulled ? Status::boundary : Status::ok;
       return result;
     }
 
     // follow it
-    CellPoint next = corner.seen_from(best_upper);
+    CellPoint next = corner.seen_from(best.upper);
     const Vec3 before = next.f;
-    const Piece piece(mapping, *best_cell, field.level(), best_held | corner.flat);
-    const Followed how = follow(piece, mapping, probe, length, field.voxel(), next.f);
+    const Piece piece(mapping, *best.cell, field.level(), frames.of[best.held | corner.flat]);
+    const Followed how = follow(piece, mapping, probe, length, field.voxel(), next.f, best.s, best.t);
+    const unsigned faces = Corner(grid.index_box(), next).faces;
+    if (how == Followed::converged && faces == 0 && norm(best.t) <= kRelease * length) {
+      // within the cell no other piece meets the point
+      at = next;
+      return {Status::ok, std::fabs(best.s.distance), best.s.n};
+    }
     const bool moved = norm(mapping.world_from_index_linear * (next.f - before)) > kStill * length;
-    const bool snapped = !moved && Corner(grid.index_box(), next).faces != corner.faces;
+    const bool snapped = !moved && faces != corner.faces;
     if (moved || snapped) exhausted = 0;
-    if ((!moved && !snapped) || how == Followed::blocked) exhausted |= std::uint64_t{1} << (best_upper * 8 + best_held);
+    if ((!moved && !snapped) || how == Followed::blocked) exhausted |= std::uint64_t{1} << (best.upper * 8 + best.held);
     at = next;
   }
   result.status = Status::budget;

@@ -9,6 +9,7 @@
 #pragma once
 #include "engine/field/grid.h"
 #include "haptics/constraints/isosurface_level.h"
+#include "haptics/constraints/isosurface_piece.h"
 
 namespace catena::haptics {
 
@@ -28,7 +29,8 @@ struct WalkResult {
 CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept;
 Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
 
-/// Moves `at` (on the level to 1e-9 L or so) to the local closest point to the probe, with at most `most` fetches.
-WalkResult walk_cells(LevelField& field, const Vec3& probe, int most, CellPoint& at) noexcept;
+/// Moves `at` (on the level to 1e-9 L or so) to the local closest point to the probe, with at most `most` fetches. `frames`: the
+/// grid's.
+WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at) noexcept;
 
 }  // namespace catena::haptics

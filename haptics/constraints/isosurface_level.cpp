@@ -9,9 +9,9 @@ LevelPoint LevelField::at(const Vec3& world) noexcept {
   out.p = clamped(world);
   if (spent()) return out;
   ++evaluations_;
-  const field::ScalarSample sample = field_.sample(out.p, cursor_);
+  const field::ScalarSample sample = grid_ ? grid_->sample(out.p, cursor_) : field_.sample(out.p, cursor_);
   out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
-  out.valid = out.finite && (sample.inside || !field_.is_grid());
+  out.valid = out.finite && (sample.inside || grid_ == nullptr);
   if (!out.finite) return out;
   const double slope = norm(sample.gradient);
   out.slope = slope;
@@ -24,25 +24,14 @@ LevelPoint LevelField::at(const Vec3& world) noexcept {
   return out;
 }
 
-Vec3 LevelField::clamped(const Vec3& world) const noexcept {
-  if (!field_.is_grid()) return world;
+Vec3 LevelField::nearest(const Vec3& index) const noexcept {
   const field::Box& box = field_.index_box();
-  const Vec3 index = field_.mapping().index_from_world(world);
-  if (box.contains(index)) return world;
   const Vec3 inside{std::min(std::max(index.x, box.lo.x), box.hi.x), std::min(std::max(index.y, box.lo.y), box.hi.y),
                     std::min(std::max(index.z, box.lo.z), box.hi.z)};
   return field_.mapping().world_from_index(inside);
 }
 
-double LevelField::march_step() const noexcept {
-  return field_.is_grid() ? 0.5 * field_.mapping().smallest_edge() : field_.length() * (1.0 / 256);
-}
-
-double LevelField::voxel() const noexcept {
-  if (!field_.is_grid()) return 0;
-  const Mat3& j = field_.mapping().world_from_index_linear;
-  return std::max(norm(j[0]), std::max(norm(j[1]), norm(j[2])));
-}
+double LevelField::march_step() const noexcept { return grid_ ? 0.5 * field_.mapping().smallest_edge() : field_.length() * (1.0 / 256); }
 
 void tangents(const Vec3& n, Vec3& a, Vec3& b) noexcept {
   const Vec3 m{std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)};

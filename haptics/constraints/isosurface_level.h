@@ -21,27 +21,33 @@ struct LevelPoint {
 class LevelField {
  public:
   LevelField(const field::ScalarField& field, double level, field::Cursor& cursor, std::int32_t& evaluations)
-      : field_(field), level_(level), cursor_(cursor), evaluations_(evaluations) {}
+      : field_(field), grid_(field.grid()), level_(level), cursor_(cursor), evaluations_(evaluations) {}
 
   /// One evaluation. Costs nothing and is not valid when the budget is spent.
   LevelPoint at(const Vec3& world) noexcept;
   bool spent(int reserve = 0) const noexcept { return evaluations_ + reserve >= kEvaluationCap; }
 
   /// The nearest point of a grid's box, in index space; a formula has no walls.
-  Vec3 clamped(const Vec3& world) const noexcept;
+  Vec3 clamped(const Vec3& world) const noexcept {
+    if (grid_ == nullptr) return world;
+    const Vec3 index = field_.mapping().index_from_world(world);
+    return field_.index_box().contains(index) ? world : nearest(index);
+  }
   double level() const noexcept { return level_; }
   double length() const noexcept { return field_.length(); }
   /// Half a voxel; a 256th of L for formulas.
   double march_step() const noexcept;
   /// The longest edge of a voxel; 0 for formulas.
-  double voxel() const noexcept;
+  double voxel() const noexcept { return grid_ ? field_.longest_edge() : 0; }
   const field::ScalarField& field() const noexcept { return field_; }
-  const field::ScalarGrid* grid() const noexcept { return field_.grid(); }
+  const field::ScalarGrid* grid() const noexcept { return grid_; }
   field::Cursor& cursor() noexcept { return cursor_; }
   std::int32_t& evaluations() noexcept { return evaluations_; }
 
  private:
+  Vec3 nearest(const Vec3& index) const noexcept;
   const field::ScalarField& field_;
+  const field::ScalarGrid* grid_;  ///< the same, or none
   double level_;
   field::Cursor& cursor_;
   std::int32_t& evaluations_;

@@ -21,44 +21,6 @@ PieceFrame::PieceFrame(const field::Mapping& mapping, unsigned held_axes) noexce
   }
 }
 
-Vec3 PieceFrame::on_span(const Vec3& v) const noexcept {
-  if (count == 3) return v;
-  Vec3 out(0.0);
-  for (int k = 0; k < count; ++k) out += q[static_cast<std::size_t>(k)] * dot(q[static_cast<std::size_t>(k)], v);
-  return out;
-}
-
-Vec3 PieceFrame::index_step(const field::Mapping& mapping, const Vec3& v) const noexcept {
-  Vec3 d = mapping.index_from_world_linear * v;
-  for (int a = 0; a < 3; ++a)
-    if (held[static_cast<std::size_t>(a)]) d[a] = 0;
-  return d;
-}
-
-Vec3 Piece::world(const Vec3& f) const noexcept {
-  return mapping_.world_from_index({cell_.base.x + f.x, cell_.base.y + f.y, cell_.base.z + f.z});
-}
-
-PieceSample Piece::sample(const Vec3& f) const noexcept {
-  PieceSample s;
-  double value;
-  Vec3 g;
-  cell_.value_and_gradient(f, value, g);
-  const Vec3 slope = frame_.on_span(mapping_.world_gradient(g));
-  s.sigma = value - level_;
-  s.slope = norm(slope);
-  s.n = direction(slope);
-  s.distance = s.sigma / s.slope;
-  s.usable = s.slope > 0 && std::isfinite(s.slope) && std::isfinite(s.distance) && max_abs(s.n) > 0;
-  return s;
-}
-
-Vec3 Piece::tangential(const Vec3& f, const Vec3& probe, const PieceSample& s) const noexcept {
-  if (frame_.count < 2) return Vec3(0.0);
-  const Vec3 e = frame_.on_span(probe - world(f));
-  return e - s.n * dot(s.n, e);
-}
-
 Vec3 Piece::hessian_times(const Vec3& f, const Vec3& v) const noexcept {
   const Vec3 h = cell_.mixed_second(f);
   const Vec3 d = mapping_.index_from_world_linear * v;

@@ -12,9 +12,25 @@ struct PieceFrame {
   std::array<bool, 3> held{};
 
   PieceFrame(const field::Mapping& mapping, unsigned held_axes) noexcept;
-  Vec3 on_span(const Vec3& v) const noexcept;
+  Vec3 on_span(const Vec3& v) const noexcept {
+    if (count == 3) return v;
+    Vec3 out(0.0);
+    for (int k = 0; k < count; ++k) out += q[static_cast<std::size_t>(k)] * dot(q[static_cast<std::size_t>(k)], v);
+    return out;
+  }
   /// A world vector of the span as an index step: held axes exactly 0.
-  Vec3 index_step(const field::Mapping& mapping, const Vec3& v) const noexcept;
+  Vec3 index_step(const field::Mapping& mapping, const Vec3& v) const noexcept {
+    Vec3 d = mapping.index_from_world_linear * v;
+    for (int a = 0; a < 3; ++a)
+      if (held[static_cast<std::size_t>(a)]) d[a] = 0;
+    return d;
+  }
+};
+
+/// All of a grid's, by the bits of the held axes: made once.
+struct PieceFrames {
+  std::array<PieceFrame, 8> of;
+  explicit PieceFrames(const field::Mapping& m) noexcept : of{{{m, 0}, {m, 1}, {m, 2}, {m, 3}, {m, 4}, {m, 5}, {m, 6}, {m, 7}}} {}
 };
 
 struct PieceSample {
@@ -27,12 +43,13 @@ struct PieceSample {
 
 class Piece {
  public:
-  Piece(const field::Mapping& mapping, const field::ScalarCell& cell, double level, unsigned held_axes) noexcept
-      : mapping_(mapping), cell_(cell), level_(level), frame_(mapping, held_axes) {}
+  Piece(const field::Mapping& mapping, const field::ScalarCell& cell, double level, const PieceFrame& frame) noexcept
+      : mapping_(mapping), cell_(cell), level_(level), frame_(frame) {}
 
-  const field::ScalarCell& cell() const noexcept { return cell_; }
   const PieceFrame& frame() const noexcept { return frame_; }
-  Vec3 world(const Vec3& f) const noexcept;
+  Vec3 world(const Vec3& f) const noexcept {
+    return mapping_.world_from_index({cell_.base.x + f.x, cell_.base.y + f.y, cell_.base.z + f.z});
+  }
   PieceSample sample(const Vec3& f) const noexcept;
   /// t = e - (n.e) n, in the span.
   Vec3 tangential(const Vec3& f, const Vec3& probe, const PieceSample& s) const noexcept;
@@ -48,7 +65,29 @@ class Piece {
   const field::Mapping& mapping_;
   const field::ScalarCell& cell_;
   double level_;
-  PieceFrame frame_;
+  const PieceFrame& frame_;
 };
+
+// The hot path is in the header: a walk samples a few times a tick.
+
+inline PieceSample Piece::sample(const Vec3& f) const noexcept {
+  PieceSample s;
+  double value;
+  Vec3 g;
+  cell_.value_and_gradient(f, value, g);
+  const Vec3 slope = frame_.on_span(mapping_.world_gradient(g));
+  s.sigma = value - level_;
+  s.slope = norm(slope);
+  s.n = direction(slope);
+  s.distance = s.sigma / s.slope;
+  s.usable = s.slope > 0 && std::isfinite(s.slope) && std::isfinite(s.distance) && max_abs(s.n) > 0;
+  return s;
+}
+
+inline Vec3 Piece::tangential(const Vec3& f, const Vec3& probe, const PieceSample& s) const noexcept {
+  if (frame_.count < 2) return Vec3(0.0);
+  const Vec3 e = frame_.on_span(probe - world(f));
+  return e - s.n * dot(s.n, e);
+}
 
 }  // namespace catena::haptics

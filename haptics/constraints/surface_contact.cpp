@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/field/grid.h"
 #include "haptics/constraints/isosurface_reach.h"
 
 namespace catena::haptics {
@@ -16,16 +17,18 @@ constexpr double kLevelled = 0.1;  // e.t / |e|: below, sliding does not shorten
 bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 bool usable(const LevelPoint& a) { return a.valid && !a.plateau; }
 
-/// LevelField::at with one division; the same up to rounding.
-LevelPoint fetch(LevelField& field, const Vec3& world) noexcept {
-  LevelPoint out;
-  out.p = field.clamped(world);
-  if (field.spent()) return out;
+/// LevelField::at with one division, in place (a copy would wait for its stores); the same up to rounding.
+void fetch(LevelField& field, const Vec3& world, LevelPoint& out) noexcept {
+  const Vec3 p = field.clamped(world);
+  out = LevelPoint{};
+  out.p = p;
+  if (field.spent()) return;
   ++field.evaluations();
-  const field::ScalarSample sample = field.field().sample(out.p, field.cursor());
+  const field::ScalarGrid* grid = field.grid();
+  const field::ScalarSample sample = grid ? grid->sample(out.p, field.cursor()) : field.field().sample(out.p, field.cursor());
   out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
-  out.valid = out.finite && (sample.inside || field.grid() == nullptr);
-  if (!out.finite) return out;
+  out.valid = out.finite && (sample.inside || grid == nullptr);
+  if (!out.finite) return;
   out.slope = norm(sample.gradient);
   out.sigma = sample.value - field.level();
   if (out.slope > 1e-280 && out.slope < 1e280) {
@@ -40,7 +43,6 @@ LevelPoint fetch(LevelField& field, const Vec3& world) noexcept {
   }
   out.plateau = !(out.slope > 0) || !std::isfinite(out.distance) || !std::isfinite(out.round_off);
   if (out.plateau) out.distance = out.round_off = 0, out.n = Vec3(0.0);
-  return out;
 }
 
 }  // namespace
@@ -99,7 +101,7 @@ bool Contact::begin() noexcept {
 
   // is the incoming probe on the level?
   LevelField near_probe(*spec_.surface, *spec_.level, probe_cursor_, state_.evaluations);
-  at_probe_ = fetch(near_probe, probe_);
+  fetch(near_probe, probe_, at_probe_);
   if (!at_probe_.finite) return pass(Status::critical);
   const double off = norm(at_probe_.p - probe_) + std::fabs(at_probe_.distance);
   if (at_probe_.plateau || !(off <= std::max(kTouch * length(), at_probe_.round_off))) return pass(Status::free);
@@ -118,7 +120,7 @@ LevelPoint Contact::look(const Vec3& wanted, bool on_level) noexcept {
     a.valid = a.finite = is_finite(wanted);
     return a;
   }
-  a = fetch(*field_, wanted);
+  fetch(*field_, wanted, a);
   if (!spec_.level) {
     a.p = wanted;
     a.distance = 0;
@@ -133,7 +135,8 @@ LevelPoint Contact::look(const Vec3& wanted, bool on_level) noexcept {
 
 bool Contact::relevel(LevelPoint& a) noexcept {
   for (int i = 0; i < kNewton && !this->on_level(a); ++i) {
-    const LevelPoint b = fetch(*field_, a.p - a.n * a.distance);
+    LevelPoint b;
+    fetch(*field_, a.p - a.n * a.distance, b);
     if (!usable(b) || std::fabs(b.distance) > 0.5 * std::fabs(a.distance)) break;
     a = b;
   }
@@ -160,7 +163,8 @@ bool Contact::slide_to(double distance) noexcept {
 
   // both conditions at once, from the proxy; from the chord where that is far
   const bool near = usable(memory_.here) && norm(e0) - distance <= 0.5 * distance;
-  LevelPoint a = near ? memory_.here : fetch(*field_, probe_ - direction(e0) * distance);
+  LevelPoint a = memory_.here;
+  if (!near) fetch(*field_, probe_ - direction(e0) * distance, a);
   for (int i = 0; i < kRounds && usable(a) && !spent(kForLevel); ++i) {
     const Vec3 e = probe_ - a.p;
     const double gap = norm(e), across = dot(e, a.n);
@@ -179,7 +183,7 @@ bool Contact::slide_to(double distance) noexcept {
       b = std::min(std::max(b, -0.5 * gap), gap);
     }
     if (i >= kPatient) b *= 0.5;
-    a = fetch(*field_, a.p + tangential * (along > 0 ? b / along : 0.0) - a.n * a.distance);
+    fetch(*field_, a.p + tangential * (along > 0 ? b / along : 0.0) - a.n * a.distance, a);
   }
 
   // a crease, or a sheet that bends away: on the level at least, and not further off than before
