@@ -1,7 +1,9 @@
 /// What the tick tells the frame: plain, trivially copyable, grouped by who writes it.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "engine/base/vec.h"
 
@@ -26,10 +28,10 @@ struct LinkReport {
   bool active = false;  ///< enabled and not released
   bool left = false;    ///< the hand has left the feature: leaving >= 1, or let go
 
-  /// Stored in the link's spring, joules.
+  /// Stored in the link's spring, joules; the largest double for what is larger.
   double energy_j(double metres_per_unit) const {
-    const double stretch_m = metres_per_unit * gap;
-    return 0.5 * weight * stiffness_n_per_m * stretch_m * stretch_m;
+    const double stretch_m = metres_per_unit * gap, share = 0.5 * weight * stiffness_n_per_m;
+    return share > 0 ? std::min(share * stretch_m * stretch_m, std::numeric_limits<double>::max()) : 0;
   }
 };
 

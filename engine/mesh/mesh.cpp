@@ -81,7 +81,9 @@ Result<MeshPtr> make_mesh(Soup soup, const std::string& name) {
     }
   if (soup.triangles.empty()) return failed("holds no triangle; at least one was expected");
   const double length = max_abs(hi * 0.5 - lo * 0.5) * 2;
-  if (!(max_abs(hi) <= kLargest && max_abs(lo) <= kLargest && length >= kSmallest))
+  if (length <= kLargest && !(max_abs(hi) <= kLargest && max_abs(lo) <= kLargest))
+    return failed("reaches to " + to_text(std::max(max_abs(hi), max_abs(lo))) + "; coordinates up to 1e100 were expected");
+  if (!(length >= kSmallest && length <= kLargest))
     return failed("is " + to_text(length) + " long; a size from 1e-100 to 1e100 was expected");
   int exponent = 0;
   const double part = std::frexp(length, &exponent);

@@ -1,5 +1,7 @@
 #include "haptics/chain/tick.h"
 
+#include <limits>
+
 #include "haptics/chain/begin_link.h"
 
 namespace catena::haptics {
@@ -100,6 +102,12 @@ Vec3 huge_force(const Program& program, const Order& order, const Vec3& probe, d
   return force;
 }
 
+// A report is finite: the largest double for what is larger, 0 for what is not a number (a huge gap that weighs nothing).
+double bounded(double v) noexcept {
+  constexpr double most = std::numeric_limits<double>::max();
+  return v > most ? most : v < -most ? -most : v == v ? v : 0;
+}
+
 void report(const Program& program, const ChainState& state, exchange::HapticState& out) noexcept {
   out.tick = state.ticks;
   out.t_s = state.last_t_s;
@@ -155,8 +163,9 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   Vec3 force = coupled.force_n, cues(0.0);
   std::array<Vec3, kMaxLinks> felt = coupled.shares_n;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
-    out.links[i].force_n = coupled.shares_n[i];
-    out.links[i].gap = norm(coupled.gaps[i]);
+    const Vec3& share = coupled.shares_n[i];
+    out.links[i].force_n = {bounded(share.x), bounded(share.y), bounded(share.z)};
+    out.links[i].gap = bounded(norm(coupled.gaps[i]));
     const Vec3 cue =
         indicate(program.links[i].indication, state.links[i], coupled.gaps[i], probe.t_s, dt, state.indications[i], out.links[i]);
     felt[i] += cue;

@@ -25,7 +25,7 @@ class BoxSurface final : public Surface {
   struct Memory {
     Face face;
   };
-  BoxSurface(const Shape& shape, Memory& memory, const SideMemory&) : shape_(shape), memory_(memory) {}
+  BoxSurface(const Shape& shape, Memory& memory, const SideMemory& last) : shape_(shape), memory_(memory), last_(last) {}
 
   SideValue side(const Vec3& at) noexcept override { return {value(to_box(at)), true, false}; }
 
@@ -34,7 +34,15 @@ class BoxSurface final : public Surface {
     memory_.face = nearest_face(y);
     return hold(y);
   }
-  Hold slide(const Vec3& probe) noexcept override { return memory_.face.sign == 0 ? place(probe) : hold(to_box(probe)); }
+  Hold slide(const Vec3& probe) noexcept override {
+    const Vec3 y = to_box(probe);
+    if (last_.fresh && !shape_.catches && value(y) <= 0) {
+      const Vec3 before = to_box(last_.probe);
+      const Face entry = value(before) > 0 ? entry_face(before, y) : Face{0, 0};
+      if (entry.sign != 0) memory_.face = entry;
+    }
+    return memory_.face.sign == 0 ? place(probe) : hold(y);
+  }
 
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
     const Vec3 a = to_box(from), b = to_box(probe);
@@ -154,6 +162,7 @@ class BoxSurface final : public Surface {
 
   const Shape& shape_;
   Memory& memory_;
+  const SideMemory& last_;
   Vec3 normal_{0.0};
 };
 

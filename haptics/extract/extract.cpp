@@ -25,14 +25,21 @@ Outcome add_links(const scene::Link& from, const BuildContext& context, Program&
     CATENA_TRY(Link link, make_link(node, program.coupling, context));
     for (const Link& other : program.links)
       if (other.name == link.name)
-        return json::error_at(from.node, "duplicate link name \"" + link.name + "\" (of the mode \"" + from.name +
-                                             "\" or a link beside it); unique names were expected");
+        return json::error_at(from.node, "duplicate link name \"" + link.name + "\" (a ready-made mode names its links " +
+                                             "MODE_...); unique names were expected");
     indices.push_back(static_cast<int>(program.links.size()));
     if (nodes.size() > 1) links_of.push_back({link.name, {indices.back()}});
     program.links.push_back(std::move(link));
   }
   links_of.emplace_back(from.name, std::move(indices));
   return Done{};
+}
+
+std::string known_names(const LinksOf& links_of) {
+  if (links_of.empty()) return "a chain with links";
+  std::string out = links_of.size() > 1 ? "one of " : "";
+  for (std::size_t i = 0; i < links_of.size(); ++i) out += (i > 0 ? ", " : "") + links_of[i].first;
+  return out;
 }
 
 Result<Mode> make_mode(const scene::Mode& from, const LinksOf& links_of) {
@@ -44,10 +51,11 @@ Result<Mode> make_mode(const scene::Mode& from, const LinksOf& links_of) {
     for (const auto& [name, links] : links_of)
       if (name == from.links[k]) found = &links;
     if (found == nullptr)
-      return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\", which is no link of the chain");
+      return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\", which is no link of the chain; " +
+                                          known_names(links_of) + " was expected");
     for (const int link : *found) {
       if (std::find(mode.links.begin(), mode.links.end(), link) != mode.links.end())
-        return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\" twice");
+        return json::error_at(items[k], "mode \"" + from.name + "\" names \"" + from.links[k] + "\" twice; each link once was expected");
       mode.links.push_back(link);
     }
   }

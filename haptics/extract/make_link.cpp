@@ -20,8 +20,9 @@ Result<Switch> read_switch(const json::Node& holder) {
     return json::error_at(*node, std::string("\"on\" has ") + (button ? "both" : "neither") +
                                      " \"button\" and \"force_above\"; exactly one of them was expected");
   if (const json::Node* other = node->find(button ? "force_below" : "toggle"))
-    return json::error_at(*other, button ? "\"force_below\" belongs to \"force_above\", not to \"button\""
-                                         : "\"toggle\" belongs to \"button\", not to \"force_above\"");
+    return json::error_at(*other,
+                          button ? "\"force_below\" belongs to \"force_above\", not to \"button\"; only \"toggle\" was expected beside it"
+                                 : "\"toggle\" belongs to \"button\", not to \"force_above\"; only \"force_below\" was expected beside it");
   CATENA_TRY(on.button, json::get_integer(*node, "button", 0, 1, 32));
   CATENA_TRY(on.toggle, json::get_boolean(*node, "toggle", false));
   CATENA_TRY(on.force_above_n, json::get_number(*node, "force_above", 0, json::Range::positive));

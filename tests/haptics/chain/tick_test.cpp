@@ -72,6 +72,29 @@ TEST(Tick, AClockThatGoesBackStandsStill) {
   EXPECT_NEAR(run.out.links[0].weight, 0.75, 1e-12);
 }
 
+TEST(Tick, WhatItTellsOfALinkIsFiniteForEveryProbe) {
+  Hand run;
+  run.program.links = {hold_height("a", 1), hold_height("b", -1.7e308)};
+  run.program.links[1].on.button = 1;
+  run.program.coupling.ramp_s = 0.02;
+  const double most = std::numeric_limits<double>::max();
+  int k = 0;
+  for (const double z : {1.7e308, -1.7e308, 1e300, 1e154, 0.0})
+    for (const std::uint32_t buttons : {0u, 1u, 1u}) {
+      run.step(0.001 * k++, {0, 0, z}, buttons);
+      for (int i = 0; i < run.out.link_count; ++i) {
+        const exchange::LinkReport& link = run.out.links[static_cast<std::size_t>(i)];
+        EXPECT_TRUE(is_finite(link.force_n)) << z;
+        EXPECT_TRUE(std::isfinite(link.gap) && std::isfinite(link.energy_j(1))) << z;
+      }
+      if (std::fabs(z) > 1e307) {
+        EXPECT_EQ(run.out.links[0].force_n.z, z > 0 ? -most : most);
+        EXPECT_EQ(run.out.links[0].energy_j(1), most);
+      }
+      EXPECT_TRUE(is_finite(run.out.force_n)) << z;
+    }
+}
+
 TEST(Tick, ForceIsLimitedAndKeepsItsDirection) {
   Hand run;
   run.program.links = {hold_height("a", 1)};

@@ -222,6 +222,15 @@ TEST(Box, AFastHandIsHeldOnTheFaceByWhichItCameIn) {
   }
 }
 
+TEST(Box, TwoSidedTooAHandThatCutsAnEdgeIsHeldOnTheFaceByWhichItCameIn) {
+  Rig rig(build(R"({"name": "a", "type": "box", "center": [0, 0, 0], "size": [2, 2, 2]})"));
+  // from the region over the edge; it comes in where it meets y = 1, at (0.8, 1), then x = 1, at (1, 0.8)
+  rig.tick({1.2, 1.1, 0});
+  EXPECT_LE(norm(rig.tick({0.7, 0.975, 0}).proxy - Vec3(0.7, 1, 0)), 1e-15);
+  rig.tick({1.1, 1.2, 0});
+  EXPECT_LE(norm(rig.tick({0.975, 0.7, 0}).proxy - Vec3(1, 0.7, 0)), 1e-15);
+}
+
 TEST(Box, AThinOneHoldsSlowAndFastHands) {
   // 0.02 L = 0.08 with L = 4
   Random random(11);

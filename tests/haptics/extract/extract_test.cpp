@@ -200,8 +200,9 @@ TEST(ExtractProgram, ReadsSwitches) {
 TEST(ExtractProgram, SwitchErrorsNameTheirLine) {
   expect_error(point_with("\"on\": {\"force_above\": 1,\n\"force_below\": 2}"), 4, {"\"force_below\" is above", "expected"});
   expect_error(point_with("\"on\": {\"force_above\": 1,\n\"force_below\": -2}"), 4, {"\"force_below\" is -2", ">= 0"});
-  expect_error(point_with("\"on\": {\"button\": 1,\n\"force_below\": 2}"), 4, {"\"force_below\" belongs to \"force_above\""});
-  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"toggle\": true}"), 4, {"\"toggle\" belongs to \"button\""});
+  expect_error(point_with("\"on\": {\"button\": 1,\n\"force_below\": 2}"), 4,
+               {"\"force_below\" belongs to \"force_above\"", "was expected"});
+  expect_error(point_with("\"on\": {\"force_above\": 1,\n\"toggle\": true}"), 4, {"\"toggle\" belongs to \"button\"", "was expected"});
   expect_error(point_with("\"on\": {\"button\": 1,\n\"toggle\": 1}"), 4, {"toggle"});
   expect_error(point_with("\"on\": {\"toggle\": true}"), 3, {"neither"});
 }
@@ -264,8 +265,10 @@ TEST(ExtractProgram, ReadsModesInOrder) {
 }
 
 TEST(ExtractProgram, ModeErrorsNameTheirLine) {
-  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"z\"], \"on\": {\"button\": 1}}"), 5, {"\"m\"", "\"z\"", "no link"});
-  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"a\"], \"on\": {\"button\": 1}}"), 5, {"\"a\" twice"});
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"z\"], \"on\": {\"button\": 1}}"), 5,
+               {"\"m\"", "\"z\"", "no link", "one of a, b was expected"});
+  expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\",\n\"a\"], \"on\": {\"button\": 1}}"), 5,
+               {"\"a\" twice", "each link once was expected"});
   expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"on\": {}}"), 5, {"neither"});
   expect_error(with_modes("{\"name\": \"m\", \"links\": [\"a\"],\n\"on\": {\"button\": 40}}"), 5, {"from 1 to 32"});
   std::string nine;
