@@ -28,7 +28,7 @@ namespace {
 /// A parameter: a number, or an object (read_parameter.h).
 std::string parameter(const Key& key) {
   return fmt::format(
-      R"("{0}": {{"description": "{1}", "oneOf": [{{"type": "number"{2}{3}}}, {{"type": "object", "required": ["field", "map"], "properties": {{"field": {{"type": "string"}}, "map": {{"type": "array", "minItems": 1}}, "of": {{"enum": ["value", "gradient", "magnitude"]}}, "normalise": {{"type": "boolean"}}, "outside": {{"type": "number"}}}}, "additionalProperties": false}}]}})",
+      R"("{0}": {{"description": "{1}", "oneOf": [{{"type": "number"{2}{3}}}, {{"type": "object", "required": ["field", "map"], "properties": {{"field": {{"type": "string"}}, "map": {{"type": "array", "minItems": 1, "description": "[value, output] pairs, values rising", "items": {{"type": "array", "items": {{"type": "number"}}, "minItems": 2, "maxItems": 2}}}}, "of": {{"enum": ["value", "gradient", "magnitude"]}}, "normalise": {{"type": "boolean", "description": "values run 0..1 over the range of the field"}}, "outside": {{"type": "number", "description": "where the field says nothing; default: the first output"}}}}, "additionalProperties": false}}]}})",
       key.name, key.help, key.schema.empty() ? "" : ", ", key.schema);
 }
 

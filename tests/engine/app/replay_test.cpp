@@ -271,4 +271,19 @@ TEST(Replay, DetailsTellWhatEveryLinkFeels) {
   EXPECT_EQ(ticks.number(66, "pin_active"), 1);
 }
 
+// Every example of haptics/README.md runs as it stands.
+TEST(Replay, TheExamplesOfTheReferenceRun) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "p.csv", "t,x,y,z,buttons\n0,0.5,0.01,0,0\n0.001,0.49,0.05,-0.01,1\n0.002,0.45,0.1,-0.02,0\n");
+  const std::string text = test::read_file(std::string(CATENA_SOURCE_DIR) + "/haptics/README.md");
+  int examples = 0;
+  for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at + 1), ++examples) {
+    const std::size_t begin = at + 8;
+    test::write_file(folder / "s.json", text.substr(begin, text.find("```", begin) - begin));
+    const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+  EXPECT_EQ(examples, 3);
+}
+
 }  // namespace
