@@ -29,7 +29,7 @@ std::vector<Vec3> hand(double speed, bool tapping) {
   return path;
 }
 
-void run(benchmark::State& state, const char* free, double speed, bool tapping) {
+void Mesh100k(benchmark::State& state, const char* free, double speed, bool tapping) {
   BuildContext context;
   context.mesh = [](const json::Node&, const std::string&) -> Result<mesh::MeshPtr> { return sphere(); };
   const auto node = json::parse(std::string(R"({"name": "a", "type": "mesh", "mesh": "m", "free": ")") + free + "\"}", "bench");
@@ -59,10 +59,10 @@ void run(benchmark::State& state, const char* free, double speed, bool tapping) 
   state.counters["max_ns"] = at(1);
 }
 
-BENCHMARK_CAPTURE(run, slide_0_2, "above", 0.2, false)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(run, slide_1, "above", 1.0, false)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(run, tap_0_2, "above", 0.2, true)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(run, tap_1, "above", 1.0, true)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(run, two_sided_1, "none", 1.0, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Mesh100k, slide_0_2, "above", 0.2, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Mesh100k, slide_1, "above", 1.0, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Mesh100k, tap_0_2, "above", 0.2, true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Mesh100k, tap_1, "above", 1.0, true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Mesh100k, two_sided_1, "none", 1.0, false)->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -26,6 +26,19 @@ const std::string kScene = R"({ // a scene that touches every reader
   "cursor": {"probe": [0, 0, 1], "size": 0.1},
   /* done */ "background": [0, 0, 0], "quality": "time=8" })";
 
+/// Every kind of key that a link, a mode of operation or a ready-made mode takes; fields that cost nothing to make.
+const std::string kHand = R"({ "fields": {"s": {"analytic": "sphere"}, "v": {"analytic": "circle"}},
+  "chain": [{"name": "skin", "type": "anisotropic_friction", "surface": "s", "level": 0.5, "field": "v", "kind": "line", "threshold": 0.03,
+             "tau_min": 0.002, "tau_max": {"field": "s", "map": [[0, 0.01], [1, 0.05]], "of": "gradient", "outside": 0.02},
+             "law": "printed", "free": "above", "release": 0.4, "snap": 0.2, "indicate": {"cue": "detent", "at": 0.1, "duration": 0.01}},
+            {"name": "path", "type": "polyline", "points": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "closed": true, "on": {"force_above": 3, "force_below": 1}},
+            {"name": "case", "type": "box", "center": [0, 0, 0], "size": [1, 2, 3], "rotation": {"axis": [1, 2, 3], "angle_deg": 40}, "free": "below"},
+            {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search": 0.6, "stiffness": {"field": "v", "map": [[0, 1]]}},
+            {"name": "rough", "type": "texture", "threshold": 0.01, "amplitude": 0.8, "wavelength": 0.07},
+            {"name": "oil", "type": "viscosity", "time": 0.004, "on": {"button": 2, "toggle": true}}],
+  "modes": [{"name": "one", "links": ["skin", "path"], "on": {"button": 1}}, {"name": "two", "links": [], "on": {"force_above": 2}}],
+  "coupling": {"ramp_s": 0.02} })";
+
 /// A value, or one line that starts with the file's name.
 bool check(const std::string& text, bool extract) {
   auto scene = scene::parse_scene(text, "scene.json");
@@ -43,11 +56,13 @@ bool check(const std::string& text, bool extract) {
   return false;
 }
 
-TEST(SceneFuzz, TheSeedIsValid) {
-  auto scene = scene::parse_scene(kScene, "scene.json");
-  ASSERT_TRUE(scene) << scene.error().message;
-  const auto program = haptics::extract_program(*scene);
-  ASSERT_TRUE(program) << program.error().message;
+TEST(SceneFuzz, TheSeedsAreValid) {
+  for (const std::string& seed : {kScene, kHand}) {
+    auto scene = scene::parse_scene(seed, "scene.json");
+    ASSERT_TRUE(scene) << scene.error().message;
+    const auto program = haptics::extract_program(*scene);
+    ASSERT_TRUE(program) << program.error().message;
+  }
 }
 
 TEST(SceneFuzz, EveryTruncation) {
@@ -72,7 +87,7 @@ TEST(SceneFuzz, Mutations) {
 
 TEST(SceneFuzz, MutatedChainsAreExtracted) {
   test::Random random{2};
-  for (int i = 0; i < kMutations / 10 && !HasFailure(); ++i) check(test::mutate(kScene, random), true);
+  for (int i = 0; i < kMutations / 10 && !HasFailure(); ++i) check(test::mutate(i % 2 ? kHand : kScene, random), true);
 }
 
 TEST(SceneFuzz, DeepAndLongTexts) {
