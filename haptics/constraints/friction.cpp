@@ -1,9 +1,8 @@
 #include "haptics/constraints/friction.h"
 
-#include <fmt/format.h>
-
 #include "engine/field/magnitude.h"
 #include "engine/flow/direction.h"
+#include "haptics/constraints/read_field.h"
 #include "haptics/constraints/read_parameter.h"
 #include "haptics/constraints/safe_direction.h"
 #include "haptics/constraints/surface_contact.h"
@@ -256,16 +255,13 @@ class Friction final : public Constraint {
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
   Spec spec;
-  CATENA_TRY(const std::string name, json::require_string(link, "field"));
-  CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
-  if (!any.vector)
-    return json::error_at(*link.find("field"), fmt::format("field \"{}\" is a scalar field; friction needs a vector field", name));
-  spec.field = any.vector;
-  spec.largest = field::largest_magnitude(*any.vector);
+  CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "friction", context));
+  spec.field = field;
+  spec.largest = field::largest_magnitude(*field);
   CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
   spec.line = kind == 1;
   CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::optional, context));
-  if (!spec.contact.surface) spec.contact.length = any.vector->length();
+  if (!spec.contact.surface) spec.contact.length = field->length();
   CATENA_TRY(spec.threshold, get_parameter(link, "threshold", kThreshold * spec.contact.length, json::Range::not_negative, context));
   return std::shared_ptr<const Constraint>(std::make_shared<Friction>(std::move(spec)));
 }

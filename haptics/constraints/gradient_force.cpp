@@ -1,8 +1,7 @@
 #include "haptics/constraints/gradient_force.h"
 
-#include <fmt/format.h>
-
 #include "engine/field/magnitude.h"
+#include "haptics/constraints/read_field.h"
 #include "haptics/constraints/read_parameter.h"
 
 namespace catena::haptics {
@@ -47,14 +46,11 @@ class GradientForce final : public Constraint {
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
-  CATENA_TRY(const std::string name, json::require_string(link, "field"));
-  CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
-  if (!any.scalar)
-    return json::error_at(*link.find("field"), fmt::format("field \"{}\" is a vector field; a gradient force needs a scalar field", name));
+  CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "a gradient force", context));
   CATENA_TRY(const Parameter displacement, require_parameter(link, "displacement", json::Range::not_negative, context));
   CATENA_CHECK(json::require_string(link, "towards"));
   CATENA_TRY(const int towards, json::get_choice(link, "towards", 0, {"high", "low"}));
-  return std::shared_ptr<const Constraint>(std::make_shared<GradientForce>(any.scalar, displacement, towards == 0 ? 1.0 : -1.0));
+  return std::shared_ptr<const Constraint>(std::make_shared<GradientForce>(field, displacement, towards == 0 ? 1.0 : -1.0));
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "haptics/constraints/isosurface.h"
 
-#include <fmt/format.h>
-
 #include "haptics/constraints/isosurface_analytic.h"
 #include "haptics/constraints/isosurface_cell_walk.h"
 #include "haptics/constraints/isosurface_descent.h"
 #include "haptics/constraints/isosurface_reach.h"
+#include "haptics/constraints/read_field.h"
 #include "haptics/constraints/surface_side.h"
 
 namespace catena::haptics {
@@ -259,17 +258,10 @@ class Isosurface final : public Constraint {
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
-  CATENA_TRY(const std::string name, json::require_string(link, "field"));
-  CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
-  if (!any.scalar)
-    return json::error_at(*link.find("field"), fmt::format("field \"{}\" is a vector field; an isosurface needs a scalar field", name));
-  CATENA_TRY(const double level, json::require_number(link, "level"));
-  const double least = any.scalar->min_value(), most = any.scalar->max_value();
-  if (!(level >= least && level <= most))
-    return json::error_at(*link.find("level"), fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}",
-                                                           level, name, least, most));
+  CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "an isosurface", context));
+  CATENA_TRY(const double level, require_level(link, "field", *field));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
-  return std::shared_ptr<const Constraint>(std::make_shared<Isosurface>(any.scalar, level, rules));
+  return std::shared_ptr<const Constraint>(std::make_shared<Isosurface>(field, level, rules));
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
 #include "haptics/constraints/modulated_friction.h"
 
-#include <fmt/format.h>
-
 #include "engine/field/magnitude.h"
 #include "engine/flow/direction.h"
+#include "haptics/constraints/read_field.h"
 #include "haptics/constraints/read_parameter.h"
 #include "haptics/constraints/safe_direction.h"
 #include "haptics/constraints/surface_contact.h"
@@ -77,12 +76,8 @@ class ModulatedFriction final : public Constraint {
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
   Spec spec;
-  CATENA_TRY(const std::string name, json::require_string(link, "field"));
-  CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
-  if (!any.vector)
-    return json::error_at(*link.find("field"),
-                          fmt::format("field \"{}\" is a scalar field; modulated_friction needs a vector field", name));
-  spec.field = any.vector;
+  CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "modulated_friction", context));
+  spec.field = field;
   CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
   spec.line = kind == 1;
   CATENA_TRY(const int law, json::get_choice(link, "law", 0, {"safe", "printed"}));
@@ -91,7 +86,7 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
   const double length = spec.contact.length;
   CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::Range::not_negative, context));
   CATENA_TRY(spec.most, get_parameter(link, "tau_max", kMost * length, json::Range::not_negative, context));
-  spec.largest_speed = field::largest_magnitude(*any.vector);
+  spec.largest_speed = field::largest_magnitude(*field);
   spec.largest_slope = field::largest_gradient(*spec.contact.surface);
   return std::shared_ptr<const Constraint>(std::make_shared<ModulatedFriction>(std::move(spec)));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/flow/direction.h"
+#include "haptics/constraints/read_field.h"
 #include "haptics/constraints/streamline_online.h"
 #include "haptics/constraints/streamline_selected.h"
 
@@ -31,13 +32,11 @@ Outcome check_seed(const json::Node& where, const OnlineSpec& spec, const std::s
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const std::string name, json::require_string(link, "field"));
-  CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
-  if (!any.vector)
-    return json::error_at(*link.find("field"), fmt::format("field \"{}\" is a scalar field; a streamline needs a vector field", name));
+  CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a streamline", context));
 
   // keys
   OnlineSpec spec;
-  spec.field = any.vector;
+  spec.field = field;
   CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
   spec.line = kind == 1;
   CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::Range::not_negative));

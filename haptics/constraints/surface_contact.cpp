@@ -1,9 +1,8 @@
 #include "haptics/constraints/surface_contact.h"
 
-#include <fmt/format.h>
-
 #include "engine/field/grid.h"
 #include "haptics/constraints/isosurface_reach.h"
+#include "haptics/constraints/read_field.h"
 
 namespace catena::haptics {
 namespace {
@@ -54,18 +53,13 @@ Result<ContactSpec> read_contact(const json::Node& link, SurfaceKey rule, const 
     if (level != nullptr) return json::error_at(*level, "\"level\" has no \"surface\"; a scalar field was expected beside it");
     return spec;
   }
-  CATENA_TRY(const std::string name, json::require_string(link, "surface"));
-  CATENA_TRY(const field::AnyField any, context.field(*surface, name));
-  if (!any.scalar) return json::error_at(*surface, fmt::format("field \"{}\" is a vector field; \"surface\" needs a scalar field", name));
-  spec.surface = any.scalar;
-  spec.length = any.scalar->length();
+  CATENA_TRY(spec.surface, require_scalar_field(link, "surface", "\"surface\"", context));
+  spec.length = spec.surface->length();
   if (level == nullptr && rule == SurfaceKey::optional_with_level)
     return json::error_at(*surface, "\"surface\" has no \"level\"; the field's value on the surface was expected");
-  CATENA_TRY(spec.level, json::get_optional_number(link, "level"));
-  const double least = any.scalar->min_value(), most = any.scalar->max_value();
-  if (spec.level && !(*spec.level >= least && *spec.level <= most))
-    return json::error_at(
-        *level, fmt::format("level {} is not attained by field \"{}\"; expected a value within {} .. {}", *spec.level, name, least, most));
+  if (level != nullptr) {
+    CATENA_TRY(spec.level, require_level(link, "surface", *spec.surface));
+  }
   return spec;
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/flow/velocity_gradient.h"
 #include "haptics/constraints/isosurface_level.h"
+#include "haptics/constraints/read_field.h"
 
 namespace catena::haptics {
 namespace {
@@ -243,14 +244,11 @@ class VortexCore final : public Constraint {
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
-  CATENA_TRY(const std::string name, json::require_string(link, "field"));
-  CATENA_TRY(const field::AnyField any, context.field(*link.find("field"), name));
-  if (!any.vector)
-    return json::error_at(*link.find("field"), fmt::format("field \"{}\" is a scalar field; a vortex core needs a vector field", name));
+  CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a vortex core", context));
   Spec spec;
-  spec.field = any.vector;
+  spec.field = field;
   CATENA_TRY(spec.radius, json::get_number(link, "radius", 0, json::Range::not_negative));
-  CATENA_TRY(spec.search, json::get_number(link, "search", std::fmax(0.1 * any.vector->length(), 2 * spec.radius), json::Range::positive));
+  CATENA_TRY(spec.search, json::get_number(link, "search", std::fmax(0.1 * field->length(), 2 * spec.radius), json::Range::positive));
   if (!(spec.search > spec.radius))
     return json::error_at(*link.find("search"),
                           fmt::format("\"search\" is {}; a number > \"radius\", which is {}, was expected", spec.search, spec.radius));
