@@ -6,10 +6,6 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kRearmPart = 0.1;  // of release
-
-bool same_bits(const Vec3& a, const Vec3& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
-
 /// Where the probe is, seen from a surface that has let go. True: it has crossed it since the last time.
 bool note_side(SingleTick& tick, std::size_t i) noexcept {
   SingleProxy::Watch& watch = tick.single.watches[i];

@@ -18,6 +18,10 @@ using exchange::kMaxLinks;
 using exchange::Status;
 
 inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, for every method
+inline constexpr double kRearmPart = 0.1;   ///< of `release`: within it a link that has let go takes hold again
+
+/// What "bit for bit" means: tells -0 from 0, and a NaN is itself.
+inline bool same_bits(const Vec3& a, const Vec3& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 struct LinkState {
   Vec3 proxy{0.0};

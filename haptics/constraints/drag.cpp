@@ -1,31 +1,20 @@
 #include "haptics/constraints/drag.h"
 
+#include "haptics/constraints/contact_drag.h"
 #include "haptics/constraints/read_parameter.h"
-#include "haptics/constraints/surface_contact.h"
 
 namespace catena::haptics {
 namespace {
 
-class Drag final : public Constraint {
+class Drag final : public ContactDrag {
  public:
-  Drag(Parameter threshold, ContactSpec contact) : threshold_(std::move(threshold)), contact_(std::move(contact)) {}
-
-  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    memory_of<ContactMemory>(state) = ContactMemory{};
-    state.proxy = probe;
-  }
-  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Contact contact(contact_, probe, memory_of<ContactMemory>(state), state, scratch);
-    if (!contact.begin()) return;
-    const double tau = safe_threshold(threshold_.at(contact.proxy(), scratch.parameter, state.evaluations));
-    if (!contact.drag(tau)) return contact.lose();
-    contact.end(tau, Status::ok);
-  }
-  double domain_length() const noexcept override { return contact_.length; }
+  Drag(Parameter threshold, ContactSpec contact) : ContactDrag(std::move(contact)), threshold_(std::move(threshold)) {}
 
  private:
+  double threshold(const Vec3& p, LinkState& state, LinkScratch& scratch) const noexcept override {
+    return threshold_.at(p, scratch.parameter, state.evaluations);
+  }
   Parameter threshold_;
-  ContactSpec contact_;
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {

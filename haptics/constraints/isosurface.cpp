@@ -85,9 +85,7 @@ class LevelSurface final : public Surface {
   double domain_length() const noexcept override { return field_.length(); }
 
  private:
-  LevelPoint look(const Vec3& probe) noexcept {
-    return have_here_ && std::memcmp(&asked_, &probe, sizeof probe) == 0 ? here_ : field_.at(probe);
-  }
+  LevelPoint look(const Vec3& probe) noexcept { return have_here_ && same_bits(asked_, probe) ? here_ : field_.at(probe); }
 
   /// From a point on the level to the closest point.
   Hold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {

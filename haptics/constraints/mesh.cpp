@@ -13,8 +13,6 @@ constexpr double kSearchRadius = 4e6;
 constexpr int kSearchNodes = 16384;  // of the closest point of all
 constexpr double kShortest = 1e-300;
 
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
 Vec3 own_of(const mesh::TriangleMesh& mesh, const Vec3& probe, double farthest) {
   // halves, so that no difference overflows
   const Vec3 half = probe * 0.5 - mesh.world(Vec3(0.0)) * 0.5;

@@ -1,7 +1,8 @@
 #include "haptics/constraints/polyline_search.h"
 
-#include <cstring>
 #include <limits>
+
+#include "haptics/chain/constraint.h"
 
 namespace catena::haptics {
 namespace {
@@ -72,7 +73,7 @@ void PolylineSearch::search(const std::vector<Straight>& pieces, const Vec3& pro
   };
   const auto of_piece = [&](std::size_t k) { return key(pieces[k].at(pieces[k].along(probe))); };
 
-  const bool rests = state.any && std::memcmp(&state.probe, &probe, sizeof probe) == 0;
+  const bool rests = state.any && same_bits(state.probe, probe);
   state.visits = 0;
   if (!state.open) {
     if (rests && state.whole && state.depth == 0) return;

@@ -7,7 +7,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kSnapPart = 0.1, kReleasePart = 2, kMostSnap = 0.9;
+constexpr double kReleasePart = 2, kMostSnap = 0.9;
 
 constexpr int kMostBeforeSearch = 64;  // fetches: with more already spent, the search waits for the next tick
 
@@ -76,7 +76,7 @@ class Snap final : public Constraint {
     const auto ask = [&](const Parameter& parameter) { return parameter.at(state.proxy, scratch.parameter, state.evaluations); };
     const double snap = spec_.has_snap ? ask(spec_.snap) : 0;
     const double release = spec_.has_release ? ask(spec_.release) : kReleasePart * snap;
-    return {spec_.has_snap ? std::fmin(snap, kMostSnap * release) : kSnapPart * release, release};
+    return {spec_.has_snap ? std::fmin(snap, kMostSnap * release) : kRearmPart * release, release};
   }
 
   /// Held: what the constraint says. Without a feature it is apart, but says so itself.

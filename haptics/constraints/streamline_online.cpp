@@ -273,7 +273,7 @@ class OnlineStreamline final : public Constraint {
   /// The tangent at the foot of `at`; where the line is held, that point. At the proxy itself the direction is fetched anew,
   /// for somebody else may have moved it.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
-    if (std::memcmp(&at, &state.proxy, sizeof at) == 0) return here(at, state, scratch, out);
+    if (same_bits(at, state.proxy)) return here(at, state, scratch, out);
     LinkState foot = state;
     Tick(spec_, at, foot, scratch).run();
     state.evaluations = foot.evaluations;

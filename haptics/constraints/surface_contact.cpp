@@ -13,7 +13,6 @@ constexpr int kRounds = 12, kPatient = 5, kNewton = 8;
 constexpr int kForLevel = 12;      // fetches kept for the way back to the level
 constexpr double kLevelled = 0.1;  // e.t / |e|: below, sliding does not shorten the gap
 
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 bool usable(const LevelPoint& a) { return a.valid && !a.plateau; }
 
 /// LevelField::at with one division, in place (a copy would wait for its stores); the same up to rounding.

@@ -7,9 +7,6 @@ namespace {
 
 constexpr double kHandStep = 0.02;  // of L: longest step, and deepest hold, for thin sheets
 constexpr double kThrough = 1e-6;   // of L: closer than this to the face, a probe on the free side has come out of it
-constexpr double kRearmPart = 0.1;  // of release
-
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 bool is_free(const SideRules& rules, double value) {
   return rules.free == FreeSide::above ? value >= 0 : rules.free == FreeSide::below ? value <= 0 : false;

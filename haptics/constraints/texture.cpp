@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "haptics/constraints/contact_drag.h"
 #include "haptics/constraints/read_parameter.h"
-#include "haptics/constraints/surface_contact.h"
 
 namespace catena::haptics {
 namespace {
@@ -14,30 +14,18 @@ double triangle(double t) {
   return std::isfinite(part) ? 1 - 4 * std::fabs(part - 0.5) : 0;
 }
 
-class Texture final : public Constraint {
+class Texture final : public ContactDrag {
  public:
   Texture(Parameter threshold, double amplitude, double wavelength, ContactSpec contact)
-      : threshold_(std::move(threshold)), amplitude_(amplitude), wavelength_(wavelength), contact_(std::move(contact)) {}
-
-  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    memory_of<ContactMemory>(state) = ContactMemory{};
-    state.proxy = probe;
-  }
-  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Contact contact(contact_, probe, memory_of<ContactMemory>(state), state, scratch);
-    if (!contact.begin()) return;
-    const Vec3& p = contact.proxy();
-    const double wave = (triangle(p.x / wavelength_) + triangle(p.y / wavelength_) + triangle(p.z / wavelength_)) / 3;
-    const double tau = safe_threshold(threshold_.at(p, scratch.parameter, state.evaluations) * (1 + amplitude_ * wave));
-    if (!contact.drag(tau)) return contact.lose();
-    contact.end(tau, Status::ok);
-  }
-  double domain_length() const noexcept override { return contact_.length; }
+      : ContactDrag(std::move(contact)), threshold_(std::move(threshold)), amplitude_(amplitude), wavelength_(wavelength) {}
 
  private:
+  double threshold(const Vec3& p, LinkState& state, LinkScratch& scratch) const noexcept override {
+    const double wave = (triangle(p.x / wavelength_) + triangle(p.y / wavelength_) + triangle(p.z / wavelength_)) / 3;
+    return threshold_.at(p, scratch.parameter, state.evaluations) * (1 + amplitude_ * wave);
+  }
   Parameter threshold_;
   double amplitude_, wavelength_;
-  ContactSpec contact_;
 };
 
 Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {

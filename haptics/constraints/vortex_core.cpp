@@ -39,7 +39,6 @@ constexpr double kKink = 1e-6;   // of L: where A jumps, so near counts as on th
 constexpr double kLearn = 1e-6;  // of L: shortest step to learn from
 
 double frobenius(const Mat3& m) { return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2])); }
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 struct Spec {
   field::VectorFieldPtr field;

@@ -15,7 +15,7 @@ using haptics::test::build;
 using haptics::test::Fields;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::test::same_bits;
+using haptics::same_bits;
 
 constexpr double kL = 4, kLimit = 0.05;
 

@@ -14,7 +14,7 @@ using flow::Method;
 using haptics::kEvaluationCap;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::test::same_bits;
+using haptics::same_bits;
 using haptics::test::Spread;
 
 Rig online(field::VectorFieldPtr field, const Vec3& seed, Method method = Method::rkf34, double tolerance = 1e-9) {

@@ -12,7 +12,7 @@ using haptics::test::analytic;
 using haptics::test::isosurface;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::test::same_bits;
+using haptics::same_bits;
 using haptics::test::Spread;
 
 struct Slope {

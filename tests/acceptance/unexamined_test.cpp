@@ -16,7 +16,7 @@ using flow::Method;
 using haptics::test::isosurface;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::test::same_bits;
+using haptics::same_bits;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 

@@ -17,22 +17,24 @@ namespace catena::bench {
 
 using namespace catena::haptics;
 
-/// An analytic field on 256 nodes an axis of the box -2..2 (hill: -1.2..1.2), made once.
-inline const field::AnyField& grid_256(const std::string& name) {
-  static std::map<std::string, field::AnyField> made;
-  field::AnyField& grid = made[name];
+/// An analytic field on 256 nodes an axis of the box -half..half, made once.
+inline const field::AnyField& grid_256(const std::string& name, double half = 2) {
+  static std::map<std::pair<std::string, double>, field::AnyField> made;
+  field::AnyField& grid = made[{name, half}];
   if (grid.get() != nullptr) return grid;
   const auto formula = field::make_analytic(name);
   CATENA_ASSERT(static_cast<bool>(formula));
-  const double half = name == "hill" ? 1.2 : 2;
   if (formula->scalar) grid.scalar = field::sample_on_grid(*formula->scalar, 256, -half, half);
   if (formula->vector) grid.vector = field::sample_on_grid(*formula->vector, 256, -half, half);
   return grid;
 }
 
-inline BuildContext context_256() {
+/// `hill_half`: the box of Hill's vortex; all others fill -2..2.
+inline BuildContext context_256(double hill_half = 1.2) {
   BuildContext context;
-  context.field = [](const json::Node&, const std::string& name) -> Result<field::AnyField> { return grid_256(name); };
+  context.field = [=](const json::Node&, const std::string& name) -> Result<field::AnyField> {
+    return grid_256(name, name == "hill" ? hill_half : 2);
+  };
   context.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };
   return context;
 }

@@ -80,8 +80,6 @@ inline ConstraintPtr isosurface(field::ScalarFieldPtr f, double level, const std
   return build(std::string(R"({"name": "a", "type": "isosurface", "field": "f", "level": )") + number + more + "}", fields);
 }
 
-inline bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
 /// One link, as the tick drives it.
 struct Rig {
   explicit Rig(ConstraintPtr c) : constraint(std::move(c)) {}

@@ -57,8 +57,6 @@ double off_level(const field::ScalarField& surface, double level, const Vec3& p)
   return std::fabs(s.value - level) / norm(s.gradient);
 }
 
-bool same_bits(const Vec3& a, const Vec3& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
 /// A hand that strolls along the surface, in and out of it, with some rests and jerks.
 void explore(Bench& bench, const char* name, const std::string& surface_name, double level, const Vec3& from, int ticks) {
   const auto surface = bench.field(surface_name).scalar;
