@@ -11,6 +11,7 @@ find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
 pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)
 pkg_check_modules(JSONCPP REQUIRED IMPORTED_TARGET jsoncpp)
+pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)
 add_library(JsonCpp::JsonCpp ALIAS PkgConfig::JSONCPP)
 
 if(NOT TARGET CLI11::CLI11)
@@ -33,3 +34,10 @@ find_library(ZNZ_LIBRARY znz REQUIRED)
 add_library(catena_nifti INTERFACE)
 target_include_directories(catena_nifti SYSTEM INTERFACE ${NIFTI_INCLUDE_DIR})
 target_link_libraries(catena_nifti INTERFACE ${NIFTI_LIBRARY} ${ZNZ_LIBRARY})
+
+# The SpaceMouse's daemon is spoken to through its own library.
+find_path(SPNAV_INCLUDE_DIR spnav.h REQUIRED)
+find_library(SPNAV_LIBRARY spnav REQUIRED)
+add_library(catena_spnav INTERFACE)
+target_include_directories(catena_spnav SYSTEM INTERFACE ${SPNAV_INCLUDE_DIR})
+target_link_libraries(catena_spnav INTERFACE ${SPNAV_LIBRARY})

@@ -7,4 +7,14 @@ const char* status_word(Status status) {
   return words[static_cast<int>(status)];
 }
 
+const char* condition_word(Condition condition) {
+  constexpr const char* words[] = {"NORMAL", "LATE", "NO_DEVICE", "WATCHDOG"};
+  return words[static_cast<int>(condition)];
+}
+
+const char* force_state_word(ForceState state) {
+  constexpr const char* words[] = {"ON", "OFF", "RAMPING_IN", "HELD", "RAMPING_OUT", "STOPPED"};
+  return words[static_cast<int>(state)];
+}
+
 }  // namespace catena::exchange

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "engine/base/vec.h"
+#include "engine/base/rotation.h"
 
 namespace catena::exchange {
 
@@ -15,14 +15,25 @@ inline constexpr int kMaxLinks = 8;
 enum class Status : std::uint8_t { ok, free, released, budget, critical, boundary, no_surface, bad_probe };
 const char* status_word(Status status);  ///< OK FREE RELEASED BUDGET CRITICAL BOUNDARY NO_SURFACE BAD_PROBE
 
+/// How a tick came about: what the servo tells it of the device and the clock.
+enum class Condition : std::uint8_t { normal, late, no_device, watchdog };
+const char* condition_word(Condition condition);  ///< NORMAL LATE NO_DEVICE WATCHDOG
+
+/// What became of the force on its way to the hand.
+enum class ForceState : std::uint8_t { on, off, ramping_in, held, ramping_out, stopped };
+const char* force_state_word(ForceState state);  ///< ON OFF RAMPING_IN HELD RAMPING_OUT STOPPED
+
 struct LinkReport {
-  Vec3 proxy{0.0};               ///< world units
-  Vec3 force_n{0.0};             ///< this link's own share, before the limit
-  double residual = 0;           ///< distance from the constraint, world units
-  double weight = 0;             ///< w_i of the force law, 0..1
-  double stiffness_n_per_m = 0;  ///< k_i of this tick
-  double gap = 0;                ///< |p_i - p_(i-1)|, world units
-  double leaving = 0;            ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
+  Vec3 proxy{0.0};                ///< world units
+  Vec3 force_n{0.0};              ///< this link's own share, before the limit
+  double residual = 0;            ///< distance from the constraint, world units
+  double weight = 0;              ///< w_i of the force law, 0..1
+  double stiffness_n_per_m = 0;   ///< k_i of this tick
+  double gap = 0;                 ///< |p_i - p_(i-1)|, world units
+  Quat orientation{kNoRotation};  ///< the link's rotational proxy
+  Vec3 torque_nm{0.0};            ///< its share of the torque
+  double booked_j = 0;            ///< net energy that the link has given to the hand since the start (its ledger)
+  double leaving = 0;             ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
   std::int32_t evaluations = 0;
   Status status = Status::ok;
   bool active = false;  ///< enabled and not released
@@ -40,15 +51,24 @@ struct HapticState {
   std::uint64_t tick = 0;
   double t_s = 0;
   Vec3 probe{0.0};    ///< world units
-  Vec3 force_n{0.0};  ///< on the hand, after the limit, world axes
+  Vec3 force_n{0.0};  ///< on the hand, after all limits, world axes
   std::uint32_t buttons = 0;
   std::int32_t link_count = 0;
   std::int32_t mode = -1;  ///< the mode of operation; -1: none, all links as listed
   std::array<LinkReport, kMaxLinks> links{};
+  Quat orientation{kNoRotation};  ///< of the probe
+  Vec3 torque_nm{0.0};            ///< on the hand, world axes
+  Vec3 coupling_force_n{0.0};     ///< what the chain asks for, before what the device allows: equal to force_n without a device
+  double energy_j = 0;            ///< of the passivity observer: what the hand may still get back
+  double dissipated_j = 0;        ///< what the passivity controller has taken
+  Condition condition = Condition::normal;
+  ForceState force_state = ForceState::on;
   // written by the servo
   std::uint64_t program_epoch = 0;  ///< the newest program that the tick has run
   std::uint64_t missed_deadlines = 0;
-  double compute_us = 0;
+  double period_us = 0;   ///< since the last tick began
+  double compute_us = 0;  ///< the tick alone
+  double device_us = 0;   ///< reading and writing the device
 };
 
 }  // namespace catena::exchange

@@ -89,4 +89,11 @@ Outcome read_workspace(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
+/// Its keys are read by haptics/device, which knows the devices.
+Outcome read_device(Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::expect_object(node, "device"));
+  scene.device = node;
+  return Done{};
+}
+
 }  // namespace catena::scene

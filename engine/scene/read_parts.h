@@ -21,6 +21,7 @@ Outcome read_chain(Scene& scene, const json::Node& node);
 Outcome read_modes(Scene& scene, const json::Node& node);
 Outcome read_coupling(Scene& scene, const json::Node& node);
 Outcome read_workspace(Scene& scene, const json::Node& node);
+Outcome read_device(Scene& scene, const json::Node& node);
 
 Outcome read_volumes(Scene& scene, const json::Node& node);
 Outcome read_isosurfaces(Scene& scene, const json::Node& node);

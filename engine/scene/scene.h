@@ -17,6 +17,7 @@ struct Scene {
   World world;
   Coupling coupling;
   Workspace workspace;
+  std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
   Camera camera;
   Background background;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated

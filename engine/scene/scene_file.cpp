@@ -6,7 +6,7 @@ namespace {
 
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
-  CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "volumes", "isosurfaces", "meshes",
+  CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
                                       "streamlines", "cursor", "camera", "background", "quality"}));
   // fields first: the other parts name them
   CATENA_CHECK(read_fields(scene, root, overrides));
@@ -14,12 +14,19 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
     const char* key;
     Outcome (*read)(Scene&, const json::Node&);
   };
-  constexpr Part parts[] = {{"chain", read_chain},           {"modes", read_modes},
-                            {"coupling", read_coupling},     {"workspace", read_workspace},
-                            {"volumes", read_volumes},       {"isosurfaces", read_isosurfaces},
-                            {"meshes", read_meshes},         {"streamlines", read_streamlines},
-                            {"cursor", read_cursor},         {"camera", read_camera},
-                            {"background", read_background}, {"quality", read_quality}};
+  constexpr Part parts[] = {{"chain", read_chain},
+                            {"modes", read_modes},
+                            {"coupling", read_coupling},
+                            {"workspace", read_workspace},
+                            {"device", read_device},
+                            {"volumes", read_volumes},
+                            {"isosurfaces", read_isosurfaces},
+                            {"meshes", read_meshes},
+                            {"streamlines", read_streamlines},
+                            {"cursor", read_cursor},
+                            {"camera", read_camera},
+                            {"background", read_background},
+                            {"quality", read_quality}};
   for (const Part& part : parts)
     if (const json::Node* node = root.find(part.key)) CATENA_CHECK(part.read(scene, *node));
   return Done{};

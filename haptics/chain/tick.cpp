@@ -111,7 +111,10 @@ double bounded(double v) noexcept {
 void report(const Program& program, const ChainState& state, exchange::HapticState& out) noexcept {
   out.tick = state.ticks;
   out.t_s = state.last_t_s;
-  out.force_n = state.force_n;
+  out.coupling_force_n = state.force_n;
+  out.force_n = state.guard.force_n;
+  out.torque_nm = state.guard.torque_nm;
+  out.force_state = state.guard.force_state;
   out.link_count = static_cast<std::int32_t>(program.links.size());
   out.mode = state.fade.order.mode;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
@@ -136,6 +139,8 @@ void hold_all(const Program& program, ChainState& state, exchange::HapticState& 
     out.links[i].left = state.indications[i].left;
   }
   state.force_n = Vec3(0.0);
+  // no pose, no force: whatever the clock says
+  guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
   ++state.ticks;
   report(program, state, out);
 }
@@ -146,7 +151,11 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   out.probe = probe.position;
   out.buttons = probe.buttons;
   out.program_epoch = program.epoch;
-  if (!is_finite(probe.position) || !std::isfinite(probe.t_s)) return hold_all(program, state, out);
+  out.orientation = probe.orientation;
+  out.condition = probe.condition;
+  const bool stopped = probe.condition == Condition::no_device || probe.condition == Condition::watchdog;
+  if (stopped || !is_finite(probe.position) || !is_finite(probe.orientation) || !std::isfinite(probe.t_s))
+    return hold_all(program, state, out);
 
   const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_t_s) : 0;
   const double ramp_step = program.coupling.ramp_s > 0 ? dt / program.coupling.ramp_s : 1;
@@ -189,6 +198,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   }
 
   state.force_n = force;
+  guard(program.limits, {force, Vec3(0.0), probe.condition, probe.forces_on, dt}, state.guard);
   state.last_probe = probe.position;
   state.last_t_s = probe.t_s;
   state.has_probe = true;

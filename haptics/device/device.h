@@ -1,25 +1,55 @@
-/// What the servo needs of a haptic device: the pose in, the force out. Metres, newtons, the device's own axes.
-/// `read` and `write` run on the haptic thread: no allocation, lock or throw, and they return at once.
+/// What the servo needs of a haptic device: the pose in, force and torque out. Metres, newtons, the device's own axes.
+/// `read` and `write` run on the haptic thread: no allocation, lock or throw, and they return at once (a device that must wait
+/// for its bus does so in a thread of its own). `stop` may be called from any thread, at any time.
 #pragma once
 #include <cstdint>
 #include <string>
 
-#include "engine/base/vec.h"
+#include "engine/base/rotation.h"
 
 namespace catena::haptics {
 
+enum class DeviceStatus : std::uint8_t {
+  ready,     ///< the pose is good
+  starting,  ///< not there yet: firmware, homing; the servo sends zero
+  lost       ///< unplugged or silent; the servo sends zero in that tick. It may come back
+};
+
 struct DeviceInput {
   Vec3 position_m{0.0};
+  Quat orientation{kNoRotation};  ///< of the grip; the identity where the device has none
   std::uint32_t buttons = 0;
-  bool connected = true;  ///< false: the servo sends zero force in that tick
+  DeviceStatus status = DeviceStatus::ready;
+  bool forces_on = true;  ///< the hand's own switch; false also while it clutches
+  double age_s = 0;       ///< of the pose
   bool recorded = false;  ///< a recorded path brings its own time, and its position is in world units already
   double t_s = 0;
+};
+
+/// What the hand gets.
+struct DeviceOutput {
+  Vec3 force_n{0.0};
+  Vec3 torque_nm{0.0};
+};
+
+/// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.
+struct Mechanics {
+  double mass_kg = 0.15;
+  double damping_ns_per_m = 0;  ///< viscous, of the device alone
+  double friction_n = 0;        ///< Coulomb
+  double encoder_step_m = 0;    ///< 0: continuous
+  double delay_s = 0;           ///< from the pose to the force, beside the tick's own period
 };
 
 struct DeviceCapabilities {
   std::string name;
   double workspace_m = 0.2;  ///< edge of a cube that the hand reaches
+  Vec3 workspace_centre_m{0.0};
+  bool has_orientation = false;
+  int buttons = 1;
   double max_force_n = 0;    ///< 0: no force output (pseudo-haptics only)
+  double max_torque_nm = 0;  ///< 0: no torque output
+  Mechanics mechanics{};
 };
 
 class Device {
@@ -27,7 +57,9 @@ class Device {
   virtual ~Device() = default;
   virtual const DeviceCapabilities& capabilities() const = 0;
   virtual DeviceInput read() noexcept = 0;
-  virtual void write(const Vec3& force_n) noexcept = 0;
+  virtual void write(const DeviceOutput& output) noexcept = 0;
+  /// Zero force now and until the next start, whatever is written. Any thread.
+  virtual void stop() noexcept {}
 };
 
 }  // namespace catena::haptics

@@ -8,7 +8,7 @@ namespace catena::haptics {
 
 static_assert(std::atomic<unsigned>::is_always_lock_free);
 
-MouseDevice::MouseDevice(const Vec3& start_m, const MouseParameters& parameters) : capabilities_{"mouse", 0.2, 0}, position_m_(start_m) {
+MouseDevice::MouseDevice(const Vec3& start_m, const MouseParameters& parameters) : capabilities_{.name = "mouse"}, position_m_(start_m) {
   CATENA_ASSERT(is_finite(start_m) && parameters.rate_hz > 0 && parameters.smoothing_s >= 0);
   share_ = parameters.smoothing_s > 0 ? -std::expm1(-1 / (parameters.rate_hz * parameters.smoothing_s)) : 1;
   for (Slot& slot : slots_) slot.position_m = start_m;

@@ -25,7 +25,7 @@ class MouseDevice final : public Device {
   // haptic thread
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;
-  void write(const Vec3&) noexcept override {}  ///< a mouse cannot push: the force is drawn
+  void write(const DeviceOutput&) noexcept override {}  ///< a mouse cannot push: the force is drawn
 
  private:
   struct Slot {

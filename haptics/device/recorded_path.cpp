@@ -4,7 +4,7 @@
 
 namespace catena::haptics {
 
-RecordedPath::RecordedPath(std::vector<Sample> samples) : samples_(std::move(samples)), capabilities_{"recorded path", 0.2, 0} {
+RecordedPath::RecordedPath(std::vector<Sample> samples) : samples_(std::move(samples)), capabilities_{.name = "recorded path"} {
   CATENA_ASSERT(!samples_.empty());
 }
 

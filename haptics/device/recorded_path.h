@@ -18,7 +18,7 @@ class RecordedPath final : public Device {
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;
-  void write(const Vec3&) noexcept override { ++forces_written_; }
+  void write(const DeviceOutput&) noexcept override { ++forces_written_; }
   std::uint64_t forces_written() const { return forces_written_; }
 
  private:

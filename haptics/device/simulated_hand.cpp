@@ -5,7 +5,7 @@
 namespace catena::haptics {
 
 SimulatedHand::SimulatedHand(std::vector<Waypoint> path, const HandParameters& parameters)
-    : path_(std::move(path)), parameters_(parameters), capabilities_{"simulated hand", 0.2, 100} {
+    : path_(std::move(path)), parameters_(parameters), capabilities_{.name = "simulated hand", .max_force_n = 100} {
   CATENA_ASSERT(!path_.empty() && parameters_.mass_kg > 0 && parameters_.period_s > 0);
   position_m_ = path_.front().position_m;
 }
@@ -31,9 +31,12 @@ DeviceInput SimulatedHand::read() noexcept {
     position_m_ += velocity_ * dt;
   }
   ++ticks_;
-  return {position_m_, path_[segment_].buttons, true};
+  DeviceInput input;
+  input.position_m = position_m_;
+  input.buttons = path_[segment_].buttons;
+  return input;
 }
 
-void SimulatedHand::write(const Vec3& force_n) noexcept { force_n_ = force_n; }
+void SimulatedHand::write(const DeviceOutput& output) noexcept { force_n_ = output.force_n; }
 
 }  // namespace catena::haptics

@@ -27,7 +27,7 @@ class SimulatedHand final : public Device {
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;
-  void write(const Vec3& force_n) noexcept override;
+  void write(const DeviceOutput& output) noexcept override;
 
   const Vec3& position_m() const { return position_m_; }
 

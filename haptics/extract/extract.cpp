@@ -64,7 +64,7 @@ Result<Mode> make_mode(const scene::Mode& from, const LinksOf& links_of) {
 
 }  // namespace
 
-Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene) {
+Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, const Limits& limits) {
   BuildContext context;
   context.field = [&scene](const json::Node& where, const std::string& name) { return scene::use_field(scene, name, where); };
   context.curve = [&scene](const json::Node& where, const std::string&, const flow::Flow& flow, const Vec3& seed) {
@@ -78,6 +78,7 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene) {
   program->coupling.max_force_n = scene.coupling.max_force_n;
   program->coupling.ramp_s = scene.coupling.ramp_s.value_or(0);
   program->coupling.combination = static_cast<Combination>(scene.coupling.method);
+  program->limits = limits;
   program->metres_per_unit = scene.workspace.metres_per_unit;
   program->workspace_origin = scene.workspace.origin;
   program->workspace_rotation = scene.workspace.rotation;

@@ -8,7 +8,7 @@
 
 namespace catena::haptics {
 
-/// Builds the program of all link entities in order, loading only the fields that they name.
-Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene);
+/// Builds the program of all link entities in order, loading only the fields that they name. `limits`: what the device allows.
+Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, const Limits& limits = {});
 
 }  // namespace catena::haptics

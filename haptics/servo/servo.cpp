@@ -60,9 +60,14 @@ void Servo::one_tick(double t_s, exchange::HapticState& out) noexcept {
   probe.position = input.recorded
                        ? input.position_m
                        : program_->workspace_origin + program_->workspace_rotation * input.position_m * (1 / program_->metres_per_unit);
+  // the tool's orientation turns with the workspace; a recorded one is in world axes already
+  probe.orientation = input.recorded ? input.orientation : glm::quat_cast(program_->workspace_rotation) * input.orientation;
+  probe.condition = input.status == DeviceStatus::ready ? Condition::normal : Condition::no_device;
+  probe.forces_on = input.forces_on;
   tick(*program_, probe, state_, scratch_, out);
-  if (!input.connected) out.force_n = state_.force_n = Vec3(0.0);
-  device_.write(out.force_n * program_->workspace_rotation);  // v * R = R^T v: back to the device's axes
+  // v * R = R^T v: back to the device's axes
+  device_.write({out.force_n * program_->workspace_rotation, out.torque_nm * program_->workspace_rotation});
+  if (options_.sink != nullptr) options_.sink->put(probe, out);
 }
 
 void Servo::loop() noexcept {
@@ -93,7 +98,7 @@ void Servo::loop() noexcept {
     }
     published_.publish(out);
   }
-  device_.write(Vec3(0.0));
+  device_.write({});
   running_.store(false, std::memory_order_release);
 }
 

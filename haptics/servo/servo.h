@@ -13,6 +13,7 @@
 #include "haptics/chain/rebind.h"
 #include "haptics/chain/state_hash.h"
 #include "haptics/device/device.h"
+#include "haptics/servo/tick_sink.h"
 
 namespace catena::haptics {
 
@@ -20,6 +21,7 @@ struct ServoOptions {
   double rate_hz = 1000;
   bool paced = true;            ///< false: as fast as it goes (soaks, determinism)
   std::uint64_t max_ticks = 0;  ///< 0: until stop()
+  TickSink* sink = nullptr;     ///< gets every tick; outlives the servo
 };
 
 class Servo {

@@ -13,7 +13,7 @@ TEST(Mouse, BeginsWhereItIsPut) {
   const DeviceInput input = mouse.read();
   EXPECT_EQ(input.position_m, Vec3(1.0, 2.0, 3.0));
   EXPECT_EQ(input.buttons, 0u);
-  EXPECT_TRUE(input.connected);
+  EXPECT_EQ(input.status, DeviceStatus::ready);
   EXPECT_FALSE(input.recorded);
 }
 

@@ -88,10 +88,11 @@ class Unplugged final : public Device {
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override {
     DeviceInput input;
-    input.connected = ++reads_ < 10;
+    input.status = ++reads_ < 10 ? DeviceStatus::ready : DeviceStatus::lost;
     return input;
   }
-  void write(const Vec3& force) noexcept override {
+  void write(const DeviceOutput& output) noexcept override {
+    const Vec3& force = output.force_n;
     last = force;
     all_zero_after_loss = all_zero_after_loss && (reads_ < 10 || norm(force) == 0);
   }

@@ -1,0 +1,27 @@
+/// The devices by name: what there is, what it can do, and how it is opened. Off the tick.
+///   TYPE or TYPE:DETAIL, such as "falcon", "falcon:1" (the second one), "recorded:path.csv"
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptics/device/settings.h"
+
+namespace catena::haptics {
+
+struct DeviceInfo {
+  std::string name;     ///< what `open_device` takes
+  bool present = true;  ///< it can be opened now
+  std::string detail;   ///< one line: what it is, or why it cannot be opened
+};
+
+bool is_device_type(const std::string& type);
+std::string device_types();  ///< "falcon, mouse, null, ...": for messages
+/// Every device that could be used, present ones first. Looks at the USB bus.
+std::vector<DeviceInfo> list_devices();
+/// What a device of this type can do, before it is opened.
+DeviceCapabilities nominal_capabilities(const std::string& type);
+/// Opens by name; `settings` says how (its `type` is not looked at). The error says what to do.
+Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceSettings& settings);
+
+}  // namespace catena::haptics
