@@ -182,7 +182,7 @@ TEST_F(FalconDevice, ASilentDeviceIsLostAndOpenedAgain) {
   EXPECT_GE(falcon->stats().bad_cycles, 10u);
   fake->with([](test::FakeFalcon& f) { f.silent = false; });
   ASSERT_TRUE(becomes(FalconState::waiting));
-  EXPECT_GE(fake->opened, 2);
+  EXPECT_GE(fake->with([](test::FakeFalcon& f) { return f.opened; }), 2);
 }
 
 TEST_F(FalconDevice, APoseThatGetsOldIsLost) {
