@@ -95,7 +95,8 @@ std::string Falcon::status_text() const {
       return note_.empty() ? "Falcon: lost; is it plugged in, and has it power?" : note_;
     }
     case FalconState::booting:
-      return fmt::format("Falcon: its firmware is being sent, try {}, {} %", boot_try_.load(), boot_percent_.load());
+      return boot_try_ == 0 ? std::string("Falcon: it is back, and starts")
+                            : fmt::format("Falcon: its firmware is being sent, try {}, {} %", boot_try_.load(), boot_percent_.load());
     case FalconState::homing:
       return fmt::format("Falcon: pull the grip fully out, then push it in (homed: {} of 3 axes)",
                          (homed & 1) + ((homed >> 1) & 1) + ((homed >> 2) & 1));
@@ -125,6 +126,7 @@ FalconStats Falcon::stats() const {
           .line_errors = get(c.ftdi.line_errors),
           .jumps = get(c.jumps),
           .out_of_reach = get(c.out_of_reach),
+          .saturated = get(c.saturated),
           .stale_commands = get(c.stale_commands),
           .uploads = get(c.uploads),
           .losses = get(c.losses),
@@ -205,6 +207,7 @@ void Falcon::return_again() noexcept {
     return;
   }
   transport_ = std::move(*opened);
+  boot_try_ = 0;
   pose_.state = FalconState::booting;
   publish(pose_);
   FalconBootOptions boot = options_.boot;

@@ -37,7 +37,8 @@ struct FalconStats {
   std::uint64_t packets_out = 0, packets_in = 0, idle_packets = 0;
   std::uint64_t resyncs = 0, dropped_bytes = 0;  ///< of the open device
   std::uint64_t timeouts = 0, stalls = 0, retries = 0, errors = 0, line_errors = 0;
-  std::uint64_t jumps = 0, out_of_reach = 0, stale_commands = 0, uploads = 0, losses = 0, returns = 0;
+  /// frames that were not believed or are no place; cycles whose force was more than the motors have
+  std::uint64_t jumps = 0, out_of_reach = 0, saturated = 0, stale_commands = 0, uploads = 0, losses = 0, returns = 0;
   bool realtime = false;
 };
 

@@ -11,11 +11,14 @@ constexpr int kJumpCounts = 1000;  // 38 mm between two frames
 
 }  // namespace
 
-FalconCommand FalconSession::command(const Vec3& force_n, bool forces) const noexcept {
+FalconCommand FalconSession::command(const Vec3& force_n, bool forces) noexcept {
   switch (pose_.state) {
     case FalconState::ready: {
       FalconCommand out{.control = forces ? kFalconGreen : kFalconBlue};
-      if (forces && pose_.good) out.motors = falcon_motor_counts(falcon_torque(metres_per_rad_, force_n), force_gain_);
+      if (!forces || !pose_.good) return out;
+      const Vec3 torque_nm = falcon_torque(metres_per_rad_, force_n);
+      if (max_abs(torque_nm) * force_gain_ > kFalconFullTorque) count(counters_.saturated);
+      out.motors = falcon_motor_counts(torque_nm, force_gain_);
       return out;
     }
     case FalconState::waiting:

@@ -29,7 +29,7 @@ struct FalconPose {
 struct FalconCounters {
   FtdiCounters ftdi;
   std::atomic<std::uint64_t> cycles{0}, frames{0}, bad_cycles{0}, resyncs{0}, dropped_bytes{0};
-  std::atomic<std::uint64_t> jumps{0}, out_of_reach{0}, stale_commands{0}, uploads{0}, losses{0}, returns{0};
+  std::atomic<std::uint64_t> jumps{0}, out_of_reach{0}, saturated{0}, stale_commands{0}, uploads{0}, losses{0}, returns{0};
 };
 
 inline constexpr Vec3 kFalconWorkspaceCentre{0, 0, 0.125};  ///< of the comfortable workspace, metres
@@ -58,7 +58,7 @@ class FalconSession {
   const FalconCommand& last_command() const { return sent_; }  ///< what the motors and LEDs were sent
 
  private:
-  FalconCommand command(const Vec3& force_n, bool forces) const noexcept;
+  FalconCommand command(const Vec3& force_n, bool forces) noexcept;
   void take(const FalconFrame& frame) noexcept;
   bool believed(const FalconFrame& frame) noexcept;
   void locate(const FalconFrame& frame) noexcept;

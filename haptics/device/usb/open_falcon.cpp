@@ -35,6 +35,13 @@ Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const Dev
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, read_falcon_image(settings.firmware));
   }
+  options.boot.progress = [tell = settings.tell, told = std::string()](int attempt, double share) mutable {
+    // ten lines a try
+    std::string line = fmt::format("Falcon: its firmware is being sent, try {}, {} %", attempt, 10 * static_cast<int>(10 * share));
+    if (tell && line != told) tell(line);
+    told = std::move(line);
+    return true;
+  };
   CATENA_TRY(auto falcon, Falcon::open(std::make_unique<LibusbSource>(kFalconUsbId, static_cast<int>(*index)), std::move(options)));
   return std::unique_ptr<Device>(std::move(falcon));
 }

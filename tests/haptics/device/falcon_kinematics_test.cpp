@@ -141,6 +141,21 @@ TEST(FalconKinematics, TooMuchTorqueKeepsItsDirection) {
   EXPECT_EQ(falcon_motor_counts({1e300, 1e300, -1e300}, 1e4), (FalconCounts{-4095, -4095, 4095}));
 }
 
+// what the motors have in the weakest direction: 1 / max_i |row i of (dp/dtheta)^T|, times full torque
+double weakest_force_n(const Vec3& p) {
+  Vec3 angles;
+  Mat3 j;
+  EXPECT_TRUE(falcon_inverse(p, angles) && falcon_jacobian(p, angles, j));
+  return kFalconFullTorque / kFalconForceGain / std::max({norm(j[0]), norm(j[1]), norm(j[2])});
+}
+
+TEST(FalconKinematics, TheMotorsHaveThisForceInEveryDirection) {
+  EXPECT_NEAR(weakest_force_n({0, 0, 0.125}), 6.1, 0.05);
+  for (const double x : {-0.03, 0.0, 0.03})
+    for (const double y : {-0.03, 0.0, 0.03})
+      for (const double z : {0.095, 0.125, 0.155}) EXPECT_GT(weakest_force_n({x, y, z}), 4.3) << x << " " << y << " " << z;
+}
+
 TEST(FalconKinematics, ATorqueThatIsNoNumberIsZero) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const Vec3& torque : {Vec3{nan, 0, 0}, Vec3{0, inf, 0}, Vec3{0, 0, -inf}, Vec3{1e308, 0, 0}})

@@ -96,6 +96,15 @@ TEST_F(FalconSessionTest, AForceIsTheTorqueOfThePose) {
   EXPECT_EQ(fake->last().control, kFalconBlue);
 }
 
+TEST_F(FalconSessionTest, AForceBeyondTheMotorsIsClampedAndCounted) {
+  arm();
+  go(1, {0, 0, 16});
+  EXPECT_EQ(counters.saturated, 0u);
+  go(1, {0, 0, 1000});
+  EXPECT_EQ(fake->last().motors, (FalconCounts{-4095, -4095, -4095}));
+  EXPECT_EQ(counters.saturated, 1u);
+}
+
 TEST_F(FalconSessionTest, OneFrameThatIsNotHomedStopsTheForceForACycle) {
   arm();
   say(kAt110, 5);
