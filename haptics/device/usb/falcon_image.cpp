@@ -14,7 +14,7 @@ constexpr std::uint32_t kAddressEnd = 1u << 22;
 constexpr unsigned kKey = 0x08AA;
 
 Error error_at(const std::string& name, std::size_t offset, const std::string& what) {
-  return Error{fmt::format("{}: byte {}: {}; a Falcon firmware image (a TI C2000 boot stream) was expected", name, offset, what)};
+  return Error{fmt::format("{}: byte {}: {}; a Falcon firmware image (a TI C2000 boot stream) was expected", one_line(name), offset, what)};
 }
 
 }  // namespace
@@ -56,8 +56,10 @@ Result<FalconImageInfo> check_falcon_image(std::span<const std::uint8_t> image, 
 }
 
 Result<std::vector<std::uint8_t>> read_falcon_image(const std::string& path) {
-  // before anything large is read
   std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    return Error{one_line(path) + ": is no file; a Falcon firmware image was expected"};
+  // before anything large is read
   const std::uintmax_t size = std::filesystem::file_size(path, ignored);
   if (!ignored && size > kFalconImageMaxBytes)
     return error_at(path, kFalconImageMaxBytes, fmt::format("too long, {} bytes; at most {} were expected", size, kFalconImageMaxBytes));

@@ -73,6 +73,14 @@ TEST(FalconImage, TooLongIsRefusedBeforeItIsRead) {
   std::filesystem::remove(path);
 }
 
+TEST(FalconImage, WhatIsNoFileIsRefused) {
+  for (const char* path : {"/dev/zero", "/tmp"}) {
+    const auto result = read_falcon_image(path);
+    ASSERT_FALSE(result) << path;
+    EXPECT_EQ(result.error().message, std::string(path) + ": is no file; a Falcon firmware image was expected");
+  }
+}
+
 TEST(FalconImage, AFileIsReadWhole) {
   const auto path = std::filesystem::path(testing::TempDir()) / "falcon_image_good.bin";
   const std::vector<std::uint8_t> image = test::small_image(300);
