@@ -3,6 +3,7 @@
 /// `catena info --schema` does not list these keys; haptics/README.md does.
 #pragma once
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -34,8 +35,9 @@ struct DeviceSettings {
   Vec3 gravity_n{0.0};         ///< "gravity": added to every force that is sent, device axes; carries the grip
 
   // drivers' own
-  std::string firmware;     ///< falcon: a file of the vendor's, sent when the device has none
-  double force_gain = 1e4;  ///< falcon: motor counts per N m
+  std::string firmware;                          ///< falcon: a file of the vendor's, sent when the device has none
+  double force_gain = 1e4;                       ///< falcon: motor counts per N m
+  std::function<void(const std::string&)> tell;  ///< not a key: hears what an opening that takes long is doing, a line each; may be empty
 };
 
 /// Reads and checks the object; every error names the place. Paths resolve relative to `scene_path`.
