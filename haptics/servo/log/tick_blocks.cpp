@@ -11,8 +11,7 @@ namespace {
 constexpr std::size_t kFullBlock = std::size_t{64} << 10;
 }
 
-TickBlocks::TickBlocks(BlockFile file, std::function<LogProgram(std::uint64_t)> program_of)
-    : file_(std::move(file)), program_of_(std::move(program_of)) {}
+TickBlocks::TickBlocks(BlockFile file, Programs programs_of) : file_(std::move(file)), programs_of_(std::move(programs_of)) {}
 
 void TickBlocks::add_gap(std::uint64_t next) {
   flush();
@@ -24,9 +23,10 @@ void TickBlocks::add_gap(std::uint64_t next) {
 void TickBlocks::begin(const Tick& tick) {
   if (!has_program_ || tick.epoch != epoch_) {
     flush();
-    LogProgram program = program_of_(tick.epoch);
-    program.first_tick = tick.number;
-    file_.write(BlockType::program, to_bytes(program));
+    for (LogProgram& program : programs_of_(tick.epoch)) {
+      program.first_tick = tick.number;
+      file_.write(BlockType::program, to_bytes(program));
+    }
     epoch_ = tick.epoch;
     has_program_ = true;
   }

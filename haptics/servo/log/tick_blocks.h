@@ -11,8 +11,9 @@ namespace catena::haptics::log {
 
 class TickBlocks {
  public:
-  /// `program_of(epoch)`: what is known of it.
-  TickBlocks(BlockFile file, std::function<LogProgram(std::uint64_t)> program_of);
+  /// What is known of the program of this epoch; before the first tick also of the one that it took over from.
+  using Programs = std::function<std::vector<LogProgram>(std::uint64_t epoch)>;
+  TickBlocks(BlockFile file, Programs programs_of);
 
   struct Tick {
     std::uint64_t number = 0, epoch = 0;
@@ -32,7 +33,7 @@ class TickBlocks {
   void begin(const Tick& tick);
 
   BlockFile file_;
-  std::function<LogProgram(std::uint64_t)> program_of_;
+  Programs programs_of_;
   Tick first_;  ///< of the block that is being filled
   std::uint32_t count_ = 0;
   std::string records_;

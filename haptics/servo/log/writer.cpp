@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
@@ -27,7 +28,7 @@ using Message = std::array<std::uint64_t, kMessageHead + kMostWords>;
 
 struct LogWriter::Parts {
   Parts(BlockFile file, const std::string& name, const LogOptions& chosen)
-      : path(name), options(chosen), ring(chosen.ring_bytes), blocks(std::move(file), [this](std::uint64_t e) { return program_of(e); }) {}
+      : path(name), options(chosen), ring(chosen.ring_bytes), blocks(std::move(file), [this](std::uint64_t e) { return programs_of(e); }) {}
 
   std::string path;
   LogOptions options;
@@ -41,7 +42,8 @@ struct LogWriter::Parts {
   std::mutex mutex;
   std::condition_variable wake;
   std::map<std::uint64_t, LogProgram> programs;
-  bool stop = false;
+  std::optional<std::uint64_t> first_epoch;  ///< until the first tick
+  bool has_first = false, stop = false;
 
   // writer's thread
   TickBlocks blocks;
@@ -49,24 +51,27 @@ struct LogWriter::Parts {
   std::atomic<bool> failed{false};
   std::thread thread;
 
-  LogProgram program_of(std::uint64_t epoch);
+  std::vector<LogProgram> programs_of(std::uint64_t epoch);
   void drain();
   void publish();
   void loop();
 };
 
-LogProgram LogWriter::Parts::program_of(std::uint64_t epoch) {
+std::vector<LogProgram> LogWriter::Parts::programs_of(std::uint64_t epoch) {
   const std::lock_guard lock(mutex);
-  LogProgram program;
-  const auto found = programs.find(epoch);
-  if (found == programs.end()) {
-    program.epoch = epoch;
-    program.known = false;
-    return program;
+  std::vector<LogProgram> found;
+  // a change before the first tick is a change, too
+  if (first_epoch && *first_epoch != epoch) found.push_back(programs.at(*first_epoch));
+  first_epoch.reset();
+  const auto wanted = programs.find(epoch);
+  if (wanted == programs.end()) {
+    found.emplace_back().epoch = epoch;
+    found.back().known = false;
+    return found;
   }
-  program = std::move(found->second);
-  programs.erase(programs.begin(), std::next(found));  // older ones never ran, or have run
-  return program;
+  found.push_back(std::move(wanted->second));
+  programs.erase(programs.begin(), std::next(wanted));  // older ones have run, or never will
+  return found;
 }
 
 void LogWriter::Parts::drain() {
@@ -132,6 +137,7 @@ LogWriter::~LogWriter() {
 void LogWriter::add_program(const Program& program, std::optional<std::string> scene_text) {
   LogProgram facts = facts_of(program, std::move(scene_text));
   const std::lock_guard lock(parts_->mutex);
+  if (!std::exchange(parts_->has_first, true)) parts_->first_epoch = program.epoch;
   parts_->programs.insert_or_assign(program.epoch, std::move(facts));
 }
 

@@ -37,8 +37,8 @@ class LogWriter final : public TickSink {
                                                  const LogOptions& options = {});
   ~LogWriter() override;  ///< finishes; call finish() to hear of errors
 
-  /// Frame side, before the servo can run it (also the first program). Every set_program needs a program of an epoch of its own, as
-  /// extract_program gives it. `scene_text`: that of the moment; none: still the header's.
+  /// Frame side, before the servo can run it; the first one is that with which the servo begins. Every set_program needs a program of an
+  /// epoch of its own, as extract_program gives it. `scene_text`: that of the moment; none: still the header's.
   void add_program(const Program& program, std::optional<std::string> scene_text = {});
 
   /// Haptic thread.

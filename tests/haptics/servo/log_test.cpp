@@ -1,30 +1,17 @@
 /// The recording: what is written is what was, whole, cut off, damaged, or killed.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <cstdlib>
 #include <filesystem>
-#include <thread>
 
-#include "engine/base/allocation_guard.h"
 #include "engine/base/hash.h"
-#include "haptics/servo/log/ring.h"
-#include "haptics/servo/servo.h"
-#include "tests/support/log_rig.h"
-
-extern char** environ;
+#include "tests/haptics/servo/log_fixture.h"
 
 namespace {
 
 using namespace catena;
 using namespace catena::haptics;
 using namespace catena::haptics::log;
-using test::Change;
+using namespace catena::test;
 
 std::uint64_t fnv(const std::string& bytes, std::size_t at, std::size_t size) {
   Fnv1a hash;
@@ -65,39 +52,6 @@ void seal(std::string& bytes, const Block& block) {
 }
 
 BlockType type_of(const Block& block) { return static_cast<BlockType>(block.head.type); }
-
-struct Read {
-  std::vector<std::uint64_t> ticks;
-  std::vector<LogGap> gaps;
-  int programs = 0;
-  bool clean = false, damaged = false, opened = false;
-  std::string ending;
-};
-
-Read read_all(std::string_view bytes) {
-  Read out;
-  auto reader = LogReader::open(from_memory(bytes), "x.catlog");
-  if (!reader) {
-    out.ending = reader.error().message;
-    return out;
-  }
-  out.opened = true;
-  for (LogEvent e = reader->next(); e != LogEvent::done; e = reader->next()) {
-    if (e == LogEvent::tick) out.ticks.push_back(reader->tick().output.tick);
-    if (e == LogEvent::gap) out.gaps.push_back(reader->gap());
-    if (e == LogEvent::program) ++out.programs;
-  }
-  out.clean = reader->end().has_value();
-  out.damaged = reader->damaged();
-  out.ending = reader->ending();
-  return out;
-}
-
-bool rising_from_one(const std::vector<std::uint64_t>& ticks) {
-  for (std::size_t i = 0; i < ticks.size(); ++i)
-    if (ticks[i] != i + 1) return false;
-  return true;
-}
 
 TEST(Log, HoldsEveryBitOfEveryTick) {
   const test::TemporaryFolder folder;
@@ -173,8 +127,12 @@ TEST(Log, EveryFieldOfARecordComesBack) {
   LogTick tick;
   exchange::HapticState& out = tick.output;
   double next = 1;
-  const auto vector = [&](Vec3& v) { v = {next++, next++, next++}; };
-  const auto turn = [&](Quat& q) { q = Quat(next++, next++, next++, next++); };
+  const auto vector = [&](Vec3& v) {
+    for (int a = 0; a < 3; ++a) v[a] = next++;
+  };
+  const auto turn = [&](Quat& q) {
+    for (double* v : {&q.w, &q.x, &q.y, &q.z}) *v = next++;
+  };
   tick.input.t_s = next++;
   vector(tick.input.position);
   turn(tick.input.orientation);
@@ -453,295 +411,6 @@ TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
   }
   EXPECT_GE(words, 8);
   EXPECT_GE(found, words);
-}
-
-TEST(LogWriter, AFullRingLeavesAGapThatIsToldAndStopsTheReplay) {
-  const test::TemporaryFolder folder;
-  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
-  LogOptions options;
-  options.ring_bytes = 32768;  // 87 ticks of one link
-  options.flush_s = 1000;
-  auto writer = LogWriter::open(folder / "l.catlog", {}, {}, options);
-  test::record(**writer, changes, test::hostile_path(1000));
-  const LogStatus status = (*writer)->status();
-  EXPECT_EQ(status.lost, 1000u - 87u);
-  ASSERT_TRUE((*writer)->finish());
-  const Read read = read_all(test::read_file(folder / "l.catlog"));
-  ASSERT_EQ(read.gaps.size(), 1u);
-  EXPECT_EQ(read.gaps[0].first_tick, 88u);
-  EXPECT_EQ(read.gaps[0].ticks, 913u);
-  EXPECT_EQ(read.gaps[0].why, LogGap::Why::not_kept_up);
-  EXPECT_TRUE(read.clean);
-  EXPECT_FALSE(read.damaged);
-  auto reader = LogReader::open(folder / "l.catlog");
-  const auto result = replay_log(*reader, test::hooks_for(changes));
-  EXPECT_EQ(result->stats.ticks, 87u);
-  EXPECT_EQ(result->differing, 0u);
-  EXPECT_EQ(result->stopped, "ticks 88 to 1000 are lost: the disk did not keep up");
-}
-
-TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
-  EXPECT_FALSE(LogWriter::open("/dev/full", {})) << "the header cannot be written";
-  EXPECT_FALSE(LogWriter::open("/nowhere/at/all.catlog", {}));
-  EXPECT_FALSE(LogWriter::open("", {}));
-  // a limit on the file's size stands for a full disk: in a child, for it is the process's
-  const test::TemporaryFolder folder;
-  EXPECT_EXIT(
-      {
-        std::signal(SIGXFSZ, SIG_IGN);
-        const rlimit limit{20000, 20000};
-        if (setrlimit(RLIMIT_FSIZE, &limit) != 0) std::_Exit(1);
-        LogOptions options;
-        options.flush_s = 0.001;
-        auto writer = LogWriter::open(folder / "l.catlog", {}, {}, options);
-        if (!writer) std::_Exit(2);
-        const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
-        (*writer)->add_program(*changes[0].program);
-        test::drive(changes, test::hostile_path(400), [&](const ProbeSample& input, const exchange::HapticState& output) {
-          (*writer)->put(input, output);
-          if (output.tick % 20 != 0) return;
-          while (!(*writer)->status().failed && (*writer)->status().ticks < output.tick) std::this_thread::yield();
-        });
-        const LogStatus status = (*writer)->status();
-        if (!status.failed || status.ticks == 0 || status.ticks + status.lost != 400) std::_Exit(3);
-        const Outcome done = (*writer)->finish();
-        if (done) std::_Exit(4);
-        std::fprintf(stderr, "%s\n", done.error().message.c_str());
-        std::_Exit(0);
-      },
-      testing::ExitedWithCode(0), "l.catlog: cannot write: File too large; the recording ends with tick [0-9]*0 of 400");
-  // what was complete is there
-  const Read read = read_all(test::read_file(folder / "l.catlog"));
-  EXPECT_GE(read.ticks.size(), 20u);
-  EXPECT_LT(read.ticks.size(), 400u);
-  EXPECT_TRUE(rising_from_one(read.ticks));
-  EXPECT_FALSE(read.clean);
-}
-
-TEST(LogWriter, ReplacesAFileButNotAnInputAndNotOneThatIsBeingWritten) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "l.catlog", std::string(100000, 'x'));
-  auto first = LogWriter::open(folder / "l.catlog", {});
-  ASSERT_TRUE(first);
-  const auto second = LogWriter::open(folder / "l.catlog", {});
-  ASSERT_FALSE(second);
-  EXPECT_NE(second.error().message.find("another program is recording"), std::string::npos) << second.error().message;
-  test::record(**first, {{1, test::level_program(1, {"a"}), {}}}, test::hostile_path(10));
-  ASSERT_TRUE((*first)->finish());
-  EXPECT_TRUE(read_all(test::read_file(folder / "l.catlog")).clean);
-  test::write_file(folder / "scene.json", "{}");
-  EXPECT_FALSE(LogWriter::open(folder / "scene.json", {}, {folder / "scene.json"}));
-  EXPECT_EQ(test::read_file(folder / "scene.json"), "{}");
-}
-
-TEST(LogWriter, PutAllocatesNothing) {
-  const test::TemporaryFolder folder;
-  auto writer = LogWriter::open(folder / "l.catlog", {});
-  const auto program = test::level_program(1, {"a", "b"});
-  (*writer)->add_program(*program);
-  std::uint64_t allocations = 0;
-  test::drive({{1, program, {}}}, test::hostile_path(100), [&](const ProbeSample& input, const exchange::HapticState& output) {
-    const AllocationGuard guard;
-    (*writer)->put(input, output);
-    allocations += guard.count();
-  });
-  EXPECT_EQ(allocations, 0u);
-}
-
-TEST(LogWriter, AProgramThatNobodyAddedIsSaidToBeUnknown) {
-  const test::TemporaryFolder folder;
-  {
-    auto writer = LogWriter::open(folder / "l.catlog", {});
-    test::drive({{1, test::level_program(8, {"a", "b"}), {}}}, test::hostile_path(5),
-                [&](const ProbeSample& input, const exchange::HapticState& output) { (*writer)->put(input, output); });
-  }
-  auto reader = LogReader::open(folder / "l.catlog");
-  EXPECT_EQ(reader->next(), LogEvent::program);
-  EXPECT_FALSE(reader->program().known);
-  EXPECT_EQ(reader->program().link_names(), (std::vector<std::string>{"link_1", "link_2"}));
-  EXPECT_EQ(reader->next(), LogEvent::tick);
-  EXPECT_FALSE(reader->damaged());
-}
-
-TEST(LogRing, PassesMessagesBetweenTwoThreadsInOrder) {
-  Ring ring(1024);
-  std::uint64_t refused = 0;
-  std::thread reader([&] {
-    std::uint64_t wanted = 0, message[5];
-    while (wanted < 20000) {
-      if (ring.available() < 5) {
-        std::this_thread::yield();
-        continue;
-      }
-      ring.take(message);
-      for (std::uint64_t k = 0; k < 5; ++k) ASSERT_EQ(message[k], wanted * 5 + k);
-      ++wanted;
-    }
-  });
-  for (std::uint64_t i = 0; i < 20000; ++i) {
-    const std::uint64_t message[5] = {i * 5, i * 5 + 1, i * 5 + 2, i * 5 + 3, i * 5 + 4};
-    while (!ring.put(message)) {
-      ++refused;
-      std::this_thread::yield();
-    }
-  }
-  reader.join();
-  EXPECT_EQ(ring.available(), 0u);
-}
-
-// A device that lets the servo run as fast as the log is written, and no faster.
-class Throttled final : public Device {
- public:
-  Throttled(const LogWriter& writer, std::vector<ProbeSample> path) : writer_(writer), path_(std::move(path)) {}
-  const DeviceCapabilities& capabilities() const override { return capabilities_; }
-  DeviceInput read() noexcept override {
-    while (reads_ > writer_.status().ticks + 3000) std::this_thread::yield();
-    const ProbeSample& p = path_[reads_ % path_.size()];
-    DeviceInput input;
-    input.position_m = p.position;
-    input.orientation = p.orientation;
-    input.buttons = p.buttons;
-    input.forces_on = p.forces_on;
-    input.status = p.condition == Condition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
-    ++reads_;
-    return input;
-  }
-  void write(const DeviceOutput&) noexcept override {}
-
- private:
-  const LogWriter& writer_;
-  std::vector<ProbeSample> path_;
-  DeviceCapabilities capabilities_;
-  std::uint64_t reads_ = 0;
-};
-
-std::shared_ptr<const Program> numbered_program(std::uint64_t epoch) {
-  return epoch % 3 == 0 ? test::level_program(epoch, {"a"}) : test::level_program(epoch, {"b", "a"});
-}
-
-Result<LogReplay> replay_numbered(LogReader& reader) {
-  LogReplayHooks hooks;
-  hooks.build = [](const LogProgram& p) -> Result<std::shared_ptr<const Program>> { return numbered_program(p.epoch); };
-  return replay_log(reader, hooks);
-}
-
-LogOptions fast_flush() {
-  LogOptions options;
-  options.flush_s = 0.001;
-  options.sync_s = 0.02;
-  return options;
-}
-
-// Three threads for a while: programs change, the status is read, ticks are recorded and written.
-TEST(LogSoak, ServoProgramsAndWriterTogether) {
-  const test::TemporaryFolder folder;
-#ifdef CATENA_THREAD_SANITIZER
-  constexpr std::uint64_t kTicks = 40000;
-#else
-  constexpr std::uint64_t kTicks = 100000;
-#endif
-  auto writer = LogWriter::open(folder / "l.catlog", {}, {}, fast_flush());
-  Throttled device(**writer, test::hostile_path(1000));
-  const auto first = numbered_program(1);
-  (*writer)->add_program(*first);
-  Servo servo(device, first, {.rate_hz = 1000, .paced = false, .max_ticks = kTicks, .sink = writer->get()});
-  servo.start();
-  exchange::HapticState seen;
-  for (std::uint64_t epoch = 2; servo.running(); ++epoch) {
-    const auto program = numbered_program(epoch);
-    (*writer)->add_program(*program);
-    servo.set_program(program);
-    while (seen.program_epoch != epoch && servo.running()) {
-      servo.take(seen);
-      std::this_thread::yield();
-    }
-  }
-  servo.stop();
-  ASSERT_TRUE((*writer)->finish());
-  EXPECT_EQ((*writer)->status().lost, 0u);
-  auto reader = LogReader::open(folder / "l.catlog");
-  const auto result = replay_numbered(*reader);
-  ASSERT_TRUE(result) << result.error().message;
-  EXPECT_EQ(result->stats.ticks, kTicks);
-  EXPECT_TRUE(result->exact()) << result->first_differing << " " << result->difference << result->stopped;
-  ASSERT_TRUE(reader->end());
-  EXPECT_EQ(reader->end()->state_hash, servo.state_hash());
-}
-
-// The child of the next test: records until it is killed. Runs only when it is told where.
-TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
-  const char* path = std::getenv("CATENA_LOG_OF_THE_CHILD");
-  if (path == nullptr) GTEST_SKIP() << "the child of LogKill.EveryKilledRecordingOpensAndRepeats";
-  auto writer = LogWriter::open(path, {}, {}, fast_flush());
-  ASSERT_TRUE(writer);
-  Throttled device(**writer, test::hostile_path(1000));
-  const auto first = numbered_program(1);
-  (*writer)->add_program(*first);
-  Servo servo(device, first, {.rate_hz = 1000, .paced = false, .sink = writer->get()});
-  servo.start();
-  exchange::HapticState seen;
-  for (std::uint64_t epoch = 2;; ++epoch) {
-    const auto program = numbered_program(epoch);
-    (*writer)->add_program(*program);
-    servo.set_program(program);
-    while (seen.program_epoch != epoch) {
-      servo.take(seen);
-      std::this_thread::yield();
-    }
-    const std::uint64_t wait = seen.tick + 700;
-    while (seen.tick < wait) {
-      servo.take(seen);
-      std::this_thread::yield();
-    }
-  }
-}
-
-TEST(LogKill, EveryKilledRecordingOpensAndRepeats) {
-  const test::TemporaryFolder folder;
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  std::uint64_t all = 0, programs = 0;
-  for (int moment = 0; moment < 24; ++moment) {
-    const std::string path = folder / ("k" + std::to_string(moment) + ".catlog");
-    std::vector<std::string> words{self, "--gtest_filter=LogKill.DISABLED_*", "--gtest_also_run_disabled_tests"};
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    std::string variable = "CATENA_LOG_OF_THE_CHILD=" + path;
-    std::vector<char*> environment{variable.data()};
-    for (char** e = environ; *e != nullptr; ++e) environment.push_back(*e);
-    environment.push_back(nullptr);
-    posix_spawn_file_actions_t quiet;
-    posix_spawn_file_actions_init(&quiet);
-    posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
-    pid_t child = 0;
-    ASSERT_EQ(posix_spawn(&child, self.c_str(), &quiet, nullptr, arguments.data(), environment.data()), 0);
-    posix_spawn_file_actions_destroy(&quiet);
-    // the moment: so many bytes, then a little more
-    const auto enough = static_cast<std::uintmax_t>(1500 + 40000 * moment);
-    std::error_code code;
-    int status = 0;
-    while (waitpid(child, &status, WNOHANG) == 0 &&
-           (!std::filesystem::exists(path, code) || std::filesystem::file_size(path, code) < enough))
-      std::this_thread::yield();
-    std::this_thread::sleep_for(std::chrono::microseconds(137 * moment));
-    kill(child, SIGKILL);
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
-
-    auto reader = LogReader::open(path);
-    ASSERT_TRUE(reader) << reader.error().message;
-    const auto result = replay_numbered(*reader);
-    ASSERT_TRUE(result) << result.error().message;
-    EXPECT_TRUE(result->exact()) << moment << ": tick " << result->first_differing << " " << result->difference << result->stopped;
-    EXPECT_FALSE(reader->end().has_value());
-    EXPECT_FALSE(reader->damaged()) << reader->ending();
-    EXPECT_EQ(result->stats.ticks, reader->last_tick());
-    EXPECT_GE(result->stats.ticks, 1u) << moment;
-    all += result->stats.ticks;
-    programs = std::max(programs, reader->program().epoch);
-  }
-  EXPECT_GE(programs, 3u) << "some were killed after a change of the program";
-  RecordProperty("ticks", static_cast<int>(all));
 }
 
 }  // namespace
