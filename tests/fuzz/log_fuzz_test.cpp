@@ -128,13 +128,12 @@ TEST(LogFuzz, Mutations) {
 }
 
 TEST(LogFuzz, EveryByteTurned) {
-  const std::string seed = test::small_log();
+  const std::string seed = test::small_log(45);
   Counts counts;
   for (std::size_t n = 0; n < seed.size() && !HasFailure(); ++n) {
     std::string bytes = seed;
     bytes[n] = static_cast<char>(bytes[n] ^ 0x41);
-    read_through(bytes, counts);
-    seal(bytes);
+    if (n % 2 == 0) seal(bytes);
     read_through(bytes, counts);
   }
   EXPECT_GT(counts.damaged, 0);

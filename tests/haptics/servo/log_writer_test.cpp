@@ -41,38 +41,53 @@ TEST(LogWriter, AFullRingLeavesAGapThatIsToldAndStopsTheReplay) {
   EXPECT_EQ(result->stopped, "ticks 88 to 1000 are lost: the disk did not keep up");
 }
 
-// In a child: the limit on the size of a file stands for a full disk, and is the process's.
-[[noreturn]] void record_on_a_full_disk(const std::string& path) {
-  std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit limit{20000, 20000};
-  if (setrlimit(RLIMIT_FSIZE, &limit) != 0) std::_Exit(1);
-  LogOptions options;
-  options.flush_s = 0.001;
-  auto writer = LogWriter::open(path, {}, {}, options);
-  if (!writer) std::_Exit(2);
-  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
-  (*writer)->add_program(*changes[0].program);
-  test::drive(changes, test::hostile_path(400), [&](const ProbeSample& input, const exchange::HapticState& output) {
-    (*writer)->put(input, output);
-    if (output.tick % 20 != 0) return;
-    while (!(*writer)->status().failed && (*writer)->status().ticks < output.tick) std::this_thread::yield();
-  });
-  const LogStatus status = (*writer)->status();
-  if (!status.failed || status.ticks == 0 || status.ticks + status.lost != 400) std::_Exit(3);
-  const Outcome done = (*writer)->finish();
-  if (done) std::_Exit(4);
-  std::fprintf(stderr, "%s\n", done.error().message.c_str());
-  std::_Exit(0);
-}
+// The limit on the size of a file stands for a full disk.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) : ignored_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  }
+  ~SmallDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, ignored_);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*ignored_)(int);
+};
 
 TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_FALSE(LogWriter::open("/dev/full", {})) << "the header cannot be written";
   EXPECT_FALSE(LogWriter::open("/nowhere/at/all.catlog", {}));
   EXPECT_FALSE(LogWriter::open("", {}));
   const test::TemporaryFolder folder;
-  EXPECT_EXIT(record_on_a_full_disk(folder / "l.catlog"), testing::ExitedWithCode(0),
-              "l.catlog: cannot write: File too large; the recording ends with tick [0-9]*0 of 400");
+  {
+    const SmallDisk disk(20000);
+    auto writer = LogWriter::open(folder / "l.catlog", {}, {}, fast_flush());
+    ASSERT_TRUE(writer);
+    const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+    (*writer)->add_program(*changes[0].program);
+    test::drive(changes, test::hostile_path(400), [&](const ProbeSample& input, const exchange::HapticState& output) {
+      (*writer)->put(input, output);
+      if (output.tick % 20 != 0) return;
+      while (!(*writer)->status().failed && (*writer)->status().ticks < output.tick) std::this_thread::yield();
+    });
+    const LogStatus status = (*writer)->status();
+    EXPECT_TRUE(status.failed);
+    EXPECT_GT(status.ticks, 0u);
+    EXPECT_EQ(status.ticks + status.lost, 400u);
+    const Outcome done = (*writer)->finish();
+    ASSERT_FALSE(done);
+    EXPECT_NE(done.error().message.find("l.catlog: cannot write: File too large; the recording ends with tick " +
+                                        std::to_string(status.ticks) + " of 400"),
+              std::string::npos)
+        << done.error().message;
+  }
   // what was complete is there
   const Read read = read_all(test::read_file(folder / "l.catlog"));
   EXPECT_GE(read.ticks.size(), 20u);
