@@ -1,5 +1,5 @@
 /// The reader of recordings against bytes of all kinds: no crash, no large allocation, ticks in rising order, and what is whole is read.
-/// CATENA_LOG_FUZZ=1000000 sets the number of mutated inputs.
+/// CATENA_LOG_FUZZ=1000000 sets the number of mutated inputs, CATENA_LOG_FUZZ_SEED where they begin.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,9 +14,9 @@ namespace {
 
 using namespace haptics::log;
 
-int mutations() {
-  const char* wanted = std::getenv("CATENA_LOG_FUZZ");
-  return wanted != nullptr ? std::atoi(wanted) : 20000;
+int setting(const char* variable, int otherwise) {
+  const char* wanted = std::getenv(variable);
+  return wanted != nullptr ? std::atoi(wanted) : otherwise;
 }
 
 struct Counts {
@@ -109,9 +109,9 @@ TEST(LogFuzz, TheSeedIsWhole) {
 
 TEST(LogFuzz, Mutations) {
   const std::string seed = test::small_log(52);
-  test::Random random{11};
+  test::Random random{static_cast<std::uint64_t>(setting("CATENA_LOG_FUZZ_SEED", 11))};
   Counts counts;
-  const int inputs = mutations();
+  const int inputs = setting("CATENA_LOG_FUZZ", 20000);
   for (int i = 0; i < inputs && !HasFailure(); ++i) {
     std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : change_in_place(seed, random);
     if (random.below(2) == 0) seal(bytes);
