@@ -30,11 +30,12 @@ int run(int argc, char** argv) {
   CLI::App program{"Catena: see a scientific field and feel it with a hand."};
   program.name("catena");
   program.require_subcommand(1);
-  program.set_version_flag("--version", "catena 0.1.0");
+  program.set_version_flag("--version", std::string("catena ") + kCatenaVersion);
   Work chosen;
   int view_exit_code = 0;
   add_render(program, chosen);
   add_replay(program, chosen);
+  add_export(program, chosen);
   add_trace(program, chosen);
   add_info(program, chosen);
   add_generate(program, chosen);

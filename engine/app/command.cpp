@@ -12,7 +12,7 @@ namespace catena::app {
 
 bool is_scene_file(const std::string& path) { return path.ends_with(".json"); }
 
-Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options) {
+Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std::string>& field_options) {
   std::vector<scene::FieldOverride> overrides;
   for (const std::string& option : field_options) {
     const auto equals = option.find('=');
@@ -26,6 +26,11 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
     }
     overrides.push_back(std::move(entry));
   }
+  return overrides;
+}
+
+Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options) {
+  CATENA_TRY(const std::vector<scene::FieldOverride> overrides, field_overrides(field_options));
   if (is_scene_file(path)) return scene::read_scene(path, overrides);
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
   return scene::scene_for_file(path);

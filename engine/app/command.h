@@ -13,12 +13,15 @@ class App;
 
 namespace catena::app {
 
+inline constexpr const char* kCatenaVersion = "0.1.0";
+
 /// A subcommand's work; the exit code of a success is 0. An Error means bad input: exit code 2.
 using Work = std::function<Outcome()>;
 
 /// Each adds its subcommand and, when the user chose it, sets `chosen`.
 void add_render(CLI::App& program, Work& chosen);
 void add_replay(CLI::App& program, Work& chosen);
+void add_export(CLI::App& program, Work& chosen);
 void add_trace(CLI::App& program, Work& chosen);
 void add_info(CLI::App& program, Work& chosen);
 void add_generate(CLI::App& program, Work& chosen);
@@ -26,7 +29,7 @@ void add_import(CLI::App& program, Work& chosen);
 void add_tradeoff(CLI::App& program, Work& chosen);
 void add_view(CLI::App& program, Work& chosen, int& exit_code);
 
-/// A failure of the machine, not of the input: exit code 1.
+/// A failure of the machine, not of the input, or a replay that does not repeat its recording: exit code 1.
 struct MachineFailure {
   std::string message;
 };
@@ -34,6 +37,8 @@ struct MachineFailure {
 /// A scene file (.json), or a bare data file.
 bool is_scene_file(const std::string& path);
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {});
+/// NAME=FILE[:GRID], as the command line gives them.
+Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std::string>& field_options);
 /// The scene file itself and every data file that its fields name: what no output may overwrite.
 std::vector<std::string> inputs_of(const scene::Scene& scene);
 

@@ -1,11 +1,12 @@
-/// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; a mesh's triangles, box and open edges; or
-/// what a scene holds.
+/// catena info FILE|SCENE: grids, transform, ranges, active voxels, bytes, NaN count; a mesh's triangles, box and open edges; what
+/// a scene or a recording holds.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "engine/app/command.h"
+#include "engine/app/info_log.h"
 #include "engine/base/numbers.h"
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
@@ -114,7 +115,8 @@ void add_info(CLI::App& program, Work& chosen) {
   auto path = std::make_shared<std::string>();
   auto schema = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
-  command->add_option("FILE", *path, "a data file (.vdb .nii .nii.gz), a triangle mesh (.stl .obj) or a scene (.json)");
+  command->add_option("FILE", *path,
+                      "a data file (.vdb .nii .nii.gz), a triangle mesh (.stl .obj), a scene (.json) or a recording (.catlog)");
   command->add_flag("--schema", *schema, "print the JSON Schema of a scene's chain instead");
   command->callback([&chosen, path, schema] {
     chosen = [path, schema]() -> Outcome {
@@ -123,6 +125,7 @@ void add_info(CLI::App& program, Work& chosen) {
         return Done{};
       }
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
+      if (is_log_file(*path)) return describe_log(*path);
       if (mesh::is_mesh_file(*path)) return describe_mesh(*path);
       return is_scene_file(*path) ? describe_scene(*path) : describe_file(*path);
     };

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
+#include "haptics/chain/state_hash.h"
 #include "haptics/chain/tick.h"
 
 namespace catena::haptics {
@@ -13,6 +15,19 @@ struct ReplayStats {
   double tick_ns_p50 = 0, tick_ns_p99 = 0, tick_ns_p999 = 0, tick_ns_max = 0;
   std::int64_t evaluations_p50 = 0, evaluations_max = 0;  ///< summed over links
   std::uint64_t state_hash = 0;
+};
+
+/// Collects the figures of a replay, tick by tick.
+class ReplayMeter {
+ public:
+  void reserve(std::size_t ticks);
+  void add(double nanoseconds, const exchange::HapticState& state);
+  ReplayStats stats();  ///< reorders what it has collected: call it last
+
+ private:
+  std::vector<double> nanoseconds_;
+  std::vector<std::int64_t> evaluations_;
+  StateHash hash_;
 };
 
 /// Calls `on_tick` after every tick, outside the timed part. False from it stops the replay.

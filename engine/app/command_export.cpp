@@ -1,0 +1,124 @@
+/// catena export FILE.catlog -o TICKS.csv [--details FILE.csv]: a recording as tables. Needs none of the scene's files.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "engine/app/command.h"
+#include "engine/app/log_scene.h"
+#include "engine/base/numbers.h"
+#include "engine/base/output_file.h"
+#include "haptics/servo/log/reader.h"
+
+namespace catena::app {
+
+namespace {
+
+namespace log = haptics::log;
+
+struct Options {
+  std::string log, output, details;
+};
+
+void append_quat(std::string& line, const Quat& q) {
+  for (const double v : {q.w, q.x, q.y, q.z}) {
+    line += ',';
+    append_text(line, v);
+  }
+}
+
+// Beside what `replay --details` tells: all else that was recorded.
+std::string recorded_header(const LinkColumns& columns) {
+  std::string line =
+      ",tick,probe_time,buttons,condition,forces_on,force_state,orientation_w,orientation_x,orientation_y,orientation_z,"
+      "coupling_x,coupling_y,coupling_z,torque_x,torque_y,torque_z,observer_energy,dissipated,"
+      "missed_deadlines,period_us,compute_us,device_us";
+  for (const std::string& name : columns.names())
+    line += fmt::format(
+        ",{0}_orientation_w,{0}_orientation_x,{0}_orientation_y,{0}_orientation_z,{0}_torque_x,{0}_torque_y,{0}_torque_z,"
+        "{0}_booked",
+        name);
+  return line + "\n";
+}
+
+void append_recorded(std::string& line, const LinkColumns& columns, const log::LogTick& tick) {
+  const exchange::HapticState& state = tick.output;
+  const auto number = [&](double value) {
+    line += ',';
+    append_text(line, value);
+  };
+  line += fmt::format(",{},{},{},{},{},{}", state.tick, to_text(tick.input.t_s), state.buttons, condition_word(state.condition),
+                      tick.input.forces_on ? 1 : 0, force_state_word(state.force_state));
+  append_quat(line, state.orientation);
+  append_vector(line, state.coupling_force_n);
+  append_vector(line, state.torque_nm);
+  number(state.energy_j);
+  number(state.dissipated_j);
+  line += fmt::format(",{}", state.missed_deadlines);
+  for (const double v : {state.period_us, state.compute_us, state.device_us}) number(v);
+  for (std::size_t c = 0; c < columns.names().size(); ++c) {
+    if (columns.link(c) < 0) {
+      line += ",,,,,,,,";
+      continue;
+    }
+    const exchange::LinkReport& link = state.links[static_cast<std::size_t>(columns.link(c))];
+    append_quat(line, link.orientation);
+    append_vector(line, link.torque_nm);
+    number(link.booked_j);
+  }
+  line += '\n';
+}
+
+Outcome export_log(const Options& options) {
+  CATENA_TRY(log::LogReader reader, log::LogReader::open(options.log));
+  CATENA_CHECK(check_output(options.output, {options.log}));
+  if (!options.details.empty()) {
+    CATENA_CHECK(check_output(options.details, {options.log}));
+    if (same_file(options.details, options.output)) return Error{options.details + ": --details and -o name one file: expected two"};
+  }
+  CATENA_TRY(LinkColumns columns, columns_of_log(options.log));
+  CATENA_TRY(OutputFile ticks, OutputFile::open(options.output));
+  ticks.write(tick_header(columns));
+  std::optional<OutputFile> details;
+  if (!options.details.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.details));
+    details.emplace(std::move(file));
+    details->write(details_header(columns) + recorded_header(columns));
+  }
+
+  std::string line;
+  std::uint64_t count = 0;
+  for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
+    if (event == log::LogEvent::program) columns.bind(reader.program().link_names());
+    if (event == log::LogEvent::gap) fmt::print(stderr, "{}: {}\n", options.log, reader.gap().text());
+    if (event != log::LogEvent::tick) continue;
+    ++count;
+    line.clear();
+    append_tick(line, columns, reader.tick().output);
+    ticks.write(line);
+    if (!details) continue;
+    line.clear();
+    append_details(line, columns, reader.program().modes, reader.program().metres_per_unit, reader.tick().output);
+    append_recorded(line, columns, reader.tick());
+    details->write(line);
+  }
+  std::vector<OutputFile*> files{&ticks};
+  if (details) files.push_back(&*details);
+  CATENA_CHECK(commit_all(files));
+  fmt::print("{}: {} ticks; {}\n", options.log, count, reader.ending());
+  return Done{};
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Work& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("export", "a recording (.catlog) as CSV");
+  command->add_option("FILE", options->log, "a recording (.catlog)")->required();
+  command->add_option("-o,--output", options->output, "ticks, CSV: the columns of replay")->required();
+  command->add_option("--details", options->details, "all else that was recorded, CSV");
+  command->callback([&chosen, options] { chosen = [options] { return export_log(*options); }; });
+}
+
+}  // namespace catena::app

@@ -1,0 +1,99 @@
+#include "engine/app/replay_log.h"
+
+#include <fmt/core.h>
+
+#include <optional>
+
+#include "engine/app/log_scene.h"
+#include "engine/app/tick_csv.h"
+#include "engine/base/output_file.h"
+#include "haptics/servo/log/log_replay.h"
+
+namespace catena::app {
+
+namespace log = haptics::log;
+
+Outcome check_replay_outputs(const ReplayOptions& options, const std::vector<std::string>& inputs) {
+  const std::pair<const char*, const std::string&> outputs[] = {
+      {"-o", options.output}, {"--details", options.details}, {"--stats", options.stats}};
+  for (std::size_t i = 0; i < std::size(outputs); ++i) {
+    const auto& [option, path] = outputs[i];
+    if (path.empty()) continue;
+    CATENA_CHECK(check_output(path, inputs));
+    for (std::size_t k = 0; k < i; ++k)
+      if (!outputs[k].second.empty() && same_file(path, outputs[k].second))
+        return Error{fmt::format("{}: {} and {} name one file: expected two", path, option, outputs[k].first)};
+  }
+  return Done{};
+}
+
+std::string replay_stats_json(const haptics::ReplayStats& s) {
+  return fmt::format(
+      "{{\n  \"ticks\": {},\n  \"tick_ns\": {{\"p50\": {:.0f}, \"p99\": {:.0f}, \"p999\": {:.0f}, \"max\": {:.0f}}},\n"
+      "  \"evaluations\": {{\"p50\": {}, \"max\": {}}},\n  \"state_hash\": \"{:016x}\"\n}}\n",
+      s.ticks, s.tick_ns_p50, s.tick_ns_p99, s.tick_ns_p999, s.tick_ns_max, s.evaluations_p50, s.evaluations_max, s.state_hash);
+}
+
+namespace {
+
+// "12 ticks, all equal to the bit", or where they are not.
+Outcome verdict(const ReplayOptions& options, const log::LogReader& reader, const log::LogReplay& result) {
+  if (result.differing > 0)
+    throw MachineFailure{fmt::format("{}: first differs at tick {}: {} ({} of {} ticks differ)", options.log, result.first_differing,
+                                     result.difference, result.differing, result.stats.ticks)};
+  fmt::print("{}: {} ticks, all equal to the bit; {}\n", options.log, result.stats.ticks,
+             result.stopped.empty() ? reader.ending() : "then the recording has a hole");
+  if (!result.stopped.empty()) throw MachineFailure{fmt::format("{}: {}; what follows cannot be run again", options.log, result.stopped)};
+  return Done{};
+}
+
+}  // namespace
+
+Outcome replay_log_file(const ReplayOptions& options) {
+  if (!options.probe.empty()) return Error{"--probe and --log exclude each other: the recording has its own probe"};
+  CATENA_TRY(log::LogReader reader, log::LogReader::open(options.log));
+  LogScene scene(reader.header(), options.scene, options.fields);
+  CATENA_TRY(const LinkColumns all_links, columns_of_log(options.log));
+  LinkColumns columns = all_links;
+
+  // what the first program needs must not be overwritten; it is known once its scene has been read
+  CATENA_TRY(std::vector<std::string> inputs, scene.inputs());
+  inputs.push_back(options.log);
+  CATENA_CHECK(check_replay_outputs(options, inputs));
+  std::optional<OutputFile> ticks, details, json;
+  const auto open = [](std::optional<OutputFile>& file, const std::string& path, const std::string& header) -> Outcome {
+    if (path.empty()) return Done{};
+    CATENA_TRY(OutputFile opened, OutputFile::open(path));
+    file.emplace(std::move(opened));
+    file->write(header);
+    return Done{};
+  };
+  CATENA_CHECK(open(ticks, options.output, tick_header(columns)));
+  CATENA_CHECK(open(details, options.details, details_header(columns) + "\n"));
+
+  log::LogReplayHooks hooks;
+  std::string line;
+  hooks.build = [&](const log::LogProgram& program) {
+    columns.bind(program.link_names());
+    return scene.build(program);
+  };
+  hooks.on_tick = [&](const log::LogProgram& program, const exchange::HapticState& state) {
+    line.clear();
+    append_tick(line, columns, state);
+    if (ticks) ticks->write(line);
+    if (!details) return;
+    line.clear();
+    append_details(line, columns, program.modes, program.metres_per_unit, state);
+    details->write(line + "\n");
+  };
+  CATENA_TRY(const log::LogReplay result, log::replay_log(reader, hooks));
+
+  CATENA_CHECK(open(json, options.stats, replay_stats_json(result.stats)));
+  std::vector<OutputFile*> files;
+  for (auto* file : {&ticks, &details, &json})
+    if (*file) files.push_back(&**file);
+  CATENA_CHECK(commit_all(files));
+  return verdict(options, reader, result);
+}
+
+}  // namespace catena::app

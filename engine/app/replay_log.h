@@ -1,0 +1,23 @@
+/// `catena replay --log`: runs the tick again over a recording and compares every bit of what came out, forces too.
+/// Exit code 0: all equal; 1: a difference, or ticks that the recording lacks; 2: no recording, or no scene to run.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/app/command.h"
+#include "haptics/servo/replay.h"
+
+namespace catena::app {
+
+struct ReplayOptions {
+  std::string scene, probe, log, output, details, stats;
+  std::vector<std::string> fields;
+};
+
+Outcome replay_log_file(const ReplayOptions& options);
+
+/// No output names an input, and no two name one file.
+Outcome check_replay_outputs(const ReplayOptions& options, const std::vector<std::string>& inputs);
+std::string replay_stats_json(const haptics::ReplayStats& stats);
+
+}  // namespace catena::app

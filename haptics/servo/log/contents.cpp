@@ -1,0 +1,181 @@
+#include "haptics/servo/log/contents.h"
+
+#include <fmt/format.h>
+
+#include "haptics/servo/log/bytes.h"
+
+namespace catena::haptics::log {
+
+// What a program brings along has grown: write it, read it, say so in format.h and raise kVersion.
+static_assert(sizeof(Limits) == 72 && sizeof(Coupling) == 40);
+
+namespace {
+
+// One list of the numbers for both directions: `each` sees them in the order of the format.
+template <class P, class F>
+void each_number(P& p, const F& each) {
+  for (auto* v : {&p.limits.max_stiffness_n_per_m, &p.limits.max_rotational_stiffness_nm_per_rad, &p.limits.max_force_n,
+                  &p.limits.max_torque_nm, &p.limits.slew_n_per_s, &p.limits.ramp_in_s, &p.limits.ramp_out_s, &p.limits.damping_ns_per_m})
+    each(*v);
+  each(p.limits.late_ticks);
+  each(p.limits.passivity);
+  for (auto* v : {&p.coupling.stiffness_n_per_m, &p.coupling.damping_ns_per_m, &p.coupling.max_force_n, &p.coupling.ramp_s}) each(*v);
+  each(p.coupling.combination);
+  each(p.metres_per_unit);
+  for (int a = 0; a < 3; ++a) each(p.workspace_origin[a]);
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) each(p.workspace_rotation[c][r]);
+}
+
+struct PutNumber {
+  ByteWriter& out;
+  void operator()(const double& v) const { out.put(v); }
+  void operator()(const int& v) const { out.put(static_cast<std::int32_t>(v)); }
+  void operator()(const bool& v) const { out.put(static_cast<std::uint8_t>(v)); }
+  void operator()(const Combination& v) const { out.put(static_cast<std::uint8_t>(v)); }
+};
+
+struct GetNumber {
+  ByteReader& in;
+  bool& good;
+  void operator()(double& v) const { v = in.get<double>(); }
+  void operator()(int& v) const { v = in.get<std::int32_t>(); }
+  void operator()(bool& v) const {
+    const auto byte = in.get<std::uint8_t>();
+    good = good && byte <= 1;
+    v = byte == 1;
+  }
+  void operator()(Combination& v) const {
+    const auto byte = in.get<std::uint8_t>();
+    good = good && byte <= static_cast<std::uint8_t>(Combination::linear);
+    v = static_cast<Combination>(byte);
+  }
+};
+
+}  // namespace
+
+std::vector<std::string> LogProgram::link_names() const {
+  std::vector<std::string> names;
+  for (const Link& link : links) names.push_back(link.name);
+  return names;
+}
+
+std::string LogGap::text() const {
+  const std::string which =
+      ticks == 1 ? fmt::format("tick {} is", first_tick) : fmt::format("ticks {} to {} are", first_tick, first_tick + ticks - 1);
+  return which + (why == Why::damaged ? " lost: the log is damaged there" : " lost: the disk did not keep up");
+}
+
+LogProgram facts_of(const Program& program, std::optional<std::string> scene_text) {
+  LogProgram out;
+  out.epoch = program.epoch;
+  out.scene_text = std::move(scene_text);
+  out.limits = program.limits;
+  out.coupling = program.coupling;
+  out.metres_per_unit = program.metres_per_unit;
+  out.workspace_origin = program.workspace_origin;
+  out.workspace_rotation = program.workspace_rotation;
+  for (const haptics::Link& link : program.links) out.links.push_back({link.name, link.recipe});
+  for (const Mode& mode : program.modes) out.modes.push_back(mode.name);
+  return out;
+}
+
+std::string to_bytes(const LogHeader& h) {
+  ByteWriter out;
+  for (const std::string* text : {&h.scene_path, &h.working_folder, &h.scene_text}) out.put_string(*text);
+  out.put(static_cast<std::uint32_t>(h.fields.size()));
+  for (const std::string& field : h.fields) out.put_string(field);
+  out.put_string(h.device);
+  out.put_string(h.catena_version);
+  out.put(h.rate_hz);
+  out.put(h.started_unix_ns);
+  return std::move(out.bytes());
+}
+
+std::optional<LogHeader> header_from(std::string_view bytes) {
+  ByteReader in(bytes);
+  LogHeader h;
+  for (std::string* text : {&h.scene_path, &h.working_folder, &h.scene_text}) *text = in.get_string();
+  const auto fields = in.get<std::uint32_t>();
+  for (std::uint32_t i = 0; i < fields && in.good(); ++i) h.fields.push_back(in.get_string());
+  h.device = in.get_string();
+  h.catena_version = in.get_string();
+  h.rate_hz = in.get<double>();
+  h.started_unix_ns = in.get<std::int64_t>();
+  if (!in.finished()) return std::nullopt;
+  return h;
+}
+
+std::string to_bytes(const LogProgram& p) {
+  ByteWriter out;
+  out.put(p.epoch);
+  out.put(p.first_tick);
+  out.put(static_cast<std::uint8_t>(p.known));
+  out.put(static_cast<std::uint8_t>(p.scene_text.has_value()));
+  out.put_string(p.scene_text.value_or(std::string()));
+  each_number(p, PutNumber{out});
+  out.put(static_cast<std::uint32_t>(p.links.size()));
+  for (const LogProgram::Link& link : p.links) {
+    out.put_string(link.name);
+    out.put(link.recipe);
+  }
+  out.put(static_cast<std::uint32_t>(p.modes.size()));
+  for (const std::string& mode : p.modes) out.put_string(mode);
+  return std::move(out.bytes());
+}
+
+std::optional<LogProgram> program_from(std::string_view bytes) {
+  ByteReader in(bytes);
+  LogProgram p;
+  p.epoch = in.get<std::uint64_t>();
+  p.first_tick = in.get<std::uint64_t>();
+  const auto known = in.get<std::uint8_t>(), own_text = in.get<std::uint8_t>();
+  bool good = known <= 1 && own_text <= 1;
+  p.known = known == 1;
+  std::string text = in.get_string();
+  if (own_text == 1) p.scene_text = std::move(text);
+  each_number(p, GetNumber{in, good});
+  const auto links = in.get<std::uint32_t>();
+  good = good && links <= kMaxLinks;
+  for (std::uint32_t i = 0; i < links && good && in.good(); ++i) {
+    std::string name = in.get_string();
+    p.links.push_back({std::move(name), in.get<std::uint64_t>()});
+  }
+  const auto modes = in.get<std::uint32_t>();
+  good = good && modes <= kMaxModes;
+  for (std::uint32_t i = 0; i < modes && good && in.good(); ++i) p.modes.push_back(in.get_string());
+  if (!good || !in.finished()) return std::nullopt;
+  return p;
+}
+
+std::string to_bytes(const LogGap& gap) {
+  ByteWriter out;
+  out.put(gap.first_tick);
+  out.put(gap.ticks);
+  return std::move(out.bytes());
+}
+
+std::optional<LogGap> gap_from(std::string_view bytes) {
+  ByteReader in(bytes);
+  LogGap gap;
+  gap.first_tick = in.get<std::uint64_t>();
+  gap.ticks = in.get<std::uint64_t>();
+  if (!in.finished() || gap.ticks == 0) return std::nullopt;
+  return gap;
+}
+
+std::string to_bytes(const LogEnd& end) {
+  ByteWriter out;
+  for (const std::uint64_t v : {end.ticks, end.lost, end.last_tick, end.state_hash}) out.put(v);
+  return std::move(out.bytes());
+}
+
+std::optional<LogEnd> end_from(std::string_view bytes) {
+  ByteReader in(bytes);
+  LogEnd end;
+  for (std::uint64_t* v : {&end.ticks, &end.lost, &end.last_tick, &end.state_hash}) *v = in.get<std::uint64_t>();
+  if (!in.finished()) return std::nullopt;
+  return end;
+}
+
+}  // namespace catena::haptics::log

@@ -1,0 +1,64 @@
+/// The recording's format, version 1. A reader needs this header alone.
+///
+/// All numbers are in the byte order of the machine that wrote them (the mark says which); doubles are IEEE 754 bytes, exact.
+///   string = u32 length, bytes      vec3 = 3 f64      hash = FNV-1a-64 (engine/base/hash.h)
+///
+/// FILE       preamble, then blocks until the end of the file. The first block is the header.
+/// PREAMBLE   16 bytes: the magic 89 'C' 'A' 'T' 'L' 'O' 'G' 0A; u32 version; u32 0x01020304 (the mark of the byte order)
+/// BLOCK      40 bytes, then the payload:
+///              u32 0x4b4c4243 ("CBLK" where little-endian), u32 type, u64 sequence (0, 1, 2 ..), u64 length of the payload,
+///              u64 hash of the payload, u64 hash of the 32 bytes before it
+///
+/// 1 HEADER   string scene path, string working folder (of relative paths), string scene text, u32 n and n strings NAME=FILE[:GRID]
+///            (fields replaced on the command line), string device, string version of Catena, f64 nominal rate in Hz,
+///            i64 start in ns since 1970 (UTC)
+/// 2 PROGRAM  runs from `first tick` on; of two with the same first tick the second took over before that tick.  u64 epoch, u64 first tick,
+/// u8 known (0: nobody told the writer what follows; the rest is empty),
+///            u8 text (0: the header's scene text, 1: its own), string scene text,
+///            limits: f64 stiffness N/m, rotational stiffness N m/rad, force N, torque N m, slew N/s, ramp in s, ramp out s,
+///                    damping N s/m; i32 late ticks; u8 passivity                 (haptics/chain/limits.h; infinity: none)
+///            coupling: f64 stiffness N/m, damping N s/m, max force N, ramp s; u8 combination            (haptics/chain/program.h)
+///            f64 metres per unit, vec3 origin, 9 f64 world from device axes, column by column,
+///            u32 n, n times {string link name, u64 recipe}, u32 n, n strings: names of modes
+///            A link keeps its state over a change where name and recipe (not 0) are the same in both programs.
+/// 3 TICKS    u64 epoch, u64 first tick, u32 count, u32 links, then `count` records of ticks first, first + 1 ..
+///            A record is kTickWords + links * kLinkWords words of 8 bytes (record.h lists them). It is stored as a mask, one bit a word
+///            (word k: bit k % 8 of byte k / 8; (words + 7) / 8 bytes), then the words whose bit is 1. A word whose bit is 0 is the same
+///            as in the record before it in this block; before the block's first record all words are 0.
+/// 4 GAP      u64 first tick, u64 count: ticks that are not in the log, for the writer could not keep up
+/// 5 END      u64 ticks in the log, u64 ticks lost, u64 last tick, u64 state_hash (haptics/chain/state_hash.h) of the ticks in the log.
+///            A log without it was cut off.
+///
+/// A file cut at any byte holds every block that is complete. A block whose hashes do not fit is damaged: where its own 32 bytes
+/// are good its length is, too; else the next block is found by its mark.
+#pragma once
+#include <cstdint>
+
+namespace catena::haptics::log {
+
+inline constexpr unsigned char kMagic[8] = {0x89, 'C', 'A', 'T', 'L', 'O', 'G', '\n'};
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kByteOrder = 0x01020304;
+inline constexpr std::uint64_t kPreambleBytes = 16;
+
+enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5 };
+
+struct BlockHead {
+  std::uint32_t mark = kBlockMark;
+  std::uint32_t type = 0;
+  std::uint64_t sequence = 0;
+  std::uint64_t length = 0;
+  std::uint64_t payload_hash = 0;
+  std::uint64_t head_hash = 0;
+
+  static constexpr std::uint32_t kBlockMark = 0x4b4c4243;
+  static constexpr std::uint64_t kHashed = 32;  ///< bytes before head_hash
+};
+static_assert(sizeof(BlockHead) == 40);
+
+inline constexpr std::uint64_t kMostPayload = std::uint64_t{64} << 20;  ///< of any block; a longer one is damaged
+
+inline constexpr int kTickWords = 24;
+inline constexpr int kLinkWords = 20;
+
+}  // namespace catena::haptics::log

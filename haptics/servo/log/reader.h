@@ -1,0 +1,67 @@
+/// Reads a log, whole or cut off at any byte: programs, ticks and gaps in their order. Memory: one block. Off the tick.
+///   CATENA_TRY(LogReader log, LogReader::open(path));
+///   for (LogEvent e = log.next(); e != LogEvent::done; e = log.next()) if (e == LogEvent::tick) use(log.tick());
+#pragma once
+#include <array>
+
+#include "haptics/servo/log/block_reader.h"
+#include "haptics/servo/log/contents.h"
+#include "haptics/servo/log/record.h"
+
+namespace catena::haptics::log {
+
+enum class LogEvent {
+  program,  ///< takes over with the next tick
+  tick,
+  gap,  ///< ticks that are not there
+  done
+};
+
+class LogReader {
+ public:
+  /// The error says what is wrong with the file's first bytes.
+  static Result<LogReader> open(const std::string& path);
+  static Result<LogReader> open(std::unique_ptr<Source> source, const std::string& name);
+
+  const LogHeader& header() const { return header_; }
+  LogEvent next();
+  const LogProgram& program() const { return program_; }  ///< that of the ticks that follow
+  const LogTick& tick() const { return tick_; }
+  const Words& words() const { return words_; }  ///< the same tick (record.h)
+  const LogGap& gap() const { return gap_; }
+
+  std::uint64_t last_tick() const { return last_; }
+  /// Once done: the end that the writer wrote; none: the log was cut off.
+  const std::optional<LogEnd>& end() const { return end_; }
+  bool damaged() const { return damaged_; }  ///< some block was not as it was written
+  /// Once done, one line: "ends cleanly with tick 5", "cut off after tick 5", and whether it is damaged.
+  std::string ending() const;
+
+ private:
+  explicit LogReader(BlockReader blocks) : blocks_(std::move(blocks)) {}
+  LogEvent next_record();
+  std::optional<LogEvent> read_block();
+  std::optional<LogEvent> read_program();
+  std::optional<LogEvent> read_ticks();
+  std::optional<LogEvent> read_gap();
+  std::optional<LogEvent> read_end();
+  LogEvent lost_before(std::uint64_t next);
+  bool damage();
+
+  BlockReader blocks_;
+  LogHeader header_;
+  LogProgram program_;
+  LogTick tick_;
+  Words words_{};
+  LogGap gap_;
+  std::optional<LogEnd> end_;
+  bool has_program_ = false, damaged_ = false, finished_ = false, again_ = false;
+  std::uint64_t next_sequence_ = 1, last_ = 0;
+
+  // the block of ticks that is being read
+  std::string_view records_;
+  std::uint32_t left_ = 0;
+  int links_ = 0;
+};
+
+}  // namespace catena::haptics::log

@@ -1,0 +1,179 @@
+#include "haptics/servo/log/writer.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "engine/base/clock.h"
+#include "engine/base/output_file.h"
+#include "haptics/servo/log/ring.h"
+#include "haptics/servo/log/tick_blocks.h"
+
+namespace catena::haptics::log {
+
+namespace {
+
+// A message of the ring: tick, epoch, links, then the record.
+constexpr std::size_t kMessageHead = 3;
+using Message = std::array<std::uint64_t, kMessageHead + kMostWords>;
+
+}  // namespace
+
+struct LogWriter::Parts {
+  Parts(BlockFile file, const std::string& name, const LogOptions& chosen)
+      : path(name), options(chosen), ring(chosen.ring_bytes), blocks(std::move(file), [this](std::uint64_t e) { return programs_of(e); }) {}
+
+  std::string path;
+  LogOptions options;
+  Ring ring;
+
+  // haptic thread
+  Message message{};
+  std::atomic<std::uint64_t> newest_tick{0}, ring_lost{0};
+
+  // frame side -> writer's thread
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::map<std::uint64_t, LogProgram> programs;
+  std::optional<std::uint64_t> first_epoch;  ///< until the first tick
+  bool has_first = false, stop = false;
+
+  // writer's thread
+  TickBlocks blocks;
+  std::atomic<std::uint64_t> ticks{0}, bytes{0};
+  std::atomic<bool> failed{false};
+  std::thread thread;
+
+  std::vector<LogProgram> programs_of(std::uint64_t epoch);
+  void drain();
+  void publish();
+  void loop();
+};
+
+std::vector<LogProgram> LogWriter::Parts::programs_of(std::uint64_t epoch) {
+  const std::lock_guard lock(mutex);
+  std::vector<LogProgram> found;
+  // a change before the first tick is a change, too
+  if (first_epoch && *first_epoch != epoch) found.push_back(programs.at(*first_epoch));
+  first_epoch.reset();
+  const auto wanted = programs.find(epoch);
+  if (wanted == programs.end()) {
+    found.emplace_back().epoch = epoch;
+    found.back().known = false;
+    return found;
+  }
+  found.push_back(std::move(wanted->second));
+  programs.erase(programs.begin(), std::next(wanted));  // older ones have run, or never will
+  return found;
+}
+
+void LogWriter::Parts::drain() {
+  Message taken;
+  while (ring.available() >= kMessageHead) {
+    ring.take({taken.data(), kMessageHead});
+    const TickBlocks::Tick tick{taken[0], taken[1], static_cast<int>(taken[2])};
+    const std::span<std::uint64_t> words(taken.data() + kMessageHead, static_cast<std::size_t>(words_of(tick.links)));
+    ring.take(words);
+    if (!blocks.file().failed()) blocks.add(tick, words);
+  }
+  blocks.flush();
+}
+
+void LogWriter::Parts::publish() {
+  ticks.store(blocks.ticks(), std::memory_order_relaxed);
+  bytes.store(blocks.file().bytes(), std::memory_order_relaxed);
+  failed.store(blocks.file().failed(), std::memory_order_release);
+}
+
+void LogWriter::Parts::loop() {
+  const auto pause = std::chrono::duration<double>(options.flush_s);
+  std::int64_t synced = now_ns();
+  for (bool last = false; !last;) {
+    {
+      std::unique_lock lock(mutex);
+      last = wake.wait_for(lock, pause, [this] { return stop; });
+    }
+    drain();
+    if (last) {
+      blocks.end(newest_tick.load(std::memory_order_acquire));
+    } else if (static_cast<double>(now_ns() - synced) > 1e9 * options.sync_s) {
+      blocks.file().sync();
+      synced = now_ns();
+    }
+    publish();
+  }
+}
+
+Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogHeader header, const std::vector<std::string>& inputs,
+                                                   const LogOptions& options) {
+  CATENA_CHECK(check_output(path, inputs));
+  if (header.scene_text.size() > kMostPayload / 2)
+    return Error{path + ": the scene's text is too long to be recorded: expected at most 32 MiB"};
+  std::error_code ignored;
+  if (header.working_folder.empty()) header.working_folder = std::filesystem::current_path(ignored).string();
+  if (header.started_unix_ns == 0)
+    header.started_unix_ns =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  CATENA_TRY(BlockFile file, BlockFile::create(path));
+  if (!file.write(BlockType::header, to_bytes(header)) || !file.sync()) return Error{file.error()};
+  return std::unique_ptr<LogWriter>(new LogWriter(std::make_unique<Parts>(std::move(file), path, options)));
+}
+
+LogWriter::LogWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {
+  parts_->thread = std::thread([p = parts_.get()] { p->loop(); });
+}
+
+LogWriter::~LogWriter() {
+  if (const Outcome done = finish(); !done) fmt::print(stderr, "{}\n", done.error().message);
+}
+
+void LogWriter::add_program(const Program& program, std::optional<std::string> scene_text) {
+  LogProgram facts = facts_of(program, std::move(scene_text));
+  const std::lock_guard lock(parts_->mutex);
+  if (!std::exchange(parts_->has_first, true)) parts_->first_epoch = program.epoch;
+  parts_->programs.insert_or_assign(program.epoch, std::move(facts));
+}
+
+void LogWriter::put(const ProbeSample& input, const exchange::HapticState& output) noexcept {
+  Parts& p = *parts_;
+  p.message[0] = output.tick;
+  p.message[1] = output.program_epoch;
+  p.message[2] = static_cast<std::uint64_t>(output.link_count);
+  const int count = pack(input, output, p.message.data() + kMessageHead);
+  if (!p.ring.put({p.message.data(), kMessageHead + static_cast<std::size_t>(count)}))
+    p.ring_lost.store(p.ring_lost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  p.newest_tick.store(output.tick, std::memory_order_release);
+}
+
+LogStatus LogWriter::status() const {
+  const Parts& p = *parts_;
+  LogStatus now;
+  now.failed = p.failed.load(std::memory_order_acquire);
+  now.ticks = p.ticks.load(std::memory_order_relaxed);
+  now.bytes = p.bytes.load(std::memory_order_relaxed);
+  now.lost = now.failed ? p.newest_tick.load(std::memory_order_relaxed) - now.ticks : p.ring_lost.load(std::memory_order_relaxed);
+  return now;
+}
+
+Outcome LogWriter::finish() {
+  Parts& p = *parts_;
+  if (!p.thread.joinable()) return Done{};
+  {
+    const std::lock_guard lock(p.mutex);
+    p.stop = true;
+  }
+  p.wake.notify_one();
+  p.thread.join();
+  if (!p.blocks.file().failed()) return Done{};
+  return Error{fmt::format("{}; the recording ends with tick {} of {}", p.blocks.file().error(), p.blocks.last_tick(),
+                           p.newest_tick.load(std::memory_order_relaxed))};
+}
+
+}  // namespace catena::haptics::log

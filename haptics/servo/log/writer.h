@@ -1,0 +1,58 @@
+/// Records every tick of a servo: `put` copies a tick into a ring and returns; a thread of its own writes the blocks (format.h).
+///
+/// Three threads: the frame side opens, adds programs, asks for the status and finishes; the haptic thread calls `put`; the writer's
+/// own thread drains the ring every `flush_s` (one write(2)) and calls fdatasync every `sync_s`. None of them waits for another in `put`.
+/// What is kept: if the process is killed, all but about the last `flush_s`; if the power fails, all but about the last `sync_s`.
+/// What is lost is said: a full ring leaves a gap block, a failed write (disk full) a status at once and one line at the end.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "haptics/servo/log/contents.h"
+#include "haptics/servo/tick_sink.h"
+
+namespace catena::haptics::log {
+
+struct LogOptions {
+  std::size_t ring_bytes = std::size_t{16} << 20;  ///< 8 links at 4 kHz: 2.7 s that the disk may stand still
+  double flush_s = 0.05;
+  double sync_s = 1;
+};
+
+/// Readable while it runs.
+struct LogStatus {
+  std::uint64_t ticks = 0;  ///< written
+  std::uint64_t lost = 0;   ///< not written: the ring was full, or writing has failed
+  std::uint64_t bytes = 0;
+  bool failed = false;  ///< writing has failed: nothing is recorded any more; finish() says why
+};
+
+class LogWriter final : public TickSink {
+ public:
+  /// Checks the place as every output (engine/base/output_file.h: `inputs` are what it must not overwrite), then replaces what is
+  /// there: a log exists while it is written. Records nothing before the first put.
+  static Result<std::unique_ptr<LogWriter>> open(const std::string& path, LogHeader header, const std::vector<std::string>& inputs = {},
+                                                 const LogOptions& options = {});
+  ~LogWriter() override;  ///< finishes; call finish() to hear of errors
+
+  /// Frame side, before the servo can run it; the first one is that with which the servo begins. Every set_program needs a program of an
+  /// epoch of its own, as extract_program gives it. `scene_text`: that of the moment; none: still the header's.
+  void add_program(const Program& program, std::optional<std::string> scene_text = {});
+
+  /// Haptic thread.
+  void put(const ProbeSample& input, const exchange::HapticState& output) noexcept override;
+
+  /// Frame side, any time.
+  LogStatus status() const;
+  /// Frame side, after the servo has stopped: writes the rest and the end. The error is one line: what, and which ticks it costs.
+  Outcome finish();
+
+ private:
+  struct Parts;
+  explicit LogWriter(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace catena::haptics::log

@@ -1,0 +1,260 @@
+/// `catena replay --log`, `export` and `info` of a recording, from the outside: every kind of link, switches, maps, program changes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "engine/app/log_scene.h"
+#include "haptics/extract/extract.h"
+#include "tests/support/log_rig.h"
+#include "tests/support/program.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+using test::Change;
+
+test::ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+
+struct Felt {
+  const char* name;
+  const char* scene;
+};
+void PrintTo(const Felt& felt, std::ostream* out) { *out << felt.name; }
+
+const Felt kFelt[] = {
+    {"Modes", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "snap": 0.1, "release": 0.25,
+             "indicate": {"cue": "vibration", "amplitude": 0.3, "frequency": 130}},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.45, "release": 0.3, "indicate": {"cue": "detent"}},
+            {"name": "floor", "type": "plane", "point": [0, 0, 0.05], "normal": [0, 0, 1], "on": {"force_above": 20, "force_below": 5}}],
+  "modes": [{"name": "swapped", "links": ["surface", "curve"], "on": {"button": 1, "toggle": true}}],
+  "coupling": {"ramp_s": 0.05, "max_force": 100}})"},
+    {"Grids", R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "follow": "online", "seed": [0.5, 0.02, 0.03]},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55, "free": "below", "release": 0.2,
+             "stiffness": {"field": "s", "map": [[0.2, 100], [0.8, 400]]}, "on": {"button": 2}}], "coupling": {"damping": 1.5}})"},
+    {"Friction", R"({"fields": {"v": {"file": "circle.vdb"}, "s": {"file": "sphere.vdb"}},
+  "chain": [{"name": "drag", "type": "drag", "threshold": {"field": "v", "normalise": true, "map": [[0, 0.001], [1, 0.03]]}},
+            {"name": "along", "type": "friction", "field": "v", "threshold": 0.05},
+            {"name": "rough", "type": "texture", "threshold": 0.01, "amplitude": 0.8, "wavelength": 0.07},
+            {"name": "oil", "type": "viscosity", "time": 0.004},
+            {"name": "pull", "type": "gradient_force", "field": "s", "displacement": 0.05, "towards": "high"},
+            {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search": 0.6}], "coupling": {"stiffness": 250}})"},
+    {"Shapes", R"({"fields": {},
+  "chain": [{"name": "path", "type": "polyline", "points": [[0.7, 0, 0], [0, 0.7, 0.1], [-0.7, 0, 0], [0, -0.6, 0]], "closed": true},
+            {"name": "rail", "type": "segment", "from": [-0.5, -0.4, 0], "to": [0.6, 0.5, 0.2], "snap": 0.2, "release": 0.35},
+            {"name": "axis", "type": "line", "point": [0, 0, 0.1], "direction": [1, 1, 0], "stiffness": 90, "release": 0.5},
+            {"name": "ball", "type": "sphere", "center": [0.1, 0, 0], "radius": 0.4, "free": "above"},
+            {"name": "case", "type": "box", "center": [0, 0, 0], "size": [0.9, 0.8, 0.7], "free": "below", "release": 0.3}]})"},
+    {"Mesh", R"({"fields": {}, "meshes": [{"name": "wedge", "file": "wedge.obj", "scale": 2.6}],
+  "chain": [{"name": "touch", "type": "mesh", "mesh": "wedge", "free": "above", "release": 0.3}]})"},
+    {"Balance", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
+            {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})"},
+};
+// What the hand feels for a while in the middle of each recording.
+constexpr const char* kBetween = R"({"fields": {"s": {"analytic": "sphere"}},
+  "chain": [{"name": "surface", "type": "isosurface", "field": "s", "level": 0.4}, {"name": "pin", "type": "point", "position": [0, 0, 0.2]}]})";
+
+void make_data(const std::string& folder) {
+  for (const char* name : {"circle", "sphere"}) {
+    const auto run =
+        catena_program({"generate", name, "-o", folder + "/" + std::string(name) + ".vdb", "--resolution", "17", "--box", "-1", "1"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  test::write_file(folder + "/wedge.obj",
+                   "v -0.4 -0.4 -0.3\nv 0.4 -0.4 -0.3\nv 0 0.5 -0.3\nv 0 0 0.4\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+}
+
+/// As a session at a device: a fitted workspace, limits, four programs: the scene, the same again, another one, the scene again.
+std::vector<Change> session(const std::string& scene_path, const std::string& text) {
+  Limits limits;
+  limits.max_force_n = 6;
+  limits.max_stiffness_n_per_m = 450;
+  std::vector<Change> changes;
+  auto scene = scene::parse_scene(text, scene_path), between = scene::parse_scene(kBetween, scene_path);
+  EXPECT_TRUE(scene) << scene.error().message;
+  EXPECT_TRUE(between) << between.error().message;
+  for (scene::Scene* s : {&*scene, &*between}) {
+    if (!s->coupling.ramp_s) s->coupling.ramp_s = 0.02;
+    s->workspace.metres_per_unit = 0.07;
+    s->workspace.origin = {0.01, 0.02, 0.03};
+  }
+  const std::pair<std::uint64_t, bool> plan[] = {{1, false}, {400, false}, {700, true}, {900, false}};
+  for (const auto& [tick, other] : plan) {
+    auto program = extract_program(other ? *between : *scene, limits);
+    EXPECT_TRUE(program) << program.error().message;
+    changes.push_back({tick, *program, other ? std::optional<std::string>(kBetween) : std::nullopt});
+  }
+  return changes;
+}
+
+std::uint64_t record_session(const std::string& log, const std::string& scene_path, int ticks = 1200) {
+  auto header = app::log_header(scene_path, {}, "simulated", 1000);
+  EXPECT_TRUE(header) << header.error().message;
+  auto writer = log::LogWriter::open(log, *header, {scene_path});
+  EXPECT_TRUE(writer) << writer.error().message;
+  const std::uint64_t hash = test::record(**writer, session(scene_path, header->scene_text), test::hostile_path(ticks));
+  const Outcome done = (*writer)->finish();
+  EXPECT_TRUE(done) << done.error().message;
+  return hash;
+}
+
+class RecordedScene : public testing::TestWithParam<Felt> {};
+
+TEST_P(RecordedScene, ReplaysToTheBitAndExportsTheSameTable) {
+  const test::TemporaryFolder folder;
+  make_data(folder.path());
+  test::write_file(folder / "s.json", GetParam().scene);
+  const std::uint64_t hash = record_session(folder / "l.catlog", folder / "s.json");
+  const auto run = catena_program(
+      {"replay", "--log", folder / "l.catlog", "-o", folder / "t.csv", "--details", folder / "d.csv", "--stats", folder / "s.txt"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("1200 ticks, all equal to the bit; ends cleanly with tick 1200"), std::string::npos) << run.out;
+  char text[32];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  EXPECT_NE(test::read_file(folder / "s.txt").find(text), std::string::npos);
+
+  const auto exported = catena_program({"export", folder / "l.catlog", "-o", folder / "e.csv", "--details", folder / "ed.csv"});
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_EQ(test::read_file(folder / "e.csv"), test::read_file(folder / "t.csv"));
+  const test::Table details = test::Table::read(folder / "d.csv"), all = test::Table::read(folder / "ed.csv");
+  ASSERT_EQ(details.rows(), 1200u);
+  ASSERT_EQ(all.rows(), 1200u);
+  for (const std::string& column : details.header())
+    for (std::size_t row = 0; row < 1200; row += 41) EXPECT_EQ(all.word(row, column), details.word(row, column)) << column << " " << row;
+  for (const char* column : {"probe_time", "orientation_w", "coupling_x", "torque_z", "observer_energy", "compute_us", "device_us"})
+    EXPECT_TRUE(all.has(column)) << column;
+  EXPECT_EQ(all.word(50, "condition"), "NO_DEVICE");
+  EXPECT_EQ(all.word(50, "force_state"), "STOPPED");
+  EXPECT_EQ(all.word(5, "probe_time"), "0.005");
+  EXPECT_EQ(all.word(1199, "tick"), "1200");
+  EXPECT_EQ(all.word(100, "period_us"), "1000.5");
+  // a link that only the program between has: cells for its ticks only
+  EXPECT_EQ(all.word(600, "pin_gap"), "");
+  EXPECT_NE(all.word(800, "pin_gap"), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, RecordedScene, testing::ValuesIn(kFelt),
+                         [](const auto& tested) { return std::string(tested.param.name); });
+
+class Recording : public testing::Test {
+ protected:
+  Recording() {
+    std::filesystem::create_directory(folder_ / "a");
+    make_data(folder_ / "a");
+    test::write_file(folder_ / "a/s.json", kFelt[1].scene);
+    record_session(log_, folder_ / "a/s.json");
+  }
+  test::TemporaryFolder folder_;
+  std::string log_ = folder_ / "l.catlog";
+};
+
+TEST_F(Recording, IsReplayedFromAnotherPlaceIfTheSceneIsGiven) {
+  std::filesystem::rename(folder_ / "a", folder_ / "b");
+  const auto lost = catena_program({"replay", "--log", log_, "-o", folder_ / "t.csv"});
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_NE(lost.err.find("circle.vdb"), std::string::npos) << lost.err;
+  EXPECT_FALSE(test::exists(folder_ / "t.csv"));
+  // the scene beside its files; the recording needs no output
+  const auto found = catena_program({"replay", folder_ / "b/s.json", "--log", log_});
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_NE(found.out.find("all equal to the bit"), std::string::npos);
+  // tables need none of it
+  std::filesystem::remove_all(folder_ / "b");
+  EXPECT_EQ(catena_program({"export", log_, "-o", folder_ / "e.csv"}).exit_code, 0);
+  EXPECT_EQ(test::Table::read(folder_ / "e.csv").rows(), 1200u);
+}
+
+TEST_F(Recording, AnotherSceneDiffersAndSaysWhere) {
+  std::string text = kFelt[1].scene;
+  text.replace(text.find("0.02, 0.03]"), 4, "0.03");
+  test::write_file(folder_ / "a/other.json", text);
+  const auto run = catena_program({"replay", folder_ / "a/other.json", "--log", log_, "-o", folder_ / "t.csv"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("first differs at tick "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("recorded"), std::string::npos) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_EQ(test::Table::read(folder_ / "t.csv").rows(), 1200u) << "what the replay gave, to compare";
+  test::write_file(folder_ / "a/none.json", R"({"chain": []})");
+  const auto none = catena_program({"replay", folder_ / "a/none.json", "--log", log_});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("other links"), std::string::npos) << none.err;
+}
+
+TEST_F(Recording, CutOffItIsStillReplayedAndDescribed) {
+  const std::string bytes = test::read_file(log_);
+  test::write_file(log_, bytes.substr(0, bytes.size() - 100));
+  const auto run = catena_program({"replay", "--log", log_, "-o", folder_ / "t.csv"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("all equal to the bit; cut off after tick "), std::string::npos) << run.out;
+  const auto info = catena_program({"info", log_});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  for (const char* part :
+       {"a/s.json", "simulated at 1000 Hz", "cut off after tick", "from tick 1: curve, surface", "from tick 700: surface, pin", "ticks "})
+    EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
+}
+
+TEST_F(Recording, AHoleIsToldAndIsNoSuccess) {
+  std::string bytes = test::read_file(log_);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  test::write_file(log_, bytes);
+  const auto run = catena_program({"replay", "--log", log_});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.out.find("all equal to the bit"), std::string::npos) << run.out;
+  EXPECT_NE(run.err.find("are lost: the log is damaged there; what follows cannot be run again"), std::string::npos) << run.err;
+  const auto table = catena_program({"export", log_, "-o", folder_ / "e.csv"});
+  EXPECT_EQ(table.exit_code, 0);
+  EXPECT_NE(table.err.find("are lost"), std::string::npos);
+  EXPECT_NE(catena_program({"info", log_}).out.find("gap "), std::string::npos);
+}
+
+TEST_F(Recording, BadUseIsOneLineAndNoFile) {
+  test::write_file(folder_ / "no.catlog", "this is no recording");
+  test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
+  const std::string o = folder_ / "o.csv";
+  const std::pair<std::vector<std::string>, std::string> bad[] = {
+      {{"replay", "--log", folder_ / "no.catlog", "-o", o}, "no recording"},
+      {{"replay", "--log", folder_ / "none.catlog", "-o", o}, "none.catlog"},
+      {{"replay", "--log", log_, "--probe", folder_ / "p.csv", "-o", o}, "--probe and --log"},
+      {{"replay", "--log", log_, "-o", log_}, "input"},
+      {{"replay", "--log", log_, "-o", folder_ / "a/s.json"}, "input"},
+      {{"replay", "--log", log_, "-o", o, "--details", o}, "one file"},
+      {{"export", folder_ / "no.catlog", "-o", o}, "no recording"},
+      {{"export", log_, "-o", log_}, "input"},
+      {{"export", log_, "-o", o, "--details", folder_ / "./o.csv"}, "one file"},
+      {{"info", folder_ / "no.catlog"}, "no recording"},
+      {{"replay", "-o", o}, "SCENE is required"},
+      {{"replay", folder_ / "a/s.json", "-o", o}, "--probe or --log"},
+      {{"replay", folder_ / "a/s.json", "--probe", folder_ / "p.csv"}, "--output is required"}};
+  for (const auto& [arguments, expected] : bad) {
+    const auto run = catena_program(arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_NE(run.err.find(expected), std::string::npos) << expected << " in " << run.err;
+    EXPECT_FALSE(test::exists(o));
+  }
+  EXPECT_EQ(test::read_file(folder_ / "a/s.json"), kFelt[1].scene);
+}
+
+TEST_F(Recording, ReplacedFieldsAreFoundFromWhereItWasRecorded) {
+  // --field s=a/sphere.vdb, recorded in the folder
+  std::string text = kFelt[1].scene;
+  text.replace(text.find("sphere.vdb"), 10, "circle.vdb:x");
+  auto header = app::log_header(folder_ / "a/s.json", {"s=a/sphere.vdb"}, "null", 1000);
+  header->working_folder = folder_.path();
+  header->scene_path = "a/s.json";
+  auto scene = app::open_scene(folder_ / "a/s.json", {"s=" + (folder_ / "a/sphere.vdb")});
+  ASSERT_TRUE(scene) << scene.error().message;
+  auto program = extract_program(*scene);
+  ASSERT_TRUE(program);
+  auto writer = log::LogWriter::open(log_, *header);
+  test::record(**writer, {{1, *program, {}}}, test::hostile_path(200));
+  ASSERT_TRUE((*writer)->finish());
+  const auto run = catena_program({"replay", "--log", log_});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(catena_program({"info", log_}).out.find("s=a/sphere.vdb"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,172 @@
+/// The reader of recordings against bytes of all kinds: no crash, no large allocation, ticks in rising order, and what is whole is read.
+/// CATENA_LOG_FUZZ=1000000 sets the number of mutated inputs, CATENA_LOG_FUZZ_SEED where they begin.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+
+#include "engine/base/hash.h"
+#include "tests/fuzz/mutate.h"
+#include "tests/support/log_rig.h"
+
+namespace catena {
+namespace {
+
+using namespace haptics::log;
+
+int setting(const char* variable, int otherwise) {
+  const char* wanted = std::getenv(variable);
+  return wanted != nullptr ? std::atoi(wanted) : otherwise;
+}
+
+struct Counts {
+  int opened = 0, clean = 0, damaged = 0, gaps = 0;
+  std::uint64_t ticks = 0;
+};
+
+// Every tick that is told has a number of its own, in rising order, and lies in no gap.
+void read_through(std::string_view bytes, Counts& counts) {
+  auto reader = LogReader::open(from_memory(bytes), "x.catlog");
+  if (!reader) {
+    EXPECT_TRUE(reader.error().message.starts_with("x.catlog: "));
+    EXPECT_EQ(reader.error().message.find('\n'), std::string::npos);
+    return;
+  }
+  ++counts.opened;
+  std::uint64_t last = 0;
+  std::size_t ticks = 0;
+  for (LogEvent event = reader->next(); event != LogEvent::done; event = reader->next()) {
+    if (event == LogEvent::gap) {
+      EXPECT_EQ(reader->gap().first_tick, last + 1);
+      EXPECT_GT(reader->gap().ticks, 0u);
+      last += reader->gap().ticks;
+      ++counts.gaps;
+    }
+    if (event == LogEvent::program) {
+      EXPECT_LE(reader->program().links.size(), 8u);
+    }
+    if (event != LogEvent::tick) continue;
+    EXPECT_EQ(reader->tick().output.tick, ++last);
+    EXPECT_EQ(static_cast<std::size_t>(reader->tick().output.link_count), reader->program().links.size());
+    // what a table prints of it
+    EXPECT_NE(exchange::condition_word(reader->tick().input.condition), nullptr);
+    EXPECT_NE(exchange::force_state_word(reader->tick().output.force_state), nullptr);
+    for (std::size_t i = 0; i < reader->program().links.size(); ++i)
+      EXPECT_NE(exchange::status_word(reader->tick().output.links[i].status), nullptr);
+    ++ticks;
+  }
+  EXPECT_EQ(reader->next(), LogEvent::done);
+  EXPECT_EQ(reader->last_tick(), last);
+  EXPECT_LE(ticks, bytes.size());
+  EXPECT_FALSE(reader->ending().empty());
+  counts.clean += reader->end().has_value() ? 1 : 0;
+  counts.damaged += reader->damaged() ? 1 : 0;
+  counts.ticks += ticks;
+}
+
+std::uint64_t hash_of(const char* data, std::size_t size) {
+  Fnv1a hash;
+  hash.bytes(data, size);
+  return hash.value;
+}
+
+// Makes the hashes of the blocks good again, as far as their lengths lead: what is behind the hashes is reached.
+void seal(std::string& bytes) {
+  for (std::size_t at = kPreambleBytes; at + sizeof(BlockHead) <= bytes.size();) {
+    BlockHead head;
+    std::memcpy(&head, bytes.data() + at, sizeof head);
+    if (head.mark != BlockHead::kBlockMark || head.length > bytes.size() - at - sizeof head) return;
+    head.payload_hash = hash_of(bytes.data() + at + sizeof head, head.length);
+    head.head_hash = hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
+    std::memcpy(bytes.data() + at, &head, sizeof head);
+    at += sizeof head + head.length;
+  }
+}
+
+// Bytes and numbers changed in place, so that the blocks stay where they are.
+std::string change_in_place(std::string bytes, test::Random& random) {
+  constexpr std::uint64_t kNumbers[] = {
+      0, 1, 2, 7, 8, 9, 255, 0x7fffffff, 0x80000000u, 0xffffffffu, ~std::uint64_t{0}, ~std::uint64_t{0} >> 1};
+  for (std::size_t i = 0, n = 1 + random.below(4); i < n; ++i) {
+    const std::size_t at = kPreambleBytes + random.below(bytes.size() - kPreambleBytes - 8);
+    if (random.below(2) == 0) {
+      bytes[at] = static_cast<char>(bytes[at] ^ static_cast<char>(1u << random.below(8)));
+    } else {
+      const std::uint64_t number = kNumbers[random.below(std::size(kNumbers))];
+      std::memcpy(bytes.data() + at, &number, random.below(2) == 0 ? 4 : 8);
+    }
+  }
+  return bytes;
+}
+
+TEST(LogFuzz, TheSeedIsWhole) {
+  Counts counts;
+  read_through(test::small_log(), counts);
+  EXPECT_EQ(counts.clean, 1);
+  EXPECT_EQ(counts.damaged, 0);
+  EXPECT_EQ(counts.ticks, 60u);
+}
+
+TEST(LogFuzz, Mutations) {
+  const std::string seed = test::small_log(52);
+  test::Random random{static_cast<std::uint64_t>(setting("CATENA_LOG_FUZZ_SEED", 11))};
+  Counts counts;
+  const int inputs = setting("CATENA_LOG_FUZZ", 20000);
+  for (int i = 0; i < inputs && !HasFailure(); ++i) {
+    std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : change_in_place(seed, random);
+    if (random.below(2) == 0) seal(bytes);
+    // a copy of its own size: a read past the end is seen
+    const std::vector<char> exact(bytes.begin(), bytes.end());
+    read_through({exact.data(), exact.size()}, counts);
+    if (HasFailure()) test::write_file("log_fuzz_failure.catlog", bytes);
+  }
+  EXPECT_GT(counts.opened, inputs / 4);
+  EXPECT_LT(counts.opened, inputs);
+  EXPECT_GT(counts.damaged, inputs / 20);
+  EXPECT_GT(counts.clean, inputs / 20);
+  EXPECT_GT(counts.gaps, 0);
+}
+
+TEST(LogFuzz, EveryByteTurned) {
+  const std::string seed = test::small_log(45);
+  Counts counts;
+  for (std::size_t n = 0; n < seed.size() && !HasFailure(); ++n) {
+    std::string bytes = seed;
+    bytes[n] = static_cast<char>(bytes[n] ^ 0x41);
+    if (n % 2 == 0) seal(bytes);
+    read_through(bytes, counts);
+  }
+  EXPECT_GT(counts.damaged, 0);
+}
+
+TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
+  const std::string seed = test::small_log();
+  Counts counts;
+  // marks everywhere, each with good hashes and the longest payload
+  BlockHead head;
+  head.type = 3;
+  head.sequence = 1;
+  head.length = kMostPayload;
+  head.head_hash = hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
+  std::string bytes = seed.substr(0, 400);
+  for (int i = 0; i < 50000; ++i) bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
+  read_through(bytes, counts);
+  // blocks of nothing, one after the other
+  head.length = 0;
+  bytes = seed.substr(0, 400);
+  for (std::uint64_t i = 0; i < 50000; ++i) {
+    head.sequence = i;
+    head.payload_hash = hash_of(nullptr, 0);
+    head.head_hash = hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
+    bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
+  }
+  read_through(bytes, counts);
+  std::string marks = seed.substr(0, 400);
+  for (int i = 0; i < 300000; ++i) marks += "CBLK";
+  read_through(marks, counts);
+  EXPECT_EQ(counts.opened, 3);
+  EXPECT_EQ(counts.clean, 0);
+}
+
+}  // namespace
+}  // namespace catena

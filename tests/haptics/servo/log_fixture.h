@@ -1,0 +1,91 @@
+/// What the tests of the recording share: a log read to its end, a servo that is as fast as its log.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "haptics/servo/servo.h"
+#include "tests/support/log_rig.h"
+
+namespace catena::test {
+
+using namespace haptics;
+using namespace haptics::log;
+
+struct Read {
+  std::vector<std::uint64_t> ticks;
+  std::vector<LogGap> gaps;
+  int programs = 0;
+  bool clean = false, damaged = false, opened = false;
+  std::string ending;
+};
+
+inline Read read_all(std::string_view bytes) {
+  Read out;
+  auto reader = LogReader::open(from_memory(bytes), "x.catlog");
+  if (!reader) {
+    out.ending = reader.error().message;
+    return out;
+  }
+  out.opened = true;
+  for (LogEvent e = reader->next(); e != LogEvent::done; e = reader->next()) {
+    if (e == LogEvent::tick) out.ticks.push_back(reader->tick().output.tick);
+    if (e == LogEvent::gap) out.gaps.push_back(reader->gap());
+    if (e == LogEvent::program) ++out.programs;
+  }
+  out.clean = reader->end().has_value();
+  out.damaged = reader->damaged();
+  out.ending = reader->ending();
+  return out;
+}
+
+inline bool rising_from_one(const std::vector<std::uint64_t>& ticks) {
+  for (std::size_t i = 0; i < ticks.size(); ++i)
+    if (ticks[i] != i + 1) return false;
+  return true;
+}
+
+// A device that lets the servo run as fast as the log is written, and no faster.
+class Throttled final : public Device {
+ public:
+  Throttled(const LogWriter& writer, std::vector<ProbeSample> path) : writer_(writer), path_(std::move(path)) {}
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override {
+    while (reads_ > writer_.status().ticks + 3000) std::this_thread::yield();
+    const ProbeSample& p = path_[reads_ % path_.size()];
+    DeviceInput input;
+    input.position_m = p.position;
+    input.orientation = p.orientation;
+    input.buttons = p.buttons;
+    input.forces_on = p.forces_on;
+    input.status = p.condition == Condition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
+    ++reads_;
+    return input;
+  }
+  void write(const DeviceOutput&) noexcept override {}
+
+ private:
+  const LogWriter& writer_;
+  std::vector<ProbeSample> path_;
+  DeviceCapabilities capabilities_;
+  std::uint64_t reads_ = 0;
+};
+
+inline std::shared_ptr<const Program> numbered_program(std::uint64_t epoch) {
+  return epoch % 3 == 0 ? level_program(epoch, {"a"}) : level_program(epoch, {"b", "a"});
+}
+
+inline Result<LogReplay> replay_numbered(LogReader& reader) {
+  LogReplayHooks hooks;
+  hooks.build = [](const LogProgram& p) -> Result<std::shared_ptr<const Program>> { return numbered_program(p.epoch); };
+  return replay_log(reader, hooks);
+}
+
+inline LogOptions fast_flush() {
+  LogOptions options;
+  options.flush_s = 0.001;
+  options.sync_s = 0.2;
+  return options;
+}
+
+}  // namespace catena::test

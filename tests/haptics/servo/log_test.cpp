@@ -1,0 +1,416 @@
+/// The recording: what is written is what was, whole, cut off, damaged, or killed.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "engine/base/hash.h"
+#include "tests/haptics/servo/log_fixture.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+using namespace catena::haptics::log;
+using namespace catena::test;
+
+std::uint64_t fnv(const std::string& bytes, std::size_t at, std::size_t size) {
+  Fnv1a hash;
+  hash.bytes(bytes.data() + at, size);
+  return hash.value;
+}
+
+struct Block {
+  std::size_t at = 0;  ///< of its head
+  BlockHead head;
+  std::size_t payload() const { return at + sizeof(BlockHead); }
+  std::size_t after() const { return payload() + head.length; }
+};
+
+// Read by the format's description, not by the reader.
+std::vector<Block> blocks_of(const std::string& bytes) {
+  std::vector<Block> blocks;
+  for (std::size_t at = kPreambleBytes; at < bytes.size();) {
+    Block block;
+    block.at = at;
+    std::memcpy(&block.head, bytes.data() + at, sizeof block.head);
+    EXPECT_EQ(block.head.mark, BlockHead::kBlockMark);
+    EXPECT_EQ(block.head.sequence, blocks.size());
+    EXPECT_EQ(block.head.payload_hash, fnv(bytes, block.payload(), block.head.length));
+    EXPECT_EQ(block.head.head_hash, fnv(bytes, at, 32));
+    blocks.push_back(block);
+    at = block.after();
+  }
+  return blocks;
+}
+
+void seal(std::string& bytes, const Block& block) {
+  BlockHead head = block.head;
+  head.payload_hash = fnv(bytes, block.payload(), block.head.length);
+  std::memcpy(bytes.data() + block.at, &head, sizeof head);
+  head.head_hash = fnv(bytes, block.at, 32);
+  std::memcpy(bytes.data() + block.at, &head, sizeof head);
+}
+
+BlockType type_of(const Block& block) { return static_cast<BlockType>(block.head.type); }
+
+TEST(Log, HoldsEveryBitOfEveryTick) {
+  const test::TemporaryFolder folder;
+  const std::vector<Change> changes{{1, test::level_program(7, {"a", "b"}), {}}, {301, test::level_program(9, {"b", "c", "a"}), "text"}};
+  const auto path = test::hostile_path(900);
+  std::uint64_t hash = 0;
+  {
+    auto writer = LogWriter::open(folder / "l.catlog", {"s.json", "/w", "scene", {"f=g"}, "falcon", "0.1.0", 2000, 77});
+    ASSERT_TRUE(writer) << writer.error().message;
+    hash = test::record(**writer, changes, path);
+    const Outcome done = (*writer)->finish();
+    ASSERT_TRUE(done) << done.error().message;
+    EXPECT_EQ((*writer)->status().ticks, 900u);
+    EXPECT_EQ((*writer)->status().lost, 0u);
+    EXPECT_EQ((*writer)->status().bytes, std::filesystem::file_size(folder / "l.catlog"));
+  }
+  auto reader = LogReader::open(folder / "l.catlog");
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_EQ(reader->header().scene_path, "s.json");
+  EXPECT_EQ(reader->header().working_folder, "/w");
+  EXPECT_EQ(reader->header().scene_text, "scene");
+  EXPECT_EQ(reader->header().fields, std::vector<std::string>{"f=g"});
+  EXPECT_EQ(reader->header().device, "falcon");
+  EXPECT_EQ(reader->header().rate_hz, 2000);
+  EXPECT_EQ(reader->header().started_unix_ns, 77);
+  test::drive(changes, path, [&](const ProbeSample& input, const exchange::HapticState& output) {
+    LogEvent event = reader->next();
+    if (output.tick == 1 || output.tick == 301) {
+      ASSERT_EQ(event, LogEvent::program) << output.tick;
+      EXPECT_EQ(reader->program().first_tick, output.tick);
+      EXPECT_EQ(reader->program().epoch, output.program_epoch);
+      EXPECT_EQ(reader->program().scene_text.value_or("none"), output.tick == 1 ? "none" : "text");
+      event = reader->next();
+    }
+    ASSERT_EQ(event, LogEvent::tick);
+    const LogTick& got = reader->tick();
+    Words wanted{}, is{};
+    pack(input, output, wanted.data());
+    pack(got.input, got.output, is.data());
+    EXPECT_EQ(wanted, is) << output.tick;
+    EXPECT_EQ(got.output.tick, output.tick);
+    EXPECT_EQ(got.output.program_epoch, output.program_epoch);
+    EXPECT_EQ(got.output.link_count, output.link_count);
+    EXPECT_EQ(got.output.mode, output.mode);
+    EXPECT_EQ(std::memcmp(&got.output.force_n, &output.force_n, sizeof output.force_n), 0);
+    EXPECT_EQ(std::memcmp(&got.input.position, &input.position, sizeof input.position), 0);
+    EXPECT_EQ(std::memcmp(&got.input.t_s, &input.t_s, sizeof input.t_s), 0);
+    EXPECT_EQ(std::memcmp(&got.input.orientation, &input.orientation, sizeof input.orientation), 0);
+    EXPECT_EQ(got.input.condition, input.condition);
+    EXPECT_EQ(got.input.forces_on, input.forces_on);
+    EXPECT_EQ(got.input.buttons, input.buttons);
+    EXPECT_EQ(got.output.force_state, output.force_state);
+    EXPECT_EQ(got.output.period_us, output.period_us);
+    EXPECT_EQ(got.output.compute_us, output.compute_us);
+    EXPECT_EQ(got.output.device_us, output.device_us);
+    EXPECT_EQ(got.output.missed_deadlines, output.missed_deadlines);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(output.link_count); ++i) {
+      EXPECT_EQ(std::memcmp(&got.output.links[i].proxy, &output.links[i].proxy, sizeof(Vec3)), 0);
+      EXPECT_EQ(got.output.links[i].status, output.links[i].status);
+      EXPECT_EQ(got.output.links[i].evaluations, output.links[i].evaluations);
+      EXPECT_EQ(got.output.links[i].active, output.links[i].active);
+    }
+  });
+  EXPECT_EQ(reader->next(), LogEvent::done);
+  ASSERT_TRUE(reader->end());
+  EXPECT_EQ(reader->end()->state_hash, hash);
+  EXPECT_EQ(reader->end()->ticks, 900u);
+  EXPECT_EQ(reader->ending(), "ends cleanly with tick 900");
+}
+
+TEST(Log, EveryFieldOfARecordComesBack) {
+  // every word is different, so that two that are swapped show
+  LogTick tick;
+  exchange::HapticState& out = tick.output;
+  double next = 1;
+  const auto vector = [&](Vec3& v) {
+    for (int a = 0; a < 3; ++a) v[a] = next++;
+  };
+  const auto turn = [&](Quat& q) {
+    for (double* v : {&q.w, &q.x, &q.y, &q.z}) *v = next++;
+  };
+  tick.input.t_s = next++;
+  vector(tick.input.position);
+  turn(tick.input.orientation);
+  tick.input.buttons = 0x80000001u;
+  tick.input.condition = Condition::watchdog;
+  tick.input.forces_on = false;
+  out.force_state = ForceState::ramping_out;
+  out.mode = 5;
+  for (double* v : {&out.t_s, &out.energy_j, &out.dissipated_j}) *v = next++;
+  for (Vec3* v : {&out.force_n, &out.coupling_force_n, &out.torque_nm}) vector(*v);
+  out.missed_deadlines = ~std::uint64_t{0};
+  for (double* v : {&out.period_us, &out.compute_us, &out.device_us}) *v = next++;
+  out.link_count = kMaxLinks;
+  for (exchange::LinkReport& link : out.links) {
+    for (Vec3* v : {&link.proxy, &link.force_n, &link.torque_nm}) vector(*v);
+    turn(link.orientation);
+    for (double* v : {&link.residual, &link.weight, &link.stiffness_n_per_m, &link.gap, &link.booked_j, &link.leaving}) *v = next++;
+    link.evaluations = -static_cast<std::int32_t>(next);
+    link.status = exchange::Status::boundary;
+    link.active = true;
+    link.left = next > 100;
+  }
+  Words words{};
+  ASSERT_EQ(pack(tick.input, out, words.data()), kMostWords);
+  LogTick got;
+  ASSERT_TRUE(unpack(words, kMaxLinks, got));
+  EXPECT_EQ(got.input.t_s, tick.input.t_s);
+  EXPECT_EQ(got.input.position, tick.input.position);
+  EXPECT_EQ(got.input.orientation, tick.input.orientation);
+  EXPECT_EQ(got.input.buttons, tick.input.buttons);
+  EXPECT_EQ(got.input.condition, tick.input.condition);
+  EXPECT_EQ(got.input.forces_on, false);
+  EXPECT_EQ(got.output.probe, tick.input.position);
+  EXPECT_EQ(got.output.orientation, tick.input.orientation);
+  EXPECT_EQ(got.output.force_state, out.force_state);
+  EXPECT_EQ(got.output.mode, 5);
+  EXPECT_EQ(got.output.t_s, out.t_s);
+  EXPECT_EQ(got.output.energy_j, out.energy_j);
+  EXPECT_EQ(got.output.dissipated_j, out.dissipated_j);
+  EXPECT_EQ(got.output.force_n, out.force_n);
+  EXPECT_EQ(got.output.coupling_force_n, out.coupling_force_n);
+  EXPECT_EQ(got.output.torque_nm, out.torque_nm);
+  EXPECT_EQ(got.output.missed_deadlines, out.missed_deadlines);
+  EXPECT_EQ(got.output.period_us, out.period_us);
+  EXPECT_EQ(got.output.compute_us, out.compute_us);
+  EXPECT_EQ(got.output.device_us, out.device_us);
+  for (std::size_t i = 0; i < kMaxLinks; ++i) {
+    const exchange::LinkReport &a = got.output.links[i], &b = out.links[i];
+    EXPECT_EQ(a.proxy, b.proxy);
+    EXPECT_EQ(a.force_n, b.force_n);
+    EXPECT_EQ(a.torque_nm, b.torque_nm);
+    EXPECT_EQ(a.orientation, b.orientation);
+    EXPECT_EQ(a.residual, b.residual);
+    EXPECT_EQ(a.weight, b.weight);
+    EXPECT_EQ(a.stiffness_n_per_m, b.stiffness_n_per_m);
+    EXPECT_EQ(a.gap, b.gap);
+    EXPECT_EQ(a.booked_j, b.booked_j);
+    EXPECT_EQ(a.leaving, b.leaving);
+    EXPECT_EQ(a.evaluations, b.evaluations);
+    EXPECT_EQ(a.status, b.status);
+    EXPECT_EQ(a.active, b.active);
+    EXPECT_EQ(a.left, b.left);
+  }
+}
+
+TEST(Log, ProgramsComeBackWithAllTheirNumbers) {
+  Program program = *test::level_program(42, {"a", "bee"});
+  double next = 1;
+  for (double* v : {&program.limits.max_stiffness_n_per_m, &program.limits.max_rotational_stiffness_nm_per_rad, &program.limits.max_force_n,
+                    &program.limits.max_torque_nm, &program.limits.slew_n_per_s, &program.limits.ramp_in_s, &program.limits.ramp_out_s,
+                    &program.limits.damping_ns_per_m, &program.coupling.stiffness_n_per_m, &program.coupling.damping_ns_per_m,
+                    &program.coupling.max_force_n, &program.coupling.ramp_s, &program.metres_per_unit})
+    *v = next++;
+  program.limits.late_ticks = 11;
+  program.limits.passivity = true;
+  program.coupling.combination = Combination::closest;
+  program.workspace_origin = {21, 22, 23};
+  program.workspace_rotation = Mat3(Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9));
+  program.modes = {{"m", {0}, {}}, {"n", {1}, {}}};
+  const std::string bytes = to_bytes(facts_of(program, "text"));
+  const auto got = program_from(bytes);
+  ASSERT_TRUE(got);
+  EXPECT_EQ(to_bytes(*got), bytes);
+  EXPECT_EQ(got->epoch, 42u);
+  EXPECT_EQ(got->limits.max_rotational_stiffness_nm_per_rad, 2);
+  EXPECT_EQ(got->limits.damping_ns_per_m, 8);
+  EXPECT_EQ(got->limits.late_ticks, 11);
+  EXPECT_TRUE(got->limits.passivity);
+  EXPECT_EQ(got->coupling.stiffness_n_per_m, 9);
+  EXPECT_EQ(got->coupling.ramp_s, 12);
+  EXPECT_EQ(got->coupling.combination, Combination::closest);
+  EXPECT_EQ(got->metres_per_unit, 13);
+  EXPECT_EQ(got->workspace_origin, program.workspace_origin);
+  EXPECT_EQ(got->workspace_rotation, program.workspace_rotation);
+  EXPECT_EQ(got->link_names(), (std::vector<std::string>{"a", "bee"}));
+  EXPECT_EQ(got->links[1].recipe, 2u);
+  EXPECT_EQ(got->modes, (std::vector<std::string>{"m", "n"}));
+  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(program_from(std::string_view(bytes).substr(0, n))) << n;
+}
+
+TEST(Log, CutAtEveryByteItKeepsAllCompleteBlocks) {
+  const std::string bytes = test::small_log();
+  const std::vector<Block> blocks = blocks_of(bytes);
+  ASSERT_EQ(type_of(blocks.back()), BlockType::end);
+  ASSERT_EQ(blocks.size(), 12u);
+  // ticks known by the description of the format: count at byte 16 of the payload
+  const auto ticks_up_to = [&](std::size_t size) {
+    std::uint64_t ticks = 0;
+    for (const Block& block : blocks) {
+      std::uint32_t count = 0;
+      if (block.after() <= size && type_of(block) == BlockType::ticks) std::memcpy(&count, bytes.data() + block.payload() + 16, 4);
+      ticks += count;
+    }
+    return ticks;
+  };
+  ASSERT_EQ(ticks_up_to(bytes.size()), 60u);
+  std::size_t last_block_cuts = 0;
+  for (std::size_t size = 0; size <= bytes.size(); ++size) {
+    // a copy of its own, so that a read past the end is seen
+    const std::vector<char> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    const Read read = read_all({cut.data(), cut.size()});
+    ASSERT_EQ(read.opened, size >= blocks[0].after()) << size;
+    if (!read.opened) {
+      EXPECT_NE(read.ending.find("x.catlog: "), std::string::npos);
+      EXPECT_NE(read.ending.find("cut off"), std::string::npos) << read.ending;
+      continue;
+    }
+    ASSERT_EQ(read.ticks.size(), ticks_up_to(size)) << size;
+    ASSERT_TRUE(rising_from_one(read.ticks));
+    ASSERT_FALSE(read.damaged) << size;
+    ASSERT_EQ(read.clean, size == bytes.size()) << size;
+    ASSERT_TRUE(read.gaps.empty());
+    if (size > blocks[10].at) ++last_block_cuts;
+  }
+  EXPECT_EQ(last_block_cuts, bytes.size() - blocks[10].at);
+}
+
+TEST(Log, ADamagedBlockCostsItsOwnTicksAndSaysWhich) {
+  const std::string bytes = test::small_log();
+  for (const Block& block : blocks_of(bytes)) {
+    if (type_of(block) != BlockType::ticks) continue;
+    std::uint64_t first = 0;
+    std::uint32_t count = 0;
+    std::memcpy(&first, bytes.data() + block.payload() + 8, 8);
+    std::memcpy(&count, bytes.data() + block.payload() + 16, 4);
+    // in the payload, in the length, in the mark, in the type
+    for (const std::size_t at : {block.payload() + 30, block.at + 16, block.at, block.at + 4}) {
+      std::string broken = bytes;
+      broken[at] = static_cast<char>(broken[at] ^ 0x20);
+      const Read read = read_all(broken);
+      ASSERT_TRUE(read.opened);
+      EXPECT_TRUE(read.damaged);
+      EXPECT_TRUE(read.clean);
+      ASSERT_EQ(read.gaps.size(), 1u) << first;
+      EXPECT_EQ(read.gaps[0].first_tick, first);
+      EXPECT_EQ(read.gaps[0].ticks, count);
+      EXPECT_EQ(read.gaps[0].why, LogGap::Why::damaged);
+      EXPECT_EQ(read.ticks.size(), 60 - count);
+    }
+  }
+}
+
+TEST(Log, ADamagedProgramIsUnknownAndReplayStopsThere) {
+  std::string bytes = test::small_log();
+  const std::vector<Block> blocks = blocks_of(bytes);
+  const Block& second = blocks[3];
+  ASSERT_EQ(type_of(second), BlockType::program);
+  bytes[second.payload() + 3] ^= 1;
+  const Read read = read_all(bytes);
+  EXPECT_EQ(read.ticks.size(), 60u);
+  EXPECT_TRUE(read.damaged);
+  auto reader = LogReader::open(from_memory(bytes), "x.catlog");
+  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+  const auto result = replay_log(*reader, test::hooks_for(changes));
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_EQ(result->stats.ticks, 10u);
+  EXPECT_EQ(result->differing, 0u);
+  EXPECT_NE(result->stopped.find("tick 11"), std::string::npos) << result->stopped;
+}
+
+TEST(Log, FilesThatAreNoneSayWhatWasExpected) {
+  std::string bytes = test::small_log();
+  const auto message = [](const std::string& text) { return read_all(text).ending; };
+  EXPECT_NE(message("").find("no recording"), std::string::npos);
+  EXPECT_NE(message("{\"chain\": []} and more").find(".catlog file was expected"), std::string::npos);
+  std::string other = bytes;
+  other[8] = 2;
+  EXPECT_NE(message(other).find("version 2"), std::string::npos);
+  other = bytes;
+  std::swap(other[12], other[15]);
+  EXPECT_NE(message(other).find("byte order"), std::string::npos);
+  other = bytes;
+  other[kPreambleBytes + sizeof(BlockHead) + 5] ^= 1;
+  EXPECT_NE(message(other).find("header is damaged"), std::string::npos);
+  EXPECT_FALSE(LogReader::open("/nowhere/none.catlog"));
+  EXPECT_FALSE(LogReader::open("/tmp"));
+}
+
+TEST(Log, ReplayIsExactOverEveryKindOfTickAndChange) {
+  const test::TemporaryFolder folder;
+  const std::vector<Change> changes{{1, test::level_program(1, {"a", "b"}), {}},
+                                    {300, test::level_program(2, {"b", "a"}), {}},
+                                    {301, test::level_program(3, {"c"}), {}},
+                                    {1999, test::level_program(4, {}), {}},
+                                    {2400, test::level_program(5, {"a", "b", "c", "d", "e", "f", "g", "h"}), {}}};
+  auto writer = LogWriter::open(folder / "l.catlog", {});
+  const std::uint64_t hash = test::record(**writer, changes, test::hostile_path(3000));
+  ASSERT_TRUE((*writer)->finish());
+  auto reader = LogReader::open(folder / "l.catlog");
+  ASSERT_TRUE(reader);
+  const auto result = replay_log(*reader, test::hooks_for(changes));
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_EQ(result->stats.ticks, 3000u);
+  EXPECT_TRUE(result->exact()) << result->difference << result->stopped;
+  EXPECT_EQ(result->stats.state_hash, hash);
+}
+
+TEST(Log, OneBitOfOneForceIsFoundAtItsTick) {
+  const test::TemporaryFolder folder;
+  auto program = test::level_program(1, {"a"});
+  const std::vector<Change> changes{{1, program, {}}};
+  auto writer = LogWriter::open(folder / "l.catlog", {});
+  test::drive(changes, test::hostile_path(500), [&](const ProbeSample& input, const exchange::HapticState& output) {
+    exchange::HapticState state = output;
+    if (state.tick == 123) {
+      auto* bits = reinterpret_cast<unsigned char*>(&state.force_n.z);
+      bits[0] ^= 1;
+    }
+    if (state.tick == 1) (*writer)->add_program(*program);
+    (*writer)->put(input, state);
+  });
+  ASSERT_TRUE((*writer)->finish());
+  auto reader = LogReader::open(folder / "l.catlog");
+  const auto result = replay_log(*reader, test::hooks_for(changes));
+  ASSERT_TRUE(result);
+  EXPECT_FALSE(result->exact());
+  EXPECT_EQ(result->differing, 1u);
+  EXPECT_EQ(result->first_differing, 123u);
+  EXPECT_TRUE(result->difference.starts_with("force_z recorded ")) << result->difference;
+  EXPECT_EQ(result->stats.ticks, 500u);
+}
+
+TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
+  // in the file itself, with the hashes made good: what the tick gave must differ, what the servo measured need not
+  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+  const test::TemporaryFolder folder;
+  auto writer = LogWriter::open(folder / "l.catlog", {});
+  test::record(**writer, changes, test::hostile_path(3));
+  ASSERT_TRUE((*writer)->finish());
+  const std::string bytes = test::read_file(folder / "l.catlog");
+  const std::vector<Block> blocks = blocks_of(bytes);
+  const Block ticks = blocks[2];
+  ASSERT_EQ(type_of(ticks), BlockType::ticks);
+  // the first record: a mask of 6 bytes, then the words whose bit is set
+  const std::size_t mask_at = ticks.payload() + 24;
+  std::size_t word_at = mask_at + 6;
+  int found = 0, words = 0;
+  for (int k = 0; k < words_of(1); ++k) {
+    if ((bytes[mask_at + static_cast<std::size_t>(k) / 8] >> (k % 8) & 1) == 0) continue;
+    std::string turned = bytes;
+    turned[word_at] = static_cast<char>(turned[word_at] ^ 1);
+    seal(turned, ticks);
+    word_at += 8;
+    auto reader = LogReader::open(from_memory(turned), "x.catlog");
+    const auto result = replay_log(*reader, test::hooks_for(changes));
+    ASSERT_TRUE(result);
+    ASSERT_EQ(result->stats.ticks, 3u) << k;
+    const bool measured = k >= 21 && k < 24, input = k < 9;
+    if (measured) {
+      EXPECT_TRUE(result->exact()) << k;
+    } else if (!input) {
+      EXPECT_EQ(result->first_differing, 1u) << k;
+      ++words;
+    }
+    if (!result->exact()) ++found;
+  }
+  EXPECT_GE(words, 8);
+  EXPECT_GE(found, words);
+}
+
+}  // namespace

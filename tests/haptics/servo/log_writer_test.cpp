@@ -1,0 +1,206 @@
+/// The writing side of the recording: what happens when the disk is slow or full, and with all its threads at once.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "engine/base/allocation_guard.h"
+#include "haptics/servo/log/ring.h"
+#include "tests/haptics/servo/log_fixture.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+using namespace catena::haptics::log;
+using namespace catena::test;
+
+TEST(LogWriter, AFullRingLeavesAGapThatIsToldAndStopsTheReplay) {
+  const test::TemporaryFolder folder;
+  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+  LogOptions options;
+  options.ring_bytes = 32768;  // 87 ticks of one link
+  options.flush_s = 1000;
+  auto writer = LogWriter::open(folder / "l.catlog", {}, {}, options);
+  test::record(**writer, changes, test::hostile_path(1000));
+  const LogStatus status = (*writer)->status();
+  EXPECT_EQ(status.lost, 1000u - 87u);
+  ASSERT_TRUE((*writer)->finish());
+  const Read read = read_all(test::read_file(folder / "l.catlog"));
+  ASSERT_EQ(read.gaps.size(), 1u);
+  EXPECT_EQ(read.gaps[0].first_tick, 88u);
+  EXPECT_EQ(read.gaps[0].ticks, 913u);
+  EXPECT_EQ(read.gaps[0].why, LogGap::Why::not_kept_up);
+  EXPECT_TRUE(read.clean);
+  EXPECT_FALSE(read.damaged);
+  auto reader = LogReader::open(folder / "l.catlog");
+  const auto result = replay_log(*reader, test::hooks_for(changes));
+  EXPECT_EQ(result->stats.ticks, 87u);
+  EXPECT_EQ(result->differing, 0u);
+  EXPECT_EQ(result->stopped, "ticks 88 to 1000 are lost: the disk did not keep up");
+}
+
+// The limit on the size of a file stands for a full disk.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) : ignored_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  }
+  ~SmallDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, ignored_);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*ignored_)(int);
+};
+
+TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
+  EXPECT_FALSE(LogWriter::open("/dev/full", {})) << "the header cannot be written";
+  EXPECT_FALSE(LogWriter::open("/nowhere/at/all.catlog", {}));
+  EXPECT_FALSE(LogWriter::open("", {}));
+  const test::TemporaryFolder folder;
+  {
+    const SmallDisk disk(20000);
+    auto writer = LogWriter::open(folder / "l.catlog", {}, {}, fast_flush());
+    ASSERT_TRUE(writer);
+    const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+    (*writer)->add_program(*changes[0].program);
+    test::drive(changes, test::hostile_path(400), [&](const ProbeSample& input, const exchange::HapticState& output) {
+      (*writer)->put(input, output);
+      if (output.tick % 20 != 0) return;
+      while (!(*writer)->status().failed && (*writer)->status().ticks < output.tick) std::this_thread::yield();
+    });
+    const LogStatus status = (*writer)->status();
+    EXPECT_TRUE(status.failed);
+    EXPECT_GT(status.ticks, 0u);
+    EXPECT_EQ(status.ticks + status.lost, 400u);
+    const Outcome done = (*writer)->finish();
+    ASSERT_FALSE(done);
+    EXPECT_NE(done.error().message.find("l.catlog: cannot write: File too large; the recording ends with tick " +
+                                        std::to_string(status.ticks) + " of 400"),
+              std::string::npos)
+        << done.error().message;
+  }
+  // what was complete is there
+  const Read read = read_all(test::read_file(folder / "l.catlog"));
+  EXPECT_GE(read.ticks.size(), 20u);
+  EXPECT_LT(read.ticks.size(), 400u);
+  EXPECT_TRUE(rising_from_one(read.ticks));
+  EXPECT_FALSE(read.clean);
+}
+
+TEST(LogWriter, ReplacesAFileButNotAnInputAndNotOneThatIsBeingWritten) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "l.catlog", std::string(100000, 'x'));
+  auto first = LogWriter::open(folder / "l.catlog", {});
+  ASSERT_TRUE(first);
+  const auto second = LogWriter::open(folder / "l.catlog", {});
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().message.find("another program is recording"), std::string::npos) << second.error().message;
+  test::record(**first, {{1, test::level_program(1, {"a"}), {}}}, test::hostile_path(10));
+  ASSERT_TRUE((*first)->finish());
+  EXPECT_TRUE(read_all(test::read_file(folder / "l.catlog")).clean);
+  test::write_file(folder / "scene.json", "{}");
+  EXPECT_FALSE(LogWriter::open(folder / "scene.json", {}, {folder / "scene.json"}));
+  EXPECT_EQ(test::read_file(folder / "scene.json"), "{}");
+}
+
+TEST(LogWriter, PutAllocatesNothing) {
+  const test::TemporaryFolder folder;
+  auto writer = LogWriter::open(folder / "l.catlog", {});
+  const auto program = test::level_program(1, {"a", "b"});
+  (*writer)->add_program(*program);
+  std::uint64_t allocations = 0;
+  test::drive({{1, program, {}}}, test::hostile_path(100), [&](const ProbeSample& input, const exchange::HapticState& output) {
+    const AllocationGuard guard;
+    (*writer)->put(input, output);
+    allocations += guard.count();
+  });
+  EXPECT_EQ(allocations, 0u);
+}
+
+TEST(LogWriter, AProgramThatNobodyAddedIsSaidToBeUnknown) {
+  const test::TemporaryFolder folder;
+  {
+    auto writer = LogWriter::open(folder / "l.catlog", {});
+    test::drive({{1, test::level_program(8, {"a", "b"}), {}}}, test::hostile_path(5),
+                [&](const ProbeSample& input, const exchange::HapticState& output) { (*writer)->put(input, output); });
+  }
+  auto reader = LogReader::open(folder / "l.catlog");
+  EXPECT_EQ(reader->next(), LogEvent::program);
+  EXPECT_FALSE(reader->program().known);
+  EXPECT_EQ(reader->program().link_names(), (std::vector<std::string>{"link_1", "link_2"}));
+  EXPECT_EQ(reader->next(), LogEvent::tick);
+  EXPECT_FALSE(reader->damaged());
+}
+
+TEST(LogRing, PassesMessagesBetweenTwoThreadsInOrder) {
+  Ring ring(1024);
+  std::uint64_t refused = 0;
+  std::thread reader([&] {
+    std::uint64_t wanted = 0, message[5];
+    while (wanted < 20000) {
+      if (ring.available() < 5) {
+        std::this_thread::yield();
+        continue;
+      }
+      ring.take(message);
+      for (std::uint64_t k = 0; k < 5; ++k) ASSERT_EQ(message[k], wanted * 5 + k);
+      ++wanted;
+    }
+  });
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    const std::uint64_t message[5] = {i * 5, i * 5 + 1, i * 5 + 2, i * 5 + 3, i * 5 + 4};
+    while (!ring.put(message)) {
+      ++refused;
+      std::this_thread::yield();
+    }
+  }
+  reader.join();
+  EXPECT_EQ(ring.available(), 0u);
+}
+
+// Three threads for a while: programs change, the status is read, ticks are recorded and written.
+TEST(LogSoak, ServoProgramsAndWriterTogether) {
+  const test::TemporaryFolder folder;
+#ifdef CATENA_THREAD_SANITIZER
+  constexpr std::uint64_t kTicks = 40000;
+#else
+  constexpr std::uint64_t kTicks = 100000;
+#endif
+  auto writer = LogWriter::open(folder / "l.catlog", {}, {}, fast_flush());
+  Throttled device(**writer, test::hostile_path(1000));
+  const auto first = numbered_program(1);
+  (*writer)->add_program(*first);
+  Servo servo(device, first, {.rate_hz = 1000, .paced = false, .max_ticks = kTicks, .sink = writer->get()});
+  servo.start();
+  exchange::HapticState seen;
+  for (std::uint64_t epoch = 2; servo.running(); ++epoch) {
+    const auto program = numbered_program(epoch);
+    (*writer)->add_program(*program);
+    servo.set_program(program);
+    while (seen.program_epoch != epoch && servo.running()) {
+      servo.take(seen);
+      std::this_thread::yield();
+    }
+  }
+  servo.stop();
+  ASSERT_TRUE((*writer)->finish());
+  EXPECT_EQ((*writer)->status().lost, 0u);
+  auto reader = LogReader::open(folder / "l.catlog");
+  const auto result = replay_numbered(*reader);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_EQ(result->stats.ticks, kTicks);
+  EXPECT_TRUE(result->exact()) << result->first_differing << " " << result->difference << result->stopped;
+  ASSERT_TRUE(reader->end());
+  EXPECT_EQ(reader->end()->state_hash, servo.state_hash());
+}
+
+}  // namespace
