@@ -1,0 +1,35 @@
+/// How long something took, counted in buckets of equal ratio: fixed size, no allocation, readable while it is being filled.
+///   below 64 ns: one bucket a nanosecond;  above: 64 buckets an octave, each 1/64 of its octave's start wide, up to 2^40 ns
+/// A quantile is the middle of its bucket: at most 1/128 (0.8 %) off. The maximum is exact.
+/// One writer (the haptic thread), any number of readers; all relaxed atomics, nobody waits.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace catena::haptics {
+
+/// What is told of a histogram, microseconds. The q-quantile as in engine/base/quantile.h.
+struct HistogramFigures {
+  std::uint64_t count = 0;
+  double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0;
+};
+
+class Histogram {
+ public:
+  void add(std::int64_t ns) noexcept;  ///< writer's thread; a negative time counts as 0
+  HistogramFigures figures() const;    ///< any thread
+
+ private:
+  static constexpr int kSubBits = 6, kTopBit = 40;
+  static constexpr std::uint64_t kSub = 1u << kSubBits;
+  static constexpr std::size_t kBuckets = kSub * (kTopBit - kSubBits + 1);
+  static std::size_t bucket(std::uint64_t ns) noexcept;
+  static double middle_ns(std::size_t bucket);
+
+  static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
+  std::array<std::atomic<std::uint64_t>, kBuckets> counts_{};
+  std::atomic<std::uint64_t> max_ns_{0};
+};
+
+}  // namespace catena::haptics
