@@ -30,6 +30,7 @@ struct DeviceInput {
 struct DeviceOutput {
   Vec3 force_n{0.0};
   Vec3 torque_nm{0.0};
+  bool live = true;  ///< false: the forces are off or stopped, and nothing may be added to the zero (gravity compensation)
 };
 
 /// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.
@@ -55,6 +56,8 @@ struct DeviceCapabilities {
 class Device {
  public:
   virtual ~Device() = default;
+  /// What a person must know or do now, one line ("Falcon: pull the grip fully out, then push it in"); empty: nothing. Frame thread.
+  virtual std::string status_text() const { return {}; }
   virtual const DeviceCapabilities& capabilities() const = 0;
   virtual DeviceInput read() noexcept = 0;
   virtual void write(const DeviceOutput& output) noexcept = 0;

@@ -1,6 +1,6 @@
 /// How long something took, counted in buckets of equal ratio: fixed size, no allocation, readable while it is being filled.
-///   below 64 ns: one bucket a nanosecond;  above: 64 buckets an octave, each 1/64 of its octave's start wide, up to 2^40 ns
-/// A quantile is the middle of its bucket: at most 1/128 (0.8 %) off. The maximum is exact.
+///   below 128 ns: one bucket a nanosecond;  above: 128 buckets an octave, each 1/128 of its start wide, up to 2^40 ns
+/// A quantile is the middle of its bucket: at most 1/256 (0.4 %) off. The maximum is exact.
 /// One writer (the haptic thread), any number of readers; all relaxed atomics, nobody waits.
 #pragma once
 #include <array>
@@ -21,8 +21,8 @@ class Histogram {
   HistogramFigures figures() const;    ///< any thread
 
  private:
-  static constexpr int kSubBits = 6, kTopBit = 40;
-  static constexpr std::uint64_t kSub = 1u << kSubBits;
+  static constexpr int kSubBits = 7, kTopBit = 40;
+  static constexpr std::uint64_t kSub = std::uint64_t{1} << kSubBits;
   static constexpr std::size_t kBuckets = kSub * (kTopBit - kSubBits + 1);
   static std::size_t bucket(std::uint64_t ns) noexcept;
   static double middle_ns(std::size_t bucket);

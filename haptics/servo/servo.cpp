@@ -128,7 +128,8 @@ void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::Haptic
   const std::int64_t computed = now_ns();
 
   // v * R = R^T v: back to the device's axes
-  device_.write({out.force_n * to_world, out.torque_nm * to_world});
+  const bool live = out.force_state != ForceState::off && out.force_state != ForceState::stopped;
+  device_.write({.force_n = out.force_n * to_world, .torque_nm = out.torque_nm * to_world, .live = live});
   const std::int64_t ended = now_ns();
   hash_.add(out);
 
@@ -196,7 +197,7 @@ void Servo::loop() noexcept {
     if (watchdog) watchdog->tick_ended(ended);
   }
   watchdog.reset();
-  device_.write({});
+  device_.write({.live = false});
   device_.stop();
   counters_.ended_ns.store(now_ns(), std::memory_order_relaxed);
   running_.store(false, std::memory_order_release);

@@ -36,7 +36,10 @@ class Scripted final : public Device {
     script_(reads_++, input);
     return input;
   }
-  void write(const DeviceOutput& output) noexcept override { sent.push_back(stopped_.load() ? Vec3(0.0) : output.force_n); }
+  void write(const DeviceOutput& output) noexcept override {
+    sent.push_back(stopped_.load() ? Vec3(0.0) : output.force_n);
+    live.push_back(output.live);
+  }
   void stop() noexcept override {
     stopped_ = true;
     ++stops;
@@ -48,6 +51,7 @@ class Scripted final : public Device {
   bool stopped() const { return stopped_; }
 
   std::vector<Vec3> sent;
+  std::vector<bool> live;
   std::atomic<int> stops{0}, resumes{0};
 
  private:
@@ -225,11 +229,16 @@ TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
   EXPECT_TRUE(servo.forces());
   for (std::size_t k = 0; k < 40; ++k) {
     EXPECT_EQ(seen.inputs[k].forces_on, k >= 10 && k < 20) << k;
+    if (k < 10 || k > 30) {
+      EXPECT_FALSE(device.live[k]) << k;
+    }
     if (k < 10) {
       EXPECT_EQ(norm(device.sent[k]), 0) << k;
     }
   }
   EXPECT_GT(norm(device.sent[15]), 0);
+  EXPECT_TRUE(device.live[15]);
+  EXPECT_FALSE(device.live.back()) << "the last zero";
 }
 
 }  // namespace

@@ -24,12 +24,12 @@ TEST(Histogram, OneValueIsEveryQuantileWithinABucket) {
     h.add(ns);
     const HistogramFigures f = h.figures();
     EXPECT_EQ(f.max_us, 1e-3 * static_cast<double>(ns));
-    EXPECT_NEAR(f.p50_us, f.max_us, f.max_us / 128) << ns;
+    EXPECT_NEAR(f.p50_us, f.max_us, f.max_us / 256) << ns;
     EXPECT_EQ(f.p50_us, f.p999_us);
   }
 }
 
-TEST(Histogram, QuantilesAreWithinOnePercentOfTheExactOnes) {
+TEST(Histogram, QuantilesAreWithinHalfAPercentOfTheExactOnes) {
   Histogram h;
   std::vector<double> exact;
   std::uint64_t seed = 7;
@@ -43,9 +43,9 @@ TEST(Histogram, QuantilesAreWithinOnePercentOfTheExactOnes) {
   }
   const HistogramFigures f = h.figures();
   EXPECT_EQ(f.count, exact.size());
-  EXPECT_NEAR(f.p50_us / quantile(exact, 0.5), 1, 0.01);
-  EXPECT_NEAR(f.p99_us / quantile(exact, 0.99), 1, 0.01);
-  EXPECT_NEAR(f.p999_us / quantile(exact, 0.999), 1, 0.01);
+  EXPECT_NEAR(f.p50_us / quantile(exact, 0.5), 1, 0.005);
+  EXPECT_NEAR(f.p99_us / quantile(exact, 0.99), 1, 0.005);
+  EXPECT_NEAR(f.p999_us / quantile(exact, 0.999), 1, 0.005);
   EXPECT_EQ(f.max_us, quantile(exact, 1.0));
 }
 
