@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <mutex>
 
@@ -21,10 +20,9 @@ namespace {
 constexpr std::size_t kStackBytes = 256 * 1024;  // more than a tick ever uses
 
 // Pages of the stack below this frame, touched so that no tick faults on them.
-[[gnu::noinline]] std::uintptr_t touch_stack() {
-  volatile unsigned char pages[kStackBytes];
+[[gnu::noinline]] void touch_stack() {
+  [[maybe_unused]] volatile unsigned char pages[kStackBytes];
   for (std::size_t i = 0; i < kStackBytes; i += 4096) pages[i] = 0;
-  return reinterpret_cast<std::uintptr_t>(&pages[0]);
 }
 
 std::string reason() { return std::strerror(errno); }
@@ -107,13 +105,12 @@ void RealtimeThread::bind(int cpu) {
 }
 
 void RealtimeThread::lock(const void* own, std::size_t own_bytes) {
-  if (may_lock_everything() && lock_everything()) {
-    report_.locked = true;
-    touch_stack();
-    return;
-  }
-  const Locked wanted[] = {{reinterpret_cast<const void*>(touch_stack()), kStackBytes}, {own, own_bytes}};
-  for (const Locked& part : wanted)
+  const bool everything = may_lock_everything() && lock_everything();
+  touch_stack();
+  report_.locked = everything;
+  if (everything) return;
+  const void* const stack = static_cast<const char*>(__builtin_frame_address(0)) - kStackBytes;  // it grows downwards
+  for (const Locked& part : {Locked{stack, kStackBytes}, Locked{own, own_bytes}})
     if (mlock(part.at, part.bytes) == 0) parts_.push_back(part);
   report_.notes.push_back(std::string("not all memory could be locked: run as root or raise memlock in /etc/security/limits.conf (") +
                           (parts_.size() == 2 ? "the thread's own is)" : "not even the thread's own)"));

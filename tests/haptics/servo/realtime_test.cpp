@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <thread>
 
 #include "haptics/device/null_device.h"
@@ -74,6 +75,35 @@ TEST(Realtime, EveryWishIsEitherGrantedOrHasItsSentence) {
   if (!r.fifo) {
     EXPECT_EQ(r.cpu, -1) << "bound to a core only with a fixed priority";
   }
+}
+
+/// Its bus takes more than a period at 10 kHz.
+class Slow final : public Device {
+ public:
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override {
+    std::this_thread::sleep_for(std::chrono::microseconds(150));
+    return {};
+  }
+  void write(const DeviceOutput&) noexcept override {}
+
+ private:
+  DeviceCapabilities capabilities_;
+};
+
+TEST(Realtime, AFixedPriorityIsGivenBackWhereTheTicksNeverFitIntoTheirPeriod) {
+  Slow device;
+  Servo servo(device, std::make_shared<Program>(), {.rate_hz = 10000, .max_ticks = 1010});
+  servo.start();
+  const bool granted = servo.report().realtime.fifo;
+  while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  servo.stop();
+  if (!granted) GTEST_SKIP() << "no fixed priority here";
+  const ServoReport r = servo.report();
+  EXPECT_GE(r.missed_deadlines, 1009u);
+  EXPECT_FALSE(r.realtime.fifo);
+  ASSERT_FALSE(r.realtime.notes.empty());
+  EXPECT_NE(r.realtime.notes.back().find("given back"), std::string::npos);
 }
 
 TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {
