@@ -13,11 +13,14 @@ std::size_t Histogram::bucket(std::uint64_t ns) noexcept {
   return static_cast<std::size_t>(kSub * static_cast<std::uint64_t>(shift) + (ns >> shift));
 }
 
-double Histogram::middle_ns(std::size_t bucket) {
+double Histogram::first_ns(std::size_t bucket) {
   if (bucket < kSub) return static_cast<double>(bucket);
   const std::uint64_t shift = bucket / kSub - 1;
-  const std::uint64_t first = (bucket - kSub * shift) << shift, width = std::uint64_t{1} << shift;
-  return static_cast<double>(first) + 0.5 * static_cast<double>(width - 1);
+  return static_cast<double>((bucket - kSub * shift) << shift);
+}
+
+double Histogram::middle_ns(std::size_t bucket) {
+  return bucket < kSub ? first_ns(bucket) : 0.5 * (first_ns(bucket) + first_ns(bucket + 1) - 1);
 }
 
 void Histogram::add(std::int64_t ns) noexcept {
@@ -44,6 +47,12 @@ HistogramFigures Histogram::figures() const {
   out.p50_us = quantile_us(0.5);
   out.p99_us = quantile_us(0.99);
   out.p999_us = quantile_us(0.999);
+  constexpr std::size_t kPerBin = kSub / 8;
+  for (std::size_t i = 0; i < kBuckets; i += kPerBin) {
+    HistogramFigures::Bin bin{1e-3 * first_ns(i), 0};
+    for (std::size_t k = 0; k < kPerBin; ++k) bin.count += counts[i + k];
+    if (bin.count > 0) out.bins.push_back(bin);
+  }
   return out;
 }
 

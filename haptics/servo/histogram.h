@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 namespace catena::haptics {
 
@@ -13,18 +14,25 @@ namespace catena::haptics {
 struct HistogramFigures {
   std::uint64_t count = 0;
   double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0;
+  /// For a drawing: 8 an octave, those that are not empty, each from here to the next place of the scale.
+  struct Bin {
+    double from_us;
+    std::uint64_t count;
+  };
+  std::vector<Bin> bins = {};
 };
 
 class Histogram {
  public:
   void add(std::int64_t ns) noexcept;  ///< writer's thread; a negative time counts as 0
-  HistogramFigures figures() const;    ///< any thread
+  HistogramFigures figures() const;    ///< any thread but the writer's
 
  private:
   static constexpr int kSubBits = 7, kTopBit = 40;
   static constexpr std::uint64_t kSub = std::uint64_t{1} << kSubBits;
   static constexpr std::size_t kBuckets = kSub * (kTopBit - kSubBits + 1);
   static std::size_t bucket(std::uint64_t ns) noexcept;
+  static double first_ns(std::size_t bucket);
   static double middle_ns(std::size_t bucket);
 
   static_assert(std::atomic<std::uint64_t>::is_always_lock_free);

@@ -9,8 +9,11 @@ namespace catena::haptics {
 namespace {
 
 std::string figures_json(const char* name, const HistogramFigures& f) {
-  return fmt::format("  \"{}\": {{\"p50\": {:.3f}, \"p99\": {:.3f}, \"p999\": {:.3f}, \"max\": {:.3f}, \"count\": {}}},\n", name, f.p50_us,
-                     f.p99_us, f.p999_us, f.max_us, f.count);
+  std::string bins;
+  for (const HistogramFigures::Bin& bin : f.bins) bins += fmt::format("{}[{:.3f}, {}]", bins.empty() ? "" : ", ", bin.from_us, bin.count);
+  return fmt::format(
+      "  \"{}\": {{\"p50\": {:.3f}, \"p99\": {:.3f}, \"p999\": {:.3f}, \"max\": {:.3f}, \"count\": {},\n    \"bins\": [{}]}},\n", name,
+      f.p50_us, f.p99_us, f.p999_us, f.max_us, f.count, bins);
 }
 
 std::string figures_line(const char* name, const HistogramFigures& f) {

@@ -33,7 +33,8 @@ struct ServoReport {
 
 /// {"device", "rate_hz", "seconds", "ticks", "missed_deadlines", "late_ticks", "lost_ticks", "watchdog_trips",
 ///  "realtime": {"fifo", "locked", "cpu" (null: not bound), "notes"},
-///  "period_us", "compute_us", "device_us": {"p50", "p99", "p999", "max", "count"}, "state_hash"}
+///  "period_us", "compute_us", "device_us": {"p50", "p99", "p999", "max", "count", "bins": [[from, count], ...]},
+///  "state_hash"}
 std::string servo_json(const ServoReport& report, const std::string& device_name, std::uint64_t state_hash);
 /// The same in a few lines for a person.
 std::string servo_summary(const ServoReport& report, const std::string& device_name);

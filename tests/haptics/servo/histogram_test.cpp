@@ -49,6 +49,18 @@ TEST(Histogram, QuantilesAreWithinHalfAPercentOfTheExactOnes) {
   EXPECT_EQ(f.max_us, quantile(exact, 1.0));
 }
 
+TEST(Histogram, BinsHoldEveryValueOnce) {
+  Histogram h;
+  for (const std::int64_t ns : {5, 15, 16, 1000, 1023, 1024, 1151, 1152, 1000000}) h.add(ns);
+  const std::vector<HistogramFigures::Bin> bins = h.figures().bins;
+  const std::vector<std::pair<double, std::uint64_t>> expected = {{0, 2}, {0.016, 1}, {0.960, 2}, {1.024, 2}, {1.152, 1}, {983.040, 1}};
+  ASSERT_EQ(bins.size(), expected.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    EXPECT_NEAR(bins[i].from_us, expected[i].first, 1e-9) << i;
+    EXPECT_EQ(bins[i].count, expected[i].second) << i;
+  }
+}
+
 TEST(Histogram, TimesOutOfRangeAreCountedAtTheEnds) {
   Histogram h;
   h.add(-5);

@@ -61,7 +61,7 @@ TEST(Report, JsonHasEveryFigure) {
   r.realtime.cpu = 1;
   r.realtime.notes = {"one \"quoted\"", "two"};
   r.period = {2498, 1000, 1010, 1100, 1234.5};
-  r.device = {2499, 1, 2, 3, 4};
+  r.device = {2499, 1, 2, 3, 4, {{0.5, 2000}, {1, 499}}};
   const json::Node root = parsed(servo_json(r, "a \"device\"", 0xabcu));
   EXPECT_EQ(root.find("device")->string, "a \"device\"");
   EXPECT_EQ(root.find("rate_hz")->number, 1000);
@@ -80,6 +80,9 @@ TEST(Report, JsonHasEveryFigure) {
   EXPECT_EQ(root.find("period_us")->find("max")->number, 1234.5);
   EXPECT_EQ(root.find("period_us")->find("count")->number, 2498);
   EXPECT_EQ(root.find("device_us")->find("p999")->number, 3);
+  ASSERT_EQ(root.find("device_us")->find("bins")->items.size(), 2u);
+  EXPECT_EQ(root.find("device_us")->find("bins")->items[1].items[1].number, 499);
+  EXPECT_TRUE(root.find("period_us")->find("bins")->items.empty());
   EXPECT_EQ(root.find("compute_us")->find("p50")->number, 0);
   EXPECT_EQ(root.find("state_hash")->string, "0000000000000abc");
 }
