@@ -1,8 +1,9 @@
-/// catena view SCENE|FILE [--device NAME]: the interactive window.
+/// catena view SCENE|FILE [--device NAME] [--seconds S] [--servo-stats FILE.json]: the interactive window.
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "engine/app/command.h"
+#include "engine/app/hand/realtime_option.h"
 #include "engine/app/size_option.h"
 #include "engine/app/viewer/viewer.h"
 #include "engine/base/output_file.h"
@@ -12,9 +13,11 @@ namespace catena::app {
 namespace {
 
 struct Options {
-  std::string source, device = "mouse", size = "1024x768", screenshot;
+  std::string source, device = "mouse", size = "1024x768", screenshot, servo_stats;
   std::vector<std::string> fields;
   int frames = 0;
+  double seconds = 0;
+  RealtimeChoice realtime;
 };
 
 Outcome open_window(const Options& o, int& exit_code) {
@@ -22,7 +25,13 @@ Outcome open_window(const Options& o, int& exit_code) {
   ViewOptions options;
   CATENA_TRY(options.scene, open_scene(o.source, o.fields));
   if (!o.screenshot.empty()) CATENA_CHECK(check_output(o.screenshot, inputs_of(options.scene)));
+  if (!o.servo_stats.empty()) CATENA_CHECK(check_output(o.servo_stats, inputs_of(options.scene)));
+  if (!o.screenshot.empty() && !o.servo_stats.empty() && same_file(o.screenshot, o.servo_stats))
+    return Error{o.screenshot + ": --screenshot and --servo-stats name one file: expected two"};
   options.device = o.device;
+  options.seconds = o.seconds;
+  options.servo_stats = o.servo_stats;
+  options.realtime = o.realtime.options();
   options.width = size.width;
   options.height = size.height;
   options.frames = o.frames;
@@ -37,11 +46,15 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("view", "an interactive window: orbit, and the mouse as the hand");
   command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
-  command->add_option("--device", options->device, "what holds the probe")->check(CLI::IsMember({"mouse"}))->capture_default_str();
+  command->add_option("--device", options->device, "what holds the probe: mouse, or a haptic device (its forces are off until F)")
+      ->capture_default_str();
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
   command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);
+  command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(CLI::NonNegativeNumber);
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
+  command->add_option("--servo-stats", options->servo_stats, "the servo's ticks, missed deadlines, histograms, JSON");
+  add_realtime_options(*command, options->realtime);
   command->callback([&chosen, &exit_code, options] { chosen = [&exit_code, options] { return open_window(*options, exit_code); }; });
 }
 

@@ -4,21 +4,10 @@
 
 #include <set>
 
+#include "engine/base/json_text.h"
 #include "engine/base/quantile.h"
-#include "engine/base/text.h"
 
 namespace catena::app {
-
-namespace {
-std::string json_string(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : one_line(text)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
-}  // namespace
 
 double FrameStats::median_ms() const {
   std::vector<double> times = frame_ms;

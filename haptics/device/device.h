@@ -30,6 +30,7 @@ struct DeviceInput {
 struct DeviceOutput {
   Vec3 force_n{0.0};
   Vec3 torque_nm{0.0};
+  bool live = true;  ///< false: the forces are off or stopped, and nothing may be added to the zero (gravity compensation)
 };
 
 /// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.

@@ -1,16 +1,43 @@
 #include "haptics/servo/servo.h"
 
+#include <algorithm>
 #include <ctime>
+#include <optional>
 
 #include "engine/base/assert.h"
 #include "engine/base/clock.h"
+#include "haptics/servo/watchdog.h"
 
 namespace catena::haptics {
 
-static_assert(std::atomic<bool>::is_always_lock_free);
+namespace {
 
-Servo::Servo(Device& device, std::shared_ptr<const Program> program, const ServoOptions& options) : device_(device), options_(options) {
-  CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks) && options.rate_hz > 0);
+constexpr int kMissesUntilNormal = 1000;  // ticks in a row that miss a deadline before a fixed priority is given back
+
+void add_one(std::atomic<std::uint64_t>& counter, std::uint64_t n = 1) noexcept {
+  counter.store(counter.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
+}
+
+double microseconds(std::int64_t ns) noexcept { return 1e-3 * static_cast<double>(ns); }
+
+void sleep_until(std::int64_t ns, const std::atomic<bool>& stop) noexcept {
+  const timespec wake{static_cast<std::time_t>(ns / 1000000000), static_cast<long>(ns % 1000000000)};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) != 0 && !stop.load(std::memory_order_acquire)) {
+  }
+}
+
+/// Unpaced runs must not take the machine, and gain nothing from locked memory.
+RealtimeOptions realtime_options(const ServoOptions& options) {
+  if (options.paced) return options.realtime;
+  return {.fifo = false, .lock_memory = false, .cpu = RealtimeOptions::kUnbound};
+}
+
+}  // namespace
+
+Servo::Servo(Device& device, std::shared_ptr<const Program> program, const ServoOptions& options)
+    : device_(device), options_(options), forces_(options.forces) {
+  CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
+  CATENA_ASSERT(options.rate_hz >= ServoOptions::kMinRateHz && options.rate_hz <= ServoOptions::kMaxRateHz && options.watchdog_s >= 0);
   program_ = program.get();
   programs_.push_back(std::move(program));
 }
@@ -21,7 +48,9 @@ void Servo::start() {
   CATENA_ASSERT(!thread_.joinable());
   stop_.store(false, std::memory_order_release);
   running_.store(true, std::memory_order_release);
+  prepared_.store(false, std::memory_order_release);
   thread_ = std::thread([this] { loop(); });
+  prepared_.wait(false, std::memory_order_acquire);
 }
 
 void Servo::stop() {
@@ -46,59 +75,131 @@ bool Servo::take(exchange::HapticState& state) {
   return true;
 }
 
-void Servo::one_tick(double t_s, exchange::HapticState& out) noexcept {
+ServoReport Servo::report() const {
+  const auto read = [](const auto& counter) { return counter.load(std::memory_order_relaxed); };
+  ServoReport out;
+  out.rate_hz = options_.rate_hz;
+  out.paced = options_.paced;
+  out.ticks = read(counters_.ticks);
+  out.missed_deadlines = read(counters_.missed_deadlines);
+  out.late_ticks = read(counters_.late_ticks);
+  out.lost_ticks = read(counters_.lost_ticks);
+  out.watchdog_trips = read(counters_.watchdog_trips);
+  out.period = counters_.period.figures();
+  out.compute = counters_.compute.figures();
+  out.device = counters_.device.figures();
+  const std::int64_t started = read(counters_.started_ns), ended = read(counters_.ended_ns);
+  if (started != 0) out.seconds = 1e-9 * static_cast<double>((ended != 0 ? ended : now_ns()) - started);
+  if (prepared_.load(std::memory_order_acquire)) out.realtime = realtime_;
+  if (read(counters_.left_fifo)) {
+    out.realtime.fifo = false;
+    out.realtime.notes.push_back("real-time scheduling was given back: the ticks take longer than the period");
+  }
+  return out;
+}
+
+void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::HapticState& out) noexcept {
+  const std::int64_t began = now_ns();
+  const DeviceInput input = device_.read();
+  const std::int64_t has_read = now_ns();
+
   if (next_program_.take()) {
     const Program* newer = next_program_.front();
     rebind(*program_, *newer, state_, scratch_);
     program_ = newer;
   }
-  const DeviceInput input = device_.read();
-  // device metres -> world: origin + R p / S
+  // device metres -> world: origin + R p / S; a recorded path is in the world already, and so is its orientation
+  const Mat3& to_world = program_->workspace_rotation;
   ProbeSample probe;
   probe.buttons = input.buttons;
   probe.t_s = input.recorded ? input.t_s : t_s;
-  probe.position = input.recorded
-                       ? input.position_m
-                       : program_->workspace_origin + program_->workspace_rotation * input.position_m * (1 / program_->metres_per_unit);
-  // the tool's orientation turns with the workspace; a recorded one is in world axes already
-  probe.orientation = input.recorded ? input.orientation : glm::quat_cast(program_->workspace_rotation) * input.orientation;
-  probe.condition = input.status == DeviceStatus::ready ? Condition::normal : Condition::no_device;
-  probe.forces_on = input.forces_on;
+  probe.position =
+      input.recorded ? input.position_m : program_->workspace_origin + to_world * input.position_m * (1 / program_->metres_per_unit);
+  probe.orientation = input.recorded ? input.orientation : glm::quat_cast(to_world) * input.orientation;
+  probe.forces_on = input.forces_on && forces();
+
+  // the tick that finds the watchdog's flag is without force; the one after it may drive the device again
+  const bool tripped = watchdog != nullptr && watchdog->take_trip();
+  if (stopped_ && !tripped) device_.resume();
+  stopped_ = tripped;
+  const bool lost = input.status != DeviceStatus::ready;
+  probe.condition = tripped ? Condition::watchdog : lost ? Condition::no_device : late ? Condition::late : Condition::normal;
   tick(*program_, probe, state_, scratch_, out);
+  const std::int64_t computed = now_ns();
+
   // v * R = R^T v: back to the device's axes
-  device_.write({out.force_n * program_->workspace_rotation, out.torque_nm * program_->workspace_rotation});
+  const bool live = out.force_state != ForceState::off && out.force_state != ForceState::stopped;
+  device_.write({.force_n = out.force_n * to_world, .torque_nm = out.torque_nm * to_world, .live = live});
+  const std::int64_t ended = now_ns();
+  hash_.add(out);
+
+  const std::int64_t device_ns = (has_read - began) + (ended - computed);
+  counters_.compute.add(computed - has_read);
+  counters_.device.add(device_ns);
+  if (lost) add_one(counters_.lost_ticks);
+  add_one(counters_.ticks);
+  out.compute_us = microseconds(computed - has_read);
+  out.device_us = microseconds(device_ns);
+  out.missed_deadlines = counters_.missed_deadlines.load(std::memory_order_relaxed);
   if (options_.sink != nullptr) options_.sink->put(probe, out);
 }
 
+/// A fixed priority is for ticks that fit into their period: a second or so of misses gives it back.
+void Servo::relax(bool missed) noexcept {
+  misses_in_row_ = missed ? misses_in_row_ + 1 : 0;
+  if (misses_in_row_ != kMissesUntilNormal || !realtime_.fifo) return;
+  leave_fifo();
+  counters_.left_fifo.store(true, std::memory_order_relaxed);
+}
+
 void Servo::loop() noexcept {
-  const auto period_ns = static_cast<std::int64_t>(1e9 / options_.rate_hz);
-  const std::int64_t first_deadline = now_ns() + period_ns;
-  std::int64_t deadline = first_deadline;
+  const RealtimeThread realtime(realtime_options(options_), this, sizeof *this);
+  realtime_ = realtime.report();
+  const double watchdog_s = std::max(options_.watchdog_s, 4 / options_.rate_hz);
+  const bool watched = options_.paced && options_.watchdog_s > 0;
+  std::optional<Watchdog> watchdog;
+  if (watched) watchdog.emplace(device_, watchdog_s, realtime_.fifo ? options_.realtime.priority + 1 : 0, counters_.watchdog_trips);
   exchange::HapticState out;
+  device_.resume();
+  stopped_ = false;
+
+  const auto period_ns = static_cast<std::int64_t>(1e9 / options_.rate_hz);
+  Pace pace(period_ns, now_ns() + period_ns);
+  counters_.started_ns.store(now_ns(), std::memory_order_relaxed);
+  counters_.ended_ns.store(0, std::memory_order_relaxed);
+  prepared_.store(true, std::memory_order_release);
+  prepared_.notify_all();
+
+  std::int64_t last_begin = 0;
   for (std::uint64_t k = 0; !stop_.load(std::memory_order_acquire) && (options_.max_ticks == 0 || k < options_.max_ticks); ++k) {
-    if (options_.paced) {
-      const timespec wake{static_cast<std::time_t>(deadline / 1000000000), static_cast<long>(deadline % 1000000000)};
-      while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) != 0 && !stop_.load(std::memory_order_acquire)) {
-      }
+    if (options_.paced) sleep_until(pace.next_wake_ns(), stop_);
+    const std::int64_t began = now_ns();
+    if (last_begin != 0) {
+      counters_.period.add(began - last_begin);
+      out.period_us = microseconds(began - last_begin);
     }
-    const std::int64_t woke = now_ns();
-    const double nominal_s =
-        options_.paced ? 1e-9 * static_cast<double>(deadline - first_deadline) : static_cast<double>(k) / options_.rate_hz;
-    one_tick(nominal_s, out);
-    hash_.add(out);
-    out.compute_us = static_cast<double>(now_ns() - woke) * 1e-3;
-    // a tick that ends after the next deadline has missed it: skip to the next one that can still be met
-    deadline += period_ns;
+    last_begin = began;
+
+    double t_s = static_cast<double>(k) / options_.rate_hz;
+    Beat beat;
     if (options_.paced) {
-      for (int skipped = 0; deadline < now_ns() && skipped < 1000; ++skipped) {
-        ++out.missed_deadlines;
-        deadline += period_ns;
-      }
-      if (deadline < now_ns()) deadline = now_ns() + period_ns;
+      beat = pace.begins(began);
+      t_s = 1e-9 * static_cast<double>(beat.time_ns);
+      add_one(counters_.missed_deadlines, static_cast<std::uint64_t>(beat.missed));
+      if (beat.late) add_one(counters_.late_ticks);
+      relax(beat.missed > 0);
     }
+    one_tick(t_s, beat.late, watchdog ? &*watchdog : nullptr, out);
     published_.publish(out);
+
+    const std::int64_t ended = now_ns();
+    pace.ends(ended);
+    if (watchdog) watchdog->tick_ended(ended);
   }
-  device_.write({});
+  watchdog.reset();
+  device_.write({.live = false});
+  device_.stop();
+  counters_.ended_ns.store(now_ns(), std::memory_order_relaxed);
   running_.store(false, std::memory_order_release);
 }
 

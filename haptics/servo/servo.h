@@ -1,8 +1,11 @@
-/// The haptic thread: a thin shell around the tick. Wakes at absolute deadlines, reads the device, takes the newest program
+/// The haptic thread: a thin shell around the tick. Wakes at absolute deadlines (pace.h), reads the device, takes the newest program
 /// (never waits), runs the tick, writes the force, publishes one HapticState.
-/// Two threads touch a Servo: the frame side calls the public functions, the haptic thread runs the loop. They share two
-/// triple buffers and one flag, all lock-free. The haptic thread never frees: programs are kept by the frame side until a
-/// published epoch shows that a newer one has run.
+/// Two threads touch a Servo: the frame side calls the public functions, the haptic thread runs the loop; a third one, the watchdog,
+/// looks at a time stamp. They share two triple buffers, flags and counters, all lock-free. The haptic thread never frees: programs
+/// are kept by the frame side until a published epoch shows that a newer one has run.
+///
+/// The tick's condition: WATCHDOG no tick had ended for watchdog_s (the device has been stopped; the tick after resumes it);
+/// NO_DEVICE the device is not ready; LATE its time is more than two periods after the last tick's; else NORMAL.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -13,15 +16,24 @@
 #include "haptics/chain/rebind.h"
 #include "haptics/chain/state_hash.h"
 #include "haptics/device/device.h"
+#include "haptics/servo/pace.h"
+#include "haptics/servo/report.h"
 #include "haptics/servo/tick_sink.h"
 
 namespace catena::haptics {
 
+class Watchdog;
+
 struct ServoOptions {
-  double rate_hz = 1000;
-  bool paced = true;            ///< false: as fast as it goes (soaks, determinism)
-  std::uint64_t max_ticks = 0;  ///< 0: until stop()
-  TickSink* sink = nullptr;     ///< gets every tick; outlives the servo
+  static constexpr double kMinRateHz = 100, kMaxRateHz = 10000;
+
+  double rate_hz = 1000;          ///< kMinRateHz..kMaxRateHz
+  bool paced = true;              ///< false: as fast as it goes (soaks, determinism); never late, no watchdog, normal priority
+  std::uint64_t max_ticks = 0;    ///< 0: until stop()
+  TickSink* sink = nullptr;       ///< gets every tick; outlives the servo
+  bool forces = true;             ///< at the start; set_forces() later
+  double watchdog_s = 0.05;       ///< at least four periods; 0: none
+  RealtimeOptions realtime = {};  ///< of a paced servo
 };
 
 class Servo {
@@ -33,31 +45,44 @@ class Servo {
   Servo& operator=(const Servo&) = delete;
 
   // frame side
-  void start();
-  void stop();  ///< joins; the device has had a last zero force
+  void start();  ///< returns when the thread is prepared, just before its first tick
+  void stop();   ///< joins; the device has had a last zero force and is stopped
   void set_program(std::shared_ptr<const Program> program);
-  bool take(exchange::HapticState& state);  ///< true if there was something newer
-  bool running() const { return running_.load(std::memory_order_acquire); }
+  bool take(exchange::HapticState& state);                    ///< true if there was something newer
   std::uint64_t state_hash() const { return hash_.value(); }  ///< after stop()
   std::size_t programs_alive() const { return programs_.size(); }
 
+  // any thread
+  bool running() const { return running_.load(std::memory_order_acquire); }
+  /// The person's switch: with it off, or the device's own, the hand gets no force.
+  void set_forces(bool on) { forces_.store(on, std::memory_order_relaxed); }
+  bool forces() const { return forces_.load(std::memory_order_relaxed); }
+  ServoReport report() const;  ///< after start(), also while it runs
+
  private:
   void loop() noexcept;
-  void one_tick(double t_s, exchange::HapticState& out) noexcept;
+  void one_tick(double t_s, bool late, Watchdog* watchdog, exchange::HapticState& out) noexcept;
+  void relax(bool missed) noexcept;
 
+  static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::uint64_t>::is_always_lock_free &&
+                std::atomic<const Program*>::is_always_lock_free);
   Device& device_;
   ServoOptions options_;
   exchange::TripleBuffer<const Program*> next_program_;
   exchange::TripleBuffer<exchange::HapticState> published_;
-  std::atomic<bool> stop_{false}, running_{false};
+  std::atomic<bool> stop_{false}, running_{false}, prepared_{false}, forces_;
+  ServoCounters counters_;
 
   // haptic thread only, once started
   const Program* program_ = nullptr;
   ChainState state_;
   ChainScratch scratch_;
   StateHash hash_;
+  bool stopped_ = false;  ///< the watchdog has stopped the device
+  int misses_in_row_ = 0;
 
-  // frame side only
+  // frame side only; realtime_ is written before prepared_
+  RealtimeReport realtime_;
   std::vector<std::shared_ptr<const Program>> programs_;
   std::thread thread_;
 };

@@ -105,6 +105,7 @@ std::string_view key_help() {
          "right drag, control  move the hand in the picture's plane (wheel: depth)\n"
          "H                    hand mode: the mouse is the hand, the left button its button 1\n"
          "space                the hand's button 1\n"
+         "F                    a haptic device's forces on and off (off at first)\n"
          "R                    the first view again\n"
          "F1, ?                these keys\n"
          "Q, Esc               quit\n";

@@ -9,8 +9,10 @@
 #include <optional>
 #include <vector>
 
+#include "engine/app/hand/hand_setup.h"
+#include "engine/app/hand/interrupt.h"
+#include "engine/app/hand/open_hand.h"
 #include "engine/app/viewer/controls.h"
-#include "engine/app/viewer/hand_setup.h"
 #include "engine/app/viewer/window.h"
 #include "engine/base/clock.h"
 #include "engine/scene/systems.h"
@@ -48,6 +50,7 @@ class Session {
  private:
   std::optional<Failure> open_scene();
   void pin_camera();
+  void say_forces() const;
   Changed take_input(double wait_s);
   bool take_haptics();
   std::optional<Failure> draw(bool moving);
@@ -59,8 +62,10 @@ class Session {
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::vk::Swapchain> swapchain_;
   Controls controls_;
-  std::unique_ptr<haptics::MouseDevice> mouse_;
+  OpenHand hand_;
+  haptics::MouseDevice* mouse_ = nullptr;  ///< hand_.device, if that is the mouse: the frame moves it
   std::unique_ptr<haptics::Servo> servo_;
+  std::optional<Interrupt> interrupt_;
   std::vector<std::string> link_names_;
   exchange::HapticState felt_;
 
@@ -85,14 +90,23 @@ std::optional<Failure> Session::open_scene() {
   if (!packet) return Failure{2, packet.error().message};
   render::Bounds bounds = render::packet_bounds(*packet);
   bounds.add(loaded_bounds(scene));
-  mouse_ = std::make_unique<haptics::MouseDevice>(Vec3(0.0));
-  fit_workspace(scene, bounds, mouse_->capabilities().workspace_m);
-  controls_.hand = first_probe(scene, bounds);
-  mouse_ = std::make_unique<haptics::MouseDevice>(device_from_world(scene.workspace, controls_.hand));
-  auto program = haptics::extract_program(scene);
+  const bool is_mouse = !hand_.device;
+  if (is_mouse) hand_.device = std::make_unique<haptics::MouseDevice>(Vec3(0.0));
+  auto program = program_for(scene, hand_, bounds);
   if (!program) return Failure{2, program.error().message};
+  controls_.hand = first_probe(scene, bounds);
+  if (is_mouse) {
+    auto mouse = std::make_unique<haptics::MouseDevice>(device_from_world(scene.workspace, controls_.hand));
+    mouse_ = mouse.get();
+    hand_.device = std::move(mouse);
+  }
   for (const haptics::Link& link : (*program)->links) link_names_.push_back(link.name);
-  servo_ = std::make_unique<haptics::Servo>(*mouse_, *program);
+  haptics::ServoOptions servo;
+  servo.rate_hz = hand_.settings.rate_hz;
+  servo.forces = is_mouse || hand_.device->capabilities().max_force_n <= 0;
+  servo.realtime = options_.realtime;
+  if (is_mouse) servo.realtime.lock_memory = false;  // nothing pushes: a page fault does no harm
+  servo_ = std::make_unique<haptics::Servo>(*hand_.device, *program, servo);
 
   if (!scene.camera.given && packet->volumes.empty() && packet->isosurfaces.empty() && packet->tubes.empty())
     packet->view = render::fit_view(bounds, static_cast<double>(options_.width) / options_.height);
@@ -102,6 +116,11 @@ std::optional<Failure> Session::open_scene() {
 }
 
 std::optional<Failure> Session::open() {
+  if (options_.device != "mouse") {
+    auto hand = open_hand(options_.scene, options_.device);
+    if (!hand) return Failure{2, hand.error().message};
+    hand_ = std::move(*hand);
+  }
   auto window = Window::create(options_.width, options_.height, "catena");
   if (!window) return Failure{1, window.error().message};
   window_ = std::move(*window);
@@ -118,6 +137,11 @@ std::optional<Failure> Session::open() {
   if (!swapchain) return Failure{1, swapchain.error().message};
   swapchain_ = std::move(*swapchain);
   servo_->start();
+  if (mouse_ == nullptr) {
+    if (!hand_.note.empty()) fmt::print(stderr, "catena: {}\n", hand_.note);
+    for (const std::string& note : servo_->report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
+    say_forces();
+  }
   return std::nullopt;
 }
 
@@ -125,6 +149,12 @@ std::optional<Failure> Session::open() {
 void Session::pin_camera() {
   const render::View& v = controls_.view;
   options_.scene.camera = {v.position, v.target, v.up, v.fovy_deg, v.orthographic, v.height, true};
+}
+
+void Session::say_forces() const {
+  fmt::print("{}: forces {} (F turns them {})\n", hand_.device->capabilities().name, servo_->forces() ? "on" : "off",
+             servo_->forces() ? "off" : "on");
+  std::fflush(stdout);
 }
 
 Changed Session::take_input(double wait_s) {
@@ -135,13 +165,17 @@ Changed Session::take_input(double wait_s) {
     changed.hand = changed.hand || by_piece.hand;
     quit_ = quit_ || input.quit;
     stale_ = stale_ || input.damaged;
+    if (input.toggle_forces && mouse_ == nullptr) {
+      servo_->set_forces(!servo_->forces());
+      say_forces();
+    }
     if (input.help) {
       std::fputs(std::string(key_help()).c_str(), stdout);
       std::fflush(stdout);
     }
   }
-  quit_ = quit_ || window_->closing();
-  if (changed.hand) mouse_->move_to(device_from_world(options_.scene.workspace, controls_.hand), controls_.buttons);
+  quit_ = quit_ || window_->closing() || (interrupt_ && interrupt_->asked());
+  if (changed.hand && mouse_ != nullptr) mouse_->move_to(device_from_world(options_.scene.workspace, controls_.hand), controls_.buttons);
   if (changed.view) pin_camera();
   return changed;
 }
@@ -194,6 +228,8 @@ void Session::update_title() {
     const auto k = static_cast<std::size_t>(i);
     title += fmt::format("  {} {}", link_names_[k], exchange::status_word(felt_.links[k].status));
   }
+  if (const std::string text = hand_.device->status_text(); !text.empty()) title += "  " + text;
+  if (mouse_ == nullptr) title += servo_->forces() ? "  [forces on]" : "  [forces off]";
   if (controls_.hand_mode) title += "  [hand]";
   window_->set_title(title);
   last_title_ = now_ns();
@@ -204,14 +240,19 @@ void Session::say_goodbye() {
   std::sort(frame_ms_.begin(), frame_ms_.end());
   fmt::print("{} frames, {:.1f} ms median, on {}\n", frames_, frame_ms_.empty() ? 0 : frame_ms_[frame_ms_.size() / 2],
              renderer_->stats().device);
-  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} late\n", felt_.probe.x, felt_.probe.y, felt_.probe.z,
+  fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", felt_.probe.x, felt_.probe.y, felt_.probe.z,
              norm(felt_.force_n), felt_.tick, felt_.missed_deadlines);
 }
 
 std::optional<Failure> Session::run() {
   std::int64_t last_input = now_ns();
+  // a device that pushes is let go by its own way out, Ctrl-C or not
+  if (mouse_ == nullptr) interrupt_.emplace();
+  const std::int64_t start = now_ns();
+  const bool always = options_.frames > 0 || options_.seconds > 0;
   bool busy = true, minimised = false;
-  while (!quit_ && (options_.frames == 0 || frames_ < options_.frames)) {
+  while (!quit_ && (options_.frames == 0 || frames_ < options_.frames) &&
+         (options_.seconds <= 0 || 1e-3 * ms_since(start) < options_.seconds)) {
     const Changed changed = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
     const bool news = take_haptics();
     if (changed.any() || news) last_input = now_ns();
@@ -226,7 +267,7 @@ std::optional<Failure> Session::run() {
     const bool last = options_.frames > 0 && frames_ + 1 == options_.frames;
     const bool moving = !last && 1e-3 * ms_since(last_input) < kRestS;
     const bool resized = !fits_ || width != swapchain_->extent().width || height != swapchain_->extent().height;
-    busy = changed.any() || news || resized || frames_ == 0 || (stale_ && !moving) || options_.frames > 0;
+    busy = changed.any() || news || resized || frames_ == 0 || (stale_ && !moving) || always;
     if (busy) {
       if (auto failure = draw(moving)) return failure;
       stale_ = moving;
@@ -235,6 +276,7 @@ std::optional<Failure> Session::run() {
   }
   servo_->stop();
   take_haptics();
+  if (auto written = write_servo_stats(options_.servo_stats, *servo_, *hand_.device); !written) return Failure{2, written.error().message};
 
   if (!options_.screenshot.empty() && frames_ > 0) {
     if (stale_)
@@ -251,10 +293,6 @@ std::optional<Failure> Session::run() {
 }  // namespace
 
 int view(ViewOptions options) {
-  if (options.device != "mouse") {
-    fmt::print(stderr, "catena: device \"{}\" is not known; expected mouse\n", options.device);
-    return 2;
-  }
   Session session(std::move(options));
   auto failure = session.open();
   if (!failure) failure = session.run();

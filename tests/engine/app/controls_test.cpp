@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/app/viewer/hand_setup.h"
+#include "engine/app/hand/hand_setup.h"
 
 namespace catena::app {
 namespace {
@@ -139,6 +139,17 @@ TEST(HandSetup, TheWorkspaceFillsTheDevicesReach) {
   EXPECT_LE(norm(device_from_world(scene->workspace, {50.0, 2.0, 1.0}) - Vec3(0.1, 0.0, 0.0)), 1e-15);
   EXPECT_EQ(scene->coupling.ramp_s, 0.02);
   EXPECT_EQ(first_probe(*scene, bounds), Vec3(30.0, 2.0, 1.0));
+}
+
+TEST(HandSetup, TheMiddleOfTheDevicesReachIsTheMiddleOfTheScene) {
+  auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
+  ASSERT_TRUE(scene);
+  render::Bounds bounds;
+  bounds.add(Vec3(10.0, 0.0, 0.0));
+  bounds.add(Vec3(50.0, 4.0, 2.0));
+  const Vec3 centre_m{0.0, 0.01, 0.12};
+  fit_workspace(*scene, bounds, 0.2, centre_m);
+  EXPECT_LE(norm(device_from_world(scene->workspace, bounds.centre()) - centre_m), 1e-15);
 }
 
 TEST(HandSetup, AGivenWorkspaceAndRampStay) {

@@ -81,6 +81,35 @@ TEST_F(Viewer, DrawsTheSceneAndTheHand) {
   EXPECT_NE(log().find("4 frames"), std::string::npos) << log();
 }
 
+TEST_F(Viewer, ADeviceThatIsNotThereIsSaidBeforeAnyWindow) {
+  const std::string command = "env -u DISPLAY -u WAYLAND_DISPLAY " + view() + " --device nonsense > " + (folder_ / "log") + " 2>&1";
+  EXPECT_EQ(exit_code(command), 2);
+  const std::string text = log();
+  EXPECT_EQ(text.find("catena: there is no device \"nonsense\""), 0u) << text;
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
+  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  std::ostringstream script;
+  script << view() << " --device simulated --servo-stats " << (folder_ / "servo.json") << " &\n"
+         << "for i in $(seq 200); do xdotool search --name 'forces off' > /dev/null 2>&1 && break; sleep 0.1; done\n"
+         << "xdotool mousemove 160 120; sleep 0.3; xdotool key f\n"
+         << "for i in $(seq 100); do xdotool search --name 'forces on' > /dev/null 2>&1 && break; sleep 0.1; done\n"
+         << "xdotool key q; wait $!\n";
+  ASSERT_EQ(on_display(script.str()), 0) << log();
+  const std::size_t off = log().find("forces off (F turns them on)"), on = log().find("forces on (F turns them off)");
+  EXPECT_LT(off, on) << log();
+  EXPECT_NE(on, std::string::npos) << log();
+  EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"missed_deadlines\""), std::string::npos);
+}
+
+TEST_F(Viewer, DrawsForSoManySeconds) {
+  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  ASSERT_EQ(on_display(view() + " --seconds 1 --servo-stats " + (folder_ / "servo.json")), 0) << log();
+  EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"device\": \"mouse\""), std::string::npos);
+}
+
 TEST_F(Viewer, DragsTurnTheViewAndMoveTheHand) {
   if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
   const auto drive = [&](const std::string& events, const std::string& png) {

@@ -1,16 +1,16 @@
-#include "engine/app/viewer/hand_setup.h"
+#include "engine/app/hand/hand_setup.h"
 
 #include <algorithm>
 
 namespace catena::app {
 
-void fit_workspace(scene::Scene& scene, const render::Bounds& bounds, double reach_m) {
+void fit_workspace(scene::Scene& scene, const render::Bounds& bounds, double reach_m, const Vec3& centre_m) {
   if (!scene.coupling.ramp_s) scene.coupling.ramp_s = 0.02;
   if (scene.workspace.given || bounds.empty()) return;
   const double edge = max_abs(bounds.hi - bounds.lo);
   if (!(edge > 0)) return;
   scene.workspace.metres_per_unit = reach_m / edge;
-  scene.workspace.origin = bounds.centre();
+  scene.workspace.origin = bounds.centre() - scene.workspace.rotation * centre_m * (edge / reach_m);
 }
 
 Vec3 first_probe(const scene::Scene& scene, const render::Bounds& bounds) {

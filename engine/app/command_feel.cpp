@@ -1,0 +1,151 @@
+/// catena feel SCENE [--device NAME] [--seconds S] [--rate HZ] [--forces on|off] [--stats FILE.json]: the hand without a window.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "engine/app/command.h"
+#include "engine/app/hand/hand_setup.h"
+#include "engine/app/hand/interrupt.h"
+#include "engine/app/hand/open_hand.h"
+#include "engine/app/hand/realtime_option.h"
+#include "engine/base/clock.h"
+#include "engine/base/output_file.h"
+#include "haptics/extract/extract.h"
+#include "render/extract/extract.h"
+
+namespace catena::app {
+
+namespace {
+
+struct Options {
+  std::string scene, device, forces = "off", stats;
+  std::vector<std::string> fields;
+  double seconds = 0;
+  std::optional<double> rate_hz;
+  RealtimeChoice realtime;
+};
+
+/// The bounds that `view` fits its workspace to; not needed where the scene states its own.
+Result<render::Bounds> bounds_of(scene::Scene& scene) {
+  render::Bounds bounds;
+  if (scene.workspace.given) return bounds;
+  CATENA_TRY([[maybe_unused]] const auto felt, haptics::extract_program(scene));
+  CATENA_TRY(const render::FramePacket packet, render::extract_frame(scene, 4, 3));
+  bounds = render::packet_bounds(packet);
+  bounds.add(loaded_bounds(scene));
+  return bounds;
+}
+
+/// "1000 Hz  curve OK  surface FREE  0.53 N  ON  0 missed", once a second on a terminal.
+class StatusLine {
+ public:
+  explicit StatusLine(const haptics::Program& program) : program_(program), terminal_(isatty(STDOUT_FILENO) == 1) {}
+
+  void show(const exchange::HapticState& state, double rate_hz) {
+    if (!terminal_) return;
+    std::string line = fmt::format("{:.0f} Hz", rate_hz);
+    for (std::size_t i = 0; i < program_.links.size(); ++i)
+      line += fmt::format("  {} {}", program_.links[i].name, exchange::status_word(state.links[i].status));
+    line += fmt::format("  {:.2f} N  {}", norm(state.force_n), exchange::force_state_word(state.force_state));
+    if (state.condition != exchange::Condition::normal) line += fmt::format("  {}", exchange::condition_word(state.condition));
+    fmt::print("\r{}  {} missed\033[K", line, state.missed_deadlines);
+    std::fflush(stdout);
+    shown_ = true;
+  }
+  /// What the device asks of the person, when it changes; not only on a terminal.
+  void tell(const std::string& text) {
+    if (text == told_) return;
+    told_ = text;
+    if (text.empty()) return;
+    end();
+    fmt::print("{}\n", text);
+    std::fflush(stdout);
+  }
+  void end() {
+    if (shown_) fmt::print("\n");
+    shown_ = false;
+  }
+
+ private:
+  const haptics::Program& program_;
+  bool terminal_, shown_ = false;
+  std::string told_;
+};
+
+/// Until the time is over or somebody asks to end.
+void wait(haptics::Servo& servo, const haptics::Device& device, const Options& options, const Interrupt& interrupt, StatusLine& line) {
+  constexpr double kStep = 0.02, kLine = 1;
+  const std::int64_t start = now_ns();
+  exchange::HapticState state;
+  double shown = 0;
+  std::uint64_t shown_ticks = 0;
+  while (!interrupt.asked()) {
+    const double t = 1e-3 * ms_since(start);
+    if (options.seconds > 0 && t >= options.seconds) return;
+    servo.take(state);
+    line.tell(device.status_text());
+    if (t - shown >= kLine) {
+      line.show(state, static_cast<double>(state.tick - shown_ticks) / (t - shown));
+      shown = t;
+      shown_ticks = state.tick;
+    }
+    const double left = options.seconds > 0 ? options.seconds - t : kStep;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left, kStep)));
+  }
+}
+
+Outcome feel(const Options& options) {
+  if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to feel"};
+  CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
+  if (!options.stats.empty()) CATENA_CHECK(check_output(options.stats, inputs_of(scene)));
+  const Interrupt interrupt;
+  CATENA_TRY(OpenHand hand, open_hand(scene, options.device, options.rate_hz));
+  if (!hand.note.empty()) fmt::print(stderr, "catena: {}\n", hand.note);
+  CATENA_TRY(const render::Bounds bounds, bounds_of(scene));
+  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, program_for(scene, hand, bounds));
+
+  haptics::ServoOptions servo_options;
+  servo_options.rate_hz = hand.settings.rate_hz;
+  servo_options.forces = options.forces == "on";
+  servo_options.realtime = options.realtime.options();
+  // a recording of every tick goes in here: servo_options.sink
+  haptics::Servo servo(*hand.device, program, servo_options);
+  servo.start();
+  for (const std::string& note : servo.report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
+  fmt::print("{} at {:g} Hz, forces {}{}\n", hand.device->capabilities().name, servo_options.rate_hz, options.forces,
+             options.seconds > 0 ? "" : "; Ctrl-C ends");
+  std::fflush(stdout);
+  StatusLine line(*program);
+  wait(servo, *hand.device, options, interrupt, line);
+  servo.stop();
+  line.end();
+  CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
+  fmt::print("{}", haptics::servo_summary(servo.report(), hand.device->capabilities().name));
+  return Done{};
+}
+
+}  // namespace
+
+void add_feel(CLI::App& program, Work& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("feel", "feel a scene with a haptic device, without a window");
+  command->add_option("SCENE", options->scene, "the scene file (.json)")->required();
+  command->add_option("--device", options->device, "NAME or NAME:DETAIL; default: the scene's \"device\", or else simulated");
+  command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(CLI::NonNegativeNumber);
+  command->add_option("--rate", options->rate_hz, "ticks a second; default: the device's, or else 1000")
+      ->check(CLI::Range(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
+  command->add_option("--forces", options->forces, "on: the device may push. Off at first, for a simulated device too")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  command->add_option("--stats", options->stats, "ticks, missed deadlines, histograms, JSON");
+  command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
+  add_realtime_options(*command, options->realtime);
+  command->callback([&chosen, options] { chosen = [options] { return feel(*options); }; });
+}
+
+}  // namespace catena::app

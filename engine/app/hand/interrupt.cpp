@@ -1,0 +1,27 @@
+#include "engine/app/hand/interrupt.h"
+
+#include <atomic>
+
+namespace catena::app {
+
+namespace {
+std::atomic<bool> asked_to_end{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
+void on_signal(int) { asked_to_end.store(true); }
+}  // namespace
+
+Interrupt::Interrupt() {
+  asked_to_end = false;
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &before_[i]);
+}
+
+Interrupt::~Interrupt() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
+}
+
+bool Interrupt::asked() const { return asked_to_end; }
+
+}  // namespace catena::app

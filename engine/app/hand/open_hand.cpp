@@ -1,0 +1,50 @@
+#include "engine/app/hand/open_hand.h"
+
+#include <fmt/format.h>
+
+#include "engine/app/hand/hand_setup.h"
+#include "engine/base/output_file.h"
+#include "haptics/device/registry.h"
+#include "haptics/extract/extract.h"
+#include "haptics/servo/limits_for.h"
+
+namespace catena::app {
+
+Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, std::optional<double> rate_hz) {
+  OpenHand hand;
+  hand.settings.type = "simulated";
+  if (scene.device) {
+    CATENA_TRY(hand.settings, haptics::read_device_settings(*scene.device, scene.path));
+  }
+  const std::string wanted = name.empty() ? hand.settings.type : name, type = wanted.substr(0, wanted.find(':'));
+  if (type != hand.settings.type) {
+    if (scene.device && haptics::is_device_type(type))
+      hand.note = fmt::format("the scene's \"device\" describes a {}: not used for {}", hand.settings.type, wanted);
+    hand.settings = {};
+    hand.settings.type = type;
+  }
+  if (rate_hz) hand.settings.rate_hz = *rate_hz;
+  CATENA_TRY(hand.device, haptics::open_device(wanted, hand.settings));
+  hand.limits = haptics::limits_for(hand.device->capabilities(), hand.settings);
+  return hand;
+}
+
+Result<std::shared_ptr<const haptics::Program>> program_for(scene::Scene& scene, const OpenHand& hand, const render::Bounds& bounds) {
+  const haptics::DeviceCapabilities& device = hand.device->capabilities();
+  fit_workspace(scene, bounds, device.workspace_m, device.workspace_centre_m);
+  return haptics::extract_program(scene, hand.limits);
+}
+
+haptics::RealtimeOptions RealtimeChoice::options() const {
+  const bool on = realtime == "on";
+  return {.fifo = on, .lock_memory = on, .cpu = cpu};
+}
+
+Outcome write_servo_stats(const std::string& path, const haptics::Servo& servo, const haptics::Device& device) {
+  if (path.empty()) return Done{};
+  CATENA_TRY(OutputFile file, OutputFile::open(path));
+  file.write(haptics::servo_json(servo.report(), device.capabilities().name, servo.state_hash()));
+  return file.commit();
+}
+
+}  // namespace catena::app

@@ -1,0 +1,42 @@
+/// A haptic device for a scene: opened by name, with what the scene says of it, and the scene's program within its limits.
+/// Off the tick. Errors are one line for the person (exit code 2).
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/base/result.h"
+#include "engine/scene/scene.h"
+#include "haptics/chain/program.h"
+#include "haptics/device/device.h"
+#include "haptics/device/settings.h"
+#include "haptics/servo/servo.h"
+#include "render/frame/camera.h"
+
+namespace catena::app {
+
+struct OpenHand {
+  std::unique_ptr<haptics::Device> device;
+  haptics::DeviceSettings settings;  ///< rate_hz is the servo's
+  haptics::Limits limits;
+  std::string note;  ///< one line for the person, or empty
+};
+
+/// `name` as the registry takes it; empty: the scene's "device", or else "simulated". The scene's "device" object is checked in
+/// any case, and counts only for a device of its type: what one mechanism may be asked for says nothing of another.
+Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, std::optional<double> rate_hz = {});
+
+/// Fits the workspace to the device's reach and builds the program. `bounds`: of what is drawn and felt.
+Result<std::shared_ptr<const haptics::Program>> program_for(scene::Scene& scene, const OpenHand& hand, const render::Bounds& bounds);
+
+/// The command line's --realtime and --cpu.
+struct RealtimeChoice {
+  std::string realtime = "on";
+  int cpu = haptics::RealtimeOptions::kAnyWithFifo;
+  haptics::RealtimeOptions options() const;
+};
+
+/// Writes servo_json of a stopped servo; nothing if `path` is empty.
+Outcome write_servo_stats(const std::string& path, const haptics::Servo& servo, const haptics::Device& device);
+
+}  // namespace catena::app

@@ -1,0 +1,119 @@
+#include "haptics/servo/realtime.h"
+
+#include <linux/capability.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+
+namespace catena::haptics {
+
+namespace {
+
+constexpr std::size_t kStackBytes = 256 * 1024;  // more than a tick ever uses
+
+// Pages of the stack below this frame, touched so that no tick faults on them.
+[[gnu::noinline]] void touch_stack() {
+  [[maybe_unused]] volatile unsigned char pages[kStackBytes];
+  for (std::size_t i = 0; i < kStackBytes; i += 4096) pages[i] = 0;
+}
+
+std::string reason() { return std::strerror(errno); }
+
+/// A process that locks future memory under a limit would see allocations fail.
+bool may_lock_everything() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY) return true;
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct data[_LINUX_CAPABILITY_U32S_3] = {};
+  if (syscall(SYS_capget, &header, data) != 0) return false;
+  return (data[CAP_TO_INDEX(CAP_IPC_LOCK)].effective & CAP_TO_MASK(CAP_IPC_LOCK)) != 0;
+}
+
+// The lock on all memory belongs to the process: the last servo to end gives it back.
+std::mutex everything_mutex;
+int everything_users = 0;
+
+bool lock_everything() {
+  const std::lock_guard hold(everything_mutex);
+  if (everything_users == 0 && mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0) return false;
+  ++everything_users;
+  return true;
+}
+
+void unlock_everything() {
+  const std::lock_guard hold(everything_mutex);
+  if (--everything_users == 0) munlockall();
+}
+
+}  // namespace
+
+bool take_fifo(int priority, std::vector<std::string>& notes) {
+  sched_param parameter{};
+  parameter.sched_priority = std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
+  if (sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameter) == 0) return true;
+  notes.push_back("real-time scheduling was not permitted (" + reason() + "): run as root or raise rtprio in /etc/security/limits.conf");
+  return false;
+}
+
+void leave_fifo() noexcept {
+  const sched_param parameter{};
+  sched_setscheduler(0, SCHED_OTHER, &parameter);
+}
+
+RealtimeThread::RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes) {
+  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // at normal priority a wake-up may be 50 us late by default
+  if (options.fifo) report_.fifo = take_fifo(options.priority, report_.notes);
+  if (options.cpu >= 0 || (options.cpu == RealtimeOptions::kAnyWithFifo && report_.fifo)) bind(options.cpu);
+  if (options.lock_memory) lock(own, own_bytes);
+}
+
+RealtimeThread::~RealtimeThread() {
+  if (report_.locked) unlock_everything();
+  for (const Locked& part : parts_) munlock(part.at, part.bytes);
+  if (report_.fifo) leave_fifo();
+}
+
+void RealtimeThread::bind(int cpu) {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) {
+    report_.notes.push_back("the thread was not bound to a core: the cores of this machine could not be read (" + reason() + ")");
+    return;
+  }
+  const bool chosen = cpu >= 0;
+  if (!chosen) {
+    if (CPU_COUNT(&allowed) < 2) return;
+    for (int i = 0; i < CPU_SETSIZE; ++i)
+      if (CPU_ISSET(static_cast<unsigned>(i), &allowed)) cpu = i;
+  }
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  if (cpu < CPU_SETSIZE) CPU_SET(static_cast<unsigned>(cpu), &one);
+  if (cpu >= CPU_SETSIZE || sched_setaffinity(0, sizeof one, &one) != 0) {
+    report_.notes.push_back("the thread was not bound to core " + std::to_string(cpu) + ": this machine does not let it run there");
+    return;
+  }
+  report_.cpu = cpu;
+}
+
+void RealtimeThread::lock(const void* own, std::size_t own_bytes) {
+  const bool everything = may_lock_everything() && lock_everything();
+  touch_stack();
+  report_.locked = everything;
+  if (everything) return;
+  const void* const stack = static_cast<const char*>(__builtin_frame_address(0)) - kStackBytes;  // it grows downwards
+  for (const Locked& part : {Locked{stack, kStackBytes}, Locked{own, own_bytes}})
+    if (mlock(part.at, part.bytes) == 0) parts_.push_back(part);
+  report_.notes.push_back(std::string("not all memory could be locked: run as root or raise memlock in /etc/security/limits.conf (") +
+                          (parts_.size() == 2 ? "the thread's own is)" : "not even the thread's own)"));
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,55 @@
+/// What makes a thread a hard-real-time one, as far as the machine permits: fixed priority, memory that is never paged out, a
+/// core of its own. Whatever is not permitted becomes one plain sentence, and the thread goes on without it.
+#pragma once
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace catena::haptics {
+
+struct RealtimeOptions {
+  bool fifo = true;
+  int priority = 80;  ///< 1..98; the watchdog has one more
+  bool lock_memory = true;
+  int cpu = kAnyWithFifo;                  ///< the core to stay on, or one of these:
+  static constexpr int kAnyWithFifo = -1;  ///< the last allowed core, if there is more than one and the priority was granted
+  static constexpr int kUnbound = -2;      ///< wherever the system likes
+};
+
+struct RealtimeReport {
+  bool fifo = false;
+  bool locked = false;  ///< all of the process's memory
+  int cpu = -1;         ///< -1: not bound to a core
+  std::vector<std::string> notes;
+};
+
+/// Fixed priority (SCHED_FIFO, not inherited by children) for the calling thread. On failure one sentence in `notes`.
+bool take_fifo(int priority, std::vector<std::string>& notes);
+/// Back to normal priority.
+void leave_fifo() noexcept;
+
+/// Prepares the calling thread before its first tick: touches its stack, then priority, core, memory. The whole process is locked
+/// (as pages are touched) where that is unlimited; otherwise only the stack and `own`, as far as the limit goes: a lock on all
+/// memory would make later allocations fail. Undone by the destructor, on the same thread.
+class RealtimeThread {
+ public:
+  RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes);
+  ~RealtimeThread();
+  RealtimeThread(const RealtimeThread&) = delete;
+  RealtimeThread& operator=(const RealtimeThread&) = delete;
+
+  const RealtimeReport& report() const { return report_; }
+
+ private:
+  void lock(const void* own, std::size_t own_bytes);
+  void bind(int cpu);
+
+  RealtimeReport report_;
+  struct Locked {
+    const void* at;
+    std::size_t bytes;
+  };
+  std::vector<Locked> parts_;
+};
+
+}  // namespace catena::haptics

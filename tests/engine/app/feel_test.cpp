@@ -1,0 +1,110 @@
+/// `catena feel` from the outside.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/base/json.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace {
+
+constexpr const char* kScene = R"({
+  "fields": {"v": {"analytic": "circle"}},
+  "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}])";
+
+class Feel : public testing::Test {
+ protected:
+  test::ProgramResult feel(const std::vector<std::string>& more, const std::string& device = "") {
+    test::write_file(folder_ / "s.json", kScene + (device.empty() ? "" : ", \"device\": " + device) + "}");
+    std::vector<std::string> arguments{"feel", folder_ / "s.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return test::run_program(CATENA_PROGRAM, arguments);
+  }
+  /// A run of a fifth of a second, and its figures.
+  json::Node stats(std::vector<std::string> more, const std::string& device = "") {
+    more.insert(more.end(), {"--seconds", "0.2", "--stats", folder_ / "stats.json"});
+    const test::ProgramResult run = feel(more, device);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    out_ = run.out;
+    err_ = run.err;
+    auto node = json::parse(test::read_file(folder_ / "stats.json"), "stats.json");
+    EXPECT_TRUE(node);
+    return node ? *node : json::Node{};
+  }
+  void expect_refused(const test::ProgramResult& run, const std::string& part) {
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    EXPECT_FALSE(test::exists(folder_ / "stats.json"));
+  }
+
+  test::TemporaryFolder folder_;
+  std::string out_, err_;
+};
+
+TEST_F(Feel, RunsTheServoAndWritesItsFigures) {
+  const json::Node root = stats({});
+  EXPECT_EQ(root.find("device")->string.find("simulated"), 0u) << "the default device";
+  EXPECT_EQ(root.find("rate_hz")->number, 1000);
+  EXPECT_GT(root.find("ticks")->number, 0);
+  EXPECT_GE(root.find("seconds")->number, 0.2);
+  EXPECT_EQ(root.find("compute_us")->find("count")->number, root.find("ticks")->number);
+  for (const char* name : {"period_us", "compute_us", "device_us"}) {
+    const json::Node& figures = *root.find(name);
+    EXPECT_GT(figures.find("max")->number, 0) << name;
+    EXPECT_LE(figures.find("p50")->number, figures.find("p99")->number) << name;
+    EXPECT_LE(figures.find("p999")->number, figures.find("max")->number) << name;
+  }
+  EXPECT_EQ(root.find("state_hash")->string.size(), 16u);
+  EXPECT_NE(out_.find("forces off"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("missed deadlines"), std::string::npos) << out_;
+  // what was not permitted has been said, once for each
+  const json::Node& realtime = *root.find("realtime");
+  EXPECT_EQ(static_cast<std::size_t>(std::count(err_.begin(), err_.end(), '\n')), realtime.find("notes")->items.size()) << err_;
+}
+
+TEST_F(Feel, OptionsGoBeforeTheScenesDeviceAndThatBeforeTheDefault) {
+  const std::string device = R"({"type": "null", "rate": 500})";
+  EXPECT_EQ(stats({}, device).find("rate_hz")->number, 500);
+  EXPECT_EQ(stats({"--rate", "2000"}, device).find("rate_hz")->number, 2000);
+  const json::Node other = stats({"--device", "simulated", "--forces", "on"}, device);
+  EXPECT_EQ(other.find("rate_hz")->number, 1000) << "what the scene says is for its own device";
+  EXPECT_NE(err_.find("describes a null: not used for simulated"), std::string::npos) << err_;
+  EXPECT_NE(out_.find("forces on"), std::string::npos) << out_;
+}
+
+TEST_F(Feel, WithoutRealTimeItHasNothingToSay) {
+  const json::Node root = stats({"--realtime", "off"});
+  EXPECT_FALSE(root.find("realtime")->find("fifo")->boolean);
+  EXPECT_FALSE(root.find("realtime")->find("locked")->boolean);
+  EXPECT_TRUE(root.find("realtime")->find("cpu")->is_null());
+  EXPECT_EQ(err_, "");
+}
+
+TEST_F(Feel, CtrlCEndsItCleanly) {
+  test::write_file(folder_ / "s.json", std::string(kScene) + "}");
+  const test::ProgramResult run = test::run_program("/usr/bin/timeout", {"--preserve-status", "-s", "INT", "1", CATENA_PROGRAM, "feel",
+                                                                         folder_ / "s.json", "--stats", folder_ / "stats.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(test::exists(folder_ / "stats.json"));
+  EXPECT_NE(run.out.find("ticks in"), std::string::npos) << run.out;
+}
+
+TEST_F(Feel, BadInputIsOneLine) {
+  const std::string file = folder_ / "stats.json";
+  expect_refused(feel({"--device", "nonsense", "--stats", file}), "there is no device \"nonsense\"");
+  expect_refused(feel({"--rate", "50", "--stats", file}), "--rate");
+  expect_refused(feel({"--rate", "20000", "--stats", file}), "--rate");
+  expect_refused(feel({"--forces", "maybe", "--stats", file}), "--forces");
+  expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"type": "simulated", "colour": 3})"), "colour");
+  expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"rate": 500})"), "type");
+  expect_refused(feel({"--stats", folder_ / "none/stats.json"}), "none");
+  const test::ProgramResult data = test::run_program(CATENA_PROGRAM, {"feel", "grid.vdb"});
+  EXPECT_EQ(data.exit_code, 2);
+  EXPECT_NE(data.err.find("expected a scene file"), std::string::npos) << data.err;
+}
+
+}  // namespace
+}  // namespace catena

@@ -1,0 +1,245 @@
+// Late, stuck, lost, NaN: from the device to what it is sent, through the running thread.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "haptics/servo/servo.h"
+#include "tests/support/simple_links.h"
+
+namespace catena::haptics {
+namespace {
+
+std::shared_ptr<Program> program() {
+  auto p = std::make_shared<Program>();
+  p->epoch = 1;
+  p->links = {test::hold_height("a", 0.004)};
+  return p;
+}
+
+void nap_ms(double ms) { std::this_thread::sleep_for(std::chrono::nanoseconds(static_cast<std::int64_t>(1e6 * ms))); }
+
+/// Rests at the origin; a script says what else happens in a read. Remembers every force that got out.
+class Scripted final : public Device {
+ public:
+  explicit Scripted(std::function<void(int, DeviceInput&)> script) : script_(std::move(script)) { capabilities_.max_force_n = 10; }
+
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override {
+    DeviceInput input;
+    script_(reads_++, input);
+    return input;
+  }
+  void write(const DeviceOutput& output) noexcept override {
+    sent.push_back(stopped_.load() ? Vec3(0.0) : output.force_n);
+    live.push_back(output.live);
+  }
+  void stop() noexcept override {
+    stopped_ = true;
+    ++stops;
+  }
+  void resume() noexcept override {
+    stopped_ = false;
+    ++resumes;
+  }
+  bool stopped() const { return stopped_; }
+
+  std::vector<Vec3> sent;
+  std::vector<bool> live;
+  std::atomic<int> stops{0}, resumes{0};
+
+ private:
+  std::function<void(int, DeviceInput&)> script_;
+  DeviceCapabilities capabilities_;
+  int reads_ = 0;
+  std::atomic<bool> stopped_{false};
+};
+
+struct Seen final : TickSink {
+  void put(const ProbeSample& input, const exchange::HapticState& output) noexcept override {
+    inputs.push_back(input);
+    outputs.push_back(output);
+  }
+  std::vector<ProbeSample> inputs;
+  std::vector<exchange::HapticState> outputs;
+};
+
+/// Runs so many ticks; the watchdog and real time only where a case asks.
+ServoReport run(Device& device, std::uint64_t ticks, Seen& seen, ServoOptions options = {.watchdog_s = 0}) {
+  options.max_ticks = ticks;
+  options.sink = &seen;
+  seen.inputs.reserve(ticks);
+  seen.outputs.reserve(ticks);
+  Servo servo(device, program(), options);
+  servo.start();
+  while (servo.running()) nap_ms(1);
+  servo.stop();
+  return servo.report();
+}
+
+TEST(Condition, LateIsATickMoreThanTwoPeriodsAfterTheLast) {
+  // every 20th read sleeps for so many periods of 2 ms
+  for (const double periods : {1.4, 3.4}) {
+    Scripted device([&](int k, DeviceInput&) {
+      if (k % 20 == 10) nap_ms(2 * periods);
+    });
+    Seen seen;
+    const ServoReport report = run(device, 100, seen, {.rate_hz = 500, .watchdog_s = 0});
+    std::uint64_t late = 0, after_nap = 0;
+    for (std::size_t k = 1; k < 100; ++k) {
+      const bool is_late = seen.inputs[k].condition == Condition::late;
+      EXPECT_EQ(is_late, seen.inputs[k].t_s - seen.inputs[k - 1].t_s > 0.004 + 1e-9) << k;
+      late += is_late ? 1 : 0;
+      if (k % 20 == 11) after_nap += is_late ? 1 : 0;
+    }
+    EXPECT_EQ(report.late_ticks, late);
+    EXPECT_EQ(report.ticks, 100u);
+    if (periods > 2) {
+      EXPECT_EQ(after_nap, 5u);
+      EXPECT_GE(report.missed_deadlines, 15u);
+    } else {
+      EXPECT_GE(report.missed_deadlines, 5u);
+    }
+  }
+}
+
+TEST(Condition, ThePeriodAfterAMissIsTheRealOne) {
+  Scripted device([](int k, DeviceInput&) {
+    if (k == 10) nap_ms(17);
+  });
+  Seen seen;
+  run(device, 20, seen, {.rate_hz = 200, .watchdog_s = 0});
+  const double dt = seen.inputs[11].t_s - seen.inputs[10].t_s;
+  EXPECT_GE(dt, 0.015);
+  EXPECT_NEAR(dt, 1e-6 * seen.outputs[11].period_us, 0.003);
+  EXPECT_GE(seen.outputs[10].device_us, 17000);
+  EXPECT_LE(seen.outputs[10].device_us + seen.outputs[10].compute_us, seen.outputs[11].period_us) << "apart";
+}
+
+TEST(Condition, AStuckDeviceIsStoppedByTheWatchdogAndComesBack) {
+  Scripted* self = nullptr;
+  bool stopped_meanwhile = false;
+  Scripted device([&](int k, DeviceInput&) {
+    if (k != 30) return;
+    for (int i = 0; i < 2000 && !self->stopped(); ++i) nap_ms(1);
+    stopped_meanwhile = self->stopped();
+    nap_ms(20);  // the watchdog has set its flag, too
+  });
+  self = &device;
+  Seen seen;
+  const ServoReport report = run(device, 80, seen, {.rate_hz = 500, .watchdog_s = 0.06});
+  EXPECT_TRUE(stopped_meanwhile);
+  EXPECT_GE(report.watchdog_trips, 1u);
+  EXPECT_EQ(seen.outputs[30].condition, Condition::watchdog) << "the tick that was stuck";
+  EXPECT_EQ(seen.outputs[30].force_state, exchange::ForceState::stopped);
+  EXPECT_EQ(norm(device.sent[30]), 0);
+  const auto pushes = [](const Vec3& force) { return norm(force) > 0; };
+  EXPECT_TRUE(std::any_of(device.sent.begin(), device.sent.begin() + 30, pushes));
+  EXPECT_TRUE(std::any_of(device.sent.begin() + 31, device.sent.end(), pushes)) << "resumed";
+  EXPECT_GE(device.resumes, 2);
+  EXPECT_TRUE(device.stopped()) << "at the end";
+  EXPECT_EQ(device.sent.back(), Vec3(0.0));
+}
+
+TEST(Condition, AStuckTickWithoutAWatchdogIsOnlyLate) {
+  Scripted device([](int k, DeviceInput&) {
+    if (k == 10) nap_ms(40);
+  });
+  Seen seen;
+  const ServoReport report = run(device, 20, seen, {.rate_hz = 500, .watchdog_s = 0});
+  EXPECT_EQ(report.watchdog_trips, 0u);
+  EXPECT_EQ(device.stops, 1) << "at the end";
+  EXPECT_EQ(seen.inputs[11].condition, Condition::late);
+}
+
+TEST(Condition, UnpacedTicksAreNeverLateNorWatched) {
+  Scripted device([](int k, DeviceInput&) {
+    if (k == 10) nap_ms(150);
+  });
+  Seen seen;
+  const ServoReport report = run(device, 20, seen, {.rate_hz = 1000, .paced = false});
+  for (const ProbeSample& input : seen.inputs) EXPECT_EQ(input.condition, Condition::normal);
+  EXPECT_EQ(report.late_ticks + report.missed_deadlines + report.watchdog_trips, 0u);
+  EXPECT_FALSE(report.realtime.fifo || report.realtime.locked);
+  EXPECT_EQ(seen.inputs[19].t_s, 0.019);
+}
+
+TEST(Condition, ALostDeviceGetsNothingUntilItIsBack) {
+  Scripted device([](int k, DeviceInput& input) {
+    if (k >= 10 && k < 20) input.status = k < 15 ? DeviceStatus::lost : DeviceStatus::starting;
+  });
+  Seen seen;
+  const ServoReport report = run(device, 40, seen, {.paced = false});
+  for (std::size_t k = 0; k < 40; ++k) {
+    const bool away = k >= 10 && k < 20;
+    EXPECT_EQ(seen.inputs[k].condition == Condition::no_device, away) << k;
+    if (away) {
+      EXPECT_EQ(norm(device.sent[k]), 0) << k;
+      EXPECT_EQ(seen.outputs[k].force_state, exchange::ForceState::stopped);
+    }
+  }
+  EXPECT_GT(norm(device.sent[9]), 0);
+  EXPECT_GT(norm(device.sent[39]), 0);
+  EXPECT_EQ(report.lost_ticks, 10u);
+}
+
+TEST(Condition, APoseThatIsNoNumberGetsNoForceInThatTick) {
+  Scripted device([](int k, DeviceInput& input) {
+    if (k == 10) input.position_m.y = std::numeric_limits<double>::quiet_NaN();
+    if (k == 20) input.orientation.x = std::numeric_limits<double>::infinity();
+  });
+  Seen seen;
+  run(device, 40, seen, {.paced = false});
+  for (const std::size_t k : {10u, 20u}) {
+    EXPECT_EQ(norm(device.sent[k]), 0) << k;
+    EXPECT_EQ(seen.outputs[k].links[0].status, exchange::Status::bad_probe);
+    EXPECT_GT(norm(device.sent[k - 1]), 0) << k;
+  }
+  EXPECT_GT(norm(device.sent[39]), 0);
+}
+
+TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
+  Scripted device([](int k, DeviceInput& input) { input.forces_on = k < 20; });
+  Seen seen;
+  seen.inputs.reserve(40);
+  seen.outputs.reserve(40);
+  Servo* servo_at = nullptr;
+  struct Switch final : TickSink {
+    Seen* seen;
+    Servo** servo;
+    void put(const ProbeSample& input, const exchange::HapticState& output) noexcept override {
+      seen->put(input, output);
+      if (seen->inputs.size() == 10) (*servo)->set_forces(true);
+    }
+  } flip;
+  flip.seen = &seen;
+  flip.servo = &servo_at;
+  Servo servo(device, program(), {.paced = false, .max_ticks = 40, .sink = &flip, .forces = false});
+  servo_at = &servo;
+  EXPECT_FALSE(servo.forces());
+  servo.start();
+  while (servo.running()) nap_ms(1);
+  servo.stop();
+  EXPECT_TRUE(servo.forces());
+  for (std::size_t k = 0; k < 40; ++k) {
+    EXPECT_EQ(seen.inputs[k].forces_on, k >= 10 && k < 20) << k;
+    if (k < 10 || k > 30) {
+      EXPECT_FALSE(device.live[k]) << k;
+    }
+    if (k < 10) {
+      EXPECT_EQ(norm(device.sent[k]), 0) << k;
+    }
+  }
+  EXPECT_GT(norm(device.sent[15]), 0);
+  EXPECT_TRUE(device.live[15]);
+  EXPECT_FALSE(device.live.back()) << "the last zero";
+}
+
+}  // namespace
+}  // namespace catena::haptics

@@ -1,0 +1,127 @@
+#include "haptics/servo/realtime.h"
+
+#include <gtest/gtest.h>
+#include <linux/capability.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <thread>
+
+#include "haptics/device/null_device.h"
+#include "haptics/servo/servo.h"
+
+namespace catena::haptics {
+namespace {
+
+/// The calling thread, and only it, loses every privilege.
+bool drop_privileges() {
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct none[_LINUX_CAPABILITY_U32S_3] = {};
+  return syscall(SYS_capset, &header, none) == 0;
+}
+
+bool limited(int what) {
+  rlimit limit{};
+  return getrlimit(static_cast<__rlimit_resource>(what), &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+TEST(Realtime, WithoutPrivilegesItSaysWhatItDidWithoutAndHowToHaveIt) {
+  rlimit priority{};
+  if (getrlimit(RLIMIT_RTPRIO, &priority) != 0 || priority.rlim_cur > 0 || !limited(RLIMIT_MEMLOCK))
+    GTEST_SKIP() << "everybody may do it here";
+  RealtimeReport report;
+  bool dropped = false;
+  std::array<char, 4096> own{};
+  std::thread([&] {
+    dropped = drop_privileges();
+    report = RealtimeThread({}, own.data(), own.size()).report();
+  }).join();
+  ASSERT_TRUE(dropped);
+  EXPECT_FALSE(report.fifo);
+  EXPECT_FALSE(report.locked);
+  EXPECT_EQ(report.cpu, -1) << "a normal thread stays free to move";
+  ASSERT_EQ(report.notes.size(), 2u);
+  EXPECT_EQ(report.notes[0].find("real-time scheduling was not permitted"), 0u) << report.notes[0];
+  EXPECT_NE(report.notes[0].find("run as root or raise rtprio in /etc/security/limits.conf"), std::string::npos) << report.notes[0];
+  EXPECT_NE(report.notes[1].find("raise memlock in /etc/security/limits.conf"), std::string::npos) << report.notes[1];
+}
+
+TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
+  NullDevice device;
+  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5, .realtime = {.fifo = false, .lock_memory = false, .cpu = 100000}});
+  servo.start();
+  while (servo.running()) std::this_thread::yield();
+  servo.stop();
+  const ServoReport r = servo.report();
+  EXPECT_EQ(r.ticks, 5u);
+  EXPECT_EQ(r.realtime.cpu, -1);
+  ASSERT_EQ(r.realtime.notes.size(), 1u);
+  EXPECT_NE(r.realtime.notes[0].find("core 100000"), std::string::npos);
+}
+
+TEST(Realtime, EveryWishIsEitherGrantedOrHasItsSentence) {
+  NullDevice device;
+  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5});
+  servo.start();
+  const RealtimeReport r = servo.report().realtime;
+  servo.stop();
+  const std::size_t refused = (r.fifo ? 0u : 1u) + (r.locked ? 0u : 1u);
+  EXPECT_EQ(r.notes.size(), refused);
+  for (const std::string& note : r.notes) EXPECT_NE(note.find("run as root or raise"), std::string::npos) << note;
+  if (!r.fifo) {
+    EXPECT_EQ(r.cpu, -1) << "bound to a core only with a fixed priority";
+  }
+}
+
+/// Its bus takes more than a period at 10 kHz.
+class Slow final : public Device {
+ public:
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override {
+    std::this_thread::sleep_for(std::chrono::microseconds(150));
+    return {};
+  }
+  void write(const DeviceOutput&) noexcept override {}
+
+ private:
+  DeviceCapabilities capabilities_;
+};
+
+TEST(Realtime, AFixedPriorityIsGivenBackWhereTheTicksNeverFitIntoTheirPeriod) {
+  Slow device;
+  Servo servo(device, std::make_shared<Program>(), {.rate_hz = 10000, .max_ticks = 1010});
+  servo.start();
+  const bool granted = servo.report().realtime.fifo;
+  while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  servo.stop();
+  if (!granted) GTEST_SKIP() << "no fixed priority here";
+  const ServoReport r = servo.report();
+  EXPECT_GE(r.missed_deadlines, 1009u);
+  EXPECT_FALSE(r.realtime.fifo);
+  ASSERT_FALSE(r.realtime.notes.empty());
+  EXPECT_NE(r.realtime.notes.back().find("given back"), std::string::npos);
+}
+
+TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {
+  std::vector<std::string> notes;
+  const int before = sched_getscheduler(0);
+  RealtimeReport report;
+  std::thread other([&] {
+    {
+      const RealtimeThread prepared({.lock_memory = false}, nullptr, 0);
+      report = prepared.report();
+      EXPECT_EQ((sched_getscheduler(0) & ~SCHED_RESET_ON_FORK) == SCHED_FIFO, report.fifo);
+    }
+    EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER);
+  });
+  other.join();
+  EXPECT_EQ(sched_getscheduler(0), before);
+  EXPECT_EQ(report.notes.empty(), report.fifo);
+}
+
+}  // namespace
+}  // namespace catena::haptics
