@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
   add_generate(program, chosen);
   add_import(program, chosen);
   add_tradeoff(program, chosen);
+  add_devices(program, chosen);
   add_view(program, chosen, view_exit_code);
 
   try {

@@ -24,6 +24,7 @@ void add_info(CLI::App& program, Work& chosen);
 void add_generate(CLI::App& program, Work& chosen);
 void add_import(CLI::App& program, Work& chosen);
 void add_tradeoff(CLI::App& program, Work& chosen);
+void add_devices(CLI::App& program, Work& chosen);
 void add_view(CLI::App& program, Work& chosen, int& exit_code);
 
 /// A failure of the machine, not of the input: exit code 1.

@@ -23,11 +23,14 @@ struct Options {
   std::vector<std::string> fields;
 };
 
-std::string header(const haptics::Program& program) {
+// `turns`: the probe path has orientations, and so have the ticks.
+std::string header(const haptics::Program& program, bool turns) {
   std::string line = "t,probe_x,probe_y,probe_z";
-  for (const haptics::Link& link : program.links)
+  for (const haptics::Link& link : program.links) {
     line += fmt::format(",{0}_x,{0}_y,{0}_z,{0}_active,{0}_status,{0}_evaluations", link.name);
-  return line + ",force_x,force_y,force_z\n";
+    if (turns) line += fmt::format(",{0}_qw,{0}_qx,{0}_qy,{0}_qz", link.name);
+  }
+  return line + ",force_x,force_y,force_z" + (turns ? ",torque_x,torque_y,torque_z\n" : "\n");
 }
 
 void append_vector(std::string& line, const Vec3& v) {
@@ -37,7 +40,7 @@ void append_vector(std::string& line, const Vec3& v) {
   }
 }
 
-void append_row(std::string& line, const exchange::HapticState& state) {
+void append_row(std::string& line, const exchange::HapticState& state, bool turns) {
   append_text(line, state.t_s);
   append_vector(line, state.probe);
   for (int i = 0; i < state.link_count; ++i) {
@@ -47,8 +50,14 @@ void append_row(std::string& line, const exchange::HapticState& state) {
     line += exchange::status_word(link.status);
     line += ',';
     line += std::to_string(link.evaluations);
+    if (!turns) continue;
+    for (const double part : {link.orientation.w, link.orientation.x, link.orientation.y, link.orientation.z}) {
+      line += ',';
+      append_text(line, part);
+    }
   }
   append_vector(line, state.force_n);
+  if (turns) append_vector(line, state.torque_nm);
   line += '\n';
 }
 
@@ -134,9 +143,10 @@ Outcome replay_scene(const Options& options) {
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));
   const std::vector<haptics::ProbeSample> path = probe_samples(rows);
+  const bool turns = rows.front().has_orientation;
 
   CATENA_TRY(OutputFile ticks, OutputFile::open(options.output));
-  ticks.write(header(*program));
+  ticks.write(header(*program, turns));
   std::optional<OutputFile> details, json;
   if (!options.details.empty()) {
     CATENA_TRY(OutputFile file, OutputFile::open(options.details));
@@ -148,7 +158,7 @@ Outcome replay_scene(const Options& options) {
   std::string line;
   const haptics::ReplayStats stats = haptics::replay(*program, path, [&](const exchange::HapticState& state) {
     line.clear();
-    append_row(line, state);
+    append_row(line, state, turns);
     ticks.write(line);
     if (details) {
       line.clear();
@@ -179,7 +189,7 @@ void add_replay(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("replay", "drive the tick from a recorded probe path: deterministic, no thread");
   command->add_option("SCENE", options->scene, "the scene file (.json)")->required();
-  command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons]")->required();
+  command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons][,qw,qx,qy,qz]")->required();
   command->add_option("-o,--output", options->output, "ticks, CSV")->required();
   command->add_option("--details", options->details, "what every link tells beside: gap, leaving, share, energy; CSV");
   command->add_option("--stats", options->stats, "figures, JSON");

@@ -75,7 +75,7 @@ const std::vector<DeviceType>& types() {
          to.push_back({"simulated-6dof", true, "the same with a grip that turns: orientation in, torque out"});
        },
        open_simulated_tool},
-      {"recorded", [] { return RecordedPath({{}}).capabilities(); },
+      {"recorded", [] { return RecordedPath(std::vector<RecordedPath::Sample>(1)).capabilities(); },
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"recorded:PATH.csv", true, "a probe path t,x,y,z[,buttons][,qw,qx,qy,qz]; stays at its end"});
        },
