@@ -41,7 +41,7 @@ std::string type_of(const std::string& name) { return name.substr(0, name.find('
 
 std::string how_to_open(const haptics::DeviceInfo& info) {
   if (info.name == "mouse") return "catena view SCENE";
-  return "catena devices test " + info.name;
+  return "--device " + info.name;
 }
 
 void list(bool json) {

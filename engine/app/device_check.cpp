@@ -58,7 +58,7 @@ class Check {
   }
 
   bool watch() {
-    const double start = now_s_;
+    double start = 0;
     const auto ticks = std::max<std::uint64_t>(3, static_cast<std::uint64_t>(options_.seconds * options_.rate_hz));
     Vec3 before(0.0), last(0.0);
     Quat first{kNoRotation};
@@ -70,6 +70,7 @@ class Check {
       const Vec3& p = input.position_m;
       out_.lowest_m = k == 0 ? p : glm::min(out_.lowest_m, p);
       out_.highest_m = k == 0 ? p : glm::max(out_.highest_m, p);
+      if (k == 0) start = now_s_;
       if (k == 0) first = normalised(input.orientation);
       out_.turned_rad = std::max(out_.turned_rad, norm(rotation_vector(normalised(input.orientation) * glm::conjugate(first))));
       if (k >= 2) {

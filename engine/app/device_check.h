@@ -35,7 +35,7 @@ struct Push {
 struct DeviceCheck {
   double ready_after_s = 0;
   std::uint64_t reads = 0;
-  double seconds = 0;
+  double seconds = 0;  ///< from the first to the last
   Vec3 lowest_m{0.0}, highest_m{0.0};
   double turned_rad = 0;  ///< largest turn away from the first orientation
   double jitter_m = 0;    ///< rms of x_k - (x_(k-1) + x_(k+1)) / 2, by sqrt(1.5): of white noise its own
@@ -44,7 +44,7 @@ struct DeviceCheck {
   std::vector<Push> pushes;
   std::string failure;  ///< one line; empty: passed
 
-  double rate_hz() const { return seconds > 0 ? static_cast<double>(reads) / seconds : 0; }
+  double rate_hz() const { return seconds > 0 ? static_cast<double>(reads - 1) / seconds : 0; }
 };
 
 DeviceCheck check_device(haptics::Device& device, const DeviceCheckOptions& options, const Pace& pace);
