@@ -66,11 +66,7 @@ const std::vector<DeviceType>& types() {
          to.push_back({"simulated", true, "a simulated mechanism in a simulated hand"});
        },
        open_simulated},
-      {"simulated-6dof",
-       [] {
-         return SimulatedTool(std::make_unique<SimulatedHand>(std::vector<SimulatedHand::Waypoint>{{}}, HandParameters{}), {{}}, {})
-             .capabilities();
-       },
+      {"simulated-6dof", [] { return (*open_simulated_tool("", DeviceSettings{}))->capabilities(); },
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"simulated-6dof", true, "the same with a grip that turns: orientation in, torque out"});
        },
