@@ -13,7 +13,7 @@ namespace {
 using haptics::DeviceInput;
 using haptics::DeviceStatus;
 
-constexpr double kRise_s = 0.25, kRest_s = 0.25, kPause_s = 0.25;
+constexpr double kRise_s = 0.2, kRest_s = 0.2, kPause_s = 0.1;
 constexpr double kAgainst_m = 5e-4;  // a hand that moves so far against the push: axes or signs are wrong
 
 class Check {
