@@ -51,7 +51,8 @@ Vec3 align_links(const Program& program, const Order& order, const Quat& tool, c
   Vec3 torque(0.0);
   std::array<Vec3, kMaxLinks> shares{};
   for (int k = 0; k < order.count && aligns; ++k) {
-    const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
+    const int link = order.links[static_cast<std::size_t>(k)];
+    const auto i = static_cast<std::size_t>(link);
     const Align& align = program.links[i].align;
     if (align.on) {
       state.axes[i] = axis_of(program.links[i], links[i], scratch[i], state.axes[i]);
