@@ -65,7 +65,8 @@ Outcome read_modes(Scene& scene, const json::Node& node) {
 
 Outcome read_coupling(Scene& scene, const json::Node& node) {
   CATENA_CHECK(json::expect_object(node, "coupling"));
-  CATENA_CHECK(json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s", "rotational_stiffness", "rotational_damping", "method"}));
+  CATENA_CHECK(
+      json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s", "rotational_stiffness", "rotational_damping", "method"}));
   Coupling& c = scene.coupling;
   CATENA_TRY(c.stiffness_n_per_m, json::get_number(node, "stiffness", c.stiffness_n_per_m, json::Range::not_negative));
   CATENA_TRY(c.damping_ns_per_m, json::get_number(node, "damping", c.damping_ns_per_m, json::Range::not_negative));
