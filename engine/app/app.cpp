@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
   add_import(program, chosen);
   add_tradeoff(program, chosen);
   add_feel(program, chosen);
+  add_devices(program, chosen);
   add_view(program, chosen, view_exit_code);
 
   try {

@@ -59,11 +59,12 @@ Outcome replay_scene(const ReplayOptions& options) {
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));
   const std::vector<haptics::ProbeSample> path = probe_samples(rows);
+  const bool turns = rows.front().has_orientation;
 
   CATENA_TRY(OutputFile ticks, OutputFile::open(options.output));
   const LinkColumns columns(link_names(*program));
   const std::vector<std::string> modes = mode_names(*program);
-  ticks.write(tick_header(columns));
+  ticks.write(tick_header(columns, turns));
   std::optional<OutputFile> details, json;
   if (!options.details.empty()) {
     CATENA_TRY(OutputFile file, OutputFile::open(options.details));
@@ -75,7 +76,7 @@ Outcome replay_scene(const ReplayOptions& options) {
   std::string line;
   const haptics::ReplayStats stats = haptics::replay(*program, path, [&](const exchange::HapticState& state) {
     line.clear();
-    append_tick(line, columns, state);
+    append_tick(line, columns, state, turns);
     ticks.write(line);
     if (details) {
       line.clear();
@@ -107,7 +108,7 @@ void add_replay(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = program.add_subcommand("replay", "drive the tick from a recorded probe path: deterministic, no thread");
   command->add_option("SCENE", options->scene, "the scene file (.json); with --log: used instead of the recorded one");
-  command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons]");
+  command->add_option("--probe", options->probe, "probe path, CSV: t,x,y,z[,buttons][,qw,qx,qy,qz]");
   command->add_option("--log", options->log, "a recording (.catlog): runs it again and compares every bit");
   command->add_option("-o,--output", options->output, "ticks, CSV");
   command->add_option("--details", options->details, "what every link tells beside: gap, leaving, share, energy; CSV");

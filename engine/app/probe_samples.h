@@ -10,7 +10,7 @@ namespace catena::app {
 inline std::vector<haptics::ProbeSample> probe_samples(const std::vector<ProbeRow>& rows) {
   std::vector<haptics::ProbeSample> samples;
   samples.reserve(rows.size());
-  for (const ProbeRow& row : rows) samples.push_back({row.t_s, row.position, row.buttons});
+  for (const ProbeRow& row : rows) samples.push_back({row.t_s, row.position, row.buttons, row.orientation});
   return samples;
 }
 

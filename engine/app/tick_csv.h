@@ -29,8 +29,9 @@ std::vector<std::string> mode_names(const haptics::Program& program);
 void append_vector(std::string& line, const Vec3& v);  ///< ",x,y,z"
 
 /// t, the probe, every link's proxy, active, status, evaluations, then the force. Lines end with '\n'.
-std::string tick_header(const LinkColumns& columns);
-void append_tick(std::string& line, const LinkColumns& columns, const exchange::HapticState& state);
+/// `turns`: the hand has an orientation, and so have the ticks: every link's as a quaternion, and the torque.
+std::string tick_header(const LinkColumns& columns, bool turns = false);
+void append_tick(std::string& line, const LinkColumns& columns, const exchange::HapticState& state, bool turns = false);
 
 /// What every link tells beside its proxy: how far the hand is from leaving its feature, its share, its work. No line ends.
 std::string details_header(const LinkColumns& columns);

@@ -27,10 +27,18 @@ std::string header_words(const std::vector<std::string_view>& required, const st
   return "\"" + words + "\"";
 }
 
+/// The columns of an optional group: "qw,qx" is two columns that come together.
+std::vector<std::string_view> columns_of(std::string_view group) {
+  std::vector<std::string_view> columns;
+  for (bool last = false; !last;) columns.push_back(take(group, ',', last));
+  return columns;
+}
+
 struct Reader {
   const std::string& file;
   const std::vector<std::string_view>& required;
   const std::vector<std::string_view>& optional;
+  std::vector<std::string_view> all{};  ///< columns, in the order asked
 
   Error error(int line, const std::string& what) const { return Error{one_line(file + ":" + std::to_string(line) + ": " + what)}; }
 
@@ -40,13 +48,19 @@ struct Reader {
     std::vector<std::string_view> names;
     for (bool last = false; !last;) {
       const std::string_view name = trim(take(line, ',', last));
-      const bool known = std::count(required.begin(), required.end(), name) + std::count(optional.begin(), optional.end(), name) > 0;
-      if (!known) return error(1, "unknown column " + in_quotes(name) + expected);
+      if (std::count(all.begin(), all.end(), name) == 0) return error(1, "unknown column " + in_quotes(name) + expected);
       if (std::count(names.begin(), names.end(), name) > 0) return error(1, "duplicate column " + in_quotes(name) + expected);
       names.push_back(name);
     }
+    const auto absent = [&](std::string_view name) { return std::count(names.begin(), names.end(), name) == 0; };
+    const auto missing = [&](std::string_view name) { return error(1, "column " + in_quotes(name) + " is missing" + expected); };
     for (std::string_view name : required)
-      if (std::count(names.begin(), names.end(), name) == 0) return error(1, "column " + in_quotes(name) + " is missing" + expected);
+      if (absent(name)) return missing(name);
+    for (std::string_view group : optional) {
+      const std::vector<std::string_view> columns = columns_of(group);
+      const auto lacking = std::find_if(columns.begin(), columns.end(), absent);
+      if (lacking != columns.end() && !std::all_of(columns.begin(), columns.end(), absent)) return missing(*lacking);
+    }
     return names;
   }
 };
@@ -61,7 +75,10 @@ const std::vector<double>* Table::find(std::string_view column) const {
 
 Result<Table> parse_csv(std::string_view text, const std::string& file, const std::vector<std::string_view>& required,
                         const std::vector<std::string_view>& optional) {
-  const Reader reader{file, required, optional};
+  Reader reader{file, required, optional};
+  reader.all = required;
+  for (std::string_view group : optional)
+    for (std::string_view name : columns_of(group)) reader.all.push_back(name);
   text = without_bom(text);
 
   // blank lines at the end do not count
@@ -77,13 +94,12 @@ Result<Table> parse_csv(std::string_view text, const std::string& file, const st
   Table table;
   table.file = file;
   std::vector<std::size_t> slots(names.size(), kNotAsked);
-  for (const auto* group : {&required, &optional})
-    for (std::string_view name : *group) {
-      const auto at = std::find(names.begin(), names.end(), name);
-      if (at == names.end()) continue;
-      slots[static_cast<std::size_t>(at - names.begin())] = table.columns.size();
-      table.columns.emplace_back(name);
-    }
+  for (std::string_view name : reader.all) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) continue;
+    slots[static_cast<std::size_t>(at - names.begin())] = table.columns.size();
+    table.columns.emplace_back(name);
+  }
   table.values.resize(table.columns.size());
   const auto rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
   for (auto& column : table.values) column.reserve(rows);

@@ -20,6 +20,7 @@ struct Table {
   const std::vector<double>* find(std::string_view column) const;        ///< nullptr if absent
 };
 
+/// An optional one may be a group, such as "qw,qx": all of its columns or none.
 Result<Table> read_csv(const std::string& path, const std::vector<std::string_view>& required,
                        const std::vector<std::string_view>& optional = {});
 Result<Table> parse_csv(std::string_view text, const std::string& file, const std::vector<std::string_view>& required,

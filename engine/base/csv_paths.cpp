@@ -12,6 +12,18 @@ Error row_error(const Table& table, std::size_t row, const std::string& what) {
   return Error{table.file + ":" + std::to_string(table.line(row)) + ": " + what};
 }
 
+Outcome read_orientation(const Table& table, std::size_t row, ProbeRow& to) {
+  const std::vector<double>* w = table.find("qw");
+  if (w == nullptr) return Done{};
+  const Quat q((*w)[row], (*table.find("qx"))[row], (*table.find("qy"))[row], (*table.find("qz"))[row]);
+  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  if (!(std::fabs(length - 1) <= 1e-3))
+    return row_error(table, row, "qw,qx,qy,qz has the length " + to_text(length) + "; a unit quaternion was expected");
+  to.orientation = normalised(q);
+  to.has_orientation = true;
+  return Done{};
+}
+
 Vec3 position_of(const Table& table, std::size_t first_column, std::size_t row) {
   return {table.values[first_column][row], table.values[first_column + 1][row], table.values[first_column + 2][row]};
 }
@@ -25,6 +37,7 @@ Result<std::vector<ProbeRow>> probe_rows(const Table& table) {
       return row_error(table, i, "t is " + to_text(t[i]) + " after " + to_text(t[i - 1]) + "; strictly rising t was expected");
     rows[i].t_s = t[i];
     rows[i].position = position_of(table, 1, i);
+    CATENA_CHECK(read_orientation(table, i, rows[i]));
     if (buttons == nullptr) continue;
     const double mask = (*buttons)[i];
     if (!(mask >= 0 && mask <= 4294967295.0 && std::floor(mask) == mask))
@@ -43,12 +56,12 @@ std::vector<Vec3> seed_rows(const Table& table) {
 }  // namespace
 
 Result<std::vector<ProbeRow>> read_probe_path(const std::string& path) {
-  CATENA_TRY(const Table table, read_csv(path, {"t", "x", "y", "z"}, {"buttons"}));
+  CATENA_TRY(const Table table, read_csv(path, {"t", "x", "y", "z"}, {"buttons", "qw,qx,qy,qz"}));
   return probe_rows(table);
 }
 
 Result<std::vector<ProbeRow>> parse_probe_path(std::string_view text, const std::string& file) {
-  CATENA_TRY(const Table table, parse_csv(text, file, {"t", "x", "y", "z"}, {"buttons"}));
+  CATENA_TRY(const Table table, parse_csv(text, file, {"t", "x", "y", "z"}, {"buttons", "qw,qx,qy,qz"}));
   return probe_rows(table);
 }
 

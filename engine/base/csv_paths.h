@@ -1,4 +1,4 @@
-/// The two tables that the program reads: probe paths `t,x,y,z[,buttons]` and seeds `x,y,z`.
+/// The two tables that the program reads: probe paths `t,x,y,z[,buttons][,qw,qx,qy,qz]` and seeds `x,y,z`.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -6,15 +6,18 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/base/vec.h"
+#include "engine/base/rotation.h"
 
 namespace catena {
 
-/// One row of a probe path: seconds (strictly rising), world units, a mask of the buttons held (bit 0 is button 1).
+/// One row of a probe path: seconds (strictly rising), world units, a mask of the buttons held (bit 0 is button 1), and the tool's
+/// orientation (world axes; within 1e-3 of unit length in the file, normalised here).
 struct ProbeRow {
   double t_s = 0;
   Vec3 position{0.0};
   std::uint32_t buttons = 0;
+  Quat orientation{kNoRotation};
+  bool has_orientation = false;  ///< the same in all rows of a file
 };
 
 Result<std::vector<ProbeRow>> read_probe_path(const std::string& path);

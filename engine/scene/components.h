@@ -127,6 +127,8 @@ struct Coupling {
   double damping_ns_per_m = 0;
   double max_force_n = 8;
   std::optional<double> ramp_s;
+  double rotational_stiffness_nm_per_rad = 0.5;
+  double rotational_damping_nms_per_rad = 0;
   CouplingMethod method = CouplingMethod::chain;
 };
 

@@ -65,11 +65,16 @@ Outcome read_modes(Scene& scene, const json::Node& node) {
 
 Outcome read_coupling(Scene& scene, const json::Node& node) {
   CATENA_CHECK(json::expect_object(node, "coupling"));
-  CATENA_CHECK(json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s", "method"}));
+  CATENA_CHECK(
+      json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s", "rotational_stiffness", "rotational_damping", "method"}));
   Coupling& c = scene.coupling;
   CATENA_TRY(c.stiffness_n_per_m, json::get_number(node, "stiffness", c.stiffness_n_per_m, json::Range::not_negative));
   CATENA_TRY(c.damping_ns_per_m, json::get_number(node, "damping", c.damping_ns_per_m, json::Range::not_negative));
   CATENA_TRY(c.max_force_n, json::get_number(node, "max_force", c.max_force_n, json::Range::not_negative));
+  CATENA_TRY(c.rotational_stiffness_nm_per_rad,
+             json::get_number(node, "rotational_stiffness", c.rotational_stiffness_nm_per_rad, json::Range::not_negative));
+  CATENA_TRY(c.rotational_damping_nms_per_rad,
+             json::get_number(node, "rotational_damping", c.rotational_damping_nms_per_rad, json::Range::not_negative));
   CATENA_TRY(c.ramp_s, json::get_optional_number(node, "ramp_s", json::Range::not_negative));
   CATENA_TRY(const int method, json::get_choice(node, "method", 0, {"chain", "pipe", "balance", "closest", "linear"}));
   c.method = static_cast<CouplingMethod>(method);

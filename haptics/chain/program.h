@@ -36,12 +36,22 @@ struct Indication {
   double duration_s = 0.02;
 };
 
+/// "align": turns the tool's axis onto the link's: a surface's normal, a curve's tangent (alignment.h).
+struct Align {
+  enum class Sign { either, same };
+  bool on = false;
+  Vec3 tool_axis{0.0, 0.0, 1.0};      ///< unit, tool frame
+  double stiffness_nm_per_rad = 0.5;  ///< kappa_i
+  Sign sign = Sign::either;           ///< either: an axis has no sense of direction
+};
+
 struct Link {
   std::string name;
   std::shared_ptr<const Constraint> constraint;
   Parameter stiffness_n_per_m = 500;
   Switch on;
   Indication indication;
+  Align align;
   double release = 0;        ///< baselines only: lets go where |probe - proxy| >= release, world units; 0: never
   bool one_sided = false;    ///< baselines only: it has a free side
   std::uint64_t recipe = 0;  ///< what it was built from: links of the same name and recipe keep their state; 0: of the same object
@@ -62,6 +72,8 @@ struct Coupling {
   double damping_ns_per_m = 0;
   double max_force_n = 8;
   double ramp_s = 0;
+  double rotational_stiffness_nm_per_rad = 0.5;  ///< of links that align and do not say
+  double rotational_damping_nms_per_rad = 0;     ///< b_r
   Combination combination = Combination::chain;
 };
 

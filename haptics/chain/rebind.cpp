@@ -13,7 +13,8 @@ bool keeps(const Link& from, const Link& to) noexcept {
 void rebind(const Program& from, const Program& to, ChainState& state, ChainScratch& scratch) noexcept {
   const ChainState old = state;
   scratch = ChainScratch{};
-  state.fade.replaced = true;
+  state.fade.replaced = state.alignment.fade.replaced = true;
+  state.alignment.axes = {};
   if (from.coupling.combination != to.coupling.combination) state.single = SingleProxy{};
   state.fade.shares = old.fade.shares;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxLinks); ++i) {

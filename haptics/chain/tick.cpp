@@ -134,7 +134,7 @@ void hold_all(const Program& program, ChainState& state, exchange::HapticState& 
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     state.links[i].status = Status::bad_probe;
     state.links[i].evaluations = 0;
-    out.links[i].force_n = Vec3(0.0);
+    out.links[i].force_n = out.links[i].torque_nm = Vec3(0.0);
     out.links[i].gap = out.links[i].leaving = 0;
     out.links[i].left = state.indications[i].left;
   }
@@ -198,7 +198,9 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   }
 
   state.force_n = force;
-  guard(program.limits, {force, Vec3(0.0), probe.condition, probe.forces_on, dt}, state.guard);
+  const Vec3 torque =
+      align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
+  guard(program.limits, {force, torque, probe.condition, probe.forces_on, dt}, state.guard);
   state.last_probe = probe.position;
   state.last_t_s = probe.t_s;
   state.has_probe = true;

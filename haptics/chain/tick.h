@@ -2,10 +2,12 @@
 ///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
 ///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
 ///   plus what fades out after a switch (fade.h) and the cues of links that the hand leaves (indication.h), if any
+///   torque: of links that align the tool (alignment.h), if any
 /// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
 /// then the guard (guard.h): what the device's limits and the tick's condition leave of it.
 /// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE. A clock that goes back stands still for a tick.
 #pragma once
+#include "haptics/chain/alignment.h"
 #include "haptics/chain/baseline.h"
 #include "haptics/chain/fade.h"
 #include "haptics/chain/guard.h"
@@ -27,6 +29,7 @@ struct ChainState {
   std::array<IndicationState, kMaxLinks> indications{};
   SwitchState switches;
   Fade fade;
+  AlignmentState alignment;
   SingleProxy single;  ///< baselines
   Vec3 last_probe{0.0};
   double last_t_s = 0;

@@ -46,7 +46,7 @@ struct ConstraintType {
 
 const std::vector<ConstraintType>& registry();
 const ConstraintType* find_constraint(std::string_view type);
-/// The keys that every link takes: name, type, stiffness, on, indicate, snap, release.
+/// The keys that every link takes: name, type, stiffness, on, indicate, align, snap, release.
 const std::vector<Key>& common_keys();
 /// The JSON Schema of a chain, printed from the registry and the ready-made modes (modes.h).
 std::string chain_schema();

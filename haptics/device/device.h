@@ -36,10 +36,11 @@ struct DeviceOutput {
 /// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.
 struct Mechanics {
   double mass_kg = 0.15;
-  double damping_ns_per_m = 0;  ///< viscous, of the device alone
-  double friction_n = 0;        ///< Coulomb
-  double encoder_step_m = 0;    ///< 0: continuous
-  double delay_s = 0;           ///< from the pose to the force, beside the tick's own period
+  double damping_ns_per_m = 0;                ///< viscous, of the device alone
+  double friction_n = 0;                      ///< Coulomb
+  double encoder_step_m = 0;                  ///< 0: continuous
+  double delay_s = 0;                         ///< from the pose to the force, beside the tick's own period
+  double rotational_damping_nms_per_rad = 0;  ///< viscous, about any axis; where the device has torque
 };
 
 struct DeviceCapabilities {

@@ -1,11 +1,23 @@
 #include "haptics/device/recorded_path.h"
 
 #include "engine/base/assert.h"
+#include "engine/base/csv_paths.h"
 
 namespace catena::haptics {
 
-RecordedPath::RecordedPath(std::vector<Sample> samples) : samples_(std::move(samples)), capabilities_{.name = "recorded path"} {
+RecordedPath::RecordedPath(std::vector<Sample> samples, bool has_orientation) : samples_(std::move(samples)) {
   CATENA_ASSERT(!samples_.empty());
+  capabilities_.name = "recorded path";
+  capabilities_.has_orientation = has_orientation;
+  capabilities_.buttons = 32;
+}
+
+Result<std::unique_ptr<Device>> RecordedPath::open(const std::string& path) {
+  CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(path));
+  std::vector<Sample> samples;
+  samples.reserve(rows.size());
+  for (const ProbeRow& row : rows) samples.push_back({row.t_s, row.position, row.buttons, row.orientation});
+  return std::unique_ptr<Device>(std::make_unique<RecordedPath>(std::move(samples), rows.front().has_orientation));
 }
 
 DeviceInput RecordedPath::read() noexcept {
@@ -13,6 +25,7 @@ DeviceInput RecordedPath::read() noexcept {
   if (next_ + 1 < samples_.size()) ++next_;
   DeviceInput input;
   input.position_m = sample.position;
+  input.orientation = sample.orientation;
   input.buttons = sample.buttons;
   input.recorded = true;
   input.t_s = sample.t_s;

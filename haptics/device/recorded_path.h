@@ -1,8 +1,10 @@
 /// A device that plays a recorded probe path, one sample a tick, in world units and with its own time. After the last sample
 /// it stays there. The forces written to it are only counted. Haptic thread.
 #pragma once
+#include <memory>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "haptics/device/device.h"
 
 namespace catena::haptics {
@@ -13,8 +15,11 @@ class RecordedPath final : public Device {
     double t_s = 0;
     Vec3 position{0.0};
     std::uint32_t buttons = 0;
+    Quat orientation{kNoRotation};
   };
-  explicit RecordedPath(std::vector<Sample> samples);
+  explicit RecordedPath(std::vector<Sample> samples, bool has_orientation = false);
+  /// `t,x,y,z[,buttons][,qw,qx,qy,qz]`; the error names file and line.
+  static Result<std::unique_ptr<Device>> open(const std::string& path);
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;

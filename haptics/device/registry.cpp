@@ -1,9 +1,14 @@
 #include "haptics/device/registry.h"
 
-#include <array>
+#include <algorithm>
 
+#include "haptics/device/hand_map.h"
+#include "haptics/device/mouse.h"
 #include "haptics/device/null_device.h"
+#include "haptics/device/recorded_path.h"
 #include "haptics/device/simulated_hand.h"
+#include "haptics/device/simulated_tool.h"
+#include "haptics/device/spacemouse.h"
 #include "haptics/device/usb/open_falcon.h"
 
 namespace catena::haptics {
@@ -28,8 +33,30 @@ Result<std::unique_ptr<Device>> open_simulated(const std::string&, const DeviceS
   return std::unique_ptr<Device>(std::make_unique<SimulatedHand>(std::vector<SimulatedHand::Waypoint>{{}}, parameters));
 }
 
-const std::array<DeviceType, 3>& types() {
-  static const std::array<DeviceType, 3> all = {{
+Result<std::unique_ptr<Device>> open_simulated_tool(const std::string& detail, const DeviceSettings& settings) {
+  CATENA_TRY(std::unique_ptr<Device> hand, open_simulated(detail, settings));
+  ToolParameters parameters;
+  parameters.period_s = 1 / settings.rate_hz;
+  return std::unique_ptr<Device>(std::make_unique<SimulatedTool>(std::move(hand), std::vector<SimulatedTool::Waypoint>{{}}, parameters));
+}
+
+Result<std::unique_ptr<Device>> open_recorded(const std::string& path, const DeviceSettings&) {
+  if (path.empty()) return Error{"device \"recorded\" lacks its file; \"recorded:PATH.csv\" was expected"};
+  return RecordedPath::open(path);
+}
+
+Result<std::unique_ptr<Device>> open_mouse(const std::string&, const DeviceSettings&) {
+  return Error{"the mouse belongs to a window; \"catena view SCENE\" was expected, or another device"};
+}
+
+Result<std::unique_ptr<Device>> open_spacemouse(const std::string&, const DeviceSettings& settings) {
+  SpaceMouseParameters parameters;
+  parameters.rate_hz = settings.rate_hz;
+  return SpaceMouse::open(parameters);
+}
+
+const std::vector<DeviceType>& types() {
+  static const std::vector<DeviceType> all = {
       {"falcon", usb::Falcon::nominal_capabilities, usb::list_falcons, usb::open_falcon},
       {"null", [] { return NullDevice().capabilities(); },
        [](std::vector<DeviceInfo>& to) {
@@ -41,7 +68,28 @@ const std::array<DeviceType, 3>& types() {
          to.push_back({"simulated", true, "a simulated mechanism in a simulated hand"});
        },
        open_simulated},
-  }};
+      {"simulated-6dof", [] { return (*open_simulated_tool("", DeviceSettings{}))->capabilities(); },
+       [](std::vector<DeviceInfo>& to) {
+         to.push_back({"simulated-6dof", true, "the same with a grip that turns: orientation in, torque out"});
+       },
+       open_simulated_tool},
+      {"recorded", [] { return RecordedPath(std::vector<RecordedPath::Sample>(1)).capabilities(); },
+       [](std::vector<DeviceInfo>& to) {
+         to.push_back({"recorded:PATH.csv", true, "a probe path t,x,y,z[,buttons][,qw,qx,qy,qz]; stays at its end"});
+       },
+       open_recorded},
+      {"mouse", MouseDevice::nominal,
+       [](std::vector<DeviceInfo>& to) {
+         to.push_back({"mouse", false, "mouse and keyboard, in the window of catena view"});
+       },
+       open_mouse},
+      {"spacemouse", SpaceMouse::nominal,
+       [](std::vector<DeviceInfo>& to) {
+         const bool there = SpaceMouse::daemon_is_there();
+         to.push_back({"spacemouse", there, there ? "3Dconnexion SpaceMouse through spacenavd" : SpaceMouse::daemon_missing()});
+       },
+       open_spacemouse},
+  };
   return all;
 }
 
@@ -64,6 +112,7 @@ std::string device_types() {
 std::vector<DeviceInfo> list_devices() {
   std::vector<DeviceInfo> found;
   for (const DeviceType& type : types()) type.list(found);
+  std::stable_partition(found.begin(), found.end(), [](const DeviceInfo& info) { return info.present; });
   return found;
 }
 
@@ -76,7 +125,8 @@ Result<std::unique_ptr<Device>> open_device(const std::string& name, const Devic
   const std::size_t colon = name.find(':');
   const DeviceType* found = find(name.substr(0, colon));
   if (found == nullptr) return Error{"there is no device \"" + name + "\"; one of " + device_types() + " was expected"};
-  return found->open(colon == std::string::npos ? std::string() : name.substr(colon + 1), settings);
+  CATENA_TRY(std::unique_ptr<Device> device, found->open(colon == std::string::npos ? std::string() : name.substr(colon + 1), settings));
+  return with_hand_map(std::move(device), settings);
 }
 
 }  // namespace catena::haptics

@@ -1,5 +1,5 @@
 /// The devices by name: what there is, what it can do, and how it is opened. Off the tick.
-///   TYPE or TYPE:DETAIL, such as "falcon", "falcon:1" (the second one), "recorded:path.csv"
+///   TYPE or TYPE:DETAIL, such as "falcon", "falcon:1" (the second one), "recorded:path.csv"; the hand map (hand_map.h) is around it
 #pragma once
 #include <memory>
 #include <string>

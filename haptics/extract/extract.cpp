@@ -76,6 +76,8 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, cons
   program->coupling.stiffness_n_per_m = scene.coupling.stiffness_n_per_m;
   program->coupling.damping_ns_per_m = scene.coupling.damping_ns_per_m;
   program->coupling.max_force_n = scene.coupling.max_force_n;
+  program->coupling.rotational_stiffness_nm_per_rad = scene.coupling.rotational_stiffness_nm_per_rad;
+  program->coupling.rotational_damping_nms_per_rad = scene.coupling.rotational_damping_nms_per_rad;
   program->coupling.ramp_s = scene.coupling.ramp_s.value_or(0);
   program->coupling.combination = static_cast<Combination>(scene.coupling.method);
   program->limits = limits;

@@ -51,6 +51,31 @@ Result<Indication> read_indication(const json::Node& link) {
   return out;
 }
 
+/// The constraint is asked for an axis: a point has none, and friction and forces have no primitive at all.
+Result<Align> read_align(const json::Node& link, const Coupling& coupling, const Constraint& constraint) {
+  Align out;
+  const json::Node* node = link.find("align");
+  if (node == nullptr) return out;
+  CATENA_CHECK(json::expect_object(*node, "align"));
+  CATENA_CHECK(json::only_keys(*node, {"axis", "stiffness", "sign"}));
+  const std::string& type = link.find("type")->string;
+  if (!constraint.has_primitive() || type == "point")
+    return json::error_at(
+        *node, "a \"" + type + "\" link has no axis to align with; a surface (its normal) or a curve (its tangent) was expected");
+  if (coupling.combination != Combination::chain)
+    return json::error_at(*node, "\"align\" needs a proxy of the link's own; \"method\": \"chain\" was expected in \"coupling\"");
+  out.on = true;
+  CATENA_TRY(const Vec3 axis, json::get_vec3(*node, "axis", out.tool_axis));
+  out.tool_axis = direction(axis);
+  if (!(max_abs(out.tool_axis) > 0))
+    return json::error_at(*node->find("axis"), "\"axis\" is zero; a vector of the tool's frame, of non-zero length, was expected");
+  CATENA_TRY(out.stiffness_nm_per_rad,
+             json::get_number(*node, "stiffness", coupling.rotational_stiffness_nm_per_rad, json::Range::not_negative));
+  CATENA_TRY(const int sign, json::get_choice(*node, "sign", 0, {"either", "same"}));
+  out.sign = static_cast<Align::Sign>(sign);
+  return out;
+}
+
 /// What a link was built from: its text, and the versions of its fields and meshes.
 void add_recipe(const json::Node& node, Fnv1a& recipe) {
   recipe.add(static_cast<int>(node.kind));
@@ -127,6 +152,7 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
                                                     "\" link has no linear primitive, which the coupling's \"method\" needs; a chain "
                                                     "(\"method\": \"chain\") was expected");
   }
+  CATENA_TRY(link.align, read_align(from, coupling, *link.constraint));
   link.recipe = recipe.value;
   return link;
 }

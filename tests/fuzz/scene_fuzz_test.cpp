@@ -32,12 +32,13 @@ const std::string kHand = R"({ "fields": {"s": {"analytic": "sphere"}, "v": {"an
              "tau_min": 0.002, "tau_max": {"field": "s", "map": [[0, 0.01], [1, 0.05]], "of": "gradient", "outside": 0.02},
              "law": "printed", "free": "above", "release": 0.4, "snap": 0.2, "indicate": {"cue": "detent", "at": 0.1, "duration": 0.01}},
             {"name": "path", "type": "polyline", "points": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "closed": true, "on": {"force_above": 3, "force_below": 1}},
-            {"name": "case", "type": "box", "center": [0, 0, 0], "size": [1, 2, 3], "rotation": {"axis": [1, 2, 3], "angle_deg": 40}, "free": "below"},
+            {"name": "case", "type": "box", "center": [0, 0, 0], "size": [1, 2, 3], "rotation": {"axis": [1, 2, 3], "angle_deg": 40}, "free": "below",
+             "align": {"axis": [0, 1, 0], "stiffness": 0.4, "sign": "same"}},
             {"name": "core", "type": "vortex_core", "field": "v", "radius": 0.2, "search": 0.6, "stiffness": {"field": "v", "map": [[0, 1]]}},
             {"name": "rough", "type": "texture", "threshold": 0.01, "amplitude": 0.8, "wavelength": 0.07},
             {"name": "oil", "type": "viscosity", "time": 0.004, "on": {"button": 2, "toggle": true}}],
   "modes": [{"name": "one", "links": ["skin", "path"], "on": {"button": 1}}, {"name": "two", "links": [], "on": {"force_above": 2}}],
-  "coupling": {"ramp_s": 0.02} })";
+  "coupling": {"ramp_s": 0.02, "rotational_stiffness": 0.3, "rotational_damping": 0.001} })";
 
 /// A value, or one line that starts with the file's name.
 bool check(const std::string& text, bool extract) {

@@ -286,4 +286,28 @@ TEST(Replay, TheExamplesOfTheReferenceRun) {
   EXPECT_EQ(examples, 3);
 }
 
+TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"chain": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1],
+    "align": {"stiffness": 0.25}}, {"name": "rail", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0]}]})");
+  const double c = std::cos(0.2), s = std::sin(0.2);  // 0.4 rad about x
+  test::write_file(folder / "turned.csv",
+                   "t,x,y,z,qw,qx,qy,qz\n0,0,0,0.1,1,0,0,0\n0.001,0,0,0.1," + to_text(c) + "," + to_text(s) + ",0,0\n");
+  test::write_file(folder / "plain.csv", "t,x,y,z\n0,0,0,0.1\n0.001,0,0,0.1\n");
+  ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "turned.csv", "-o", folder / "a.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  run = catena_program({"replay", folder / "s.json", "--probe", folder / "plain.csv", "-o", folder / "b.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Table turned = Table::read(folder / "a.csv"), plain = Table::read(folder / "b.csv");
+  EXPECT_EQ(turned.number(0, "torque_x"), 0);
+  EXPECT_NEAR(turned.number(1, "torque_x"), -0.25 * 0.4, 1e-12);
+  EXPECT_NEAR(turned.number(1, "floor_qw"), 1, 1e-12);
+  EXPECT_NEAR(turned.number(1, "rail_qw"), 1, 1e-12);
+  EXPECT_EQ(turned.number(1, "force_z"), plain.number(1, "force_z"));
+  // a path without orientations has the columns that it always had
+  EXPECT_FALSE(plain.has("torque_x"));
+  EXPECT_FALSE(plain.has("floor_qw"));
+  EXPECT_EQ(plain.header().size(), 4u + 2 * 6 + 3);
+}
+
 }  // namespace

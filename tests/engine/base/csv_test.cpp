@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "engine/base/csv_paths.h"
 #include "tests/support/support.h"
 
@@ -38,7 +40,8 @@ TEST(Csv, ForgivesWhatSpreadsheetsDo) {
 }
 
 TEST(Csv, HeaderErrors) {
-  expect_error(parse_probe_path("t,x,y\n0,1,2\n", "p.csv"), {"p.csv:1:", "\"z\" is missing", "\"t,x,y,z[,buttons]\" was expected"});
+  expect_error(parse_probe_path("t,x,y\n0,1,2\n", "p.csv"),
+               {"p.csv:1:", "\"z\" is missing", "\"t,x,y,z[,buttons][,qw,qx,qy,qz]\" was expected"});
   expect_error(parse_probe_path("t,x,y,z,w\n0,1,2,3,4\n", "p.csv"), {"p.csv:1:", "unknown column \"w\"", "expected"});
   expect_error(parse_probe_path("t,x,y,z,x\n0,1,2,3,4\n", "p.csv"), {"p.csv:1:", "duplicate column \"x\"", "expected"});
   expect_error(parse_probe_path("t,x,y,z,\n0,1,2,3,\n", "p.csv"), {"p.csv:1:", "unknown column \"\"", "expected"});
@@ -48,6 +51,23 @@ TEST(Csv, HeaderErrors) {
   expect_error(parse_probe_path("", "p.csv"), {"p.csv:1:", "is empty", "expected"});
   expect_error(parse_probe_path("\n\n", "p.csv"), {"p.csv:1:", "is empty", "expected"});
   expect_error(parse_seeds("t,x,y,z\n0,1,2,3\n", "s.csv"), {"s.csv:1:", "unknown column \"t\"", "\"x,y,z\" was expected"});
+}
+
+TEST(Csv, AnOrientationComesWholeAndIsAUnitQuaternion) {
+  const auto rows = parse_probe_path("t,x,y,z,buttons,qw,qx,qy,qz\n0,1,2,3,0,0.6,0.8,0,0\n1,1,2,3,1,0.7071,0,0,0.7071\n", "p.csv");
+  ASSERT_TRUE(rows) << rows.error().message;
+  EXPECT_TRUE((*rows)[0].has_orientation);
+  EXPECT_NEAR((*rows)[0].orientation.w, 0.6, 1e-15);
+  EXPECT_NEAR((*rows)[0].orientation.x, 0.8, 1e-15);
+  EXPECT_NEAR((*rows)[1].orientation.z, std::sqrt(0.5), 1e-15);  // normalised
+  EXPECT_EQ((*rows)[1].buttons, 1u);
+  const auto plain = parse_probe_path("t,x,y,z\n0,1,2,3\n", "p.csv");
+  ASSERT_TRUE(plain);
+  EXPECT_FALSE((*plain)[0].has_orientation);
+  EXPECT_EQ((*plain)[0].orientation, kNoRotation);
+  expect_error(parse_probe_path("t,x,y,z,qw,qx,qz\n0,1,2,3,1,0,0\n", "p.csv"), {"p.csv:1:", "\"qy\" is missing", "qw,qx,qy,qz"});
+  expect_error(parse_probe_path("t,x,y,z,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n1,1,2,3,0,0,0,0\n", "p.csv"),
+               {"p.csv:3:", "length 0", "unit quaternion was expected"});
 }
 
 TEST(Csv, RowErrors) {

@@ -48,6 +48,23 @@ TEST(Mouse, ANonFinitePlaceIsIgnored) {
   EXPECT_EQ(mouse.read().position_m, Vec3(0.0));
 }
 
+TEST(Mouse, ATurnIsEasedTheShorterWayAndComesToRest) {
+  MouseDevice mouse(Vec3(0.0), {0.02, 1000});
+  const Quat target = rotation_of({0, 0, 1.0});
+  mouse.move_to(Vec3(0.0), 0, Quat(-target.w, -target.x, -target.y, -target.z));  // the same rotation
+  double last = 0;
+  for (int k = 1; k <= 20; ++k) {
+    const double angle = rotation_vector(mouse.read().orientation).z;
+    EXPECT_GT(angle, last);
+    last = angle;
+  }
+  EXPECT_NEAR(last, 1 - std::exp(-1), 1e-12);
+  for (int k = 0; k < 1000; ++k) mouse.read();
+  EXPECT_NEAR(rotation_vector(mouse.read().orientation).z, 1.0, 1e-15);
+  mouse.move_to(Vec3(1.0), 0, Quat(std::nan(""), 0, 0, 0));
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(mouse.read().position_m, Vec3(0.0));
+}
+
 TEST(Mouse, PlacesAreNeverTornBetweenThreads) {
   MouseDevice mouse(Vec3(0.0), {0, 1000});
   constexpr int kMoves = 20000;

@@ -1,0 +1,142 @@
+/// catena devices [--json]: what there is.  catena devices test NAME [--forces] [--seconds S] [--firmware FILE]: a safe self-test.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <memory>
+
+#include "engine/app/command.h"
+#include "engine/app/device_check.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "haptics/device/registry.h"
+
+namespace catena::app {
+namespace {
+
+struct Options {
+  bool json = false, forces = false;
+  std::string name, firmware;
+  double seconds = 2;
+};
+
+std::string abilities(const haptics::DeviceCapabilities& c) {
+  std::string line = c.has_orientation ? "position, orientation" : "position";
+  if (c.max_force_n > 0) line += fmt::format(", force up to {} N", to_text(c.max_force_n));
+  if (c.max_torque_nm > 0) line += fmt::format(", torque up to {} N m", to_text(c.max_torque_nm));
+  if (!(c.max_force_n > 0) && !(c.max_torque_nm > 0)) line += ", no force";
+  return line;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : one_line(text)) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string type_of(const std::string& name) { return name.substr(0, name.find(':')); }
+
+std::string how_to_open(const haptics::DeviceInfo& info) {
+  if (info.name == "mouse") return "catena view SCENE";
+  return "--device " + info.name;
+}
+
+void list(bool json) {
+  const std::vector<haptics::DeviceInfo> found = haptics::list_devices();
+  if (json) fmt::print("[");
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const haptics::DeviceInfo& info = found[i];
+    const haptics::DeviceCapabilities c = haptics::nominal_capabilities(type_of(info.name));
+    if (json) {
+      fmt::print(
+          "{}\n  {{\"name\": {}, \"present\": {}, \"detail\": {}, \"position\": true, \"orientation\": {}, \"max_force_n\": {}, "
+          "\"max_torque_nm\": {}, \"buttons\": {}, \"workspace_m\": {}, \"open\": {}}}",
+          i == 0 ? "" : ",", quoted(info.name), info.present, quoted(info.detail), c.has_orientation, to_text(c.max_force_n),
+          to_text(c.max_torque_nm), c.buttons, to_text(c.workspace_m), quoted(how_to_open(info)));
+    } else {
+      fmt::print("{:<20} {:<8} {}\n{:<30}{}; {}\n", info.name, info.present ? "here" : "not here", info.detail, "", abilities(c),
+                 how_to_open(info));
+    }
+  }
+  if (json) fmt::print("\n]\n");
+}
+
+void print_check(const haptics::Device& device, const std::string& name, const DeviceCheck& check) {
+  const haptics::DeviceCapabilities& c = device.capabilities();
+  fmt::print("{}: {}\n", name, c.name);
+  fmt::print("  can          {}; {} button{}; a workspace of {} m\n", abilities(c), c.buttons, c.buttons == 1 ? "" : "s",
+             to_text(c.workspace_m));
+  if (check.reads == 0) return;
+  fmt::print("  ready after  {:.2f} s\n", check.ready_after_s);
+  if (check.seconds > 0) fmt::print("  read         {} poses in {:.2f} s: {:.0f} a second\n", check.reads, check.seconds, check.rate_hz());
+  fmt::print("  place        x {:.5f} .. {:.5f}, y {:.5f} .. {:.5f}, z {:.5f} .. {:.5f}\n", check.lowest_m.x, check.highest_m.x,
+             check.lowest_m.y, check.highest_m.y, check.lowest_m.z, check.highest_m.z);
+  if (c.has_orientation) fmt::print("  turned       up to {:.4f} rad\n", check.turned_rad);
+  fmt::print("  jitter       {:.3g} um rms\n", 1e6 * check.jitter_m);
+  fmt::print("  pose age     {:.3f} ms on average, {:.3f} ms at most\n", 1e3 * check.mean_age_s, 1e3 * check.most_age_s);
+  std::string buttons;
+  for (int b = 0; b < 32; ++b)
+    if ((check.buttons >> b & 1u) != 0) buttons += fmt::format(" {}", b + 1);
+  fmt::print("  buttons     {}\n", buttons.empty() ? " none seen" : buttons);
+  for (const Push& push : check.pushes)
+    fmt::print("  push         {:+.2f} {:+.2f} {:+.2f} N moved the hand {:+.3f} {:+.3f} {:+.3f} mm{}\n", push.asked_n.x, push.asked_n.y,
+               push.asked_n.z, 1e3 * push.moved_m.x, 1e3 * push.moved_m.y, 1e3 * push.moved_m.z,
+               norm(push.moved_m) < 1e-5 ? " (not at all: is it powered?)" : "");
+}
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+Outcome test(const Options& options) {
+  if (!haptics::is_device_type(type_of(options.name)))
+    return Error{"there is no device " + in_quotes(options.name) + "; one of " + haptics::device_types() + " was expected"};
+  if (!(options.seconds > 0 && options.seconds <= 600))
+    return Error{"--seconds is " + to_text(options.seconds) + "; a number above 0, up to 600, was expected"};
+  haptics::DeviceSettings settings;
+  settings.type = type_of(options.name);
+  settings.firmware = options.firmware;
+  auto opened = haptics::open_device(options.name, settings);
+  if (!opened) throw MachineFailure{options.name + ": " + opened.error().message};
+  haptics::Device& device = **opened;
+
+  DeviceCheckOptions check_options;
+  check_options.seconds = options.seconds;
+  check_options.forces = options.forces;
+  check_options.stop = &interrupted;
+  if (options.forces && device.capabilities().max_force_n > 0)
+    fmt::print(stderr, "{}: pushes of up to 1 N follow; hold the grip, Ctrl-C stops\n", options.name);
+  const auto before = std::signal(SIGINT, [](int) { interrupted = true; });
+  const DeviceCheck check = check_device(device, check_options, paced(check_options.rate_hz));
+  device.stop();
+  std::signal(SIGINT, before);
+  print_check(device, options.name, check);
+  if (!check.failure.empty()) throw MachineFailure{options.name + ": " + check.failure};
+  fmt::print("pass{}\n", options.forces ? "" : " (no forces: --forces pushes, too)");
+  return Done{};
+}
+
+}  // namespace
+
+void add_devices(CLI::App& program, Work& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* devices = program.add_subcommand("devices", "list the haptic devices, or test one");
+  devices->add_flag("--json", options->json, "the list as JSON");
+  CLI::App* command = devices->add_subcommand("test", "a safe self-test: reads poses; pushes only with --forces");
+  command->add_option("NAME", options->name, "a name of the list")->required();
+  command->add_flag("--forces", options->forces, "confirms: small pushes (at most 1 N) along every axis; hold the grip");
+  command->add_option("--seconds", options->seconds, "how long to read poses")->capture_default_str();
+  command->add_option("--firmware", options->firmware, "a firmware file of the vendor's, for a device that has none");
+  command->callback([&chosen, options] { chosen = [options] { return test(*options); }; });
+  devices->callback([&chosen, options, command] {
+    if (command->parsed()) return;
+    chosen = [options]() -> Outcome {
+      list(options->json);
+      return Done{};
+    };
+  });
+}
+
+}  // namespace catena::app

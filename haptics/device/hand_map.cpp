@@ -1,0 +1,109 @@
+#include "haptics/device/hand_map.h"
+
+#include <algorithm>
+
+#include "engine/base/assert.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kGravityRamp_s = 0.1;
+
+std::uint32_t mask_of(int button) { return button > 0 ? 1u << (button - 1) : 0u; }
+
+DeviceCapabilities mapped(DeviceCapabilities device, const DeviceSettings& settings, bool turns) {
+  if (turns) device.workspace_centre_m = settings.hand_from_device * device.workspace_centre_m;
+  if (settings.scale != 1) {
+    device.workspace_centre_m *= settings.scale;
+    device.workspace_m *= settings.scale;
+    device.mechanics.mass_kg /= settings.scale;
+    device.mechanics.damping_ns_per_m /= settings.scale;
+    device.mechanics.encoder_step_m *= settings.scale;
+  }
+  return device;
+}
+
+}  // namespace
+
+bool is_identity(const DeviceSettings& settings) {
+  return settings.hand_from_device == Mat3(1.0) && settings.scale == 1 && settings.clutch_button == 0 && settings.force_button == 0 &&
+         settings.gravity_n == Vec3(0.0);
+}
+
+std::unique_ptr<Device> with_hand_map(std::unique_ptr<Device> device, const DeviceSettings& settings) {
+  if (is_identity(settings)) return device;
+  return std::make_unique<HandMap>(std::move(device), settings);
+}
+
+HandMap::HandMap(std::unique_ptr<Device> device, const DeviceSettings& settings)
+    : device_(std::move(device)),
+      hand_from_device_(settings.hand_from_device),
+      turn_(normalised(glm::quat_cast(settings.hand_from_device))),
+      scale_(settings.scale),
+      clutch_mask_(mask_of(settings.clutch_button)),
+      force_mask_(mask_of(settings.force_button)),
+      gravity_n_(settings.gravity_n),
+      gravity_step_(std::min(1.0, 1 / (kGravityRamp_s * settings.rate_hz))),
+      turns_(settings.hand_from_device != Mat3(1.0)) {
+  CATENA_ASSERT(device_ != nullptr && settings.scale > 0 && settings.rate_hz > 0);
+  capabilities_ = mapped(device_->capabilities(), settings, turns_);
+}
+
+// What is not asked for is not computed: bits pass.
+void HandMap::map_pose(DeviceInput& input, bool rests) noexcept {
+  if (turns_) input.position_m = hand_from_device_ * input.position_m;
+  if (scale_ != 1) input.position_m *= scale_;
+  if (turns_ && capabilities_.has_orientation) input.orientation = turn_ * input.orientation;
+
+  // the clutch: rest while it is held, keep the difference when it is let go
+  if (rests) {
+    offset_m_ = rest_m_ - input.position_m;
+    if (capabilities_.has_orientation) offset_turn_ = normalised(rest_turn_ * glm::conjugate(input.orientation));
+    has_offset_ = true;
+    input.position_m = rest_m_;
+    input.orientation = rest_turn_;
+  } else if (has_offset_) {
+    input.position_m += offset_m_;
+    if (capabilities_.has_orientation) input.orientation = normalised(offset_turn_ * input.orientation);
+  }
+  rest_m_ = input.position_m;
+  rest_turn_ = input.orientation;
+}
+
+DeviceInput HandMap::read() noexcept {
+  DeviceInput input = device_->read();
+  const bool ready = input.status == DeviceStatus::ready && is_finite(input.position_m) && is_finite(input.orientation);
+  const bool clutches = (input.buttons & clutch_mask_) != 0;
+  if (ready) {
+    const std::uint32_t pressed = has_read_ ? input.buttons & ~last_buttons_ : 0u;
+    if ((pressed & force_mask_) != 0) switched_on_ = !switched_on_;
+    if (!input.recorded) map_pose(input, clutches && has_read_);
+    last_buttons_ = input.buttons;
+    has_read_ = true;
+  } else {
+    switched_on_ = false;
+  }
+  input.forces_on = input.forces_on && !clutches && (force_mask_ == 0 || switched_on_);
+  input.buttons &= ~(clutch_mask_ | force_mask_);
+  forces_on_ = input.forces_on;
+  fresh_ = ready;
+  return input;
+}
+
+void HandMap::write(const DeviceOutput& output) noexcept {
+  DeviceOutput out = output;
+  if (has_offset_ && capabilities_.has_orientation) out.torque_nm = rotate(glm::conjugate(offset_turn_), out.torque_nm);
+  if (turns_) {
+    out.force_n = out.force_n * hand_from_device_;  // v A = A^T v
+    out.torque_nm = out.torque_nm * hand_from_device_;
+  }
+  if (gravity_n_ != Vec3(0.0)) {
+    const bool carries = fresh_ && forces_on_ && output.live;
+    gravity_weight_ = carries ? std::min(1.0, gravity_weight_ + gravity_step_) : 0;
+    out.force_n += gravity_n_ * gravity_weight_;
+  }
+  fresh_ = false;
+  device_->write(out);
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,207 @@
+/// The self-test of devices (device_check.h) on devices that behave and that do not, and `catena devices` from the outside.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/app/device_check.h"
+#include "engine/base/json.h"
+#include "haptics/device/null_device.h"
+#include "haptics/device/registry.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::app;
+using haptics::DeviceInput;
+using haptics::DeviceOutput;
+using haptics::DeviceStatus;
+
+/// x = compliance F at the hand; what goes wrong, and when, in reads.
+class Springy final : public haptics::Device {
+ public:
+  Springy() { able_.max_force_n = 5; }
+  const haptics::DeviceCapabilities& capabilities() const override { return able_; }
+  DeviceInput read() noexcept override {
+    ++reads;
+    DeviceInput in;
+    in.position_m = {0.01 + compliance * force.x, compliance * force.y, compliance * force.z};
+    if (noise > 0) in.position_m.y += reads % 2 == 0 ? noise : -noise;
+    if (reads <= starts) in.status = DeviceStatus::starting;
+    if (reads >= lost) in.status = DeviceStatus::lost;
+    if (reads >= broken) in.position_m.x = std::nan("");
+    in.buttons = reads > 20 && reads < 30 ? 5 : 0;
+    in.age_s = 0.002;
+    return in;
+  }
+  void write(const DeviceOutput& out) noexcept override {
+    force = out.force_n;
+    strongest = std::max(strongest, norm(force));
+    steepest = std::max(steepest, norm(force - last));
+    last = force;
+  }
+
+  double compliance = 0.002, noise = 0;
+  int starts = 0, lost = 1 << 30, broken = 1 << 30, reads = 0;
+  Vec3 force{0.0}, last{0.0};
+  double strongest = 0, steepest = 0;
+
+ private:
+  haptics::DeviceCapabilities able_;
+};
+
+DeviceCheck check(haptics::Device& device, bool forces, double seconds = 0.5) {
+  DeviceCheckOptions options;
+  options.seconds = seconds;
+  options.forces = forces;
+  return check_device(device, options, unpaced(options.rate_hz));
+}
+
+TEST(DeviceCheck, WithoutForcesItOnlyReads) {
+  Springy device;
+  device.noise = 1e-5;
+  device.starts = 100;
+  const DeviceCheck out = check(device, false);
+  EXPECT_EQ(out.failure, "");
+  EXPECT_EQ(device.strongest, 0);
+  EXPECT_NEAR(out.ready_after_s, 0.1, 1e-12);
+  EXPECT_EQ(out.reads, 500u);
+  EXPECT_NEAR(out.rate_hz(), 1000, 1e-6);
+  EXPECT_NEAR(out.jitter_m, 2e-5 / std::sqrt(1.5), 1e-9);  // x_k - mean of neighbours = 2 a
+  EXPECT_NEAR(out.highest_m.y - out.lowest_m.y, 2e-5, 1e-12);
+  EXPECT_NEAR(out.mean_age_s, 0.002, 1e-12);
+  EXPECT_EQ(out.buttons, 0u);
+  Springy other;
+  EXPECT_EQ(check(other, false).buttons, 5u);
+}
+
+TEST(DeviceCheck, PushesAreSmallRampedAndReported) {
+  Springy device;
+  const DeviceCheck out = check(device, true);
+  ASSERT_EQ(out.failure, "");
+  ASSERT_EQ(out.pushes.size(), 6u);
+  EXPECT_NEAR(device.strongest, 1, 1e-12);
+  EXPECT_LE(device.steepest, 1.0 / 200 + 1e-12);
+  for (const Push& push : out.pushes) EXPECT_LE(norm(push.moved_m - 0.002 * push.asked_n), 1e-12);
+  EXPECT_EQ(device.force, Vec3(0.0));
+}
+
+TEST(DeviceCheck, AHandThatMovesTooFarEndsItAtOnce) {
+  Springy device;
+  device.compliance = 0.05;
+  const DeviceCheck out = check(device, true);
+  EXPECT_NE(out.failure.find("under a push of"), std::string::npos) << out.failure;
+  EXPECT_NE(out.failure.find("+x"), std::string::npos) << out.failure;
+  EXPECT_LE(device.strongest, 0.41);  // 0.02 m at 0.4 N
+  EXPECT_EQ(device.force, Vec3(0.0));
+  EXPECT_TRUE(out.pushes.empty());
+}
+
+TEST(DeviceCheck, AForceTheWrongWayRoundIsFound) {
+  Springy device;
+  device.compliance = -0.002;
+  EXPECT_NE(check(device, true).failure.find("axes or signs"), std::string::npos);
+}
+
+TEST(DeviceCheck, LossAndNonsenseAreFailuresWithZeroForce) {
+  for (const int when : {50, 900}) {
+    Springy lost, broken, fallen;
+    lost.lost = broken.broken = when;
+    const DeviceCheck a = check(lost, true), b = check(broken, true);
+    EXPECT_NE(a.failure.find("lost"), std::string::npos) << a.failure;
+    EXPECT_NE(b.failure.find("not a number"), std::string::npos) << b.failure;
+    EXPECT_EQ(lost.force, Vec3(0.0));
+    EXPECT_EQ(broken.force, Vec3(0.0));
+    EXPECT_LE(lost.reads, when);
+  }
+}
+
+TEST(DeviceCheck, WaitsForAStartOnlySoLong) {
+  Springy device;
+  device.starts = 1 << 30;
+  const DeviceCheck out = check(device, false);
+  EXPECT_NE(out.failure.find("not ready after 20 s"), std::string::npos) << out.failure;
+  EXPECT_EQ(out.reads, 0u);
+}
+
+TEST(DeviceCheck, StopsWhenAsked) {
+  Springy device;
+  std::atomic<bool> stop{false};
+  DeviceCheckOptions options;
+  options.forces = true;
+  options.stop = &stop;
+  const DeviceCheck out = check_device(device, options, [&](std::uint64_t k) {
+    if (k == 2300) stop = true;
+    return 1e-3 * static_cast<double>(k);
+  });
+  EXPECT_EQ(out.failure, "stopped by hand");
+  EXPECT_EQ(device.force, Vec3(0.0));
+  EXPECT_LE(device.reads, 2301);
+}
+
+TEST(DeviceCheck, ADeviceWithoutForceCannotPush) {
+  haptics::NullDevice device;
+  EXPECT_EQ(check(device, false).failure, "");
+  EXPECT_NE(check(device, true).failure.find("no force output"), std::string::npos);
+}
+
+test::ProgramResult devices(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "devices");
+  return test::run_program(CATENA_PROGRAM, arguments);
+}
+
+TEST(Devices, ListsWhatThereIs) {
+  const test::ProgramResult plain = devices({}), json = devices({"--json"});
+  EXPECT_EQ(plain.exit_code, 0);
+  EXPECT_NE(plain.out.find("simulated-6dof"), std::string::npos);
+  EXPECT_NE(plain.out.find("orientation, force up to"), std::string::npos);
+  const auto read = json::parse(json.out, "out");
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_GE(read->items.size(), 6u);
+  bool found = false;
+  for (const json::Node& item : read->items) {
+    for (const char* key : {"name", "present", "detail", "position", "orientation", "max_force_n", "max_torque_nm", "buttons", "open"})
+      EXPECT_NE(item.find(key), nullptr) << key;
+    found = found || (item.find("name")->string == "simulated-6dof" && item.find("orientation")->boolean);
+  }
+  EXPECT_TRUE(found);
+}
+
+TEST(Devices, TestsTheSimulatedOnesAndARecordedPath) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "p.csv", "t,x,y,z,buttons\n-1,0,2,3,0\n0,1,2,3,0\n0.001,1.5,2,3,2\n");
+  for (const std::string& name : {std::string("null"), std::string("simulated"), "recorded:" + (folder / "p.csv")}) {
+    const test::ProgramResult run = devices({"test", name, "--seconds", "0.05"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.out.find("pass (no forces"), std::string::npos) << run.out;
+  }
+  const test::ProgramResult recorded = devices({"test", "recorded:" + (folder / "p.csv"), "--seconds", "0.05"});
+  EXPECT_NE(recorded.out.find("x 1.00000 .. 1.50000"), std::string::npos) << recorded.out;
+  EXPECT_NE(recorded.out.find("buttons      2"), std::string::npos) << recorded.out;
+}
+
+TEST(Devices, PushesTheSimulatedHand) {
+  const test::ProgramResult run = devices({"test", "simulated-6dof", "--seconds", "0.05", "--forces"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const std::string said = "push         +1.00 +0.00 +0.00 N moved the hand +";
+  const auto at = run.out.find(said);
+  ASSERT_NE(at, std::string::npos) << run.out;
+  EXPECT_NEAR(std::stod(run.out.substr(at + said.size())), 2, 0.5) << run.out;  // mm: 1 N against a hand of 500 N/m
+  EXPECT_NE(run.out.find("\npass\n"), std::string::npos) << run.out;
+}
+
+TEST(Devices, FailuresAreOneLineAndOneBadNamesTwo) {
+  const auto expect = [](const test::ProgramResult& run, int code, const char* part) {
+    EXPECT_EQ(run.exit_code, code) << run.err;
+    EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  };
+  expect(devices({"test", "sextant"}), 2, "simulated-6dof");
+  expect(devices({"test", "null", "--seconds", "0"}), 2, "--seconds");
+  expect(devices({"test", "null", "--seconds", "0.05", "--forces"}), 1, "no force output");
+  expect(devices({"test", "recorded"}), 1, "recorded:PATH.csv");
+  expect(devices({"test", "mouse"}), 1, "catena view");
+}
+
+}  // namespace

@@ -1,0 +1,273 @@
+/// The rotational chain in closed form: constraints that hold the proxy and have a fixed, or turning, axis.
+#include "haptics/chain/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "engine/base/allocation_guard.h"
+#include "haptics/chain/rebind.h"
+#include "haptics/chain/state_hash.h"
+#include "tests/support/axis_link.h"
+#include "tests/support/simple_links.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+
+constexpr double kPi = 3.14159265358979323846;
+
+const test::Axis& constraint_of(const Link& link) { return static_cast<const test::Axis&>(*link.constraint); }
+using test::axis_link;
+
+struct Hand {
+  Program program;
+  ChainState state;
+  ChainScratch scratch;
+  exchange::HapticState out;
+  void step(double t, const Quat& q, std::uint32_t buttons = 0, const Vec3& p = Vec3(0.0)) {
+    tick(program, {t, p, buttons, q}, state, scratch, out);
+  }
+};
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
+  EXPECT_LE(norm(a - b), tolerance) << a.x << " " << a.y << " " << a.z << " is not " << b.x << " " << b.y << " " << b.z;
+}
+
+std::vector<Quat> orientations() {
+  std::vector<Quat> out = {kNoRotation};
+  for (int k = 1; k < 40; ++k) out.push_back(rotation_of(Vec3(std::sin(1.7 * k), std::cos(2.3 * k), std::sin(0.9 * k + 1)) * (0.08 * k)));
+  return out;
+}
+
+TEST(Alignment, TheToolsAxisEndsOnTheNormalAndTheTorqueIsKappaTimesTheAngle) {
+  const Vec3 normal = direction({1, -2, 0.5}), tool = direction({0.3, 0.1, -0.8});
+  for (const Align::Sign sign : {Align::Sign::either, Align::Sign::same})
+    for (const Primitive::Kind kind : {Primitive::Kind::plane, Primitive::Kind::line})
+      for (const Quat& q : orientations()) {
+        Hand run;
+        run.program.links = {axis_link("a", normal, 0.7, sign, tool, kind)};
+        run.step(0, q);
+        const Vec3 before = rotate(q, tool), after = rotate(run.out.links[0].orientation, tool);
+        const Vec3 goal = sign == Align::Sign::either && dot(before, normal) < 0 ? -normal : normal;
+        expect_near(after, goal, 1e-12);
+        // about the axis square to both, by the angle between them
+        const double angle = std::atan2(norm(cross(before, goal)), dot(before, goal));
+        expect_near(run.out.torque_nm, direction(cross(before, goal)) * (0.7 * angle), 1e-12);
+        expect_near(run.out.links[0].torque_nm, run.out.torque_nm, 0);
+        EXPECT_EQ(run.out.links[0].status, Status::ok);
+      }
+}
+
+TEST(Alignment, RotationalProxiesAreAChain) {
+  // first the tool's z onto world x, then its x onto what is left: world y
+  Hand run;
+  run.program.links = {axis_link("a", {1, 0, 0}, 0.5, Align::Sign::same, {0, 0, 1}),
+                       axis_link("b", {0, 1, 0}, 0.25, Align::Sign::same, {1, 0, 0}), test::hold_height("c", 0)};
+  const Quat q = rotation_of({0.2, 0.4, -0.3});
+  run.step(0, q);
+  const Quat q1 = run.out.links[0].orientation, q2 = run.out.links[1].orientation;
+  expect_near(rotate(q1, {0, 0, 1}), {1, 0, 0}, 1e-12);
+  expect_near(rotate(q2, {1, 0, 0}), {0, 1, 0}, 1e-12);
+  expect_near(rotate(q2, {0, 0, 1}), {1, 0, 0}, 1e-12);  // the second turns about the first's axis: both hold
+  EXPECT_EQ(run.out.links[2].orientation, q2);           // without "align" it passes on
+  expect_near(run.out.torque_nm, 0.5 * rotation_vector(q1 * glm::conjugate(q)) + 0.25 * rotation_vector(q2 * glm::conjugate(q1)), 1e-12);
+}
+
+TEST(Alignment, ItTurnsWithTheWorld) {
+  const Quat r = rotation_of({0.5, -1.2, 0.8});
+  const Vec3 normal = direction({1, 2, 3});
+  for (const Quat& q : orientations()) {
+    Hand a, b;
+    a.program.links = {axis_link("a", normal, 0.7)};
+    b.program.links = {axis_link("a", rotate(r, normal), 0.7)};
+    a.step(0, q);
+    b.step(0, r * q);
+    expect_near(b.out.torque_nm, rotate(r, a.out.torque_nm), 1e-12);
+  }
+}
+
+TEST(Alignment, TheSpringGivesBackWhatItTook) {
+  // torque = -dV/dangle of V = 1/2 kappa angle^2, so that a closed way of the tool does no work: trapezoidal sum, O(1/n^2)
+  const auto work_of = [](Align::Sign sign, double far) {
+    Hand run;
+    run.program.links = {axis_link("a", {0.2, -0.1, 1}, 0.7, sign)};
+    const int n = 20000;
+    double work = 0;
+    Quat last = kNoRotation;
+    Vec3 last_torque(0.0);
+    for (int k = 0; k <= n; ++k) {
+      const double u = 2 * kPi * k / n;
+      const Quat q = rotation_of(Vec3(far * std::sin(u), 0.8 * std::sin(2 * u), std::cos(u) - 1));
+      run.step(1e-3 * k, q);
+      if (k > 0) work += 0.5 * dot(run.out.torque_nm + last_torque, rotation_vector(q * glm::conjugate(last)));
+      last = q;
+      last_torque = run.out.torque_nm;
+    }
+    return work;
+  };
+  EXPECT_NEAR(work_of(Align::Sign::either, 0.9), 0, 1e-6);
+  EXPECT_NEAR(work_of(Align::Sign::same, 2.5), 0, 1e-6);
+  EXPECT_NEAR(work_of(Align::Sign::either, 2.5), 0, 2e-3);  // twice over the ridge, within one tick each: kappa pi/2 times a tick's turn
+}
+
+TEST(Alignment, ThroughHalfATurnTheTorqueStaysBounded) {
+  for (const Align::Sign sign : {Align::Sign::either, Align::Sign::same}) {
+    Hand run;
+    run.program.links = {axis_link("a", {0, 0, 1}, 1, sign)};
+    const double most = sign == Align::Sign::either ? kPi / 2 : kPi;
+    double largest = 0;
+    for (int k = -1000; k <= 1000; ++k) {
+      run.step(1e-3 * (k + 1000), rotation_of({kPi + 1e-6 * k, 0, 0}));
+      ASSERT_TRUE(is_finite(run.out.torque_nm));
+      ASSERT_LE(norm(run.out.torque_nm), most + 1e-12);
+      largest = std::max(largest, norm(run.out.torque_nm));
+    }
+    if (sign == Align::Sign::same) {
+      EXPECT_NEAR(largest, kPi, 1e-9);
+    }
+    if (sign == Align::Sign::either) {  // the other end of the axis is near there
+      EXPECT_LE(largest, 1.1e-3);
+    }
+  }
+}
+
+TEST(Alignment, WhereTheLinkDoesNotHoldTheToolIsFree) {
+  Hand run;
+  run.program.links = {axis_link("a", {1, 0, 0}, 1)};
+  const Quat q = rotation_of({0.2, 0.4, -0.3});
+  for (const Status status : {Status::free, Status::released, Status::no_surface}) {
+    constraint_of(run.program.links[0]).now = status;
+    run.step(0, q);
+    EXPECT_EQ(run.out.torque_nm, Vec3(0.0));
+    EXPECT_EQ(run.out.links[0].orientation, q);
+  }
+  constraint_of(run.program.links[0]).now = Status::ok;
+  run.step(0, q);
+  EXPECT_GT(norm(run.out.torque_nm), 0.1);
+}
+
+TEST(Alignment, TheAxisIsCountedAndAtTheCapTheLastOneIsKept) {
+  Hand run;
+  run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same, {0, 0, 1}, Primitive::Kind::plane, 3)};
+  run.step(0, kNoRotation);
+  EXPECT_EQ(run.out.links[0].evaluations, 3);
+  constraint_of(run.program.links[0]).spent = kEvaluationCap;
+  run.step(1e-3, kNoRotation);
+  EXPECT_EQ(run.out.links[0].evaluations, kEvaluationCap);
+  EXPECT_NEAR(norm(run.out.torque_nm), kPi / 2, 1e-12);
+}
+
+TEST(Alignment, WeightsRiseAndWhatASwitchTakesAwayFades) {
+  Hand run;
+  run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same)};
+  run.program.links[0].on.button = 1;
+  run.program.coupling.ramp_s = 0.01;
+  double last = 0;
+  for (int k = 0; k < 60; ++k) {
+    run.step(1e-3 * k, kNoRotation, k >= 10 && k < 30 ? 1 : 0);
+    const double now = norm(run.out.torque_nm);
+    EXPECT_LE(std::fabs(now - last), kPi / 2 * 0.1 + 1e-12) << k;
+    if (k == 14) {
+      EXPECT_NEAR(now, kPi / 2 * 0.5, 1e-12);
+    }
+    if (k == 25) {
+      EXPECT_NEAR(now, kPi / 2, 1e-12);
+    }
+    if (k == 34) {
+      EXPECT_NEAR(now, kPi / 2 * 0.5, 1e-12);
+    }
+    if (k < 10 || k > 45) {
+      EXPECT_EQ(now, 0);
+    }
+    last = now;
+  }
+}
+
+TEST(Alignment, AProgramThatNoLongerAlignsFadesToo) {
+  Hand run;
+  run.program.links = {axis_link("a", {1, 0, 0}, 1, Align::Sign::same)};
+  run.program.coupling.ramp_s = 0.01;
+  for (int k = 0; k < 5; ++k) run.step(1e-3 * k, kNoRotation);
+  Program next = run.program;
+  next.links.clear();
+  rebind(run.program, next, run.state, run.scratch);
+  run.program = next;
+  double last = kPi / 2;
+  for (int k = 5; k < 30; ++k) {
+    run.step(1e-3 * k, kNoRotation);
+    EXPECT_LE(last - norm(run.out.torque_nm), kPi / 2 * 0.1 + 1e-12);
+    last = norm(run.out.torque_nm);
+  }
+  EXPECT_EQ(last, 0);
+}
+
+TEST(Alignment, TheDevicesLimitCapsTheStiffness) {
+  Hand run;
+  run.program.links = {axis_link("a", {1, 0, 0}, 5, Align::Sign::same)};
+  run.program.limits.max_rotational_stiffness_nm_per_rad = 0.4;
+  run.step(0, kNoRotation);
+  EXPECT_NEAR(norm(run.out.torque_nm), 0.4 * kPi / 2, 1e-12);
+}
+
+TEST(Alignment, DampingActsAgainstTheTurning) {
+  Hand run;
+  run.program.coupling.rotational_damping_nms_per_rad = 2e-3;
+  run.step(0, kNoRotation);
+  EXPECT_EQ(run.out.torque_nm, Vec3(0.0));
+  run.step(1e-3, rotation_of({0, 0.01, 0}));
+  expect_near(run.out.torque_nm, {0, -2e-3 * 0.01 / 1e-3, 0}, 1e-15);
+  run.step(2e-3, rotation_of({0, 0.01, 0}));
+  expect_near(run.out.torque_nm, Vec3(0.0), 1e-15);
+}
+
+TEST(Alignment, AnOrientationThatIsNoNumberIsABadProbe) {
+  Hand run;
+  run.program.links = {axis_link("a", {1, 0, 0}, 1)};
+  run.step(0, rotation_of({0.3, 0, 0}));
+  run.step(1e-3, Quat(std::numeric_limits<double>::quiet_NaN(), 0, 0, 0));
+  EXPECT_EQ(run.out.torque_nm, Vec3(0.0));
+  EXPECT_EQ(run.out.links[0].torque_nm, Vec3(0.0));
+  EXPECT_EQ(run.out.links[0].status, Status::bad_probe);
+  run.step(2e-3, Quat(0, 0, 0, 0));  // nothing usable is no rotation
+  EXPECT_TRUE(is_finite(run.out.torque_nm));
+}
+
+TEST(Alignment, ForcesAndProxiesDoNotKnowOfIt) {
+  const auto hash_of = [](bool aligns, bool turns) {
+    Hand run;
+    run.program.links = {test::hold_height("a", 1), axis_link("b", {1, 0, 0}, 1)};
+    run.program.links[1].align.on = aligns;
+    StateHash hash;
+    for (int k = 0; k < 100; ++k) {
+      run.step(1e-3 * k, turns ? rotation_of({0.01 * k, 0.2, 0}) : kNoRotation, 0, {0.01 * k, 0, 0.3});
+      hash.add(run.out);
+      if (!aligns && run.out.torque_nm != Vec3(0.0)) return std::uint64_t{0};
+    }
+    return hash.value();
+  };
+  EXPECT_EQ(hash_of(false, false), hash_of(true, true));
+  EXPECT_EQ(hash_of(false, true), hash_of(true, false));
+  EXPECT_NE(hash_of(false, true), 0u);
+}
+
+TEST(Alignment, AllocatesNothingAndRepeatsToTheBit) {
+  Hand a, b;
+  for (Hand* run : {&a, &b}) {
+    run->program.links = {axis_link("a", {1, 0, 2}, 1), axis_link("b", {0, 1, 0}, 1, Align::Sign::same, {1, 0, 0}, Primitive::Kind::line)};
+    run->program.coupling.rotational_damping_nms_per_rad = 1e-3;
+    run->step(0, kNoRotation);
+  }
+  for (int k = 1; k < 200; ++k) {
+    const Quat q = rotation_of({0.1 * k, 0.03 * k, -0.02 * k});
+    const AllocationGuard guard;
+    a.step(1e-3 * k, q);
+    ASSERT_EQ(guard.count(), 0u);
+    b.step(1e-3 * k, q);
+    ASSERT_EQ(std::memcmp(&a.out.torque_nm, &b.out.torque_nm, sizeof(Vec3)), 0);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,20 @@
+/// A device that says what the test says and remembers what it was told.
+#pragma once
+#include "haptics/device/device.h"
+
+namespace catena::test {
+
+class ScriptedDevice final : public haptics::Device {
+ public:
+  const haptics::DeviceCapabilities& capabilities() const override { return able; }
+  haptics::DeviceInput read() noexcept override { return input; }
+  void write(const haptics::DeviceOutput& out) noexcept override { output = out; }
+  void stop() noexcept override { stopped = true; }
+
+  haptics::DeviceCapabilities able;
+  haptics::DeviceInput input;
+  haptics::DeviceOutput output;
+  bool stopped = false;
+};
+
+}  // namespace catena::test

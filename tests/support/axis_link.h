@@ -1,0 +1,46 @@
+/// A link with an axis and nothing else, so that the rotational chain is tested in closed form.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "haptics/chain/program.h"
+
+namespace catena::test {
+
+/// Holds the proxy where the probe is, with an axis; each question for it costs `cost` fetches.
+class Axis final : public haptics::Constraint {
+ public:
+  Axis(const Vec3& axis, haptics::Primitive::Kind kind, int cost = 0) : axis_(direction(axis)), kind_(kind), cost_(cost) {}
+  void start(const Vec3&, haptics::LinkState&, haptics::LinkScratch&) const noexcept override {}
+  void advance(const Vec3& probe, haptics::LinkState& state, haptics::LinkScratch&) const noexcept override {
+    state.proxy = probe;
+    state.status = now;
+    state.evaluations += spent;
+  }
+  bool primitive(const Vec3& at, haptics::LinkState& state, haptics::LinkScratch&, haptics::Primitive& out) const noexcept override {
+    state.evaluations += cost_;
+    state.status = haptics::Status::critical;  // must not reach the link
+    out = {kind_, at, axis_};
+    return true;
+  }
+  bool has_primitive() const noexcept override { return true; }
+  mutable haptics::Status now = haptics::Status::ok;
+  mutable int spent = 0;
+
+ private:
+  Vec3 axis_;
+  haptics::Primitive::Kind kind_;
+  int cost_;
+};
+
+inline haptics::Link axis_link(const std::string& name, const Vec3& axis, double kappa,
+                               haptics::Align::Sign sign = haptics::Align::Sign::either, const Vec3& tool = {0, 0, 1},
+                               haptics::Primitive::Kind kind = haptics::Primitive::Kind::plane, int cost = 0) {
+  haptics::Link link;
+  link.name = name;
+  link.constraint = std::make_shared<Axis>(axis, kind, cost);
+  link.align = {true, direction(tool), kappa, sign};
+  return link;
+}
+
+}  // namespace catena::test
