@@ -3,13 +3,15 @@
 ///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
 ///   plus what fades out after a switch (fade.h) and the cues of links that the hand leaves (indication.h), if any
 /// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
-/// then the guard (guard.h): what the device's limits and the tick's condition leave of it.
+/// then the guard (guard.h): what the device's limits and the tick's condition leave of it, and the ledger (passivity.h).
+/// No k_i, and no K of a baseline's force, is above the device's cap (limits.h).
 /// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE. A clock that goes back stands still for a tick.
 #pragma once
 #include "haptics/chain/baseline.h"
 #include "haptics/chain/fade.h"
 #include "haptics/chain/guard.h"
 #include "haptics/chain/indication.h"
+#include "haptics/chain/passivity.h"
 
 namespace catena::haptics {
 
@@ -32,6 +34,7 @@ struct ChainState {
   double last_t_s = 0;
   Vec3 force_n{0.0};  ///< that the chain asks for
   GuardState guard;   ///< what the hand gets
+  PassivityState passivity;
   std::uint64_t ticks = 0;
   bool has_probe = false;
 };
