@@ -23,6 +23,21 @@ double ramp_of(const Limits& limits, const GuardState& guard) noexcept {
   return guard.late > limits.late_ticks ? guard.ramp * guard.hold : guard.ramp;
 }
 
+// What acted since the last tick: sent in it, or a delay before.
+PassivityState::Sent acted(const PassivityState& state, double delay_s, double dt_s) noexcept {
+  using Sent = PassivityState::Sent;
+  constexpr std::uint32_t size = PassivityState::kPast;
+  const Sent& last = state.past[(state.next + size - 1) % size];
+  if (!(delay_s > 0) || !(dt_s > 0)) return last;
+  const double periods = std::fmin(delay_s / dt_s, size - 2.0);
+  const auto whole = static_cast<std::uint32_t>(periods);
+  const double part = periods - whole;
+  const Sent& newer = state.past[(state.next + size - 1 - whole) % size];
+  const Sent& older = state.past[(state.next + size - 2 - whole) % size];
+  const auto mix = [part](const Vec3& a, const Vec3& b) { return a * part + b * (1 - part); };
+  return {mix(older.force_n, newer.force_n), mix(older.granted_n, newer.granted_n), mix(older.added_n, newer.added_n)};
+}
+
 // The force that takes `need_j` from a hand that goes on by `move_m` in the next tick.
 Vec3 brake(const Limits& limits, const Vec3& move_m, double dt_s, double need_j) noexcept {
   const double squared = dot(move_m, move_m);
@@ -42,9 +57,8 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   const std::size_t count = program.links.size();
 
   // what the last tick's force has done since
-  const double work_j = dot(state.force_n, move_m);
-  double free_j = dot(state.granted_n, move_m);
-  const double taken_j = -dot(state.added_n, move_m);
+  const PassivityState::Sent did = acted(state, limits.delay_s, tick.dt_s);
+  const double work_j = dot(did.force_n, move_m), free_j = dot(did.granted_n, move_m), taken_j = -dot(did.added_n, move_m);
 
   // what of the chain's force is sent, and what its springs can give back through the limits
   const double asked = dot(tick.sum_n, tick.sum_n);
@@ -98,7 +112,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   }
 
   // the controller
-  state.added_n = Vec3(0.0);
+  Vec3 added_n(0.0);
   const bool flows = guard.force_state == ForceState::on || guard.force_state == ForceState::ramping_in;
   if (limits.passivity && flows) {
     const double next_j = state.balance_j + std::fmin(0.0, step_j - taken_j);
@@ -106,12 +120,12 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
       const Vec3 before = guard.force_n;
       guard.force_n =
           at_most(before + brake(limits, move_m, tick.dt_s, -next_j), std::fmin(limits.max_force_n, program.coupling.max_force_n));
-      state.added_n = guard.force_n - before;
+      added_n = guard.force_n - before;
     }
   }
 
-  state.force_n = guard.force_n;
-  state.granted_n = other_n * sent;
+  state.past[state.next] = {guard.force_n, other_n * sent, added_n};
+  state.next = (state.next + 1) % PassivityState::kPast;
   state.ramp = ramp;
   state.order = tick.order;
   state.anew = false;
@@ -120,7 +134,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
 void suspend(PassivityState& state) noexcept {
   state.sent_n.fill(Vec3(0.0));
   state.stored_j.fill(0);
-  state.force_n = state.granted_n = state.added_n = Vec3(0.0);
+  state.past.fill({});
   state.storage_j = state.ramp = 0;
   state.anew = true;
 }

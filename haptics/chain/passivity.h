@@ -17,7 +17,8 @@
 ///             they are (Constraint::is_source: gradient_force), which have no storage
 ///   controller  where B and its last step together are below 0: a force along -dx that takes that much within the next tick if the
 ///             hand goes on as it does, at most max_added_damping
-/// Against a probe that is not there for a while (a lost device) nothing is booked; links are then taken hold of anew. Torques
+/// A device's delay: the observer's work is that of the forces that acted since the last tick; a link's own ledger is that of its
+/// last share. Against a probe that is not there for a while (a lost device) nothing is booked; links are then taken hold of anew. Torques
 /// are not counted. Always booked; controlled only where limits.passivity is set. Haptic thread: no allocation, lock or throw.
 #pragma once
 #include "haptics/chain/guard.h"
@@ -26,15 +27,22 @@
 namespace catena::haptics {
 
 struct PassivityState {
+  /// What was sent in a tick.
+  struct Sent {
+    Vec3 force_n{0.0};
+    Vec3 granted_n{0.0};  ///< its part that is granted
+    Vec3 added_n{0.0};    ///< the controller's
+  };
+  static constexpr std::uint32_t kPast = 16;  ///< a delay of more than 14 periods counts as 14
+
   std::array<double, kMaxLinks> given_j{};   ///< sum of W_i
   std::array<double, kMaxLinks> stored_j{};  ///< V_i
   std::array<Vec3, kMaxLinks> sent_n{};      ///< f_i, of the last tick
   std::array<double, kMaxLinks> weights{};
   std::array<bool, kMaxLinks> apart{};  ///< not held: off, let go, or nothing there
   Order order;
-  Vec3 force_n{0.0};    ///< what was sent in all
-  Vec3 granted_n{0.0};  ///< its part that is granted
-  Vec3 added_n{0.0};    ///< the controller's
+  std::array<Sent, kPast> past{};  ///< by tick
+  std::uint32_t next = 0;
   double ramp = 0;
   double storage_j = 0;  ///< V
   double balance_j = 0;  ///< B
