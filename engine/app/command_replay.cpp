@@ -11,7 +11,9 @@
 #include "engine/base/csv_paths.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
+#include "haptics/device/registry.h"
 #include "haptics/extract/extract.h"
+#include "haptics/servo/limits_for.h"
 #include "haptics/servo/replay.h"
 
 namespace catena::app {
@@ -57,7 +59,8 @@ std::string details_header(const haptics::Program& program) {
   std::string line = "t,mode";
   for (const haptics::Link& link : program.links)
     line += fmt::format(
-        ",{0}_gap,{0}_leaving,{0}_left,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy", link.name);
+        ",{0}_gap,{0}_leaving,{0}_left,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy,{0}_booked",
+        link.name);
   return line + "\n";
 }
 
@@ -79,6 +82,7 @@ void append_details(std::string& line, const haptics::Program& program, const ex
     number(link.weight);
     append_vector(line, link.force_n);
     number(link.energy_j(program.metres_per_unit));
+    number(link.booked_j);
   }
   line += '\n';
 }
@@ -117,6 +121,13 @@ std::string stats_json(const haptics::ReplayStats& s) {
       s.ticks, s.tick_ns_p50, s.tick_ns_p99, s.tick_ns_p999, s.tick_ns_max, s.evaluations_p50, s.evaluations_max, s.state_hash);
 }
 
+// A scene that names its device is replayed as that device would give it; without one nothing is limited.
+Result<haptics::Limits> device_limits(const scene::Scene& scene, const std::string& path) {
+  if (!scene.device) return haptics::Limits{};
+  CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, path));
+  return haptics::limits_for(haptics::nominal_capabilities(settings.type), settings);
+}
+
 Outcome replay_scene(const Options& options) {
   if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to replay"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
@@ -131,7 +142,8 @@ Outcome replay_scene(const Options& options) {
   }
   if (!options.details.empty() && !options.stats.empty() && same_file(options.details, options.stats))
     return Error{options.details + ": --details and --stats name one file: expected two"};
-  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  CATENA_TRY(const haptics::Limits limits, device_limits(scene, options.scene));
+  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene, limits));
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));
   const std::vector<haptics::ProbeSample> path = probe_samples(rows);
 

@@ -22,6 +22,8 @@ Mechanics mechanics_of(const DeviceCapabilities& device, const DeviceSettings& s
   return m;
 }
 
+double most_added_damping(double mass_kg, double period_s, double delay_s) { return 0.25 * mass_kg / (period_s + delay_s); }
+
 Limits limits_for(const DeviceCapabilities& device, const DeviceSettings& settings) {
   const Mechanics m = mechanics_of(device, settings);
   const double period_s = 1 / settings.rate_hz;
@@ -35,7 +37,7 @@ Limits limits_for(const DeviceCapabilities& device, const DeviceSettings& settin
     limits.slew_n_per_s = std::min(device.max_force_n / kFullForceIn_s, kMostSlew);
     limits.ramp_in_s = kRampIn_s;
     limits.passivity = settings.passivity;
-    limits.max_added_damping_ns_per_m = 0.25 * m.mass_kg / (period_s + m.delay_s);
+    limits.max_added_damping_ns_per_m = most_added_damping(m.mass_kg, period_s, m.delay_s);
     if (settings.cap == DeviceSettings::Cap::safe) limits.max_stiffness_n_per_m = safe_stiffness(m, period_s).n_per_m();
   }
   if (device.max_torque_nm > 0) limits.max_torque_nm = device.max_torque_nm;

@@ -55,8 +55,8 @@ TEST_P(StillProbe, GetsNoEnergyButBySnapOrSwitch) {
   int held = 0;
   wander([&](const Vec3& probe, bool still) {
     const exchange::LinkReport now = felt.tick(probe);
-    // a search that is out of budget goes on with a still probe; taking hold and letting go are told apart by `active`
-    const bool goes_on = before.status == Status::budget || now.active != before.active;
+    // a search that was out of budget may take hold of something; otherwise that is told apart by `active`
+    const bool goes_on = (before.status == Status::budget && now.status != Status::budget) || now.active != before.active;
     if (still && !goes_on) {
       ++held;
       ASSERT_LE(now.booked_j - before.booked_j, most) << "tick " << felt.ticks << " " << exchange::status_word(now.status);
