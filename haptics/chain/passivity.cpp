@@ -35,7 +35,8 @@ PassivityState::Sent acted(const PassivityState& state, double delay_s, double d
   const Sent& newer = state.past[(state.next + size - 1 - whole) % size];
   const Sent& older = state.past[(state.next + size - 2 - whole) % size];
   const auto mix = [part](const Vec3& a, const Vec3& b) { return a * part + b * (1 - part); };
-  return {mix(older.force_n, newer.force_n), mix(older.granted_n, newer.granted_n), mix(older.added_n, newer.added_n)};
+  return {mix(older.force_n, newer.force_n), mix(older.granted_n, newer.granted_n), mix(older.fading_n, newer.fading_n),
+          mix(older.added_n, newer.added_n)};
 }
 
 // The force that takes `need_j` from a hand that goes on by `move_m` in the next tick.
@@ -58,7 +59,12 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
 
   // what the last tick's force has done since
   const PassivityState::Sent did = acted(state, limits.delay_s, tick.dt_s);
-  const double work_j = dot(did.force_n, move_m), free_j = dot(did.granted_n, move_m), taken_j = -dot(did.added_n, move_m);
+  const double work_j = dot(did.force_n, move_m), taken_j = -dot(did.added_n, move_m);
+  // what fades is granted as far as there is something left of what the switch took away
+  const bool fades = max_abs(did.fading_n) > 0 || max_abs(tick.fading_n) > 0;
+  const double faded_j = std::fmin(dot(did.fading_n, move_m), state.let_go_j);
+  state.let_go_j = fades ? state.let_go_j - faded_j : 0;
+  const double free_j = dot(did.granted_n, move_m) + faded_j;
 
   // what of the chain's force is sent, and what its springs can give back through the limits
   const double asked = dot(tick.sum_n, tick.sum_n);
@@ -72,7 +78,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   // by link: the ledger, and what weights that rise put in
   bool anew = state.anew || !(tick.order == state.order);
   double storage_j = 0, raised_j = 0;
-  Vec3 other_n = tick.other_n;
+  Vec3 granted_n = tick.cues_n;
   for (std::size_t i = 0; i < count; ++i) {
     const LinkState& link = links[i];
     const Vec3& force_n = tick.shares_n[i];
@@ -84,7 +90,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
     state.apart[i] = apart;
     const double stored_j = share * dot(force_n, tick.reach);
     if (link.on && program.links[i].constraint->is_source()) {
-      other_n += force_n;
+      granted_n += force_n;
       state.stored_j[i] = 0;
     } else {
       state.stored_j[i] = stored_j;
@@ -99,6 +105,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   const double made_j = work_j - free_j + storage_j - state.storage_j;
   const double own_j = tick.dt_s > 0 ? limits.damping_ns_per_m * dot(move_m, move_m) / tick.dt_s : 0;
   const double booked_j = anew ? std::fmax(0.0, made_j) : std::fmax(0.0, raised_j);
+  if (anew && fades) state.let_go_j += std::fmax(0.0, -made_j);
   state.granted_j += booked_j + free_j;
   const double step_j = own_j - made_j + booked_j;
   state.balance_j = std::fmin(0.0, state.balance_j + step_j);
@@ -106,7 +113,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   state.storage_j = storage_j;
   if (!std::isfinite(state.balance_j + state.granted_j + state.dissipated_j + state.storage_j)) {
     // forces or places too large for a double: the account begins again
-    state.balance_j = state.granted_j = state.dissipated_j = state.storage_j = 0;
+    state.balance_j = state.granted_j = state.dissipated_j = state.storage_j = state.let_go_j = 0;
     state.given_j.fill(0);
     state.stored_j.fill(0);
   }
@@ -124,7 +131,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
     }
   }
 
-  state.past[state.next] = {guard.force_n, other_n * sent, added_n};
+  state.past[state.next] = {guard.force_n, granted_n * sent, tick.fading_n * sent, added_n};
   state.next = (state.next + 1) % PassivityState::kPast;
   state.ramp = ramp;
   state.order = tick.order;
@@ -135,7 +142,7 @@ void suspend(PassivityState& state) noexcept {
   state.sent_n.fill(Vec3(0.0));
   state.stored_j.fill(0);
   state.past.fill({});
-  state.storage_j = state.ramp = 0;
+  state.storage_j = state.ramp = state.let_go_j = 0;
   state.anew = true;
 }
 

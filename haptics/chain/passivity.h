@@ -13,8 +13,8 @@
 ///             class of sampled-data systems", J. Robotic Systems 14(1), 1997). A surplus is not kept: it would pay for what
 ///             an unstable contact gives out later.
 ///   granted   to the hand by the program, not to be taken back by the controller: the jumps of V at switches, snaps and
-///             programs, weights and ramps that rise, what fades (fade.h), cues, and links that are sources of energy by what
-///             they are (Constraint::is_source: gradient_force), which have no storage
+///             programs, weights and ramps that rise, what fades (fade.h) as far as the springs that were taken away had it, cues, and
+///             links that are sources of energy by what they are (Constraint::is_source: gradient_force), which have no storage
 ///   controller  where B and its last step together are below 0: a force along -dx that takes that much within the next tick if the
 ///             hand goes on as it does, at most max_added_damping
 /// A device's delay: the observer's work is that of the forces that acted since the last tick; a link's own ledger is that of its
@@ -31,6 +31,7 @@ struct PassivityState {
   struct Sent {
     Vec3 force_n{0.0};
     Vec3 granted_n{0.0};  ///< its part that is granted
+    Vec3 fading_n{0.0};   ///< its part that fades after a switch
     Vec3 added_n{0.0};    ///< the controller's
   };
   static constexpr std::uint32_t kPast = 16;  ///< a delay of more than 14 periods counts as 14
@@ -61,8 +62,8 @@ struct LedgerTick {
   double dt_s = 0;
   const Order& order;
   const std::array<Vec3, kMaxLinks>& shares_n;
-  Vec3 other_n{0.0};  ///< cues, and what fades
-  Vec3 sum_n{0.0};    ///< shares, others and damping, before any limit
+  Vec3 cues_n{0.0}, fading_n{0.0};
+  Vec3 sum_n{0.0};  ///< shares, others and damping, before any limit
 };
 
 /// Books the tick; adds the controller's force to guard.force_n. `guard` is this tick's, `links` are.

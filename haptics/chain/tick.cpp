@@ -194,11 +194,10 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
     felt[i] += cue;
     cues += cue;
   }
-  Vec3 others = cues;
+  Vec3 fading(0.0);
   if (state.has_probe) {
-    const Vec3 fading = step_fade(state.fade, order, felt, ramp_step);
+    fading = step_fade(state.fade, order, felt, ramp_step);
     force += fading;
-    others += fading;
   } else {
     state.fade.order = order;
     state.fade.shares = felt;
@@ -218,7 +217,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   state.force_n = force;
   guard(program.limits, {force, Vec3(0.0), probe.condition, probe.forces_on, dt}, state.guard);
   const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
-  settle(program, state.links, {move, coupled.reach, dt, order, coupled.shares_n, others, sum}, state.guard, state.passivity);
+  settle(program, state.links, {move, coupled.reach, dt, order, coupled.shares_n, cues, fading, sum}, state.guard, state.passivity);
   state.last_probe = probe.position;
   state.last_t_s = probe.t_s;
   state.has_probe = true;

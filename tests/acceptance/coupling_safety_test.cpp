@@ -99,7 +99,9 @@ TEST(CouplingSafety, ModesThatSwitchWhileTheHandIsHeldBookEachSwitch) {
   const Program p = limited(scene, above_the_limit(true));
   std::vector<haptics::SimulatedHand::Waypoint> path;
   for (int k = 0; k < 20; ++k) path.push_back({0.1 * k, Vec3(0.0), k % 2 == 0 ? 1u : 2u});
-  ClosedLoop loop(p, nobody(), path);
+  HandParameters slack = nobody();
+  slack.damping_ns_per_m = 5;  // a hand that damps, and wants nowhere
+  ClosedLoop loop(p, slack, path);
   double before = 0;
   for (int k = 0; k < 20; ++k) {
     const double most = most_kinetic(loop, 100), granted = loop.state->passivity.granted_j;
@@ -155,7 +157,7 @@ TEST(CouplingSafety, ATremblingHandOnTheChainFeelsNoShaking) {
   const Felt safe = follow(limited(chain_scene(20000), simulated_limits()));
   EXPECT_LT(safe.most_j, 8 * own_j);
   EXPECT_LE(safe.most_force_n, 8 + 1e-12);
-  EXPECT_GT(safe.most_force_n, 1);
+  EXPECT_GT(safe.most_force_n, 0.5);
   EXPECT_GT(safe.least_energy_j, -1e-3);
 
   // without any: it shakes as hard as the force allows; the controller alone quiets that

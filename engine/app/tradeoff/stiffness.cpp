@@ -10,6 +10,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/figures.h"
+#include "haptics/chain/tick.h"
 #include "haptics/device/safe_stiffness.h"
 #include "haptics/device/simulated_hand.h"
 #include "haptics/extract/extract.h"
@@ -84,11 +85,12 @@ class Swing {
     return most;
   }
   bool dies_away() {
+    const double most = 1e4 * start_j();
     window();
     const double first = window();
     double last = first;
-    for (int i = 0; i < 6 && last < 1e3 * first; ++i) last = window();
-    return last < first;
+    for (int i = 0; i < 6 && last < most; ++i) last = window();
+    return last < first && last < most;
   }
   bool stays_bounded() {
     for (int i = 0; i < 8; ++i)

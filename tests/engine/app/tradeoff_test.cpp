@@ -141,7 +141,9 @@ TEST(Tradeoff, FigureStiffnessMeasuresTheLargestSpring) {
     const double stable = damping.number(row, "stable_n_per_m") / passive;
     EXPECT_GT(stable, 0.99) << row;
     EXPECT_LT(stable, 1.1) << row;
-    if (b <= 2) EXPECT_GT(damping.number(row, "controlled_n_per_m"), 2.9 * passive) << row;
+    if (b <= 2) {
+      EXPECT_GT(damping.number(row, "controlled_n_per_m"), 2.9 * passive) << row;
+    }
   }
   const Table virtuals = Table::read(folder / "out/stiffness-virtual.csv");
   const std::map<double, std::pair<double, double>> expected{
