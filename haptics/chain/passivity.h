@@ -48,6 +48,7 @@ struct PassivityState {
   double storage_j = 0;  ///< V
   double balance_j = 0;  ///< B
   double granted_j = 0;  ///< since the start
+  double let_go_j = 0;   ///< by springs that a switch took away: what may still fade
   double dissipated_j = 0;
   bool anew = true;  ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
 
