@@ -13,7 +13,9 @@
 #include "engine/app/tick_csv.h"
 #include "engine/base/csv_paths.h"
 #include "engine/base/output_file.h"
+#include "haptics/device/registry.h"
 #include "haptics/extract/extract.h"
+#include "haptics/servo/limits_for.h"
 #include "haptics/servo/replay.h"
 
 namespace catena::app {
@@ -47,6 +49,13 @@ struct Felt {
   }
 };
 
+// A scene that names its device is replayed as that device would give it; without one nothing is limited.
+Result<haptics::Limits> device_limits(const scene::Scene& scene, const std::string& path) {
+  if (!scene.device) return haptics::Limits{};
+  CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, path));
+  return haptics::limits_for(haptics::nominal_capabilities(settings.type), settings);
+}
+
 Outcome replay_scene(const ReplayOptions& options) {
   if (options.scene.empty()) return Error{"SCENE is required (see catena replay --help)"};
   if (options.probe.empty()) return Error{"--probe or --log is required (see catena replay --help)"};
@@ -56,7 +65,8 @@ Outcome replay_scene(const ReplayOptions& options) {
   std::vector<std::string> inputs = inputs_of(scene);
   inputs.push_back(options.probe);
   CATENA_CHECK(check_replay_outputs(options, inputs));
-  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  CATENA_TRY(const haptics::Limits limits, device_limits(scene, options.scene));
+  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene, limits));
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));
   const std::vector<haptics::ProbeSample> path = probe_samples(rows);
   const bool turns = rows.front().has_orientation;

@@ -77,7 +77,8 @@ std::string details_header(const LinkColumns& columns) {
   std::string line = "t,mode";
   for (const std::string& name : columns.names())
     line += fmt::format(
-        ",{0}_gap,{0}_leaving,{0}_left,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy", name);
+        ",{0}_gap,{0}_leaving,{0}_left,{0}_residual,{0}_stiffness,{0}_weight,{0}_force_x,{0}_force_y,{0}_force_z,{0}_energy,{0}_booked",
+        name);
   return line;
 }
 
@@ -105,6 +106,7 @@ void append_details(std::string& line, const LinkColumns& columns, const std::ve
     number(link.weight);
     append_vector(line, link.force_n);
     number(link.energy_j(metres_per_unit));
+    number(link.booked_j);
   }
 }
 

@@ -99,6 +99,9 @@ class Constraint {
   /// several ticks over the search.
   virtual void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept { start(probe, state, scratch); }
 
+  /// True where it draws the hand by what it is, rather than holds it: the ledger (passivity.h) grants what it gives.
+  virtual bool is_source() const noexcept { return false; }
+
   /// Its domain length L, for tolerances and tests.
   virtual double domain_length() const noexcept { return 4; }
 };

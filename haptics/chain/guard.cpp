@@ -2,13 +2,91 @@
 
 namespace catena::haptics {
 
+namespace {
+
+constexpr double kLeastStep = 1e-3;  // of a ramp out, a tick: it ends whatever the clock does
+
+void stop(GuardState& state, ForceState as) noexcept {
+  state.force_n = state.torque_nm = Vec3(0.0);
+  state.ramp = 0;
+  state.force_state = as;
+}
+
+double step_out(const Limits& limits, double dt_s) noexcept {
+  return limits.ramp_out_s > 0 ? std::fmax(kLeastStep, dt_s / limits.ramp_out_s) : 1;
+}
+
+// Magnitude, direction kept.
+void limit(const Limits& limits, GuardState& state) noexcept {
+  state.force_n = at_most(state.force_n, limits.max_force_n);
+  state.torque_nm = at_most(state.torque_nm, limits.max_torque_nm);
+}
+
+void hold(const Limits& limits, double dt_s, GuardState& state) noexcept {
+  if (state.force_state == ForceState::stopped || state.force_state == ForceState::off) return stop(state, state.force_state);
+  if (++state.late == 1) {
+    state.held_n = state.force_n;
+    state.held_nm = state.torque_nm;
+    state.hold = 1;
+  }
+  if (state.late <= limits.late_ticks) {
+    state.force_state = ForceState::held;
+    return;
+  }
+  state.late = limits.late_ticks + 1;
+  const double step = step_out(limits, dt_s);
+  state.hold = state.hold > step ? state.hold - step : 0;
+  if (!(state.hold > 0)) return stop(state, ForceState::stopped);
+  state.force_n = state.held_n * state.hold;
+  state.torque_nm = state.held_nm * state.hold;
+  state.force_state = ForceState::ramping_out;
+}
+
+void ramp_out(const Limits& limits, const GuardInput& input, GuardState& state) noexcept {
+  const double step = step_out(limits, input.dt_s);
+  state.ramp = state.ramp > step ? state.ramp - step : 0;
+  if (!(state.ramp > 0)) return stop(state, ForceState::off);
+  state.force_n = input.force_n * state.ramp;
+  state.torque_nm = input.torque_nm * state.ramp;
+  state.force_state = ForceState::ramping_out;
+  limit(limits, state);
+}
+
+void let_through(const Limits& limits, const GuardInput& input, GuardState& state) noexcept {
+  const double left = limits.ramp_in_s > 0 ? state.ramp + input.dt_s / limits.ramp_in_s : 1;
+  state.ramp = left < 1 ? left : 1;
+  state.force_state = state.ramp < 1 ? ForceState::ramping_in : ForceState::on;
+  const Vec3 last_n = state.force_n;
+  state.force_n = state.ramp < 1 ? input.force_n * state.ramp : input.force_n;
+  state.torque_nm = state.ramp < 1 ? input.torque_nm * state.ramp : input.torque_nm;
+  limit(limits, state);
+  if (limits.slew_n_per_s < Limits::kNone) {
+    const Vec3 step = state.force_n - last_n;
+    const double most = limits.slew_n_per_s * input.dt_s;
+    if (norm(step) > most) state.force_n = last_n + at_most(step, most);
+  }
+}
+
+}  // namespace
+
+Vec3 at_most(const Vec3& v, double most) noexcept {
+  const double length = norm(v);
+  return length > most ? v * (most / length) : v;
+}
+
 void guard(const Limits& limits, const GuardInput& input, GuardState& state) noexcept {
-  (void)limits;
-  const bool stopped = input.condition == Condition::no_device || input.condition == Condition::watchdog;
-  state.force_state = stopped ? ForceState::stopped : input.forces_on ? ForceState::on : ForceState::off;
-  const bool flows = state.force_state == ForceState::on;
-  state.force_n = flows ? input.force_n : Vec3(0.0);
-  state.torque_nm = flows ? input.torque_nm : Vec3(0.0);
+  const bool fault = input.condition == Condition::no_device || input.condition == Condition::watchdog || !is_finite(input.force_n) ||
+                     !is_finite(input.torque_nm);
+  const bool late = !fault && input.condition == Condition::late;
+  // ticks in time again after a hold: on from what the hold has left
+  if (!late && state.late > 0) {
+    if (state.late > limits.late_ticks) state.ramp *= state.hold;
+    state.late = 0;
+  }
+  if (fault) return stop(state, ForceState::stopped);
+  if (!input.forces_on) return ramp_out(limits, input, state);
+  if (late) return hold(limits, input.dt_s, state);
+  let_through(limits, input, state);
 }
 
 }  // namespace catena::haptics

@@ -1,7 +1,13 @@
-/// The last step of a tick: what the chain asks for -> what the hand gets. A pure function of (limits, probe, state).
-///   lost device, watchdog, a force that is not finite: zero in this tick;  late: the last force, then a ramp to zero
-///   switched off: zero;  switched on: a ramp;  then passivity, slew and magnitude limits
-/// With default limits and normal ticks it changes nothing, to the bit. Haptic thread.
+/// The last step of a tick: what the chain asks for -> what the hand gets. A pure function of (limits, input, state).
+///   fault    no device, watchdog, a force that is not finite: zero in this very tick                           STOPPED
+///   late     up to late_ticks in a row: the last force                                                         HELD
+///            more: from that force to zero, linearly over ramp_out_s                                RAMPING_OUT, STOPPED
+///   off      switched off by a person: the chain's force to zero, linearly over ramp_out_s              RAMPING_OUT, OFF
+///   normal   the chain's force; from the first tick on, and after each of the above, times a factor that rises
+///            linearly to 1 in ramp_in_s (from where a ramp out has left it)                              RAMPING_IN, ON
+/// A normal force is then limited: |F| and |torque|, direction kept, then |F - last F| <= slew dt. The slew limit never delays
+/// the way to zero. The tick at which the ramps begin counts with its dt; a clock that stands still ends a ramp out all the
+/// same, within 1000 ticks. With default limits and normal ticks it changes nothing, to the bit. Haptic thread.
 #pragma once
 #include "engine/exchange/haptic_state.h"
 #include "haptics/chain/limits.h"
@@ -14,6 +20,11 @@ using exchange::ForceState;
 struct GuardState {
   Vec3 force_n{0.0};  ///< the last one that was sent
   Vec3 torque_nm{0.0};
+  Vec3 held_n{0.0};  ///< at the first of the late ticks
+  Vec3 held_nm{0.0};
+  double ramp = 0;  ///< 0..1: the part of the chain's force that is let through
+  double hold = 1;  ///< 1..0: the part of what is held
+  int late = 0;     ///< ticks in a row
   ForceState force_state = ForceState::on;
 };
 
@@ -27,5 +38,8 @@ struct GuardInput {
 
 /// Sets state.force_n, torque_nm, force_state: what the hand gets in this tick.
 void guard(const Limits& limits, const GuardInput& input, GuardState& state) noexcept;
+
+/// `v` no longer than `most`, direction kept; itself where it is not longer. `v` is finite.
+Vec3 at_most(const Vec3& v, double most) noexcept;
 
 }  // namespace catena::haptics

@@ -17,6 +17,8 @@ struct Limits {
   int late_ticks = 5;                                  ///< so many late ticks in a row hold the last force; more ramp out
   bool passivity = false;                              ///< observer and controller
   double damping_ns_per_m = 0;                         ///< the device's own, on which the observer may count
+  double delay_s = 0;                                  ///< from the pose to the force: the observer counts the force that acted
+  double max_added_damping_ns_per_m = kNone;           ///< most that the passivity controller may add; more shakes a light device
 };
 
 }  // namespace catena::haptics

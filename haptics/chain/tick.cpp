@@ -13,6 +13,7 @@ struct Coupled {
   std::array<Vec3, kMaxLinks> gaps{};      ///< p_i - p_(i-1), world units
   std::array<Vec3, kMaxLinks> shares_n{};  ///< of the force
   Vec3 force_n{0.0};
+  Vec3 reach{0.0};  ///< from the probe to the last proxy, world units
 };
 
 bool is_single(const Program& program) noexcept { return program.coupling.combination != Combination::chain; }
@@ -24,9 +25,13 @@ void switch_off(LinkState& link) noexcept {
   link.status = Status::free;
 }
 
+double capped(double stiffness, const Limits& limits) noexcept {
+  return stiffness > limits.max_stiffness_n_per_m ? limits.max_stiffness_n_per_m : stiffness;
+}
+
 // One link that is on: its start, its advance, its weight (the ramp after a switch).
-void advance_link(const Link& spec, const Vec3& incoming, bool first_tick, double dt, double ramp_step, LinkState& link,
-                  LinkScratch& scratch) noexcept {
+void advance_link(const Link& spec, const Limits& limits, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
+                  LinkState& link, LinkScratch& scratch) noexcept {
   link.evaluations = 0;
   link.dt_s = dt;
   if (!link.started) {
@@ -34,6 +39,7 @@ void advance_link(const Link& spec, const Vec3& incoming, bool first_tick, doubl
   } else {
     link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness, link.evaluations);
   }
+  link.stiffness_n_per_m = capped(link.stiffness_n_per_m, limits);
   spec.constraint->advance(incoming, link, scratch);
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
@@ -56,14 +62,16 @@ Coupled one_proxy(const Program& program, const Order& order, const Vec3& probe,
   Coupled out;
   const Vec3 gap = state.single.proxy - probe;
   for (std::size_t i = 0; i < kMaxLinks; ++i) {
-    const LinkState& link = state.links[i];
+    LinkState& link = state.links[i];
+    link.stiffness_n_per_m = capped(link.stiffness_n_per_m, program.limits);
     if (!link.on || !state.single.watches[i].holds) continue;
     out.gaps[i] = gap;
     out.shares_n[i] = gap * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
   }
   // a switch moves the one proxy, so that all of the force's step fades
   if (!same_order) state.fade.replaced = true;
-  out.force_n = gap * (program.coupling.stiffness_n_per_m * program.metres_per_unit);
+  out.force_n = gap * (capped(program.coupling.stiffness_n_per_m, program.limits) * program.metres_per_unit);
+  out.reach = gap;
   return out;
 }
 
@@ -75,12 +83,13 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
   for (int k = 0; k < order.count; ++k) {
     const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
     LinkState& link = state.links[i];
-    advance_link(program.links[i], incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
+    advance_link(program.links[i], program.limits, incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
     out.gaps[i] = link.proxy - incoming;
     out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
     out.force_n += out.shares_n[i];
     incoming = link.proxy;
   }
+  out.reach = incoming - probe;
   pass_through(program, order, probe, state);
   return out;
 }
@@ -91,7 +100,8 @@ Vec3 huge_force(const Program& program, const Order& order, const Vec3& probe, d
   Vec3 incoming = probe, force(0.0);
   const bool single = is_single(program);
   if (single && order.count > 0)
-    force = (state.single.proxy * small - probe * small) * (program.coupling.stiffness_n_per_m * program.metres_per_unit * small);
+    force = (state.single.proxy * small - probe * small) *
+            (capped(program.coupling.stiffness_n_per_m, program.limits) * program.metres_per_unit * small);
   for (int k = 0; k < order.count && !single; ++k) {
     const LinkState& link = state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)])];
     force += (link.proxy * small - incoming * small) * (link.weight * link.stiffness_n_per_m * program.metres_per_unit * small);
@@ -117,6 +127,8 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
   out.force_state = state.guard.force_state;
   out.link_count = static_cast<std::int32_t>(program.links.size());
   out.mode = state.fade.order.mode;
+  out.energy_j = state.passivity.energy_j();
+  out.dissipated_j = state.passivity.dissipated_j;
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const LinkState& link = state.links[i];
     exchange::LinkReport& to = out.links[i];
@@ -124,6 +136,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
     to.residual = link.residual;
     to.weight = link.weight;
     to.stiffness_n_per_m = link.stiffness_n_per_m;
+    to.booked_j = bounded(state.passivity.booked_j(i));
     to.evaluations = link.evaluations;
     to.status = link.status;
     to.active = link.active();
@@ -141,6 +154,7 @@ void hold_all(const Program& program, ChainState& state, exchange::HapticState& 
   state.force_n = Vec3(0.0);
   // no pose, no force: whatever the clock says
   guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
+  suspend(state.passivity);
   ++state.ticks;
   report(program, state, out);
 }
@@ -180,8 +194,10 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
     felt[i] += cue;
     cues += cue;
   }
+  Vec3 fading(0.0);
   if (state.has_probe) {
-    force += step_fade(state.fade, order, felt, ramp_step);
+    fading = step_fade(state.fade, order, felt, ramp_step);
+    force += fading;
   } else {
     state.fade.order = order;
     state.fade.shares = felt;
@@ -190,6 +206,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
 
   // the coupling's damping, then the limit with the direction kept
   if (state.has_probe && dt > 0) force -= (probe.position - state.last_probe) * (program.coupling.damping_ns_per_m * s / dt);
+  const Vec3 sum = force;
   const double magnitude = norm(force);
   if (!std::isfinite(magnitude)) {
     force = direction(huge_force(program, order, probe.position, dt, state)) * program.coupling.max_force_n;
@@ -201,6 +218,8 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   const Vec3 torque =
       align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
   guard(program.limits, {force, torque, probe.condition, probe.forces_on, dt}, state.guard);
+  const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
+  settle(program, state.links, {move, coupled.reach, dt, order, coupled.shares_n, cues, fading, sum}, state.guard, state.passivity);
   state.last_probe = probe.position;
   state.last_t_s = probe.t_s;
   state.has_probe = true;

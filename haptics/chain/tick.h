@@ -4,7 +4,8 @@
 ///   plus what fades out after a switch (fade.h) and the cues of links that the hand leaves (indication.h), if any
 ///   torque: of links that align the tool (alignment.h), if any
 /// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
-/// then the guard (guard.h): what the device's limits and the tick's condition leave of it.
+/// then the guard (guard.h): what the device's limits and the tick's condition leave of it, and the ledger (passivity.h).
+/// No k_i, and no K of a baseline's force, is above the device's cap (limits.h).
 /// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE. A clock that goes back stands still for a tick.
 #pragma once
 #include "haptics/chain/alignment.h"
@@ -12,6 +13,7 @@
 #include "haptics/chain/fade.h"
 #include "haptics/chain/guard.h"
 #include "haptics/chain/indication.h"
+#include "haptics/chain/passivity.h"
 
 namespace catena::haptics {
 
@@ -35,6 +37,7 @@ struct ChainState {
   double last_t_s = 0;
   Vec3 force_n{0.0};  ///< that the chain asks for
   GuardState guard;   ///< what the hand gets
+  PassivityState passivity;
   std::uint64_t ticks = 0;
   bool has_probe = false;
 };

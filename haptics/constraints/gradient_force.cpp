@@ -36,6 +36,7 @@ class GradientForce final : public Constraint {
     if (max_abs(shift) > 0 && is_finite(proxy)) state.proxy = proxy;
   }
 
+  bool is_source() const noexcept override { return true; }
   double domain_length() const noexcept override { return field_->length(); }
 
  private:

@@ -69,6 +69,7 @@ class Snap final : public Constraint {
     return !outer_of<SnapMemory>(state).apart && inner_->primitive(at, state, scratch, out);
   }
   bool has_primitive() const noexcept override { return inner_->has_primitive(); }
+  bool is_source() const noexcept override { return inner_->is_source(); }
   double domain_length() const noexcept override { return inner_->domain_length(); }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/csv_paths.h"
+#include "engine/base/numbers.h"
 #include "haptics/device/hand_map.h"
 #include "haptics/device/mouse.h"
 #include "haptics/device/null_device.h"
@@ -26,11 +28,26 @@ Result<std::unique_ptr<Device>> open_null(const std::string&, const DeviceSettin
   return std::unique_ptr<Device>(std::make_unique<NullDevice>());
 }
 
-Result<std::unique_ptr<Device>> open_simulated(const std::string&, const DeviceSettings& settings) {
-  HandParameters parameters;
-  parameters.period_s = 1 / settings.rate_hz;
-  parameters.mass_kg = settings.mass_kg.value_or(parameters.mass_kg);
-  return std::unique_ptr<Device>(std::make_unique<SimulatedHand>(std::vector<SimulatedHand::Waypoint>{{}}, parameters));
+// "simulated": the hand rests at 0; "simulated:PATH.csv" (t,x,y,z[,buttons], metres of hand): it follows that path
+Result<std::unique_ptr<Device>> open_simulated(const std::string& detail, const DeviceSettings& settings) {
+  HandParameters p = simulated_device();
+  p.period_s = 1 / settings.rate_hz;
+  p.mass_kg = settings.mass_kg.value_or(p.mass_kg);
+  p.device_damping_ns_per_m = settings.damping_ns_per_m.value_or(p.device_damping_ns_per_m);
+  p.friction_n = settings.friction_n.value_or(p.friction_n);
+  p.encoder_step_m = settings.encoder_step_m.value_or(p.encoder_step_m);
+  p.delay_s = settings.delay_s.value_or(p.delay_s);
+  if (p.delay_s > HandParameters::kMostDelay * p.period_s)
+    return Error{"simulated: a delay of " + to_text(p.delay_s) + " s is too long; at most " +
+                 to_text(HandParameters::kMostDelay * p.period_s) + " s (" + std::to_string(HandParameters::kMostDelay) +
+                 " periods) were expected"};
+  std::vector<SimulatedHand::Waypoint> path{{}};
+  if (!detail.empty()) {
+    CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(detail));
+    path.clear();
+    for (const ProbeRow& row : rows) path.push_back({row.t_s, row.position, row.buttons});
+  }
+  return std::unique_ptr<Device>(std::make_unique<SimulatedHand>(std::move(path), p));
 }
 
 Result<std::unique_ptr<Device>> open_simulated_tool(const std::string& detail, const DeviceSettings& settings) {
@@ -63,9 +80,11 @@ const std::vector<DeviceType>& types() {
          to.push_back({"null", true, "no device: the probe rests, forces go nowhere"});
        },
        open_null},
-      {"simulated", [] { return SimulatedHand({{}}, {}).capabilities(); },
+      {"simulated", [] { return SimulatedHand({{}}, simulated_device()).capabilities(); },
        [](std::vector<DeviceInfo>& to) {
-         to.push_back({"simulated", true, "a simulated mechanism in a simulated hand"});
+         to.push_back(
+             {"simulated", true,
+              "a simulated mechanism in a simulated hand; simulated:PATH.csv: t,x,y,z[,buttons], where the hand wants to be, metres"});
        },
        open_simulated},
       {"simulated-6dof", [] { return (*open_simulated_tool("", DeviceSettings{}))->capabilities(); },

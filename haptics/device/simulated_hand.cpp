@@ -1,13 +1,71 @@
 #include "haptics/device/simulated_hand.h"
 
+#include <cmath>
+
 #include "engine/base/assert.h"
 
 namespace catena::haptics {
 
+namespace {
+
+constexpr int kSteps = 8;  // a period, where friction or a grip ask for more than one
+constexpr double kTwoPi = 6.283185307179586;
+constexpr double kTremorHz[] = {8.3, 9.1, 10.2, 11.6};
+
+Vec3 tremor(double t_s, double rms_m, Vec3& velocity) noexcept {
+  // four sines of equal amplitude a: their root mean square is a sqrt(2)
+  const double amplitude = rms_m / 1.4142135623730951;
+  Vec3 sum(0.0);
+  for (int axis = 0; axis < 3; ++axis)
+    for (int k = 0; k < 4; ++k) {
+      const double rate = kTwoPi * kTremorHz[k], angle = rate * t_s + 1.3 * axis + 2.1 * k;
+      sum[axis] += amplitude * std::sin(angle);
+      velocity[axis] += amplitude * rate * std::cos(angle);
+    }
+  return sum;
+}
+
+}  // namespace
+
+HandParameters simulated_device() {
+  HandParameters p;
+  p.mass_kg = 0.159;
+  p.device_damping_ns_per_m = 0.5;
+  p.friction_n = 0.1;
+  p.encoder_step_m = 4e-5;
+  p.max_force_n = 10;
+  return p;
+}
+
 SimulatedHand::SimulatedHand(std::vector<Waypoint> path, const HandParameters& parameters)
-    : path_(std::move(path)), parameters_(parameters), capabilities_{.name = "simulated hand", .max_force_n = 100} {
-  CATENA_ASSERT(!path_.empty() && parameters_.mass_kg > 0 && parameters_.period_s > 0);
-  position_m_ = path_.front().position_m;
+    : path_(std::move(path)), parameters_(parameters) {
+  const HandParameters& p = parameters_;
+  CATENA_ASSERT(!path_.empty() && p.mass_kg > 0 && p.hand_mass_kg >= 0 && p.period_s > 0);
+  CATENA_ASSERT(p.delay_s >= 0 && p.delay_s <= HandParameters::kMostDelay * p.period_s && p.encoder_step_m >= 0 && p.friction_n >= 0);
+  capabilities_ = {.name = "simulated hand",
+                   .max_force_n = p.max_force_n,
+                   .mechanics = {.mass_kg = p.mass_kg,
+                                 .damping_ns_per_m = p.device_damping_ns_per_m,
+                                 .friction_n = p.friction_n,
+                                 .encoder_step_m = p.encoder_step_m,
+                                 .delay_s = p.delay_s}};
+  mass_ = {path_.front().position_m, p.velocity_m_per_s};
+  const double periods = p.delay_s / p.period_s + 1e-9;
+  delay_ticks_ = static_cast<std::uint64_t>(periods);
+  const double rest_s = std::fmax(0.0, p.delay_s - static_cast<double>(delay_ticks_) * p.period_s);
+  before_ = part(rest_s > 1e-6 * p.period_s ? rest_s : 0);
+  after_ = part(p.period_s - before_.step.step_s * before_.steps);
+}
+
+SimulatedHand::Part SimulatedHand::part(double length_s) const {
+  const HandParameters& p = parameters_;
+  if (!(length_s > 0)) return {};
+  const bool plain = p.friction_n == 0 && p.stiffness_n_per_m == 0 && p.damping_ns_per_m == 0;
+  Part out;
+  out.steps = plain ? 1 : std::max(1, static_cast<int>(std::lround(kSteps * length_s / p.period_s)));
+  out.step =
+      linear_step(p.mass_kg + p.hand_mass_kg, p.device_damping_ns_per_m + p.damping_ns_per_m, p.stiffness_n_per_m, length_s / out.steps);
+  return out;
 }
 
 Vec3 SimulatedHand::wish(double t_s, Vec3& velocity) noexcept {
@@ -20,23 +78,48 @@ Vec3 SimulatedHand::wish(double t_s, Vec3& velocity) noexcept {
   return a.position_m + velocity * (t_s - a.t_s);
 }
 
-DeviceInput SimulatedHand::read() noexcept {
-  const double dt = parameters_.period_s;
-  Vec3 wish_velocity;
-  const Vec3 target = wish(path_.front().t_s + static_cast<double>(ticks_) * dt, wish_velocity);
-  if (ticks_ > 0) {
-    const Vec3 force =
-        (target - position_m_) * parameters_.stiffness_n_per_m + (wish_velocity - velocity_) * parameters_.damping_ns_per_m + force_n_;
-    velocity_ += force * (dt / parameters_.mass_kg);
-    position_m_ += velocity_ * dt;
+const Vec3& SimulatedHand::written(std::uint64_t ticks_ago) const noexcept {
+  static const Vec3 none(0.0);
+  return ticks_ago <= ticks_ ? written_[(ticks_ - ticks_ago) % written_.size()] : none;
+}
+
+void SimulatedHand::advance_part(const Part& part, const Vec3& force_n, double& t_s) noexcept {
+  for (int i = 0; i < part.steps; ++i) {
+    Vec3 velocity;
+    Vec3 target = wish(t_s + 0.5 * part.step.step_s, velocity);
+    if (parameters_.tremor_m > 0) target += tremor(t_s + 0.5 * part.step.step_s, parameters_.tremor_m, velocity);
+    const Vec3 u = force_n + (target - mass_.position_m) * parameters_.stiffness_n_per_m + velocity * parameters_.damping_ns_per_m;
+    advance(part.step, u, parameters_.friction_n, mass_);
+    t_s += part.step.step_s;
   }
+}
+
+DeviceInput SimulatedHand::read() noexcept {
+  const double start_s = path_.front().t_s, period_s = parameters_.period_s;
+  if (ticks_ > 0) {
+    double t = start_s + static_cast<double>(ticks_ - 1) * period_s;
+    advance_part(before_, written(delay_ticks_ + 2), t);
+    advance_part(after_, written(delay_ticks_ + 1), t);
+  }
+  Vec3 velocity;
+  wish(start_s + static_cast<double>(ticks_) * period_s, velocity);
+  written_[ticks_ % written_.size()] = Vec3(0.0);
   ++ticks_;
   DeviceInput input;
-  input.position_m = position_m_;
+  input.position_m = mass_.position_m;
+  const double step = parameters_.encoder_step_m;
+  if (step > 0)
+    for (int axis = 0; axis < 3; ++axis) input.position_m[axis] = step * std::floor(input.position_m[axis] / step + 0.5);
   input.buttons = path_[segment_].buttons;
   return input;
 }
 
-void SimulatedHand::write(const DeviceOutput& output) noexcept { force_n_ = output.force_n; }
+// acts from the tick that was read last
+void SimulatedHand::write(const DeviceOutput& output) noexcept {
+  if (ticks_ == 0) return;
+  const double length = norm(output.force_n), most = parameters_.max_force_n;
+  Vec3& to = written_[(ticks_ - 1) % written_.size()];
+  to = !std::isfinite(length) ? Vec3(0.0) : length > most ? output.force_n * (most / length) : output.force_n;
+}
 
 }  // namespace catena::haptics

@@ -1,19 +1,40 @@
-/// A device without hardware: a point mass held by a hand (spring and damper toward a scripted path) that feels the force.
-///   m a = k_h (x_path - x) + b_h (v_path - v) + F,   semi-implicit Euler at the tick's period
-/// Deterministic: the same path and forces give the same bits. Haptic thread.
+/// A device without hardware: a mechanism (mass, damping, Coulomb friction, encoders, delay, motors that saturate) in a hand
+/// that holds on to it (spring, damper and mass toward a scripted path, with tremor). mechanism.h has the model and its steps.
+///   pose      the position at the tick, rounded to the encoder's step
+///   force     what was written at tick k acts from t_k + delay until the next one does: whole periods and parts of one;
+///             |F| at most max_force, direction kept
+///   tremor    on the wish, per axis: four sines between 8 and 12 Hz, phases fixed, of the stated root mean square
+/// Deterministic: the same path and forces give the same bits. Metres, device axes. Haptic thread.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "haptics/device/device.h"
+#include "haptics/device/mechanism.h"
 
 namespace catena::haptics {
 
+/// Ideal but for mass and grip; see simulated_device() for a real one.
 struct HandParameters {
-  double mass_kg = 0.15;
-  double stiffness_n_per_m = 500;  ///< of the hand's grip toward where it wants to be
-  double damping_ns_per_m = 5;
+  double mass_kg = 0.15;           ///< of the mechanism
+  double stiffness_n_per_m = 500;  ///< of the grip, toward where the hand wants to be; 0 with damping 0: let go
+  double damping_ns_per_m = 5;     ///< of the grip
   double period_s = 1e-3;
+  double hand_mass_kg = 0;  ///< of the hand, that moves with it
+  double tremor_m = 0;      ///< root mean square, each axis
+  double device_damping_ns_per_m = 0;
+  double friction_n = 0;
+  double encoder_step_m = 0;  ///< 0: continuous
+  double delay_s = 0;         ///< at most kMostDelay periods
+  double max_force_n = 100;
+  Vec3 velocity_m_per_s{0.0};  ///< at the start
+
+  static constexpr int kMostDelay = 62;
 };
+
+/// A desktop mechanism of the kind that the linear limits of the literature are worked out for: 0.159 kg, 0.5 N s/m, 0.1 N,
+/// steps of 0.04 mm, no delay, 10 N. At 1 kHz it shows 1000 N/m safely (safe_stiffness.h).
+HandParameters simulated_device();
 
 class SimulatedHand final : public Device {
  public:
@@ -22,24 +43,35 @@ class SimulatedHand final : public Device {
     Vec3 position_m{0.0};
     std::uint32_t buttons = 0;
   };
-  /// `path` has at least one waypoint, t rising; between them the wish moves linearly, after the last it rests.
+  /// `path` has at least one waypoint, t rising; it starts there. Between them the wish moves linearly, after the last it rests.
   SimulatedHand(std::vector<Waypoint> path, const HandParameters& parameters);
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;
   void write(const DeviceOutput& output) noexcept override;
 
-  const Vec3& position_m() const { return position_m_; }
+  const Vec3& position_m() const { return mass_.position_m; }
+  const Vec3& velocity_m_per_s() const { return mass_.velocity_m_per_s; }
 
  private:
+  struct Part {
+    LinearStep step;
+    int steps = 0;
+  };
+  Part part(double length_s) const;
   Vec3 wish(double t_s, Vec3& velocity) noexcept;
+  void advance_part(const Part& part, const Vec3& force_n, double& t_s) noexcept;
+  const Vec3& written(std::uint64_t ticks_ago) const noexcept;
 
   std::vector<Waypoint> path_;
   HandParameters parameters_;
   DeviceCapabilities capabilities_;
+  std::uint64_t delay_ticks_ = 0;  ///< whole ones
+  Part before_, after_;            ///< the delay's part of a period, and the rest
   std::size_t segment_ = 0;
   std::uint64_t ticks_ = 0;
-  Vec3 position_m_{0.0}, velocity_{0.0}, force_n_{0.0};
+  MassState mass_;
+  std::array<Vec3, 64> written_{};  ///< forces, by tick
 };
 
 }  // namespace catena::haptics

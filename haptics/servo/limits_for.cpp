@@ -1,6 +1,16 @@
 #include "haptics/servo/limits_for.h"
 
+#include <algorithm>
+
+#include "haptics/device/safe_stiffness.h"
+
 namespace catena::haptics {
+
+namespace {
+
+constexpr double kRampIn_s = 0.5, kFullForceIn_s = 2e-3, kMostSlew = 1e4;
+
+}  // namespace
 
 Mechanics mechanics_of(const DeviceCapabilities& device, const DeviceSettings& settings) {
   Mechanics m = device.mechanics;
@@ -12,11 +22,32 @@ Mechanics mechanics_of(const DeviceCapabilities& device, const DeviceSettings& s
   return m;
 }
 
+double most_added_damping(double mass_kg, double period_s, double delay_s) { return 0.25 * mass_kg / (period_s + delay_s); }
+
 Limits limits_for(const DeviceCapabilities& device, const DeviceSettings& settings) {
+  const Mechanics m = mechanics_of(device, settings);
+  const double period_s = 1 / settings.rate_hz;
   Limits limits;
-  limits.damping_ns_per_m = mechanics_of(device, settings).damping_ns_per_m;
-  if (device.max_force_n > 0) limits.max_force_n = device.max_force_n;
-  if (settings.max_force_n) limits.max_force_n = *settings.max_force_n;
+  limits.damping_ns_per_m = m.damping_ns_per_m;
+  limits.delay_s = m.delay_s;
+
+  // the defaults of a device that can push
+  if (device.max_force_n > 0) {
+    limits.max_force_n = device.max_force_n;
+    limits.slew_n_per_s = std::min(device.max_force_n / kFullForceIn_s, kMostSlew);
+    limits.ramp_in_s = kRampIn_s;
+    limits.passivity = settings.passivity;
+    limits.max_added_damping_ns_per_m = most_added_damping(m.mass_kg, period_s, m.delay_s);
+    if (settings.cap == DeviceSettings::Cap::safe) limits.max_stiffness_n_per_m = safe_stiffness(m, period_s).n_per_m();
+  }
+  if (device.max_torque_nm > 0) limits.max_torque_nm = device.max_torque_nm;
+
+  // what the person says
+  if (settings.cap == DeviceSettings::Cap::value) limits.max_stiffness_n_per_m = settings.stiffness_cap_n_per_m;
+  limits.max_force_n = settings.max_force_n.value_or(limits.max_force_n);
+  limits.max_torque_nm = settings.max_torque_nm.value_or(limits.max_torque_nm);
+  limits.slew_n_per_s = settings.slew_n_per_s.value_or(limits.slew_n_per_s);
+  limits.ramp_in_s = settings.ramp_in_s.value_or(limits.ramp_in_s);
   return limits;
 }
 

@@ -16,11 +16,28 @@ void run_with(benchmark::State& state, const char* curve) {
   run_chain(state, program);
 }
 
+/// With what a device adds: guard, ledger and controller at work.
+void with_limits(benchmark::State& state, const char* curve) {
+  Program program;
+  program.links = {make_link(curve), make_link(kSurface)};
+  program.limits.max_stiffness_n_per_m = 400;
+  program.limits.max_force_n = 6;
+  program.limits.slew_n_per_s = 5000;
+  program.limits.ramp_in_s = 0.5;
+  program.limits.passivity = true;
+  program.limits.damping_ns_per_m = 0.1;
+  program.limits.delay_s = 5e-4;
+  program.limits.max_added_damping_ns_per_m = 40;
+  run_chain(state, program);
+}
+
 void TickEmpty(benchmark::State& state) { run_chain(state, Program{}); }
 void TickSelectedStreamlineAndIsosurface256(benchmark::State& state) { run_with(state, kSelected); }
 void TickOnlineStreamlineAndIsosurface256(benchmark::State& state) { run_with(state, kOnline); }
+void TickSelectedStreamlineAndIsosurface256OnADevice(benchmark::State& state) { with_limits(state, kSelected); }
 BENCHMARK(TickEmpty)->Unit(benchmark::kMillisecond);
 BENCHMARK(TickSelectedStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond);
+BENCHMARK(TickSelectedStreamlineAndIsosurface256OnADevice)->Unit(benchmark::kMillisecond);
 BENCHMARK(TickOnlineStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond);
 
 }  // namespace

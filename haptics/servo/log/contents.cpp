@@ -7,7 +7,7 @@
 namespace catena::haptics::log {
 
 // What a program brings along has grown: write it, read it, say so in format.h and raise kVersion.
-static_assert(sizeof(Limits) == 72 && sizeof(Coupling) == 40);
+static_assert(sizeof(Limits) == 88 && sizeof(Coupling) == 56);
 
 namespace {
 
@@ -15,11 +15,14 @@ namespace {
 template <class P, class F>
 void each_number(P& p, const F& each) {
   for (auto* v : {&p.limits.max_stiffness_n_per_m, &p.limits.max_rotational_stiffness_nm_per_rad, &p.limits.max_force_n,
-                  &p.limits.max_torque_nm, &p.limits.slew_n_per_s, &p.limits.ramp_in_s, &p.limits.ramp_out_s, &p.limits.damping_ns_per_m})
+                  &p.limits.max_torque_nm, &p.limits.slew_n_per_s, &p.limits.ramp_in_s, &p.limits.ramp_out_s, &p.limits.damping_ns_per_m,
+                  &p.limits.delay_s, &p.limits.max_added_damping_ns_per_m})
     each(*v);
   each(p.limits.late_ticks);
   each(p.limits.passivity);
-  for (auto* v : {&p.coupling.stiffness_n_per_m, &p.coupling.damping_ns_per_m, &p.coupling.max_force_n, &p.coupling.ramp_s}) each(*v);
+  for (auto* v : {&p.coupling.stiffness_n_per_m, &p.coupling.damping_ns_per_m, &p.coupling.max_force_n, &p.coupling.ramp_s,
+                  &p.coupling.rotational_stiffness_nm_per_rad, &p.coupling.rotational_damping_nms_per_rad})
+    each(*v);
   each(p.coupling.combination);
   each(p.metres_per_unit);
   for (int a = 0; a < 3; ++a) each(p.workspace_origin[a]);

@@ -16,8 +16,10 @@
 /// u8 known (0: nobody told the writer what follows; the rest is empty),
 ///            u8 text (0: the header's scene text, 1: its own), string scene text,
 ///            limits: f64 stiffness N/m, rotational stiffness N m/rad, force N, torque N m, slew N/s, ramp in s, ramp out s,
-///                    damping N s/m; i32 late ticks; u8 passivity                 (haptics/chain/limits.h; infinity: none)
-///            coupling: f64 stiffness N/m, damping N s/m, max force N, ramp s; u8 combination            (haptics/chain/program.h)
+///                    damping N s/m, delay s, most added damping N s/m; i32 late ticks; u8 passivity   (haptics/chain/limits.h;
+///                    infinity: none)
+///            coupling: f64 stiffness N/m, damping N s/m, max force N, ramp s, rotational stiffness N m/rad, rotational damping
+///                    N m s/rad; u8 combination                                   (haptics/chain/program.h)
 ///            f64 metres per unit, vec3 origin, 9 f64 world from device axes, column by column,
 ///            u32 n, n times {string link name, u64 recipe}, u32 n, n strings: names of modes
 ///            A link keeps its state over a change where name and recipe (not 0) are the same in both programs.

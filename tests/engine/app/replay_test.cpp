@@ -271,6 +271,45 @@ TEST(Replay, DetailsTellWhatEveryLinkFeels) {
   EXPECT_EQ(ticks.number(66, "pin_active"), 1);
 }
 
+// A scene that names its device: the force is what that device would give.
+TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
+  const test::TemporaryFolder folder;
+  const auto replay_with = [&](const std::string& device) {
+    test::write_file(folder / "s.json", R"({"coupling": {"stiffness": 800, "max_force": 1000},
+      "chain": [{"name": "pin", "type": "point", "position": [0, 0, 0.01]}])" +
+                                            (device.empty() ? "" : ", \"device\": " + device) + "}");
+    std::string path = "t,x,y,z\n";
+    for (int k = 0; k < 400; ++k) path += to_text(1e-3 * k) + ",0,0,0\n";
+    test::write_file(folder / "p.csv", path);
+    const ProgramResult run = catena_program(
+        {"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--details", folder / "links.csv"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return Table::read(folder / "t.csv");
+  };
+  const std::string plain = R"({"type": "simulated", "slew": 1e9, "ramp_in": 0)";
+  EXPECT_NEAR(replay_with("").number(0, "force_z"), 8, 1e-12);
+  EXPECT_NEAR(replay_with(plain + R"(, "stiffness_cap": 300})").number(9, "force_z"), 3, 1e-12);
+  EXPECT_NEAR(replay_with(plain + R"(, "damping": 0.1, "friction": 9})").number(9, "force_z"), 200 * 0.01, 1e-12) << "2 b / T";
+  EXPECT_NEAR(replay_with(plain + R"(, "encoder_step": 1e-3, "friction": 0.3})").number(9, "force_z"), 6, 1e-12) << "2 f_c / step";
+  EXPECT_NEAR(replay_with(plain + R"(, "max_force": 1.5})").number(9, "force_z"), 1.5, 1e-12);
+  const Table slewed = replay_with(R"({"type": "simulated", "slew": 40, "ramp_in": 0, "stiffness_cap": "none"})");
+  const Table ramped = replay_with(R"({"type": "simulated", "slew": 1e9, "ramp_in": 0.2, "stiffness_cap": "none"})");
+  for (std::size_t row = 0; row < 400; row += 7) {
+    const double t = 1e-3 * static_cast<double>(row);
+    EXPECT_NEAR(slewed.number(row, "force_z"), std::min(8.0, 40 * t), 1e-9) << row;
+    EXPECT_NEAR(ramped.number(row, "force_z"), std::min(8.0, 8 * t / 0.2), 1e-9) << row;
+  }
+  // the ledger: what the ramp has let into the spring
+  const Table links = Table::read(folder / "links.csv");
+  EXPECT_NEAR(links.number(399, "pin_booked"), 0.5 * 800 * 1e-4, 1e-12);
+  EXPECT_NEAR(links.number(100, "pin_booked"), 0.25 * 800 * 1e-4, 1e-12);
+
+  test::write_file(folder / "s.json", R"({"chain": [], "device": {"type": "simulated", "slew": -1}})");
+  const ProgramResult bad = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_NE(bad.err.find("slew"), std::string::npos) << bad.err;
+}
+
 // Every example of haptics/README.md runs as it stands.
 TEST(Replay, TheExamplesOfTheReferenceRun) {
   const test::TemporaryFolder folder;

@@ -127,6 +127,41 @@ TEST(Tradeoff, Figure3MeasuresWhereTheSurfaceLetsGo) {
     expect_plot(folder / "out/figure3-" + std::string(name) + ".png");
 }
 
+TEST(Tradeoff, FigureStiffnessMeasuresTheLargestSpring) {
+  const test::TemporaryFolder folder;
+  const auto run = tradeoff({"--figure", "stiffness", "-o", folder / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Table damping = Table::read(folder / "out/stiffness-damping.csv");
+  ASSERT_EQ(damping.rows(), 4u * 9);
+  for (std::size_t row = 0; row < damping.rows(); ++row) {
+    const double b = damping.number(row, "device_damping_ns_per_m"), rate = damping.number(row, "rate_hz");
+    const double late = damping.number(row, "delay_ms"), passive = damping.number(row, "passive_n_per_m");
+    EXPECT_NEAR(passive, 2 * b / (1 / rate + 2e-3 * late), 1e-9 * passive);
+    // stable wherever it is passive, and for a mass alone not much beyond
+    const double stable = damping.number(row, "stable_n_per_m") / passive;
+    EXPECT_GT(stable, 0.99) << row;
+    EXPECT_LT(stable, 1.1) << row;
+    if (b <= 2) {
+      EXPECT_GT(damping.number(row, "controlled_n_per_m"), 2.9 * passive) << row;
+    }
+  }
+  const Table virtuals = Table::read(folder / "out/stiffness-virtual.csv");
+  const std::map<double, std::pair<double, double>> expected{
+      {0, {994, 332}}, {5, {10585, 3535}}, {20, {36061, 11660}}, {50, {73324, 21522}}};
+  int seen = 0;
+  for (std::size_t row = 0; row < virtuals.rows(); ++row) {
+    const auto it = expected.find(virtuals.number(row, "virtual_damping_ns_per_m"));
+    if (it == expected.end()) continue;
+    ++seen;
+    EXPECT_NEAR(virtuals.number(row, "stable_n_per_m") / it->second.first, 1, 0.015);
+    EXPECT_NEAR(virtuals.number(row, "stable_delayed_n_per_m") / it->second.second, 1, 0.015);
+  }
+  EXPECT_EQ(seen, 4);
+  EXPECT_EQ(virtuals.number(virtuals.rows() - 1, "stable_delayed_n_per_m"), 0) << "200 N s/m with a delay: nothing";
+  EXPECT_EQ(Table::read(folder / "out/stiffness-delay.csv").rows(), 9u);
+  for (const char* name : {"damping", "delay", "virtual"}) expect_plot(folder / "out/stiffness-" + std::string(name) + ".png");
+}
+
 TEST(Tradeoff, WrongArgumentsAreOneLine) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "file", "x");

@@ -1,0 +1,149 @@
+#include "haptics/chain/passivity.h"
+
+namespace catena::haptics {
+
+namespace {
+
+constexpr double kLeastEnergy = 1e-15;  // joules: below it is round-off
+
+bool is_apart(const LinkState& link, bool has_gap) noexcept {
+  return !link.on || link.released || link.status == Status::no_surface || (link.status == Status::budget && !has_gap);
+}
+
+/// The part of a spring's energy that it can give back through a force limit: r (2 - r), r = limit / force.
+double through_limit(double force_n, double most_n) noexcept {
+  if (!(force_n > most_n)) return 1;
+  const double r = most_n / force_n;
+  return r * (2 - r);
+}
+
+/// The part of the chain's force that the guard's ramps let through.
+double ramp_of(const Limits& limits, const GuardState& guard) noexcept {
+  if (guard.force_state == ForceState::stopped || guard.force_state == ForceState::off) return 0;
+  return guard.late > limits.late_ticks ? guard.ramp * guard.hold : guard.ramp;
+}
+
+// What acted since the last tick: sent in it, or a delay before.
+PassivityState::Sent acted(const PassivityState& state, double delay_s, double dt_s) noexcept {
+  using Sent = PassivityState::Sent;
+  constexpr std::uint32_t size = PassivityState::kPast;
+  const Sent& last = state.past[(state.next + size - 1) % size];
+  if (!(delay_s > 0) || !(dt_s > 0)) return last;
+  const double periods = std::fmin(delay_s / dt_s, size - 2.0);
+  const auto whole = static_cast<std::uint32_t>(periods);
+  const double part = periods - whole;
+  const Sent& newer = state.past[(state.next + size - 1 - whole) % size];
+  const Sent& older = state.past[(state.next + size - 2 - whole) % size];
+  const auto mix = [part](const Vec3& a, const Vec3& b) { return a * part + b * (1 - part); };
+  return {mix(older.force_n, newer.force_n), mix(older.granted_n, newer.granted_n), mix(older.fading_n, newer.fading_n),
+          mix(older.added_n, newer.added_n)};
+}
+
+// The force that takes `need_j` from a hand that goes on by `move_m` in the next tick.
+Vec3 brake(const Limits& limits, const Vec3& move_m, double dt_s, double need_j) noexcept {
+  const double squared = dot(move_m, move_m);
+  if (!(squared > 0) || !(dt_s > 0)) return Vec3(0.0);
+  const double damping_dt = std::fmin(need_j / squared, limits.max_added_damping_ns_per_m / dt_s);
+  const Vec3 force = move_m * -damping_dt;
+  return is_finite(force) ? force : Vec3(0.0);
+}
+
+}  // namespace
+
+void settle(const Program& program, const std::array<LinkState, kMaxLinks>& links, const LedgerTick& tick, GuardState& guard,
+            PassivityState& state) noexcept {
+  const Limits& limits = program.limits;
+  const Vec3 move_m = tick.move * program.metres_per_unit;
+  const bool weighs = program.coupling.combination == Combination::chain;
+  const std::size_t count = program.links.size();
+
+  // what the last tick's force has done since
+  const PassivityState::Sent did = acted(state, limits.delay_s, tick.dt_s);
+  const double work_j = dot(did.force_n, move_m), taken_j = -dot(did.added_n, move_m);
+  // what fades is granted as far as there is something left of what the switch took away
+  const bool fades = max_abs(did.fading_n) > 0 || max_abs(tick.fading_n) > 0;
+  const double faded_j = std::fmin(dot(did.fading_n, move_m), state.let_go_j);
+  state.let_go_j = fades ? state.let_go_j - faded_j : 0;
+  const double free_j = dot(did.granted_n, move_m) + faded_j;
+
+  // what of the chain's force is sent, and what its springs can give back through the limits
+  const double asked = dot(tick.sum_n, tick.sum_n);
+  const double sent = asked > 0 && std::isfinite(asked) ? dot(guard.force_n, tick.sum_n) / asked : 0;
+  const double ramp = ramp_of(limits, guard);
+  Vec3 springs_n(0.0);
+  for (std::size_t i = 0; i < count; ++i) springs_n += tick.shares_n[i];
+  const double most_n = std::fmin(program.coupling.max_force_n, ramp > 0 ? limits.max_force_n / ramp : 0);
+  const double share = 0.5 * program.metres_per_unit * ramp * through_limit(norm(springs_n), most_n);
+
+  // by link: the ledger, and what weights that rise put in
+  bool anew = state.anew || !(tick.order == state.order);
+  double storage_j = 0, raised_j = 0;
+  Vec3 granted_n = tick.cues_n;
+  for (std::size_t i = 0; i < count; ++i) {
+    const LinkState& link = links[i];
+    const Vec3& force_n = tick.shares_n[i];
+    const double given_j = dot(state.sent_n[i], move_m);
+    state.given_j[i] += given_j;
+    state.sent_n[i] = force_n * sent;
+    const bool apart = is_apart(link, max_abs(force_n) > 0);
+    anew = anew || apart != state.apart[i];
+    state.apart[i] = apart;
+    const double stored_j = share * dot(force_n, tick.reach);
+    if (link.on && program.links[i].constraint->is_source()) {
+      granted_n += force_n;
+      state.stored_j[i] = 0;
+    } else {
+      state.stored_j[i] = stored_j;
+      storage_j += stored_j;
+      if (weighs && link.weight > state.weights[i]) raised_j += stored_j * (1 - state.weights[i] / link.weight);
+    }
+    state.weights[i] = link.weight;
+  }
+  if (ramp > state.ramp) raised_j += (storage_j - raised_j) * (1 - state.ramp / ramp);
+
+  // the balance
+  const double made_j = work_j - free_j + storage_j - state.storage_j;
+  const double own_j = tick.dt_s > 0 ? limits.damping_ns_per_m * dot(move_m, move_m) / tick.dt_s : 0;
+  const double booked_j = anew ? std::fmax(0.0, made_j) : std::fmax(0.0, raised_j);
+  if (anew && fades) state.let_go_j += std::fmax(0.0, -made_j);
+  state.granted_j += booked_j + free_j;
+  const double step_j = own_j - made_j + booked_j;
+  state.balance_j = std::fmin(0.0, state.balance_j + step_j);
+  state.dissipated_j += taken_j;
+  state.storage_j = storage_j;
+  if (!std::isfinite(state.balance_j + state.granted_j + state.dissipated_j + state.storage_j)) {
+    // forces or places too large for a double: the account begins again
+    state.balance_j = state.granted_j = state.dissipated_j = state.storage_j = state.let_go_j = 0;
+    state.given_j.fill(0);
+    state.stored_j.fill(0);
+  }
+
+  // the controller
+  Vec3 added_n(0.0);
+  const bool flows = guard.force_state == ForceState::on || guard.force_state == ForceState::ramping_in;
+  if (limits.passivity && flows) {
+    const double next_j = state.balance_j + std::fmin(0.0, step_j - taken_j);
+    if (next_j < -kLeastEnergy) {
+      const Vec3 before = guard.force_n;
+      guard.force_n =
+          at_most(before + brake(limits, move_m, tick.dt_s, -next_j), std::fmin(limits.max_force_n, program.coupling.max_force_n));
+      added_n = guard.force_n - before;
+    }
+  }
+
+  state.past[state.next] = {guard.force_n, granted_n * sent, tick.fading_n * sent, added_n};
+  state.next = (state.next + 1) % PassivityState::kPast;
+  state.ramp = ramp;
+  state.order = tick.order;
+  state.anew = false;
+}
+
+void suspend(PassivityState& state) noexcept {
+  state.sent_n.fill(Vec3(0.0));
+  state.stored_j.fill(0);
+  state.past.fill({});
+  state.storage_j = state.ramp = state.let_go_j = 0;
+  state.anew = true;
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,77 @@
+/// The energy ledger of the links, the passivity observer over all of them, and the controller. World axes, joules of hand.
+///   work      W_i = S f_i(k-1) . (x_k - x_(k-1)): the force of a tick is held until the next one, so the sum is exact and
+///             needs no guess at a velocity (the sampled form of Hannaford & Ryu, "Time-domain passivity control of haptic
+///             interfaces", IEEE Trans. Robotics and Automation 18(1), 2002). f_i is the link's share as it was sent.
+///   storage   V_i = S/2 f_i . (p_n - x), with p_n the chain's last proxy: their sum is K/2 |S (p_n - x)|^2 where all links
+///             are equally stiff, and K/2 |S gap|^2 for one link; less where the force is limited
+///   ledger    booked_i = sum of W_i + V_i: what the link has given to the hand and has ready for it, beyond what it got. A
+///             still probe changes it by 1/2 K (|x - p_new|^2 - |x - p_old|^2), which is round-off. It rises by what a switch, a
+///             mode, a snap, a hold taken anew or another program puts into the spring, and by what holding the force
+///             between ticks makes up: K/2 |dx|^2 a tick.
+///   observer  B_k = B_(k-1) - (W + V_k - V_(k-1)) + b |dx|^2 / dt + granted, at most 0;  E = V + B, what the hand may still get
+///             back. b: the device's own damping, so that B stays 0 below K = 2 b / T (Colgate & Schenkel, "Passivity of a
+///             class of sampled-data systems", J. Robotic Systems 14(1), 1997). A surplus is not kept: it would pay for what
+///             an unstable contact gives out later.
+///   granted   to the hand by the program, not to be taken back by the controller: the jumps of V at switches, snaps and
+///             programs, weights and ramps that rise, what fades (fade.h) as far as the springs that were taken away had it, cues, and
+///             links that are sources of energy by what they are (Constraint::is_source: gradient_force), which have no storage
+///   controller  where B and its last step together are below 0: a force along -dx that takes that much within the next tick if the
+///             hand goes on as it does, at most max_added_damping
+/// A device's delay: the observer's work is that of the forces that acted since the last tick; a link's own ledger is that of its
+/// last share. Against a probe that is not there for a while (a lost device) nothing is booked; links are then taken hold of anew. Torques
+/// are not counted. Always booked; controlled only where limits.passivity is set. Haptic thread: no allocation, lock or throw.
+#pragma once
+#include "haptics/chain/guard.h"
+#include "haptics/chain/switching.h"
+
+namespace catena::haptics {
+
+struct PassivityState {
+  /// What was sent in a tick.
+  struct Sent {
+    Vec3 force_n{0.0};
+    Vec3 granted_n{0.0};  ///< its part that is granted
+    Vec3 fading_n{0.0};   ///< its part that fades after a switch
+    Vec3 added_n{0.0};    ///< the controller's
+  };
+  static constexpr std::uint32_t kPast = 16;  ///< a delay of more than 14 periods counts as 14
+
+  std::array<double, kMaxLinks> given_j{};   ///< sum of W_i
+  std::array<double, kMaxLinks> stored_j{};  ///< V_i
+  std::array<Vec3, kMaxLinks> sent_n{};      ///< f_i, of the last tick
+  std::array<double, kMaxLinks> weights{};
+  std::array<bool, kMaxLinks> apart{};  ///< not held: off, let go, or nothing there
+  Order order;
+  std::array<Sent, kPast> past{};  ///< by tick
+  std::uint32_t next = 0;
+  double ramp = 0;
+  double storage_j = 0;  ///< V
+  double balance_j = 0;  ///< B
+  double granted_j = 0;  ///< since the start
+  double let_go_j = 0;   ///< by springs that a switch took away: what may still fade
+  double dissipated_j = 0;
+  bool anew = true;  ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
+
+  double booked_j(std::size_t link) const noexcept { return given_j[link] + stored_j[link]; }
+  double energy_j() const noexcept { return storage_j + balance_j; }
+};
+
+/// One tick as the ledger sees it, before and after the guard.
+struct LedgerTick {
+  Vec3 move{0.0};   ///< x_k - x_(k-1), world units
+  Vec3 reach{0.0};  ///< p_n - x, world units
+  double dt_s = 0;
+  const Order& order;
+  const std::array<Vec3, kMaxLinks>& shares_n;
+  Vec3 cues_n{0.0}, fading_n{0.0};
+  Vec3 sum_n{0.0};  ///< shares, others and damping, before any limit
+};
+
+/// Books the tick; adds the controller's force to guard.force_n. `guard` is this tick's, `links` are.
+void settle(const Program& program, const std::array<LinkState, kMaxLinks>& links, const LedgerTick& tick, GuardState& guard,
+            PassivityState& state) noexcept;
+
+/// A tick without a probe: no force is sent, and what it did until now is not known.
+void suspend(PassivityState& state) noexcept;
+
+}  // namespace catena::haptics

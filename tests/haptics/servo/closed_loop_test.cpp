@@ -1,0 +1,280 @@
+// The loop closed through a simulated mechanism: the linear limits of NUMERICS, the passive limit, and what the controller
+// makes of springs above it. Unpaced and deterministic.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "haptics/device/safe_stiffness.h"
+#include "tests/support/closed_loop.h"
+#include "tests/support/simple_links.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+using test::ClosedLoop;
+
+constexpr double kMass = 0.159, kDamping = 0.5, kPeriod = 1e-3;
+
+HandParameters bare(double delay_s = 0) {
+  HandParameters p;
+  p.mass_kg = kMass;
+  p.device_damping_ns_per_m = kDamping;
+  p.stiffness_n_per_m = p.damping_ns_per_m = 0;
+  p.delay_s = delay_s;
+  p.max_force_n = 1e9;
+  return p;
+}
+
+/// A spring towards z = 0 with virtual damping.
+Program spring(double stiffness, double damping = 0) {
+  Program p;
+  p.links = {test::hold_height("a", 0, stiffness)};
+  p.coupling.damping_ns_per_m = damping;
+  p.coupling.max_force_n = 1e9;
+  return p;
+}
+
+void control(Program& p, double delay_s = 0) {
+  p.limits.passivity = true;
+  p.limits.damping_ns_per_m = kDamping;
+  p.limits.delay_s = delay_s;
+  p.limits.max_added_damping_ns_per_m = 0.25 * kMass / (kPeriod + delay_s);
+}
+
+// ---- an independent answer: the sampled-data system's characteristic polynomial and its Schur-Cohn test ----
+
+constexpr int kMost = 4;
+using Matrix = std::array<std::array<double, kMost>, kMost>;
+
+/// States: x, v, the last x and, with a sample of delay, the force in waiting. Mass and damper under a held force are exact.
+bool is_stable(double stiffness, double damping, bool delayed) {
+  const int n = delayed ? 4 : 3;
+  const double rate = kDamping / kMass, e = std::exp(-rate * kPeriod), p = (1 - e) / rate;
+  const double to_x = (kPeriod - p) / kDamping, to_v = p / kMass;
+  const std::array<double, kMost> law{-stiffness - damping / kPeriod, 0, damping / kPeriod, 0};
+  const std::array<double, kMost> waiting{0, 0, 0, 1};
+  const auto& acts = delayed ? waiting : law;
+  Matrix a{};
+  for (std::size_t j = 0; j < 4; ++j) {
+    a[0][j] = to_x * acts[j] + (j == 0 ? 1 : 0) + (j == 1 ? p : 0);
+    a[1][j] = to_v * acts[j] + (j == 1 ? e : 0);
+    a[3][j] = delayed ? law[j] : 0;
+  }
+  a[2][0] = 1;
+
+  // Faddeev and Leverrier
+  std::vector<double> c{1};
+  Matrix m{};
+  for (int k = 1; k <= n; ++k) {
+    Matrix next{};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j)
+        for (std::size_t l = 0; l < 4; ++l) next[i][j] += a[i][l] * m[l][j];
+    for (std::size_t i = 0; i < 4; ++i) next[i][i] += c.back();
+    m = next;
+    double trace = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t l = 0; l < 4; ++l) trace += a[i][l] * m[l][i];
+    c.push_back(-trace / k);
+  }
+  while (c.size() > 1) {
+    if (std::fabs(c.back()) >= std::fabs(c.front())) return false;
+    const double r = c.back() / c.front();
+    std::vector<double> less(c.size() - 1);
+    for (std::size_t i = 0; i < less.size(); ++i) less[i] = c[i] - r * c[c.size() - 1 - i];
+    c = less;
+  }
+  return true;
+}
+
+/// The tick and the simulated mechanism: does a push die away?
+bool settles(double stiffness, double damping, double delay_s) {
+  const Program p = spring(stiffness, damping);
+  ClosedLoop loop(p, bare(delay_s), {{0, {0, 0, 1e-3}}});
+  const auto energy = [&] { return loop.kinetic_j() + 0.5 * stiffness * loop.hand.position_m().z * loop.hand.position_m().z; };
+  const auto most_of = [&](int ticks) {
+    double most = 0;
+    for (int i = 0; i < ticks; ++i) {
+      loop.step();
+      const double now = energy();
+      if (!(now < 1e6 * stiffness * 1e-6)) return std::numeric_limits<double>::infinity();
+      most = std::max(most, now);
+    }
+    return most;
+  };
+  loop.run(300);
+  const double before = most_of(300);
+  for (int i = 0; i < 20; ++i)
+    if (!(most_of(300) < 1e3 * before)) return false;
+  return most_of(300) < before;
+}
+
+template <class F>
+double bisect(double lo, double hi, double relative, const F& stable) {
+  while (hi - lo > relative * lo) {
+    const double mid = 0.5 * (lo + hi);
+    (stable(mid) ? lo : hi) = mid;
+  }
+  return 0.5 * (lo + hi);
+}
+
+struct Limit {
+  double damping, without_delay, with_delay;  ///< NUMERICS
+};
+
+TEST(ClosedLoopTest, TheLargestStableStiffnessIsTheOneOfTheTable) {
+  for (const Limit& row : {Limit{0, 994, 332}, Limit{5, 10585, 3535}, Limit{20, 36061, 11660}, Limit{50, 73324, 21522}})
+    for (const bool delayed : {false, true}) {
+      const double expected = delayed ? row.with_delay : row.without_delay;
+      const double derived = bisect(0.5 * expected, 2 * expected, 1e-9, [&](double k) { return is_stable(k, row.damping, delayed); });
+      EXPECT_NEAR(derived / expected, 1, 0.01) << "B " << row.damping << (delayed ? " delayed" : "");
+      const double measured =
+          bisect(0.9 * expected, 1.1 * expected, 5e-4, [&](double k) { return settles(k, row.damping, delayed ? kPeriod : 0); });
+      EXPECT_NEAR(measured / derived, 1, 1e-3) << "B " << row.damping << (delayed ? " delayed" : "");
+    }
+  // more damping is not always better
+  EXPECT_NEAR(bisect(1e4, 3e4, 1e-9, [&](double k) { return is_stable(k, 100, true); }), 17358, 0.01 * 17358);
+  EXPECT_FALSE(is_stable(1, 200, true));
+  EXPECT_FALSE(settles(1, 200, kPeriod));
+}
+
+/// min(E + int b v^2) / E0 of a spring let go from rest, 4 s.
+double least_energy(const Program& p, double stiffness, double delay_s = 0) {
+  ClosedLoop loop(p, bare(delay_s), {{0, {0, 0, 0.01}}});
+  double most_kinetic = 0;
+  for (int i = 0; i < 4000; ++i) {
+    loop.step();
+    most_kinetic = std::max(most_kinetic, loop.kinetic_j());
+  }
+  // by the mass itself: what was given out and not taken by the damping moves it
+  return -most_kinetic / (0.5 * stiffness * 1e-4);
+}
+
+TEST(ClosedLoopTest, TheEnergyTestSeparates990From1010) {
+  EXPECT_NEAR(least_energy(spring(990), 990), -0.9993, 5e-4);
+  EXPECT_LT(least_energy(spring(1010), 1010), -1.1);
+  EXPECT_GT(least_energy(spring(1010), 1010), -1.15);
+}
+
+TEST(ClosedLoopTest, TheObserverSeesTheSameLimit) {
+  // E + int b v^2 by the work alone, the test's account, and the observer's
+  for (const double k : {990.0, 999.0, 1001.0, 1010.0}) {
+    Program p = spring(k);
+    p.limits.damping_ns_per_m = kDamping;
+    ClosedLoop loop(p, bare(), {{0, {0, 0, 0.01}}});
+    loop.run(4000);
+    const double e0 = 0.5 * k * 1e-4;
+    EXPECT_EQ(loop.least_j / e0<-1.0001, k> 1000) << k;
+    EXPECT_EQ(loop.state->passivity.balance_j<-1e-6 * e0, k> 1000) << k;
+    EXPECT_NEAR(loop.state->passivity.granted_j, e0, 1e-12) << "the spring was tight when it began";
+  }
+}
+
+TEST(ClosedLoopTest, TheLedgerIsTheWorkDone) {
+  const Program p = spring(800, 1);
+  ClosedLoop loop(p, bare(), {{0, {0, 0, 0.01}}});
+  for (int i = 0; i < 500; ++i) {
+    loop.step();
+    const PassivityState& ledger = loop.state->passivity;
+    // one link and the coupling's damping: the link's share is the spring's alone
+    const double stored = loop.out.links[0].energy_j(1);
+    ASSERT_NEAR(ledger.stored_j[0], stored, 1e-15);
+    ASSERT_NEAR(loop.out.links[0].booked_j, ledger.given_j[0] + stored, 1e-15);
+  }
+  EXPECT_GT(loop.state->passivity.given_j[0], loop.given_j) << "the damping has taken some of it";
+}
+
+TEST(ClosedLoopTest, BelowTheLimitTheControllerLeavesTheForceAlone) {
+  Program with = spring(990), without = spring(990);
+  control(with);
+  ClosedLoop a(with, bare(), {{0, {0, 0, 0.01}}}), b(without, bare(), {{0, {0, 0, 0.01}}});
+  for (int i = 0; i < 4000; ++i) {
+    a.step();
+    b.step();
+    ASSERT_TRUE(same_bits(a.out.force_n, b.out.force_n)) << i;
+  }
+  EXPECT_EQ(a.out.dissipated_j, 0);
+}
+
+TEST(ClosedLoopTest, AboveTheLimitTheControllerKeepsThePeace) {
+  for (const double delay_s : {0.0, 1e-3, 1.5e-3})
+    for (const double times : {1.1, 2.0, 5.0, 10.0}) {
+      const double limit = 2 * kDamping / (kPeriod + 2 * delay_s), k = times * limit;
+      Program without = spring(k), with = spring(k);
+      control(with, delay_s);
+      EXPECT_LT(least_energy(without, k, delay_s), times > 2 ? -1000 : -2) << k << " " << delay_s;
+      EXPECT_GT(least_energy(with, k, delay_s), -1.05) << k << " " << delay_s;
+
+      // and it dies away, slowly near the limit
+      ClosedLoop loop(with, bare(delay_s), {{0, {0, 0, 0.01}}});
+      loop.run(20000);
+      EXPECT_LT(loop.kinetic_j(), (times >= 2 ? 0.5 : 1) * 0.5 * k * 1e-4) << k << " " << delay_s;
+      EXPECT_GT(loop.out.dissipated_j, 0);
+    }
+}
+
+/// Free for z > 0, held on z = 0 below.
+class Wall final : public Constraint {
+ public:
+  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override { state.proxy = probe; }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+    state.proxy = {probe.x, probe.y, probe.z < 0 ? 0 : probe.z};
+    state.status = probe.z < 0 ? Status::ok : Status::free;
+  }
+};
+
+Program wall(double stiffness) {
+  Program p;
+  Link link;
+  link.name = "wall";
+  link.constraint = std::make_shared<Wall>();
+  link.stiffness_n_per_m = stiffness;
+  p.links = {link};
+  p.coupling.max_force_n = 1e9;
+  return p;
+}
+
+/// A hand that pushes 10 mm into a wall, and trembles: the most kinetic energy in the last half second of four.
+double unrest_j(const Program& p, HandParameters hand) {
+  hand.stiffness_n_per_m = 500;
+  hand.damping_ns_per_m = 0.2;
+  hand.tremor_m = 2e-5;
+  ClosedLoop loop(p, hand, {{0, {0, 0, 0.01}}, {0.1, {0, 0, -0.01}}});
+  loop.run(3500);
+  double most = 0;
+  for (int i = 0; i < 500; ++i) {
+    loop.step();
+    most = std::max(most, loop.kinetic_j());
+  }
+  return most;
+}
+
+TEST(ClosedLoopTest, AWallIsStillWithDelayAndEncodersToo) {
+  const double push_j = 0.5 * 500 * 1e-4;  // what the hand has to spend on it
+  for (const double delay_s : {0.0, 1e-3, 1.5e-3})
+    for (const double step_m : {0.0, 4e-5}) {
+      HandParameters hand = bare(delay_s);
+      hand.encoder_step_m = step_m;
+      hand.friction_n = step_m > 0 ? 0.1 : 0;
+      const double safe = safe_stiffness(SimulatedHand({{}}, hand).capabilities().mechanics, kPeriod).n_per_m();
+      EXPECT_LT(unrest_j(wall(0.9 * safe), hand), 0.01 * push_j) << "below the limit: " << delay_s << " " << step_m;
+      const double stiff = 8 * safe;
+      EXPECT_GT(unrest_j(wall(stiff), hand), 10 * push_j) << "above it, without the controller: " << delay_s << " " << step_m;
+      Program controlled = wall(stiff);
+      control(controlled, delay_s);
+      EXPECT_LT(unrest_j(controlled, hand), 0.01 * push_j) << "above it, with the controller: " << delay_s << " " << step_m;
+    }
+}
+
+TEST(ClosedLoopTest, TheCapBringsAStiffWallBackBelowTheLimit) {
+  HandParameters hand = bare();
+  Program p = wall(20000);
+  EXPECT_GT(unrest_j(p, hand), 1);
+  p.limits.max_stiffness_n_per_m = safe_stiffness(SimulatedHand({{}}, hand).capabilities().mechanics, kPeriod).n_per_m() * 0.9;
+  EXPECT_LT(unrest_j(p, hand), 1e-4);
+}
+
+}  // namespace

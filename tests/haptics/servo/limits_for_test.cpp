@@ -1,0 +1,59 @@
+#include "haptics/servo/limits_for.h"
+
+#include <gtest/gtest.h>
+
+#include "haptics/device/registry.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::haptics;
+
+TEST(LimitsFor, ADeviceWithoutForceOutputHasNone) {
+  const Limits limits = limits_for(nominal_capabilities("null"), {});
+  EXPECT_EQ(limits.max_stiffness_n_per_m, Limits::kNone);
+  EXPECT_EQ(limits.max_force_n, Limits::kNone);
+  EXPECT_EQ(limits.slew_n_per_s, Limits::kNone);
+  EXPECT_EQ(limits.ramp_in_s, 0);
+  EXPECT_FALSE(limits.passivity);
+}
+
+TEST(LimitsFor, TheSimulatedDeviceGetsTheSafeDefaults) {
+  Limits limits = limits_for(nominal_capabilities("simulated"), {});
+  EXPECT_DOUBLE_EQ(limits.max_stiffness_n_per_m, 1000);
+  EXPECT_EQ(limits.max_force_n, 10);
+  EXPECT_EQ(limits.slew_n_per_s, 5000);
+  EXPECT_EQ(limits.ramp_in_s, 0.5);
+  EXPECT_TRUE(limits.passivity);
+  EXPECT_EQ(limits.damping_ns_per_m, 0.5);
+  DeviceSettings fast;
+  fast.rate_hz = 4000;
+  limits = limits_for(nominal_capabilities("simulated"), fast);
+  EXPECT_DOUBLE_EQ(limits.max_stiffness_n_per_m, 4000);
+}
+
+TEST(LimitsFor, WhatThePersonSaysHolds) {
+  DeviceSettings s;
+  s.damping_ns_per_m = 2;
+  s.delay_s = 1.5e-3;
+  s.friction_n = 1;
+  s.max_force_n = 3;
+  s.slew_n_per_s = 7;
+  s.ramp_in_s = 0;
+  s.passivity = false;
+  Limits limits = limits_for(nominal_capabilities("simulated"), s);
+  EXPECT_DOUBLE_EQ(limits.max_stiffness_n_per_m, 2 * 2 / (1e-3 + 3e-3));
+  EXPECT_EQ(limits.delay_s, 1.5e-3);
+  EXPECT_EQ(limits.max_force_n, 3);
+  EXPECT_EQ(limits.slew_n_per_s, 7);
+  EXPECT_EQ(limits.ramp_in_s, 0);
+  EXPECT_FALSE(limits.passivity);
+  s.cap = DeviceSettings::Cap::none;
+  EXPECT_EQ(limits_for(nominal_capabilities("simulated"), s).max_stiffness_n_per_m, Limits::kNone);
+  s.cap = DeviceSettings::Cap::value;
+  s.stiffness_cap_n_per_m = 77;
+  EXPECT_EQ(limits_for(nominal_capabilities("simulated"), s).max_stiffness_n_per_m, 77);
+  EXPECT_EQ(limits_for(nominal_capabilities("null"), s).max_stiffness_n_per_m, 77) << "though it has no force of its own";
+}
+
+}  // namespace
