@@ -239,6 +239,7 @@ int EmulatedUsbfs::simple(unsigned long request, void* data) {
       return 0;
     case USBDEVFS_CLAIMINTERFACE:
     case USBDEVFS_DISCONNECT_CLAIM:
+      if (port_.faults.claimed_by_another) return EBUSY;
       ++port_.counts.claims;
       return *static_cast<unsigned*>(data) == 0 ? 0 : EINVAL;
     case USBDEVFS_RELEASEINTERFACE:

@@ -19,6 +19,7 @@ namespace catena::haptics::test {
 struct UsbfsFaults {
   bool out_naks = false;  ///< OUT URBs stay pending
   bool idle_packets = true;
+  bool claimed_by_another = false;
   int submit_errors = 0;  ///< so many submissions fail with ENOMEM
 };
 
