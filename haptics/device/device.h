@@ -55,11 +55,16 @@ struct DeviceCapabilities {
 class Device {
  public:
   virtual ~Device() = default;
+  /// What a person must know or do now, one line ("Falcon: pull the grip fully out, then push it in"); empty: nothing. Frame thread.
+  virtual std::string status_text() const { return {}; }
   virtual const DeviceCapabilities& capabilities() const = 0;
   virtual DeviceInput read() noexcept = 0;
   virtual void write(const DeviceOutput& output) noexcept = 0;
-  /// Zero force now and until the next start, whatever is written. Any thread.
+  /// Zero force now and until resume(), whatever is written. Any thread (the servo's watchdog; the servo at its end).
   virtual void stop() noexcept {}
+  /// What is written counts again. Haptic thread: before the servo's first tick, and in the first normal tick after a stop; the
+  /// guard starts that tick's force at zero.
+  virtual void resume() noexcept {}
 };
 
 }  // namespace catena::haptics

@@ -4,6 +4,7 @@
 
 #include "haptics/device/null_device.h"
 #include "haptics/device/simulated_hand.h"
+#include "haptics/device/usb/open_falcon.h"
 
 namespace catena::haptics {
 namespace {
@@ -27,8 +28,9 @@ Result<std::unique_ptr<Device>> open_simulated(const std::string&, const DeviceS
   return std::unique_ptr<Device>(std::make_unique<SimulatedHand>(std::vector<SimulatedHand::Waypoint>{{}}, parameters));
 }
 
-const std::array<DeviceType, 2>& types() {
-  static const std::array<DeviceType, 2> all = {{
+const std::array<DeviceType, 3>& types() {
+  static const std::array<DeviceType, 3> all = {{
+      {"falcon", usb::Falcon::nominal_capabilities, usb::list_falcons, usb::open_falcon},
       {"null", [] { return NullDevice().capabilities(); },
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"null", true, "no device: the probe rests, forces go nowhere"});

@@ -1,0 +1,229 @@
+#include "haptics/device/usb/falcon.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sched.h>
+
+#include "engine/base/assert.h"
+
+namespace catena::haptics::usb {
+namespace {
+
+static_assert(std::atomic<FalconState>::is_always_lock_free);
+constexpr int kSliceMs = 50;   // how long the thread may not hear that it shall end
+constexpr int kTuneAfter = 3;  // cycles without a frame until the line is set up again
+
+bool take_realtime(int priority) noexcept {
+  if (priority <= 0) return false;
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
+}
+
+}  // namespace
+
+DeviceCapabilities Falcon::nominal_capabilities() {
+  DeviceCapabilities c;
+  c.name = "Novint Falcon";
+  c.workspace_m = 0.06;
+  c.workspace_centre_m = kFalconWorkspaceCentre;
+  c.buttons = 4;
+  // Novint's data sheet: more than 2 lbf. All directions: 6.1 N at the centre, 4.5 N in the cube's corners; more is clamped
+  c.max_force_n = 8.9;
+  // Assumed, no identification at hand: mass and damping as in the stability table, little friction. The encoder step is
+  // derived (one axis' count at z = 110 mm); the delay is one to two round trips of the bus.
+  c.mechanics = {.mass_kg = 0.159, .damping_ns_per_m = 0.5, .friction_n = 0.1, .encoder_step_m = 37.7e-6, .delay_s = 2e-3};
+  return c;
+}
+
+Result<std::unique_ptr<Falcon>> Falcon::open(std::unique_ptr<TransportSource> source, FalconOptions options) {
+  CATENA_ASSERT(source && options.force_gain > 0 && options.lost_after > 0 && options.clock != nullptr);
+  CATENA_TRY(std::unique_ptr<Transport> transport, source->open());
+  auto falcon = std::unique_ptr<Falcon>(new Falcon(std::move(source), std::move(options), std::move(transport)));
+  Ftdi ftdi(*falcon->transport_, falcon->counters_.ftdi);
+  CATENA_CHECK(falcon_boot(ftdi, falcon->options_.firmware, falcon->options_.boot, &falcon->counters_.uploads));
+  falcon->pose_ = {.position_m = kFalconWorkspaceCentre, .state = FalconState::homing};
+  falcon->publish(falcon->pose_);
+  falcon->thread_ = std::thread([device = falcon.get()] { device->run(); });
+  return falcon;
+}
+
+Falcon::Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport)
+    : options_(std::move(options)), source_(std::move(source)), transport_(std::move(transport)) {}
+
+Falcon::~Falcon() {
+  quit_ = true;
+  if (thread_.joinable()) thread_.join();
+  transport_.reset();  // before its source
+}
+
+// ---- haptic thread ----
+
+DeviceInput Falcon::read() noexcept {
+  poses_.take();
+  const FalconPose& pose = poses_.front();
+  DeviceInput input;
+  input.position_m = pose.position_m;
+  input.buttons = pose.buttons;
+  input.age_s = pose.taken_ns == 0 ? 0 : 1e-9 * static_cast<double>(options_.clock() - pose.taken_ns);
+  input.forces_on = pose.state == FalconState::ready;
+  const bool homed = pose.state == FalconState::ready || pose.state == FalconState::waiting;
+  if (pose.state == FalconState::booting || pose.state == FalconState::homing)
+    input.status = DeviceStatus::starting;
+  else if (!homed || !pose.good || input.age_s > options_.lost_age_s)
+    input.status = DeviceStatus::lost;
+  return input;
+}
+
+void Falcon::write(const DeviceOutput& output) noexcept {
+  orders_.publish({is_finite(output.force_n) ? output.force_n : Vec3(0.0), options_.clock()});
+}
+
+void Falcon::resume() noexcept {
+  // what was written before the stop must not come back
+  orders_.publish({Vec3(0.0), options_.clock()});
+  stopped_.store(false);
+}
+
+// ---- any thread ----
+
+std::string Falcon::status_text() const {
+  const std::uint8_t homed = homed_.load(std::memory_order_relaxed);
+  switch (state()) {
+    case FalconState::absent: {
+      const std::lock_guard lock(note_mutex_);
+      return note_.empty() ? "Falcon: lost; is it plugged in, and has it power?" : note_;
+    }
+    case FalconState::booting:
+      return fmt::format("Falcon: its firmware is being sent, try {}, {} %", boot_try_.load(), boot_percent_.load());
+    case FalconState::homing:
+      return fmt::format("Falcon: pull the grip fully out, then push it in (homed: {} of 3 axes)",
+                         (homed & 1) + ((homed >> 1) & 1) + ((homed >> 2) & 1));
+    case FalconState::waiting:
+      return "Falcon: pull the grip fully out once; then its forces are on";
+    case FalconState::ready:
+      break;
+  }
+  return stopped_ ? "Falcon: its forces are stopped" : "";
+}
+
+FalconStats Falcon::stats() const {
+  const auto get = [](const std::atomic<std::uint64_t>& counter) { return counter.load(std::memory_order_relaxed); };
+  const FalconCounters& c = counters_;
+  return {.cycles = get(c.cycles),
+          .frames = get(c.frames),
+          .bad_cycles = get(c.bad_cycles),
+          .packets_out = get(c.ftdi.packets_out),
+          .packets_in = get(c.ftdi.packets_in),
+          .idle_packets = get(c.ftdi.idle_packets),
+          .resyncs = get(c.resyncs),
+          .dropped_bytes = get(c.dropped_bytes),
+          .timeouts = get(c.ftdi.timeouts),
+          .stalls = get(c.ftdi.stalls),
+          .retries = get(c.ftdi.retries),
+          .errors = get(c.ftdi.errors),
+          .line_errors = get(c.ftdi.line_errors),
+          .jumps = get(c.jumps),
+          .out_of_reach = get(c.out_of_reach),
+          .stale_commands = get(c.stale_commands),
+          .uploads = get(c.uploads),
+          .losses = get(c.losses),
+          .returns = get(c.returns),
+          .realtime = realtime_.load(std::memory_order_relaxed)};
+}
+
+// ---- I/O thread ----
+
+void Falcon::publish(const FalconPose& pose) noexcept {
+  poses_.publish(pose);
+  state_.store(pose.state, std::memory_order_relaxed);
+}
+
+void Falcon::note(const std::string& text) {
+  const std::lock_guard lock(note_mutex_);
+  note_ = text;
+}
+
+// newest order into front(); false: none for too long
+bool Falcon::fresh_order() noexcept {
+  orders_.take();
+  const Order& order = orders_.front();
+  const bool fresh = order.written_ns != 0 && 1e-9 * static_cast<double>(options_.clock() - order.written_ns) < options_.command_timeout_s;
+  if (was_fresh_ && !fresh) count(counters_.stale_commands);
+  was_fresh_ = fresh;
+  return fresh;
+}
+
+void Falcon::run() noexcept {
+  realtime_ = take_realtime(options_.realtime_priority);
+  while (!quit_) {
+    if (transport_)
+      serve();
+    else
+      return_again();
+  }
+}
+
+// until the device is lost, or the end
+void Falcon::serve() noexcept {
+  Ftdi ftdi(*transport_, counters_.ftdi);
+  FalconSession session(ftdi, counters_, options_.force_gain, options_.clock, pose_.position_m);
+  int silent = 0;
+  auto cycle = FalconSession::Cycle::frame;
+  while (!quit_ && cycle != FalconSession::Cycle::gone && silent < options_.lost_after) {
+    const bool fresh = fresh_order();
+    cycle = session.cycle(orders_.front().force_n, fresh && !stopped_);
+    if (cycle == FalconSession::Cycle::frame) {
+      silent = 0;
+      homed_.store(session.homed(), std::memory_order_relaxed);
+      publish(session.pose());
+    } else if (++silent == kTuneAfter) {
+      count(counters_.ftdi.retries);
+      falcon_run_mode(ftdi);
+    }
+  }
+  session.leave();
+  transport_.reset();
+  if (quit_) return;
+  count(counters_.losses);
+  note("");
+  pose_ = session.pose();
+  pose_.state = FalconState::absent;
+  pose_.good = false;
+  publish(pose_);
+}
+
+// waits for the device, opens it, starts its firmware: all that open() does, over and over
+void Falcon::return_again() noexcept {
+  bool arrived = false;
+  for (int waited = 0; waited < options_.return_poll_ms && !arrived && !quit_; waited += kSliceMs)
+    arrived = source_->wait_for_arrival(std::min(kSliceMs, options_.return_poll_ms - waited));
+  if (quit_) return;
+  auto opened = source_->open();
+  if (!opened) {
+    note(opened.error().message);
+    return;
+  }
+  transport_ = std::move(*opened);
+  pose_.state = FalconState::booting;
+  publish(pose_);
+  FalconBootOptions boot = options_.boot;
+  boot.progress = [this](int attempt, double share) {
+    boot_try_ = attempt;
+    boot_percent_ = static_cast<int>(100 * share);
+    return !quit_;
+  };
+  Ftdi ftdi(*transport_, counters_.ftdi);
+  if (const Outcome booted = falcon_boot(ftdi, options_.firmware, boot, &counters_.uploads); !booted) {
+    note(booted.error().message);
+    transport_.reset();
+    pose_.state = FalconState::absent;
+    publish(pose_);
+    return;
+  }
+  count(counters_.returns);
+  pose_.state = FalconState::homing;
+  publish(pose_);
+}
+
+}  // namespace catena::haptics::usb

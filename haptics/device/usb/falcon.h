@@ -1,0 +1,99 @@
+/// The Novint Falcon as a Device. A thread of its own owns the bus: newest force -> packet out, packets in -> newest pose, one
+/// round trip after the other (1-2 ms); `read` and `write` exchange plain data with it through triple buffers and never wait.
+///   force: sent with the Jacobian of the newest pose; zero when no force was written for `command_timeout_s` (a servo that
+///          hangs), after stop(), before homing and before the grip was once pulled out past 0.170 m (forces_on is false)
+///   lost:  silent for `lost_after` cycles, or unplugged; the thread then waits for the device to come back, starts its firmware
+///          again, and homing and arming begin anew
+/// The destructor sends zero force with the LEDs off; it waits for at most some tenths of a second.
+#pragma once
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "engine/base/clock.h"
+#include "engine/exchange/triple_buffer.h"
+#include "haptics/device/device.h"
+#include "haptics/device/usb/falcon_boot.h"
+#include "haptics/device/usb/falcon_session.h"
+
+namespace catena::haptics::usb {
+
+struct FalconOptions {
+  std::vector<std::uint8_t> firmware;  ///< checked; empty: only a device that has some already
+  FalconBootOptions boot{};            ///< its `progress` is told only while open() works
+  double force_gain = kFalconForceGain;
+  double command_timeout_s = 0.02;
+  int lost_after = 10;      ///< cycles in a row without a frame
+  double lost_age_s = 0.1;  ///< a pose this old is `lost`, whatever the I/O thread does
+  int return_poll_ms = 500;
+  int realtime_priority = 0;  ///< of the I/O thread, SCHED_FIFO, if permitted; 0: none
+  FalconSession::Clock clock = now_ns;
+};
+
+/// Counted since the device was opened.
+struct FalconStats {
+  std::uint64_t cycles = 0, frames = 0, bad_cycles = 0;  ///< round trips; frames understood; round trips without one
+  std::uint64_t packets_out = 0, packets_in = 0, idle_packets = 0;
+  std::uint64_t resyncs = 0, dropped_bytes = 0;  ///< of the open device
+  std::uint64_t timeouts = 0, stalls = 0, retries = 0, errors = 0, line_errors = 0;
+  std::uint64_t jumps = 0, out_of_reach = 0, stale_commands = 0, uploads = 0, losses = 0, returns = 0;
+  bool realtime = false;
+};
+
+class Falcon final : public Device {
+ public:
+  /// Opens, and starts the firmware (seconds, at most some tens of them; see options.boot.progress).
+  static Result<std::unique_ptr<Falcon>> open(std::unique_ptr<TransportSource> source, FalconOptions options = {});
+  ~Falcon() override;
+  Falcon(const Falcon&) = delete;
+  Falcon& operator=(const Falcon&) = delete;
+
+  static DeviceCapabilities nominal_capabilities();
+
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override;
+  void write(const DeviceOutput& output) noexcept override;
+  void stop() noexcept override { stopped_.store(true); }
+  void resume() noexcept override;
+
+  std::string status_text() const override;
+  FalconState state() const { return state_.load(std::memory_order_relaxed); }
+  FalconStats stats() const;
+
+ private:
+  struct Order {
+    Vec3 force_n{0.0};
+    std::int64_t written_ns = 0;  ///< 0: never
+  };
+
+  Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport);
+  void run() noexcept;
+  void serve() noexcept;
+  void return_again() noexcept;
+  void publish(const FalconPose& pose) noexcept;
+  void note(const std::string& text);
+  bool fresh_order() noexcept;
+
+  DeviceCapabilities capabilities_ = nominal_capabilities();
+  FalconOptions options_;
+  FalconCounters counters_;
+  exchange::TripleBuffer<FalconPose> poses_;
+  exchange::TripleBuffer<Order> orders_;
+  std::atomic<bool> stopped_{false}, quit_{false}, realtime_{false};
+  std::atomic<FalconState> state_{FalconState::booting};
+  std::atomic<int> boot_try_{0}, boot_percent_{0};
+  std::atomic<std::uint8_t> homed_{0};
+
+  mutable std::mutex note_mutex_;  ///< frame and I/O thread only
+  std::string note_;               ///< why the device is not there
+
+  // I/O thread only
+  std::unique_ptr<TransportSource> source_;
+  std::unique_ptr<Transport> transport_;
+  FalconPose pose_;
+  bool was_fresh_ = false;
+  std::thread thread_;
+};
+
+}  // namespace catena::haptics::usb

@@ -1,0 +1,81 @@
+/// One opened Falcon whose firmware runs: a packet out, packets in until a frame, and what the frames mean. No thread of its
+/// own, no clock but the one it is given, so that a test plays it cycle by cycle. I/O thread.
+///   homing:  the homing bit in every packet, red, zero force, until all three axes are homed in three frames in a row; the
+///            origin jumps at that moment
+///   waiting: blue, zero force, until the grip has been further out than 0.170 m: the hand holds it, and knows
+///   ready:   green while forces flow, blue while they do not
+/// A frame that jumps further than a hand can is believed only when the next one agrees. A pose out of reach, or a frame that
+/// is suddenly not homed, holds the last position and stops the forces in that cycle.
+#pragma once
+#include "haptics/device/usb/falcon_codec.h"
+#include "haptics/device/usb/falcon_kinematics.h"
+#include "haptics/device/usb/ftdi.h"
+
+namespace catena::haptics::usb {
+
+enum class FalconState : std::uint8_t { absent, booting, homing, waiting, ready };
+
+/// What the I/O thread tells the haptic thread.
+struct FalconPose {
+  Vec3 position_m{0.0};  ///< the last good one
+  FalconCounts encoders{};
+  std::uint32_t buttons = 0;
+  FalconState state = FalconState::booting;
+  bool good = false;  ///< position_m is of this frame
+  std::int64_t taken_ns = 0;
+};
+
+/// Written by the I/O thread, read by any.
+struct FalconCounters {
+  FtdiCounters ftdi;
+  std::atomic<std::uint64_t> cycles{0}, frames{0}, bad_cycles{0}, resyncs{0}, dropped_bytes{0};
+  std::atomic<std::uint64_t> jumps{0}, out_of_reach{0}, stale_commands{0}, uploads{0}, losses{0}, returns{0};
+};
+
+inline constexpr Vec3 kFalconWorkspaceCentre{0, 0, 0.125};  ///< of the comfortable workspace, metres
+inline constexpr double kFalconArmingZ = 0.170;             ///< metres
+
+class FalconSession {
+ public:
+  using Clock = std::int64_t (*)();
+
+  /// `last_m`: the position to hold until there is one.
+  FalconSession(Ftdi& ftdi, FalconCounters& counters, double force_gain, Clock clock, const Vec3& last_m = kFalconWorkspaceCentre)
+      : ftdi_(ftdi),
+        counters_(counters),
+        force_gain_(force_gain),
+        clock_(clock),
+        pose_{.position_m = last_m, .state = FalconState::homing} {}
+
+  enum class Cycle : std::uint8_t { frame, no_frame, gone };
+  /// One packet each way. `force_n` counts only where `forces` and the state allow it.
+  Cycle cycle(const Vec3& force_n, bool forces) noexcept;
+  /// Zero force, all LEDs off; the last packet before closing.
+  void leave() noexcept;
+
+  const FalconPose& pose() const { return pose_; }
+  std::uint8_t homed() const { return homed_; }                ///< bits 0-2, of the last frame
+  const FalconCommand& last_command() const { return sent_; }  ///< what the motors and LEDs were sent
+
+ private:
+  FalconCommand command(const Vec3& force_n, bool forces) const noexcept;
+  void take(const FalconFrame& frame) noexcept;
+  bool believed(const FalconFrame& frame) noexcept;
+  void locate(const FalconFrame& frame) noexcept;
+
+  Ftdi& ftdi_;
+  FalconCounters& counters_;
+  double force_gain_;
+  Clock clock_;
+  FalconPose pose_;
+  FalconFramer framer_;
+  FalconState state_ = FalconState::homing;
+  FalconCommand sent_;
+  FalconCounts last_seen_{};
+  bool has_seen_ = false;
+  std::uint8_t homed_ = 0;
+  int homed_run_ = 0, unhomed_run_ = 0;  ///< frames in a row
+  Mat3 metres_per_rad_{0.0};
+};
+
+}  // namespace catena::haptics::usb

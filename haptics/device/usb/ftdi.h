@@ -1,0 +1,51 @@
+/// The FTDI FT232R between the bus and the Falcon's processor: control requests by name, and bulk data without the two
+/// modem-status bytes with which each IN packet starts (a packet of these two alone is an idle device, not an unplug).
+/// A stalled endpoint is cleared and tried once more. Everything is counted. I/O thread.
+#pragma once
+#include <atomic>
+
+#include "haptics/device/usb/transport.h"
+
+namespace catena::haptics::usb {
+
+/// Written by the I/O thread, read by any.
+struct FtdiCounters {
+  std::atomic<std::uint64_t> packets_out{0}, packets_in{0}, idle_packets{0}, timeouts{0}, stalls{0}, retries{0}, errors{0}, line_errors{0};
+};
+
+inline void count(std::atomic<std::uint64_t>& counter, std::uint64_t by = 1) noexcept { counter.fetch_add(by, std::memory_order_relaxed); }
+
+enum class FtdiBaud : std::uint16_t { boot_9600 = 0x4138, image_140000 = 0x15, run_1500000 = 0x02 };
+
+inline constexpr std::size_t kFtdiPayloadBytes = kUsbPacketBytes - 2;
+
+class Ftdi {
+ public:
+  Ftdi(Transport& transport, FtdiCounters& counters) : transport_(transport), counters_(counters) {}
+
+  UsbError purge_in() noexcept { return control(0, 1); }
+  UsbError purge_out() noexcept { return control(0, 2); }
+  UsbError purge() noexcept;  ///< both
+  UsbError rts_low() noexcept { return control(1, 0x0200); }
+  UsbError dtr_low() noexcept { return control(1, 0x0100); }
+  UsbError dtr_high() noexcept { return control(1, 0x0101); }
+  UsbError no_flow_control() noexcept { return control(2, 0); }
+  UsbError baud(FtdiBaud baud) noexcept { return control(3, static_cast<std::uint16_t>(baud)); }
+  UsbError eight_n_one() noexcept { return control(4, 8); }
+  UsbError latency_ms(std::uint8_t ms) noexcept { return control(9, ms); }
+
+  /// All of `bytes`, or an error.
+  UsbError write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept;
+  /// One packet's payload, perhaps empty; it stays valid until the next read.
+  UsbError read(std::span<const std::uint8_t>& payload, int timeout_ms) noexcept;
+
+ private:
+  UsbError control(std::uint8_t request, std::uint16_t value) noexcept;
+  UsbError note(UsbError error) noexcept;
+
+  Transport& transport_;
+  FtdiCounters& counters_;
+  UsbPacket packet_{};
+};
+
+}  // namespace catena::haptics::usb

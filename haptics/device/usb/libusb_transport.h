@@ -1,0 +1,72 @@
+/// The bytes over libusb: finds, opens and claims a device, hears of its coming (hotplug where libusb has it, else by looking),
+/// and turns libusb's errors into UsbError. One thread at a time for each object.
+#pragma once
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "haptics/device/usb/transport.h"
+
+struct libusb_context;
+struct libusb_device_handle;
+
+namespace catena::haptics::usb {
+
+struct UsbId {
+  std::uint16_t vendor = 0, product = 0;
+  std::string product_string;  ///< as the device says it; empty: any
+};
+inline const UsbId kFalconUsbId{0x0403, 0xcb48, "FALCON HAPTIC"};
+
+/// One of the bus.
+struct UsbListed {
+  bool can_open = false;
+  std::string detail;  ///< where it is, or why it cannot be opened and what to do
+};
+/// Those of this id, in the order in which LibusbSource counts them.
+Result<std::vector<UsbListed>> list_usb(const UsbId& id);
+
+class LibusbTransport final : public Transport {
+ public:
+  /// Takes a device node that is open already (interface 0 is claimed; the descriptor stays the caller's). Devices are not
+  /// enumerated then: libusb keeps that for every context that this process makes later, so open what is found by id before.
+  static Result<std::unique_ptr<LibusbTransport>> wrap(int fd);
+  ~LibusbTransport() override;
+  LibusbTransport(const LibusbTransport&) = delete;
+  LibusbTransport& operator=(const LibusbTransport&) = delete;
+
+  UsbError control(std::uint8_t request, std::uint16_t value) noexcept override;
+  UsbMoved write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept override;
+  UsbMoved read(UsbPacket& packet, int timeout_ms) noexcept override;
+  UsbError clear_halt(UsbEndpoint endpoint) noexcept override;
+
+ private:
+  friend class LibusbSource;
+  LibusbTransport(std::shared_ptr<libusb_context> context, libusb_device_handle* handle);
+
+  std::shared_ptr<libusb_context> context_;
+  libusb_device_handle* handle_;
+};
+
+/// The n-th device of an id on the bus, again and again.
+class LibusbSource final : public TransportSource {
+ public:
+  explicit LibusbSource(UsbId id, int index = 0);
+  ~LibusbSource() override;
+  LibusbSource(const LibusbSource&) = delete;
+  LibusbSource& operator=(const LibusbSource&) = delete;
+
+  Result<std::unique_ptr<Transport>> open() override;
+  bool wait_for_arrival(int timeout_ms) noexcept override;
+  bool hears_hotplug() const { return hotplug_ != 0; }
+
+ private:
+  UsbId id_;
+  int index_;
+  std::shared_ptr<libusb_context> context_;  ///< null: libusb does not start here
+  std::string why_no_context_;
+  int hotplug_ = 0;  ///< libusb's handle of the callback
+  std::atomic<bool> arrived_{false};
+};
+
+}  // namespace catena::haptics::usb

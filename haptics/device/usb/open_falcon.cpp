@@ -1,0 +1,42 @@
+#include "haptics/device/usb/open_falcon.h"
+
+#include <fmt/format.h>
+
+#include "engine/base/numbers.h"
+#include "haptics/device/usb/falcon_image.h"
+#include "haptics/device/usb/libusb_transport.h"
+
+namespace catena::haptics::usb {
+namespace {
+
+constexpr int kMost = 16;
+constexpr int kIoPriority = 82;  // before the servo's own thread: it mostly waits for the bus
+
+}  // namespace
+
+void list_falcons(std::vector<DeviceInfo>& to) {
+  const auto listed = list_usb(kFalconUsbId);
+  if (!listed) {
+    to.push_back({"falcon", false, "Novint Falcon: " + listed.error().message});
+    return;
+  }
+  if (listed->empty()) to.push_back({"falcon", false, "Novint Falcon: none on the USB bus (0403:cb48); plug in its cable and its power"});
+  for (std::size_t i = 0; i < listed->size(); ++i)
+    to.push_back({i == 0 ? "falcon" : fmt::format("falcon:{}", i), (*listed)[i].can_open, "Novint Falcon, " + (*listed)[i].detail});
+}
+
+Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const DeviceSettings& settings) {
+  const auto index = detail.empty() ? 0 : parse_integer(detail);
+  if (!index || *index < 0 || *index >= kMost)
+    return Error{"falcon:" + detail + ": which one? falcon, falcon:1 (the second one), ... was expected"};
+  FalconOptions options;
+  options.force_gain = settings.force_gain;
+  options.realtime_priority = kIoPriority;
+  if (!settings.firmware.empty()) {
+    CATENA_TRY(options.firmware, read_falcon_image(settings.firmware));
+  }
+  CATENA_TRY(auto falcon, Falcon::open(std::make_unique<LibusbSource>(kFalconUsbId, static_cast<int>(*index)), std::move(options)));
+  return std::unique_ptr<Device>(std::move(falcon));
+}
+
+}  // namespace catena::haptics::usb
