@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "haptics/device/emulator/open_emulated_falcon.h"
 #include "haptics/device/null_device.h"
 #include "haptics/device/simulated_hand.h"
 #include "haptics/device/usb/open_falcon.h"
@@ -28,9 +29,10 @@ Result<std::unique_ptr<Device>> open_simulated(const std::string&, const DeviceS
   return std::unique_ptr<Device>(std::make_unique<SimulatedHand>(std::vector<SimulatedHand::Waypoint>{{}}, parameters));
 }
 
-const std::array<DeviceType, 3>& types() {
-  static const std::array<DeviceType, 3> all = {{
+const std::array<DeviceType, 4>& types() {
+  static const std::array<DeviceType, 4> all = {{
       {"falcon", usb::Falcon::nominal_capabilities, usb::list_falcons, usb::open_falcon},
+      {"emulated-falcon", usb::Falcon::nominal_capabilities, list_emulated_falcon, open_emulated_falcon},
       {"null", [] { return NullDevice().capabilities(); },
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"null", true, "no device: the probe rests, forces go nowhere"});
