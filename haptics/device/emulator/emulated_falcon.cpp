@@ -139,10 +139,10 @@ void EmulatedFalcon::answer_frame() {
     }
   exchange.control = (frame_[13] - unsigned{kNibble}) & 15u;
   ++frames_;
+  exchange.force_n = force_of_motors(mechanism_.legs(), exchange.motors);
   mechanism_.advance(options_.seconds_per_frame, exchange.motors, (exchange.control & 1u) != 0);
   exchange.encoders = mechanism_.encoders();
   exchange.position_m = mechanism_.position_m();
-  exchange.force_n = force_of_motors(mechanism_.legs(), exchange.motors);
   exchange.homed = mechanism_.homed_bits();
   last_ = exchange;
   if (observer_) observer_(exchange);

@@ -59,7 +59,7 @@ class EmulatedFalcon {
   struct Exchange {
     EmulatedMechanism::Counts motors{}, encoders{};
     Vec3 position_m{0.0};  ///< of the grip, when the encoders were read
-    Vec3 force_n{0.0};     ///< of the motors there
+    Vec3 force_n{0.0};     ///< of the motors, where the grip was when they came
     unsigned control = 0;  ///< bits: 1 homing, 2 green, 4 blue, 8 red
     unsigned homed = 0;
   };

@@ -1,0 +1,177 @@
+/// The whole of the hand's side over the unmodified libusb within one process: forces to within half a motor count, a hand that
+/// pushes into the surface and feels it, and a soak (20 000 ticks and frames; CATENA_SOAK_TICKS=1000000 for the long one).
+#include "tests/haptics/device/usbfs/whole_catena.h"
+
+#include <cstdlib>
+
+#include "tests/haptics/device/usbfs/in_process_bus.h"
+#include "tests/haptics/device/usbfs/wrap_source.h"
+
+namespace catena::haptics::test {
+namespace {
+
+std::unique_ptr<usb::Falcon> open_falcon(InProcessBus& bus) {
+  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), patient());
+  if (falcon) return std::move(*falcon);
+  ADD_FAILURE() << falcon.error().message;
+  return nullptr;
+}
+
+TEST(WholeCatenaFast, TheMotorsGetTheTicksForceToWithinHalfACount) {
+  InProcessBus bus({.homed = true});
+  auto falcon = open_falcon(bus);
+  ASSERT_NE(falcon, nullptr);
+  WholeCatena catena(bus, *falcon, {.rate_hz = 4000});
+  ASSERT_TRUE(catena.start());
+  GripWalk walk;
+  for (int i = 0; i < 300; ++i) catena.check(walk.next());
+  EXPECT_GT(catena.held, 80);
+  EXPECT_GT(catena.free, 80);
+  // the bound is tight: some force is off by more than a fifth of it
+  EXPECT_GT(catena.worst_n, 0.2 * max_abs(force_quantum(kBallCentreM)));
+  RecordProperty("worst_force_error_mn", std::to_string(1e3 * catena.worst_n));
+}
+
+TEST(WholeCatenaFast, BetweenCountsTheProbeIsWithinAnEncoderStepOfTheGrip) {
+  InProcessBus bus({.homed = true});
+  auto falcon = open_falcon(bus);
+  ASSERT_NE(falcon, nullptr);
+  WholeCatena catena(bus, *falcon, {.rate_hz = 4000});
+  ASSERT_TRUE(catena.start());
+  double worst_m = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 grip = kBallCentreM + Vec3(0.0003 * i - 0.015, 0.01, 0.0001 * i);
+    ASSERT_TRUE(hold_at(bus, grip, 8));
+    exchange::HapticState tick;
+    ASSERT_TRUE(eventually([&] {
+      catena.servo().take(tick);
+      return norm(tick.probe - world_of(grip)) * 0.04 < encoder_quantum_m(grip);
+    }));
+    worst_m = std::max(worst_m, norm(tick.probe - world_of(grip)) * 0.04);
+  }
+  EXPECT_GT(worst_m, 1e-6) << "the encoders do step";
+}
+
+/// Every tick's force, kept where it changes.
+struct KeptTicks final : TickSink {
+  KeptTicks() { forces.reserve(100000); }
+  void put(const ProbeSample&, const exchange::HapticState& output) noexcept override {
+    if (forces.size() < forces.capacity() && (forces.empty() || forces.back() != output.force_n)) forces.push_back(output.force_n);
+  }
+  std::vector<Vec3> forces;
+};
+
+TEST(WholeCatenaFast, AHandThatPushesInIsHeldByTheSurface) {
+  // a frame is 0.05 ms of the mechanism's time: a servo that is held up for a moment is no long delay to it
+  InProcessBus bus({.homed = true, .seconds_per_frame = 5e-5});
+  auto falcon = open_falcon(bus);
+  ASSERT_NE(falcon, nullptr);
+  KeptTicks ticks;
+  WholeCatena catena(bus, *falcon, {.paced = false, .sink = &ticks});
+  ASSERT_TRUE(catena.start());
+  // the hand wants to be 5 mm under the top of the ball
+  const Vec3 top = kBallCentreM + Vec3(0, 0, kBallRadiusM), wish = top - Vec3(0, 0, 0.005);
+  EmulatedHand hand;
+  hand.path = {{0, top + Vec3(0, 0, 0.005), 0}, {0.02, top + Vec3(0, 0, 0.005), 0}, {0.2, wish, 0}};
+  std::vector<EmulatedFalcon::Exchange> felt;
+  felt.reserve(100000);
+  bus.with([&](EmulatedFalcon& device) {
+    device.mechanism().carry(hand);
+    device.on_exchange([&](const EmulatedFalcon::Exchange& exchange) {
+      if (felt.size() < felt.capacity()) felt.push_back(exchange);
+    });
+  });
+  const double depth = 0.005 * hand.stiffness_n_per_m / (hand.stiffness_n_per_m + kBallStiffness);
+  ASSERT_TRUE(frames_pass(bus, 16000));
+  // it rests where the hand's pull and the surface's push are even
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(frames_pass(bus, 50));
+    bus.with([&](EmulatedFalcon& device) {
+      const auto& last = device.last();
+      EXPECT_NEAR(top.z - last.position_m.z, depth, 0.05e-3);
+      EXPECT_NEAR(hand.stiffness_n_per_m * (wish.z - last.position_m.z) + last.force_n.z, 0, 0.02);
+    });
+  }
+  catena.servo().stop();
+  bus.with([](EmulatedFalcon& device) { device.on_exchange(nullptr); });
+
+  // what the motors did was some tick's force, all along the way
+  double lowest = 1;
+  int checked = 0;
+  for (std::size_t k = 1; k < felt.size(); k += 23) {
+    lowest = std::min(lowest, felt[k].position_m.z);
+    if (felt[k].motors == EmulatedMechanism::Counts{}) continue;
+    const Vec3 bound = force_quantum(felt[k].position_m) + Vec3(2e-3 * norm(felt[k].force_n));
+    bool found = false;
+    for (std::size_t t = 0; t < ticks.forces.size() && !found; ++t) {
+      const Vec3 off = felt[k].force_n - ticks.forces[t];
+      found = std::fabs(off.x) <= bound.x && std::fabs(off.y) <= bound.y && std::fabs(off.z) <= bound.z;
+    }
+    EXPECT_TRUE(found) << "frame " << k;
+    ++checked;
+  }
+  EXPECT_GT(checked, 50);
+  EXPECT_LT(lowest, top.z);
+  EXPECT_GT(lowest, wish.z) << "it never got where it wanted";
+}
+
+TEST(WholeCatenaFast, SoaksWithFaultsAndStaysReady) {
+  const char* asked = std::getenv("CATENA_SOAK_TICKS");
+  const std::uint64_t ticks = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 20000;
+  InProcessBus bus({.homed = true});
+  auto falcon = open_falcon(bus);
+  ASSERT_NE(falcon, nullptr);
+  WholeCatena catena(bus, *falcon, {.paced = false});
+  ASSERT_TRUE(catena.start());
+  EmulatedHand hand;
+  const Vec3 top = kBallCentreM + Vec3(0, 0, kBallRadiusM);
+  hand.path = {{0, top + Vec3(0, 0, 0.005), 0}, {1, top - Vec3(0, 0, 0.003), 1}, {2, top + Vec3(0.005, 0, 0.005), 0}};
+  hand.repeat_from_s = 0;
+  int largest = 0;
+  std::uint64_t pushed = 0;
+  bus.with([&](EmulatedFalcon& device) {
+    device.mechanism().carry(hand);
+    device.on_exchange([&, device_ptr = &device](const EmulatedFalcon::Exchange& exchange) {
+      for (const int motor : exchange.motors) largest = std::max(largest, std::abs(motor));
+      pushed += exchange.motors != EmulatedMechanism::Counts{};
+      using Kind = ReplyFault::Kind;
+      constexpr Kind kinds[] = {Kind::split, Kind::join, Kind::garbage, Kind::truncate, Kind::drop};
+      const std::uint64_t n = device_ptr->frames();
+      if (n % 997 == 0) device_ptr->faults().replies.push_back({kinds[n / 997 % 5], n % 15 + 1});
+      if (n % 5003 == 0) device_ptr->halt(n % 2 == 0 ? EmulatedFalcon::kEndpointIn : EmulatedFalcon::kEndpointOut);
+    });
+  });
+  const std::uint64_t frames_before = frames_of(bus);
+  exchange::HapticState tick;
+  std::uint64_t last = 0;
+  // no time limit but of progress
+  while (frames_of(bus) < frames_before + ticks || tick.tick < ticks) {
+    ASSERT_TRUE(frames_pass(bus, 1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    catena.servo().take(tick);
+    EXPECT_GE(tick.tick, last);
+    last = tick.tick;
+  }
+  catena.servo().stop();
+  const usb::FalconStats stats = falcon->stats();
+  EXPECT_EQ(falcon->state(), usb::FalconState::ready);
+  EXPECT_EQ(stats.losses, 0u);
+  EXPECT_EQ(stats.out_of_reach, 0u);
+  EXPECT_GE(stats.stalls, ticks / 5003);
+  EXPECT_GT(stats.resyncs, 0u);
+  EXPECT_GT(pushed, ticks / 20);
+  EXPECT_LE(largest, 4095);
+  bus.with([](EmulatedFalcon& device) { device.on_exchange(nullptr); });
+  falcon.reset();
+  bus.with([&](EmulatedFalcon& device) {
+    EXPECT_EQ(device.last().motors, (EmulatedMechanism::Counts{})) << "the last packet is zero";
+    EXPECT_EQ(bus.port().counts.submitted, bus.port().counts.reaped) << "every URB came home";
+    EXPECT_EQ(device.bad_bytes(), 0u);
+  });
+  std::printf("soak: %llu ticks, %llu frames, %llu URBs, %llu stalls, %llu resyncs\n", static_cast<unsigned long long>(tick.tick),
+              static_cast<unsigned long long>(stats.frames), static_cast<unsigned long long>(bus.port().counts.submitted),
+              static_cast<unsigned long long>(stats.stalls), static_cast<unsigned long long>(stats.resyncs));
+}
+
+}  // namespace
+}  // namespace catena::haptics::test
