@@ -1,0 +1,189 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "haptics/device/usb/falcon_codec.h"
+#include "haptics/device/usb/falcon_image.h"
+#include "haptics/device/usb/falcon_kinematics.h"
+#include "tests/fuzz/mutate.h"
+
+namespace catena::haptics::usb {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+// CATENA_FUZZ_INPUTS=1000000 for the long run
+int inputs() {
+  const char* text = std::getenv("CATENA_FUZZ_INPUTS");
+  return text != nullptr ? std::atoi(text) : 20000;
+}
+
+// flips, cuts, doublings, single bytes and words, of anything
+void mutate(Bytes& bytes, test::Random& random) {
+  const std::size_t changes = 1 + random.below(4);
+  for (std::size_t i = 0; i < changes; ++i) {
+    const std::size_t at = random.below(bytes.size() + 1), length = std::min(random.below(40), bytes.size() - at);
+    const auto where = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+    switch (random.below(6)) {
+      case 0:
+        if (at < bytes.size()) bytes[at] ^= static_cast<std::uint8_t>(1u << random.below(8));
+        break;
+      case 1:
+        bytes.erase(where, where + static_cast<std::ptrdiff_t>(length));
+        break;
+      case 2: {
+        const Bytes piece(where, where + static_cast<std::ptrdiff_t>(length));
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(random.below(bytes.size() + 1)), piece.begin(), piece.end());
+        break;
+      }
+      case 3:
+        bytes.insert(where, static_cast<std::uint8_t>(random.next()));
+        break;
+      case 4: {
+        constexpr std::uint8_t kWords[] = {0x00, 0xFF, '<', '>', 'A', 'P', 0xC0, 0xC1, 0xAA, 0x08, 0x40, 0x3F};
+        if (at < bytes.size()) bytes[at] = kWords[random.below(std::size(kWords))];
+        break;
+      }
+      default:
+        if (at + 1 < bytes.size()) bytes[at] = bytes[at + 1] = static_cast<std::uint8_t>(random.below(2) * 0xFF);
+    }
+  }
+}
+
+FalconFrame any_frame(test::Random& random) {
+  FalconFrame f;
+  for (std::int16_t& count : f.encoders) count = static_cast<std::int16_t>(random.next());
+  f.buttons = static_cast<std::uint8_t>(random.below(16));
+  f.homed = static_cast<std::uint8_t>(random.below(8));
+  f.unknown = static_cast<std::uint8_t>(random.next());
+  return f;
+}
+
+// A reader without state: at each place, is a whole frame there? Frames cannot overlap but by a '<' in byte 14.
+std::vector<FalconFrame> by_hand(const Bytes& stream) {
+  std::vector<FalconFrame> out;
+  for (std::size_t at = 0; at + kFalconPacketBytes <= stream.size();) {
+    FalconFrame f;
+    if (decode_frame(std::span<const std::uint8_t>(stream).subspan(at).first<kFalconPacketBytes>(), f)) {
+      out.push_back(f);
+      at += kFalconPacketBytes;
+    } else {
+      ++at;
+    }
+  }
+  return out;
+}
+
+TEST(FalconFuzz, TheFramerFindsWhatAReaderOfTheWholeStreamFinds) {
+  test::Random random{17};
+  const int n = inputs();
+  std::uint64_t found = 0, dropped = 0;
+  for (int i = 0; i < n && !HasFailure(); ++i) {
+    Bytes stream;
+    for (std::size_t k = 1 + random.below(4); k > 0; --k) {
+      const FalconPacket bytes = encode_frame(any_frame(random));
+      stream.insert(stream.end(), bytes.begin(), bytes.end());
+    }
+    mutate(stream, random);
+    const std::vector<FalconFrame> expected = by_hand(stream);
+    FalconFramer framer;
+    std::size_t got = 0;
+    for (std::size_t at = 0; at < stream.size();) {
+      const std::size_t piece = std::min(1 + random.below(20), stream.size() - at);
+      for (std::size_t b = at; b < at + piece; ++b)
+        if (FalconFrame f; framer.push(stream[b], f)) {
+          ASSERT_LT(got, expected.size()) << "input " << i;
+          ASSERT_EQ(encode_frame(f), encode_frame(expected[got])) << "input " << i;
+          ++got;
+        }
+      at += piece;
+    }
+    ASSERT_EQ(got, expected.size()) << "input " << i;
+    ASSERT_LE(framer.dropped_bytes() + got * kFalconPacketBytes, stream.size()) << "input " << i;
+    ASSERT_GT(framer.dropped_bytes() + (got + 1) * kFalconPacketBytes, stream.size()) << "input " << i;
+    found += got;
+    dropped += framer.dropped_bytes();
+  }
+  EXPECT_GT(found, static_cast<std::uint64_t>(n));
+  EXPECT_GT(dropped, static_cast<std::uint64_t>(n));
+}
+
+TEST(FalconFuzz, PacketsOfAnyBytesAreRefusedOrRoundTrip) {
+  test::Random random{23};
+  const int n = inputs();
+  int frames = 0, commands = 0, places = 0;
+  for (int i = 0; i < n && !HasFailure(); ++i) {
+    const FalconPacket good = encode_frame(any_frame(random));
+    Bytes bytes(good.begin(), good.end());
+    mutate(bytes, random);
+    bytes.resize(kFalconPacketBytes, 0);
+    const auto packet = std::span<const std::uint8_t>(bytes).first<kFalconPacketBytes>();
+    FalconFrame f;
+    if (decode_frame(packet, f)) {
+      ++frames;
+      const FalconPacket again = encode_frame(f);
+      ASSERT_TRUE(std::equal(again.begin(), again.end(), bytes.begin())) << "input " << i;
+      // whatever the encoders say: a finite place within reach, or a refusal
+      if (i % 64 == 0) {
+        Vec3 p(0.0);
+        if (falcon_forward(falcon_angles(f.encoders), p)) {
+          ++places;
+          ASSERT_LT(max_abs(p), 0.3);
+        }
+      }
+    }
+    FalconCommand c;
+    if (decode_command(packet, c)) {
+      ++commands;
+      const FalconPacket again = encode_command(c);
+      ASSERT_TRUE(std::equal(again.begin(), again.end(), bytes.begin())) << "input " << i;
+    }
+  }
+  EXPECT_GT(frames, n / 10);
+  EXPECT_GT(commands, 0);
+}
+
+Bytes good_image() {
+  Bytes image{0xAA, 0x08};
+  const auto put = [&image](unsigned word) {
+    image.push_back(static_cast<std::uint8_t>(word));
+    image.push_back(static_cast<std::uint8_t>(word >> 8));
+  };
+  for (const unsigned word : {0, 0, 0, 0, 0, 0, 0, 0, 0x3F, 0x8000}) put(word);
+  for (const unsigned words : {3u, 20u, 1u}) {
+    for (const unsigned word : {words, 0x3Fu, 0x8000u}) put(word);
+    for (unsigned i = 0; i < words; ++i) put(i * 4099);
+  }
+  put(0);
+  return image;
+}
+
+TEST(FalconFuzz, ImagesAreTakenOrRefusedWithTheByteAndWhatWasExpected) {
+  test::Random random{29};
+  const int n = inputs();
+  const Bytes good = good_image();
+  ASSERT_TRUE(check_falcon_image(good, "a.bin"));
+  int taken = 0;
+  for (int i = 0; i < n && !HasFailure(); ++i) {
+    Bytes image = good;
+    mutate(image, random);
+    const auto info = check_falcon_image(image, "a.bin");
+    if (info) {
+      ++taken;
+      ASSERT_EQ(22 + 2 * info->data_words + 6 * static_cast<std::size_t>(info->blocks) + 2, image.size()) << "input " << i;
+      continue;
+    }
+    const std::string& message = info.error().message;
+    ASSERT_TRUE(message.starts_with("a.bin: byte ")) << message;
+    ASSERT_LE(std::strtoul(message.c_str() + 12, nullptr, 10), image.size()) << message;
+    ASSERT_NE(message.find("expected"), std::string::npos) << message;
+    ASSERT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  EXPECT_GT(taken, 0);
+  EXPECT_LT(taken, n);
+}
+
+}  // namespace
+}  // namespace catena::haptics::usb

@@ -1,0 +1,178 @@
+#include "haptics/device/usb/falcon_boot.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/haptics/device/fake_falcon.h"
+
+namespace catena::haptics::usb {
+namespace {
+
+using test::Bytes;
+using Controls = std::vector<std::pair<int, int>>;
+
+struct FalconBoot : testing::Test {
+  std::shared_ptr<test::FakeFalcon> fake = std::make_shared<test::FakeFalcon>();
+  test::FakeTransport transport{fake};
+  FtdiCounters counters;
+  Ftdi ftdi{transport, counters};
+  FalconBootOptions options;
+  std::atomic<std::uint64_t> uploads{0};
+  Bytes image = test::small_image();
+
+  FalconBoot() { fake->image = image; }
+  std::string boot() {
+    const Outcome outcome = falcon_boot(ftdi, image, options, &uploads);
+    return outcome ? "" : outcome.error().message;
+  }
+};
+
+TEST_F(FalconBoot, ControlRequestsAreTheseNumbers) {
+  ftdi.purge();
+  ftdi.rts_low();
+  ftdi.dtr_low();
+  ftdi.dtr_high();
+  ftdi.no_flow_control();
+  ftdi.baud(FtdiBaud::boot_9600);
+  ftdi.baud(FtdiBaud::image_140000);
+  ftdi.baud(FtdiBaud::run_1500000);
+  ftdi.eight_n_one();
+  ftdi.latency_ms(16);
+  EXPECT_EQ(fake->controls,
+            (Controls{{0, 1}, {0, 2}, {1, 0x200}, {1, 0x100}, {1, 0x101}, {2, 0}, {3, 0x4138}, {3, 0x15}, {3, 2}, {4, 8}, {9, 16}}));
+}
+
+TEST_F(FalconBoot, FirmwareThatRunsIsLeftAlone) {
+  fake->firmware_runs = true;
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(fake->handshakes, 0);
+  EXPECT_EQ(uploads, 0u);
+  EXPECT_EQ(fake->controls, (Controls{{0, 1}, {0, 2}, {9, 1}, {3, 2}, {0, 1}, {0, 2}}));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+}
+
+TEST_F(FalconBoot, TheWholeImageIsSentInTheseSteps) {
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(fake->received, image);
+  EXPECT_EQ(uploads, 1u);
+  const Controls run{{0, 1}, {0, 2}, {9, 1}, {3, 2}, {0, 1}, {0, 2}};
+  Controls expected = run;
+  expected.insert(expected.end(),
+                  {{0, 1}, {0, 2}, {9, 16}, {3, 0x4138}, {4, 8}, {2, 0}, {1, 0x200}, {1, 0x100}, {1, 0x101}, {1, 0x100}, {3, 0x15}});
+  expected.insert(expected.end(), run.begin(), run.end());
+  EXPECT_EQ(fake->controls, expected);
+}
+
+TEST_F(FalconBoot, NoFirmwareAndNoneGivenSaysWhatToGive) {
+  image.clear();
+  const std::string message = boot();
+  EXPECT_NE(message.find("--firmware FILE"), std::string::npos) << message;
+  EXPECT_NE(message.find("\"firmware\""), std::string::npos) << message;
+  EXPECT_NE(message.find("may not ship"), std::string::npos) << message;
+  EXPECT_EQ(fake->handshakes, 0);
+}
+
+TEST_F(FalconBoot, TheAnswerWithAZeroBeforeItIsUnderstood) {
+  fake->hello = {0x00, 0x0A, 0x44, 0x2C, 0x0D};
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(fake->handshakes, 1);
+}
+
+TEST_F(FalconBoot, AnAnswerInSinglePiecesIsUnderstood) {
+  fake->cuts = {1, 0, 2, 1, 0, 0, 3};
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(fake->received, image);
+}
+
+TEST_F(FalconBoot, AWrongAnswerIsNone) {
+  fake->hello = {0x0A, 0x44, 0x2D, 0x0D};
+  EXPECT_NE(boot().find("did not answer 100 hand shakes"), std::string::npos);
+  EXPECT_EQ(fake->handshakes, 200);
+  EXPECT_EQ(fake->uploads, 0);
+}
+
+TEST_F(FalconBoot, TheHundredthHandShakeIsStillInTime) {
+  fake->deaf_handshakes = 99;
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(fake->handshakes, 100);
+  EXPECT_EQ(uploads, 1u);
+}
+
+TEST_F(FalconBoot, AWrongEchoIsTriedAgainTenTimes) {
+  fake->bad_uploads = 9;
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(uploads, 10u);
+  EXPECT_EQ(fake->received, image);
+}
+
+TEST_F(FalconBoot, TenWrongEchoesAreAnErrorThatNamesTheByte) {
+  fake->bad_uploads = 1000;
+  fake->bad_byte = 100;
+  const std::string message = boot();
+  EXPECT_NE(message.find("10 tries"), std::string::npos) << message;
+  EXPECT_NE(message.find("byte 100 of the image came back as"), std::string::npos) << message;
+  EXPECT_EQ(fake->uploads, 10);
+}
+
+TEST_F(FalconBoot, FirmwareThatDoesNotStartIsTriedAgain) {
+  fake->dead_uploads = 2;
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(uploads, 3u);
+}
+
+TEST_F(FalconBoot, ALoaderThatEchoesIsNotFirmware) {
+  fake->echoes = true;
+  image.clear();
+  EXPECT_NE(boot().find("no firmware runs"), std::string::npos);
+}
+
+TEST_F(FalconBoot, UnpluggedWhileBootingEndsAtOnce) {
+  options.progress = [&](int, double share) {
+    if (share > 0.5) fake->plugged = false;
+    return true;
+  };
+  EXPECT_NE(boot().find("unplugged"), std::string::npos);
+  EXPECT_EQ(uploads, 1u);
+}
+
+TEST_F(FalconBoot, ProgressRisesAndMayGiveUp) {
+  double last = -1;
+  options.progress = [&](int attempt, double share) {
+    EXPECT_EQ(attempt, 1);
+    EXPECT_GE(share, last);
+    last = share;
+    return share < 0.5;
+  };
+  EXPECT_NE(boot().find("given up"), std::string::npos);
+  EXPECT_GE(last, 0.5);
+  EXPECT_FALSE(fake->firmware_runs);
+}
+
+TEST_F(FalconBoot, StallsAndTimeOutsOnTheWayAreOvercome) {
+  fake->control_faults = {UsbError::none, UsbError::stall};
+  fake->write_faults = {UsbError::stall};
+  fake->read_faults = {UsbError::timeout, UsbError::stall};
+  EXPECT_EQ(boot(), "");
+  EXPECT_EQ(fake->cleared_out, 1);
+  EXPECT_EQ(fake->cleared_in, 1);
+  EXPECT_EQ(counters.stalls, 3u);
+  EXPECT_EQ(counters.timeouts, 1u);
+  EXPECT_EQ(counters.retries, 3u);
+}
+
+TEST_F(FalconBoot, ModemBytesAreStrippedAndAloneAreNoUnplug) {
+  std::span<const std::uint8_t> payload;
+  EXPECT_EQ(ftdi.read(payload, 1), UsbError::none);
+  EXPECT_TRUE(payload.empty());
+  EXPECT_EQ(counters.idle_packets, 1u);
+  for (int i = 0; i < 100; ++i) fake->to_host.push_back(static_cast<std::uint8_t>(i));
+  EXPECT_EQ(ftdi.read(payload, 1), UsbError::none);
+  ASSERT_EQ(payload.size(), 62u);
+  EXPECT_EQ(payload[0], 0);
+  EXPECT_EQ(payload[61], 61);
+  EXPECT_EQ(ftdi.read(payload, 1), UsbError::none);
+  ASSERT_EQ(payload.size(), 38u);
+  EXPECT_EQ(payload[0], 62);
+}
+
+}  // namespace
+}  // namespace catena::haptics::usb

@@ -1,0 +1,210 @@
+#include "haptics/device/usb/falcon_session.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/haptics/device/fake_falcon.h"
+
+namespace catena::haptics::usb {
+namespace {
+
+using Cycle = FalconSession::Cycle;
+constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};  // mm on the axis, about
+
+std::int64_t test_clock() {
+  static std::int64_t now = 0;
+  return now += 1000000;
+}
+
+struct FalconSessionTest : testing::Test {
+  std::shared_ptr<test::FakeFalcon> fake = std::make_shared<test::FakeFalcon>();
+  test::FakeTransport transport{fake};
+  FalconCounters counters;
+  Ftdi ftdi{transport, counters.ftdi};
+  FalconSession session{ftdi, counters, 1e4, test_clock};
+
+  FalconSessionTest() {
+    fake->firmware_runs = true;
+    fake->baud = 2;
+  }
+  void say(const FalconCounts& encoders, int homed, int buttons = 0) {
+    fake->frame = {encoders, static_cast<std::uint8_t>(buttons), static_cast<std::uint8_t>(homed), 'A'};
+  }
+  Cycle go(int cycles = 1, const Vec3& force_n = Vec3(0.0), bool forces = true) {
+    Cycle last = Cycle::no_frame;
+    for (int i = 0; i < cycles; ++i) last = session.cycle(force_n, forces);
+    return last;
+  }
+  void arm() {
+    say(kAt175, 7);
+    go(4);
+    ASSERT_EQ(session.pose().state, FalconState::ready);
+    say({400, 400, 400}, 7);
+    go();
+    say(kAt110, 7);
+    go();
+  }
+};
+
+TEST_F(FalconSessionTest, HomingSetsItsBitInEveryPacketAndSendsNoForce) {
+  say(kAt110, 3);
+  EXPECT_EQ(go(5, {0, 0, 5}), Cycle::frame);
+  ASSERT_EQ(fake->commands.size(), 5u);
+  for (const FalconCommand& c : fake->commands) {
+    EXPECT_EQ(c.control, kFalconHoming | kFalconRed);
+    EXPECT_EQ(c.motors, FalconCounts{});
+  }
+  EXPECT_EQ(session.pose().state, FalconState::homing);
+  EXPECT_EQ(session.homed(), 3);
+}
+
+TEST_F(FalconSessionTest, HomedIsBelievedInTheThirdFrame) {
+  say(kAt110, 7);
+  go(2);
+  EXPECT_EQ(session.pose().state, FalconState::homing);
+  go();
+  EXPECT_EQ(session.pose().state, FalconState::waiting);
+  EXPECT_TRUE(session.pose().good);
+  EXPECT_NEAR(session.pose().position_m.z, 0.110, 1e-4);
+  go();
+  EXPECT_EQ(fake->last().control, kFalconBlue);
+}
+
+TEST_F(FalconSessionTest, ForcesWaitUntilTheGripWasFullyOut) {
+  say(kAt110, 7);
+  go(10, {0, 0, 5});
+  EXPECT_EQ(session.pose().state, FalconState::waiting);
+  for (const FalconCommand& c : fake->commands) EXPECT_EQ(c.motors, FalconCounts{});
+  // 169 mm is not enough
+  say({800, 800, 800}, 7);
+  go(2, {0, 0, 5});
+  EXPECT_EQ(session.pose().state, FalconState::waiting);
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  say(kAt175, 7);
+  go(2, {0, 0, 5});
+  EXPECT_EQ(session.pose().state, FalconState::ready);
+  EXPECT_EQ(fake->last().control, kFalconGreen);
+  EXPECT_LT(fake->last().motors[0], 0);
+}
+
+TEST_F(FalconSessionTest, AForceIsTheTorqueOfThePose) {
+  arm();
+  go(1, {0, 0, 1});
+  // 24.18 mN m a newton at 110 mm
+  for (const std::int16_t motor : fake->last().motors) EXPECT_NEAR(motor, -242, 1);
+  go(1, {0, 0, 1}, false);
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_EQ(fake->last().control, kFalconBlue);
+}
+
+TEST_F(FalconSessionTest, OneFrameThatIsNotHomedStopsTheForceForACycle) {
+  arm();
+  say(kAt110, 5);
+  go(1, {0, 0, 1});
+  EXPECT_EQ(session.pose().state, FalconState::homing);
+  say(kAt110, 7);
+  go(1, {0, 0, 1});
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_EQ(session.pose().state, FalconState::ready);
+  go(1, {0, 0, 1});
+  EXPECT_NE(fake->last().motors, FalconCounts{});
+}
+
+TEST_F(FalconSessionTest, HomingLostForThreeFramesMustBeArmedAgain) {
+  arm();
+  say(kAt110, 5);
+  go(3);
+  say(kAt110, 7);
+  go(10, {0, 0, 1});
+  EXPECT_EQ(session.pose().state, FalconState::waiting);
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+}
+
+TEST_F(FalconSessionTest, AJumpIsBelievedOnlyWhenTheNextFrameAgrees) {
+  arm();
+  const Vec3 before = session.pose().position_m;
+  say({900, 900, 900}, 7);
+  go(1, {0, 0, 1});
+  EXPECT_FALSE(session.pose().good);
+  EXPECT_EQ(session.pose().position_m, before);
+  EXPECT_EQ(counters.jumps, 1u);
+  say(kAt110, 7);
+  go(1, {0, 0, 1});
+  EXPECT_EQ(fake->last().motors, FalconCounts{});  // no force at a place that is not believed
+  go();
+  EXPECT_TRUE(session.pose().good);
+  EXPECT_EQ(session.pose().position_m, before);
+}
+
+TEST_F(FalconSessionTest, OutOfReachHoldsThePositionAndStopsTheForce) {
+  arm();
+  const Vec3 before = session.pose().position_m;
+  for (const int step : {-1500, -2400, -3300, -4200}) {
+    const auto e = static_cast<std::int16_t>(step);
+    say({e, e, e}, 7);
+    go(1, {0, 0, 1});
+  }
+  say({-4200, -4200, -4200}, 7);
+  go(2, {0, 0, 1});
+  EXPECT_FALSE(session.pose().good);
+  EXPECT_GT(counters.out_of_reach, 0u);
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_TRUE(is_finite(session.pose().position_m));
+  EXPECT_LT(session.pose().position_m.z, before.z);
+  EXPECT_EQ(session.pose().state, FalconState::ready);
+}
+
+TEST_F(FalconSessionTest, SplitJoinedAndGarbledFramesAreRead) {
+  arm();
+  fake->cuts = {5, 0, 11, 16, 3, 13, 32, 1};
+  fake->before_frame = {'<', 'A', 0xFF};
+  for (int i = 0; i < 200; ++i) {
+    const auto e = static_cast<std::int16_t>(kAt110[0] + i);
+    say({e, e, e}, 7, i & 15);
+    ASSERT_EQ(go(), Cycle::frame) << i;
+    ASSERT_EQ(session.pose().encoders[1], e);
+    ASSERT_EQ(session.pose().buttons, static_cast<unsigned>(i & 15));
+  }
+  EXPECT_GT(counters.dropped_bytes, 0u);
+  EXPECT_GT(counters.resyncs, 0u);
+  EXPECT_EQ(counters.bad_cycles, 0u);
+}
+
+TEST_F(FalconSessionTest, SilenceTimeOutsAndStallsAreNoFrameAndNoLoss) {
+  arm();
+  fake->silent = true;
+  EXPECT_EQ(go(), Cycle::no_frame);
+  fake->silent = false;
+  fake->read_faults = {UsbError::timeout};
+  EXPECT_EQ(go(), Cycle::no_frame);
+  EXPECT_EQ(go(), Cycle::frame);
+  fake->read_faults = {UsbError::stall};
+  fake->write_faults = {UsbError::stall};
+  EXPECT_EQ(go(), Cycle::frame);
+  EXPECT_EQ(fake->cleared_in, 1);
+  EXPECT_EQ(fake->cleared_out, 1);
+  fake->read_faults = {UsbError::stall, UsbError::stall};
+  EXPECT_EQ(go(), Cycle::no_frame);
+  EXPECT_EQ(go(), Cycle::frame);
+  EXPECT_EQ(counters.bad_cycles, 3u);
+  EXPECT_EQ(counters.ftdi.timeouts, 1u);
+}
+
+TEST_F(FalconSessionTest, UnplugIsGone) {
+  arm();
+  fake->plugged = false;
+  EXPECT_EQ(go(), Cycle::gone);
+  fake->plugged = true;
+  fake->read_faults = {UsbError::gone};
+  EXPECT_EQ(go(), Cycle::gone);
+}
+
+TEST_F(FalconSessionTest, LeavingSendsZeroWithTheLightsOff) {
+  arm();
+  go(1, {0, 0, 5});
+  session.leave();
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_EQ(fake->last().control, 0);
+}
+
+}  // namespace
+}  // namespace catena::haptics::usb

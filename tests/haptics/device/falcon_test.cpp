@@ -1,0 +1,275 @@
+#include "haptics/device/usb/falcon.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/base/allocation_guard.h"
+#include "haptics/device/registry.h"
+#include "tests/haptics/device/fake_falcon.h"
+
+namespace catena::haptics::usb {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};
+
+std::atomic<std::int64_t> fake_now_ns{1};
+std::int64_t fake_clock() { return fake_now_ns; }
+
+struct FalconDevice : testing::Test {
+  std::shared_ptr<test::FakeFalcon> fake = std::make_shared<test::FakeFalcon>();
+  std::unique_ptr<Falcon> falcon;
+  FalconOptions options;
+
+  FalconDevice() {
+    fake->firmware_runs = true;
+    fake->pace = 100us;
+    fake->image = test::small_image();
+    options.return_poll_ms = 2;
+    options.clock = fake_clock;
+  }
+  std::string open() {
+    auto opened = Falcon::open(std::make_unique<test::FakeSource>(fake), options);
+    if (!opened) return opened.error().message;
+    falcon = std::move(*opened);
+    return "";
+  }
+  void say(const FalconCounts& encoders, int homed) {
+    fake->with([&](test::FakeFalcon& f) { f.frame = {encoders, 0, static_cast<std::uint8_t>(homed), 'A'}; });
+  }
+  // until it holds; a test that waits a minute fails
+  template <class F>
+  bool eventually(F holds) {
+    for (int i = 0; i < 60000; ++i) {
+      if (holds()) return true;
+      std::this_thread::sleep_for(1ms);
+    }
+    return false;
+  }
+  bool cycles(std::uint64_t n) {
+    const std::uint64_t from = falcon->stats().cycles;
+    return eventually([&] { return falcon->stats().cycles >= from + n; });
+  }
+  bool becomes(FalconState state) {
+    return eventually([&] { return falcon->state() == state; });
+  }
+  void arm() {
+    ASSERT_EQ(open(), "");
+    say(kAt175, 7);
+    ASSERT_TRUE(becomes(FalconState::ready));
+    say({400, 400, 400}, 7);
+    ASSERT_TRUE(cycles(3));
+    say(kAt110, 7);
+    ASSERT_TRUE(cycles(3));
+  }
+};
+
+TEST_F(FalconDevice, HomesArmsAndTellsThePersonWhatToDo) {
+  say(kAt110, 1);
+  ASSERT_EQ(open(), "");
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(falcon->read().status, DeviceStatus::starting);
+  EXPECT_FALSE(falcon->read().forces_on);
+  EXPECT_EQ(falcon->status_text(), "Falcon: pull the grip fully out, then push it in (homed: 1 of 3 axes)");
+  say(kAt110, 7);
+  ASSERT_TRUE(becomes(FalconState::waiting));
+  DeviceInput input = falcon->read();
+  EXPECT_EQ(input.status, DeviceStatus::ready);
+  EXPECT_FALSE(input.forces_on);
+  EXPECT_NEAR(input.position_m.z, 0.110, 1e-4);
+  EXPECT_NE(falcon->status_text().find("fully out once"), std::string::npos);
+  say(kAt175, 7);
+  ASSERT_TRUE(becomes(FalconState::ready));
+  ASSERT_TRUE(cycles(2));
+  input = falcon->read();
+  EXPECT_TRUE(input.forces_on);
+  EXPECT_GT(input.position_m.z, 0.170);
+  EXPECT_EQ(falcon->status_text(), "");
+}
+
+TEST_F(FalconDevice, ForceReachesTheMotorsAndStopsWithoutFreshOrders) {
+  arm();
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] == -242 || fake->last().motors[0] == -241; }));
+  EXPECT_EQ(fake->last().control, kFalconGreen);
+  EXPECT_EQ(falcon->stats().stale_commands, 0u);
+  // the servo's clock goes on by less, then by more than 20 ms
+  fake_now_ns += 19000000;
+  ASSERT_TRUE(cycles(3));
+  EXPECT_NE(fake->last().motors, FalconCounts{});
+  fake_now_ns += 2000000;
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_EQ(fake->last().control, kFalconBlue);
+  EXPECT_EQ(falcon->stats().stale_commands, 1u);
+}
+
+TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
+  arm();
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  std::thread([&] { falcon->stop(); }).join();
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  falcon->write({{0, 0, 2}, Vec3(0.0)});
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_NE(falcon->status_text().find("stopped"), std::string::npos);
+  const std::size_t before = fake->with([](test::FakeFalcon& f) { return f.commands.size(); });
+  falcon->resume();
+  ASSERT_TRUE(cycles(3));
+  fake->with([&](test::FakeFalcon& f) {
+    for (std::size_t i = before; i < f.commands.size(); ++i) EXPECT_EQ(f.commands[i].motors, FalconCounts{});
+  });
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+}
+
+TEST_F(FalconDevice, AForceThatIsNoNumberIsZero) {
+  arm();
+  falcon->write({Vec3(std::numeric_limits<double>::quiet_NaN()), Vec3(0.0)});
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+}
+
+TEST_F(FalconDevice, TheDestructorSendsZeroWithTheLightsOff) {
+  arm();
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  falcon.reset();
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_EQ(fake->last().control, 0);
+}
+
+TEST_F(FalconDevice, UnpluggedIsLostAndComesBackThroughBootHomingAndArming) {
+  options.firmware = fake->image;
+  arm();
+  fake->with([](test::FakeFalcon& f) { f.plugged = false; });
+  ASSERT_TRUE(becomes(FalconState::absent));
+  const DeviceInput held = falcon->read();
+  EXPECT_EQ(held.status, DeviceStatus::lost);
+  EXPECT_FALSE(held.forces_on);
+  EXPECT_NEAR(held.position_m.z, 0.110, 1e-4);
+  EXPECT_TRUE(eventually([&] { return falcon->status_text().find("not on the USB bus") != std::string::npos; }));
+  // power was gone: the firmware too
+  fake->with([](test::FakeFalcon& f) {
+    f.firmware_runs = false;
+    f.frame = {kAt110, 0, 0, 'A'};
+    f.plugged = true;
+  });
+  ASSERT_TRUE(becomes(FalconState::homing));
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(falcon->read().status, DeviceStatus::starting);
+  EXPECT_EQ(falcon->stats().uploads, 1u);
+  EXPECT_EQ(falcon->stats().losses, 1u);
+  EXPECT_EQ(falcon->stats().returns, 1u);
+  say(kAt110, 7);
+  ASSERT_TRUE(becomes(FalconState::waiting));
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  say(kAt175, 7);
+  ASSERT_TRUE(becomes(FalconState::ready));
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+}
+
+TEST_F(FalconDevice, ASilentDeviceIsLostAndOpenedAgain) {
+  arm();
+  fake->with([](test::FakeFalcon& f) { f.silent = true; });
+  ASSERT_TRUE(eventually([&] { return falcon->stats().losses == 1; }));
+  EXPECT_GE(falcon->stats().bad_cycles, 10u);
+  fake->with([](test::FakeFalcon& f) { f.silent = false; });
+  ASSERT_TRUE(becomes(FalconState::waiting));
+  EXPECT_GE(fake->with([](test::FakeFalcon& f) { return f.opened; }), 2);
+}
+
+TEST_F(FalconDevice, APoseThatGetsOldIsLost) {
+  arm();
+  EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
+  fake->hang = true;
+  ASSERT_TRUE(eventually([&] { return fake->hangs.load(); }));
+  fake_now_ns += 90000000;
+  EXPECT_NEAR(falcon->read().age_s, 0.09, 1e-9);
+  EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
+  fake_now_ns += 20000000;
+  EXPECT_EQ(falcon->read().status, DeviceStatus::lost);
+  fake->hang = false;
+}
+
+TEST_F(FalconDevice, ReadAndWriteNeverAllocate) {
+  arm();
+  const AllocationGuard guard;
+  for (int i = 0; i < 1000; ++i) {
+    falcon->read();
+    falcon->write({{0, 0, 1}, Vec3(0.0)});
+  }
+  falcon->stop();
+  falcon->resume();
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+TEST_F(FalconDevice, OpeningErrorsSayWhatToDo) {
+  fake->plugged = false;
+  EXPECT_NE(open().find("not on the USB bus"), std::string::npos);
+  fake->plugged = true;
+  fake->firmware_runs = false;
+  EXPECT_NE(open().find("--firmware FILE"), std::string::npos);
+  options.firmware = fake->image;
+  EXPECT_EQ(open(), "");
+  EXPECT_EQ(falcon->stats().uploads, 1u);
+}
+
+TEST_F(FalconDevice, ReadsAndOrdersFromAnotherThreadWhileItComesAndGoes) {
+  options.clock = now_ns;
+  arm();
+  std::atomic<bool> end{false};
+  std::thread servo([&] {
+    while (!end) {
+      const DeviceInput input = falcon->read();
+      EXPECT_TRUE(is_finite(input.position_m));
+      falcon->write({{0, 0, input.forces_on ? 1.0 : 0.0}, Vec3(0.0)});
+      std::this_thread::sleep_for(200us);
+    }
+  });
+  for (int round = 0; round < 5; ++round) {
+    fake->with([](test::FakeFalcon& f) { f.plugged = false; });
+    EXPECT_TRUE(becomes(FalconState::absent));
+    falcon->stop();
+    fake->with([](test::FakeFalcon& f) { f.plugged = true; });
+    EXPECT_TRUE(becomes(FalconState::waiting));
+    falcon->status_text();
+  }
+  end = true;
+  servo.join();
+  EXPECT_EQ(falcon->stats().returns, 5u);
+}
+
+TEST(FalconRegistry, IsKnownListedAndRefusedWithAReason) {
+  EXPECT_TRUE(is_device_type("falcon"));
+  const DeviceCapabilities c = nominal_capabilities("falcon");
+  EXPECT_EQ(c.name, "Novint Falcon");
+  EXPECT_GT(c.max_force_n, 0);
+  EXPECT_DOUBLE_EQ(c.workspace_centre_m.z, 0.125);
+  int listed = 0;
+  for (const DeviceInfo& info : list_devices())
+    if (info.name.starts_with("falcon")) {
+      ++listed;
+      EXPECT_FALSE(info.detail.empty());
+    }
+  EXPECT_GE(listed, 1);
+  DeviceSettings settings;
+  for (const char* name : {"falcon:x", "falcon:-1", "falcon:99"}) {
+    const auto refused = open_device(name, settings);
+    ASSERT_FALSE(refused) << name;
+    EXPECT_NE(refused.error().message.find("expected"), std::string::npos) << refused.error().message;
+  }
+  settings.firmware = "/nowhere/falcon.bin";
+  const auto missing = open_device("falcon", settings);
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("/nowhere/falcon.bin"), std::string::npos) << missing.error().message;
+}
+
+}  // namespace
+}  // namespace catena::haptics::usb
