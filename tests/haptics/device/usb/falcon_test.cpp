@@ -285,6 +285,20 @@ TEST_F(FalconUsb, AStalledEndpointIsClearedAndUsedAgain) {
   EXPECT_EQ(falcon->stats().losses, 0u);
 }
 
+TEST_F(FalconUsb, SubmissionsThatTheKernelRefusesAreCountedAndTriedAgain) {
+  UmockdevBus bus(kHomed);
+  bus.plug();
+  auto falcon = open_falcon();
+  ASSERT_NE(falcon, nullptr);
+  ASSERT_TRUE(frames_pass(bus, 5));
+  bus.with([&](EmulatedFalcon&) { bus.port().faults.submit_errors = 3; });
+  ASSERT_TRUE(eventually([&] { return bus.with([&](EmulatedFalcon&) { return bus.port().faults.submit_errors == 0; }); }));
+  ASSERT_TRUE(frames_pass(bus, 10));
+  EXPECT_GE(falcon->stats().errors, 1u);
+  EXPECT_EQ(falcon->stats().losses, 0u);
+  EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
+}
+
 // ---- going ----
 
 TEST_F(FalconUsb, ASilentDeviceIsLostAndComesBackUnarmed) {
