@@ -13,7 +13,7 @@ TEST(WholeCatenaUsb, TheMotorsGetTheTicksForceToWithinHalfACount) {
   bus.plug();
   auto falcon = usb::Falcon::open(std::make_unique<usb::LibusbSource>(usb::kFalconUsbId), patient());
   ASSERT_TRUE(falcon) << falcon.error().message;
-  WholeCatena catena(bus, **falcon, {.rate_hz = 1000});
+  ServoRig catena(bus, **falcon, ball_program(), {.rate_hz = 1000});
   ASSERT_TRUE(catena.start());
   GripWalk walk;
   for (int i = 0; i < 60; ++i) catena.check(walk.next());
