@@ -2,6 +2,8 @@
 /// pushes into the surface and feels it.
 #include "tests/haptics/device/usbfs/whole_catena.h"
 
+#include <atomic>
+
 #include "tests/haptics/device/usbfs/in_process_bus.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
@@ -55,13 +57,19 @@ struct KeptTicks final : TickSink {
   KeptTicks() { forces.reserve(100000); }
   void put(const ProbeSample&, const exchange::HapticState& output) noexcept override {
     if (forces.size() < forces.capacity() && (forces.empty() || forces.back() != output.force_n)) forces.push_back(output.force_n);
+    count.fetch_add(1);
+  }
+  /// Two more ticks: the second has begun with all that was there before.
+  void wait_for_two() const {
+    const std::uint64_t from = count.load();
+    while (count.load() < from + 2) std::this_thread::yield();
   }
   std::vector<Vec3> forces;
+  std::atomic<std::uint64_t> count{0};
 };
 
 TEST(WholeCatenaFast, AHandThatPushesInIsHeldByTheSurface) {
-  // a frame is 0.05 ms of the mechanism's time: a servo that is held up for a moment is no long delay to it
-  InProcessBus bus({.homed = true, .seconds_per_frame = 5e-5});
+  InProcessBus bus({.homed = true, .seconds_per_frame = 5e-4});
   auto falcon = open_falcon(bus);
   ASSERT_NE(falcon, nullptr);
   KeptTicks ticks;
@@ -70,33 +78,36 @@ TEST(WholeCatenaFast, AHandThatPushesInIsHeldByTheSurface) {
   // the hand wants to be 5 mm under the top of the ball
   const Vec3 top = kBallCentreM + Vec3(0, 0, kBallRadiusM), wish = top - Vec3(0, 0, 0.005);
   EmulatedHand hand;
-  hand.path = {{0, top + Vec3(0, 0, 0.005), 0}, {0.02, top + Vec3(0, 0, 0.005), 0}, {0.2, wish, 0}};
+  hand.damping_ns_per_m = 12;
+  hand.path = {{0, top + Vec3(0, 0, 0.005), 0}, {0.01, top + Vec3(0, 0, 0.005), 0}, {0.12, wish, 0}};
   std::vector<EmulatedFalcon::Exchange> felt;
   felt.reserve(100000);
   bus.with([&](EmulatedFalcon& device) {
     device.mechanism().carry(hand);
     device.on_exchange([&](const EmulatedFalcon::Exchange& exchange) {
       if (felt.size() < felt.capacity()) felt.push_back(exchange);
+      // the mechanism's time waits for the servo's: a delay of two or three frames, however busy the machine is
+      ticks.wait_for_two();
     });
   });
   const double depth = 0.005 * hand.stiffness_n_per_m / (hand.stiffness_n_per_m + kBallStiffness);
-  ASSERT_TRUE(frames_pass(bus, 16000));
+  ASSERT_TRUE(frames_pass(bus, 600));
   // it rests where the hand's pull and the surface's push are even
-  for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(frames_pass(bus, 50));
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(frames_pass(bus, 5));
     bus.with([&](EmulatedFalcon& device) {
       const auto& last = device.last();
       EXPECT_NEAR(top.z - last.position_m.z, depth, 0.05e-3);
       EXPECT_NEAR(hand.stiffness_n_per_m * (wish.z - last.position_m.z) + last.force_n.z, 0, 0.06) << "three encoder steps";
     });
   }
-  catena.servo().stop();
   bus.with([](EmulatedFalcon& device) { device.on_exchange(nullptr); });
+  catena.servo().stop();
 
   // what the motors did was some tick's force, all along the way
   double lowest = 1;
   int checked = 0;
-  for (std::size_t k = 1; k < felt.size(); k += 23) {
+  for (std::size_t k = 1; k < felt.size(); ++k) {
     lowest = std::min(lowest, felt[k].position_m.z);
     if (felt[k].motors == EmulatedMechanism::Counts{}) continue;
     const Vec3 bound = force_quantum(felt[k].position_m) + Vec3(2e-3 * norm(felt[k].force_n));
