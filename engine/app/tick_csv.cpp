@@ -90,7 +90,7 @@ void append_details(std::string& line, const LinkColumns& columns, const std::ve
   if (state.mode >= 0) line += mode < modes.size() ? modes[mode] : fmt::format("mode_{}", mode + 1);
   for (std::size_t c = 0; c < columns.names().size(); ++c) {
     if (columns.link(c) < 0) {
-      line += ",,,,,,,,,,";
+      line += ",,,,,,,,,,,";
       continue;
     }
     const exchange::LinkReport& link = state.links[static_cast<std::size_t>(columns.link(c))];

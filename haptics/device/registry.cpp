@@ -4,6 +4,7 @@
 
 #include "engine/base/csv_paths.h"
 #include "engine/base/numbers.h"
+#include "haptics/device/emulator/open_emulated_falcon.h"
 #include "haptics/device/hand_map.h"
 #include "haptics/device/mouse.h"
 #include "haptics/device/null_device.h"
@@ -75,6 +76,7 @@ Result<std::unique_ptr<Device>> open_spacemouse(const std::string&, const Device
 const std::vector<DeviceType>& types() {
   static const std::vector<DeviceType> all = {
       {"falcon", usb::Falcon::nominal_capabilities, usb::list_falcons, usb::open_falcon},
+      {"emulated-falcon", usb::Falcon::nominal_capabilities, list_emulated_falcon, open_emulated_falcon},
       {"null", [] { return NullDevice().capabilities(); },
        [](std::vector<DeviceInfo>& to) {
          to.push_back({"null", true, "no device: the probe rests, forces go nowhere"});

@@ -1,0 +1,206 @@
+#include "haptics/device/emulator/emulated_falcon.h"
+
+#include <algorithm>
+
+namespace catena::haptics {
+namespace {
+
+constexpr std::size_t kFrame = 16;
+constexpr std::uint8_t kNibble = 0x41;
+constexpr std::size_t kChipBuffer = 256;  ///< bytes on their way to the host
+constexpr std::size_t kControlsKept = 4096;
+
+void put_int16(std::vector<std::uint8_t>& to, int value) {
+  for (int shift = 0; shift < 16; shift += 4) to.push_back(static_cast<std::uint8_t>(kNibble + (value >> shift & 15)));
+}
+
+// four nibbles, low one first; false where a byte is no nibble
+bool get_int16(const std::uint8_t* from, int& value) {
+  unsigned bits = 0;
+  for (unsigned i = 0; i < 4; ++i) {
+    if (from[i] < kNibble || from[i] > kNibble + 15) return false;
+    bits |= static_cast<unsigned>(from[i] - kNibble) << (4 * i);
+  }
+  value = static_cast<std::int16_t>(bits);
+  return true;
+}
+
+}  // namespace
+
+EmulatedFalcon::EmulatedFalcon(const EmulatedFalconOptions& options)
+    : options_(options), mechanism_(options.power_on_offset), running_(options.firmware) {
+  if (options.homed) mechanism_.set_homed();
+}
+
+void EmulatedFalcon::plug(bool power_kept) {
+  plugged_ = true;
+  to_host_.clear();
+  held_.clear();
+  frame_.clear();
+  baud_ = kBaud9600;
+  latency_ms_ = 16;
+  dtr_ = true;
+  halted_[0] = halted_[1] = false;
+  if (power_kept) return;
+  running_ = false;
+  boot_rom_.reset();
+  mechanism_.power_off(options_.power_on_offset);
+}
+
+bool EmulatedFalcon::control(const UsbControl& request) {
+  if (controls_.size() < kControlsKept) controls_.push_back(request);
+  if (request.request_type != 0x40 || request.index != 0) return false;
+  switch (request.request) {
+    case 0:
+      if (request.value > 2) return false;
+      if (request.value != 2) {
+        to_host_.clear();
+        held_.clear();
+      }
+      if (request.value != 1) frame_.clear();
+      return true;
+    case 1:
+      if ((request.value & 0x0100) != 0) {
+        const bool dtr = (request.value & 1) != 0;
+        // a rising DTR resets the processor into its boot ROM
+        if (dtr && !dtr_) {
+          running_ = false;
+          boot_rom_.reset();
+          mechanism_.power_off(options_.power_on_offset);
+        }
+        dtr_ = dtr;
+      }
+      return true;
+    case 2:
+      return request.value == 0;
+    case 3:
+      if (request.value != kBaud9600 && request.value != kBaudBoot && request.value != kBaudRunning) return false;
+      baud_ = request.value;
+      return true;
+    case 4:
+      return request.value == 8;
+    case 9:
+      if (request.value < 1 || request.value > 255) return false;
+      latency_ms_ = request.value;
+      return true;
+    default:
+      return false;
+  }
+}
+
+void EmulatedFalcon::bulk_out(std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> answer;  // of the boot ROM
+  for (const std::uint8_t byte : bytes) {
+    if (!plugged_) return;
+    ++out_bytes_;
+    if (faults_.unplug_after_out_bytes > 0 && out_bytes_ >= faults_.unplug_after_out_bytes) {
+      faults_.unplug_after_out_bytes = 0;
+      unplug();
+      return;
+    }
+    if (running_) {
+      receive(byte);
+      continue;
+    }
+    boot_rom_.receive(byte, baud_, dtr_, answer);
+    running_ = boot_rom_.started();
+  }
+  send(answer);
+}
+
+void EmulatedFalcon::receive(std::uint8_t byte) {
+  if (baud_ != kBaudRunning) {
+    if (faults_.garbage_at_wrong_baud) send({static_cast<std::uint8_t>(byte | 0xC0)});
+    return;
+  }
+  if (frame_.empty() && byte != '<') {
+    ++bad_bytes_;
+    return;
+  }
+  frame_.push_back(byte);
+  if (frame_.size() < kFrame) return;
+  if (frame_[14] == 'A' && frame_[15] == '>') {
+    answer_frame();
+    frame_.clear();
+    return;
+  }
+  // out of step: start again at the next framing byte
+  const auto next = std::find(frame_.begin() + 1, frame_.end(), '<');
+  bad_bytes_ += static_cast<std::uint64_t>(next - frame_.begin());
+  frame_.erase(frame_.begin(), next);
+}
+
+void EmulatedFalcon::answer_frame() {
+  Exchange exchange;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!get_int16(&frame_[1 + 4 * i], exchange.motors[i])) {
+      bad_bytes_ += kFrame;
+      return;
+    }
+  exchange.control = (frame_[13] - unsigned{kNibble}) & 15u;
+  ++frames_;
+  exchange.force_n = force_of_motors(mechanism_.legs(), exchange.motors);
+  mechanism_.advance(options_.seconds_per_frame, exchange.motors, (exchange.control & 1u) != 0);
+  exchange.encoders = mechanism_.encoders();
+  exchange.position_m = mechanism_.position_m();
+  exchange.homed = mechanism_.homed_bits();
+  last_ = exchange;
+  if (observer_) observer_(exchange);
+
+  std::vector<std::uint8_t> reply{'<'};
+  for (const int count : exchange.encoders) put_int16(reply, std::clamp(count, -32768, 32767));
+  reply.push_back(static_cast<std::uint8_t>(kNibble + ((mechanism_.buttons() & 15u) | exchange.homed << 4)));
+  reply.push_back('A');
+  reply.push_back('>');
+  ReplyFault fault;
+  if (!faults_.replies.empty()) {
+    fault = faults_.replies.front();
+    faults_.replies.pop_front();
+  }
+  if (fault.kind == ReplyFault::Kind::drop) return;
+  if (fault.kind == ReplyFault::Kind::truncate) reply.resize(std::min(fault.n, reply.size()));
+  if (fault.kind == ReplyFault::Kind::garbage) {
+    static constexpr std::uint8_t kNoise[] = {'<', 0x00, 'J', '>', 0xFF, '<', 'A', 'A', '<', 'P', 0x7F};
+    std::vector<std::uint8_t> noise;
+    for (std::size_t i = 0; i < fault.n; ++i) noise.push_back(kNoise[i % std::size(kNoise)]);
+    reply.insert(reply.begin(), noise.begin(), noise.end());
+  }
+  if (fault.kind == ReplyFault::Kind::join) {
+    held_.insert(held_.end(), reply.begin(), reply.end());
+    return;
+  }
+  reply.insert(reply.begin(), held_.begin(), held_.end());
+  held_.clear();
+  if (fault.kind == ReplyFault::Kind::split && fault.n < reply.size()) {
+    const auto at = reply.begin() + static_cast<std::ptrdiff_t>(fault.n);
+    send({reply.begin(), at});
+    send({at, reply.end()});
+    return;
+  }
+  send(reply);
+}
+
+void EmulatedFalcon::send(const std::vector<std::uint8_t>& bytes) {
+  if (faults_.silent || bytes.empty()) return;
+  // a host that does not read loses what the chip cannot hold
+  std::size_t waiting = bytes.size();
+  for (const auto& chunk : to_host_) waiting += chunk.size();
+  if (waiting > kChipBuffer)
+    ++overruns_;
+  else
+    to_host_.push_back(bytes);
+}
+
+std::size_t EmulatedFalcon::bulk_in(std::span<std::uint8_t, kPacket> packet) {
+  packet[0] = 0x01;
+  packet[1] = 0x60;
+  if (to_host_.empty()) return 2;
+  std::vector<std::uint8_t>& front = to_host_.front();
+  const std::size_t n = std::min(front.size(), kPayload);
+  std::copy_n(front.begin(), n, packet.begin() + 2);
+  front.erase(front.begin(), front.begin() + static_cast<std::ptrdiff_t>(n));
+  if (front.empty()) to_host_.pop_front();
+  return 2 + n;
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,64 @@
+/// The mechanics of the emulated Falcon: a grip that is held at a place, or carried by a simulated hand that feels the motors.
+///   m a = k (wish - x) + b (wish' - v) + F_motors,   semi-implicit Euler; a step that leaves the reach is not taken
+/// Encoders: round(counts) plus an unknown offset until an axis is homed. An axis homes while homing is asked for, when its leg
+/// comes back in over the index mark (+600 counts, z = 0.161 m on the centre line) after having been outside of it; then its
+/// offset is gone for good, so the origin jumps.
+/// Deterministic; owned by EmulatedFalcon. Metres, newtons, seconds.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "haptics/device/emulator/delta_legs.h"
+
+namespace catena::haptics {
+
+struct EmulatedHand {
+  struct Waypoint {
+    double t_s = 0;
+    Vec3 position_m{0.0};
+    unsigned buttons = 0;
+  };
+  std::vector<Waypoint> path;  ///< t rising; the wish moves linearly between them, and rests after the last
+  double repeat_from_s = -1;   ///< >= 0: after the last waypoint the script goes on from this time
+  double mass_kg = 0.15;
+  double stiffness_n_per_m = 300;
+  double damping_ns_per_m = 6;
+};
+
+class EmulatedMechanism {
+ public:
+  using Counts = std::array<int, 3>;
+  explicit EmulatedMechanism(const Counts& power_on_offset) : offset_(power_on_offset) {}
+
+  /// Holds the grip there, at rest. False, and nothing changes, where the mechanism does not reach.
+  bool hold(const Vec3& position_m);
+  void hold_buttons(unsigned buttons) { buttons_ = buttons; }
+  /// Lets a hand carry the grip from where its path starts.
+  void carry(const EmulatedHand& hand);
+
+  void advance(double dt_s, const Counts& motors, bool homing);
+  void power_off(const Counts& power_on_offset);  ///< homing is lost
+  void set_homed();
+
+  Counts encoders() const;
+  unsigned homed_bits() const { return homed_; }  ///< bit i: axis i
+  unsigned buttons() const { return buttons_; }
+  const Vec3& position_m() const { return position_m_; }
+  const DeltaLegs& legs() const { return legs_; }
+
+ private:
+  static constexpr double kIndexCounts = 600;
+
+  Vec3 wish(Vec3& velocity);
+  bool place(const Vec3& position_m);
+
+  Counts offset_;
+  unsigned homed_ = 0, outside_ = 0, buttons_ = 0;
+  Vec3 position_m_{0, 0, 0.11}, velocity_{0.0};
+  DeltaLegs legs_ = *delta_legs({0, 0, 0.11});
+  EmulatedHand hand_;
+  double t_s_ = 0;
+  std::size_t segment_ = 0;
+};
+
+}  // namespace catena::haptics

@@ -1,0 +1,48 @@
+/// The driver's bytes straight to the emulated Falcon, without libusb: `catena feel SCENE --device emulated-falcon` runs the
+/// real driver over it on any machine. Each read brings what waits, or after the latency time the chip's idle packet.
+/// `paced`: a reply comes no earlier than a millisecond after the last one, as over the bus. Any thread; the lock is its own.
+#pragma once
+#include <memory>
+#include <mutex>
+
+#include "haptics/device/emulator/emulated_falcon.h"
+#include "haptics/device/usb/transport.h"
+
+namespace catena::haptics {
+
+/// A device and the lock around it.
+struct SharedEmulatedFalcon {
+  explicit SharedEmulatedFalcon(const EmulatedFalconOptions& options = {}) : device(options) {}
+  std::mutex mutex;
+  EmulatedFalcon device;
+};
+
+class EmulatedTransport final : public usb::Transport {
+ public:
+  EmulatedTransport(std::shared_ptr<SharedEmulatedFalcon> shared, bool paced) : shared_(std::move(shared)), paced_(paced) {}
+
+  usb::UsbError control(std::uint8_t request, std::uint16_t value) noexcept override;
+  usb::UsbMoved write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept override;
+  usb::UsbMoved read(usb::UsbPacket& packet, int timeout_ms) noexcept override;
+  usb::UsbError clear_halt(usb::UsbEndpoint endpoint) noexcept override;
+
+ private:
+  void wait_for_bus(int ms) noexcept;
+
+  std::shared_ptr<SharedEmulatedFalcon> shared_;
+  bool paced_;
+  std::int64_t last_ns_ = 0;
+};
+
+class EmulatedSource final : public usb::TransportSource {
+ public:
+  EmulatedSource(std::shared_ptr<SharedEmulatedFalcon> shared, bool paced) : shared_(std::move(shared)), paced_(paced) {}
+  Result<std::unique_ptr<usb::Transport>> open() override;
+  bool wait_for_arrival(int timeout_ms) noexcept override;
+
+ private:
+  std::shared_ptr<SharedEmulatedFalcon> shared_;
+  bool paced_;
+};
+
+}  // namespace catena::haptics

@@ -1,0 +1,65 @@
+/// The emulator's mechanism against golden values of the device, which pin the driver's kinematics too.
+#include "haptics/device/emulator/delta_legs.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/matrix.hpp>
+#include <limits>
+#include <numbers>
+
+namespace catena::haptics {
+namespace {
+
+Vec3 counts_at(const Vec3& p_mm) {
+  const auto legs = delta_legs(p_mm * 1e-3);
+  EXPECT_TRUE(legs.has_value());
+  return legs ? counts_of_angles(legs->theta) : Vec3(0.0);
+}
+
+void expect_counts(const Vec3& p_mm, const Vec3& counts, double tolerance) {
+  const Vec3 at = counts_at(p_mm);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(at[i], counts[i], tolerance) << i;
+}
+
+TEST(DeltaLegs, GoldenPositionsGiveTheirEncoders) {
+  expect_counts({0, 0, 134.60243}, {0, 0, 0}, 1e-3);
+  expect_counts({0, 0, 110.7545}, {-500, -500, -500}, 2e-3);
+  expect_counts({-1.49499, -6.69457, 124.77869}, {-100, -200, -300}, 1e-3);
+  expect_counts({20, 0, 110}, {-351.36, -856.23, -209.63}, 0.01);
+}
+
+TEST(DeltaLegs, AtTheMiddleACountIsItsLengthAndANewtonItsTorque) {
+  const auto legs = *delta_legs({0, 0, 0.11});
+  const double count_rad = kEmulatedDegreesPerCount * std::numbers::pi / 180;
+  const Mat3 p_by_theta = glm::inverse(legs.theta_by_p);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(norm(p_by_theta[i]) * count_rad, 37.7e-6, 0.05e-6);
+    EXPECT_NEAR(p_by_theta[i].z, 24.18e-3, 0.01e-3);
+  }
+  // tau = J^T F: the counts of 1 N along z give 1 N back
+  const Vec3 force = force_of_motors(legs, {-242, -242, -242});
+  EXPECT_NEAR(force.z, 242e-4 / 24.18e-3, 1e-3);
+  EXPECT_NEAR(force.x, 0, 1e-9);
+}
+
+TEST(DeltaLegs, TheJacobianIsThatOfDifferences) {
+  for (const Vec3& p : {Vec3(0.01, -0.02, 0.1), Vec3(0.03, 0.03, 0.15), Vec3(-0.025, 0.01, 0.095)}) {
+    const auto legs = *delta_legs(p);
+    for (int j = 0; j < 3; ++j) {
+      Vec3 step(0.0);
+      step[j] = 1e-6;
+      const Vec3 slope = (delta_legs(p + step)->theta - delta_legs(p - step)->theta) / 2e-6;
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(legs.theta_by_p[j][i], slope[i], 1e-6) << i << j;
+    }
+  }
+}
+
+TEST(DeltaLegs, OutOfReachIsSaid) {
+  EXPECT_FALSE(delta_legs({0, 0, 0.19}));
+  EXPECT_FALSE(delta_legs({0.12, 0, 0.11}));
+  EXPECT_TRUE(delta_legs({0.027, 0, 0.170}));
+  EXPECT_FALSE(delta_legs({0, 0, std::numeric_limits<double>::quiet_NaN()}));
+}
+
+}  // namespace
+}  // namespace catena::haptics

@@ -1,0 +1,258 @@
+/// The emulated Falcon byte by byte, without libusb: the protocol's golden vectors, the boot ROM, homing, faults.
+#include "haptics/device/emulator/emulated_falcon.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/haptics/device/emulator/boot_image.h"
+
+namespace catena::haptics {
+namespace {
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+struct Rig {
+  explicit Rig(const EmulatedFalconOptions& options = {}) : device(options) { device.control({0x40, 3, kBaudRunning, 0}); }
+  void send(const std::vector<std::uint8_t>& bytes) { device.bulk_out(bytes); }
+  void send(std::initializer_list<std::uint8_t> bytes) { send(std::vector<std::uint8_t>(bytes)); }
+  void send(const std::string& text) { send(bytes_of(text)); }
+  /// The next packet's payload.
+  std::string receive() {
+    std::uint8_t packet[64];
+    const std::size_t n = device.bulk_in(packet);
+    EXPECT_EQ(packet[0], 0x01);
+    return {packet + 2, packet + n};
+  }
+  void reset_processor() {
+    device.control({0x40, 3, kBaud9600, 0});
+    device.control({0x40, 1, 0x0100, 0});
+    device.control({0x40, 1, 0x0101, 0});
+  }
+  void wake() {
+    reset_processor();
+    send({0x0A, 0x43, 0x0D});
+    EXPECT_EQ(receive(), "\x0A\x44\x2C\x0D");
+    device.control({0x40, 1, 0x0100, 0});
+    device.control({0x40, 3, kBaudBoot, 0});
+    send({0x41});
+    EXPECT_EQ(receive(), "A");
+  }
+  EmulatedFalcon device;
+};
+
+const std::string kRest = "<AAAAAAAAAAAAAA>";
+
+TEST(EmulatedFalcon, EncodersComeLowNibbleFirst) {
+  EmulatedFalconOptions options;
+  options.power_on_offset = {-1447 + 510, 0, 0};
+  Rig rig(options);
+  // at rest at z = 0.11 the encoders stand near -516
+  const int near = static_cast<int>(std::lround(counts_of_angles(delta_legs({0, 0, 0.11})->theta).x));
+  options.power_on_offset = {-1447 - near, -near, 1 - near};
+  Rig exact(options);
+  exact.send(kRest);
+  EXPECT_EQ(exact.receive(), "<JFKPAAAABAAAAA>");
+  EXPECT_EQ(exact.device.last().encoders, (EmulatedMechanism::Counts{-1447, 0, 1}));
+}
+
+TEST(EmulatedFalcon, MotorsAndLightsArriveAndMakeAForce) {
+  Rig rig;
+  rig.device.mechanism().hold({0, 0, 0.11});
+  // 0xFF0E = -242 is the nibbles E 0 F F; control 0x04: blue
+  rig.send("<OAPPOAPPOAPPEAA>");  // a byte too many: no frame
+  rig.send("<OAPPOAPPOAPPEA>");
+  EXPECT_EQ(rig.device.frames(), 1u);
+  EXPECT_EQ(rig.device.last().motors, (EmulatedMechanism::Counts{-242, -242, -242}));
+  EXPECT_EQ(rig.device.last().control, 4u);
+  EXPECT_NEAR(rig.device.last().force_n.z, 1.0, 1e-2);
+  EXPECT_EQ(rig.device.bad_bytes(), 17u);
+}
+
+TEST(EmulatedFalcon, AFrameMayComeInPiecesAndAfterNoise) {
+  Rig rig;
+  rig.send("xx<AAA");
+  rig.send(kRest.substr(4));
+  EXPECT_EQ(rig.device.frames(), 1u);
+  rig.send("<AAA" + kRest + kRest);
+  EXPECT_EQ(rig.device.frames(), 3u);
+  EXPECT_EQ(rig.device.bad_bytes(), 2u + 4u);
+}
+
+TEST(EmulatedFalcon, AWrongBaudRateIsHeardAsNothing) {
+  Rig rig;
+  rig.device.control({0x40, 3, kBaud9600, 0});
+  rig.send(kRest);
+  EXPECT_FALSE(rig.device.has_payload());
+  EXPECT_EQ(rig.device.frames(), 0u);
+  rig.device.faults().garbage_at_wrong_baud = true;
+  rig.send(kRest);
+  EXPECT_TRUE(rig.device.has_payload());
+  EXPECT_EQ(rig.device.frames(), 0u);
+}
+
+TEST(EmulatedFalcon, UnknownRequestsAreRefused) {
+  Rig rig;
+  EXPECT_TRUE(rig.device.control({0x40, 9, 1, 0}));
+  EXPECT_EQ(rig.device.latency_ms(), 1);
+  EXPECT_FALSE(rig.device.control({0x40, 9, 0, 0}));
+  EXPECT_FALSE(rig.device.control({0x40, 77, 0, 0}));
+  EXPECT_FALSE(rig.device.control({0xC0, 9, 1, 0}));
+  EXPECT_FALSE(rig.device.control({0x40, 3, 7, 0}));
+  EXPECT_FALSE(rig.device.control({0x40, 9, 1, 1}));
+}
+
+TEST(EmulatedFalcon, BootsAWholeImageAndStartsIt) {
+  EmulatedFalconOptions options;
+  options.firmware = false;
+  Rig rig(options);
+  rig.send(kRest);
+  EXPECT_EQ(rig.device.frames(), 0u);
+  rig.wake();
+  const auto image = test::boot_image({100, 7});
+  for (std::size_t at = 0; at < image.size(); at += 62) {
+    const std::vector<std::uint8_t> chunk(image.begin() + static_cast<std::ptrdiff_t>(at),
+                                          image.begin() + static_cast<std::ptrdiff_t>(std::min(at + 62, image.size())));
+    EXPECT_FALSE(rig.device.running());
+    rig.send(chunk);
+    EXPECT_EQ(bytes_of(rig.receive()), chunk);
+  }
+  EXPECT_TRUE(rig.device.running());
+  rig.device.control({0x40, 3, kBaudRunning, 0});
+  rig.send(kRest);
+  EXPECT_EQ(rig.device.frames(), 1u);
+}
+
+TEST(EmulatedFalcon, ADamagedOrWrongImageNeverStarts) {
+  EmulatedFalconOptions options;
+  options.firmware = false;
+  const auto image = test::boot_image({20});
+  Rig rig(options);
+  rig.device.boot_rom().faults().echo_errors = {30};
+  rig.wake();
+  rig.send(image);
+  std::string echo;
+  while (rig.device.has_payload()) echo += rig.receive();
+  ASSERT_EQ(echo.size(), image.size());
+  EXPECT_NE(static_cast<std::uint8_t>(echo[30]), image[30]);
+  EXPECT_FALSE(rig.device.running());
+  // after a reset, whole
+  rig.wake();
+  rig.send(image);
+  EXPECT_TRUE(rig.device.running());
+  EXPECT_EQ(rig.device.boot_rom().attempts(), 2);
+
+  Rig other(options);
+  other.wake();
+  auto wrong = image;
+  wrong[0] = 0xAB;
+  other.send(wrong);
+  EXPECT_FALSE(other.device.running());
+}
+
+TEST(EmulatedFalcon, HandshakesMayGoUnheardOrStartWithAZero) {
+  EmulatedFalconOptions options;
+  options.firmware = false;
+  Rig rig(options);
+  rig.device.boot_rom().faults() = {.deaf_handshakes = 2, .leading_zero = true, .echo_errors = {}};
+  rig.reset_processor();
+  for (int i = 0; i < 2; ++i) {
+    rig.send({0x0A, 0x43, 0x0D});
+    EXPECT_FALSE(rig.device.has_payload());
+  }
+  rig.send({0x0A, 0x43, 0x0D});
+  EXPECT_EQ(rig.receive(), std::string("\0\x0A\x44\x2C\x0D", 5));
+}
+
+TEST(EmulatedFalcon, AnAxisHomesWhenItComesBackInAndItsOriginJumps) {
+  Rig rig;
+  const auto at = [&](double z, const std::string& frame) {
+    EXPECT_TRUE(rig.device.mechanism().hold({0, 0, z}));
+    rig.send(frame);
+    rig.receive();
+    return rig.device.last();
+  };
+  const std::string homing = "<AAAAAAAAAAAABA>";
+  EXPECT_EQ(at(0.11, homing).homed, 0u);
+  EXPECT_EQ(at(0.175, homing).homed, 0u);
+  EXPECT_EQ(at(0.15, kRest).homed, 0u);  // not asked for
+  at(0.175, homing);
+  const auto homed = at(0.15, homing);
+  EXPECT_EQ(homed.homed, 7u);
+  EXPECT_EQ(homed.encoders, (EmulatedMechanism::Counts{336, 336, 336}));
+  EXPECT_EQ(at(0.11, kRest).homed, 7u);
+  // power lost: so is the origin
+  rig.device.unplug();
+  rig.device.plug(false);
+  EXPECT_EQ(rig.device.mechanism().homed_bits(), 0u);
+  EXPECT_FALSE(rig.device.running());
+}
+
+TEST(EmulatedFalcon, ButtonsAndHomedBitsShareAByte) {
+  EmulatedFalconOptions options;
+  options.homed = true;
+  Rig rig(options);
+  rig.device.mechanism().hold_buttons(15);
+  rig.send(kRest);
+  EXPECT_EQ(static_cast<std::uint8_t>(rig.receive()[13]), 0x41 + 0x7F);
+}
+
+TEST(EmulatedFalcon, RepliesSplitJoinShrinkVanishAndGatherNoise) {
+  using Kind = ReplyFault::Kind;
+  Rig rig;
+  rig.device.faults().replies = {{Kind::split, 5},    {Kind::join, 0}, {Kind::none, 0},
+                                 {Kind::truncate, 9}, {Kind::drop, 0}, {Kind::garbage, 4}};
+  rig.send(kRest);
+  const std::string head = rig.receive(), tail = rig.receive();
+  EXPECT_EQ(head.size(), 5u);
+  EXPECT_EQ(tail.size(), 11u);
+  rig.send(kRest);
+  EXPECT_FALSE(rig.device.has_payload());
+  rig.send(kRest);
+  EXPECT_EQ(rig.receive(), head + tail + head + tail);
+  rig.send(kRest);
+  EXPECT_EQ(rig.receive(), (head + tail).substr(0, 9));
+  rig.send(kRest);
+  EXPECT_FALSE(rig.device.has_payload());
+  rig.send(kRest);
+  EXPECT_EQ(rig.receive().substr(4), head + tail);
+  rig.device.faults().silent = true;
+  rig.send(kRest);
+  EXPECT_FALSE(rig.device.has_payload());
+}
+
+TEST(EmulatedFalcon, AHostThatDoesNotReadLosesReplies) {
+  Rig rig;
+  for (int i = 0; i < 20; ++i) rig.send(kRest);
+  EXPECT_EQ(rig.device.overruns(), 4u);  // 256 bytes hold 16
+  rig.device.control({0x40, 0, 1, 0});
+  EXPECT_FALSE(rig.device.has_payload());
+}
+
+TEST(EmulatedFalcon, GoesAfterSoManyBytes) {
+  Rig rig;
+  rig.device.faults().unplug_after_out_bytes = 20;
+  rig.send(kRest);
+  EXPECT_TRUE(rig.device.plugged());
+  rig.send(kRest);
+  EXPECT_FALSE(rig.device.plugged());
+  EXPECT_EQ(rig.device.frames(), 1u);
+}
+
+TEST(EmulatedFalcon, AHandCarriesTheGripAndFeelsTheMotors) {
+  EmulatedHand hand;
+  hand.path = {{0, {0, 0, 0.11}, 0}, {0.1, {0.01, 0, 0.11}, 1}};
+  Rig free, pushed;
+  free.device.mechanism().carry(hand);
+  pushed.device.mechanism().carry(hand);
+  for (int i = 0; i < 1000; ++i) {
+    free.send(kRest);
+    pushed.send("<OAPPOAPPOAPPAA>");  // about +1 N along z
+    free.receive();
+    pushed.receive();
+  }
+  EXPECT_NEAR(free.device.mechanism().position_m().x, 0.01, 1e-6);
+  EXPECT_EQ(free.device.mechanism().buttons(), 1u);
+  EXPECT_NEAR(pushed.device.mechanism().position_m().z, 0.11 + 1.0 / hand.stiffness_n_per_m, 1e-4);
+}
+
+}  // namespace
+}  // namespace catena::haptics

@@ -1,0 +1,32 @@
+# The emulated Falcon, and the unmodified libusb in front of it: through umockdev (label usb), and within one process.
+catena_tests(haptics/device/emulator ROOMS haptics/device)
+
+pkg_check_modules(UMOCKDEV REQUIRED IMPORTED_TARGET umockdev-1.0)
+add_library(catena_test_usbfs OBJECT haptics/device/usbfs/emulated_usbfs.cpp)
+add_library(catena_test_umockdev OBJECT haptics/device/usbfs/umockdev_bus.cpp)
+add_library(catena_test_in_process OBJECT haptics/device/usbfs/in_process_bus.cpp)
+target_link_libraries(catena_test_usbfs PUBLIC catena_haptics_device)
+target_link_libraries(catena_test_umockdev PUBLIC catena_test_usbfs PkgConfig::UMOCKDEV)
+target_link_libraries(catena_test_in_process PUBLIC catena_test_usbfs)
+
+# In one process: microseconds a round trip. The soak is small enough for the thread sanitizer, and has no scene.
+catena_tests(haptics/device/usb_soak ROOMS haptics/servo THIRD_PARTY catena_test_in_process catena_test_usbfs PkgConfig::LIBUSB ${CMAKE_DL_LIBS}
+  LABELS usb threads)
+catena_tests(haptics/device/usb_fast ROOMS haptics/servo haptics/extract THIRD_PARTY catena_test_in_process catena_test_usbfs PkgConfig::LIBUSB
+  ${CMAKE_DL_LIBS} LABELS usb)
+
+# Through umockdev: its preload library stands before the C library. It cannot live with the thread sanitizer.
+if(NOT CATENA_SANITIZE MATCHES "thread")
+  if(CATENA_SANITIZE MATCHES "address")
+    # its library must be the first one; what libusb and glib keep at the end is not ours to count
+    execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=libasan.so OUTPUT_VARIABLE asan_library OUTPUT_STRIP_TRAILING_WHITESPACE)
+    set(CMAKE_CROSSCOMPILING_EMULATOR env LD_PRELOAD=${asan_library}:libumockdev-preload.so.0 ASAN_OPTIONS=detect_leaks=0)
+  else()
+    find_program(UMOCKDEV_WRAPPER umockdev-wrapper REQUIRED)
+    set(CMAKE_CROSSCOMPILING_EMULATOR ${UMOCKDEV_WRAPPER})
+  endif()
+  # every case runs through the wrapper: the property of a target that is set here, which gtest_discover_tests reads
+  catena_tests(haptics/device/usb ROOMS haptics/servo haptics/extract THIRD_PARTY catena_test_umockdev catena_test_usbfs PkgConfig::LIBUSB
+    LABELS usb)
+  unset(CMAKE_CROSSCOMPILING_EMULATOR)
+endif()

@@ -1,0 +1,47 @@
+/// libusb on the emulated Falcon within one process, in microseconds a round trip: this program's own ioctl, read and lseek
+/// stand before the C library's, and answer for one file descriptor; everything else passes through. The descriptor is the
+/// writing end of a pipe of one slot: full = nothing to reap, empty = POLLOUT, the other end closed = POLLERR.
+/// Hand it to libusb_wrap_sys_device (with LIBUSB_OPTION_NO_DEVICE_DISCOVERY): no enumeration, no hotplug. One at a time.
+#pragma once
+#include <memory>
+
+#include "tests/haptics/device/usbfs/emulated_usbfs.h"
+
+namespace catena::haptics::test {
+
+class InProcessBus final : public EmulatedUsbfs::Node {
+ public:
+  explicit InProcessBus(const EmulatedFalconOptions& options = {});
+  ~InProcessBus() override;
+
+  int fd() const { return fds_[1]; }
+  EmulatedPort& port() { return port_; }
+  void unplug() { usbfs_->unplug(); }
+  template <class F>
+  auto with(F&& f) {
+    struct Pump {
+      EmulatedUsbfs& usbfs;
+      ~Pump() { usbfs.pump(); }
+    } pump{*usbfs_};
+    const std::scoped_lock lock(port_.mutex);
+    return f(port_.device);
+  }
+
+  // the system calls
+  int on_ioctl(unsigned long request, void* argument);
+  long on_read(void* to, std::size_t size);
+  long on_lseek(long offset);
+
+ private:
+  void ready(bool something_to_reap) override;
+  void gone() override;
+
+  EmulatedPort port_;
+  int fds_[2] = {-1, -1};
+  bool full_ = false;
+  std::vector<std::uint8_t> descriptors_ = EmulatedUsbfs::descriptors();
+  std::size_t read_at_ = 0;
+  std::unique_ptr<EmulatedUsbfs> usbfs_;
+};
+
+}  // namespace catena::haptics::test

@@ -1,0 +1,92 @@
+/// A program on the hand's side over USB bytes: servo, Falcon driver, libusb, and the emulated mechanism that stands where its
+/// encoders say and feels what its motors are sent. For both buses. The program holds the hand out of a ball: |x| = 0.5 at
+/// 0.04 m a unit, around the device's (0, 0, 0.12) m: 20 mm in radius.
+#pragma once
+#include "haptics/servo/servo.h"
+#include "tests/haptics/device/usbfs/falcon_rig.h"
+
+namespace catena::haptics::test {
+
+inline constexpr double kBallRadiusM = 0.02, kBallStiffness = 400;
+inline const Vec3 kBallCentreM{0, 0, 0.12};
+
+inline Vec3 world_of(const Vec3& device_m) { return (device_m - kBallCentreM) / 0.04; }
+
+/// The next of a fixed row of grip positions in the shell 16..25 mm around the ball's centre.
+struct GripWalk {
+  std::uint64_t state = 88172645463325252u;
+  double next_share() {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return static_cast<double>(state >> 11) * 0x1p-53;
+  }
+  Vec3 next() {
+    Vec3 d{2 * next_share() - 1, 2 * next_share() - 1, 2 * next_share() - 1};
+    d = norm(d) > 0.1 ? direction(d) : Vec3(0, 0, 1);
+    return at_whole_counts(kBallCentreM + d * (0.016 + 0.009 * next_share()));
+  }
+};
+
+/// The device is homed and pulled out; the driver is open: arms it, then runs the servo on it.
+template <class Bus>
+class ServoRig {
+ public:
+  ServoRig(Bus& bus, usb::Falcon& falcon, std::shared_ptr<const Program> program, const ServoOptions& options)
+      : bus_(bus), falcon_(falcon), servo_(falcon, std::move(program), options) {}
+  ~ServoRig() { servo_.stop(); }
+
+  bool start() {
+    for (const double z : {0.165, 0.175, 0.165, 0.155})
+      if (!hold_at(bus_, {0, 0, z})) return false;
+    if (!eventually([&] { return falcon_.state() == usb::FalconState::ready; })) return false;
+    servo_.start();
+    return true;
+  }
+
+  /// With the grip held there: the tick's probe, and what the motors get, both settled.
+  bool settle(const Vec3& grip_m, exchange::HapticState& tick, EmulatedFalcon::Exchange& felt) {
+    bus_.with([&](EmulatedFalcon& device) { device.mechanism().hold(grip_m); });
+    const bool arrived = eventually([&] {
+      servo_.take(tick);
+      return norm(tick.probe - world_of(grip_m)) < 1e-7;
+    });
+    // the order may have been written just after the I/O thread looked: two more frames, and one for the tick itself
+    if (!arrived || !frames_pass(bus_, 4)) return false;
+    felt = bus_.with([](EmulatedFalcon& device) { return device.last(); });
+    servo_.take(tick);
+    return true;
+  }
+
+  /// The force that the motors get is the tick's, but for whole counts; the proxy is on the surface, the probe is the grip.
+  void check(const Vec3& grip_m) {
+    exchange::HapticState tick;
+    EmulatedFalcon::Exchange felt;
+    ASSERT_TRUE(settle(grip_m, tick, felt));
+    const double radius_m = norm(grip_m - kBallCentreM);
+    EXPECT_LT(norm(tick.probe - world_of(grip_m)) * 0.04, 1e-10) << "at whole counts the encoders say it all";
+    const Vec3 bound = force_quantum(grip_m);
+    for (int j = 0; j < 3; ++j) EXPECT_NEAR(felt.force_n[j], tick.force_n[j], bound[j] + 1e-9) << "axis " << j;
+    if (radius_m < kBallRadiusM - 1e-9) {
+      EXPECT_NEAR(norm(tick.links[0].proxy), 0.5, 1e-9);
+      EXPECT_NEAR(norm(tick.force_n), kBallStiffness * (kBallRadiusM - radius_m), 1e-6);
+      EXPECT_GT(dot(tick.force_n, grip_m - kBallCentreM), 0) << "outwards";
+      ++held;
+    } else {
+      EXPECT_EQ(felt.motors, (EmulatedMechanism::Counts{}));
+      ++free;
+    }
+    worst_n = std::max(worst_n, max_abs(felt.force_n - tick.force_n));
+  }
+
+  Servo& servo() { return servo_; }
+  int held = 0, free = 0;
+  double worst_n = 0;
+
+ private:
+  Bus& bus_;
+  usb::Falcon& falcon_;
+  Servo servo_;
+};
+
+}  // namespace catena::haptics::test

@@ -1,0 +1,214 @@
+#include "tests/haptics/device/usbfs/umockdev_bus.h"
+
+#include <pty.h>
+#include <termios.h>
+#include <umockdev.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "engine/base/assert.h"
+
+namespace catena::haptics::test {
+namespace {
+
+/// One plug-in: its device node and what is behind it.
+class Plug final : public EmulatedUsbfs::Node {
+ public:
+  Plug(EmulatedPort& port, const std::string& node_path) : node_path_(node_path) {
+    char name[256];
+    const int opened = openpty(&master_, &slave_, name, nullptr, nullptr);
+    CATENA_ASSERT(opened == 0);
+    termios raw;
+    tcgetattr(slave_, &raw);
+    cfmakeraw(&raw);
+    tcsetattr(slave_, TCSANOW, &raw);
+    std::filesystem::create_directories(std::filesystem::path(node_path).parent_path());
+    std::filesystem::create_symlink(name, node_path);
+    usbfs_ = std::make_unique<EmulatedUsbfs>(port, *this);
+  }
+  ~Plug() override {
+    usbfs_.reset();
+    if (master_ >= 0) close(master_);
+    close(slave_);
+    for (UMockdevIoctlData* data : held_) g_object_unref(data);
+    std::error_code ignored;
+    std::filesystem::remove(node_path_, ignored);
+  }
+  void ready(bool something_to_reap) override {
+    if (master_ >= 0) tcflow(slave_, something_to_reap ? TCOON : TCOOFF);
+  }
+  void gone() override {
+    if (master_ >= 0) close(master_);
+    master_ = -1;
+  }
+  EmulatedUsbfs& usbfs() { return *usbfs_; }
+
+  // umockdev's thread only: the URBs' data live until they are reaped
+  std::set<UMockdevIoctlData*> held_;
+
+ private:
+  std::string node_path_;
+  int master_ = -1, slave_ = -1;
+  std::unique_ptr<EmulatedUsbfs> usbfs_;
+};
+
+void finish(UMockdevIoctlClient* client, int error) { umockdev_ioctl_client_complete(client, error == 0 ? 0 : -1, error); }
+
+int submit(Plug& plug, UMockdevIoctlData* argument) {
+  UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_urb), nullptr);
+  if (data == nullptr) return EFAULT;
+  auto* urb = reinterpret_cast<usbdevfs_urb*>(data->data);
+  const auto length = static_cast<gsize>(urb->buffer_length);
+  UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer), length, nullptr);
+  static std::uint8_t nothing[1];
+  std::uint8_t* bytes = buffer != nullptr ? buffer->data : nothing;
+  // in the queue before it can be completed
+  plug.held_.insert(data);
+  const int error = plug.usbfs().submit({urb, bytes, data->client_addr, data});
+  if (error == 0) {
+    if (buffer != nullptr) g_object_unref(buffer);
+    return 0;
+  }
+  plug.held_.erase(data);
+  if (buffer != nullptr) g_object_unref(buffer);
+  g_object_unref(data);
+  return error;
+}
+
+int reap(Plug& plug, UMockdevIoctlData* argument) {
+  EmulatedUsbfs::Urb urb;
+  if (const int error = plug.usbfs().reap(urb); error != 0) return error;
+  auto* data = static_cast<UMockdevIoctlData*>(urb.owner);
+  UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(argument, 0, sizeof(void*), nullptr);
+  umockdev_ioctl_data_set_ptr(pointer, 0, data);
+  g_object_unref(pointer);
+  plug.held_.erase(data);
+  g_object_unref(data);  // the argument holds it now, until it is written back
+  return 0;
+}
+
+}  // namespace
+
+struct UmockdevBus::State {
+  explicit State(const EmulatedFalconOptions& options) : port(options) {}
+
+  static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, State* self) {
+    Plug* plug = self->find(umockdev_ioctl_client_get_devnode(client));
+    if (plug == nullptr) return FALSE;
+    const gulong request = umockdev_ioctl_client_get_request(client);
+    UMockdevIoctlData* argument = umockdev_ioctl_client_get_arg(client);
+    if (request == USBDEVFS_SUBMITURB) {
+      finish(client, submit(*plug, argument));
+    } else if (request == USBDEVFS_REAPURBNDELAY || request == USBDEVFS_REAPURB) {
+      finish(client, reap(*plug, argument));
+    } else if (request == USBDEVFS_DISCARDURB) {
+      finish(client, plug->usbfs().discard(*reinterpret_cast<std::uintptr_t*>(argument->data)));
+    } else {
+      UMockdevIoctlData* data = _IOC_SIZE(request) > 0 ? umockdev_ioctl_data_resolve(argument, 0, _IOC_SIZE(request), nullptr) : nullptr;
+      finish(client, plug->usbfs().simple(request, data != nullptr ? data->data : nullptr));
+      if (data != nullptr) g_object_unref(data);
+    }
+    return TRUE;
+  }
+
+  Plug* find(const std::string& node) {
+    const std::scoped_lock lock(plugs_mutex);
+    const auto at = plugs.find(node);
+    return at == plugs.end() ? nullptr : at->second.get();
+  }
+
+  EmulatedPort port;
+  UMockdevTestbed* testbed = nullptr;
+  UMockdevIoctlBase* handler = nullptr;
+  std::string root;
+  std::mutex plugs_mutex;
+  std::map<std::string, std::unique_ptr<Plug>> plugs;  ///< by device node
+  Plug* current = nullptr;
+  std::string current_path;
+  int last_number = 1;
+};
+
+// umockdev's own question needs a test bed first, and keeps its first answer
+bool UmockdevBus::available() {
+  const char* preloaded = std::getenv("LD_PRELOAD");
+  return preloaded != nullptr && std::string(preloaded).find("umockdev") != std::string::npos;
+}
+
+UmockdevBus::UmockdevBus(const EmulatedFalconOptions& options) : state_(std::make_unique<State>(options)) {
+  state_->testbed = umockdev_testbed_new();
+  gchar* root = umockdev_testbed_get_root_dir(state_->testbed);
+  state_->root = root;
+  g_free(root);
+  state_->handler = umockdev_ioctl_base_new();
+  g_signal_connect(state_->handler, "handle-ioctl", G_CALLBACK(&State::on_ioctl), state_.get());
+}
+
+UmockdevBus::~UmockdevBus() {
+  if (state_->current != nullptr) unplug();
+  for (const auto& [node, plug] : state_->plugs) umockdev_testbed_detach_ioctl(state_->testbed, node.c_str(), nullptr);
+  g_object_unref(state_->testbed);  // joins umockdev's thread
+  g_object_unref(state_->handler);
+}
+
+EmulatedPort& UmockdevBus::port() { return state_->port; }
+
+void UmockdevBus::pump() {
+  if (state_->current != nullptr) state_->current->usbfs().pump();
+}
+
+void UmockdevBus::plug(bool power_kept) {
+  CATENA_ASSERT(state_->current == nullptr);
+  const bool first = state_->plugs.empty();
+  if (!first) {
+    const std::scoped_lock lock(state_->port.mutex);
+    state_->port.device.plug(power_kept);
+  }
+  const int number = ++state_->last_number;
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "%03d", number);
+  const std::string node = "/dev/bus/usb/001/" + std::string(digits);
+  auto plug = std::make_unique<Plug>(state_->port, state_->root + node);
+  state_->current = plug.get();
+  {
+    const std::scoped_lock lock(state_->plugs_mutex);
+    state_->plugs.emplace(node, std::move(plug));
+  }
+  umockdev_testbed_attach_ioctl(state_->testbed, node.c_str(), state_->handler, nullptr);
+
+  state_->current_path = "/devices/usb1/1-" + std::to_string(number);
+  std::string hex;
+  for (const std::uint8_t byte : EmulatedUsbfs::descriptors()) {
+    char two[3];
+    std::snprintf(two, sizeof two, "%02X", byte);
+    hex += two;
+  }
+  const std::string text = "P: " + state_->current_path +
+                           "\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: DEVTYPE=usb_device\nE: BUSNUM=001\nE: DEVNUM=" + digits +
+                           "\nE: DEVNAME=" + node + "\nA: busnum=1\\n\nA: devnum=" + std::to_string(number) +
+                           "\\n\nA: bConfigurationValue=1\\n\nA: speed=12\\n\nA: idVendor=0403\\n\nA: idProduct=cb48\\n"
+                           "\nA: product=FALCON HAPTIC\\n\nH: descriptors=" +
+                           hex + "\n\n";
+  GError* error = nullptr;
+  umockdev_testbed_add_from_string(state_->testbed, text.c_str(), &error);
+  CATENA_ASSERT(error == nullptr);
+}
+
+void UmockdevBus::unplug() {
+  if (state_->current != nullptr) state_->current->usbfs().unplug();
+  announce_removal();
+}
+
+void UmockdevBus::announce_removal() {
+  CATENA_ASSERT(state_->current != nullptr);
+  const std::string path = "/sys" + state_->current_path;
+  umockdev_testbed_uevent(state_->testbed, path.c_str(), "remove");
+  umockdev_testbed_remove_device(state_->testbed, path.c_str());
+  state_->current = nullptr;
+}
+
+}  // namespace catena::haptics::test
