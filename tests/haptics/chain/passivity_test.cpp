@@ -13,6 +13,7 @@ using namespace catena::haptics;
 using test::hold_height;
 
 struct Hand {
+  Hand() { program.coupling.max_force_n = 1e9; }
   Program program;
   ChainState state;
   ChainScratch scratch;
@@ -110,6 +111,15 @@ TEST(Passivity, TheLedgerOfAKeptLinkGoesOnUnderANewProgram) {
   // what is stored is with the new link now, which holds first; what the old one has given stays its own
   EXPECT_NEAR(hand.out.links[1].booked_j, booked - 0.5 * 500 * 4e-4, 1e-14);
   EXPECT_NEAR(hand.out.links[0].booked_j, 0.5 * 500 * 4e-4, 1e-14);
+}
+
+TEST(Passivity, ASpringBeyondTheForceLimitStoresWhatItCanGiveBack) {
+  Hand hand;
+  hand.program.links = {hold_height("a", 0.02, 500)};
+  hand.program.coupling.max_force_n = 8;
+  hand.to(Vec3(0.0));
+  // 8 N over 4 mm, then the spring's last 16 mm
+  EXPECT_NEAR(hand.out.energy_j, 8 * 0.004 + 0.5 * 500 * 0.016 * 0.016, 1e-14);
 }
 
 TEST(Passivity, PlacesTooLargeForADoubleLeaveNoNaN) {
