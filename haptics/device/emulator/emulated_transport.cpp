@@ -1,6 +1,6 @@
 #include "haptics/device/emulator/emulated_transport.h"
 
-#include <time.h>
+#include <ctime>
 
 #include "engine/base/clock.h"
 
