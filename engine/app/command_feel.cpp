@@ -13,6 +13,7 @@
 #include "engine/app/hand/interrupt.h"
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/hand/realtime_option.h"
+#include "engine/app/hand/recording.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "haptics/extract/extract.h"
@@ -23,7 +24,7 @@ namespace catena::app {
 namespace {
 
 struct Options {
-  std::string scene, device, forces = "off", stats;
+  std::string scene, device, firmware, forces = "off", stats, record;
   std::vector<std::string> fields;
   double seconds = 0;
   std::optional<double> rate_hz;
@@ -103,8 +104,10 @@ Outcome feel(const Options& options) {
   if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to feel"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
   if (!options.stats.empty()) CATENA_CHECK(check_output(options.stats, inputs_of(scene)));
+  if (!options.stats.empty() && !options.record.empty() && same_file(options.stats, options.record))
+    return Error{options.stats + ": --stats and --record name one file: expected two"};
   const Interrupt interrupt;
-  CATENA_TRY(OpenHand hand, open_hand(scene, options.device, options.rate_hz));
+  CATENA_TRY(OpenHand hand, open_hand(scene, options.device, options.rate_hz, options.firmware));
   if (!hand.note.empty()) fmt::print(stderr, "catena: {}\n", hand.note);
   CATENA_TRY(const render::Bounds bounds, bounds_of(scene));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, program_for(scene, hand, bounds));
@@ -113,7 +116,8 @@ Outcome feel(const Options& options) {
   servo_options.rate_hz = hand.settings.rate_hz;
   servo_options.forces = options.forces == "on";
   servo_options.realtime = options.realtime.options();
-  // a recording of every tick goes in here: servo_options.sink
+  CATENA_TRY(Recording recording, Recording::open(options.record, scene, options.fields, hand, *program));
+  servo_options.sink = recording.sink();
   haptics::Servo servo(*hand.device, program, servo_options);
   servo.start();
   for (const std::string& note : servo.report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
@@ -124,6 +128,7 @@ Outcome feel(const Options& options) {
   wait(servo, *hand.device, options, interrupt, line);
   servo.stop();
   line.end();
+  CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
   fmt::print("{}", haptics::servo_summary(servo.report(), hand.device->capabilities().name));
   return Done{};
@@ -139,6 +144,8 @@ void add_feel(CLI::App& program, Work& chosen) {
   command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(CLI::NonNegativeNumber);
   command->add_option("--rate", options->rate_hz, "ticks a second; default: the device's, or else 1000")
       ->check(CLI::Range(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
+  command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
+  command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
   command->add_option("--forces", options->forces, "on: the device may push. Off at first, for a simulated device too")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();

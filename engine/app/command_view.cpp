@@ -13,7 +13,7 @@ namespace catena::app {
 namespace {
 
 struct Options {
-  std::string source, device = "mouse", size = "1024x768", screenshot, servo_stats;
+  std::string source, device = "mouse", size = "1024x768", screenshot, servo_stats, record, firmware;
   std::vector<std::string> fields;
   int frames = 0;
   double seconds = 0;
@@ -26,11 +26,18 @@ Outcome open_window(const Options& o, int& exit_code) {
   CATENA_TRY(options.scene, open_scene(o.source, o.fields));
   if (!o.screenshot.empty()) CATENA_CHECK(check_output(o.screenshot, inputs_of(options.scene)));
   if (!o.servo_stats.empty()) CATENA_CHECK(check_output(o.servo_stats, inputs_of(options.scene)));
-  if (!o.screenshot.empty() && !o.servo_stats.empty() && same_file(o.screenshot, o.servo_stats))
-    return Error{o.screenshot + ": --screenshot and --servo-stats name one file: expected two"};
+  const std::pair<const char*, const std::string&> outputs[] = {
+      {"--screenshot", o.screenshot}, {"--servo-stats", o.servo_stats}, {"--record", o.record}};
+  for (const auto& [option, path] : outputs)
+    for (const auto& [other, other_path] : outputs)
+      if (&path != &other_path && !path.empty() && !other_path.empty() && same_file(path, other_path))
+        return Error{path + ": " + option + " and " + other + " name one file: expected two"};
   options.device = o.device;
   options.seconds = o.seconds;
   options.servo_stats = o.servo_stats;
+  options.record = o.record;
+  options.fields = o.fields;
+  options.firmware = o.firmware;
   options.realtime = o.realtime.options();
   options.width = size.width;
   options.height = size.height;
@@ -54,6 +61,8 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(CLI::NonNegativeNumber);
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
   command->add_option("--servo-stats", options->servo_stats, "the servo's ticks, missed deadlines, histograms, JSON");
+  command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
+  command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, &exit_code, options] { chosen = [&exit_code, options] { return open_window(*options, exit_code); }; });
 }

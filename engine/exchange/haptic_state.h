@@ -32,7 +32,7 @@ struct LinkReport {
   double gap = 0;                 ///< |p_i - p_(i-1)|, world units
   Quat orientation{kNoRotation};  ///< the link's rotational proxy
   Vec3 torque_nm{0.0};            ///< its share of the torque
-  double booked_j = 0;            ///< net energy that the link has given to the hand since the start (its ledger)
+  double booked_j = 0;            ///< given to the hand and stored for it beyond what it put in; a switch or snap shows as a jump
   double leaving = 0;             ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
   std::int32_t evaluations = 0;
   Status status = Status::ok;

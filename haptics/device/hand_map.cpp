@@ -16,9 +16,6 @@ DeviceCapabilities mapped(DeviceCapabilities device, const DeviceSettings& setti
   if (settings.scale != 1) {
     device.workspace_centre_m *= settings.scale;
     device.workspace_m *= settings.scale;
-    device.mechanics.mass_kg /= settings.scale;
-    device.mechanics.damping_ns_per_m /= settings.scale;
-    device.mechanics.encoder_step_m *= settings.scale;
   }
   return device;
 }

@@ -5,8 +5,8 @@
 /// ramps the forces in. Force switch: off at the start and after a loss of the device; each press turns it over. Both buttons are
 /// masked: the scene does not see them.
 /// The force is not scaled, so that newtons of the scene are newtons of the hand; a spring K of the scene is then s K at the device.
-/// For that reason the mechanism is reported as the hand's metres have it: mass / s, damping / s, encoder step * s, same friction: limits
-/// such as K <= 2 b / T then hold at the device. Energy of the hand's metres is s times the device's: passive stays passive.
+/// For that reason limits are made of the mechanism as the hand's metres have it (mechanics_of in haptics/servo/limits_for.h), so that
+/// K <= 2 b / T holds at the device. Energy of the hand's metres is s times the device's: passive stays passive.
 /// g rises over 0.1 s where the forces are on, and is gone at once where they are off (clutch, switch, fault, device not ready) and
 /// without a read before the write: the last zero on the way out stays zero.
 /// A recorded path keeps its own pose. What the settings leave alone passes to the bit. Threads as the device's own.
@@ -27,7 +27,9 @@ class HandMap final : public Device {
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;
   void write(const DeviceOutput& output) noexcept override;
+  std::string status_text() const override { return device_->status_text(); }
   void stop() noexcept override { device_->stop(); }
+  void resume() noexcept override { device_->resume(); }
 
  private:
   void map_pose(DeviceInput& input, bool rests) noexcept;

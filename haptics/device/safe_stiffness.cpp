@@ -17,6 +17,11 @@ SafeStiffness safe_stiffness(const Mechanics& mechanics, double period_s) {
   return out;
 }
 
+double safe_rotational_stiffness(const Mechanics& mechanics, double period_s) {
+  CATENA_ASSERT(period_s > 0 && mechanics.delay_s >= 0);
+  return 2 * mechanics.rotational_damping_nms_per_rad / (period_s + 2 * mechanics.delay_s);
+}
+
 std::string safe_stiffness_text(const Mechanics& mechanics, double period_s) {
   const SafeStiffness safe = safe_stiffness(mechanics, period_s);
   const auto whole = [](double value) { return to_text(std::round(value)); };

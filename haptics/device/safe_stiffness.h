@@ -27,6 +27,9 @@ struct SafeStiffness {
 
 SafeStiffness safe_stiffness(const Mechanics& mechanics, double period_s);
 
+/// The same of a torque, N m a radian: 2 b_r / (T + 2 t_d); 0 where the rotational damping is not known.
+double safe_rotational_stiffness(const Mechanics& mechanics, double period_s);
+
 /// One line: "1000 N/m: 2 b / T = 1000, 2 f_c / step = 5000", and what to state where it is 0.
 std::string safe_stiffness_text(const Mechanics& mechanics, double period_s);
 

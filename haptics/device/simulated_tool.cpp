@@ -4,11 +4,6 @@
 
 namespace catena::haptics {
 
-double safe_rotational_stiffness(const Mechanics& mechanics, double period_s) {
-  CATENA_ASSERT(period_s > 0);
-  return 2 * mechanics.rotational_damping_nms_per_rad / period_s;
-}
-
 SimulatedTool::SimulatedTool(std::unique_ptr<Device> position, std::vector<Waypoint> path, const ToolParameters& parameters)
     : position_(std::move(position)), path_(std::move(path)), parameters_(parameters) {
   CATENA_ASSERT(position_ && !path_.empty() && parameters_.inertia_kg_m2 > 0 && parameters_.period_s > 0 && parameters_.substeps > 0);

@@ -21,10 +21,6 @@ struct ToolParameters {
   int substeps = 20;
 };
 
-/// The largest rotational spring that a mechanism can show at this period without giving energy away: K <= 2 b / T (Colgate and
-/// Brown; the same as of a position). 0 where its damping is not known.
-double safe_rotational_stiffness(const Mechanics& mechanics, double period_s);
-
 class SimulatedTool final : public Device {
  public:
   struct Waypoint {
@@ -37,7 +33,9 @@ class SimulatedTool final : public Device {
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;
   void write(const DeviceOutput& output) noexcept override;
+  std::string status_text() const override { return position_->status_text(); }
   void stop() noexcept override { position_->stop(); }
+  void resume() noexcept override { position_->resume(); }
 
   const Quat& orientation() const { return orientation_; }
   const Vec3& rate_rad_per_s() const { return rate_; }

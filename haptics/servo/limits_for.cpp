@@ -19,6 +19,10 @@ Mechanics mechanics_of(const DeviceCapabilities& device, const DeviceSettings& s
   m.friction_n = settings.friction_n.value_or(m.friction_n);
   m.encoder_step_m = settings.encoder_step_m.value_or(m.encoder_step_m);
   m.delay_s = settings.delay_s.value_or(m.delay_s);
+  // a force passes the map unscaled, a length does not (haptics/device/hand_map.h)
+  m.mass_kg /= settings.scale;
+  m.damping_ns_per_m /= settings.scale;
+  m.encoder_step_m *= settings.scale;
   return m;
 }
 
@@ -40,7 +44,10 @@ Limits limits_for(const DeviceCapabilities& device, const DeviceSettings& settin
     limits.max_added_damping_ns_per_m = most_added_damping(m.mass_kg, period_s, m.delay_s);
     if (settings.cap == DeviceSettings::Cap::safe) limits.max_stiffness_n_per_m = safe_stiffness(m, period_s).n_per_m();
   }
-  if (device.max_torque_nm > 0) limits.max_torque_nm = device.max_torque_nm;
+  if (device.max_torque_nm > 0) {
+    limits.max_torque_nm = device.max_torque_nm;
+    if (settings.cap == DeviceSettings::Cap::safe) limits.max_rotational_stiffness_nm_per_rad = safe_rotational_stiffness(m, period_s);
+  }
 
   // what the person says
   if (settings.cap == DeviceSettings::Cap::value) limits.max_stiffness_n_per_m = settings.stiffness_cap_n_per_m;

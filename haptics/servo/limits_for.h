@@ -1,6 +1,6 @@
 /// What a device may be asked for: its own capabilities, bounded by what the person says. Off the tick.
 /// A device with force output, where the settings do not say otherwise:
-///   stiffness   the safe one at the servo's rate (haptics/device/safe_stiffness.h); rotational: not capped here
+///   stiffness   the safe one at the servo's rate (haptics/device/safe_stiffness.h); rotational the same
 ///   force       the device's most; a larger number of the person's is taken at its word
 ///   slew        from nothing to the device's most force in 2 ms: max_force / 2 ms, at most 10 kN/s. Contact at hand speed is slower
 ///   ramp in     0.5 s;  ramp out 20 ms after more than 5 late ticks
@@ -13,7 +13,7 @@
 
 namespace catena::haptics {
 
-/// The mechanism, with what the settings say of it.
+/// The mechanism, with what the settings say of it, in metres of hand (the map's scale: mass / s, damping / s, encoder step * s).
 Mechanics mechanics_of(const DeviceCapabilities& device, const DeviceSettings& settings);
 /// What the passivity controller may add: m / (4 (T + t_d)).
 double most_added_damping(double mass_kg, double period_s, double delay_s);

@@ -10,7 +10,7 @@
 
 namespace catena::app {
 
-Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, std::optional<double> rate_hz) {
+Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, std::optional<double> rate_hz, const std::string& firmware) {
   OpenHand hand;
   hand.settings.type = "simulated";
   if (scene.device) {
@@ -24,6 +24,8 @@ Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, s
     hand.settings.type = type;
   }
   if (rate_hz) hand.settings.rate_hz = *rate_hz;
+  if (!firmware.empty()) hand.settings.firmware = firmware;
+  hand.settings.tell = [](const std::string& news) { fmt::print(stderr, "catena: {}\n", news); };
   CATENA_TRY(hand.device, haptics::open_device(wanted, hand.settings));
   hand.limits = haptics::limits_for(hand.device->capabilities(), hand.settings);
   return hand;

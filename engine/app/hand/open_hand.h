@@ -24,7 +24,9 @@ struct OpenHand {
 
 /// `name` as the registry takes it; empty: the scene's "device", or else "simulated". The scene's "device" object is checked in
 /// any case, and counts only for a device of its type: what one mechanism may be asked for says nothing of another.
-Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, std::optional<double> rate_hz = {});
+/// `firmware` goes before the scene's; the device's news while it opens go to stderr.
+Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, std::optional<double> rate_hz = {},
+                           const std::string& firmware = {});
 
 /// Fits the workspace to the device's reach and builds the program. `bounds`: of what is drawn and felt.
 Result<std::shared_ptr<const haptics::Program>> program_for(scene::Scene& scene, const OpenHand& hand, const render::Bounds& bounds);

@@ -12,6 +12,7 @@
 #include "engine/app/hand/hand_setup.h"
 #include "engine/app/hand/interrupt.h"
 #include "engine/app/hand/open_hand.h"
+#include "engine/app/hand/recording.h"
 #include "engine/app/viewer/controls.h"
 #include "engine/app/viewer/window.h"
 #include "engine/base/clock.h"
@@ -64,6 +65,7 @@ class Session {
   Controls controls_;
   OpenHand hand_;
   haptics::MouseDevice* mouse_ = nullptr;  ///< hand_.device, if that is the mouse: the frame moves it
+  Recording recording_;
   std::unique_ptr<haptics::Servo> servo_;
   std::optional<Interrupt> interrupt_;
   std::vector<std::string> link_names_;
@@ -106,6 +108,10 @@ std::optional<Failure> Session::open_scene() {
   servo.forces = is_mouse || hand_.device->capabilities().max_force_n <= 0;
   servo.realtime = options_.realtime;
   if (is_mouse) servo.realtime.lock_memory = false;  // nothing pushes: a page fault does no harm
+  auto recording = Recording::open(options_.record, scene, options_.fields, hand_, **program);
+  if (!recording) return Failure{2, recording.error().message};
+  recording_ = std::move(*recording);
+  servo.sink = recording_.sink();
   servo_ = std::make_unique<haptics::Servo>(*hand_.device, *program, servo);
 
   if (!scene.camera.given && packet->volumes.empty() && packet->isosurfaces.empty() && packet->tubes.empty())
@@ -117,7 +123,7 @@ std::optional<Failure> Session::open_scene() {
 
 std::optional<Failure> Session::open() {
   if (options_.device != "mouse") {
-    auto hand = open_hand(options_.scene, options_.device);
+    auto hand = open_hand(options_.scene, options_.device, {}, options_.firmware);
     if (!hand) return Failure{2, hand.error().message};
     hand_ = std::move(*hand);
   }
@@ -276,6 +282,7 @@ std::optional<Failure> Session::run() {
   }
   servo_->stop();
   take_haptics();
+  if (auto recorded = recording_.finish(); !recorded) return Failure{2, recorded.error().message};
   if (auto written = write_servo_stats(options_.servo_stats, *servo_, *hand_.device); !written) return Failure{2, written.error().message};
 
   if (!options_.screenshot.empty() && frames_ > 0) {

@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "engine/scene/scene.h"
 #include "haptics/servo/realtime.h"
@@ -18,6 +19,9 @@ struct ViewOptions {
   double seconds = 0;                 ///< draw all the time and quit after so long; 0: until the window is closed
   std::string screenshot;             ///< .png of the last frame, written at the end; empty: none
   std::string servo_stats;            ///< .json of the servo, written at the end; empty: none
+  std::string record;                 ///< .catlog of every tick; empty: none
+  std::vector<std::string> fields;    ///< --field options, for the recording
+  std::string firmware;               ///< falcon: before the scene's
   haptics::RealtimeOptions realtime;  ///< of the servo
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/device/null_device.h"
+#include "haptics/device/safe_stiffness.h"
 #include "haptics/servo/servo.h"
 #include "tests/support/axis_link.h"
 

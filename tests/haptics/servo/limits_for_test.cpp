@@ -56,4 +56,31 @@ TEST(LimitsFor, WhatThePersonSaysHolds) {
   EXPECT_EQ(limits_for(nominal_capabilities("null"), s).max_stiffness_n_per_m, 77) << "though it has no force of its own";
 }
 
+TEST(LimitsFor, AScaleChangesTheHandsMechanismAndNotTheDevicesLimit) {
+  DeviceSettings s;
+  s.scale = 4;
+  const Mechanics device = mechanics_of(nominal_capabilities("simulated"), {}), hand = mechanics_of(nominal_capabilities("simulated"), s);
+  EXPECT_DOUBLE_EQ(hand.mass_kg, device.mass_kg / 4);
+  EXPECT_DOUBLE_EQ(hand.damping_ns_per_m, device.damping_ns_per_m / 4);
+  EXPECT_DOUBLE_EQ(hand.encoder_step_m, 4 * device.encoder_step_m);
+  EXPECT_EQ(hand.friction_n, device.friction_n);
+  // a spring K of the hand's metres is 4 K at the device
+  EXPECT_DOUBLE_EQ(4 * limits_for(nominal_capabilities("simulated"), s).max_stiffness_n_per_m,
+                   limits_for(nominal_capabilities("simulated"), {}).max_stiffness_n_per_m);
+  // whatever the settings say of the mechanism is said of the device
+  s.damping_ns_per_m = 2;
+  EXPECT_DOUBLE_EQ(mechanics_of(nominal_capabilities("simulated"), s).damping_ns_per_m, 0.5);
+}
+
+TEST(LimitsFor, ADeviceWithTorqueGetsASafeRotationalSpring) {
+  const DeviceCapabilities device = nominal_capabilities("simulated-6dof");
+  DeviceSettings s;
+  s.delay_s = 0.0;
+  const Limits limits = limits_for(device, s);
+  EXPECT_EQ(limits.max_torque_nm, device.max_torque_nm);
+  EXPECT_DOUBLE_EQ(limits.max_rotational_stiffness_nm_per_rad, 2 * device.mechanics.rotational_damping_nms_per_rad / 1e-3);
+  s.cap = DeviceSettings::Cap::none;
+  EXPECT_EQ(limits_for(device, s).max_rotational_stiffness_nm_per_rad, Limits::kNone);
+}
+
 }  // namespace
