@@ -207,8 +207,8 @@ TEST(Condition, APoseThatIsNoNumberGetsNoForceInThatTick) {
 TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
   Scripted device([](int k, DeviceInput& input) { input.forces_on = k < 20; });
   Seen seen;
-  seen.inputs.reserve(40);
-  seen.outputs.reserve(40);
+  seen.inputs.reserve(60);
+  seen.outputs.reserve(60);
   Servo* servo_at = nullptr;
   struct Switch final : TickSink {
     Seen* seen;
@@ -220,16 +220,17 @@ TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
   } flip;
   flip.seen = &seen;
   flip.servo = &servo_at;
-  Servo servo(device, program(), {.paced = false, .max_ticks = 40, .sink = &flip, .forces = false});
+  Servo servo(device, program(), {.paced = false, .max_ticks = 60, .sink = &flip, .forces = false});
   servo_at = &servo;
   EXPECT_FALSE(servo.forces());
   servo.start();
   while (servo.running()) nap_ms(1);
   servo.stop();
   EXPECT_TRUE(servo.forces());
-  for (std::size_t k = 0; k < 40; ++k) {
+  for (std::size_t k = 0; k < 60; ++k) {
     EXPECT_EQ(seen.inputs[k].forces_on, k >= 10 && k < 20) << k;
-    if (k < 10 || k > 30) {
+    // switched off, a force leaves by a ramp of 20 ms: ticks 20 to 39
+    if (k < 10 || k > 41) {
       EXPECT_FALSE(device.live[k]) << k;
     }
     if (k < 10) {
