@@ -310,11 +310,12 @@ TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
   EXPECT_NE(bad.err.find("slew"), std::string::npos) << bad.err;
 }
 
-// Every example of haptics/README.md runs as it stands.
-TEST(Replay, TheExamplesOfTheReferenceRun) {
+// Every example of the hand's two references runs as it stands.
+TEST(Replay, TheExamplesOfTheReferencesRun) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons\n0,0.5,0.01,0,0\n0.001,0.49,0.05,-0.01,1\n0.002,0.45,0.1,-0.02,0\n");
-  const std::string text = test::read_file(std::string(CATENA_SOURCE_DIR) + "/haptics/README.md");
+  const std::string hand = std::string(CATENA_SOURCE_DIR) + "/haptics/";
+  const std::string text = test::read_file(hand + "README.md") + test::read_file(hand + "device/README.md");
   int examples = 0;
   for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at + 1), ++examples) {
     const std::size_t begin = at + 8;
@@ -322,7 +323,7 @@ TEST(Replay, TheExamplesOfTheReferenceRun) {
     const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
-  EXPECT_EQ(examples, 3);
+  EXPECT_EQ(examples, 4);
 }
 
 TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
