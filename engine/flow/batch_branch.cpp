@@ -1,0 +1,167 @@
+#include "engine/flow/batch_branch.h"
+
+#include <cmath>
+
+#include "engine/flow/hermite.h"
+
+namespace catena::flow {
+
+namespace {
+
+constexpr float kShortest = 0.01f;  ///< voxels: below it the exact marcher goes on
+constexpr double kFirstStep = 0.25;
+
+/// Rates, places and voxels of a batch are far from either end of the double range.
+double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
+Vec3 vector_of(const Float4& k) { return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2])}; }
+Vec3 vector_of(const float (&k)[3]) { return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2])}; }
+Vec3 vector_of(const Double4& q) { return {q[0], q[1], q[2]}; }
+
+RawStep raw_step(const Double4& q, float h, const Float4& k) { return {{q[0], q[1], q[2]}, h, {k[0], k[1], k[2]}}; }
+
+}  // namespace
+
+BatchBranch::BatchBranch(const VelocityBricks& bricks, const Flow& flow, const TraceOptions& options, double lap_gap, const Vec3& seed,
+                         const Vec3& tangent, double sign, std::vector<RawStep>& steps)
+    : bricks_(bricks), flow_(flow), options_(options), lap_gap_(lap_gap), seed_(seed), tangent_(tangent), sign_(sign), steps_(steps) {
+  steps_.clear();
+}
+
+inline double BatchBranch::world_length(const Vec3& local) const { return length_of(bricks_.world_from_rate() * local); }
+double BatchBranch::speed(const Float4& k) const { return world_length(vector_of(k)) * bricks_.speed_from_rate(); }
+
+bool BatchBranch::start(LaneGroup& group, int i) {
+  seed_local_ = bricks_.local_from_index(flow_.field->mapping().index_from_world(seed_));
+  seed_normal_ = tangent_ * bricks_.world_from_rate();
+  const Double4 q{seed_local_.x, seed_local_.y, seed_local_.z, 0};
+  Float4 k;
+  const bool inside = rate_at(bricks_, q, k);
+  const double length = inside ? norm(vector_of(k)) : 0;
+  // on a face, or too slow for floats
+  if (!(length > 1e-15) || !(speed(k) > flow_.min_speed)) {
+    by_hand_ = true;
+    return false;
+  }
+  group.q[i] = q;
+  group.k[i] = k;
+  group.h[i] = static_cast<float>(sign_ * kFirstStep / length);
+  steps_.push_back(raw_step(q, 0, k));
+  return true;
+}
+
+bool BatchBranch::shorten(LaneGroup& group, int i, float factor) {
+  const Float4 moved = group.k[i] * group.h[i];
+  if (!(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] > kShortest * kShortest)) {
+    by_hand_ = true;
+    return true;
+  }
+  group.h[i] *= factor;
+  return false;
+}
+
+bool BatchBranch::take(LaneGroup& group, int i, const StepControl& control) {
+  // refused: a stage left the box or its valid cells (NaN), a sharp turn (more than 60 degrees), or too large an error
+  const float speed2 = group.speed2[i];
+  const RawStep& last = steps_.back();
+  const float last2 = last.k[0] * last.k[0] + last.k[1] * last.k[1] + last.k[2] * last.k[2];
+  if (group.left[i] || !(speed2 > 1e-30f) || !(group.turn[i] > 0) || !(group.turn[i] * group.turn[i] > 0.25f * last2 * speed2))
+    return shorten(group, i, 0.5f);
+  if (!(group.error2[i] <= control.tolerance2)) {
+    const float factor = group.next_h[i] / group.h[i];
+    return shorten(group, i, factor < 0.8f ? factor : 0.8f);
+  }
+  if (flow_.min_speed > 0 && !(speed(group.k_end[i]) > flow_.min_speed)) return shorten(group, i, 0.5f);
+
+  // accepted
+  if (sign_ > 0 && came_round(group, i)) return true;
+  steps_.back().h = group.h[i];
+  way_ += world_length(vector_of(group.end[i]) - vector_of(group.q[i]));
+  group.q[i] = group.end[i];
+  group.k[i] = group.k_end[i];
+  group.h[i] = group.next_h[i];
+  steps_.push_back(raw_step(group.q[i], 0, group.k[i]));
+  if (way_ >= options_.length || steps_.size() >= options_.max_knots) return true;
+  // crept to nothing: near a zero
+  if (speed2 * group.h[i] * group.h[i] < kShortest * kShortest) by_hand_ = true;
+  return by_hand_;
+}
+
+/// The step crosses the seed's plane, in the seed's direction, within the gap of the seed.
+bool BatchBranch::came_round(const LaneGroup& group, int i) {
+  const Vec3 end = vector_of(group.end[i]), off = end - seed_local_;
+  const double before = height_, after = dot(off, seed_normal_);
+  height_ = after;
+  if (!(before < 0 && after >= 0)) return false;
+  const Vec3 from = vector_of(group.q[i]);
+  if (world_length(off) > 2 * world_length(end - from) + lap_gap_) return false;
+  const double h = static_cast<double>(group.h[i]);
+  const Hermite piece(from, end - from, h, vector_of(group.k[i]), vector_of(group.k_end[i]));
+  const double theta = illinois_root(0.0, before, 1.0, after, [&](double at) { return dot(piece.at(at) - seed_local_, seed_normal_); });
+  if (world_length(piece.at(theta) - seed_local_) > lap_gap_ || theta * h <= 0) return false;
+  steps_.back().h = static_cast<float>(theta * h);
+  const RawStep first = steps_.front();
+  steps_.push_back({{seed_local_.x, seed_local_.y, seed_local_.z}, 0, {first.k[0], first.k[1], first.k[2]}});
+  lap_ = true;
+  return true;
+}
+
+void BatchBranch::add_knots(std::vector<Knot>& knots) const {
+  const field::Mapping& mapping = flow_.field->mapping();
+  const Mat3& linear = bricks_.world_from_rate();
+  const auto place = [&](const RawStep& step) {
+    return mapping.world_from_index(bricks_.index_from_local({step.q[0], step.q[1], step.q[2]}));
+  };
+  knots.reserve(steps_.size() + 16);
+  Vec3 p = seed_, w = linear * vector_of(steps_.front().k);
+  double length = length_of(w), s = 0;
+  for (std::size_t i = 1; i < steps_.size(); ++i) {
+    const Vec3 p_next = place(steps_[i]), w_next = linear * vector_of(steps_[i].k);
+    const double h = static_cast<double>(steps_[i - 1].h), length_next = length_of(w_next);
+    // Simpson's rule on the cubic of the step
+    const Vec3 middle = (1.5 / h) * (p_next - p) - 0.25 * (w + w_next);
+    const double piece = std::fabs(h) / 6 * (length + 4 * length_of(middle) + length_next);
+    if (s + piece > options_.length) {
+      // the length ends within the step
+      const Hermite cubic(p, p_next - p, h, w, w_next);
+      const double theta = (options_.length - s) / piece;
+      if (theta > 1e-9) knots.push_back({sign_ * options_.length, cubic.at(theta), direction(cubic.derivative(theta) / h)});
+      return;
+    }
+    s += piece;
+    knots.push_back({sign_ * s, p_next, (1 / length_next) * w_next});
+    p = p_next;
+    w = w_next;
+    length = length_next;
+  }
+}
+
+/// The exact marcher from the last knot.
+void BatchBranch::go_on(std::vector<Knot>& knots, End& end) const {
+  const Knot from = knots.back();
+  TraceOptions rest = options_;
+  rest.length = options_.length - std::fabs(from.s);
+  if (!(rest.length > 1e-12 * flow_.field->length())) return;
+  const Branch tail = march_from(flow_, from.p, sign_, rest);
+  end = tail.end == End::lap ? End::length : tail.end;
+  for (std::size_t i = 1; i < tail.knots.size(); ++i) {
+    const Knot& knot = tail.knots[i];
+    const double s = from.s + knot.s;
+    const bool close = std::fabs(s) - std::fabs(knots.back().s) < 1e-10 * flow_.field->length();
+    if (close && (i + 1 < tail.knots.size() || !(std::fabs(s) > std::fabs(knots.back().s)))) continue;
+    knots.push_back({s, knot.p, knot.t});
+  }
+}
+
+void BatchBranch::finish(Branch& branch) {
+  branch.knots.clear();
+  branch.end = lap_ ? End::lap : End::length;
+  branch.knots.push_back({0, seed_, tangent_});
+  if (!steps_.empty()) add_knots(branch.knots);
+  if (lap_) {
+    branch.knots.back().p = seed_;
+    branch.knots.back().t = tangent_;
+  }
+  if (by_hand_) go_on(branch.knots, branch.end);
+}
+
+}  // namespace catena::flow
