@@ -142,7 +142,7 @@ void BatchBranch::go_on(std::vector<Knot>& knots, End& end) const {
   rest.length = options_.length - std::fabs(from.s);
   if (!(rest.length > 1e-12 * flow_.field->length())) return;
   const Branch tail = march_from(flow_, from.p, sign_, rest);
-  end = tail.end == End::lap ? End::length : tail.end;
+  end = tail.end == End::lap && knots.size() > 1 ? End::length : tail.end;  // a lap is one of the seed
   for (std::size_t i = 1; i < tail.knots.size(); ++i) {
     const Knot& knot = tail.knots[i];
     const double s = from.s + knot.s;
