@@ -74,7 +74,7 @@ class Worker {
     while (busy_ > 0) {
       step_lanes(bricks_, control_, group_);
       for (int i = 0; i < kLanes; ++i)
-        if (lanes_[i].branch && lanes_[i].branch->take(group_, i, control_)) end_branch(i);
+        if (lanes_[i].branch && !lanes_[i].branch->take(group_, i, control_)) end_branch(i);
     }
   }
 
@@ -83,7 +83,7 @@ class Worker {
     std::optional<BatchBranch> branch;
     std::size_t seed = 0;
     Vec3 tangent{0.0};
-    Branch forward;  ///< this and the steps: memory that is used again
+    Branch forward, backward;  ///< these and the steps: memory that is used again
     std::vector<RawStep> steps;
   };
 
@@ -115,17 +115,17 @@ class Worker {
 
   void begin_branch(int i, double sign) {
     Lane& lane = lanes_[i];
-    lane.branch.emplace(bricks_, flow_, trace_, lap_gap_, seeds_[lane.seed], lane.tangent, sign, lane.steps);
+    lane.branch.emplace(bricks_, flow_, trace_, lap_gap_, seeds_[lane.seed], lane.tangent, sign, lane.steps,
+                        sign > 0 ? lane.forward : lane.backward);
     if (!lane.branch->start(group_, i)) end_branch(i);
   }
 
   void end_branch(int i) {
     Lane& lane = lanes_[i];
     const bool ahead = lane.branch->sign() > 0;
-    lane.branch->finish(ahead ? lane.forward : backward_);
     lane.branch.reset();
     if (ahead && lane.forward.end != End::lap) return begin_branch(i, -1);
-    slots_[lane.seed] = sewn(flow_, seeds_[lane.seed], lane.forward, backward_);
+    slots_[lane.seed] = sewn(flow_, seeds_[lane.seed], lane.forward, lane.backward);
     --busy_;
     begin_next(i);
   }
@@ -141,7 +141,6 @@ class Worker {
   Slots& slots_;
   LaneGroup group_{};
   Lane lanes_[kLanes];
-  Branch backward_;
   int busy_ = 0;
 };
 

@@ -1,5 +1,5 @@
 /// Private to the batch tracer: one direction of one line, fed by the steps of its lane. It accepts or shortens them, sees the
-/// lap, the length and the places where the exact marcher has to go on, and turns the steps into knots.
+/// lap, the length and the places where the exact marcher has to help, and turns the steps into knots.
 #pragma once
 #include "engine/flow/batch_step.h"
 #include "engine/flow/trace_parts.h"
@@ -15,25 +15,24 @@ struct RawStep {
 
 class BatchBranch {
  public:
-  /// `steps` is memory only.
+  /// `out` is made anew in its memory; `steps` is memory only.
   BatchBranch(const VelocityBricks& bricks, const Flow& flow, const TraceOptions& options, double lap_gap, const Vec3& seed,
-              const Vec3& tangent, double sign, std::vector<RawStep>& steps);
+              const Vec3& tangent, double sign, std::vector<RawStep>& steps, Branch& out);
   double sign() const { return sign_; }
 
-  /// Puts the lane on the seed; false: nothing to step through, finish() can be called.
+  /// Puts the lane on the seed; false: `out` is finished already.
   bool start(LaneGroup& group, int i);
-  /// Takes what step_lanes() made of the lane and says how it goes on; true: finish() can be called.
+  /// Takes what step_lanes() made of the lane and says how it goes on; false: `out` is finished.
   bool take(LaneGroup& group, int i, const StepControl& control);
-  /// `branch` is made anew in its memory.
-  void finish(Branch& branch);
 
  private:
+  bool place(LaneGroup& group, int i, const Vec3& world, double first_step);
   bool shorten(LaneGroup& group, int i, float factor);
+  bool go_by_hand(LaneGroup& group, int i);
   bool came_round(const LaneGroup& group, int i);
   double world_length(const Vec3& local) const;
   double speed(const Float4& k) const;
-  void add_knots(std::vector<Knot>& knots) const;
-  void go_on(std::vector<Knot>& knots, End& end) const;
+  void add_knots();
 
   const VelocityBricks& bricks_;
   const Flow& flow_;
@@ -46,8 +45,7 @@ class BatchBranch {
   Vec3 seed_normal_{0.0};  ///< the tangent as a covector of local coordinates
   double height_ = 0;      ///< above the seed's plane, world units
   double way_ = 0;         ///< sum of the chords, world units
-  bool by_hand_ = false;   ///< the exact marcher goes on
-  bool lap_ = false;
+  Branch& out_;
 };
 
 }  // namespace catena::flow
