@@ -22,7 +22,7 @@ namespace {
 
 struct Options {
   std::string source, field, seeds, output, kind = "vector", stats;
-  double length = 0, min_speed = 0, tolerance = 0;
+  double length = 0, min_speed = 0, tolerance = 0, step = 0;
 };
 
 std::int64_t process_cpu_ns() {
@@ -83,6 +83,7 @@ Result<Curves> trace_table(const Options& options, const flow::Flow& flow) {
   flow::BatchOptions batch;
   batch.length = options.length;
   batch.tolerance = options.tolerance;
+  if (options.step > 0) batch.longest_step = options.step;
   const bool exactly = options.tolerance <= 1e-9;
   const flow::BatchTracer tracer(flow, batch);
   constexpr std::size_t kBlock = 512;
@@ -112,7 +113,7 @@ Result<Curves> trace_pattern(const Options& options, const json::Node& node, con
   if (const json::Node* surface = node.find("isosurface"); surface != nullptr && !is_scene_file(options.source))
     if (const json::Node* name = surface->find("field"); name != nullptr && name->kind == json::Kind::string) add_grid(scene, name->string);
   CATENA_TRY(const scene::Seeds seeds, scene::read_seeds(scene, node));
-  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance}, node);
+  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step}, node);
 }
 
 Outcome trace_lines(const Options& options) {
@@ -185,6 +186,7 @@ void add_trace(CLI::App& program, Work& chosen) {
       ->add_option("--tolerance", options->tolerance,
                    "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
       ->check(CLI::Range(0.0, 0.01));
+  command->add_option("--step", options->step, "with a tolerance: the longest step, voxels (default: 0.5)")->check(CLI::Range(0.01, 4.0));
   command->add_option("--stats", options->stats, "figures, JSON");
   command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")
       ->check(CLI::IsMember({"vector", "line"}))

@@ -160,6 +160,7 @@ std::vector<Result<CurvePtr>> BatchTracer::trace(std::span<const Vec3> seeds) co
     TraceOptions options;
     options.length = options_.length;
     options.max_knots = options_.max_knots;
+    options.tolerance = options.hermite_tolerance = options_.tolerance;
     return trace_each(flow_, seeds, options);
   }
   const std::vector<std::uint32_t> order = along_curve(flow_, seeds);

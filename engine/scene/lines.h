@@ -15,6 +15,7 @@ struct LineRequest {
   flow::Flow flow;
   double length = 0;     ///< 0: 10 L each direction
   double tolerance = 0;  ///< 0: by the seeds' kind
+  double step = 0;       ///< the batch tracer's longest, voxels; 0: its default
 };
 
 /// Every line of the seeds. Points that start nothing are errors at their place in the file; a pattern of which no place

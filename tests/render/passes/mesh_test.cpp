@@ -48,17 +48,17 @@ TEST_F(Mesh, ColoursRunAlongATube) {
   tube.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   packet.tubes = {tube};
   const Picture picture = draw(packet, {}, "rainbow");
-  // 5 pixels a unit; the tube's middle faces the eye
+  // 5 pixels a unit; the middle faces the eye, so that a white highlight lies over it
   const auto part = [&](std::uint32_t x, int channel) {
     const std::uint8_t* p = picture.pixel(x, 60);
     return static_cast<double>(p[channel]) / (p[0] + p[1] + p[2]);
   };
-  EXPECT_GT(part(21, 0), 0.85);
+  EXPECT_GT(part(21, 0), 0.65);
   EXPECT_NEAR(part(50, 0), 0.5, 0.1);
   EXPECT_NEAR(part(50, 1), 0.5, 0.1);
-  EXPECT_GT(part(80, 1), 0.85);
+  EXPECT_GT(part(80, 1), 0.65);
   EXPECT_NEAR(part(110, 2), 0.5, 0.1);
-  EXPECT_GT(part(139, 2), 0.85);
+  EXPECT_GT(part(139, 2), 0.65);
 }
 
 TEST_F(Mesh, ArrowsAndTheIndicatorAreDrawn) {
