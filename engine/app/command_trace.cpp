@@ -12,6 +12,7 @@
 #include "engine/app/lines_file.h"
 #include "engine/base/clock.h"
 #include "engine/base/csv_paths.h"
+#include "engine/base/quantile.h"
 #include "engine/field/load.h"
 #include "engine/flow/batch.h"
 #include "engine/scene/lines.h"
@@ -22,6 +23,7 @@ namespace {
 
 struct Options {
   std::string source, field, seeds, output, kind = "vector", stats;
+  int repeat = 1;
   double length = 0, min_speed = 0, tolerance = 0, step = 0;
 };
 
@@ -75,8 +77,22 @@ Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const Options& o
 
 using Curves = std::vector<flow::CurvePtr>;
 
-/// Seeds of a table: row by row, over all cores.
-Result<Curves> trace_table(const Options& options, const flow::Flow& flow) {
+/// How long the tracing took, without files: every repetition of it.
+struct Timing {
+  std::vector<double> wall_ms, cpu_ms;
+
+  template <class Work>
+  auto measure(Work&& work) {
+    const std::int64_t start = now_ns(), start_cpu = process_cpu_ns();
+    auto result = work();
+    wall_ms.push_back(ms_since(start));
+    cpu_ms.push_back(1e-6 * static_cast<double>(process_cpu_ns() - start_cpu));
+    return result;
+  }
+};
+
+/// Seeds of a table, over all cores.
+Result<Curves> trace_table(const Options& options, const flow::Flow& flow, Timing& timing) {
   CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
   flow::TraceOptions exact;
   exact.length = options.length;
@@ -86,19 +102,25 @@ Result<Curves> trace_table(const Options& options, const flow::Flow& flow) {
   if (options.step > 0) batch.longest_step = options.step;
   const bool exactly = options.tolerance <= 1e-9;
   const flow::BatchTracer tracer(flow, batch);
-  constexpr std::size_t kBlock = 512;
-  Curves curves;
-  Progress progress("trace", static_cast<double>(seeds.size()));
-  for (std::size_t first = 0; first < seeds.size(); first += kBlock) {
-    const std::span block(seeds.data() + first, std::min(kBlock, seeds.size() - first));
-    const auto traced = exactly ? flow::trace_each(flow, block, exact) : tracer.trace(block);
-    for (std::size_t i = 0; i < traced.size(); ++i) {
-      if (!traced[i]) return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};  // after the header
-      curves.push_back(*traced[i]);
+  const std::size_t at_once = exactly ? 64 : 4096;  // between two looks at the progress
+  const auto trace_all = [&]() -> Result<Curves> {
+    Curves curves;
+    curves.reserve(seeds.size());
+    Progress progress("trace", static_cast<double>(seeds.size()));
+    for (std::size_t first = 0; first < seeds.size(); first += at_once) {
+      const std::span block(seeds.data() + first, std::min(at_once, seeds.size() - first));
+      const auto traced = exactly ? flow::trace_each(flow, block, exact) : tracer.trace(block);
+      for (std::size_t i = 0; i < traced.size(); ++i) {
+        if (!traced[i])
+          return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};  // after the header
+        curves.push_back(*traced[i]);
+      }
+      progress.at(static_cast<double>(first + block.size()));
     }
-    progress.at(static_cast<double>(first + block.size()));
-  }
-  return curves;
+    return curves;
+  };
+  for (int n = 1; n < options.repeat; ++n) CATENA_CHECK(timing.measure(trace_all));
+  return timing.measure(trace_all);
 }
 
 bool is_pattern(const std::string& seeds) { return seeds.starts_with("{") || seeds.ends_with(".json"); }
@@ -138,9 +160,9 @@ Outcome trace_lines(const Options& options) {
   }
 
   const flow::Flow flow{field.get(), options.kind == "line", options.min_speed};
-  const std::int64_t start = now_ns(), start_cpu = process_cpu_ns();
-  CATENA_TRY(const Curves curves, is_pattern(options.seeds) ? trace_pattern(options, pattern, flow, scene) : trace_table(options, flow));
-  const double trace_ms = ms_since(start), cpu_ms = 1e-6 * static_cast<double>(process_cpu_ns() - start_cpu);
+  Timing timing;
+  CATENA_TRY(const Curves curves, is_pattern(options.seeds) ? timing.measure([&] { return trace_pattern(options, pattern, flow, scene); })
+                                                            : trace_table(options, flow, timing));
   std::map<std::string, int> ends;
   std::size_t knots = 0;
   for (const flow::CurvePtr& curve : curves) {
@@ -154,12 +176,15 @@ Outcome trace_lines(const Options& options) {
     write_lines_vtp(out, curves, *field);
   else
     write_lines_csv(out, curves);
+  const double first_cpu_ms = timing.cpu_ms.front();
   if (options.stats.empty()) {
     CATENA_CHECK(out.commit());
   } else {
     CATENA_TRY(OutputFile stats, OutputFile::open(options.stats));
-    stats.write(fmt::format("{{\n  \"lines\": {},\n  \"knots\": {},\n  \"trace_ms\": {:.3f},\n  \"trace_cpu_ms\": {:.3f}\n}}\n",
-                            curves.size(), knots, trace_ms, cpu_ms));
+    stats.write(
+        fmt::format("{{\n  \"lines\": {},\n  \"knots\": {},\n  \"trace_ms\": {:.3f},\n  \"trace_cpu_ms\": {:.3f},\n  "
+                    "\"first_trace_cpu_ms\": {:.3f}\n}}\n",
+                    curves.size(), knots, quantile(timing.wall_ms, 0.5), quantile(timing.cpu_ms, 0.5), first_cpu_ms));
     CATENA_CHECK(commit_all({&out, &stats}));
   }
   fmt::print("{} line{}, {} knots; ends:", curves.size(), curves.size() == 1 ? "" : "s", knots);
@@ -187,6 +212,8 @@ void add_trace(CLI::App& program, Work& chosen) {
                    "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
       ->check(CLI::Range(0.0, 0.01));
   command->add_option("--step", options->step, "with a tolerance: the longest step, voxels (default: 0.5)")->check(CLI::Range(0.01, 4.0));
+  command->add_option("--repeat", options->repeat, "trace a table so many times, for --stats: medians, and the first")
+      ->check(CLI::Range(1, 1000));
   command->add_option("--stats", options->stats, "figures, JSON");
   command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")
       ->check(CLI::IsMember({"vector", "line"}))

@@ -1,5 +1,6 @@
 #include "engine/scene/lines.h"
 
+#include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/flow/evenly_spaced.h"
 #include "engine/flow/seeds.h"
@@ -97,6 +98,10 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& r
   if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) {
     flow::EvenlySpaced spacing{seeds.pattern->distance, seeds.pattern->test, seeds.pattern->start,
                                static_cast<std::size_t>(seeds.pattern->count)};
+    if (spacing.distance < 1e-3 * request.flow.field->length())
+      return json::error_at(member_or(place, "distance"), "\"distance\" is " + to_text(spacing.distance) +
+                                                              "; at least a thousandth of the domain's length, " +
+                                                              to_text(1e-3 * request.flow.field->length()) + ", was expected");
     if (spacing.start.empty()) spacing.start = default_start(*request.flow.field);
     Curves curves = flow::evenly_spaced(request.flow, spacing, batch);
     if (curves.empty())

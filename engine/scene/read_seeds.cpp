@@ -6,7 +6,7 @@
 namespace catena::scene {
 namespace {
 
-constexpr int kMostSeeds = 1000000;
+constexpr int kMostSeeds = 100000;
 
 Result<int> read_count(const json::Node& object) {
   if (object.find("count") == nullptr) return json::error_at(object, "\"count\" is missing; how many seeds was expected");

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/base/assert.h"
+#include "engine/base/numbers.h"
 #include "engine/scene/lines.h"
 #include "render/extract/flatten.h"
 
@@ -17,8 +18,9 @@ constexpr double kTubeShare = 0.003;                    // fitted tube radius by
 constexpr double kIndicatorShare = 0.004;               // the same of the indicator
 constexpr double kIndicatorLength = 0.1;                // of L
 constexpr double kArrowRadius = 2.4, kArrowLength = 6;  // by the tube's radius
-constexpr double kPulseShare = 1.0 / 12;                // of a pulse: the longest segment
-constexpr double kDimmest = 0.25;                       // brightness between pulses
+constexpr double kMostArrows = 100000;
+constexpr double kPulseShare = 1.0 / 12;  // of a pulse: the longest segment
+constexpr double kDimmest = 0.25;         // brightness between pulses
 
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 
@@ -67,7 +69,7 @@ class LineValue {
   field::Cursor cursor_;
 };
 
-void add_arrows(const flow::Curve& curve, double spacing, double radius, std::vector<ArrowItem>& arrows) {
+void add_arrows(const flow::Curve& curve, double spacing, double radius, std::vector<ArrowItem>& arrows, std::vector<FlatPoint>& places) {
   const double first = curve.knots().front().s, last = curve.knots().back().s, length = std::min(kArrowLength * radius, 0.8 * spacing);
   for (double n = std::ceil((first + 0.5 * length) / spacing - 0.5); (n + 0.5) * spacing <= last - 0.5 * length; ++n) {
     const double s = (n + 0.5) * spacing;
@@ -75,6 +77,7 @@ void add_arrows(const flow::Curve& curve, double spacing, double radius, std::ve
     curve.evaluate_in(curve.interval_of(s), s, p, t);
     t = direction(t);
     arrows.push_back({p - (0.5 * length) * t, p + (0.5 * length) * t, kArrowRadius * radius, {}});
+    places.push_back({p, s});
   }
 }
 
@@ -92,8 +95,18 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
   const double detail = value ? value->detail() : 0, band = kPulseShare * set.pulse;
   options.longest = detail > 0 && band > 0 ? std::min(detail, band) : std::max(detail, band);
 
+  // a slip of the spacing must not fill the memory
+  double all = 0;
+  for (const flow::CurvePtr& curve : curves) all += curve->period();
+  if (set.arrows > 0 && all / set.arrows > kMostArrows) {
+    const json::Node* node = set.where.find("arrows");
+    return json::error_at(node == nullptr ? set.where : *node, "\"arrows\" this close would be more than 100000 on the lines, which are " +
+                                                                   to_text(all) + " long together; a longer spacing was expected");
+  }
+
   // places and values
   std::vector<std::vector<double>> values(curves.size());
+  std::vector<FlatPoint> arrow_places;
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     TubeItem tube{{}, flat.radius, color_of(set.color), {}};
@@ -112,7 +125,7 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
     }
     flat.tubes.push_back(std::move(tube));
     flat.arc_lengths.push_back(std::move(arc));
-    if (set.arrows > 0) add_arrows(*curves[i], set.arrows, flat.radius, flat.arrows);
+    if (set.arrows > 0) add_arrows(*curves[i], set.arrows, flat.radius, flat.arrows, arrow_places);
   }
 
   // colours
@@ -120,7 +133,7 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
     const ColorTable table = !set.color_by->colors.empty() ? set.color_by->colors : lo <= hi ? viridis(lo, hi) : viridis(0, 1);
     for (std::size_t i = 0; i < curves.size(); ++i)
       for (const double v : values[i]) flat.tubes[i].colors.push_back(table_color(table, v));
-    for (ArrowItem& arrow : flat.arrows) arrow.color = {0.95f, 0.95f, 0.95f};
+    for (std::size_t i = 0; i < flat.arrows.size(); ++i) flat.arrows[i].color = table_color(table, value->at(arrow_places[i]));
   } else {
     for (ArrowItem& arrow : flat.arrows) arrow.color = color_of(set.color);
   }

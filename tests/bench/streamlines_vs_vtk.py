@@ -78,9 +78,19 @@ def lines_of(data):
     return [xyz[connectivity[a:b]] for a, b in zip(offsets[:-1], offsets[1:])]
 
 
+def voxels(data):
+    """The length of all lines together."""
+    xyz = numpy_support.vtk_to_numpy(data.GetPoints().GetData()).astype(float)
+    offsets = numpy_support.vtk_to_numpy(data.GetLines().GetOffsetsArray())
+    connectivity = numpy_support.vtk_to_numpy(data.GetLines().GetConnectivityArray())
+    pieces = np.linalg.norm(np.diff(xyz[connectivity], axis=0), axis=1)
+    pieces[offsets[1:-1] - 1] = 0
+    return float(pieces.sum())
+
+
 def by_seed(lines):
-    found = {tuple(np.round(line[0], 3)): line for line in lines}
-    return [found[tuple(np.round(s.astype(np.float32), 3))] for s in seeds[:CHECKED]]
+    starts = np.stack([line[0] for line in lines])
+    return [lines[int(((starts - s) ** 2).sum(1).argmin())] for s in seeds[:CHECKED]]
 
 
 fine = reference(seeds[:CHECKED])
@@ -92,9 +102,13 @@ with tempfile.TemporaryDirectory() as folder:
 
     def ours(step, tolerance):
         subprocess.run([program, "trace", f"{folder}/s.json", "--field", "v", "--seeds", f"{folder}/seeds.csv", "--length", str(LENGTH), "--tolerance",
-                        str(tolerance), "--step", str(step), "-o", f"{folder}/l.vtp", "--stats", f"{folder}/stats.json"], check=True, stdout=subprocess.DEVNULL)
+                        str(tolerance), "--step", str(step), "--repeat", "3", "-o", f"{folder}/l.vtp", "--stats", f"{folder}/stats.json"], check=True, stdout=subprocess.DEVNULL)
         stats = json.load(open(f"{folder}/stats.json"))
-        return stats["trace_cpu_ms"] / 1e3, stats["trace_ms"] / 1e3, stats["knots"]
+        return stats["trace_cpu_ms"] / 1e3, stats["trace_ms"] / 1e3, stats["knots"], voxels(all_lines(f"{folder}/l.vtp"))
+
+    def all_lines(path):
+        reader = vtk.vtkXMLPolyDataReader(); reader.SetFileName(path); reader.Update()
+        return reader.GetOutput()
 
     def ours_lines():
         reader = vtk.vtkXMLPolyDataReader(); reader.SetFileName(f"{folder}/l.vtp"); reader.Update()
@@ -114,17 +128,24 @@ with tempfile.TemporaryDirectory() as folder:
                 tracers[key].Modified()
                 cpu, wall = time.process_time(), time.perf_counter()
                 tracers[key].Update()
-                times.append((time.process_time() - cpu, time.perf_counter() - wall, tracers[key].GetOutput().GetNumberOfPoints()))
+                times.append((time.process_time() - cpu, time.perf_counter() - wall, tracers[key].GetOutput().GetNumberOfPoints(), voxels(tracers[key].GetOutput())))
             else:
                 times.append(ours(key[2], key[1]))
             if turn == 0:
                 error[key] = errors(by_seed(lines_of(tracers[key].GetOutput())) if key[0] == "vtk" else ours_lines(), fine)
 
 cores = os.cpu_count()
-base = statistics.median(t[0] / t[2] for t in rows[("vtk", "RK4", .25)])
-for key, times in rows.items():
-    cpu, wall = statistics.median(t[0] / t[2] for t in times), statistics.median(t[1] / t[2] for t in times)
+
+
+def rates(key):
+    """Steps and voxels of line a CPU second, times the cores that the tracer uses."""
     used = 1 if key[0] == "vtk" else cores
-    print(json.dumps({"tracer": key[0], "method_or_tolerance": key[1], "step_voxels": key[2], "points": times[0][2], "cpu_us_a_step": round(1e6 * cpu, 4),
-                      "steps_a_second_all_cores": round(used / cpu), "wall_us_a_step": round(1e6 * wall, 4), "error_rms_voxels": float(f"{error[key][0]:.3g}"),
-                      "error_max_voxels": float(f"{error[key][1]:.3g}"), "times_vtk_rk4": round(base / cpu * used, 2)}))
+    return [used * statistics.median(t[i] / t[0] for t in rows[key]) for i in (2, 3)]
+
+
+base = rates(("vtk", "RK4", .25))
+for key, times in rows.items():
+    steps, way = rates(key)
+    print(json.dumps({"tracer": key[0], "method_or_tolerance": key[1], "step_voxels": key[2], "points": times[0][2], "cpu_us_a_step": round(1e6 * statistics.median(t[0] / t[2] for t in times), 4),
+                      "wall_us_a_step": round(1e6 * statistics.median(t[1] / t[2] for t in times), 4), "error_rms_voxels": float(f"{error[key][0]:.3g}"),
+                      "error_max_voxels": float(f"{error[key][1]:.3g}"), "steps_a_second_vs_vtk_rk4": round(steps / base[0], 2), "length_a_second_vs_vtk_rk4": round(way / base[1], 2)}))

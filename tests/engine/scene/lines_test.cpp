@@ -73,6 +73,7 @@ TEST(SeedPatterns, PlacesThatStartNothingAreLeftOut) {
   no_lines(R"("seeds": {"evenly_spaced": {"distance": 0.5, "start": [[0, 0, 0]]}})", 3, {"within the flow was expected"});
   no_lines(R"("seeds": {"isosurface": {"field": "swirl", "level": 0.8, "count": 10}})", 3, {"vector field", "expected"});
   no_lines(R"("seeds": {"isosurface": {"field": "ball", "level": -3, "count": 10}})", 3, {"level -3", "expected"});
+  no_lines("\"seeds\": {\"evenly_spaced\": {\n\"distance\": 1e-6}}", 4, {"\"distance\" is 1e-06", "0.004"});
   no_lines("\"seeds\": [[1, 0, 0],\n[0, 0, 0]]", 4, {"zero there"});
 }
 

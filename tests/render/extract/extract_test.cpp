@@ -162,6 +162,13 @@ TEST(Extract, ArrowsPointAlongTheLine) {
   EXPECT_NEAR(0.5 * (packet.arrows[0].tip.z + packet.arrows[0].base.z), -1.75, 1e-9);
 }
 
+TEST(Extract, TooManyArrowsAreRefused) {
+  const std::string e =
+      error_of("{\"fields\": {" + kCircle + "}, \"streamlines\": [{\"field\": \"v\", \"seeds\": [[1, 0, 0]],\n\"arrows\": 1e-6}]}");
+  EXPECT_NE(e.find(":2:"), std::string::npos) << e;
+  EXPECT_NE(e.find("longer spacing was expected"), std::string::npos) << e;
+}
+
 TEST(Extract, PulsesMoveWithThePhase) {
   scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "uniform"}}, "streamlines": [{"field": "v", "seeds": [[0, 0, 0]],
     "length": 2, "color": [1, 0, 0], "pulse": 1}]})");
