@@ -65,7 +65,7 @@ class Worker {
     trace_.length = options.length;
     trace_.max_knots = options.max_knots;
     trace_ = filled_options(flow, trace_);
-    lap_gap_ = kLapGap * flow.field->longest_edge();
+    lap_gap_ = std::max(kLapGap * flow.field->longest_edge(), 10 * options.tolerance * flow.field->length());
     for (int i = 0; i < kLanes; ++i) rest(i);
   }
 
@@ -74,7 +74,7 @@ class Worker {
     while (busy_ > 0) {
       step_lanes(bricks_, control_, group_);
       for (int i = 0; i < kLanes; ++i)
-        if (lanes_[i].branch && !lanes_[i].branch->take(group_, i, control_)) end_branch(i);
+        if (lanes_[i].branch && !lanes_[i].branch->take(group_, i)) end_branch(i);
     }
   }
 

@@ -96,14 +96,14 @@ bool BatchBranch::go_by_hand(LaneGroup& group, int i) {
   }
 }
 
-bool BatchBranch::take(LaneGroup& group, int i, const StepControl& control) {
+bool BatchBranch::take(LaneGroup& group, int i) {
   // refused: a stage left the box or its valid cells (NaN), a sharp turn (more than 60 degrees), or too large an error
   const float speed2 = group.speed2[i];
   const RawStep& last = steps_.back();
   const float last2 = last.k[0] * last.k[0] + last.k[1] * last.k[1] + last.k[2] * last.k[2];
   if (group.left[i] || !(speed2 > 1e-30f) || !(group.turn[i] > 0) || !(group.turn[i] * group.turn[i] > 0.25f * last2 * speed2))
     return shorten(group, i, 0.5f);
-  if (!(group.error2[i] <= control.tolerance2)) {
+  if (!(group.error2[i] <= group.allowed2[i])) {
     const float factor = group.next_h[i] / group.h[i];
     return shorten(group, i, factor < 0.8f ? factor : 0.8f);
   }

@@ -23,7 +23,7 @@ class BatchBranch {
   /// Puts the lane on the seed; false: `out` is finished already.
   bool start(LaneGroup& group, int i);
   /// Takes what step_lanes() made of the lane and says how it goes on; false: `out` is finished.
-  bool take(LaneGroup& group, int i, const StepControl& control);
+  bool take(LaneGroup& group, int i);
 
  private:
   bool place(LaneGroup& group, int i, const Vec3& world, double first_step);

@@ -9,6 +9,8 @@ namespace catena::flow {
 
 namespace {
 
+constexpr float kRelative2 = 1e-4f;  ///< an error is at most a hundredth of its step: zeros are passed with care
+
 CATENA_INLINE void load_pair(const float* at, Float8& pair) {
   Float4 low, high;
   std::memcpy(&low, at, sizeof low);
@@ -93,7 +95,9 @@ CATENA_INLINE void step_all(const VelocityBricks& bricks, const StepControl& con
   }
   // the next step: h * 0.9 (tolerance / error)^(1/4), within 0.2 .. 3, and no longer than the longest
   for (int i = 0; i < kLanes; ++i) {
-    const float share = std::sqrt(std::sqrt(std::sqrt(control.tolerance2 / (g.error2[i] + 1e-37f))));
+    const float relative2 = kRelative2 * g.moved2[i];
+    g.allowed2[i] = control.tolerance2 < relative2 ? control.tolerance2 : relative2;
+    const float share = std::sqrt(std::sqrt(std::sqrt(g.allowed2[i] / (g.error2[i] + 1e-37f))));
     float factor = 0.9f * share;
     factor = factor < 0.2f ? 0.2f : factor;
     factor = factor > 3.0f ? 3.0f : factor;

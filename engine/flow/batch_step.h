@@ -31,6 +31,7 @@ struct alignas(32) LaneGroup {
   Double4 end[kLanes];
   Float4 k_end[kLanes];
   float error2[kLanes];       ///< squared, voxels
+  float allowed2[kLanes];     ///< what the tolerance and the step's own length allow of it
   float moved2[kLanes];       ///< squared length of the displacement, voxels
   float speed2[kLanes];       ///< |k_end|^2
   float turn[kLanes];         ///< k . k_end

@@ -123,6 +123,10 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
         hi = std::max(hi, values[i].back());
       }
     }
+    // a line ends on the domain's face, which rounding may put outside
+    std::vector<double>& v = values[i];
+    if (v.size() > 1 && std::isnan(v.front())) v.front() = v[1];
+    if (v.size() > 1 && std::isnan(v.back())) v.back() = v[v.size() - 2];
     flat.tubes.push_back(std::move(tube));
     flat.arc_lengths.push_back(std::move(arc));
     if (set.arrows > 0) add_arrows(*curves[i], set.arrows, flat.radius, flat.arrows, arrow_places);
