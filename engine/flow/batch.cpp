@@ -12,7 +12,8 @@ namespace catena::flow {
 
 namespace {
 
-constexpr double kLapGap = 0.01;  ///< voxels
+constexpr double kLapGap = 0.01;           ///< voxels
+constexpr double kByHandTolerance = 1e-8;  ///< of the exact marcher's pieces: errors grow near saddles
 
 using Slots = std::vector<std::optional<Result<CurvePtr>>>;
 
@@ -64,6 +65,7 @@ class Worker {
     control_.longest_step = static_cast<float>(options.longest_step);
     trace_.length = options.length;
     trace_.max_knots = options.max_knots;
+    trace_.tolerance = trace_.hermite_tolerance = std::min(options.tolerance, kByHandTolerance);
     trace_ = filled_options(flow, trace_);
     lap_gap_ = std::max(kLapGap * flow.field->longest_edge(), 10 * options.tolerance * flow.field->length());
     for (int i = 0; i < kLanes; ++i) rest(i);
