@@ -26,11 +26,11 @@ struct View {
 };
 
 /// A place exactly on an upper face of the box belongs to the last cell.
-[[gnu::noinline]] bool onto_last_cell(const View& view, Int4& c, Float4& f) {
+[[gnu::noinline]] bool onto_last_cell(const View& view, Uint4& c, Float4& f) {
   const std::uint32_t cells[3] = {view.cells_x, view.cells_y, view.cells_z};
   for (int axis = 0; axis < 3; ++axis) {
-    if (static_cast<std::uint32_t>(c[axis]) < cells[axis]) continue;
-    if (static_cast<std::uint32_t>(c[axis]) > cells[axis] || f[axis] != 0) return false;
+    if (c[axis] < cells[axis]) continue;
+    if (c[axis] > cells[axis] || f[axis] != 0) return false;
     c[axis] -= 1;
     f[axis] = 1;
   }
@@ -41,14 +41,14 @@ struct View {
 CATENA_INLINE bool sample(const VelocityBricks& bricks, const View& view, const Double4& p, Float4& k) {
   const Int4 cell = __builtin_convertvector(p, Int4);
   Float4 f = __builtin_convertvector(p - __builtin_convertvector(cell, Double4), Float4);
-  Int4 c = cell - 1;
-  auto x = static_cast<std::uint32_t>(c[0]), y = static_cast<std::uint32_t>(c[1]), z = static_cast<std::uint32_t>(c[2]);
+  Uint4 c = (Uint4)cell - 1;  // no cell wraps round
+  std::uint32_t x = c[0], y = c[1], z = c[2];
   if (x >= view.cells_x || y >= view.cells_y || z >= view.cells_z) [[unlikely]] {
     if (!onto_last_cell(view, c, f)) {
       k = Float4{};
       return false;
     }
-    x = static_cast<std::uint32_t>(c[0]), y = static_cast<std::uint32_t>(c[1]), z = static_cast<std::uint32_t>(c[2]);
+    x = c[0], y = c[1], z = c[2];
   }
   const std::size_t brick = ((z >> 3) * view.bricks_y + (y >> 3)) * view.bricks_x + (x >> 3);
   const float* at = bricks.find(brick);

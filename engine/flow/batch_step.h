@@ -14,6 +14,7 @@ using Float4 = float __attribute__((vector_size(16)));
 using Float8 = float __attribute__((vector_size(32)));
 using Double4 = double __attribute__((vector_size(32)));
 using Int4 = int __attribute__((vector_size(16)));
+using Uint4 = unsigned __attribute__((vector_size(16)));
 
 inline constexpr int kLanes = 8;
 

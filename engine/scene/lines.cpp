@@ -81,7 +81,9 @@ std::vector<Vec3> default_start(const field::Field& field) {
   std::vector<Vec3> start;
   const auto add = [&](const Vec3& share) { start.push_back(field.mapping().world_from_index(box.lo + share * (box.hi - box.lo))); };
   add(Vec3(0.5));
-  for (int n = 0; n < 27; ++n) add(Vec3(n % 3 + 0.5, n / 3 % 3 + 0.5, n / 9 + 0.5) / 3.0);
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) add((Vec3(i, j, k) + 0.5) / 3.0);
   return start;
 }
 
