@@ -29,7 +29,7 @@ struct Options {
   std::string source, output, size = "1024x768", quality, stats, probe;
   std::vector<std::string> fields;
   int frames = 1;
-  double orbit_deg = 0;
+  double orbit_deg = 0, phase = 0;
   bool validation = false;
 };
 
@@ -94,6 +94,7 @@ std::string what_is_drawn(const render::FramePacket& packet) {
 
 Outcome render_pictures(const Options& o) {
   CATENA_TRY(const Size size, parse_size(o.size));
+  if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
   if (!o.output.ends_with(".png") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .png"};
   const std::int64_t load_start = now_ns();
@@ -119,6 +120,7 @@ Outcome render_pictures(const Options& o) {
   const bool every = numbered(o.output, 0) != o.output;
   const auto draw = [&](int frame, std::vector<double>* times) -> Outcome {
     const std::int64_t start = now_ns();
+    scene.phase = o.phase + static_cast<double>(frame) / std::max(1, o.frames);
     CATENA_TRY(render::FramePacket next, render::extract_frame(scene, size.width, size.height));
     orbit(next.view, o.orbit_deg * frame / std::max(1, o.frames));
     const Outcome drawn = (*renderer)->draw(next, settings);
@@ -185,6 +187,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--quality", options->quality, "draft, balanced, reference or step=VOXELS (default: the scene's, or balanced)");
   command->add_option("--frames", options->frames, "how many frames to draw and time")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--orbit", options->orbit_deg, "turn by so many degrees over the frames");
+  command->add_option("--phase", options->phase, "where the pulses of streamlines are, 0 to 1; the frames add one round");
   command->add_option("--probe", options->probe, "probe path, CSV: the cursor is drawn where the hand is at its end");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--stats", options->stats, "figures, JSON");

@@ -1,33 +1,61 @@
-/// catena trace SCENE|FILE --field NAME --seeds CSV -o LINES.{csv,vtp}
+/// catena trace SCENE|FILE --field NAME --seeds CSV|PATTERN -o LINES.{csv,vtp} [--tolerance T]
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <memory>
+#include <span>
 
 #include "engine/app/command.h"
+#include "engine/app/lines_file.h"
+#include "engine/base/clock.h"
 #include "engine/base/csv_paths.h"
-#include "engine/base/numbers.h"
-#include "engine/base/output_file.h"
+#include "engine/base/quantile.h"
 #include "engine/field/load.h"
+#include "engine/flow/batch.h"
+#include "engine/scene/lines.h"
 
 namespace catena::app {
 
 namespace {
 
 struct Options {
-  std::string source, field, seeds, output, kind = "vector";
-  double length = 0, min_speed = 0;
+  std::string source, field, seeds, output, kind = "vector", stats;
+  int repeat = 1;
+  double length = 0, min_speed = 0, tolerance = 0, step = 0;
 };
 
-Result<field::VectorFieldPtr> vector_field(const Options& options, std::vector<std::string>& inputs) {
+std::int64_t process_cpu_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return 1'000'000'000 * static_cast<std::int64_t>(t.tv_sec) + t.tv_nsec;
+}
+
+/// The scene, or one made of the grids of a data file that the options name.
+Result<scene::Scene> scene_of(const Options& options) {
+  if (is_scene_file(options.source)) return open_scene(options.source);
+  scene::Scene scene;
+  scene.path = options.source;
+  return scene;
+}
+
+scene::Entity add_grid(scene::Scene& scene, const std::string& grid) {
+  const scene::Entity entity = scene.world.create();
+  scene::FieldSource source;
+  source.file.emplace();
+  source.file->path = scene.path;
+  source.file->grid = grid;
+  source.where.file = std::make_shared<const std::string>(scene.path);
+  scene.world.emplace<scene::Name>(entity, {grid});
+  scene.world.emplace<scene::FieldSource>(entity, std::move(source));
+  return entity;
+}
+
+Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const Options& options) {
   field::AnyField any;
   if (is_scene_file(options.source)) {
-    CATENA_TRY(scene::Scene scene, open_scene(options.source));
-    inputs = inputs_of(scene);
-    json::Node where;
-    where.file = std::make_shared<const std::string>(options.source);
     const scene::Entity entity = scene::find_field(scene, options.field);
     if (!entity) {
       std::string known;
@@ -36,10 +64,8 @@ Result<field::VectorFieldPtr> vector_field(const Options& options, std::vector<s
       });
       return Error{options.source + ": no field \"" + options.field + "\"; known: " + (known.empty() ? "none" : known)};
     }
-    where = scene.world.get<scene::FieldSource>(entity).where;
-    CATENA_TRY(any, scene::use_field(scene, entity, where));
+    CATENA_TRY(any, scene::use_field(scene, entity, scene.world.get<scene::FieldSource>(entity).where));
   } else {
-    inputs = {options.source};
     field::LoadRequest request;
     request.path = options.source;
     request.grid = options.field;
@@ -49,83 +75,118 @@ Result<field::VectorFieldPtr> vector_field(const Options& options, std::vector<s
   return any.vector;
 }
 
-void append_csv(OutputFile& out, std::size_t line, const flow::Curve& curve) {
-  std::string row;
-  for (const flow::Knot& knot : curve.knots()) {
-    row = std::to_string(line);
-    for (const double x : {knot.s, knot.p.x, knot.p.y, knot.p.z, knot.t.x, knot.t.y, knot.t.z}) {
-      row += ',';
-      append_text(row, x);
-    }
-    row += '\n';
-    out.write(row);
+using Curves = std::vector<flow::CurvePtr>;
+
+/// How long the tracing took, without files: every repetition of it.
+struct Timing {
+  std::vector<double> wall_ms, cpu_ms;
+
+  template <class Work>
+  auto measure(Work&& work) {
+    const std::int64_t start = now_ns(), start_cpu = process_cpu_ns();
+    auto result = work();
+    wall_ms.push_back(ms_since(start));
+    cpu_ms.push_back(1e-6 * static_cast<double>(process_cpu_ns() - start_cpu));
+    return result;
   }
+};
+
+/// Seeds of a table, over all cores.
+Result<Curves> trace_table(const Options& options, const flow::Flow& flow, Timing& timing) {
+  CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
+  flow::TraceOptions exact;
+  exact.length = options.length;
+  flow::BatchOptions batch;
+  batch.length = options.length;
+  batch.tolerance = options.tolerance;
+  if (options.step > 0) batch.longest_step = options.step;
+  const bool exactly = options.tolerance <= 1e-9;
+  const flow::BatchTracer tracer(flow, batch);
+  const std::size_t at_once = exactly ? 64 : 4096;  // between two looks at the progress
+  const auto trace_all = [&]() -> Result<Curves> {
+    Curves curves;
+    curves.reserve(seeds.size());
+    Progress progress("trace", static_cast<double>(seeds.size()));
+    for (std::size_t first = 0; first < seeds.size(); first += at_once) {
+      const std::span block(seeds.data() + first, std::min(at_once, seeds.size() - first));
+      const auto traced = exactly ? flow::trace_each(flow, block, exact) : tracer.trace(block);
+      for (std::size_t i = 0; i < traced.size(); ++i) {
+        if (!traced[i])
+          return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};  // after the header
+        curves.push_back(*traced[i]);
+      }
+      progress.at(static_cast<double>(first + block.size()));
+    }
+    return curves;
+  };
+  for (int n = 1; n < options.repeat; ++n) CATENA_CHECK(timing.measure(trace_all));
+  return timing.measure(trace_all);
 }
 
-// VTK's XML PolyData, ASCII: one polyline a curve, arc length and tangent as point data.
-void write_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves) {
-  std::size_t points = 0;
-  for (const auto& curve : curves) points += curve->knots().size();
-  out.write("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n");
-  out.write(fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
-                        points, curves.size()));
-  const auto array = [&](const char* name, int components, const auto& values_of) {
-    out.write(fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n", name, components));
-    for (const auto& curve : curves)
-      for (const flow::Knot& knot : curve->knots()) out.write(values_of(knot) + "\n");
-    out.write("</DataArray>\n");
-  };
-  const auto text = [](const Vec3& v) { return to_text(v.x) + " " + to_text(v.y) + " " + to_text(v.z); };
-  out.write("<PointData Scalars=\"s\" Vectors=\"tangent\">\n");
-  array("s", 1, [](const flow::Knot& k) { return to_text(k.s); });
-  array("tangent", 3, [&](const flow::Knot& k) { return text(k.t); });
-  out.write("</PointData>\n<Points>\n");
-  array("Points", 3, [&](const flow::Knot& k) { return text(k.p); });
-  out.write("</Points>\n<Lines>\n<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n");
-  for (std::size_t i = 0; i < points; ++i) out.write(std::to_string(i) + "\n");
-  out.write("</DataArray>\n<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">\n");
-  std::size_t offset = 0;
-  for (const auto& curve : curves) out.write(std::to_string(offset += curve->knots().size()) + "\n");
-  out.write("</DataArray>\n</Lines>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+bool is_pattern(const std::string& seeds) { return seeds.starts_with("{") || seeds.ends_with(".json"); }
+
+/// Seeds by a pattern, as a scene's "seeds" has it: text, or a file.
+Result<json::Node> pattern_of(const std::string& seeds) {
+  return seeds.starts_with("{") ? json::parse(seeds, "--seeds") : json::read(seeds);
+}
+
+Result<Curves> trace_pattern(const Options& options, const json::Node& node, const flow::Flow& flow, scene::Scene& scene) {
+  // a data file's other grids are found by name
+  if (const json::Node* surface = node.find("isosurface"); surface != nullptr && !is_scene_file(options.source))
+    if (const json::Node* name = surface->find("field"); name != nullptr && name->kind == json::Kind::string) add_grid(scene, name->string);
+  CATENA_TRY(const scene::Seeds seeds, scene::read_seeds(scene, node));
+  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step}, node);
 }
 
 Outcome trace_lines(const Options& options) {
-  if (!std::isfinite(options.length) || !std::isfinite(options.min_speed))
-    return Error{"--length and --min-speed: expected finite numbers"};
+  for (const auto& [name, value] :
+       {std::pair{"--length", options.length}, {"--min-speed", options.min_speed}, {"--tolerance", options.tolerance}})
+    if (!std::isfinite(value)) return Error{fmt::format("{}: expected a finite number", name)};
   const bool vtp = options.output.ends_with(".vtp");
   if (!vtp && !options.output.ends_with(".csv") && !options.output.starts_with("/dev/"))
     return Error{options.output + ": expected an output that ends in .csv or .vtp"};
-  std::vector<std::string> inputs;
-  CATENA_TRY(const field::VectorFieldPtr field, vector_field(options, inputs));
-  inputs.push_back(options.seeds);
+  CATENA_TRY(scene::Scene scene, scene_of(options));
+  std::vector<std::string> inputs = inputs_of(scene);
+  if (!options.seeds.starts_with("{")) inputs.push_back(options.seeds);
+  json::Node pattern;
+  if (is_pattern(options.seeds)) {
+    CATENA_TRY(pattern, pattern_of(options.seeds));
+  }
+  CATENA_TRY(const field::VectorFieldPtr field, vector_field(scene, options));
   CATENA_CHECK(check_output(options.output, inputs));
-  CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
+  if (!options.stats.empty()) {
+    CATENA_CHECK(check_output(options.stats, inputs));
+    if (same_file(options.stats, options.output)) return Error{options.stats + ": --stats and -o name one file: expected two"};
+  }
 
   const flow::Flow flow{field.get(), options.kind == "line", options.min_speed};
-  flow::TraceOptions trace_options;
-  trace_options.length = options.length;
-  std::vector<flow::CurvePtr> curves;
+  Timing timing;
+  CATENA_TRY(const Curves curves, is_pattern(options.seeds) ? timing.measure([&] { return trace_pattern(options, pattern, flow, scene); })
+                                                            : trace_table(options, flow, timing));
   std::map<std::string, int> ends;
   std::size_t knots = 0;
-  Progress progress("trace", static_cast<double>(seeds.size()));
-  for (std::size_t i = 0; i < seeds.size(); ++i) {
-    auto curve = flow::trace(flow, seeds[i], trace_options);
-    if (!curve) return Error{fmt::format("{}:{}: {}", options.seeds, i + 2, curve.error().message)};  // the rows follow the header
-    knots += (*curve)->knots().size();
-    ++ends[flow::end_word((*curve)->first_end())];
-    ++ends[flow::end_word((*curve)->last_end())];
-    curves.push_back(*curve);
-    progress.at(static_cast<double>(i + 1));
+  for (const flow::CurvePtr& curve : curves) {
+    knots += curve->knots().size();
+    ++ends[flow::end_word(curve->first_end())];
+    ++ends[flow::end_word(curve->last_end())];
   }
 
   CATENA_TRY(OutputFile out, OutputFile::open(options.output));
-  if (vtp) {
-    write_vtp(out, curves);
+  if (vtp)
+    write_lines_vtp(out, curves, *field);
+  else
+    write_lines_csv(out, curves);
+  const double first_cpu_ms = timing.cpu_ms.front();
+  if (options.stats.empty()) {
+    CATENA_CHECK(out.commit());
   } else {
-    out.write("line,s,x,y,z,tx,ty,tz\n");
-    for (std::size_t i = 0; i < curves.size(); ++i) append_csv(out, i, *curves[i]);
+    CATENA_TRY(OutputFile stats, OutputFile::open(options.stats));
+    stats.write(
+        fmt::format("{{\n  \"lines\": {},\n  \"knots\": {},\n  \"trace_ms\": {:.3f},\n  \"trace_cpu_ms\": {:.3f},\n  "
+                    "\"first_trace_cpu_ms\": {:.3f}\n}}\n",
+                    curves.size(), knots, quantile(timing.wall_ms, 0.5), quantile(timing.cpu_ms, 0.5), first_cpu_ms));
+    CATENA_CHECK(commit_all({&out, &stats}));
   }
-  CATENA_CHECK(out.commit());
   fmt::print("{} line{}, {} knots; ends:", curves.size(), curves.size() == 1 ? "" : "s", knots);
   for (const auto& [word, count] : ends) fmt::print(" {} {}", word, count);
   fmt::print("\n");
@@ -139,10 +200,21 @@ void add_trace(CLI::App& program, Work& chosen) {
   CLI::App* command = program.add_subcommand("trace", "streamlines through seeds, as arc-length curves");
   command->add_option("SOURCE", options->source, "a scene file (.json) or a data file")->required();
   command->add_option("--field", options->field, "a field of the scene, or a grid of the file")->required();
-  command->add_option("--seeds", options->seeds, "seeds, CSV: x,y,z")->required();
+  command
+      ->add_option("--seeds", options->seeds,
+                   "seeds: CSV x,y,z; or a pattern as a scene's \"seeds\" has it, '{\"line\": ...}' or a .json file")
+      ->required();
   command->add_option("-o,--output", options->output, "lines: .vtp, or CSV: line,s,x,y,z,tx,ty,tz")->required();
   command->add_option("--length", options->length, "longest arc length in each direction, world units (default: 10 L)")
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
+      ->check(CLI::Range(0.0, 0.01));
+  command->add_option("--step", options->step, "with a tolerance: the longest step, voxels (default: 0.5)")->check(CLI::Range(0.01, 4.0));
+  command->add_option("--repeat", options->repeat, "trace a table so many times, for --stats: medians, and the first")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--stats", options->stats, "figures, JSON");
   command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")
       ->check(CLI::IsMember({"vector", "line"}))
       ->capture_default_str();

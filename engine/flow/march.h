@@ -5,14 +5,10 @@
 #pragma once
 #include "engine/flow/curve.h"
 #include "engine/flow/medium.h"
+#include "engine/flow/trace_parts.h"
 #include "engine/flow/zero.h"
 
 namespace catena::flow {
-
-struct Branch {
-  std::vector<Knot> knots;  ///< the seed first; s and t signed by the direction of the march
-  End end = End::length;
-};
 
 template <class Medium>
 class March {

@@ -25,28 +25,62 @@ Error no_direction(const Flow& flow, const Vec3& seed, Stop stop) {
 }
 
 template <class Medium>
-Result<CurvePtr> trace_in(Medium medium, const Flow& flow, const Vec3& seed, const TraceOptions& options) {
+Result<Vec3> tangent_in(Medium medium, const Flow& flow, const Vec3& seed) {
   Vec3 u;
   if (const Stop stop = medium.seed(seed, u); stop != Stop::none) return no_direction(flow, seed, stop);
-  const double domain = flow.field->length();
+  return u;
+}
 
+template <class Medium>
+Branch march_in(Medium medium, const Flow& flow, const Vec3& place, double sign, const TraceOptions& options) {
+  Vec3 u;
+  const Stop stop = medium.seed(place, u);
+  if (stop != Stop::none) return {{}, stop == Stop::still ? End::critical : End::boundary};
+  return March<Medium>(medium, flow, options).run(place, u, sign);
+}
+
+template <class Medium>
+Result<CurvePtr> trace_in(Medium medium, const Flow& flow, const Vec3& seed, const TraceOptions& options) {
+  CATENA_TRY(const Vec3 u, tangent_in(medium, flow, seed));
   // forward, and backward unless it came round
   Branch forward = March<Medium>(medium, flow, options).run(seed, u, 1);
-  if (forward.end == End::lap) return CurvePtr(std::make_shared<const Curve>(std::move(forward.knots), true, End::lap, End::lap, domain));
-  Branch backward = March<Medium>(medium, flow, options).run(seed, u, -1);
-  std::vector<Knot> knots(backward.knots.rbegin(), backward.knots.rend());
+  Branch backward;
+  if (forward.end != End::lap) backward = March<Medium>(medium, flow, options).run(seed, u, -1);
+  return sewn(flow, seed, forward, backward);
+}
+
+}  // namespace
+
+Result<Vec3> seed_tangent(const Flow& flow, const Vec3& seed) {
+  if (!is_finite(seed)) return Error{"seed " + triple(seed) + " is not finite; three finite numbers were expected"};
+  return flow.field->grid() ? tangent_in(CellMedium(flow), flow, seed) : tangent_in(FormulaMedium(flow), flow, seed);
+}
+
+Branch march_from(const Flow& flow, const Vec3& place, double sign, const TraceOptions& options) {
+  return flow.field->grid() ? march_in(CellMedium(flow), flow, place, sign, options)
+                            : march_in(FormulaMedium(flow), flow, place, sign, options);
+}
+
+Result<CurvePtr> sewn(const Flow& flow, const Vec3& seed, const Branch& forward, const Branch& backward) {
+  const double domain = flow.field->length();
+  if (forward.end == End::lap) return CurvePtr(std::make_shared<const Curve>(forward.knots, true, End::lap, End::lap, domain));
+  std::vector<Knot> knots;
+  knots.reserve(backward.knots.size() + forward.knots.size());
+  knots.assign(backward.knots.rbegin(), backward.knots.rend());
   knots.insert(knots.end(), forward.knots.begin() + 1, forward.knots.end());
   if (knots.size() < 2) return Error{"seed " + triple(seed) + ": the line ends on the spot in both directions"};
   return CurvePtr(std::make_shared<const Curve>(std::move(knots), false, backward.end, forward.end, domain));
 }
 
-}  // namespace
+TraceOptions filled_options(const Flow& flow, TraceOptions options) {
+  if (!(options.length > 0)) options.length = 10 * flow.field->length();
+  options.max_knots = std::max<std::size_t>(options.max_knots / 2, 8);
+  return options;
+}
 
 Result<CurvePtr> trace(const Flow& flow, const Vec3& seed, const TraceOptions& options) {
   if (!is_finite(seed)) return Error{"seed " + triple(seed) + " is not finite; three finite numbers were expected"};
-  TraceOptions filled = options;
-  if (!(filled.length > 0)) filled.length = 10 * flow.field->length();
-  filled.max_knots = std::max<std::size_t>(filled.max_knots / 2, 8);
+  const TraceOptions filled = filled_options(flow, options);
   return flow.field->grid() ? trace_in(CellMedium(flow), flow, seed, filled) : trace_in(FormulaMedium(flow), flow, seed, filled);
 }
 

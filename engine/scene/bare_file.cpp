@@ -10,6 +10,7 @@ namespace {
 constexpr int kLattice = 5;           // seeds an axis
 constexpr double kSlowShare = 0.05;   // of the fastest seed: not worth a line
 constexpr double kLengthShare = 2.0;  // of L, in each direction
+constexpr double kDrawnTolerance = 1e-7;
 constexpr Rgb kLineColor{0.96f, 0.66f, 0.26f};
 
 /// The grid asked for; else the only one; else the first scalar one, else the first vector one.
@@ -109,10 +110,11 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid) {
   StreamlineSet set;
   set.field = field;
   set.where = where;
-  set.seeds = lattice_seeds(*loaded.vector);
+  set.seeds.points = lattice_seeds(*loaded.vector);
   set.color = kLineColor;
   set.length = kLengthShare * loaded.vector->length();
-  if (!set.seeds.empty()) scene.world.emplace<StreamlineSet>(drawn, std::move(set));
+  set.tolerance = kDrawnTolerance;
+  if (!set.seeds.points.empty()) scene.world.emplace<StreamlineSet>(drawn, std::move(set));
   return scene;
 }
 

@@ -84,15 +84,59 @@ struct SurfaceMesh {
   Rgb color{0.8f, 0.8f, 0.9f};
 };
 
+/// Seeds that are not listed one by one. Which members mean something follows from the kind.
+struct SeedPattern {
+  enum class Kind { line, plane, sphere, isosurface, evenly_spaced };
+  Kind kind = Kind::line;
+  json::Node where;
+  Vec3 origin{0.0};         ///< a line's first end, a plane's corner, a sphere's centre
+  Vec3 u{0.0}, v{0.0};      ///< a line's other end (u); a plane's edges
+  int count = 1;            ///< of seeds; a plane's along u; evenly spaced: the most lines
+  int count_v = 1;          ///< a plane's along v
+  double radius = 0;        ///< of a sphere
+  bool inside = false;      ///< the ball rather than the sphere
+  Entity field;             ///< of an isosurface
+  double level = 0;         ///< of an isosurface
+  double distance = 0;      ///< evenly spaced: of the lines, world units
+  double test = 0.5;        ///< evenly spaced: lines end nearer than this share of the distance
+  std::vector<Vec3> start;  ///< evenly spaced: where the first lines begin; empty: the middle of the domain
+};
+
+struct Seeds {
+  std::vector<Vec3> points;
+  std::optional<SeedPattern> pattern;  ///< instead of points
+};
+
+/// Tubes that show values along the lines.
+struct ColorBy {
+  enum class What { field, speed, arc_length };
+  What what = What::speed;
+  Entity field;                                      ///< a scalar, or the magnitude of a vector
+  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: viridis over the values that are drawn
+};
+
 struct StreamlineSet {
   Entity field;
   json::Node where;
-  std::vector<Vec3> seeds;
+  Seeds seeds;
   double radius = 0;  ///< 0: fitted to the domain
   Rgb color{1.0f, 0.3f, 0.2f};
+  std::optional<ColorBy> color_by;
   bool line = false;  ///< "kind": "line"
   double min_speed = 0;
-  double length = 0;  ///< 0: 10 L, each direction
+  double length = 0;     ///< 0: 10 L, each direction
+  double tolerance = 0;  ///< times L; 0: by the seeds' kind (lines.h)
+  double arrows = 0;     ///< arrowheads every so far along a line, world units; 0: none
+  double pulse = 0;      ///< bands of this length run along the lines as the scene's phase goes from 0 to 1; 0: none
+};
+
+/// A short piece of the streamline through the cursor, with an arrowhead: what the flow does here.
+struct Indicator {
+  Entity field;
+  json::Node where;
+  double length = 0;  ///< world units; 0: a tenth of L
+  double radius = 0;  ///< 0: fitted
+  Rgb color{1.0f, 0.85f, 0.1f};
 };
 
 /// The cursor: what the hand holds, as the last tick left it. Written by the cursor system, drawn as a glyph.

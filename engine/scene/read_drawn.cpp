@@ -36,11 +36,7 @@ Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std:
 Result<TransferFunction> read_transfer(const json::Node& node) {
   TransferFunction transfer;
   if (const json::Node* color = node.find("color")) {
-    CATENA_TRY(const auto rows, read_table(*color, "color", 4));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      CATENA_TRY(const Rgb rgb, rgb_of({rows[i][1], rows[i][2], rows[i][3]}, color->items[i], "color"));
-      transfer.colors.push_back({rows[i][0], rgb});
-    }
+    CATENA_TRY(transfer.colors, read_color_table(*color, "color"));
   }
   const json::Node *opacity = node.find("opacity"), *extinction = node.find("extinction"), *unit = node.find("opacity_unit");
   if (opacity != nullptr && extinction != nullptr)
@@ -88,6 +84,18 @@ Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
 }
 
 }  // namespace
+
+Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback) { return get_color(object, key, fallback); }
+
+Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what) {
+  std::vector<TransferFunction::ColorPoint> colors;
+  CATENA_TRY(const auto rows, read_table(node, what, 4));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    CATENA_TRY(const Rgb rgb, rgb_of({rows[i][1], rows[i][2], rows[i][3]}, node.items[i], what));
+    colors.push_back({rows[i][0], rgb});
+  }
+  return colors;
+}
 
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
   CATENA_TRY(const std::string name, json::require_string(object, key));
@@ -156,31 +164,6 @@ Outcome read_meshes(Scene& scene, const json::Node& node) {
     scene.world.emplace<Name>(surface.mesh, {name});
     scene.world.emplace<MeshSource>(surface.mesh, std::move(source));
     if (drawn) scene.world.emplace<SurfaceMesh>(scene.world.create(), std::move(surface));
-    return Done{};
-  });
-}
-
-Outcome read_streamlines(Scene& scene, const json::Node& node) {
-  return each_item(node, "streamlines", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "seeds", "radius", "color", "kind", "min_speed", "length"}));
-    StreamlineSet set;
-    set.where = item;
-    CATENA_TRY(set.field, read_field_name(scene, item));
-    const json::Node* seeds = item.find("seeds");
-    if (seeds == nullptr || seeds->kind != json::Kind::array || seeds->items.empty())
-      return json::error_at(seeds == nullptr ? item : *seeds, "\"seeds\" is missing or empty; at least one seed [x, y, z] was expected");
-    set.seeds.reserve(seeds->items.size());
-    for (const json::Node& seed : seeds->items) {
-      CATENA_TRY(const Vec3 p, json::as_vec3(seed, "seeds"));
-      set.seeds.push_back(p);
-    }
-    CATENA_TRY(set.radius, json::get_number(item, "radius", 0, json::Range::positive));
-    CATENA_TRY(set.color, get_color(item, "color", set.color));
-    CATENA_TRY(const int kind, json::get_choice(item, "kind", 0, {"vector", "line"}));
-    set.line = kind == 1;
-    CATENA_TRY(set.min_speed, json::get_number(item, "min_speed", 0, json::Range::not_negative));
-    CATENA_TRY(set.length, json::get_number(item, "length", 0, json::Range::positive));
-    scene.world.emplace<StreamlineSet>(scene.world.create(), std::move(set));
     return Done{};
   });
 }

@@ -17,6 +17,11 @@ Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<Fiel
 /// The entity of the field that member `key` of `object` names; an error lists the known ones.
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
 
+/// Member `key` as [r, g, b], 0..1.
+Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback);
+/// Rows [value, r, g, b], values rising.
+Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what);
+
 Outcome read_chain(Scene& scene, const json::Node& node);
 Outcome read_modes(Scene& scene, const json::Node& node);
 Outcome read_coupling(Scene& scene, const json::Node& node);
@@ -27,6 +32,7 @@ Outcome read_volumes(Scene& scene, const json::Node& node);
 Outcome read_isosurfaces(Scene& scene, const json::Node& node);
 Outcome read_meshes(Scene& scene, const json::Node& node);
 Outcome read_streamlines(Scene& scene, const json::Node& node);
+Outcome read_indicator(Scene& scene, const json::Node& node);
 Outcome read_cursor(Scene& scene, const json::Node& node);
 
 Outcome read_camera(Scene& scene, const json::Node& node);

@@ -22,6 +22,7 @@ struct Scene {
   Background background;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
+  double phase = 0;  ///< of what moves along the streamlines; the fraction counts
 
   /// Curves already traced, keyed by field version, flow and seed: tubes and links share the object.
   struct CurveKey {

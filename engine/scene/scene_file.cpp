@@ -7,7 +7,7 @@ namespace {
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
   CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "cursor", "camera", "background", "quality"}));
+                                      "streamlines", "indicator", "cursor", "camera", "background", "quality"}));
   // fields first: the other parts name them
   CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
@@ -23,6 +23,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"isosurfaces", read_isosurfaces},
                             {"meshes", read_meshes},
                             {"streamlines", read_streamlines},
+                            {"indicator", read_indicator},
                             {"cursor", read_cursor},
                             {"camera", read_camera},
                             {"background", read_background},

@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "render/extract/flatten.h"
+#include "render/extract/extract_lines.h"
 
 namespace catena::render {
 
 namespace {
 
-constexpr double kTubeShare = 0.003;    // fitted tube radius by the domain's diagonal
 constexpr double kCursorShare = 0.008;  // fitted glyph radius by the diagonal of what is drawn
 constexpr double kCursorOverTube = 2;
 
@@ -24,10 +23,6 @@ Bounds domain_bounds(const field::Field& field) {
   index.add(box.hi);
   for (int i = 0; i < 8; ++i) bounds.add(field.mapping().world_from_index(index.corner(i)));
   return bounds;
-}
-
-double domain_diagonal(const field::Field& field) {
-  return norm(field.mapping().world_from_index_linear * (field.index_box().hi - field.index_box().lo));
 }
 
 std::string field_name(const scene::Scene& scene, scene::Entity field) {
@@ -102,43 +97,6 @@ Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
   return Done{};
 }
 
-/// What this room keeps beside a StreamlineSet: each curve as a polyline, made once.
-struct FlatCurves {
-  std::vector<flow::CurvePtr> curves;
-  std::vector<double> radii;
-  std::vector<std::vector<Vec3>> points;
-};
-
-/// Every seed's curve is the one object of the scene: the same that a selected link moves on.
-Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
-  for (const scene::Entity e : owners_of<scene::StreamlineSet>(scene.world)) {
-    const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
-    CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
-    if (!any.vector)
-      return json::error_at(member_or(set.where, "field"),
-                            "\"" + field_name(scene, set.field) + "\" is a scalar field; expected a vector field for streamlines");
-    const flow::Flow flow{any.vector.get(), set.line, set.min_speed};
-    const double radius = set.radius > 0 ? set.radius : kTubeShare * domain_diagonal(*any.vector);
-    const json::Node& seeds = member_or(set.where, "seeds");
-    if (!scene.world.has<FlatCurves>(e)) scene.world.emplace<FlatCurves>(e);
-    FlatCurves& flat = scene.world.get<FlatCurves>(e);
-    flat.curves.resize(set.seeds.size());
-    flat.radii.resize(set.seeds.size());
-    flat.points.resize(set.seeds.size());
-    for (std::size_t i = 0; i < set.seeds.size(); ++i) {
-      const json::Node& where = i < seeds.items.size() ? seeds.items[i] : seeds;
-      CATENA_TRY(const flow::CurvePtr curve, scene::use_curve(scene, flow, set.seeds[i], where, set.length));
-      if (flat.curves[i] != curve || flat.radii[i] != radius) {
-        flat.curves[i] = curve;
-        flat.radii[i] = radius;
-        flat.points[i] = flatten(*curve, {radius});
-      }
-      packet.tubes.push_back({flat.points[i], radius, color_of(set.color)});
-    }
-  }
-  return Done{};
-}
-
 void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   Bounds drawn = packet_bounds(packet);
   if (drawn.empty()) {
@@ -180,6 +138,12 @@ Bounds packet_bounds(const FramePacket& packet) {
     for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
   for (const TubeItem& tube : packet.tubes)
     for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
+  for (const ArrowItem& arrow : packet.arrows) {
+    bounds.add(arrow.base, arrow.radius);
+    bounds.add(arrow.tip);
+  }
+  for (const IndicatorItem& indicator : packet.indicators)
+    for (const Vec3& p : indicator.tube.points) bounds.add(p, indicator.arrow.radius);
   for (const CursorItem& cursor : packet.cursors) {
     bounds.add(cursor.probe, cursor.size);
     for (const Vec3& p : cursor.proxies) bounds.add(p, cursor.size);
@@ -199,6 +163,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_meshes(scene, packet));
   CATENA_CHECK(extract_streamlines(scene, packet));
   extract_cursors(scene, packet);
+  CATENA_CHECK(extract_indicators(scene, packet));
   packet.view = view_of(scene, packet);
   return packet;
 }

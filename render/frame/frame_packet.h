@@ -60,6 +60,20 @@ struct TubeItem {
   std::vector<Vec3> points;
   double radius = 0;
   Color color;
+  std::vector<Color> colors{};  ///< by point; empty: `color` everywhere
+};
+
+/// An arrowhead: a cone.
+struct ArrowItem {
+  Vec3 base{0.0}, tip{0.0};
+  double radius = 0;
+  Color color;
+};
+
+/// The local indicator: a short piece of the streamline through the cursor, with an arrowhead downstream.
+struct IndicatorItem {
+  TubeItem tube;
+  ArrowItem arrow;
 };
 
 /// The cursor: probe, the proxy of every link, the links between them, the force.
@@ -80,7 +94,9 @@ struct FramePacket {
   std::vector<IsosurfaceItem> isosurfaces;
   std::vector<MeshItem> meshes;
   std::vector<TubeItem> tubes;
+  std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
+  std::vector<IndicatorItem> indicators;
 };
 
 }  // namespace catena::render

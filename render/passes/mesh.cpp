@@ -22,7 +22,15 @@ struct Vertex {
 
 bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
 bool same(const MeshItem& a, const MeshItem& b) { return a.geometry == b.geometry && same(a.color, b.color); }
-bool same(const TubeItem& a, const TubeItem& b) { return a.radius == b.radius && same(a.color, b.color) && a.points == b.points; }
+template <class Items>
+bool same(const Items& a, const Items& b);
+bool same(const TubeItem& a, const TubeItem& b) {
+  return a.radius == b.radius && same(a.color, b.color) && a.points == b.points && same(a.colors, b.colors);
+}
+bool same(const ArrowItem& a, const ArrowItem& b) {
+  return a.base == b.base && a.tip == b.tip && a.radius == b.radius && same(a.color, b.color);
+}
+bool same(const IndicatorItem& a, const IndicatorItem& b) { return same(a.tube, b.tube) && same(a.arrow, b.arrow); }
 bool same(const CursorItem& a, const CursorItem& b) {
   return a.probe == b.probe && a.proxies == b.proxies && a.active == b.active && a.force_n == b.force_n && a.size == b.size &&
          a.leaving == b.leaving;
@@ -56,20 +64,27 @@ Outcome MeshPass::prepare(const FramePacket& packet) {
     CATENA_CHECK(upload(meshes_, shape));
     built_meshes_ = packet.meshes;
   }
-  if (!built_ || !same(packet.tubes, built_tubes_)) {
+  if (!built_ || !same(packet.tubes, built_tubes_) || !same(packet.arrows, built_arrows_)) {
     Bounds bounds;
     for (const TubeItem& tube : packet.tubes)
       for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
     Shape shape;
     for (const TubeItem& tube : packet.tubes) add_tube(shape, tube, tube_sides(tube.radius, bounds.diagonal()));
+    for (const ArrowItem& arrow : packet.arrows) add_cone(shape, arrow.base, arrow.tip, arrow.radius, arrow.color);
     CATENA_CHECK(upload(tubes_, shape));
     built_tubes_ = packet.tubes;
+    built_arrows_ = packet.arrows;
   }
-  if (!built_ || !same(packet.cursors, built_cursors_)) {
+  if (!built_ || !same(packet.cursors, built_cursors_) || !same(packet.indicators, built_indicators_)) {
     Shape shape;
     for (const CursorItem& cursor : packet.cursors) add_cursor(shape, cursor);
+    for (const IndicatorItem& indicator : packet.indicators) {
+      add_tube(shape, indicator.tube, 12);
+      add_cone(shape, indicator.arrow.base, indicator.arrow.tip, indicator.arrow.radius, indicator.arrow.color);
+    }
     CATENA_CHECK(upload(cursors_, shape));
     built_cursors_ = packet.cursors;
+    built_indicators_ = packet.indicators;
   }
   built_ = true;
   return Done{};

@@ -31,7 +31,9 @@ class MeshPass {
   Mesh meshes_, tubes_, cursors_;
   std::vector<MeshItem> built_meshes_;
   std::vector<TubeItem> built_tubes_;
+  std::vector<ArrowItem> built_arrows_;
   std::vector<CursorItem> built_cursors_;
+  std::vector<IndicatorItem> built_indicators_;
   bool built_ = false;
 };
 

@@ -112,7 +112,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& opti
 /// Mirrors what the packet names and says which pass draws it.
 Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettings& settings) {
   Work work;
-  work.meshes = !packet.meshes.empty() || !packet.tubes.empty() || !packet.cursors.empty();
+  work.meshes =
+      !packet.meshes.empty() || !packet.tubes.empty() || !packet.arrows.empty() || !packet.cursors.empty() || !packet.indicators.empty();
   mirrors->begin_frame();
   const auto mirror = [&](const field::ScalarGrid& grid) {
     const bool surface =

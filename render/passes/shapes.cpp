@@ -40,6 +40,7 @@ Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {  // v across the ax
 
 struct Ring {
   Vec3 centre, tangent, normal;
+  Color color{};
 };
 
 /// `sides` vertices around centre + height * tangent, at `radius`; vertex normals lean by `slope` along the tangent.
@@ -88,38 +89,46 @@ void add_round_cap(Shape& shape, const Ring& ring, std::uint32_t equator, double
   add_fan(shape, last, add_vertex(shape, ring.centre + sign * radius * ring.tangent, sign * ring.tangent, color), sides, ahead);
 }
 
+struct ColoredPoint {
+  Vec3 p;
+  Color color;
+};
+
 /// The points of a polyline without those that fall on their predecessor; of a closed one without the repeated end.
-std::vector<Vec3> distinct_points(const TubeItem& tube, bool& closed) {
-  std::vector<Vec3> points;
+std::vector<ColoredPoint> distinct_points(const TubeItem& tube, bool& closed) {
+  CATENA_ASSERT(tube.colors.empty() || tube.colors.size() == tube.points.size());
+  std::vector<ColoredPoint> points;
   points.reserve(tube.points.size());
   const double least = 1e-9 * tube.radius;
-  for (const Vec3& p : tube.points) {
+  for (std::size_t i = 0; i < tube.points.size(); ++i) {
+    const Vec3& p = tube.points[i];
     CATENA_ASSERT(is_finite(p));
-    if (points.empty() || norm(p - points.back()) > least) points.push_back(p);
+    if (points.empty() || norm(p - points.back().p) > least) points.push_back({p, tube.colors.empty() ? tube.color : tube.colors[i]});
   }
-  closed = points.size() > 3 && norm(points.front() - points.back()) <= 1e-6 * tube.radius;
+  closed = points.size() > 3 && norm(points.front().p - points.back().p) <= 1e-6 * tube.radius;
   if (closed) points.pop_back();
   return points;
 }
 
 /// One ring a point, across the mean of its two segments; a sharp corner gets rings from the one direction to the other.
-std::vector<Ring> rings_of(const std::vector<Vec3>& points, bool closed) {
+std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed) {
   const std::size_t n = points.size();
   std::vector<Ring> rings;
   rings.reserve(n);
-  const auto segment = [&](std::size_t i) { return direction(points[(i + 1) % n] - points[i % n]); };
+  const auto segment = [&](std::size_t i) { return direction(points[(i + 1) % n].p - points[i % n].p); };
   for (std::size_t i = 0; i < n; ++i) {
+    const auto& [p, color] = points[i];
     const bool first = !closed && i == 0, last = !closed && i + 1 == n;
     const Vec3 before = first ? segment(0) : segment(i + n - 1), after = last ? before : segment(i);
     const double turn = std::atan2(norm(cross(before, after)), dot(before, after));
     if (turn <= kJointTurn) {
-      rings.push_back({points[i], direction(before + after), Vec3(0.0)});
+      rings.push_back({p, direction(before + after), Vec3(0.0), color});
       continue;
     }
     Vec3 axis = direction(cross(before, after));
     if (max_abs(axis) == 0) axis = any_perpendicular(before);
     const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
-    for (int k = 0; k <= steps; ++k) rings.push_back({points[i], direction(turned(before, axis, turn * k / steps)), Vec3(0.0)});
+    for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(turned(before, axis, turn * k / steps)), Vec3(0.0), color});
   }
   return rings;
 }
@@ -136,9 +145,9 @@ void add_tube(Shape& shape, const TubeItem& tube, int sides) {
   CATENA_ASSERT(sides >= 3);
   if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return;
   bool closed = false;
-  const std::vector<Vec3> points = distinct_points(tube, closed);
+  const std::vector<ColoredPoint> points = distinct_points(tube, closed);
   if (points.empty()) return;
-  if (points.size() == 1) return add_ball(shape, points.front(), tube.radius, tube.color, std::max(8, sides));
+  if (points.size() == 1) return add_ball(shape, points.front().p, tube.radius, points.front().color, std::max(8, sides));
   std::vector<Ring> rings = rings_of(points, closed);
 
   // frames: transported from ring to ring
@@ -157,14 +166,14 @@ void add_tube(Shape& shape, const TubeItem& tube, int sides) {
 
   std::uint32_t first = 0, last = 0;
   for (std::size_t i = 0; i < rings.size(); ++i) {
-    const std::uint32_t ring = add_ring(shape, rings[i], tube.radius, 0, 1, 0, sides, tube.color);
+    const std::uint32_t ring = add_ring(shape, rings[i], tube.radius, 0, 1, 0, sides, rings[i].color);
     if (i == 0) first = ring;
     if (i > 0) add_wall(shape, last, ring, sides);
     last = ring;
   }
   if (closed) return add_wall(shape, last, first, sides);
-  add_round_cap(shape, rings.front(), first, tube.radius, sides, tube.color, false);
-  add_round_cap(shape, rings.back(), last, tube.radius, sides, tube.color, true);
+  add_round_cap(shape, rings.front(), first, tube.radius, sides, rings.front().color, false);
+  add_round_cap(shape, rings.back(), last, tube.radius, sides, rings.back().color, true);
 }
 
 void add_mesh(Shape& shape, const MeshItem& mesh) {
@@ -247,7 +256,7 @@ namespace {
 void add_rings(Shape& shape, const Vec3& centre, double radius, double thickness, const Color& color) {
   constexpr int steps = 32;
   for (int axis = 0; axis < 3; ++axis) {
-    TubeItem ring{{}, thickness, color};
+    TubeItem ring{{}, thickness, color, {}};
     for (int k = 0; k <= steps; ++k) {
       const double angle = 2 * kPi * (k % steps) / steps;
       Vec3 p(0.0);

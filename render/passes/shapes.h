@@ -28,7 +28,7 @@ struct Shape {
 int tube_sides(double radius, double scene_size);
 
 /// Appends a tube. Points that are not further apart than 1e-9 of the radius are one; a single point gives a ball, none nothing.
-/// Closed: the last point repeats the first. Non-finite points are a bug of the caller.
+/// Colours by point run linearly between them. Closed: the last point repeats the first. Non-finite points are a bug of the caller.
 void add_tube(Shape& shape, const TubeItem& tube, int sides);
 
 /// Appends a mesh, flat: three vertices a triangle, with its normal. Triangles without an area are left out.

@@ -22,7 +22,13 @@ const std::string kScene = R"({ // a scene that touches every reader
   "volumes": [{"field": "density", "color": [[0.2, 0.1, 0.1, 0.4], [0.7, 0.9, 0.2, 0.1]], "opacity": [[0.2, 0.0], [0.7, 0.1]],
                "opacity_unit": 0.18, "shade": true}, {"field": "density", "extinction": [[0, 0], [1, 3]]}],
   "isosurfaces": [{"field": "density", "level": 0.45, "color": [0.8, 0.8, 0.9], "opacity": 0.5}],
-  "streamlines": [{"field": "swirl", "seeds": [[1.6, -0.57, 27.09], [1, 0, 0]], "radius": 0.02, "color": [1, 0.3, 0.2], "kind": "line"}],
+  "streamlines": [{"field": "swirl", "seeds": [[1.6, -0.57, 27.09], [1, 0, 0]], "radius": 0.02, "color": [1, 0.3, 0.2], "kind": "line"},
+    {"field": "swirl", "seeds": {"line": {"from": [0.2, 0, 0], "to": [1, 0, 0], "count": 3}}, "color_by": "density", "color": [[0, 0, 0, 1], [1, 1, 0, 0]]},
+    {"field": "swirl", "seeds": {"plane": {"origin": [0, 0, 0], "u": [1, 0, 0], "v": [0, 0, 1], "count": [2, 3]}}, "color_by": "speed", "arrows": 0.5},
+    {"field": "swirl", "seeds": {"sphere": {"center": [0, 0, 0], "radius": 0.5, "count": 4, "inside": true}}, "pulse": 0.3, "tolerance": 1e-6},
+    {"field": "swirl", "seeds": {"isosurface": {"field": "density", "level": 0.4, "count": 5}}, "min_speed": 0.01},
+    {"field": "swirl", "seeds": {"evenly_spaced": {"distance": 0.5, "test": 0.6, "start": [[1, 0, 0]], "count": 9}}, "length": 3}],
+  "indicator": {"field": "swirl", "length": 0.4, "radius": 0.01, "color": [1, 1, 0]},
   "cursor": {"probe": [0, 0, 1], "size": 0.1},
   /* done */ "background": [0, 0, 0], "quality": "time=8" })";
 

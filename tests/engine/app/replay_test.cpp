@@ -227,17 +227,6 @@ TEST(Trace, CircleIsOneLap) {
   EXPECT_NEAR(last_s[1], 2 * M_PI, 4e-9);
 }
 
-TEST(Trace, WritesPolyDataToo) {
-  const test::TemporaryFolder folder;
-  test::write_file(folder / "s.json", circle_scene(""));
-  test::write_file(folder / "seeds.csv", "x,y,z\n0.05,0,0\n");
-  ASSERT_EQ(catena_program({"trace", folder / "s.json", "--field", "v", "--seeds", folder / "seeds.csv", "-o", folder / "l.vtp"}).exit_code,
-            0);
-  const std::string text = test::read_file(folder / "l.vtp");
-  EXPECT_NE(text.find("NumberOfLines=\"1\""), std::string::npos);
-  EXPECT_NE(text.find("Name=\"tangent\""), std::string::npos);
-}
-
 TEST(Replay, DetailsTellWhatEveryLinkFeels) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"coupling": {"stiffness": 200, "max_force": 1000}, "workspace": {"metres_per_unit": 0.5},

@@ -68,7 +68,7 @@ TEST(SceneFile, ReadsTheWholeExample) {
     EXPECT_TRUE(v.shade);
   });
   scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& s) {
-    EXPECT_EQ(s.seeds.size(), 2u);
+    EXPECT_EQ(s.seeds.points.size(), 2u);
     EXPECT_TRUE(s.line);
     EXPECT_EQ(s.length, 3);
   });

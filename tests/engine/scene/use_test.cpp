@@ -138,7 +138,7 @@ TEST(SceneForFile, VectorsBecomeStreamlines) {
   ASSERT_TRUE(scene) << message_of(scene);
   EXPECT_EQ(scene->world.count<Volume>(), 0u);
   scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
-    EXPECT_EQ(set.seeds.size(), 120u);  // 125 less the five on the axis, where the swirl is zero
+    EXPECT_EQ(set.seeds.points.size(), 120u);  // 125 less the five on the axis, where the swirl is zero
     EXPECT_GT(set.length, 0);
   });
   EXPECT_TRUE(find_field(*scene, "flow"));
@@ -240,9 +240,9 @@ TEST(SceneForFile, RealFlowsHaveLinesInside) {
     scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
       const auto any = use_field(*scene, set.field, set.where);
       ASSERT_TRUE(any);
-      for (const Vec3& seed : set.seeds)
+      for (const Vec3& seed : set.seeds.points)
         EXPECT_TRUE(use_curve(*scene, {any->vector.get(), set.line, set.min_speed}, seed, set.where, set.length)) << name;
-      EXPECT_EQ(scene->curves.size(), set.seeds.size());
+      EXPECT_EQ(scene->curves.size(), set.seeds.points.size());
     });
   }
 }

@@ -118,6 +118,88 @@ TEST(Extract, TubesAreTheFeltCurve) {
   EXPECT_EQ(packet_of(scene).tubes[0].points, tube.points);
 }
 
+/// |p| of the ball, by a table from black at 0 to white at 2.
+TEST(Extract, TubesAreColouredByAField) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kCircle + ", " + kSphere + R"(}, "streamlines": [{"field": "v",
+    "seeds": [[0.5, 0, 0.5], [1.5, 0, 0]], "color_by": "s", "color": [[0, 0, 0, 0], [2, 1, 1, 1]]}]})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.tubes.size(), 2u);
+  for (const TubeItem& tube : packet.tubes) {
+    ASSERT_EQ(tube.colors.size(), tube.points.size());
+    for (std::size_t i = 0; i < tube.points.size(); ++i) EXPECT_NEAR(tube.colors[i].r, norm(tube.points[i]) / 2, 1e-6);
+  }
+}
+
+TEST(Extract, TheSpeedIsShownOverItsRangeWithoutATable) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "color_by": "speed",
+    "seeds": {"line": {"from": [0.5, 0, 0], "to": [1.5, 0, 0], "count": 3}}}]})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.tubes.size(), 3u);
+  // viridis: from violet over green to yellow
+  EXPECT_NEAR(packet.tubes[0].colors[0].b, 84 / 255.0, 0.01);
+  EXPECT_NEAR(packet.tubes[1].colors[0].g, 145 / 255.0, 0.01);
+  EXPECT_NEAR(packet.tubes[2].colors[0].r, 253 / 255.0, 0.01);
+}
+
+TEST(Extract, AStraightLineHasPlacesForItsColours) {
+  scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "uniform"}}, "streamlines": [{"field": "v", "seeds": [[0, 0, 0]],
+    "length": 2, "color_by": "arc_length", "color": [[-2, 0, 0, 0], [2, 1, 0, 0]]}]})");
+  const TubeItem tube = packet_of(scene).tubes.at(0);
+  EXPECT_GE(tube.points.size(), 64u);
+  for (std::size_t i = 0; i < tube.points.size(); ++i) EXPECT_NEAR(tube.colors[i].r, (tube.points[i].x + 2) / 4, 1e-6);
+}
+
+TEST(Extract, ArrowsPointAlongTheLine) {
+  scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "uniform", "direction": [0, 0, 3]}}, "streamlines": [{"field": "v",
+    "seeds": [[0, 0, 0]], "length": 2, "radius": 0.01, "arrows": 0.5, "color": [0, 1, 0]}]})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.arrows.size(), 8u);
+  for (const ArrowItem& arrow : packet.arrows) {
+    EXPECT_NEAR(norm(direction(arrow.tip - arrow.base) - Vec3(0, 0, 1)), 0, 1e-12);
+    EXPECT_EQ(arrow.color.g, 1.0f);
+    EXPECT_GT(arrow.radius, 0.01);
+  }
+  EXPECT_NEAR(0.5 * (packet.arrows[0].tip.z + packet.arrows[0].base.z), -1.75, 1e-9);
+}
+
+TEST(Extract, TooManyArrowsAreRefused) {
+  const std::string e =
+      error_of("{\"fields\": {" + kCircle + "}, \"streamlines\": [{\"field\": \"v\", \"seeds\": [[1, 0, 0]],\n\"arrows\": 1e-6}]}");
+  EXPECT_NE(e.find(":2:"), std::string::npos) << e;
+  EXPECT_NE(e.find("longer spacing was expected"), std::string::npos) << e;
+}
+
+TEST(Extract, PulsesMoveWithThePhase) {
+  scene::Scene scene = scene_of(R"({"fields": {"v": {"analytic": "uniform"}}, "streamlines": [{"field": "v", "seeds": [[0, 0, 0]],
+    "length": 2, "color": [1, 0, 0], "pulse": 1}]})");
+  const auto brightest_near = [&](double x) {
+    const TubeItem tube = packet_of(scene).tubes.at(0);
+    double best = 9, at = 0;
+    for (std::size_t i = 0; i < tube.points.size(); ++i)
+      if (std::fabs(tube.points[i].x - x) < 0.5 && 1 - tube.colors[i].r < best) {
+        best = 1 - tube.colors[i].r;
+        at = tube.points[i].x;
+      }
+    return at;
+  };
+  EXPECT_NEAR(brightest_near(0), 0, 0.05);
+  scene.phase = 0.25;
+  EXPECT_NEAR(brightest_near(0), 0.25, 0.05);
+}
+
+TEST(Extract, TheIndicatorFollowsTheProbe) {
+  scene::Scene scene =
+      scene_of("{\"fields\": {" + kCircle + R"(}, "cursor": {"probe": [1, 0, 0.5]}, "indicator": {"field": "v", "length": 0.4}})");
+  FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.indicators.size(), 1u);
+  const IndicatorItem& item = packet.indicators[0];
+  EXPECT_NEAR(item.tube.points.front().y, -std::sin(0.2), 1e-5);
+  EXPECT_NEAR(item.tube.points.back().y, std::sin(0.2), 1e-5);
+  EXPECT_GT(dot(item.arrow.tip - item.arrow.base, Vec3(0, 1, 0)), 0);
+  scene.world.get<scene::Cursor>(scene.cursor).probe = {0, 0, 0};
+  EXPECT_TRUE(packet_of(scene).indicators.empty()) << "no line goes through the axis";
+}
+
 TEST(Extract, LinksAreNotDrawnByThemselves) {
   scene::Scene scene =
       scene_of("{\"fields\": {" + kCircle + R"(}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}]})");

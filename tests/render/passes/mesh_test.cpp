@@ -39,6 +39,44 @@ TEST_F(Mesh, TubeInFrontOfAndBehindTheVolume) {
   }
 }
 
+TEST_F(Mesh, ColoursRunAlongATube) {
+  FramePacket packet = along_y();
+  packet.view.orthographic = true;
+  packet.view.height = 24;
+  TubeItem tube = tube_of({3.5, 10, 15.5}, {27.5, 10, 15.5}, 3, {1, 1, 1});
+  tube.points.insert(tube.points.begin() + 1, Vec3(15.5, 10, 15.5));
+  tube.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  packet.tubes = {tube};
+  const Picture picture = draw(packet, {}, "rainbow");
+  // 5 pixels a unit; the middle faces the eye, so that a white highlight lies over it
+  const auto part = [&](std::uint32_t x, int channel) {
+    const std::uint8_t* p = picture.pixel(x, 60);
+    return static_cast<double>(p[channel]) / (p[0] + p[1] + p[2]);
+  };
+  EXPECT_GT(part(21, 0), 0.65);
+  EXPECT_NEAR(part(50, 0), 0.5, 0.1);
+  EXPECT_NEAR(part(50, 1), 0.5, 0.1);
+  EXPECT_GT(part(80, 1), 0.65);
+  EXPECT_NEAR(part(110, 2), 0.5, 0.1);
+  EXPECT_GT(part(139, 2), 0.65);
+}
+
+TEST_F(Mesh, ArrowsAndTheIndicatorAreDrawn) {
+  FramePacket packet = along_y();
+  packet.view.orthographic = true;
+  packet.view.height = 24;
+  packet.arrows = {{{5.5, 10, 15.5}, {11.5, 10, 15.5}, 3, {1, 0, 0}}};
+  packet.indicators = {{tube_of({17.5, 10, 15.5}, {21.5, 10, 15.5}, 1, {0, 1, 0}), {{21.5, 10, 15.5}, {25.5, 10, 15.5}, 2.5, {0, 1, 0}}}};
+  const Picture picture = draw(packet, {}, "arrows");
+  // wide at its base, nothing beyond its tip
+  EXPECT_GT(picture.pixel(33, 72)[0], 60);
+  EXPECT_EQ(picture.pixel(55, 72)[0], 0);
+  EXPECT_GT(picture.pixel(55, 60)[0], 60);
+  EXPECT_GT(picture.pixel(95, 60)[1], 100);
+  EXPECT_GT(picture.pixel(114, 68)[1], 40);
+  EXPECT_EQ(picture.pixel(95, 68)[1], 0);
+}
+
 TEST_F(Mesh, DepthOfATubeIsExact) {
   FramePacket packet = along_y();
   packet.tubes = {tube_of({-20, 10, 15.5}, {50, 10, 15.5}, 2, {1, 0, 0})};

@@ -263,5 +263,19 @@ TEST(Shapes, LinkColoursDiffer) {
   EXPECT_LT(link_color(0, false).r, link_color(0, true).r);
 }
 
+TEST(Tube, EveryRingHasItsPointsColour) {
+  Shape shape;
+  TubeItem item{helix(20), 0.05, {0.5f, 0.5f, 0.5f}};
+  for (std::size_t i = 0; i < item.points.size(); ++i) item.colors.push_back({static_cast<float>(i), 0, 0});
+  add_tube(shape, item, 8);
+  expect_closed(shape);
+  for (const MeshVertex& v : shape.vertices) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < item.points.size(); ++i)
+      if (norm(item.points[i] - v.position) < norm(item.points[nearest] - v.position)) nearest = i;
+    EXPECT_EQ(v.color.r, static_cast<float>(nearest));
+  }
+}
+
 }  // namespace
 }  // namespace catena::render

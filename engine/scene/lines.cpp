@@ -1,0 +1,150 @@
+#include "engine/scene/lines.h"
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/flow/evenly_spaced.h"
+#include "engine/flow/seeds.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr double kExact = 1e-9;  ///< tolerances up to it: the exact tracer
+constexpr double kPatternTolerance = 1e-7;
+
+using Curves = std::vector<flow::CurvePtr>;
+
+/// What this room keeps beside a StreamlineSet.
+struct MadeLines {
+  std::uint64_t field_version = 0;
+  Curves curves;
+};
+
+const json::Node& member_or(const json::Node& node, std::string_view key) {
+  const json::Node* member = node.find(key);
+  return member == nullptr ? node : *member;
+}
+
+/// Points through the scene's curves; those that are new, over all cores.
+Result<Curves> exact_lines(Scene& scene, const std::vector<Vec3>& points, const LineRequest& request, const json::Node& where) {
+  const auto place = [&](std::size_t i) -> const json::Node& { return i < where.items.size() ? where.items[i] : where; };
+  const auto key = [&](const Vec3& p) {
+    return Scene::CurveKey{request.flow.field->version(), request.flow.line, request.flow.min_speed, request.length, {p.x, p.y, p.z}};
+  };
+  std::vector<Vec3> missing;
+  std::vector<std::size_t> at;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!scene.curves.contains(key(points[i]))) {
+      missing.push_back(points[i]);
+      at.push_back(i);
+    }
+  flow::TraceOptions options;
+  options.length = request.length;
+  const auto traced = flow::trace_each(request.flow, missing, options);
+  for (std::size_t n = 0; n < missing.size(); ++n) {
+    if (!traced[n]) return json::error_at(place(at[n]), traced[n].error().message);
+    scene.curves.emplace(key(missing[n]), *traced[n]);
+  }
+  Curves curves;
+  curves.reserve(points.size());
+  for (const Vec3& p : points) curves.push_back(scene.curves.at(key(p)));
+  return curves;
+}
+
+Result<std::vector<Vec3>> places_of(Scene& scene, const SeedPattern& pattern) {
+  switch (pattern.kind) {
+    case SeedPattern::Kind::line:
+      return flow::seeds_on_line(pattern.origin, pattern.u, pattern.count);
+    case SeedPattern::Kind::plane:
+      return flow::seeds_on_plane(pattern.origin, pattern.u, pattern.v, pattern.count, pattern.count_v);
+    case SeedPattern::Kind::sphere:
+      return flow::seeds_on_sphere(pattern.origin, pattern.radius, pattern.count, pattern.inside);
+    case SeedPattern::Kind::isosurface:
+      break;
+    case SeedPattern::Kind::evenly_spaced:
+      return pattern.start;
+  }
+  CATENA_TRY(const field::AnyField any, use_field(scene, pattern.field, pattern.where));
+  if (!any.scalar)
+    return json::error_at(member_or(pattern.where, "field"), in_quotes(scene.world.get<Name>(pattern.field).value) +
+                                                                 " is a vector field; a scalar field was expected for an isosurface");
+  CATENA_CHECK(check_level(*any.scalar, pattern.level, member_or(pattern.where, "level")));
+  std::vector<Vec3> places = flow::seeds_on_isosurface(*any.scalar, pattern.level, pattern.count);
+  if (places.empty())
+    return json::error_at(member_or(pattern.where, "level"),
+                          "no place of this level was found; a level that the field's domain holds was expected");
+  return places;
+}
+
+/// Where an evenly spaced set begins if the scene does not say it: the middle of the domain, and a lattice about it.
+std::vector<Vec3> default_start(const field::Field& field) {
+  const field::Box& box = field.index_box();
+  std::vector<Vec3> start;
+  const auto add = [&](const Vec3& share) { start.push_back(field.mapping().world_from_index(box.lo + share * (box.hi - box.lo))); };
+  add(Vec3(0.5));
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) add((Vec3(i, j, k) + 0.5) / 3.0);
+  return start;
+}
+
+}  // namespace
+
+Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
+  const double tolerance = request.tolerance > 0 ? request.tolerance : seeds.pattern ? kPatternTolerance : 0;
+  if (!seeds.pattern && tolerance <= kExact) return exact_lines(scene, seeds.points, request, where);
+  flow::BatchOptions batch;
+  batch.length = request.length;
+  batch.tolerance = std::max(tolerance, kExact);
+  if (request.step > 0) batch.longest_step = request.step;
+  const json::Node& place = seeds.pattern ? seeds.pattern->where : where;
+  if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) {
+    flow::EvenlySpaced spacing{seeds.pattern->distance, seeds.pattern->test, seeds.pattern->start,
+                               static_cast<std::size_t>(seeds.pattern->count)};
+    if (spacing.distance < 1e-3 * request.flow.field->length())
+      return json::error_at(member_or(place, "distance"), "\"distance\" is " + to_text(spacing.distance) +
+                                                              "; at least a thousandth of the domain's length, " +
+                                                              to_text(1e-3 * request.flow.field->length()) + ", was expected");
+    if (spacing.start.empty()) spacing.start = default_start(*request.flow.field);
+    Curves curves = flow::evenly_spaced(request.flow, spacing, batch);
+    if (curves.empty())
+      return json::error_at(place, "no line as long as the distance starts at any of the " + std::to_string(spacing.start.size()) +
+                                       " places; a \"start\" within the flow was expected");
+    return curves;
+  }
+  std::vector<Vec3> places = seeds.points;
+  if (seeds.pattern) {
+    CATENA_TRY(places, places_of(scene, *seeds.pattern));
+  }
+  flow::TraceOptions exact;
+  exact.length = request.length;
+  auto traced = tolerance <= kExact ? flow::trace_each(request.flow, places, exact) : flow::BatchTracer(request.flow, batch).trace(places);
+  Curves curves;
+  curves.reserve(traced.size());
+  for (std::size_t i = 0; i < traced.size(); ++i) {
+    if (traced[i])
+      curves.push_back(*traced[i]);
+    else if (!seeds.pattern)
+      return json::error_at(i < where.items.size() ? where.items[i] : where, traced[i].error().message);
+  }
+  if (curves.empty())
+    return json::error_at(
+        place, "none of the " + std::to_string(places.size()) + " seeds starts a line; the first: " + traced.front().error().message);
+  return curves;
+}
+
+Result<Curves> use_lines(Scene& scene, Entity entity) {
+  const StreamlineSet& set = scene.world.get<StreamlineSet>(entity);
+  CATENA_TRY(const field::AnyField any, use_field(scene, set.field, set.where));
+  if (!any.vector)
+    return json::error_at(member_or(set.where, "field"), in_quotes(scene.world.get<Name>(set.field).value) +
+                                                             " is a scalar field; expected a vector field for streamlines");
+  if (!scene.world.has<MadeLines>(entity)) scene.world.emplace<MadeLines>(entity);
+  MadeLines& made = scene.world.get<MadeLines>(entity);
+  if (made.field_version == any.vector->version()) return made.curves;
+  const LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
+  CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, member_or(set.where, "seeds")));
+  made = {any.vector->version(), std::move(curves)};
+  return made.curves;
+}
+
+}  // namespace catena::scene

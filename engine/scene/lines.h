@@ -1,0 +1,28 @@
+/// The lines of a set of seeds: points, or a pattern (line, plane, sphere, isosurface, evenly spaced).
+///   points     the exact tracer, through the scene's own curves: a line that a link of the chain feels is the same object
+///   patterns   the batch tracer (engine/flow/batch.h); places of a pattern that start nothing are left out
+///   tolerance  of one step, times L, chooses otherwise: up to 1e-9 the exact tracer, above it the batch tracer
+/// Frame thread.
+#pragma once
+#include "engine/scene/scene.h"
+
+namespace catena::scene {
+
+/// The value of "seeds": an array of places, or an object with one pattern. `trace --seeds` reads the same.
+Result<Seeds> read_seeds(const Scene& scene, const json::Node& node);
+
+struct LineRequest {
+  flow::Flow flow;
+  double length = 0;     ///< 0: 10 L each direction
+  double tolerance = 0;  ///< 0: by the seeds' kind
+  double step = 0;       ///< the batch tracer's longest, voxels; 0: its default
+};
+
+/// Every line of the seeds. Points that start nothing are errors at their place in the file; a pattern of which no place
+/// starts a line is one, too.
+Result<std::vector<flow::CurvePtr>> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where);
+
+/// The lines of a streamline set, made once.
+Result<std::vector<flow::CurvePtr>> use_lines(Scene& scene, Entity set);
+
+}  // namespace catena::scene

@@ -1,0 +1,231 @@
+#include "render/extract/extract_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/base/assert.h"
+#include "engine/base/numbers.h"
+#include "engine/scene/lines.h"
+#include "render/extract/flatten.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kTubeShare = 0.003;                    // fitted tube radius by the domain's diagonal
+constexpr double kIndicatorShare = 0.004;               // the same of the indicator
+constexpr double kIndicatorLength = 0.1;                // of L
+constexpr double kArrowRadius = 2.4, kArrowLength = 6;  // by the tube's radius
+constexpr double kMostArrows = 100000;
+constexpr double kPulseShare = 1.0 / 12;  // of a pulse: the longest segment
+constexpr double kDimmest = 0.25;         // brightness between pulses
+
+using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
+
+/// What this room keeps beside a StreamlineSet: each curve as a polyline with values, made once.
+struct FlatLines {
+  std::vector<flow::CurvePtr> curves;
+  double radius = 0;
+  std::vector<TubeItem> tubes;
+  std::vector<std::vector<double>> arc_lengths;  ///< by point
+  std::vector<ArrowItem> arrows;
+};
+
+double domain_diagonal(const field::Field& field) {
+  return norm(field.mapping().world_from_index_linear * (field.index_box().hi - field.index_box().lo));
+}
+
+Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
+
+/// What a set's colours show, at a place of a line.
+class LineValue {
+ public:
+  LineValue(const scene::ColorBy& by, field::AnyField shown, field::VectorFieldPtr flow)
+      : by_(by), shown_(std::move(shown)), flow_(std::move(flow)) {}
+  double at(const FlatPoint& point) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (by_.what == scene::ColorBy::What::arc_length) return point.s;
+    const field::VectorField* vector = by_.what == scene::ColorBy::What::speed ? flow_.get() : shown_.vector.get();
+    if (vector != nullptr) {
+      const field::VectorSample sample = vector->sample(point.p, cursor_);
+      return sample.inside ? norm(sample.value) : none;
+    }
+    const field::ScalarSample sample = shown_.scalar->sample(point.p, cursor_);
+    return sample.inside ? sample.value : none;
+  }
+  /// The finest detail of what is shown: a segment's longest length.
+  double detail() const {
+    if (by_.what == scene::ColorBy::What::arc_length) return 0;
+    const field::Field* field = by_.what == scene::ColorBy::What::speed ? flow_.get() : shown_.get();
+    return field->is_grid() ? field->longest_edge() : field->length() / 128;
+  }
+
+ private:
+  const scene::ColorBy& by_;
+  field::AnyField shown_;
+  field::VectorFieldPtr flow_;
+  field::Cursor cursor_;
+};
+
+void add_arrows(const flow::Curve& curve, double spacing, double radius, std::vector<ArrowItem>& arrows, std::vector<FlatPoint>& places) {
+  const double first = curve.knots().front().s, last = curve.knots().back().s, length = std::min(kArrowLength * radius, 0.8 * spacing);
+  for (double n = std::ceil((first + 0.5 * length) / spacing - 0.5); (n + 0.5) * spacing <= last - 0.5 * length; ++n) {
+    const double s = (n + 0.5) * spacing;
+    Vec3 p, t;
+    curve.evaluate_in(curve.interval_of(s), s, p, t);
+    t = direction(t);
+    arrows.push_back({p - (0.5 * length) * t, p + (0.5 * length) * t, kArrowRadius * radius, {}});
+    places.push_back({p, s});
+  }
+}
+
+Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& set, std::vector<flow::CurvePtr> curves,
+                             const field::VectorFieldPtr& flow) {
+  FlatLines flat;
+  flat.radius = set.radius > 0 ? set.radius : kTubeShare * domain_diagonal(*flow);
+  field::AnyField shown;
+  if (set.color_by && set.color_by->what == scene::ColorBy::What::field) {
+    CATENA_TRY(shown, scene::use_field(scene, set.color_by->field, set.where));
+  }
+  std::optional<LineValue> value;
+  if (set.color_by) value.emplace(*set.color_by, shown, flow);
+  FlattenOptions options{flat.radius};
+  const double detail = value ? value->detail() : 0, band = kPulseShare * set.pulse;
+  options.longest = detail > 0 && band > 0 ? std::min(detail, band) : std::max(detail, band);
+
+  // a slip of the spacing must not fill the memory
+  double all = 0;
+  for (const flow::CurvePtr& curve : curves) all += curve->period();
+  if (set.arrows > 0 && all / set.arrows > kMostArrows) {
+    const json::Node* node = set.where.find("arrows");
+    return json::error_at(node == nullptr ? set.where : *node, "\"arrows\" this close would be more than 100000 on the lines, which are " +
+                                                                   to_text(all) + " long together; a longer spacing was expected");
+  }
+
+  // places and values
+  std::vector<std::vector<double>> values(curves.size());
+  std::vector<FlatPoint> arrow_places;
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    TubeItem tube{{}, flat.radius, color_of(set.color), {}};
+    FlattenOptions of_this = options;
+    if (value && detail == 0) of_this.longest = band > 0 ? std::min(band, curves[i]->period() / 64) : curves[i]->period() / 64;
+    std::vector<double> arc;
+    for (const FlatPoint& point : flatten_places(*curves[i], of_this)) {
+      tube.points.push_back(point.p);
+      arc.push_back(point.s);
+      if (!value) continue;
+      values[i].push_back(value->at(point));
+      if (std::isfinite(values[i].back())) {
+        lo = std::min(lo, values[i].back());
+        hi = std::max(hi, values[i].back());
+      }
+    }
+    // a line ends on the domain's face, which rounding may put outside
+    std::vector<double>& v = values[i];
+    if (v.size() > 1 && std::isnan(v.front())) v.front() = v[1];
+    if (v.size() > 1 && std::isnan(v.back())) v.back() = v[v.size() - 2];
+    flat.tubes.push_back(std::move(tube));
+    flat.arc_lengths.push_back(std::move(arc));
+    if (set.arrows > 0) add_arrows(*curves[i], set.arrows, flat.radius, flat.arrows, arrow_places);
+  }
+
+  // colours
+  if (value) {
+    const ColorTable table = !set.color_by->colors.empty() ? set.color_by->colors : lo <= hi ? viridis(lo, hi) : viridis(0, 1);
+    for (std::size_t i = 0; i < curves.size(); ++i)
+      for (const double v : values[i]) flat.tubes[i].colors.push_back(table_color(table, v));
+    for (std::size_t i = 0; i < flat.arrows.size(); ++i) flat.arrows[i].color = table_color(table, value->at(arrow_places[i]));
+  } else {
+    for (ArrowItem& arrow : flat.arrows) arrow.color = color_of(set.color);
+  }
+  flat.curves = std::move(curves);
+  return flat;
+}
+
+/// The tube with its colours dimmed between the pulses.
+TubeItem with_pulse(TubeItem tube, const std::vector<double>& arc, double pulse, double phase) {
+  if (tube.colors.empty()) tube.colors.assign(tube.points.size(), tube.color);
+  for (std::size_t i = 0; i < tube.colors.size(); ++i) {
+    const double wave = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (arc[i] / pulse - phase));
+    const auto bright = static_cast<float>(kDimmest + (1 - kDimmest) * wave * wave);
+    Color& c = tube.colors[i];
+    c = {bright * c.r, bright * c.g, bright * c.b};
+  }
+  return tube;
+}
+
+}  // namespace
+
+Color table_color(const ColorTable& table, double value) {
+  CATENA_ASSERT(!table.empty());
+  if (std::isnan(value)) return {0.5f, 0.5f, 0.5f};
+  if (value <= table.front().value) return color_of(table.front().color);
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    const auto &a = table[i - 1], &b = table[i];
+    if (value > b.value) continue;
+    const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
+    return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
+  }
+  return color_of(table.back().color);
+}
+
+ColorTable viridis(double lo, double hi) {
+  static constexpr int points[9][3] = {{68, 1, 84},    {71, 45, 123}, {59, 82, 139},  {44, 114, 142}, {33, 145, 140},
+                                       {40, 174, 128}, {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
+  if (!(hi > lo)) return {{lo, {33 / 255.0f, 145 / 255.0f, 140 / 255.0f}}};
+  ColorTable table;
+  for (int i = 0; i < 9; ++i)
+    table.push_back(
+        {lo + (hi - lo) * i / 8,
+         {static_cast<float>(points[i][0]) / 255, static_cast<float>(points[i][1]) / 255, static_cast<float>(points[i][2]) / 255}});
+  return table;
+}
+
+Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
+  std::vector<scene::Entity> sets;
+  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet&) { sets.push_back(e); });
+  for (const scene::Entity e : sets) {
+    CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
+    if (!scene.world.has<FlatLines>(e)) scene.world.emplace<FlatLines>(e);
+    FlatLines& flat = scene.world.get<FlatLines>(e);
+    const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
+    if (flat.curves != curves) {
+      CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
+      CATENA_TRY(flat, flat_lines(scene, set, std::move(curves), any.vector));
+    }
+    for (std::size_t i = 0; i < flat.tubes.size(); ++i)
+      packet.tubes.push_back(set.pulse > 0 ? with_pulse(flat.tubes[i], flat.arc_lengths[i], set.pulse, scene.phase) : flat.tubes[i]);
+    packet.arrows.insert(packet.arrows.end(), flat.arrows.begin(), flat.arrows.end());
+  }
+  return Done{};
+}
+
+Outcome extract_indicators(scene::Scene& scene, FramePacket& packet) {
+  std::vector<scene::Entity> indicators;
+  scene.world.each<scene::Indicator>([&](scene::Entity e, const scene::Indicator&) { indicators.push_back(e); });
+  for (const scene::Entity e : indicators) {
+    const scene::Indicator& indicator = scene.world.get<scene::Indicator>(e);
+    CATENA_TRY(const field::AnyField any, scene::use_field(scene, indicator.field, indicator.where));
+    if (!any.vector) return json::error_at(indicator.where, "\"indicator\" names a scalar field; a vector field was expected");
+    const double length = indicator.length > 0 ? indicator.length : kIndicatorLength * any.vector->length();
+    const double radius = indicator.radius > 0 ? indicator.radius : kIndicatorShare * domain_diagonal(*any.vector);
+    for (const CursorItem& cursor : packet.cursors) {
+      flow::TraceOptions options;
+      options.length = 0.5 * length;
+      options.tolerance = 1e-7;
+      options.hermite_tolerance = 1e-6;
+      const auto curve = flow::trace({any.vector.get()}, cursor.probe, options);
+      if (!curve) continue;
+      const flow::Knot& end = (*curve)->closed() ? (*curve)->knots().front() : (*curve)->knots().back();
+      IndicatorItem item{{flatten(**curve, {radius}), radius, color_of(indicator.color), {}},
+                         {end.p, end.p + (kArrowLength * radius) * end.t, kArrowRadius * radius, color_of(indicator.color)}};
+      packet.indicators.push_back(std::move(item));
+    }
+  }
+  return Done{};
+}
+
+}  // namespace catena::render

@@ -1,0 +1,22 @@
+/// Private to this room: streamline sets and the local indicator into the packet. Frame thread.
+///   tubes       every line of a set is flattened once; with "color_by" each point has a colour: the value there, by the table
+///   arrows      cones on the line, "arrows" apart, the seed's in the middle of the first gap
+///   pulse       brightness runs along the line: a cosine of period `pulse` in arc length, moved by the scene's phase
+///   indicator   the exact tracer's line through the probe, half the length to either side; nothing where the flow has no line
+#pragma once
+#include "engine/base/result.h"
+#include "engine/scene/scene.h"
+#include "render/frame/frame_packet.h"
+
+namespace catena::render {
+
+Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet);
+/// After the cursors.
+Outcome extract_indicators(scene::Scene& scene, FramePacket& packet);
+
+/// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
+Color table_color(const std::vector<scene::TransferFunction::ColorPoint>& table, double value);
+/// Viridis (Smith and van der Walt), nine points from lo to hi.
+std::vector<scene::TransferFunction::ColorPoint> viridis(double lo, double hi);
+
+}  // namespace catena::render

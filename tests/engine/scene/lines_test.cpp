@@ -1,0 +1,138 @@
+#include "engine/scene/lines.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace {
+
+/// A scene of a sampled swirl (by formula: traced exactly) and a ball, with one set of streamlines.
+std::string scene_text(const std::string& set) {
+  return "{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}, \"ball\": {\"analytic\": \"sphere\"}},\n\"streamlines\": [{\"field\": "
+         "\"swirl\",\n" +
+         set + "}]}";
+}
+
+Entity set_of(Scene& scene) {
+  Entity found;
+  scene.world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { found = e; });
+  return found;
+}
+
+void expect_error(const Result<Scene>& scene, int line, const std::vector<std::string>& words) {
+  ASSERT_FALSE(scene);
+  const std::string& message = scene.error().message;
+  EXPECT_NE(message.find("s.json:" + std::to_string(line) + ":"), std::string::npos) << message;
+  for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
+}
+
+void refused(const std::string& set, int line, const std::vector<std::string>& words) {
+  expect_error(parse_scene(scene_text(set), "s.json"), line, words);
+}
+
+std::vector<flow::CurvePtr> lines_of(const std::string& set) {
+  auto scene = parse_scene(scene_text(set), "s.json");
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+  if (!scene) return {};
+  auto lines = use_lines(*scene, set_of(*scene));
+  EXPECT_TRUE(lines) << (lines ? "" : lines.error().message);
+  return lines ? *lines : std::vector<flow::CurvePtr>{};
+}
+
+void no_lines(const std::string& set, int line, const std::vector<std::string>& words) {
+  auto scene = parse_scene(scene_text(set), "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto lines = use_lines(*scene, set_of(*scene));
+  ASSERT_FALSE(lines);
+  const std::string& message = lines.error().message;
+  EXPECT_NE(message.find("s.json:" + std::to_string(line) + ":"), std::string::npos) << message;
+  for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
+}
+
+TEST(SeedPatterns, EveryPatternGivesLines) {
+  EXPECT_EQ(lines_of(R"("seeds": {"line": {"from": [0.2, 0, 0], "to": [1.2, 0, 0], "count": 6}})").size(), 6u);
+  EXPECT_EQ(lines_of(R"("seeds": {"plane": {"origin": [0.2, 0, -1], "u": [1, 0, 0], "v": [0, 0, 2], "count": [3, 4]}})").size(), 12u);
+  EXPECT_EQ(lines_of(R"("seeds": {"sphere": {"center": [0.5, 0, 0], "radius": 0.3, "count": 20}})").size(), 20u);
+  EXPECT_EQ(lines_of(R"("seeds": {"sphere": {"center": [0.5, 0, 0], "radius": 0.3, "count": 20, "inside": true}})").size(), 20u);
+  EXPECT_EQ(lines_of(R"("seeds": {"isosurface": {"field": "ball", "level": 0.8, "count": 15}})").size(), 15u);
+  const auto even = lines_of(R"("seeds": {"evenly_spaced": {"distance": 0.5, "start": [[1, 0, 0]], "count": 9}}, "length": 8)");
+  EXPECT_GE(even.size(), 4u);
+  EXPECT_LE(even.size(), 9u);
+}
+
+TEST(SeedPatterns, SeedsOfAnIsosurfaceLieOnIt) {
+  for (const auto& line : lines_of(R"("seeds": {"isosurface": {"field": "ball", "level": 0.8, "count": 10}})"))
+    for (const flow::Knot& knot : line->knots()) EXPECT_NEAR(norm(knot.p), 0.8, 1e-8);  // circles stay on the sphere
+}
+
+TEST(SeedPatterns, PlacesThatStartNothingAreLeftOut) {
+  // the axis is at rest
+  EXPECT_EQ(lines_of(R"("seeds": {"line": {"from": [-1, 0, 0], "to": [1, 0, 0], "count": 3}})").size(), 2u);
+  no_lines(R"("seeds": {"line": {"from": [0, 0, -1], "to": [0, 0, 1], "count": 3}})", 3, {"none of the 3 seeds starts a line", "zero"});
+  no_lines(R"("seeds": {"evenly_spaced": {"distance": 0.5, "start": [[0, 0, 0]]}})", 3, {"within the flow was expected"});
+  no_lines(R"("seeds": {"isosurface": {"field": "swirl", "level": 0.8, "count": 10}})", 3, {"vector field", "expected"});
+  no_lines(R"("seeds": {"isosurface": {"field": "ball", "level": -3, "count": 10}})", 3, {"level -3", "expected"});
+  no_lines("\"seeds\": {\"evenly_spaced\": {\n\"distance\": 1e-6}}", 4, {"\"distance\" is 1e-06", "0.004"});
+  no_lines("\"seeds\": [[1, 0, 0],\n[0, 0, 0]]", 4, {"zero there"});
+}
+
+TEST(SeedPatterns, PointsShareTheObjectWithTheHand) {
+  auto scene = parse_scene(scene_text("\"seeds\": [[1, 0, 0], [0.5, 0, 0]]"), "s.json");
+  ASSERT_TRUE(scene);
+  const auto lines = use_lines(*scene, set_of(*scene));
+  ASSERT_TRUE(lines);
+  const auto any = use_field(*scene, "swirl", {});
+  const auto felt = use_curve(*scene, {any->vector.get()}, {0.5, 0, 0}, {});
+  ASSERT_TRUE(felt);
+  EXPECT_EQ((*lines)[1].get(), felt->get());
+  EXPECT_EQ(use_lines(*scene, set_of(*scene))->at(0).get(), (*lines)[0].get());
+}
+
+TEST(SeedPatterns, MistakesAreNamedWithTheirLine) {
+  refused("\"seeds\": {\"ring\": {}}", 3, {"ring", "evenly_spaced"});
+  refused("\"seeds\": {}", 3, {"0 patterns", "line, plane, sphere, isosurface, evenly_spaced"});
+  refused("\"seeds\": {\"line\": {\"from\": [0, 0, 0], \"to\": [1, 0, 0], \"count\": 2},\n\"sphere\": {}}", 3, {"2 patterns"});
+  refused("\"seeds\": {\"line\": {\"from\": [0, 0, 0],\n\"to\": [1, 0]}}", 4, {"\"to\"", "three finite numbers"});
+  refused("\"seeds\": {\"line\": {\"from\": [0, 0, 0], \"to\": [1, 0, 0]}}", 3, {"\"count\" is missing"});
+  refused("\"seeds\": {\"line\": {\"from\": [0, 0, 0], \"to\": [1, 0, 0],\n\"count\": 0}}", 4, {"\"count\"", "expected"});
+  refused("\"seeds\": {\"line\": {\"from\": [0, 0, 0], \"to\": [1, 0, 0], \"number\": 2}}", 3, {"number", "count"});
+  refused("\"seeds\": {\"plane\": {\"origin\": [0, 0, 0], \"u\": [1, 0, 0], \"v\": [0, 1, 0], \"count\": 5}}", 3, {"[along u, along v]"});
+  refused("\"seeds\": {\"plane\": {\"origin\": [0, 0, 0], \"u\": [1, 0, 0], \"v\": [0, 1, 0], \"count\": [2, 1.5]}}", 3, {"whole numbers"});
+  refused("\"seeds\": {\"sphere\": {\"center\": [0, 0, 0], \"radius\": 0, \"count\": 5}}", 3, {"\"radius\" is 0", "> 0"});
+  refused("\"seeds\": {\"isosurface\": {\"field\": \"bal\", \"level\": 1, \"count\": 5}}", 3, {"unknown field \"bal\"", "ball"});
+  refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 0}}", 3, {"\"distance\" is 0"});
+  refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"test\": 1.5}}", 3, {"\"test\" is 1.5", "at most 1"});
+  refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"start\": []}}", 3, {"\"start\"", "at least one"});
+  refused("\"seeds\": {\"line\": 3}", 3, {"object", "expected"});
+  refused("\"seeds\": [[1, 0, 0]], \"tolerance\": 0.5", 3, {"\"tolerance\" is 0.5", "at most 0.01"});
+  refused("\"seeds\": [[1, 0, 0]], \"arrows\": -1", 3, {"\"arrows\" is -1", "> 0"});
+}
+
+TEST(ColoredLines, TheKeysAreChecked) {
+  refused("\"seeds\": [[1, 0, 0]], \"color\": [[0, 1, 1, 1]]", 3, {"table", "\"color_by\""});
+  refused("\"seeds\": [[1, 0, 0]], \"color_by\": \"sped\"", 3, {"unknown \"color_by\" \"sped\"", "speed", "ball"});
+  refused("\"seeds\": [[1, 0, 0]], \"color_by\": \"speed\", \"color\": [1, 0, 0]", 3, {"no table", "[value, r, g, b]"});
+  refused("\"seeds\": [[1, 0, 0]], \"color_by\": \"speed\",\n\"color\": [[0, 1, 1, 1],\n[0, 1, 0, 1]]", 5, {"strictly rising"});
+  const auto scene =
+      parse_scene(scene_text("\"seeds\": [[1, 0, 0]], \"color_by\": \"ball\", \"color\": [[0, 0, 0, 1], [2, 1, 0, 0]]"), "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  scene->world.each<StreamlineSet>([](Entity, const StreamlineSet& set) {
+    ASSERT_TRUE(set.color_by);
+    EXPECT_EQ(set.color_by->what, ColorBy::What::field);
+    EXPECT_EQ(set.color_by->colors.size(), 2u);
+  });
+}
+
+TEST(ColoredLines, TheIndicatorNamesAField) {
+  const auto text = [](const std::string& body) {
+    return "{\"fields\": {\"swirl\": {\"analytic\": \"circle\"}},\n\"indicator\": {" + body + "}}";
+  };
+  EXPECT_TRUE(parse_scene(text("\"field\": \"swirl\", \"length\": 0.3"), "s.json"));
+  expect_error(parse_scene(text("\"field\": \"whirl\""), "s.json"), 2, {"unknown field", "swirl"});
+  expect_error(parse_scene(text("\"field\": \"swirl\", \"length\": 0"), "s.json"), 2, {"> 0"});
+  expect_error(parse_scene(text("\"feld\": \"swirl\""), "s.json"), 2, {"feld", "field"});
+}
+
+}  // namespace
+}  // namespace catena::scene
