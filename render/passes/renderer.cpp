@@ -9,10 +9,12 @@
 
 #include "render/passes/camera_rays.h"
 #include "render/passes/compose.h"
+#include "render/passes/fast_volume.h"
 #include "render/passes/isosurface.h"
 #include "render/passes/mesh.h"
 #include "render/passes/mirrors.h"
 #include "render/passes/targets.h"
+#include "render/passes/upsample.h"
 #include "render/passes/volume.h"
 #include "render/vk/swapchain.h"
 
@@ -49,10 +51,18 @@ struct Work {
   std::vector<Mirrored<VolumeItem>> volumes;
   std::vector<Mirrored<IsosurfaceItem>> opaque_surfaces, translucent_surfaces;
   std::vector<const field::ScalarGrid*> grids;
+  const VolumeItem* fast = nullptr;  ///< the lone volume of the fast raycast; then `volumes` is empty
+  bool ends_at_half = false;         ///< the fast raycast needs no image of every pixel
   bool meshes = false;
   bool opaque() const { return meshes || !opaque_surfaces.empty(); }
-  bool raycast() const { return !volumes.empty() || !translucent_surfaces.empty(); }
+  bool raycast() const { return fast || !volumes.empty() || !translucent_surfaces.empty(); }
 };
+
+/// One volume and no translucent isosurface: nothing that a ray must blend.
+bool is_alone(const FramePacket& packet) {
+  const auto translucent = [](const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; };
+  return packet.volumes.size() == 1 && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), translucent);
+}
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -88,6 +98,8 @@ struct Renderer::Parts {
   std::optional<MeshPass> mesh;
   std::optional<IsosurfacePass> isosurface;
   std::optional<VolumePass> volume;
+  std::optional<FastVolumePass> fast_volume;
+  std::optional<UpsamplePass> upsample;
   std::optional<ComposePass> compose;
   bool drawn = false, drawn_opaque = false;
   double reference_depth = 0;
@@ -105,6 +117,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& opti
   std::unique_ptr<Renderer> self(new Renderer);
   CATENA_TRY(self->parts_->device, vk::Device::create(options));
   self->parts_->mirrors.emplace(*self->parts_->device);
+  self->parts_->upsample.emplace(*self->parts_->device);
   self->parts_->compose.emplace(*self->parts_->device);
   return self;
 }
@@ -122,6 +135,12 @@ Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettin
   };
   for (const VolumeItem& item : packet.volumes) {
     CATENA_ASSERT(item.grid != nullptr);
+    if (settings.fast && is_alone(packet) && can_be_packed(*device, *item.grid)) {
+      work.grids.push_back(item.grid.get());
+      work.fast = &item;
+      work.ends_at_half = settings.fast->ends_at_half();
+      continue;
+    }
     CATENA_TRY(auto mirrored, mirror(*item.grid));
     if (!mirrored->drawable) continue;
     work.grids.push_back(item.grid.get());
@@ -152,13 +171,17 @@ Outcome Renderer::Parts::prepare(const FramePacket& packet, const Work& work) {
   if (!isosurface && !work.opaque_surfaces.empty()) {
     CATENA_TRY(isosurface, IsosurfacePass::create(*device));
   }
-  if (!volume && work.raycast()) {
+  if (!volume && work.raycast() && !work.fast) {
     CATENA_TRY(volume, VolumePass::create(*device));
+  }
+  if (!fast_volume && work.fast) {
+    CATENA_TRY(fast_volume, FastVolumePass::create(*device));
   }
   if (mesh) CATENA_CHECK(mesh->prepare(packet));
   if (isosurface) CATENA_CHECK(isosurface->prepare(work.opaque_surfaces));
   if (volume) CATENA_CHECK(volume->prepare(work.volumes, work.translucent_surfaces));
-  return targets.ensure(*device, packet.width, packet.height, work.opaque(), work.raycast());
+  if (work.fast) CATENA_CHECK(fast_volume->prepare(*work.fast));
+  return targets.ensure(*device, packet.width, packet.height, work.opaque(), work.raycast() && !work.ends_at_half);
 }
 
 Outcome Renderer::Parts::record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work,
@@ -174,10 +197,17 @@ Outcome Renderer::Parts::record(vk::Commands& commands, const FramePacket& packe
   }
   if (work.raycast()) {
     if (work.opaque()) commands.use(targets.opaque_depth, vk::kFragmentRead);
+    const vk::Image* opaque_depth = work.opaque() ? &targets.opaque_depth : nullptr;
+    if (work.fast) {
+      CATENA_CHECK(fast_volume->record(commands, rays, *settings.fast, area, targets.picture.info().extent,
+                                       work.ends_at_half ? nullptr : &targets.volume, opaque_depth, targets.none));
+      if (work.ends_at_half) return upsample->record(commands, fast_volume->half(), targets, packet.background, work.opaque(), area);
+      return compose->record(commands, targets, packet.background, work.opaque(), true);
+    }
     const vk::ColorTarget color{&targets.volume, std::array<float, 4>{0, 0, 0, 0}};
     commands.begin_pass({&color, 1}, {});
     CATENA_CHECK(volume->record(commands, rays, {settings.step_voxels, settings.termination, settings.skip}, area,
-                                work.opaque() ? &targets.opaque_depth : nullptr, targets.none));
+                                opaque_depth, targets.none));
     commands.end_pass();
   }
   return compose->record(commands, targets, packet.background, work.opaque(), work.raycast());
@@ -253,7 +283,7 @@ RenderStats Renderer::stats() const {
   stats.upload_bytes = device.counters().upload_bytes;
   stats.pipelines = device.counters().pipelines;
   stats.mirrors = parts_->mirrors->count();
-  stats.mirror_ms = parts_->mirrors->build_ms();
+  stats.mirror_ms = parts_->mirrors->build_ms() + (parts_->fast_volume ? parts_->fast_volume->build_ms() : 0);
   stats.validation_messages = device.messages().count();
   return stats;
 }

@@ -11,6 +11,7 @@
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
 #include "render/mirror/grid_mirror.h"
+#include "render/passes/fast_settings.h"
 #include "render/vk/device.h"
 #include "render/vk/picture.h"
 
@@ -28,6 +29,8 @@ struct RenderSettings {
   TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
   MirrorLayout layout = MirrorLayout::automatic;
   bool skip = true;  ///< leap over bricks that the transfer function leaves empty
+  /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
+  std::optional<FastSettings> fast;
 };
 RenderSettings draft_settings();      ///< step 2
 RenderSettings balanced_settings();   ///< step 1
