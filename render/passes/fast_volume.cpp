@@ -19,12 +19,16 @@ constexpr std::uint32_t kVertexShader[] = {
 constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/volume_fast.frag.inc"
 };
+constexpr std::uint32_t kTileShader[] = {
+#include "spirv/opaque_tiles.frag.inc"
+};
 constexpr std::uint32_t kMarkShader[] = {
 #include "spirv/volume_blocks.frag.inc"
 };
 
 constexpr double kLeapAbove = 0.15;  // share of plain bricks from which asking for leaps pays
 constexpr std::uint32_t kBlock = 4;
+constexpr double kNever = 1e9;  // an error that interpolation never makes
 constexpr VkFormat kLatticeFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 /// A coarse lattice has an apron of two texels before the picture's first ray and of four behind its last.
@@ -63,14 +67,26 @@ bool same(const TransferTable& a, const TransferTable& b) { return a.colors == b
 Result<FastVolumePass> FastVolumePass::create(vk::Device& device) {
   FastVolumePass self;
   self.device_ = &device;
+  CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
+  vk::ImageInfo info;
+  info.type = VK_IMAGE_TYPE_3D;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(self.no_gradients_, vk::Image::create(device, info));
+  CATENA_CHECK(
+      vk::upload_planes(device, self.no_gradients_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 128, 4); }));
   return self;
 }
 
-Outcome FastVolumePass::prepare(const VolumeItem& item) {
+Outcome FastVolumePass::prepare(const VolumeItem& item, const FastSettings& settings) {
   const std::int64_t start = now_ns();
   const bool other_grid = !packed_.words || version_ != item.grid->version();
   const bool other_look = other_grid || !same(item_.transfer, item.transfer);
   item_ = item;
+  if (other_grid) gradients_ = {};
+  if (item.shade && settings.smooth_gradients && !gradients_) {
+    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item.grid));
+    build_ms_ += ms_since(start);
+  }
   if (!other_look) return Done{};
 
   const double background = item.grid->background();
@@ -108,8 +124,9 @@ Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint3
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
     info.fragment = kFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture}, {3, vk::Resource::texture},
-                  {4, vk::Resource::texture}, {5, vk::Resource::texture}, {6, vk::Resource::texture}, {7, vk::Resource::texture}};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture},
+                  {3, vk::Resource::texture}, {4, vk::Resource::texture}, {5, vk::Resource::texture},
+                  {6, vk::Resource::texture}, {7, vk::Resource::texture}, {8, vk::Resource::sampled}};
     info.constants.assign(constants.begin(), constants.end());
     // every pixel goes to the volume target, coarser lattices to their own
     info.colors = {constants[4] & 2u ? kVolumeFormat : kLatticeFormat};
@@ -119,31 +136,55 @@ Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint3
   return &pipeline;
 }
 
-Outcome FastVolumePass::mark(vk::Commands& commands, Level& level, vk::Image& coarser) {
-  if (!mark_pipeline_) {
+Outcome FastVolumePass::mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth) {
+  if (!tile_pipeline_) {
+    vk::GraphicsInfo info;
+    info.vertex = kVertexShader;
+    info.fragment = kTileShader;
+    info.slots = {{0, vk::Resource::texture}};
+    info.colors = {VK_FORMAT_R8_UINT};
+    CATENA_TRY(tile_pipeline_, vk::Pipeline::create(*device_, info));
+  }
+  const VkExtent3D& extent = opaque_depth.info().extent;
+  CATENA_CHECK(
+      fit(*device_, opaque_tiles_, VK_FORMAT_R8_UINT, (extent.width + kBlock - 1) / kBlock, (extent.height + kBlock - 1) / kBlock));
+  const vk::ColorTarget target{&opaque_tiles_, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&target, 1}, {});
+  const vk::Binding bindings[] = {{0, vk::Resource::texture, nullptr, &opaque_depth, nullptr}};
+  commands.bind(tile_pipeline_, bindings);
+  commands.draw_triangle();
+  commands.end_pass();
+  commands.use(opaque_tiles_, vk::kFragmentRead);
+  return Done{};
+}
+
+Outcome FastVolumePass::mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque) {
+  vk::Pipeline& pipe = mark_pipelines_[opaque];
+  if (!pipe) {
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
     info.fragment = kMarkShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
+    info.constants = {opaque};
     info.colors = {VK_FORMAT_R8_UINT};
-    CATENA_TRY(mark_pipeline_, vk::Pipeline::create(*device_, info));
+    CATENA_TRY(pipe, vk::Pipeline::create(*device_, info));
   }
+  if (!opaque_tiles_) CATENA_CHECK(fit(*device_, opaque_tiles_, VK_FORMAT_R8_UINT, 1, 1));
+  commands.use(opaque_tiles_, vk::kFragmentRead);
   const vk::ColorTarget target{&level.marks, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&target, 1}, {});
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &level.data, nullptr, nullptr},
-                                  {1, vk::Resource::texture, nullptr, &coarser, nullptr}};
-  commands.bind(mark_pipeline_, bindings);
+                                  {1, vk::Resource::texture, nullptr, &coarser, nullptr},
+                                  {2, vk::Resource::texture, nullptr, &opaque_tiles_, nullptr}};
+  commands.bind(pipe, bindings);
   commands.draw_triangle();
   commands.end_pass();
   commands.use(level.marks, vk::kFragmentRead);
   return Done{};
 }
 
-Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
-                               const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none) {
-  CATENA_ASSERT(settings.ends_at_half() || target);
-  CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
-  // the frame's data; grid 0 counts from the volume's first voxel
+/// The frame's data; grid 0 counts from the volume's first voxel.
+Outcome FastVolumePass::write_frame(const CameraRays& rays, const FastSettings& settings) {
   GridMirror place;
   place.origin = packed_.origin;
   place.box_hi = Vec3(packed_.size.x - 1, packed_.size.y - 1, packed_.size.z - 1);
@@ -151,47 +192,76 @@ Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, c
   frame.grids[0] = rays.grid(place, item_.grid->mapping());
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * item_.grid->mapping().smallest_edge());
-  CATENA_CHECK(write_uniform(*device_, frame_, frame));
+  return write_uniform(*device_, frame_, frame);
+}
+
+Outcome FastVolumePass::draw(vk::Commands& commands, Level& level, const Draw& draw) {
+  CATENA_TRY(const vk::Pipeline* pipe,
+             pipeline({draw.shading, draw.skips && map_.leaping > kLeapAbove, draw.opaque_depth != nullptr, draw.coarser != nullptr,
+                       (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u)}));
+  const vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&color, 1}, {});
+  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &frame_, nullptr, nullptr},
+                                  {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
+                                  {2, vk::Resource::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.none, nullptr},
+                                  {3, vk::Resource::texture, nullptr, &packed_.words, nullptr},
+                                  {4, vk::Resource::texture, nullptr, &table_, nullptr},
+                                  {5, vk::Resource::texture, nullptr, &map_.image, nullptr},
+                                  {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
+                                  {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
+                                  {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients_ : &no_gradients_, &linear_}};
+  commands.scissor(draw.area);
+  commands.bind(*pipe, bindings);
+  commands.draw_triangle();
+  commands.end_pass();
+  return Done{};
+}
+
+Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
+                               const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none) {
+  CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
+  CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
+  CATENA_CHECK(write_frame(rays, settings));
+  if (opaque_depth && settings.spacing > 1) CATENA_CHECK(mark_opaque(commands, *opaque_depth));
 
   // from the coarsest lattice to every pixel
   vk::Image* coarser = nullptr;
-  const std::uint32_t finest = settings.ends_at_half() ? 2 : 1;
+  const std::uint32_t finest = target ? 1 : 2;
   for (std::uint32_t spacing = settings.spacing; spacing >= finest; spacing /= 2) {
     Level& level = spacing == 4 ? quarter_ : spacing == 2 ? half_ : full_;
     CATENA_CHECK(ensure(level, spacing, picture));
     vk::Image& image = spacing == 1 ? *target : level.color;
-    const double refine_255 = spacing == 2 ? settings.refine_half_255 : settings.refine_full_255;
+    double refine_255 = spacing == 2 ? settings.refine_half_255 : settings.refine_full_255;
+    if (opaque_depth && refine_255 < 0) refine_255 = kNever;
     const bool marches = !coarser || refine_255 >= 0;
     const VkExtent3D from = coarser ? coarser->info().extent : VkExtent3D{1, 1, 1};
-    const shared::LatticeData data{float(spacing), spacing == 1 ? 0.0f : float(COARSE_APRON), float(refine_255 / 255), from.width, from.height};
+    const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
+    const shared::LatticeData data{float(spacing), apron, float(refine_255 / 255), from.width, from.height};
     CATENA_CHECK(write_uniform(*device_, level.data, data));
     if (coarser && marches) {
-      CATENA_CHECK(mark(commands, level, *coarser));
+      CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
     } else {
       commands.use(level.marks, vk::kFragmentRead);
     }
-
-    const bool skips = settings.skip && map_.leaping > kLeapAbove;
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline({item_.shade, skips, opaque_depth != nullptr, coarser != nullptr,
-                                                   (marches ? 1u : 0u) | (spacing == 1 ? 2u : 0u)}));
-    const vk::ColorTarget color{&image, std::array<float, 4>{0, 0, 0, 0}};
-    commands.begin_pass({&color, 1}, {});
-    const vk::Binding bindings[] = {{0, vk::Resource::uniform, &frame_, nullptr, nullptr},
-                                    {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
-                                    {2, vk::Resource::texture, nullptr, opaque_depth ? opaque_depth : &none, nullptr},
-                                    {3, vk::Resource::texture, nullptr, &packed_.words, nullptr},
-                                    {4, vk::Resource::texture, nullptr, &table_, nullptr},
-                                    {5, vk::Resource::texture, nullptr, &map_.image, nullptr},
-                                    {6, vk::Resource::texture, nullptr, coarser ? coarser : &none, nullptr},
-                                    {7, vk::Resource::texture, nullptr, &level.marks, nullptr}};
-    commands.scissor(lattice_area(area, spacing, image.info().extent));
-    commands.bind(*pipe, bindings);
-    commands.draw_triangle();
-    commands.end_pass();
+    CATENA_CHECK(draw(commands, level,
+                      {&image, coarser, marches, shading(settings), settings.skip, lattice_area(area, spacing, image.info().extent),
+                       opaque_depth, &none}));
     if (spacing > 1) commands.use(image, vk::kFragmentRead);
     coarser = &image;
   }
   return Done{};
+}
+
+Outcome FastVolumePass::record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
+                                     vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none) {
+  CATENA_ASSERT(target.info().format == kVolumeFormat);
+  CATENA_CHECK(write_frame(rays, settings));
+  CATENA_CHECK(fit(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
+  commands.use(probe_.marks, vk::kFragmentRead);
+  CATENA_CHECK(write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1}));
+  const VkExtent3D& extent = target.info().extent;
+  return draw(commands, probe_,
+              {&target, nullptr, true, shading(settings), settings.skip, {{0, 0}, {extent.width, extent.height}}, opaque_depth, &none});
 }
 
 }  // namespace catena::render

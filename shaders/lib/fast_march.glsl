@@ -1,13 +1,14 @@
 // One packed volume along a ray: segments between samples s0, s1 with slopes d0, d1 along the ray; the value at the middle by the
 // Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half from the pre-integrated table (render/passes/preintegrated.h). A segment
 // within a cube of plain bricks (render/mirror/plain_map.h) is as long as the ray's way through it.
-layout(constant_id = 0) const uint SHADED = 0;
+layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by gradients made beforehand
 layout(constant_id = 1) const uint SKIPS = 0;
 layout(constant_id = 2) const uint OPAQUE = 0;
 
 layout(binding = 3) uniform utexture3D packed_words;
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
 layout(binding = 5) uniform utexture3D plain_map;
+layout(binding = 8) uniform sampler3D gradients;  // render/mirror/gradient_volume.h
 #include "shaders/lib/packed.glsl"
 
 #define SMALL_BRICK 4.0
@@ -18,8 +19,11 @@ vec4 between(float a, float b) {
   return vec4(uintBitsToFloat(e.x), vec3(e.y & 2047u, e.y >> 11 & 2047u, e.y >> 22) * vec3(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0));
 }
 
-// As `lit` (lighting.glsl) for a headlight: colour * x + y.
-vec2 light_of(vec3 normal, vec3 towards_eye) {
+// As `lit` (lighting.glsl) for a headlight: colour * x + y. Codes hold nothing below a hundredth.
+vec2 light_of(vec3 p, vec3 of_cell, vec3 towards_eye) {
+  vec3 gradient = of_cell;
+  if (SHADED == 2u) gradient = 255.0 * textureLod(gradients, (p + 0.5) / (frame.grids[0].hi + 1.0), 0.0).rgb - 128.0;
+  const vec3 normal = dot(gradient, gradient) > 1e-4 ? frame.grids[0].world_gradient * gradient : vec3(0.0);
   const float length2 = dot(normal, normal);
   const float along = dot(normal, towards_eye);
   const float n2 = length2 > 0.0 ? min(1.0, along * along / length2) : 0.0;
@@ -49,7 +53,7 @@ vec4 march_packed(vec2 q, float end) {
   PackedSample s = sample_packed(p);
   float slope = dot(s.gradient, ray.direction);
   vec2 light = vec2(1.0, 0.0);
-  if (SHADED != 0u) light = light_of(frame.grids[0].world_gradient * s.gradient, towards_eye);
+  if (SHADED != 0u) light = light_of(p, s.gradient, towards_eye);
   while (t < interval.y && through > frame.termination) {
     // the segment's length
     float next = t + h;
@@ -77,7 +81,7 @@ vec4 march_packed(vec2 q, float end) {
     const float half_way = through * exp2(first.x * half_length);
     const float after = half_way * exp2(second.x * half_length);
     if (SHADED != 0u) {
-      const vec2 light_end = light_of(frame.grids[0].world_gradient * e.gradient, towards_eye);
+      const vec2 light_end = light_of(p, e.gradient, towards_eye);
       const vec2 l0 = mix(light, light_end, 0.25), l1 = mix(light, light_end, 0.75);
       sum += (through - half_way) * (first.yzw * l0.x + l0.y) + (half_way - after) * (second.yzw * l1.x + l1.y);
       light = light_end;

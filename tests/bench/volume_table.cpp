@@ -1,6 +1,7 @@
 /// The table of times and errors of volumes: one JSON line a setting, on the fields, camera and transfer functions of the comparison
 /// with VTK (raw float32 volumes, 1024 x 768).   volume_table RAW N SHADE(0|1) [MODE ...]      see tests/bench/README.md
-///   MODE: exact=STEP | fast=STEP,SPACING,REFINE_HALF,REFINE_FULL (1/255; < 0 nowhere)
+///   MODE: error=E | time=MS | draft | balanced | reference | exact=STEP | fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth] (1/255; < 0
+///   nowhere)
 /// Times are medians over an orbit of 10 views, wall and process CPU (two threads: half of it is the ideal wall time); errors are
 /// against our own converged picture at azimuth 30: RMSE of 8-bit RGB over a black background, of covered and of all pixels.
 #include <fmt/core.h>
@@ -17,7 +18,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/quantile.h"
 #include "engine/field/grid.h"
-#include "render/passes/renderer.h"
+#include "render/passes/quality.h"
 #include "render/vk/picture.h"
 
 namespace {
@@ -90,6 +91,8 @@ Rmse rmse(const render::Picture& a, const render::Picture& b) {
 
 render::RenderSettings settings_of(const std::string& mode) {
   render::RenderSettings s;
+  if (mode == "draft") return render::draft_settings();
+  if (mode == "balanced") return render::balanced_settings();
   if (mode == "reference") return render::reference_settings();
   if (mode.starts_with("exact=")) {
     s.step_voxels = std::atof(mode.c_str() + 6);
@@ -101,6 +104,7 @@ render::RenderSettings settings_of(const std::string& mode) {
       std::exit(2);
     }
     f.spacing = spacing;
+    f.smooth_gradients = mode.ends_with(",smooth");
     s.fast = f;
   }
   return s;
@@ -143,7 +147,23 @@ int main(int argc, char** argv) {
   }
   for (int k = 4; k < argc; ++k) {
     const std::string mode = argv[k];
-    const render::RenderSettings settings = settings_of(mode);
+    render::RenderSettings settings;
+    double estimated = 0;
+    if (mode.starts_with("error=") || mode.starts_with("time=")) {
+      using Kind = render::QualityGoal::Kind;
+      packet.view = view_at(30, n);
+      const bool error = mode.starts_with("error=");
+      const auto choice =
+          render::choose_quality(**renderer, packet, {error ? Kind::error : Kind::time, std::atof(mode.c_str() + (error ? 6 : 5))});
+      if (!choice) {
+        fmt::print(stderr, "{}\n", choice.error().message);
+        return 1;
+      }
+      settings = choice->settings;
+      estimated = choice->estimated_rmse;
+    } else {
+      settings = settings_of(mode);
+    }
     draw(0, settings);
     draw(3, settings);
     std::vector<double> wall, cpu;
@@ -160,10 +180,11 @@ int main(int argc, char** argv) {
     const render::Picture picture = (*renderer)->read_back().value();
     if (folder) (void)render::write_png(std::string(folder) + "/" + stem + "-" + mode + ".png", picture, false);
     const Rmse error = rmse(picture, converged);
-    fmt::print("{{\"field\": \"{}\", \"shade\": {}, \"mode\": \"{}\", \"wall_ms\": {:.1f}, \"half_cpu_ms\": {:.1f}, \"rmse_covered\": {:.3f}, "
-               "\"rmse_all\": {:.3f}, \"gpu_mib\": {:.0f}}}\n",
-               stem, shade ? 1 : 0, mode, quantile(wall, 0.5), 0.5 * quantile(cpu, 0.5), error.covered, error.all,
-               double((*renderer)->stats().gpu_bytes) / (1 << 20));
+    fmt::print(
+        "{{\"field\": \"{}\", \"shade\": {}, \"mode\": \"{}\", \"wall_ms\": {:.1f}, \"half_cpu_ms\": {:.1f}, \"rmse_covered\": {:.3f}, "
+        "\"rmse_all\": {:.3f}, \"estimated\": {:.3f}, \"what\": \"{}\", \"gpu_mib\": {:.0f}}}\n",
+        stem, shade ? 1 : 0, mode, quantile(wall, 0.5), 0.5 * quantile(cpu, 0.5), error.covered, error.all, estimated, describe(settings),
+        double((*renderer)->stats().gpu_bytes) / (1 << 20));
     std::fflush(stdout);
   }
   return 0;
