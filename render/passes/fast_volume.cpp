@@ -7,6 +7,7 @@
 #include "engine/base/clock.h"
 #include "render/passes/grid_bindings.h"
 #include "render/passes/targets.h"
+#include "render/passes/upsample.h"
 #include "render/vk/upload.h"
 #include "shaders/shared/fast_volume.h"
 
@@ -19,7 +20,13 @@ constexpr std::uint32_t kVertexShader[] = {
 constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/volume_fast.frag.inc"
 };
-constexpr std::uint32_t kTileShader[] = {
+constexpr std::uint32_t kTilesShader[] = {
+#include "spirv/marked_tiles.vert.inc"
+};
+constexpr std::uint32_t kInterpolateShader[] = {
+#include "spirv/interpolate.comp.inc"
+};
+constexpr std::uint32_t kOpaqueShader[] = {
 #include "spirv/opaque_tiles.frag.inc"
 };
 constexpr std::uint32_t kMarkShader[] = {
@@ -27,7 +34,7 @@ constexpr std::uint32_t kMarkShader[] = {
 };
 
 constexpr double kLeapAbove = 0.15;  // share of plain bricks from which asking for leaps pays
-constexpr std::uint32_t kBlock = 4;
+constexpr std::uint32_t kBlock = 4, kTileBlocks = 4;
 constexpr double kNever = 1e9;  // an error that interpolation never makes
 constexpr VkFormat kLatticeFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
@@ -118,11 +125,11 @@ Outcome FastVolumePass::ensure(Level& level, std::uint32_t spacing, const VkExte
   return fit(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock);
 }
 
-Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint32_t, 5>& constants) {
-  vk::Pipeline& pipeline = pipelines_[constants];
+Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles) {
+  vk::Pipeline& pipeline = pipelines_[{constants, tiles}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
+    info.vertex = tiles ? vk::Spirv(kTilesShader) : vk::Spirv(kVertexShader);
     info.fragment = kFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture},
                   {3, vk::Resource::texture}, {4, vk::Resource::texture}, {5, vk::Resource::texture},
@@ -140,7 +147,7 @@ Outcome FastVolumePass::mark_opaque(vk::Commands& commands, const vk::Image& opa
   if (!tile_pipeline_) {
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
-    info.fragment = kTileShader;
+    info.fragment = kOpaqueShader;
     info.slots = {{0, vk::Resource::texture}};
     info.colors = {VK_FORMAT_R8_UINT};
     CATENA_TRY(tile_pipeline_, vk::Pipeline::create(*device_, info));
@@ -179,7 +186,7 @@ Outcome FastVolumePass::mark(vk::Commands& commands, Level& level, vk::Image& co
   commands.bind(pipe, bindings);
   commands.draw_triangle();
   commands.end_pass();
-  commands.use(level.marks, vk::kFragmentRead);
+  commands.use(level.marks, vk::kShaderRead);
   return Done{};
 }
 
@@ -198,8 +205,10 @@ Outcome FastVolumePass::write_frame(const CameraRays& rays, const FastSettings& 
 Outcome FastVolumePass::draw(vk::Commands& commands, Level& level, const Draw& draw) {
   CATENA_TRY(const vk::Pipeline* pipe,
              pipeline({draw.shading, draw.skips && map_.leaping > kLeapAbove, draw.opaque_depth != nullptr, draw.coarser != nullptr,
-                       (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u)}));
-  const vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
+                       (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u)},
+                      draw.tiles));
+  vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
+  if (draw.tiles) color.clear.reset();
   commands.begin_pass({&color, 1}, {});
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &frame_, nullptr, nullptr},
                                   {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
@@ -212,8 +221,36 @@ Outcome FastVolumePass::draw(vk::Commands& commands, Level& level, const Draw& d
                                   {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients_ : &no_gradients_, &linear_}};
   commands.scissor(draw.area);
   commands.bind(*pipe, bindings);
-  commands.draw_triangle();
+  if (draw.tiles) {
+    const VkExtent3D& marks = level.marks.info().extent;
+    const auto tiles = [](std::uint32_t blocks) { return (blocks + kTileBlocks - 1) / kTileBlocks; };
+    commands.draw(6, tiles(marks.width) * tiles(marks.height));
+  } else {
+    commands.draw_triangle();
+  }
   commands.end_pass();
+  return Done{};
+}
+
+Outcome FastVolumePass::interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area) {
+  if (!interpolate_pipeline_) {
+    vk::ComputeInfo info;
+    info.shader = kInterpolateShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::storage_image}};
+    CATENA_TRY(interpolate_pipeline_, vk::Pipeline::create(*device_, info));
+  }
+  const vk::ColorTarget empty{&target, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&empty, 1}, {});
+  commands.end_pass();
+  const UpsampleGroups groups = upsample_groups(area, target.info().extent);
+  CATENA_CHECK(write_uniform(*device_, interpolate_data_, groups.data));
+  commands.use(half, vk::kFragmentRead);
+  commands.use(target, vk::kComputeWrite);
+  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &interpolate_data_, nullptr, nullptr},
+                                  {1, vk::Resource::texture, nullptr, &half, nullptr},
+                                  {2, vk::Resource::storage_image, nullptr, &target, nullptr}};
+  commands.bind(interpolate_pipeline_, bindings);
+  if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
   return Done{};
 }
 
@@ -243,8 +280,12 @@ Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, c
     } else {
       commands.use(level.marks, vk::kFragmentRead);
     }
+    // most of the last step is interpolation: all of it first, then what is marked
+    const bool tiles = coarser && spacing == 1;
+    if (tiles) CATENA_CHECK(interpolate(commands, *coarser, image, area));
+    if (tiles && !marches) break;
     CATENA_CHECK(draw(commands, level,
-                      {&image, coarser, marches, shading(settings), settings.skip, lattice_area(area, spacing, image.info().extent),
+                      {&image, coarser, marches, tiles, shading(settings), settings.skip, lattice_area(area, spacing, image.info().extent),
                        opaque_depth, &none}));
     if (spacing > 1) commands.use(image, vk::kFragmentRead);
     coarser = &image;
@@ -260,8 +301,9 @@ Outcome FastVolumePass::record_probe(vk::Commands& commands, const CameraRays& r
   commands.use(probe_.marks, vk::kFragmentRead);
   CATENA_CHECK(write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1}));
   const VkExtent3D& extent = target.info().extent;
-  return draw(commands, probe_,
-              {&target, nullptr, true, shading(settings), settings.skip, {{0, 0}, {extent.width, extent.height}}, opaque_depth, &none});
+  return draw(
+      commands, probe_,
+      {&target, nullptr, true, false, shading(settings), settings.skip, {{0, 0}, {extent.width, extent.height}}, opaque_depth, &none});
 }
 
 }  // namespace catena::render

@@ -39,7 +39,7 @@ class FastVolumePass {
   };
   FastVolumePass() = default;
   Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
-  Result<const vk::Pipeline*> pipeline(const std::array<std::uint32_t, 5>& constants);
+  Result<const vk::Pipeline*> pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const { return item_.shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
   Outcome write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque);
@@ -49,6 +49,7 @@ class FastVolumePass {
     vk::Image* target = nullptr;
     const vk::Image* coarser = nullptr;
     bool marches = true;
+    bool tiles = false;  ///< `target` is interpolated already: only marked tiles are drawn
     std::uint32_t shading = 0;
     bool skips = true;
     VkRect2D area{};
@@ -56,6 +57,7 @@ class FastVolumePass {
     const vk::Image* none = nullptr;
   };
   Outcome draw(vk::Commands& commands, Level& level, const Draw& draw);
+  Outcome interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area);
 
   vk::Device* device_ = nullptr;
   VolumeItem item_;
@@ -68,9 +70,10 @@ class FastVolumePass {
   vk::Sampler linear_;
   vk::Buffer frame_;
   Level quarter_, half_, full_, probe_;
-  std::map<std::array<std::uint32_t, 5>, vk::Pipeline> pipelines_;
+  std::map<std::pair<std::array<std::uint32_t, 5>, bool>, vk::Pipeline> pipelines_;
   std::array<vk::Pipeline, 2> mark_pipelines_;  // without and with something opaque
-  vk::Pipeline tile_pipeline_;
+  vk::Pipeline tile_pipeline_, interpolate_pipeline_;
+  vk::Buffer interpolate_data_;
   vk::Image opaque_tiles_;
   double build_ms_ = 0;
 };

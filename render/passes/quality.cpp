@@ -22,8 +22,9 @@ struct Plan {
   double refine_half, refine_full;
   double overhead, rays;
 };
-constexpr Plan kPlan[] = {{4, -1, -1, 0.02, 0.1}, {4, 2, -1, 0.03, 0.16},  {4, 0.8, -1, 0.03, 0.24}, {2, 0, -1, 0.02, 0.3},
-                          {2, 0, 2, 0.08, 0.45},  {2, 0, 0.8, 0.08, 0.65}, {1, 0, -1, 0.03, 1}};
+constexpr Plan kPlan[] = {{4, -1, -1, 0.02, 0.1},   {4, 2, -1, 0.03, 0.16},  {4, 1.3, -1, 0.03, 0.19},
+                          {4, 0.8, -1, 0.03, 0.24}, {2, 0, -1, 0.02, 0.3},   {4, 1, 3, 0.05, 0.28},
+                          {2, 0, 2, 0.06, 0.45},    {2, 0, 0.8, 0.06, 0.65}, {1, 0, -1, 0.03, 1}};
 constexpr int kPlans = int(std::size(kPlan));
 constexpr double kFastSteps[] = {8, 6, 5, 4, 3, 2, 1.5, 1, 0.5};
 constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25};
@@ -41,9 +42,9 @@ RenderSettings fast(double step_voxels, std::uint32_t spacing, double refine_hal
   return s;
 }
 
-/// Near enough to converged for every error that is worth asking for.
+/// As `reference`, but for the texels.
 RenderSettings converged() {
-  RenderSettings s = exact(0.25);
+  RenderSettings s = exact(0.1);
   s.termination = 1e-4;
   return s;
 }

@@ -85,7 +85,7 @@ RenderSettings draft_settings() {
 
 RenderSettings balanced_settings() {
   RenderSettings s;
-  s.fast = FastSettings{2, 4, 0.6, 1.5};
+  s.fast = FastSettings{2.5, 4, 0.7, 1.5};
   return s;
 }
 

@@ -28,7 +28,7 @@ Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t h
     CATENA_CHECK(fit(device, opaque_depth, kDepthValueFormat, width, height, color | read));
     CATENA_CHECK(fit(device, depth_buffer, kDepthBufferFormat, width, height, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
   }
-  if (has_volume) CATENA_CHECK(fit(device, volume, kVolumeFormat, width, height, color));
+  if (has_volume) CATENA_CHECK(fit(device, volume, kVolumeFormat, width, height, color | VK_IMAGE_USAGE_STORAGE_BIT));
   if (!none) {
     CATENA_CHECK(fit(device, none, kPictureFormat, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT));
     CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));

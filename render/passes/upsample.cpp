@@ -9,9 +9,23 @@ namespace {
 constexpr std::uint32_t kShader[] = {
 #include "spirv/upsample.comp.inc"
 };
-constexpr std::uint32_t kGroupX = 16, kGroupY = 4;
+constexpr std::uint32_t kGroupX = 16, kGroupY = 4;  // as in the shaders
 
 }  // namespace
+
+UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture) {
+  UpsampleGroups groups;
+  groups.data.first_x = std::uint32_t(area.offset.x) / 2;
+  groups.data.first_y = std::uint32_t(area.offset.y) / 2;
+  groups.data.width = picture.width;
+  groups.data.height = picture.height;
+  const auto points = [](std::int32_t first, std::uint32_t extent) {
+    return extent == 0 ? 0 : (std::uint32_t(first) % 2 + extent + 1) / 2;
+  };
+  groups.x = (points(area.offset.x, area.extent.width) + kGroupX - 1) / kGroupX;
+  groups.y = (points(area.offset.y, area.extent.height) + kGroupY - 1) / kGroupY;
+  return groups;
+}
 
 Outcome UpsamplePass::record(vk::Commands& commands, vk::Image& half_lattice, Targets& targets, const std::array<float, 4>& background,
                              bool opaque, const VkRect2D& area) {
@@ -35,14 +49,9 @@ Outcome UpsamplePass::record(vk::Commands& commands, vk::Image& half_lattice, Ta
     commands.begin_pass({&target, 1}, {});
     commands.end_pass();
   }
-  shared::UpsampleData data{};
-  data.background = {background[0], background[1], background[2], background[3]};
-  data.first_x = std::uint32_t(pixels.offset.x) / 2;
-  data.first_y = std::uint32_t(pixels.offset.y) / 2;
-  data.width = size.width;
-  data.height = size.height;
-  data.apron = COARSE_APRON;
-  CATENA_CHECK(write_uniform(*device_, uniform_, data));
+  UpsampleGroups groups = upsample_groups(pixels, size);
+  groups.data.background = {background[0], background[1], background[2], background[3]};
+  CATENA_CHECK(write_uniform(*device_, uniform_, groups.data));
   commands.use(half_lattice, vk::kFragmentRead);
   commands.use(targets.picture, vk::kComputeWrite);
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
@@ -50,9 +59,7 @@ Outcome UpsamplePass::record(vk::Commands& commands, vk::Image& half_lattice, Ta
                                   {2, vk::Resource::texture, nullptr, &half_lattice, nullptr},
                                   {3, vk::Resource::storage_image, nullptr, &targets.picture, nullptr}};
   commands.bind(pipeline, bindings);
-  const auto points = [](std::int32_t first, std::uint32_t extent) { return (std::uint32_t(first) % 2 + extent + 1) / 2; };
-  const std::uint32_t nx = points(pixels.offset.x, pixels.extent.width), ny = points(pixels.offset.y, pixels.extent.height);
-  if (nx > 0 && ny > 0) commands.dispatch((nx + kGroupX - 1) / kGroupX, (ny + kGroupY - 1) / kGroupY, 1);
+  if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
   commands.use(targets.picture, vk::kTransferRead);
   return Done{};
 }

@@ -4,8 +4,16 @@
 
 #include "render/passes/targets.h"
 #include "render/vk/commands.h"
+#include "shaders/shared/fast_volume.h"
 
 namespace catena::render {
+
+/// One invocation a lattice point: what upsample.comp and interpolate.comp need for the pixels of an area.
+struct UpsampleGroups {
+  shared::UpsampleData data{};
+  std::uint32_t x = 0, y = 0;
+};
+UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture);
 
 class UpsamplePass {
  public:

@@ -14,10 +14,10 @@ layout(binding = 1) uniform texture2D opaque_color;
 layout(binding = 2) uniform texture2D half_lattice;
 layout(binding = 3, rgba8) uniform writeonly image2D picture;
 
-vec4 middle(vec4 a, vec4 b, vec4 c, vec4 d) { return 0.5625 * (b + c) - 0.0625 * (a + d); }
+#include "shaders/lib/four_point.glsl"
 
 void finish(ivec2 at, vec4 volume) {
-  const vec4 c = vec4(max(volume.rgb, vec3(0.0)), clamp(volume.a, 0.0, 1.0));
+  const vec4 c = bounded(volume);
   vec4 sum = vec4(upsample.background.rgb * upsample.background.a, upsample.background.a);
   if (HAS_OPAQUE != 0u) {
     const vec4 o = texelFetch(opaque_color, at, 0);
@@ -30,17 +30,9 @@ void finish(ivec2 at, vec4 volume) {
 
 void main() {
   const ivec2 point = ivec2(gl_GlobalInvocationID.xy) + ivec2(upsample.first_x, upsample.first_y);
-  const ivec2 first = point + int(upsample.apron) - 1;
-  vec4 on[4], between[4];  // of four rows: at the point and half way to the next
-  for (int k = 0; k < 4; ++k) {
-    const vec4 a = texelFetch(half_lattice, first + ivec2(0, k), 0), b = texelFetch(half_lattice, first + ivec2(1, k), 0);
-    const vec4 c = texelFetch(half_lattice, first + ivec2(2, k), 0), d = texelFetch(half_lattice, first + ivec2(3, k), 0);
-    on[k] = b;
-    between[k] = middle(a, b, c, d);
-  }
-  const ivec2 at = 2 * point;
-  finish(at, on[1]);
-  finish(at + ivec2(1, 0), between[1]);
-  finish(at + ivec2(0, 1), middle(on[0], on[1], on[2], on[3]));
-  finish(at + ivec2(1, 1), middle(between[0], between[1], between[2], between[3]));
+  const FourPixels p = four_pixels(half_lattice, point);
+  finish(2 * point, p.here);
+  finish(2 * point + ivec2(1, 0), p.right);
+  finish(2 * point + ivec2(0, 1), p.below);
+  finish(2 * point + ivec2(1, 1), p.diagonal);
 }

@@ -21,7 +21,6 @@ struct UpsampleData {
   vec4 background;   // alpha 0: transparent
   uint first_x, first_y;
   uint width, height;  // of the picture
-  float apron;
 };
 
 CATENA_SHARED_END
