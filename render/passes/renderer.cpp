@@ -162,6 +162,7 @@ Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettin
     (item.opacity < 1 ? work.translucent_surfaces : work.opaque_surfaces).emplace_back(&item, std::move(mirrored));
   }
   mirrors->drop_unused();
+  if (packet.volumes.empty()) fast_volume.reset();
   work.ends_at_half = work.fast && settings.fast->ends_at_half() && !work.opaque();
   if (work.volumes.size() > MAX_VOLUMES)
     return Error{fmt::format("the scene has {} volumes, expected at most {}", work.volumes.size(), MAX_VOLUMES)};
