@@ -16,7 +16,7 @@
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
 #include "render/frame/camera.h"
-#include "render/passes/renderer.h"
+#include "render/passes/quality.h"
 #include "render/vk/picture.h"
 
 namespace catena::app {
@@ -33,20 +33,33 @@ struct Options {
   bool validation = false;
 };
 
-Result<render::RenderSettings> settings_for(const std::string& quality) {
-  if (quality == "draft") return render::draft_settings();
-  if (quality == "balanced") return render::balanced_settings();
-  if (quality == "reference") return render::reference_settings();
+/// Settings, or a goal that they have yet to be measured for.
+struct Quality {
+  render::RenderSettings settings;
+  std::optional<render::QualityGoal> goal;
+};
+
+Result<Quality> quality_of(const std::string& quality) {
+  using Kind = render::QualityGoal::Kind;
+  if (quality == "draft") return Quality{render::draft_settings(), {}};
+  if (quality == "balanced") return Quality{render::balanced_settings(), {}};
+  if (quality == "reference") return Quality{render::reference_settings(), {}};
+  for (const auto& [prefix, kind] : {std::pair{"error=", Kind::error}, std::pair{"time=", Kind::time}}) {
+    if (!quality.starts_with(prefix)) continue;
+    const auto value = parse_double(quality.substr(std::string_view(prefix).size()));
+    if (value && std::isfinite(*value) && *value > 0) return Quality{render::balanced_settings(), render::QualityGoal{kind, *value}};
+    return Error{"--quality " + quality + ": expected a positive number of " + (kind == Kind::error ? "1/255" : "milliseconds")};
+  }
   if (quality.starts_with("step=")) {
     const auto step = parse_double(quality.substr(5));
     if (step && std::isfinite(*step) && *step >= 0.01 && *step <= 100) {
-      render::RenderSettings settings = render::balanced_settings();
+      render::RenderSettings settings;
       settings.step_voxels = *step;
-      return settings;
+      return Quality{settings, {}};
     }
     return Error{"--quality " + quality + ": expected a step of 0.01 to 100 voxels"};
   }
-  return Error{"--quality " + quality + ": expected draft, balanced, reference or step=VOXELS"};
+  return Error{"--quality " + quality + ": expected draft, balanced, reference, time=MS, error=E or step=VOXELS"};
 }
 
 // "turn_%03d.png" names every picture of an orbit; a plain name is the first picture.
@@ -100,7 +113,8 @@ Outcome render_pictures(const Options& o) {
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
-  CATENA_TRY(const render::RenderSettings settings, settings_for(quality));
+  CATENA_TRY(const Quality wanted, quality_of(quality));
+  render::RenderSettings settings = wanted.settings;
   std::vector<std::string> inputs = inputs_of(scene);
   if (!o.probe.empty()) inputs.push_back(o.probe);
   CATENA_CHECK(check_output(o.output, inputs));
@@ -133,6 +147,16 @@ Outcome render_pictures(const Options& o) {
     if (!picture) throw MachineFailure{picture.error().message};
     return std::move(*picture);
   };
+
+  if (wanted.goal) {
+    const auto choice = render::choose_quality(**renderer, packet, *wanted.goal);
+    if (!choice) throw MachineFailure{choice.error().message};
+    settings = choice->settings;
+    stats.estimated_rmse = choice->estimated_rmse;
+    fmt::print("quality {}: {}, error about {:.2f}/255{}\n", quality, describe(settings), choice->estimated_rmse,
+               choice->reached ? "" : " (nothing reached the goal: the nearest was taken)");
+  }
+  stats.quality_mode = wanted.goal ? quality + ": " + describe(settings) : quality;
 
   // the first picture, from process start to pixels on the host
   CATENA_CHECK(draw(0, nullptr));
@@ -184,7 +208,8 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
   command->add_option("-o,--output", options->output, "the picture, .png; %03d in the name numbers the frames")->required();
   command->add_option("--size", options->size, "WxH")->capture_default_str();
-  command->add_option("--quality", options->quality, "draft, balanced, reference or step=VOXELS (default: the scene's, or balanced)");
+  command->add_option("--quality", options->quality,
+                      "draft, balanced, reference, time=MS, error=E (RMSE, 1/255) or step=VOXELS (default: the scene's, or balanced)");
   command->add_option("--frames", options->frames, "how many frames to draw and time")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--orbit", options->orbit_deg, "turn by so many degrees over the frames");
   command->add_option("--phase", options->phase, "where the pulses of streamlines are, 0 to 1; the frames add one round");

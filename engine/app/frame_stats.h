@@ -1,6 +1,7 @@
 /// `render --stats`: the figures of DESIGN.md, and where they come from.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ struct FrameStats {
   std::string device, driver;
   std::vector<double> frame_ms;  ///< start of extraction to the fence of the colour image
   double first_frame_ms = 0, load_ms = 0, mirror_ms = 0, encode_ms = 0;
+  std::string quality_mode;
+  std::optional<double> estimated_rmse;  ///< 1/255; measured for time= and error= only
   std::uint64_t cpu_bytes = 0, gpu_bytes = 0, validation_messages = 0;
 
   double median_ms() const;

@@ -37,6 +37,8 @@ shared::FrameData CameraRays::frame() const {
   f.depth_near = float(depth_near);
   f.depth_far = float(depth_far);
   f.orthographic = camera.orthographic;
+  f.spacing = float(spacing);
+  f.first = glm::vec2(0.5f - 0.5f * float(spacing));
   return f;
 }
 

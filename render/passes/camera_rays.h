@@ -13,6 +13,7 @@ struct CameraRays {
   Vec3 forward{0.0};
   double reference_depth = 0;
   double depth_near = 1, depth_far = 2;
+  std::uint32_t spacing = 1;  ///< fragment (i, j) is the ray of pixel (spacing i, spacing j)
 
   /// `bounds` of everything drawn.
   static CameraRays make(const FramePacket& packet, const Bounds& bounds);

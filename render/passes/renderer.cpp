@@ -7,12 +7,15 @@
 #include <cstring>
 #include <limits>
 
+#include "render/mirror/half.h"
 #include "render/passes/camera_rays.h"
 #include "render/passes/compose.h"
+#include "render/passes/fast_volume.h"
 #include "render/passes/isosurface.h"
 #include "render/passes/mesh.h"
 #include "render/passes/mirrors.h"
 #include "render/passes/targets.h"
+#include "render/passes/upsample.h"
 #include "render/passes/volume.h"
 #include "render/vk/swapchain.h"
 
@@ -49,10 +52,18 @@ struct Work {
   std::vector<Mirrored<VolumeItem>> volumes;
   std::vector<Mirrored<IsosurfaceItem>> opaque_surfaces, translucent_surfaces;
   std::vector<const field::ScalarGrid*> grids;
+  const VolumeItem* fast = nullptr;  ///< the lone volume of the fast raycast; then `volumes` is empty
+  bool ends_at_half = false;         ///< the fast raycast needs no image of every pixel
   bool meshes = false;
   bool opaque() const { return meshes || !opaque_surfaces.empty(); }
-  bool raycast() const { return !volumes.empty() || !translucent_surfaces.empty(); }
+  bool raycast() const { return fast || !volumes.empty() || !translucent_surfaces.empty(); }
 };
+
+/// One volume and no translucent isosurface: nothing that a ray must blend.
+bool is_alone(const FramePacket& packet) {
+  const auto translucent = [](const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; };
+  return packet.volumes.size() == 1 && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), translucent);
+}
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -68,10 +79,15 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
 RenderSettings draft_settings() {
   RenderSettings s;
   s.step_voxels = 2;
+  s.fast = FastSettings{4, 4, -1, -1};
   return s;
 }
 
-RenderSettings balanced_settings() { return {}; }
+RenderSettings balanced_settings() {
+  RenderSettings s;
+  s.fast = FastSettings{2.5, 4, 0.7, 1.5};
+  return s;
+}
 
 RenderSettings reference_settings() {
   RenderSettings s;
@@ -88,12 +104,16 @@ struct Renderer::Parts {
   std::optional<MeshPass> mesh;
   std::optional<IsosurfacePass> isosurface;
   std::optional<VolumePass> volume;
+  std::optional<FastVolumePass> fast_volume;
+  std::optional<UpsamplePass> upsample;
   std::optional<ComposePass> compose;
   bool drawn = false, drawn_opaque = false;
   double reference_depth = 0;
 
   Result<Work> sort(const FramePacket& packet, const RenderSettings& settings);
-  Outcome prepare(const FramePacket& packet, const Work& work);
+  Bounds bounds(const Work& work) const;
+  Outcome prepare(const FramePacket& packet, const RenderSettings& settings, const Work& work);
+  Outcome record_opaque(vk::Commands& commands, const Work& work, const CameraRays& rays);
   Outcome record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work,
                  const CameraRays& rays);
 };
@@ -105,6 +125,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& opti
   std::unique_ptr<Renderer> self(new Renderer);
   CATENA_TRY(self->parts_->device, vk::Device::create(options));
   self->parts_->mirrors.emplace(*self->parts_->device);
+  self->parts_->upsample.emplace(*self->parts_->device);
   self->parts_->compose.emplace(*self->parts_->device);
   return self;
 }
@@ -123,6 +144,11 @@ Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettin
   };
   for (const VolumeItem& item : packet.volumes) {
     CATENA_ASSERT(item.grid != nullptr);
+    if (settings.fast && is_alone(packet) && can_be_packed(*device, *item.grid)) {
+      work.grids.push_back(item.grid.get());
+      work.fast = &item;
+      continue;
+    }
     CATENA_TRY(auto mirrored, mirror(*item.grid));
     if (!mirrored->drawable) continue;
     work.grids.push_back(item.grid.get());
@@ -137,6 +163,8 @@ Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettin
     (item.opacity < 1 ? work.translucent_surfaces : work.opaque_surfaces).emplace_back(&item, std::move(mirrored));
   }
   mirrors->drop_unused();
+  if (packet.volumes.empty()) fast_volume.reset();
+  work.ends_at_half = work.fast && settings.fast->ends_at_half() && !work.opaque();
   if (work.volumes.size() > MAX_VOLUMES)
     return Error{fmt::format("the scene has {} volumes, expected at most {}", work.volumes.size(), MAX_VOLUMES)};
   if (work.translucent_surfaces.size() > MAX_SURFACES)
@@ -145,40 +173,63 @@ Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettin
   return work;
 }
 
+/// Of all that is drawn; `prepare` comes first.
+Bounds Renderer::Parts::bounds(const Work& work) const {
+  Bounds all;
+  for (const field::ScalarGrid* grid : work.grids) all.add(grid_bounds(*grid));
+  if (work.meshes) all.add(mesh->bounds());
+  return all;
+}
+
 /// Creates the passes that are needed and hands every pass its work, also none.
-Outcome Renderer::Parts::prepare(const FramePacket& packet, const Work& work) {
+Outcome Renderer::Parts::prepare(const FramePacket& packet, const RenderSettings& settings, const Work& work) {
   if (!mesh && work.meshes) {
     CATENA_TRY(mesh, MeshPass::create(*device));
   }
   if (!isosurface && !work.opaque_surfaces.empty()) {
     CATENA_TRY(isosurface, IsosurfacePass::create(*device));
   }
-  if (!volume && work.raycast()) {
+  if (!volume && work.raycast() && !work.fast) {
     CATENA_TRY(volume, VolumePass::create(*device));
+  }
+  if (!fast_volume && work.fast) {
+    CATENA_TRY(fast_volume, FastVolumePass::create(*device));
   }
   if (mesh) CATENA_CHECK(mesh->prepare(packet));
   if (isosurface) CATENA_CHECK(isosurface->prepare(work.opaque_surfaces));
   if (volume) CATENA_CHECK(volume->prepare(work.volumes, work.translucent_surfaces));
-  return targets.ensure(*device, packet.width, packet.height, work.opaque(), work.raycast());
+  if (work.fast) CATENA_CHECK(fast_volume->prepare(*work.fast, *settings.fast));
+  return targets.ensure(*device, packet.width, packet.height, work.opaque(), work.raycast() && !work.ends_at_half);
+}
+
+Outcome Renderer::Parts::record_opaque(vk::Commands& commands, const Work& work, const CameraRays& rays) {
+  if (!work.opaque()) return Done{};
+  const vk::ColorTarget colors[] = {{&targets.opaque_color, std::array<float, 4>{0, 0, 0, 0}},
+                                    {&targets.opaque_depth, std::array<float, 4>{NO_DEPTH, 0, 0, 0}}};
+  commands.begin_pass(colors, {&targets.depth_buffer, 0.0f});
+  if (work.meshes) CATENA_CHECK(mesh->record(commands, rays));
+  if (isosurface) CATENA_CHECK(isosurface->record(commands, rays, covered_area(work.grids, rays.camera)));
+  commands.end_pass();
+  return Done{};
 }
 
 Outcome Renderer::Parts::record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work,
                                 const CameraRays& rays) {
+  CATENA_CHECK(record_opaque(commands, work, rays));
   const VkRect2D area = covered_area(work.grids, rays.camera);
-  if (work.opaque()) {
-    const vk::ColorTarget colors[] = {{&targets.opaque_color, std::array<float, 4>{0, 0, 0, 0}},
-                                      {&targets.opaque_depth, std::array<float, 4>{NO_DEPTH, 0, 0, 0}}};
-    commands.begin_pass(colors, {&targets.depth_buffer, 0.0f});
-    if (work.meshes) CATENA_CHECK(mesh->record(commands, rays));
-    if (isosurface) CATENA_CHECK(isosurface->record(commands, rays, area));
-    commands.end_pass();
-  }
   if (work.raycast()) {
     if (work.opaque()) commands.use(targets.opaque_depth, vk::kFragmentRead);
+    const vk::Image* opaque_depth = work.opaque() ? &targets.opaque_depth : nullptr;
+    if (work.fast) {
+      CATENA_CHECK(fast_volume->record(commands, rays, *settings.fast, area, targets.picture.info().extent,
+                                       work.ends_at_half ? nullptr : &targets.volume, opaque_depth, targets.none));
+      if (work.ends_at_half) return upsample->record(commands, fast_volume->half(), targets, packet.background, work.opaque(), area);
+      return compose->record(commands, targets, packet.background, work.opaque(), true);
+    }
     const vk::ColorTarget color{&targets.volume, std::array<float, 4>{0, 0, 0, 0}};
     commands.begin_pass({&color, 1}, {});
-    CATENA_CHECK(volume->record(commands, rays, {settings.step_voxels, settings.termination, settings.skip}, area,
-                                work.opaque() ? &targets.opaque_depth : nullptr, targets.none));
+    CATENA_CHECK(
+        volume->record(commands, rays, {settings.step_voxels, settings.termination, settings.skip}, area, opaque_depth, targets.none));
     commands.end_pass();
   }
   return compose->record(commands, targets, packet.background, work.opaque(), work.raycast());
@@ -189,11 +240,8 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
   p.drawn = false;
   CATENA_CHECK(check(packet, settings, p.device->info()));
   CATENA_TRY(const Work work, p.sort(packet, settings));
-  CATENA_CHECK(p.prepare(packet, work));
-  Bounds bounds;
-  for (const field::ScalarGrid* grid : work.grids) bounds.add(grid_bounds(*grid));
-  if (work.meshes) bounds.add(p.mesh->bounds());
-  const CameraRays rays = CameraRays::make(packet, bounds);
+  CATENA_CHECK(p.prepare(packet, settings, work));
+  const CameraRays rays = CameraRays::make(packet, p.bounds(work));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
   CATENA_CHECK(p.record(commands, packet, settings, work, rays));
   CATENA_CHECK(commands.finish());
@@ -216,6 +264,74 @@ Result<Picture> Renderer::read_back() {
   commands.copy(p.targets.picture, buffer);
   CATENA_CHECK(commands.finish());
   std::memcpy(picture.rgba.data(), buffer.bytes().data(), picture.rgba.size());
+  return picture;
+}
+
+bool Renderer::draws_fast(const FramePacket& packet) const {
+  return is_alone(packet) && can_be_packed(*parts_->device, *packet.volumes.front().grid);
+}
+
+Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings) {
+  Parts& p = *parts_;
+  p.drawn = false;
+  CATENA_CHECK(check(packet, settings, p.device->info()));
+  CATENA_TRY(const Work work, p.sort(packet, settings));
+  CATENA_CHECK(p.prepare(packet, settings, work));
+  CameraRays rays = CameraRays::make(packet, p.bounds(work));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+  CATENA_CHECK(p.record_opaque(commands, work, rays));
+
+  // the rays, into an image of their own
+  Picture picture;
+  picture.width = (packet.width + kProbeSpacing - 1) / kProbeSpacing;
+  picture.height = (packet.height + kProbeSpacing - 1) / kProbeSpacing;
+  const std::size_t count = std::size_t(picture.width) * picture.height;
+  std::vector<float> volume(4 * count);
+  std::vector<std::uint16_t> opaque(work.opaque() ? 4 * std::size_t(packet.width) * packet.height : 0);
+  vk::Image target;
+  vk::Buffer volume_bytes, opaque_bytes;
+  if (work.raycast()) {
+    vk::ImageInfo info;
+    info.format = kVolumeFormat;
+    info.extent = {picture.width, picture.height, 1};
+    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    CATENA_TRY(target, vk::Image::create(*p.device, info));
+    const vk::Image* depth = work.opaque() ? &p.targets.opaque_depth : nullptr;
+    if (depth) commands.use(p.targets.opaque_depth, vk::kFragmentRead);
+    if (work.fast) {
+      CATENA_CHECK(p.fast_volume->record_probe(commands, rays, *settings.fast, kProbeSpacing, target, depth, p.targets.none));
+    } else {
+      rays.spacing = kProbeSpacing;
+      const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
+      commands.begin_pass({&color, 1}, {});
+      CATENA_CHECK(p.volume->record(commands, rays, {settings.step_voxels, settings.termination, settings.skip},
+                                    {{0, 0}, {picture.width, picture.height}}, depth, p.targets.none));
+      commands.end_pass();
+    }
+    const std::size_t bytes = volume.size() * sizeof(float);
+    CATENA_TRY(volume_bytes, vk::Buffer::create(*p.device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+    commands.copy(target, volume_bytes);
+  }
+  if (work.opaque()) {
+    const std::size_t bytes = opaque.size() * sizeof(std::uint16_t);
+    CATENA_TRY(opaque_bytes, vk::Buffer::create(*p.device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+    commands.copy(p.targets.opaque_color, opaque_bytes);
+  }
+  CATENA_CHECK(commands.finish());
+  if (volume_bytes) std::memcpy(volume.data(), volume_bytes.bytes().data(), volume.size() * sizeof(float));
+  if (opaque_bytes) std::memcpy(opaque.data(), opaque_bytes.bytes().data(), opaque.size() * sizeof(std::uint16_t));
+
+  // volume over opaque over background over black
+  picture.rgba.assign(4 * count, 255);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t pixel = kProbeSpacing * (i / picture.width * packet.width + i % picture.width);
+    for (std::size_t c = 0; c < 3; ++c) {
+      float sum = packet.background[c] * packet.background[3];
+      if (!opaque.empty()) sum = float_from_half(opaque[4 * pixel + c]) + (1 - float_from_half(opaque[4 * pixel + 3])) * sum;
+      sum = volume[4 * i + c] + (1 - volume[4 * i + 3]) * sum;
+      picture.rgba[4 * i + c] = std::uint8_t(std::lround(255 * std::clamp(sum, 0.0f, 1.0f)));
+    }
+  }
   return picture;
 }
 
@@ -254,7 +370,7 @@ RenderStats Renderer::stats() const {
   stats.upload_bytes = device.counters().upload_bytes;
   stats.pipelines = device.counters().pipelines;
   stats.mirrors = parts_->mirrors->count();
-  stats.mirror_ms = parts_->mirrors->build_ms();
+  stats.mirror_ms = parts_->mirrors->build_ms() + (parts_->fast_volume ? parts_->fast_volume->build_ms() : 0);
   stats.validation_messages = device.messages().count();
   return stats;
 }

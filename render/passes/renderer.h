@@ -11,6 +11,7 @@
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
 #include "render/mirror/grid_mirror.h"
+#include "render/passes/fast_settings.h"
 #include "render/vk/device.h"
 #include "render/vk/picture.h"
 
@@ -28,9 +29,11 @@ struct RenderSettings {
   TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
   MirrorLayout layout = MirrorLayout::automatic;
   bool skip = true;  ///< leap over bricks that the transfer function leaves empty
+  /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
+  std::optional<FastSettings> fast;
 };
-RenderSettings draft_settings();      ///< step 2
-RenderSettings balanced_settings();   ///< step 1
+RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2
+RenderSettings balanced_settings();   ///< every 4th pixel at step 2.5, refined where the picture asks for it; where it cannot: step 1
 RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
 
 struct RenderStats {
@@ -43,6 +46,9 @@ struct RenderStats {
   double mirror_ms = 0;                   ///< spent on building and uploading mirrors so far
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
+
+/// Pixels between the rays of Renderer::probe; prime to every lattice's spacing.
+inline constexpr std::uint32_t kProbeSpacing = 13;
 
 /// View depth of the nearest opaque surface: distance along the view axis, world units; infinite where there is none.
 struct DepthPicture {
@@ -61,6 +67,11 @@ class Renderer {
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
   /// The last picture, straight alpha.
   Result<Picture> read_back();
+  /// Whether `RenderSettings::fast` holds for what the packet draws.
+  bool draws_fast(const FramePacket& packet) const;
+  /// The rays of every kProbeSpacing-th pixel alone, as a small picture over black: what `settings` make of them before anything is
+  /// interpolated. What quality.h measures errors with.
+  Result<Picture> probe(const FramePacket& packet, const RenderSettings& settings);
   /// The opaque depth of the last picture.
   Result<DepthPicture> read_depth();
   /// Shows the last picture in a window (scaled to it). False: the swapchain no longer fits, resize it.

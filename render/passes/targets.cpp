@@ -21,13 +21,14 @@ Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t
 Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, bool opaque, bool has_volume) {
   constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-  CATENA_CHECK(fit(device, picture, kPictureFormat, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | read));
+  CATENA_CHECK(
+      fit(device, picture, kPictureFormat, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | read));
   if (opaque) {
-    CATENA_CHECK(fit(device, opaque_color, kOpaqueFormat, width, height, color));
+    CATENA_CHECK(fit(device, opaque_color, kOpaqueFormat, width, height, color | read));
     CATENA_CHECK(fit(device, opaque_depth, kDepthValueFormat, width, height, color | read));
     CATENA_CHECK(fit(device, depth_buffer, kDepthBufferFormat, width, height, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
   }
-  if (has_volume) CATENA_CHECK(fit(device, volume, kVolumeFormat, width, height, color));
+  if (has_volume) CATENA_CHECK(fit(device, volume, kVolumeFormat, width, height, color | VK_IMAGE_USAGE_STORAGE_BIT));
   if (!none) {
     CATENA_CHECK(fit(device, none, kPictureFormat, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT));
     CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));

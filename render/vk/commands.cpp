@@ -164,6 +164,7 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings)
     device_->push_descriptors()(buffer_, pipeline.bind_point(), pipeline.layout(), 0, std::uint32_t(writes.size()), writes.data());
 }
 
+void Commands::draw(std::uint32_t vertices, std::uint32_t instances) { vkCmdDraw(buffer_, vertices, instances, 0, 0); }
 void Commands::draw_triangle() { vkCmdDraw(buffer_, 3, 1, 0, 0); }
 
 void Commands::draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count) {

@@ -24,6 +24,9 @@ inline constexpr Use kTransferRead{VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPE
 inline constexpr Use kFragmentRead{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
                                    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                    VK_ACCESS_2_SHADER_READ_BIT};
+inline constexpr Use kShaderRead{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                                 VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                                 VK_ACCESS_2_SHADER_READ_BIT};
 inline constexpr Use kVertexRead{VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT | VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT,
                                  VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT};
 inline constexpr Use kComputeWrite{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT};
@@ -75,7 +78,8 @@ class Commands {
   void end_pass();
   void scissor(const VkRect2D& area);
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings);
-  void draw_triangle();  ///< one that covers the picture
+  void draw_triangle();                                        ///< one that covers the picture
+  void draw(std::uint32_t vertices, std::uint32_t instances);  ///< without buffers
   void draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count);
   void dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 

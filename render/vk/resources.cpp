@@ -92,6 +92,7 @@ VkDeviceSize texel_bytes(VkFormat format) {
     case VK_FORMAT_D32_SFLOAT:
     case VK_FORMAT_R8G8B8A8_UNORM:
       return 4;
+    case VK_FORMAT_R32G32_UINT:
     case VK_FORMAT_R16G16B16A16_SFLOAT:
       return 8;
     case VK_FORMAT_R32G32B32A32_SFLOAT:

@@ -95,5 +95,5 @@ float begin_pixel(vec2 q) {
   const vec3 direction = world_direction(q);
   world_per_depth = length(direction);
   eye_direction = -direction / world_per_depth;
-  return OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).r : NO_DEPTH;
+  return OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.half_size), 0).r : NO_DEPTH;
 }

@@ -3,7 +3,7 @@ struct LocalRay {
   vec3 origin, direction;  // local position at depth t: origin + t direction
 };
 
-vec2 pixel_place() { return gl_FragCoord.xy - frame.half_size; }
+vec2 pixel_place() { return frame.spacing * gl_FragCoord.xy + frame.first - frame.half_size; }
 
 LocalRay local_ray(int i, vec2 q) {
   LocalRay ray;

@@ -36,6 +36,8 @@ struct FrameData {
   float front;           // the first depth that is seen: the eye's plane
   float depth_near, depth_far;  // buffer depth: perspective near / z, orthographic (far - z) / (far - near)
   uint orthographic;
+  float spacing;         // pixel place of a fragment: spacing * fragment + first
+  vec2 first;
   float step_world;      // length of a ray's segments
   float termination;     // a ray ends when less gets through
   GridData grids[MAX_GRIDS];

@@ -67,6 +67,26 @@ TEST(Render, AHomogeneousBoxSeenObliquelyIsExactAtEveryStep) {
   }
 }
 
+TEST(Render, AnErrorThatWasAskedForIsMeasuredAndSaid) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"d": {"analytic": "marschner-lobb", "resolution": 48}},
+    "volumes": [{"field": "d", "color": [[0, 0.1, 0.2, 0.9], [1, 1, 0.6, 0]], "opacity": [[0.3, 0], [1, 0.1]]}]})");
+  for (const char* quality : {"error=1", "time=10000"}) {
+    const auto run = program({"render", folder / "s.json", "-o", folder / "o.png", "--size", "128x96", "--validation", "--stats",
+                              folder / "o.json", "--quality", quality});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    auto stats = json::parse(test::read_file(folder / "o.json"), "o.json");
+    ASSERT_TRUE(stats);
+    const json::Node* chosen = stats->find("quality");
+    ASSERT_NE(chosen, nullptr);
+    EXPECT_TRUE(chosen->find("mode")->string.starts_with(quality)) << chosen->find("mode")->string;
+    EXPECT_LE(chosen->find("estimated_rmse")->number, 1);
+    EXPECT_EQ(stats->find("validation_messages")->number, 0);
+  }
+  for (const char* quality : {"error=-1", "time=soon", "error="})
+    EXPECT_EQ(program({"render", folder / "s.json", "-o", folder / "p.png", "--quality", quality}).exit_code, 2) << quality;
+}
+
 TEST(Render, TheGlyphOfTheProxySitsOnTheDrawnLine) {
   // a streamline seen from above; the probe is off the line, its proxy on it
   const std::string scene = R"({"fields": {"v": {"analytic": "circle"}},

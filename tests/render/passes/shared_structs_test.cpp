@@ -55,6 +55,8 @@ TEST(SharedStructs, FrameAndGridData) {
     EXPECT_OFFSET(FrameData, depth_near);
     EXPECT_OFFSET(FrameData, depth_far);
     EXPECT_OFFSET(FrameData, orthographic);
+    EXPECT_OFFSET(FrameData, spacing);
+    EXPECT_OFFSET(FrameData, first);
     EXPECT_OFFSET(FrameData, step_world);
     EXPECT_OFFSET(FrameData, termination);
     EXPECT_OFFSET(FrameData, grids);

@@ -1,0 +1,45 @@
+/// A scalar grid for fast raycasting: one 32-bit word a voxel that holds the codes of four neighbours, so that two fetches give a
+/// whole trilinear cell.   word(x, y, z) = c(x, y, z) | c(x+1, y, z) << 8 | c(x, y+1, z) << 16 | c(x+1, y+1, z) << 24
+///   value = lo + code * per_code, code 0..255; beyond the ends the end codes hold
+/// The range is the least one that keeps every cell whole in which the transfer function changes: `active`, widened by the corners
+/// of the cells that touch it. Outside it the picture is one colour and density, so nothing else is lost than 8-bit rounding.
+/// Codes' ranges are kept a brick of 4^3 cells, on the host. Local positions: local = index - origin, the domain is 0 .. size - 1.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/field/grid.h"
+#include "render/vk/resources.h"
+
+namespace catena::render {
+
+inline constexpr int kSmallBrick = 4;
+
+struct CodeRange {
+  std::uint8_t least = 255, greatest = 0;
+};
+
+struct ValueInterval {
+  double least = 0, greatest = 0;
+  bool operator==(const ValueInterval&) const = default;
+};
+
+struct PackedVolume {
+  vk::Image words;  ///< R32_UINT
+  field::Index3 origin, size;
+  double lo = 0, per_code = 0;
+  std::array<std::int32_t, 3> bricks{};  ///< an axis
+  std::vector<CodeRange> ranges;         ///< x fastest
+  std::uint64_t bytes() const { return words.bytes(); }
+};
+
+/// Whether a grid can be packed on this device: no masked cells, at least a cell thick, and of a size that pays.
+bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid);
+
+Result<PackedVolume> make_packed_volume(vk::Device& device, const field::ScalarGrid& grid, const ValueInterval& active);
+
+/// The range of values to encode (for make_packed_volume and its test): `values` x fastest.
+ValueInterval range_to_encode(const field::Index3& size, const std::vector<float>& values, const ValueInterval& active);
+
+}  // namespace catena::render

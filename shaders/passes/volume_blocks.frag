@@ -1,0 +1,49 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Marks the blocks of 4 x 4 texels of a lattice that interpolation from the coarser one would not serve. The four-point cubic errs
+// at the middle by 3 / 128 of the fourth difference; the largest over the block's coarser rays, along both axes, decides. Where
+// something opaque is near, rays end at different depths: every such block is marked.
+#include "shaders/shared/fast_volume.h"
+
+layout(scalar, binding = 0) uniform Lattice { LatticeData lattice; };
+layout(binding = 1) uniform texture2D coarser;
+layout(constant_id = 0) const uint OPAQUE = 0;
+layout(binding = 2) uniform utexture2D opaque_tiles;
+layout(location = 0) out uint out_mark;
+
+vec4 texel(ivec2 at) { return texelFetch(coarser, clamp(at, ivec2(0), ivec2(lattice.width, lattice.height) - 1), 0); }
+
+vec4 worst_along(ivec2 at, ivec2 step) {
+  const vec4 a = texel(at), b = texel(at + step), c = texel(at + 2 * step), d = texel(at + 3 * step);
+  const vec4 e = texel(at + 4 * step), f = texel(at + 5 * step), g = texel(at + 6 * step);
+  const vec4 first = abs(a + e - 4.0 * (b + d) + 6.0 * c);
+  const vec4 second = abs(b + f - 4.0 * (c + e) + 6.0 * d);
+  const vec4 third = abs(c + g - 4.0 * (d + f) + 6.0 * e);
+  return max(first, max(second, third));
+}
+
+// Within reach of the block's interpolation, two coarser rays further.
+bool opaque_near() {
+  const int spacing = int(lattice.spacing);
+  const ivec2 begin = spacing * (4 * ivec2(gl_FragCoord.xy) - int(lattice.apron)) - 4 * spacing, size = textureSize(opaque_tiles, 0);
+  const ivec2 from = clamp(begin >> 2, ivec2(0), size - 1), to = clamp((begin + 12 * spacing) >> 2, ivec2(0), size - 1);
+  uint any = 0u;
+  for (int y = from.y; y <= to.y; ++y)
+    for (int x = from.x; x <= to.x; ++x) any |= texelFetch(opaque_tiles, ivec2(x, y), 0).r;
+  return any != 0u;
+}
+
+void main() {
+  const ivec2 first = 2 * ivec2(gl_FragCoord.xy) - int(lattice.apron) / 2 + COARSE_APRON;  // the block's first coarser ray
+  vec4 worst = vec4(0.0);
+  worst = max(worst, worst_along(first + ivec2(-2, 0), ivec2(1, 0)));
+  worst = max(worst, worst_along(first + ivec2(-2, 1), ivec2(1, 0)));
+  worst = max(worst, worst_along(first + ivec2(-2, 2), ivec2(1, 0)));
+  worst = max(worst, worst_along(first + ivec2(0, -2), ivec2(0, 1)));
+  worst = max(worst, worst_along(first + ivec2(1, -2), ivec2(0, 1)));
+  worst = max(worst, worst_along(first + ivec2(2, -2), ivec2(0, 1)));
+  out_mark = (3.0 / 128.0) * max(max(worst.r, worst.g), max(worst.b, worst.a)) > lattice.threshold ? 1u : 0u;
+  if (OPAQUE != 0u && opaque_near()) out_mark = 1u;
+}
