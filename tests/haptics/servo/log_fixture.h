@@ -1,6 +1,7 @@
 /// What the tests of the recording share: a log read to its end, a servo that is as fast as its log.
 #pragma once
 #include <gtest/gtest.h>
+#include <atomic>
 
 #include <thread>
 
@@ -51,7 +52,7 @@ class Throttled final : public Device {
   Throttled(const LogWriter& writer, std::vector<ProbeSample> path) : writer_(writer), path_(std::move(path)) {}
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override {
-    while (reads_ > writer_.status().ticks + 3000) std::this_thread::yield();
+    while (reads_ > writer_.status().ticks + 3000 || reads_ >= allowed_.load(std::memory_order_acquire)) std::this_thread::yield();
     const ProbeSample& p = path_[reads_ % path_.size()];
     DeviceInput input;
     input.position_m = p.position;
@@ -63,9 +64,11 @@ class Throttled final : public Device {
     return input;
   }
   void write(const DeviceOutput&) noexcept override {}
+  void allow(std::uint64_t ticks) { allowed_.store(ticks, std::memory_order_release); }  ///< since the start
 
  private:
   const LogWriter& writer_;
+  std::atomic<std::uint64_t> allowed_{~std::uint64_t{0}};
   std::vector<ProbeSample> path_;
   DeviceCapabilities capabilities_;
   std::uint64_t reads_ = 0;
