@@ -57,7 +57,7 @@ void list(bool json) {
           i == 0 ? "" : ",", quoted(info.name), info.present, quoted(info.detail), c.has_orientation, to_text(c.max_force_n),
           to_text(c.max_torque_nm), c.buttons, to_text(c.workspace_m), quoted(how_to_open(info)));
     } else {
-      fmt::print("{:<20} {:<8} {}\n{:<30}{}; {}\n", info.name, info.present ? "here" : "not here", info.detail, "", abilities(c),
+      fmt::print("{:<22} {:<8} {}\n{:<32}{}; {}\n", info.name, info.present ? "here" : "not here", info.detail, "", abilities(c),
                  how_to_open(info));
     }
   }
