@@ -302,6 +302,9 @@ TEST(Devices, FailuresAreOneLineAndOneBadNamesTwo) {
   expect(devices({"test", "null", "--seconds", "0.05", "--forces"}), 1, "no force output");
   expect(devices({"test", "recorded"}), 1, "recorded:PATH.csv");
   expect(devices({"test", "mouse"}), 1, "catena view");
+  expect(devices({"test", "simulated:"}), 1, "nothing after its colon");
+  expect(devices({"test", "null:1"}), 1, "\"null\" alone");
+  expect(devices({"test", "emulated-falcon:stil"}), 1, "emulated-falcon:still");
 }
 
 }  // namespace
