@@ -57,7 +57,7 @@ void list(bool json) {
           i == 0 ? "" : ",", quoted(info.name), info.present, quoted(info.detail), c.has_orientation, to_text(c.max_force_n),
           to_text(c.max_torque_nm), c.buttons, to_text(c.workspace_m), quoted(how_to_open(info)));
     } else {
-      fmt::print("{:<20} {:<8} {}\n{:<30}{}; {}\n", info.name, info.present ? "here" : "not here", info.detail, "", abilities(c),
+      fmt::print("{:<22} {:<8} {}\n{:<32}{}; {}\n", info.name, info.present ? "here" : "not here", info.detail, "", abilities(c),
                  how_to_open(info));
     }
   }
@@ -72,7 +72,7 @@ void print_check(const haptics::Device& device, const std::string& name, const D
   if (check.reads == 0) return;
   fmt::print("  ready after  {:.2f} s\n", check.ready_after_s);
   if (check.seconds > 0) fmt::print("  read         {} poses in {:.2f} s: {:.0f} a second\n", check.reads, check.seconds, check.rate_hz());
-  fmt::print("  place        x {:.5f} .. {:.5f}, y {:.5f} .. {:.5f}, z {:.5f} .. {:.5f}\n", check.lowest_m.x, check.highest_m.x,
+  fmt::print("  place        x {:.5f} .. {:.5f}, y {:.5f} .. {:.5f}, z {:.5f} .. {:.5f} m\n", check.lowest_m.x, check.highest_m.x,
              check.lowest_m.y, check.highest_m.y, check.lowest_m.z, check.highest_m.z);
   if (c.has_orientation) fmt::print("  turned       up to {:.4f} rad\n", check.turned_rad);
   fmt::print("  jitter       {:.3g} um rms\n", 1e6 * check.jitter_m);
@@ -98,6 +98,7 @@ Outcome test(const Options& options) {
   haptics::DeviceSettings settings;
   settings.type = type_of(options.name);
   settings.firmware = options.firmware;
+  settings.tell = [](const std::string& news) { fmt::print(stderr, "{}\n", news); };
   auto opened = haptics::open_device(options.name, settings);
   if (!opened) throw MachineFailure{options.name + ": " + opened.error().message};
   haptics::Device& device = **opened;
@@ -106,6 +107,7 @@ Outcome test(const Options& options) {
   check_options.seconds = options.seconds;
   check_options.forces = options.forces;
   check_options.stop = &interrupted;
+  check_options.tell = settings.tell;
   if (options.forces && device.capabilities().max_force_n > 0)
     fmt::print(stderr, "{}: pushes of up to 1 N follow; hold the grip, Ctrl-C stops\n", options.name);
   const auto before = std::signal(SIGINT, [](int) { interrupted = true; });

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "engine/app/command.h"
 #include "engine/app/hand/hand_setup.h"
@@ -14,6 +15,7 @@
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/hand/realtime_option.h"
 #include "engine/app/hand/recording.h"
+#include "engine/app/number_option.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "haptics/extract/extract.h"
@@ -62,7 +64,9 @@ class StatusLine {
   void tell(const std::string& text) {
     if (text == told_) return;
     told_ = text;
-    if (text.empty()) return;
+    if (!text.empty()) say(text);
+  }
+  void say(const std::string& text) {
     end();
     fmt::print("{}\n", text);
     std::fflush(stdout);
@@ -79,17 +83,21 @@ class StatusLine {
 };
 
 /// Until the time is over or somebody asks to end.
-void wait(haptics::Servo& servo, const haptics::Device& device, const Options& options, const Interrupt& interrupt, StatusLine& line) {
+void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const Options& options,
+          const Interrupt& interrupt, StatusLine& line) {
   constexpr double kStep = 0.02, kLine = 1;
   const std::int64_t start = now_ns();
   exchange::HapticState state;
   double shown = 0;
   std::uint64_t shown_ticks = 0;
+  bool told_of_recording = false;
   while (!interrupt.asked()) {
     const double t = 1e-3 * ms_since(start);
     if (options.seconds > 0 && t >= options.seconds) return;
     servo.take(state);
     line.tell(device.status_text());
+    if (recording.failed() && !std::exchange(told_of_recording, true))
+      line.say(options.record + ": the recording has stopped; the rest is felt only");
     if (t - shown >= kLine) {
       line.show(state, static_cast<double>(state.tick - shown_ticks) / (t - shown));
       shown = t;
@@ -125,7 +133,7 @@ Outcome feel(const Options& options) {
              options.seconds > 0 ? "" : "; Ctrl-C ends");
   std::fflush(stdout);
   StatusLine line(*program);
-  wait(servo, *hand.device, options, interrupt, line);
+  wait(servo, *hand.device, recording, options, interrupt, line);
   servo.stop();
   line.end();
   CATENA_CHECK(recording.finish());
@@ -141,9 +149,9 @@ void add_feel(CLI::App& program, Work& chosen) {
   CLI::App* command = program.add_subcommand("feel", "feel a scene with a haptic device, without a window");
   command->add_option("SCENE", options->scene, "the scene file (.json)")->required();
   command->add_option("--device", options->device, "NAME or NAME:DETAIL; default: the scene's \"device\", or else simulated");
-  command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(CLI::NonNegativeNumber);
+  command->add_option("--seconds", options->seconds, "end after so long; default: until Ctrl-C")->check(number_at_least(0));
   command->add_option("--rate", options->rate_hz, "ticks a second; default: the device's, or else 1000")
-      ->check(CLI::Range(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
+      ->check(number_between(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
   command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
   command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
   command->add_option("--forces", options->forces, "on: the device may push. Off at first, for a simulated device too")

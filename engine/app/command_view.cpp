@@ -4,6 +4,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/hand/realtime_option.h"
+#include "engine/app/number_option.h"
 #include "engine/app/size_option.h"
 #include "engine/app/viewer/viewer.h"
 #include "engine/base/output_file.h"
@@ -58,7 +59,7 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
   command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);
-  command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(CLI::NonNegativeNumber);
+  command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
   command->add_option("--servo-stats", options->servo_stats, "the servo's ticks, missed deadlines, histograms, JSON");
   command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <utility>
 
 #include "engine/base/clock.h"
 
@@ -14,6 +15,8 @@ using haptics::DeviceInput;
 using haptics::DeviceStatus;
 
 constexpr double kRise_s = 0.2, kRest_s = 0.2, kPause_s = 0.1;
+constexpr std::uint64_t kTicksATell = 50;
+constexpr double kResting_s = 0.5, kResting_m = 0.002;
 constexpr double kAgainst_m = 5e-4;  // a hand that moves so far against the push: axes or signs are wrong
 
 class Check {
@@ -21,7 +24,7 @@ class Check {
   Check(haptics::Device& device, const DeviceCheckOptions& options, const Pace& pace) : device_(device), options_(options), pace_(pace) {}
 
   DeviceCheck run() {
-    if (wait_until_ready() && watch() && options_.forces) push_all();
+    if (wait_until_ready() && watch() && options_.forces && settle()) push_all();
     device_.write({});
     return std::move(out_);
   }
@@ -49,6 +52,7 @@ class Check {
     DeviceInput input;
     do {
       if (!step(Vec3(0.0), input)) return false;
+      if (input.status != DeviceStatus::ready) tell();
       if (now_s_ > options_.ready_within_s)
         return fail(
             fmt::format("the device is not ready after {:.0f} s; move its grip through the workspace to home it", options_.ready_within_s));
@@ -90,12 +94,42 @@ class Check {
     return true;
   }
 
+  /// Until the device lets forces through (a Falcon wants its grip pulled out once more) and the grip rests.
+  bool settle() {
+    if (!(device_.capabilities().max_force_n > 0)) return fail("the device has no force output; it was expected with --forces");
+    const double start = now_s_;
+    double since = now_s_;
+    bool asked = false;
+    Vec3 rest(0.0);
+    for (bool first = true;; first = false) {
+      DeviceInput input;
+      if (!step(Vec3(0.0), input)) return false;
+      if (input.status != DeviceStatus::ready) return fail(fmt::format("the device was no longer ready after {:.2f} s", now_s_));
+      if (first || !input.forces_on || norm(input.position_m - rest) > kResting_m) {
+        since = now_s_;
+        rest = input.position_m;
+      }
+      if (now_s_ - since >= kResting_s) return true;
+      if (!input.forces_on) tell();
+      if (now_s_ - start > options_.ready_within_s)
+        return fail(input.forces_on ? fmt::format("the grip did not rest for {:.1f} s; hold it where it is", kResting_s)
+                                    : fmt::format("the device lets no force through after {:.0f} s; {}", options_.ready_within_s,
+                                                  device_.status_text().empty() ? "are its forces switched off?" : device_.status_text()));
+      if (input.forces_on && now_s_ - start > 2 * kResting_s && !std::exchange(asked, true) && options_.tell)
+        options_.tell("hold the grip still, away from the ends of its reach");
+    }
+  }
+
+  /// What the device asks of the person, when it changes. A text is made: not in every tick.
+  void tell() {
+    if (!options_.tell || tick_ % kTicksATell != 0) return;
+    const std::string text = device_.status_text();
+    if (!text.empty() && text != told_) options_.tell(text);
+    told_ = text;
+  }
+
   void push_all() {
     const double most = device_.capabilities().max_force_n;
-    if (!(most > 0)) {
-      fail("the device has no force output; it was expected with --forces");
-      return;
-    }
     const double size = std::min(options_.push_n, most);
     for (int axis = 0; axis < 3; ++axis)
       for (const double sign : {1.0, -1.0}) {
@@ -140,6 +174,7 @@ class Check {
   DeviceCheck out_;
   std::uint64_t tick_ = 0;
   double now_s_ = 0;
+  std::string told_;
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 /// The self-test of a device: what it says for some seconds, and, only where asked for, small pushes.
-/// Without `forces` nothing but zero is written. With it: along each axis, both ways, a push that rises evenly to at most `push_n`,
-/// rests, and falls; it ends at once where the hand has moved by `most_travel_m`, the device is not ready, or `stop` is set.
-/// Metres, newtons, seconds. One thread, which is not a real-time one.
+/// Without `forces` nothing but zero is written. With it, once the device lets forces through and the grip rests for half a second: along
+/// each axis, both ways, a push that rises evenly to at most `push_n`, rests, and falls; it ends at once where the hand has moved by
+/// `most_travel_m`, the device is not ready, or `stop` is set. Metres, newtons, seconds. One thread, which is not a real-time one.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -20,6 +20,7 @@ struct DeviceCheckOptions {
   double most_travel_m = 0.02;
   double ready_within_s = 20;  ///< firmware and homing take their time
   const std::atomic<bool>* stop = nullptr;
+  std::function<void(const std::string&)> tell;  ///< hears what is asked of the person before it goes on; may be empty
 };
 
 /// Waits until tick k is due; the seconds since the start.

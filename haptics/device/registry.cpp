@@ -25,7 +25,8 @@ struct DeviceType {
   Result<std::unique_ptr<Device>> (*open)(const std::string& detail, const DeviceSettings& settings);
 };
 
-Result<std::unique_ptr<Device>> open_null(const std::string&, const DeviceSettings&) {
+Result<std::unique_ptr<Device>> open_null(const std::string& detail, const DeviceSettings&) {
+  if (!detail.empty()) return Error{"there is one null device; \"null\" alone was expected, not \"null:" + detail + "\""};
   return std::unique_ptr<Device>(std::make_unique<NullDevice>());
 }
 
@@ -146,6 +147,9 @@ Result<std::unique_ptr<Device>> open_device(const std::string& name, const Devic
   const std::size_t colon = name.find(':');
   const DeviceType* found = find(name.substr(0, colon));
   if (found == nullptr) return Error{"there is no device \"" + name + "\"; one of " + device_types() + " was expected"};
+  if (colon != std::string::npos && colon + 1 == name.size())
+    return Error{"device \"" + name + "\" has nothing after its colon; \"" + found->name + "\" or \"" + found->name +
+                 ":DETAIL\" was expected"};
   CATENA_TRY(std::unique_ptr<Device> device, found->open(colon == std::string::npos ? std::string() : name.substr(colon + 1), settings));
   return with_hand_map(std::move(device), settings);
 }

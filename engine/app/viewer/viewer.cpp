@@ -235,6 +235,7 @@ void Session::update_title() {
     title += fmt::format("  {} {}", link_names_[k], exchange::status_word(felt_.links[k].status));
   }
   if (const std::string text = hand_.device->status_text(); !text.empty()) title += "  " + text;
+  if (recording_.failed()) title += "  the recording has stopped";
   if (mouse_ == nullptr) title += servo_->forces() ? "  [forces on]" : "  [forces off]";
   if (controls_.hand_mode) title += "  [hand]";
   window_->set_title(title);

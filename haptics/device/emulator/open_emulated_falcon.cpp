@@ -4,6 +4,8 @@
 
 #include "haptics/device/emulator/emulated_transport.h"
 #include "haptics/device/usb/falcon.h"
+#include "haptics/device/usb/falcon_image.h"
+#include "haptics/device/usb/open_falcon.h"
 
 namespace catena::haptics {
 
@@ -20,15 +22,28 @@ EmulatedHand gentle_hand() {
   return hand;
 }
 
+EmulatedHand still_hand() {
+  EmulatedHand hand;
+  hand.path = {{0, {0, 0, 0.12}, 0},    {0.3, {0, 0, 0.12}, 0},  {1, {0, 0, 0.176}, 0}, {1.6, {0, 0, 0.13}, 0},
+               {2.2, {0, 0, 0.176}, 0}, {2.5, {0, 0, 0.176}, 0}, {3, {0, 0, 0.12}, 0}};
+  return hand;
+}
+
 void list_emulated_falcon(std::vector<DeviceInfo>& to) {
   to.push_back({"emulated-falcon", true, "the Falcon's driver on an emulated device in a moving hand: no hardware"});
+  to.push_back({"emulated-falcon:still", true, "the same in a hand that rests once it has homed: for devices test --forces"});
 }
 
 Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& detail, const DeviceSettings& settings) {
-  if (!detail.empty()) return Error{"\"emulated-falcon:" + detail + "\" is not known; \"emulated-falcon\" alone was expected"};
-  auto shared = std::make_shared<SharedEmulatedFalcon>();
-  shared->device.mechanism().carry(gentle_hand());
+  if (!detail.empty() && detail != "still")
+    return Error{"\"emulated-falcon:" + detail + "\" is not known; \"emulated-falcon\" or \"emulated-falcon:still\" was expected"};
   usb::FalconOptions options;
+  if (!settings.firmware.empty()) {
+    CATENA_TRY(options.firmware, usb::read_falcon_image(settings.firmware));
+  }
+  options.boot.progress = usb::boot_progress_lines(settings.tell);
+  auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.firmware = settings.firmware.empty()});
+  shared->device.mechanism().carry(detail == "still" ? still_hand() : gentle_hand());
   options.force_gain = settings.force_gain;
   CATENA_TRY(std::unique_ptr<Device> device,
              usb::Falcon::open(std::make_unique<EmulatedSource>(std::move(shared), true), std::move(options)));

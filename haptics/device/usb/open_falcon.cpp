@@ -25,6 +25,15 @@ void list_falcons(std::vector<DeviceInfo>& to) {
     to.push_back({i == 0 ? "falcon" : fmt::format("falcon:{}", i), (*listed)[i].can_open, "Novint Falcon, " + (*listed)[i].detail});
 }
 
+std::function<bool(int, double)> boot_progress_lines(std::function<void(const std::string&)> tell) {
+  return [tell = std::move(tell), told = std::string()](int attempt, double share) mutable {
+    std::string line = fmt::format("Falcon: its firmware is being sent, try {}, {} %", attempt, 10 * static_cast<int>(10 * share));
+    if (tell && line != told) tell(line);
+    told = std::move(line);
+    return true;
+  };
+}
+
 Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const DeviceSettings& settings) {
   const auto index = detail.empty() ? 0 : parse_integer(detail);
   if (!index || *index < 0 || *index >= kMost)
@@ -35,13 +44,7 @@ Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const Dev
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, read_falcon_image(settings.firmware));
   }
-  options.boot.progress = [tell = settings.tell, told = std::string()](int attempt, double share) mutable {
-    // ten lines a try
-    std::string line = fmt::format("Falcon: its firmware is being sent, try {}, {} %", attempt, 10 * static_cast<int>(10 * share));
-    if (tell && line != told) tell(line);
-    told = std::move(line);
-    return true;
-  };
+  options.boot.progress = boot_progress_lines(settings.tell);
   CATENA_TRY(auto falcon, Falcon::open(std::make_unique<LibusbSource>(kFalconUsbId, static_cast<int>(*index)), std::move(options)));
   return std::unique_ptr<Device>(std::move(falcon));
 }

@@ -43,7 +43,10 @@ Result<BlockFile> BlockFile::create(const std::string& path) {
   std::memcpy(preamble, kMagic, 8);
   std::memcpy(preamble + 8, &kVersion, 4);
   std::memcpy(preamble + 12, &kByteOrder, 4);
-  if (!file.write_all(preamble, sizeof preamble)) return Error{file.error()};
+  if (!file.write_all(preamble, sizeof preamble)) {
+    file.discard();
+    return Error{file.error()};
+  }
   return file;
 }
 
@@ -102,6 +105,13 @@ bool BlockFile::close() {
   if (descriptor_ >= 0 && ::close(descriptor_) != 0 && error_ == 0) error_ = errno;
   descriptor_ = -1;
   return error_ == 0;
+}
+
+void BlockFile::discard() {
+  if (descriptor_ < 0) return;
+  if (is_regular(descriptor_)) ::unlink(path_.c_str());
+  ::close(descriptor_);
+  descriptor_ = -1;
 }
 
 std::string BlockFile::error() const { return error_ == 0 ? std::string() : cannot_write(path_, error_); }

@@ -22,6 +22,7 @@ class BlockFile {
   bool write(BlockType type, std::string_view payload);
   bool sync();
   bool close();
+  void discard();  ///< closes and removes it: not even its header could be written
   bool failed() const { return error_ != 0; }
   std::string error() const;  ///< "FILE: cannot write: No space left on device"
   std::uint64_t bytes() const { return bytes_; }

@@ -122,7 +122,10 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
     header.started_unix_ns =
         std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
   CATENA_TRY(BlockFile file, BlockFile::create(path));
-  if (!file.write(BlockType::header, to_bytes(header)) || !file.sync()) return Error{file.error()};
+  if (!file.write(BlockType::header, to_bytes(header)) || !file.sync()) {
+    file.discard();
+    return Error{file.error()};
+  }
   return std::unique_ptr<LogWriter>(new LogWriter(std::make_unique<Parts>(std::move(file), path, options)));
 }
 

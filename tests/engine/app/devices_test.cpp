@@ -7,6 +7,7 @@
 #include "engine/base/json.h"
 #include "haptics/device/null_device.h"
 #include "haptics/device/registry.h"
+#include "tests/haptics/device/emulator/boot_image.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
@@ -105,7 +106,7 @@ TEST(DeviceCheck, AForceTheWrongWayRoundIsFound) {
 }
 
 TEST(DeviceCheck, LossAndNonsenseAreFailuresWithZeroForce) {
-  for (const int when : {50, 900}) {
+  for (const int when : {50, 900, 1300}) {
     Springy lost, broken, fallen;
     lost.lost = broken.broken = when;
     const DeviceCheck a = check(lost, true), b = check(broken, true);
@@ -125,6 +126,78 @@ TEST(DeviceCheck, WaitsForAStartOnlySoLong) {
   EXPECT_EQ(out.reads, 0u);
 }
 
+// Not ready for a while; says why.
+class Homing final : public haptics::Device {
+ public:
+  const haptics::DeviceCapabilities& capabilities() const override { return able_; }
+  DeviceInput read() noexcept override {
+    DeviceInput in;
+    if (++reads <= 400) in.status = DeviceStatus::starting;
+    return in;
+  }
+  void write(const DeviceOutput&) noexcept override {}
+  std::string status_text() const override { return reads < 200 ? "pull it out" : reads < 400 ? "push it in" : ""; }
+  int reads = 0;
+
+ private:
+  haptics::DeviceCapabilities able_;
+};
+
+TEST(DeviceCheck, SaysWhatTheDeviceAsksForWhileItIsNotReady) {
+  Homing device;
+  std::vector<std::string> told;
+  DeviceCheckOptions options;
+  options.seconds = 0.1;
+  options.tell = [&](const std::string& text) { told.push_back(text); };
+  EXPECT_EQ(check_device(device, options, unpaced(options.rate_hz)).failure, "");
+  EXPECT_EQ(told, (std::vector<std::string>{"pull it out", "push it in"}));
+}
+
+// Ready, but forces are not let through at first, and the hand moves until `rests`.
+class Arming final : public haptics::Device {
+ public:
+  Arming() { able_.max_force_n = 5; }
+  const haptics::DeviceCapabilities& capabilities() const override { return able_; }
+  DeviceInput read() noexcept override {
+    DeviceInput in;
+    in.position_m.z = 1e-4 * std::min(++reads, rests);
+    in.forces_on = reads > arms;
+    return in;
+  }
+  void write(const DeviceOutput& out) noexcept override {
+    if (norm(out.force_n) > 0 && first_push == 0) first_push = reads;
+  }
+  std::string status_text() const override { return reads > arms ? "" : "pull it out once"; }
+  int reads = 0, arms = 1500, rests = 2500, first_push = 0;
+
+ private:
+  haptics::DeviceCapabilities able_;
+};
+
+TEST(DeviceCheck, PushesOnlyOnceForcesAreLetThroughAndTheGripRests) {
+  const auto run = [](Arming& device, std::vector<std::string>& told) {
+    DeviceCheckOptions options;
+    options.seconds = 0.1;
+    options.forces = true;
+    options.tell = [&](const std::string& text) { told.push_back(text); };
+    return check_device(device, options, unpaced(options.rate_hz));
+  };
+  std::vector<std::string> told;
+  Arming device;
+  EXPECT_EQ(run(device, told).failure, "");
+  EXPECT_GE(device.first_push, 2500 - 20 + 500);  // 2 mm of rest are 20 ticks of this hand
+  EXPECT_LE(device.first_push, 2510 + 500);
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0], "pull it out once");
+  EXPECT_NE(told[1].find("hold the grip still"), std::string::npos);
+
+  Arming never, restless;
+  never.arms = restless.rests = 1 << 30;
+  EXPECT_NE(run(never, told).failure.find("lets no force through after 20 s; pull it out once"), std::string::npos);
+  EXPECT_NE(run(restless, told).failure.find("did not rest"), std::string::npos);
+  EXPECT_EQ(never.first_push + restless.first_push, 0);
+}
+
 TEST(DeviceCheck, StopsWhenAsked) {
   Springy device;
   std::atomic<bool> stop{false};
@@ -132,12 +205,13 @@ TEST(DeviceCheck, StopsWhenAsked) {
   options.forces = true;
   options.stop = &stop;
   const DeviceCheck out = check_device(device, options, [&](std::uint64_t k) {
-    if (k == 2300) stop = true;
+    if (k == 2800) stop = true;
     return 1e-3 * static_cast<double>(k);
   });
   EXPECT_EQ(out.failure, "stopped by hand");
   EXPECT_EQ(device.force, Vec3(0.0));
-  EXPECT_LE(device.reads, 2301);
+  EXPECT_LE(device.reads, 2801);
+  EXPECT_GT(device.strongest, 0) << "it was pushing";
 }
 
 TEST(DeviceCheck, ADeviceWithoutForceCannotPush) {
@@ -191,6 +265,32 @@ TEST(Devices, PushesTheSimulatedHand) {
   EXPECT_NE(run.out.find("\npass\n"), std::string::npos) << run.out;
 }
 
+TEST(Devices, PushesTheEmulatedFalconInAStillHand) {
+  const test::ProgramResult run = devices({"test", "emulated-falcon:still", "--seconds", "0.05", "--forces"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("pull the grip fully out"), std::string::npos) << run.err;
+  const std::string said = "push         +1.00 +0.00 +0.00 N moved the hand +";
+  const auto at = run.out.find(said);
+  ASSERT_NE(at, std::string::npos) << run.out;
+  EXPECT_NEAR(std::stod(run.out.substr(at + said.size())), 1000.0 / 300, 0.5) << run.out;  // mm: 1 N against a hand of 300 N/m
+}
+
+TEST(Devices, TheEmulatedFalconBootsAStatedFirmware) {
+  const test::TemporaryFolder folder;
+  const auto image = haptics::test::boot_image({40, 3});
+  test::write_file(folder / "good.bin", std::string(image.begin(), image.end()));
+  const test::ProgramResult good = devices({"test", "emulated-falcon", "--seconds", "0.05", "--firmware", folder / "good.bin"});
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_NE(good.err.find("firmware is being sent"), std::string::npos) << good.err;
+  for (std::size_t size = 0; size < image.size(); size += 7) {
+    test::write_file(folder / "bad.bin", std::string(image.begin(), image.begin() + static_cast<std::ptrdiff_t>(size)));
+    const test::ProgramResult bad = devices({"test", "emulated-falcon", "--seconds", "0.05", "--firmware", folder / "bad.bin"});
+    EXPECT_NE(bad.exit_code, 0) << size;
+    EXPECT_NE(bad.err.find("bad.bin"), std::string::npos) << bad.err;
+    EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
+  }
+}
+
 TEST(Devices, FailuresAreOneLineAndOneBadNamesTwo) {
   const auto expect = [](const test::ProgramResult& run, int code, const char* part) {
     EXPECT_EQ(run.exit_code, code) << run.err;
@@ -202,6 +302,9 @@ TEST(Devices, FailuresAreOneLineAndOneBadNamesTwo) {
   expect(devices({"test", "null", "--seconds", "0.05", "--forces"}), 1, "no force output");
   expect(devices({"test", "recorded"}), 1, "recorded:PATH.csv");
   expect(devices({"test", "mouse"}), 1, "catena view");
+  expect(devices({"test", "simulated:"}), 1, "nothing after its colon");
+  expect(devices({"test", "null:1"}), 1, "\"null\" alone");
+  expect(devices({"test", "emulated-falcon:stil"}), 1, "emulated-falcon:still");
 }
 
 }  // namespace

@@ -97,6 +97,11 @@ TEST_F(Feel, BadInputIsOneLine) {
   expect_refused(feel({"--device", "nonsense", "--stats", file}), "there is no device \"nonsense\"");
   expect_refused(feel({"--rate", "50", "--stats", file}), "--rate");
   expect_refused(feel({"--rate", "20000", "--stats", file}), "--rate");
+  expect_refused(feel({"--rate", "nan", "--stats", file}),
+                 "--rate: \"nan\" is out of range; a finite number from 100 to 10000 was expected");
+  expect_refused(feel({"--seconds", "nan", "--stats", file}),
+                 "--seconds: \"nan\" is out of range; a finite number of at least 0 was expected");
+  expect_refused(feel({"--seconds", "-1", "--stats", file}), "--seconds: \"-1\" is out of range; a finite number of at least 0");
   expect_refused(feel({"--forces", "maybe", "--stats", file}), "--forces");
   expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"type": "simulated", "colour": 3})"), "colour");
   expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"rate": 500})"), "type");

@@ -96,6 +96,16 @@ TEST(LogWriter, AFullDiskIsAStatusAndOneLine) {
   EXPECT_FALSE(read.clean);
 }
 
+TEST(LogWriter, WhatHasNotEvenRoomForItsHeaderLeavesNoFile) {
+  const test::TemporaryFolder folder;
+  for (const rlim_t bytes : {rlim_t{0}, rlim_t{8}, rlim_t{16}, rlim_t{60}}) {
+    const SmallDisk disk(bytes);
+    EXPECT_FALSE(LogWriter::open(folder / "l.catlog", {}));
+    EXPECT_FALSE(test::exists(folder / "l.catlog")) << bytes;
+  }
+  EXPECT_TRUE(test::exists("/dev/full")) << "a device is not removed";
+}
+
 TEST(LogWriter, ReplacesAFileButNotAnInputAndNotOneThatIsBeingWritten) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "l.catlog", std::string(100000, 'x'));
