@@ -4,7 +4,8 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kLeastEnergy = 1e-15;  // joules: below it is round-off
+constexpr double kLeastEnergy = 1e-15;   // joules: below it is round-off
+constexpr double kLeastDamping = 1e-3;   // N s/m: below it is nothing
 
 bool is_apart(const LinkState& link, bool has_gap) noexcept {
   return !link.on || link.released || link.status == Status::no_surface || (link.status == Status::budget && !has_gap);
@@ -39,12 +40,20 @@ PassivityState::Sent acted(const PassivityState& state, double delay_s, double d
           mix(older.added_n, newer.added_n)};
 }
 
-// The force that takes `need_j` from a hand that goes on by `move_m` in the next tick.
-Vec3 brake(const Limits& limits, const Vec3& move_m, double dt_s, double need_j) noexcept {
+constexpr double kReleaseS = 0.03;  // in which added damping goes: one that comes and goes by the tick would be felt as a buzz
+
+// The damping that takes `need_j` from a hand that goes on by `move_m` in the next tick: at once up, slowly down.
+double step_damping(const Limits& limits, const Vec3& move_m, double dt_s, double need_j, double last) noexcept {
+  const double kept = dt_s < kReleaseS ? last * (1 - dt_s / kReleaseS) : 0;
   const double squared = dot(move_m, move_m);
-  if (!(squared > 0) || !(dt_s > 0)) return Vec3(0.0);
-  const double damping_dt = std::fmin(need_j / squared, limits.max_added_damping_ns_per_m / dt_s);
-  const Vec3 force = move_m * -damping_dt;
+  const double needed = need_j > 0 && squared > 0 ? need_j * dt_s / squared : 0;
+  const double damping = std::fmin(std::fmax(kept, needed), limits.max_added_damping_ns_per_m);
+  return damping > kLeastDamping && std::isfinite(damping) ? damping : 0;
+}
+
+// -d v, as far as the hand goes on as it does.
+Vec3 brake(double damping_ns_per_m, const Vec3& move_m, double dt_s) noexcept {
+  const Vec3 force = dt_s > 0 ? move_m * (-damping_ns_per_m / dt_s) : Vec3(0.0);
   return is_finite(force) ? force : Vec3(0.0);
 }
 
@@ -123,12 +132,15 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
   const bool flows = guard.force_state == ForceState::on || guard.force_state == ForceState::ramping_in;
   if (limits.passivity && flows) {
     const double next_j = state.balance_j + std::fmin(0.0, step_j - taken_j);
-    if (next_j < -kLeastEnergy) {
+    state.damping_ns_per_m = step_damping(limits, move_m, tick.dt_s, next_j < -kLeastEnergy ? -next_j : 0, state.damping_ns_per_m);
+    if (state.damping_ns_per_m > 0) {
       const Vec3 before = guard.force_n;
-      guard.force_n =
-          at_most(before + brake(limits, move_m, tick.dt_s, -next_j), std::fmin(limits.max_force_n, program.coupling.max_force_n));
+      guard.force_n = at_most(before + brake(state.damping_ns_per_m, move_m, tick.dt_s),
+                              std::fmin(limits.max_force_n, program.coupling.max_force_n));
       added_n = guard.force_n - before;
     }
+  } else {
+    state.damping_ns_per_m = 0;
   }
 
   state.past[state.next] = {guard.force_n, granted_n * sent, tick.fading_n * sent, added_n};
@@ -142,7 +154,7 @@ void suspend(PassivityState& state) noexcept {
   state.sent_n.fill(Vec3(0.0));
   state.stored_j.fill(0);
   state.past.fill({});
-  state.storage_j = state.ramp = state.let_go_j = 0;
+  state.storage_j = state.ramp = state.let_go_j = state.damping_ns_per_m = 0;
   state.anew = true;
 }
 

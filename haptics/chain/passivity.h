@@ -15,8 +15,9 @@
 ///   granted   to the hand by the program, not to be taken back by the controller: the jumps of V at switches, snaps and
 ///             programs, weights and ramps that rise, what fades (fade.h) as far as the springs that were taken away had it, cues, and
 ///             links that are sources of energy by what they are (Constraint::is_source: gradient_force), which have no storage
-///   controller  where B and its last step together are below 0: a force along -dx that takes that much within the next tick if the
-///             hand goes on as it does, at most max_added_damping
+///   controller  a damping: where B and its last step together are below 0, as much as takes that within the next tick if the hand
+///             goes on as it does, at most max_added_damping; then it goes within 30 ms, so that it does not buzz. Against a hand that
+///             reverses every tick with more force than a hand has no damping helps: no bound is claimed there
 /// A device's delay: the observer's work is that of the forces that acted since the last tick; a link's own ledger is that of its
 /// last share. Against a probe that is not there for a while (a lost device) nothing is booked; links are then taken hold of anew. Torques
 /// are not counted. Always booked; controlled only where limits.passivity is set. Haptic thread: no allocation, lock or throw.
@@ -50,6 +51,7 @@ struct PassivityState {
   double granted_j = 0;  ///< since the start
   double let_go_j = 0;   ///< by springs that a switch took away: what may still fade
   double dissipated_j = 0;
+  double damping_ns_per_m = 0;  ///< that the controller adds now
   bool anew = true;  ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
 
   double booked_j(std::size_t link) const noexcept { return given_j[link] + stored_j[link]; }

@@ -6,7 +6,11 @@ namespace catena::app {
 
 void fit_workspace(scene::Scene& scene, const render::Bounds& bounds, double reach_m, const Vec3& centre_m) {
   if (!scene.coupling.ramp_s) scene.coupling.ramp_s = 0.02;
-  if (scene.workspace.given || bounds.empty()) return;
+  if (scene.workspace.given) {
+    scene.workspace.origin -= scene.workspace.rotation * centre_m / scene.workspace.metres_per_unit;
+    return;
+  }
+  if (bounds.empty()) return;
   const double edge = max_abs(bounds.hi - bounds.lo);
   if (!(edge > 0)) return;
   scene.workspace.metres_per_unit = reach_m / edge;

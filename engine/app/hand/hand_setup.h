@@ -6,7 +6,8 @@
 namespace catena::app {
 
 /// Fits an unstated workspace: the longest edge of what is there fills the device's reach, centre on centre; and switches
-/// ramp in over 20 ms unless the scene says otherwise. `centre_m`: of the device's reach, in its own axes.
+/// ramp in over 20 ms unless the scene says otherwise. `centre_m`: of the device's reach, in its own axes; a stated origin is the
+/// world place of that centre. Once for a scene.
 void fit_workspace(scene::Scene& scene, const render::Bounds& bounds, double reach_m, const Vec3& centre_m = Vec3(0.0));
 
 /// The first place of the probe: the scene's cursor, the seed of the first link that has one, or the middle of what is there.
