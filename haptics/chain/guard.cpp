@@ -64,7 +64,16 @@ void ramp_out(const Limits& limits, const GuardInput& input, GuardState& state) 
   state.force_n = at_most(slewed(limits, last_n, state.force_n, input.dt_s), most_n);
 }
 
+// The part of what is asked for that was sent last.
+double share_of(const Vec3& sent, const Vec3& asked) noexcept {
+  const double most = norm(asked), length = norm(sent);
+  return most > length ? length / most : 1;
+}
+
 void let_through(const Limits& limits, const GuardInput& input, GuardState& state) noexcept {
+  // a ramp out may have left less than its ramp says: the chain's force has grown since
+  if (state.force_state == ForceState::ramping_out)
+    state.ramp = std::fmin(state.ramp, std::fmin(share_of(state.force_n, input.force_n), share_of(state.torque_nm, input.torque_nm)));
   const double left = limits.ramp_in_s > 0 ? state.ramp + input.dt_s / limits.ramp_in_s : 1;
   state.ramp = left < 1 ? left : 1;
   state.force_state = state.ramp < 1 ? ForceState::ramping_in : ForceState::on;

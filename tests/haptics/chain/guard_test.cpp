@@ -196,6 +196,23 @@ TEST(Guard, SwitchingOffNeverRaisesTheForce) {
   EXPECT_EQ(deeper.state.force_state, ForceState::off);
 }
 
+TEST(Guard, OffAndOnAgainGoesOnFromTheForceThatIsLeft) {
+  Guarded g;
+  g.limits.ramp_in_s = 0.5;
+  g.asked = kAsked * 0.1;
+  g.run(600);
+  g.on = false;
+  g.run(4);
+  g.asked = kAsked;  // deeper meanwhile: not felt
+  g.step();
+  const double left = norm(g.state.force_n);
+  ASSERT_LE(left, 0.5);
+  g.on = true;
+  g.step();
+  EXPECT_EQ(g.state.force_state, ForceState::ramping_in);
+  EXPECT_NEAR(norm(g.state.force_n), left + 5 * kTick / 0.5, 1e-9);
+}
+
 TEST(Guard, OffFromTheStartIsZeroFromTheStart) {
   Guarded g;
   g.on = false;
