@@ -20,6 +20,9 @@
 
 namespace catena::haptics::usb {
 
+/// After how long without an order the force is taken away: four periods of the servo, and no less than 20 ms.
+inline double falcon_command_timeout_s(double rate_hz) { return rate_hz > 200 ? 0.02 : 4 / rate_hz; }
+
 struct FalconOptions {
   std::vector<std::uint8_t> firmware;  ///< checked; empty: only a device that has some already
   FalconBootOptions boot{};            ///< its `progress` is told only while open() works

@@ -177,6 +177,12 @@ TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
   EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
 }
 
+TEST(FalconTimeout, ASlowServoIsNotASilentOne) {
+  EXPECT_EQ(falcon_command_timeout_s(1000), 0.02);
+  EXPECT_EQ(falcon_command_timeout_s(4000), 0.02);
+  EXPECT_DOUBLE_EQ(falcon_command_timeout_s(100), 0.04);
+}
+
 TEST_F(FalconDevice, AForceThatIsNoNumberIsZero) {
   arm();
   falcon->write({Vec3(std::numeric_limits<double>::quiet_NaN()), Vec3(0.0)});
