@@ -60,6 +60,7 @@ void Servo::stop() {
 
 void Servo::set_program(std::shared_ptr<const Program> program) {
   CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
+  for (const auto& alive : programs_) CATENA_ASSERT(alive->epoch != program->epoch);
   next_program_.publish(program.get());
   programs_.push_back(std::move(program));
 }
