@@ -40,7 +40,7 @@ TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
       servo.take(seen);
       std::this_thread::yield();
     }
-    const std::uint64_t wait = seen.tick + 150;
+    const std::uint64_t wait = seen.tick + 700;
     while (seen.tick < wait) {
       servo.take(seen);
       std::this_thread::yield();
