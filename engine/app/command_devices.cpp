@@ -2,11 +2,12 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <memory>
 
 #include "engine/app/command.h"
 #include "engine/app/device_check.h"
+#include "engine/app/hand/crash_guard.h"
+#include "engine/app/hand/interrupt.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "haptics/device/registry.h"
@@ -87,9 +88,6 @@ void print_check(const haptics::Device& device, const std::string& name, const D
                norm(push.moved_m) < 1e-5 ? " (not at all: is it powered?)" : "");
 }
 
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
 Outcome test(const Options& options) {
   if (!haptics::is_device_type(type_of(options.name)))
     return Error{"there is no device " + in_quotes(options.name) + "; one of " + haptics::device_types() + " was expected"};
@@ -102,18 +100,18 @@ Outcome test(const Options& options) {
   auto opened = haptics::open_device(options.name, settings);
   if (!opened) throw MachineFailure{options.name + ": " + opened.error().message};
   haptics::Device& device = **opened;
+  const Interrupt interrupt;
+  const CrashGuard crash_guard(device);
 
   DeviceCheckOptions check_options;
   check_options.seconds = options.seconds;
   check_options.forces = options.forces;
-  check_options.stop = &interrupted;
+  check_options.stop = &interrupt.flag();
   check_options.tell = settings.tell;
   if (options.forces && device.capabilities().max_force_n > 0)
     fmt::print(stderr, "{}: pushes of up to 1 N follow; hold the grip, Ctrl-C stops\n", options.name);
-  const auto before = std::signal(SIGINT, [](int) { interrupted = true; });
   const DeviceCheck check = check_device(device, check_options, paced(check_options.rate_hz));
   device.stop();
-  std::signal(SIGINT, before);
   print_check(device, options.name, check);
   if (!check.failure.empty()) throw MachineFailure{options.name + ": " + check.failure};
   fmt::print("pass{}\n", options.forces ? "" : " (no forces: --forces pushes, too)");

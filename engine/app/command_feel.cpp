@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/app/command.h"
+#include "engine/app/hand/crash_guard.h"
 #include "engine/app/hand/hand_setup.h"
 #include "engine/app/hand/interrupt.h"
 #include "engine/app/hand/open_hand.h"
@@ -114,8 +115,10 @@ Outcome feel(const Options& options) {
   if (!options.stats.empty()) CATENA_CHECK(check_output(options.stats, inputs_of(scene)));
   if (!options.stats.empty() && !options.record.empty() && same_file(options.stats, options.record))
     return Error{options.stats + ": --stats and --record name one file: expected two"};
-  const Interrupt interrupt;
   CATENA_TRY(OpenHand hand, open_hand(scene, options.device, options.rate_hz, options.firmware));
+  // from here on: while it opens there is no force, and Ctrl-C ends at once
+  const Interrupt interrupt;
+  const CrashGuard crash_guard(*hand.device);
   if (!hand.note.empty()) fmt::print(stderr, "catena: {}\n", hand.note);
   CATENA_TRY(const render::Bounds bounds, bounds_of(scene));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, program_for(scene, hand, bounds));

@@ -42,17 +42,38 @@ void hold(const Limits& limits, double dt_s, GuardState& state) noexcept {
   state.force_state = ForceState::ramping_out;
 }
 
+// From `last` towards the force that is asked for, no further than the slew limit lets it.
+Vec3 slewed(const Limits& limits, const Vec3& last, const Vec3& force, double dt_s) noexcept {
+  if (!(limits.slew_n_per_s < Limits::kNone)) return force;
+  const Vec3 step = force - last;
+  const double most = limits.slew_n_per_s * dt_s;
+  return norm(step) > most ? last + at_most(step, most) : force;
+}
+
 void ramp_out(const Limits& limits, const GuardInput& input, GuardState& state) noexcept {
   const double step = step_out(limits, input.dt_s);
   state.ramp = state.ramp > step ? state.ramp - step : 0;
   if (!(state.ramp > 0)) return stop(state, ForceState::off);
+  const Vec3 last_n = state.force_n;
+  const double last_nm = norm(state.torque_nm);
   state.force_n = input.force_n * state.ramp;
-  state.torque_nm = input.torque_nm * state.ramp;
+  state.torque_nm = at_most(input.torque_nm * state.ramp, last_nm);
   state.force_state = ForceState::ramping_out;
   limit(limits, state);
+  const double most_n = std::fmin(norm(state.force_n), norm(last_n));
+  state.force_n = at_most(slewed(limits, last_n, state.force_n, input.dt_s), most_n);
+}
+
+// The part of what is asked for that was sent last.
+double share_of(const Vec3& sent, const Vec3& asked) noexcept {
+  const double most = norm(asked), length = norm(sent);
+  return most > length ? length / most : 1;
 }
 
 void let_through(const Limits& limits, const GuardInput& input, GuardState& state) noexcept {
+  // a ramp out may have left less than its ramp says: the chain's force has grown since
+  if (state.force_state == ForceState::ramping_out)
+    state.ramp = std::fmin(state.ramp, std::fmin(share_of(state.force_n, input.force_n), share_of(state.torque_nm, input.torque_nm)));
   const double left = limits.ramp_in_s > 0 ? state.ramp + input.dt_s / limits.ramp_in_s : 1;
   state.ramp = left < 1 ? left : 1;
   state.force_state = state.ramp < 1 ? ForceState::ramping_in : ForceState::on;
@@ -60,11 +81,7 @@ void let_through(const Limits& limits, const GuardInput& input, GuardState& stat
   state.force_n = state.ramp < 1 ? input.force_n * state.ramp : input.force_n;
   state.torque_nm = state.ramp < 1 ? input.torque_nm * state.ramp : input.torque_nm;
   limit(limits, state);
-  if (limits.slew_n_per_s < Limits::kNone) {
-    const Vec3 step = state.force_n - last_n;
-    const double most = limits.slew_n_per_s * input.dt_s;
-    if (norm(step) > most) state.force_n = last_n + at_most(step, most);
-  }
+  state.force_n = slewed(limits, last_n, state.force_n, input.dt_s);
 }
 
 }  // namespace
@@ -78,8 +95,8 @@ void guard(const Limits& limits, const GuardInput& input, GuardState& state) noe
   const bool fault = input.condition == Condition::no_device || input.condition == Condition::watchdog || !is_finite(input.force_n) ||
                      !is_finite(input.torque_nm);
   const bool late = !fault && input.condition == Condition::late;
-  // ticks in time again after a hold: on from what the hold has left
-  if (!late && state.late > 0) {
+  // ticks in time again after a hold, or switched off in it: on from what the hold has left
+  if ((!late || !input.forces_on) && state.late > 0) {
     if (state.late > limits.late_ticks) state.ramp *= state.hold;
     state.late = 0;
   }

@@ -2,7 +2,8 @@
 ///   fault    no device, watchdog, a force that is not finite: zero in this very tick                           STOPPED
 ///   late     up to late_ticks in a row: the last force                                                         HELD
 ///            more: from that force to zero, linearly over ramp_out_s                                RAMPING_OUT, STOPPED
-///   off      switched off by a person: the chain's force to zero, linearly over ramp_out_s              RAMPING_OUT, OFF
+///   off      switched off by a person: the chain's force to zero, linearly over ramp_out_s,             RAMPING_OUT, OFF
+///            never more than in the tick before
 ///   normal   the chain's force; from the first tick on, and after each of the above, times a factor that rises
 ///            linearly to 1 in ramp_in_s (from where a ramp out has left it)                              RAMPING_IN, ON
 /// A normal force is then limited: |F| and |torque|, direction kept, then |F - last F| <= slew dt. The slew limit never delays

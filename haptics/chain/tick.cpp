@@ -143,7 +143,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
   }
 }
 
-void hold_all(const Program& program, ChainState& state, exchange::HapticState& out) noexcept {
+void hold_all(const Program& program, double t_s, ChainState& state, exchange::HapticState& out) noexcept {
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     state.links[i].status = Status::bad_probe;
     state.links[i].evaluations = 0;
@@ -155,6 +155,7 @@ void hold_all(const Program& program, ChainState& state, exchange::HapticState& 
   // no pose, no force: whatever the clock says
   guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
   suspend(state.passivity);
+  if (std::isfinite(t_s)) state.clock_t_s = t_s;
   ++state.ticks;
   report(program, state, out);
 }
@@ -169,7 +170,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   out.condition = probe.condition;
   const bool stopped = probe.condition == Condition::no_device || probe.condition == Condition::watchdog;
   if (stopped || !is_finite(probe.position) || !is_finite(probe.orientation) || !std::isfinite(probe.t_s))
-    return hold_all(program, state, out);
+    return hold_all(program, probe.t_s, state, out);
 
   const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_t_s) : 0;
   const double ramp_step = program.coupling.ramp_s > 0 ? dt / program.coupling.ramp_s : 1;
@@ -217,11 +218,12 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   state.force_n = force;
   const Vec3 torque =
       align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
-  guard(program.limits, {force, torque, probe.condition, probe.forces_on, dt}, state.guard);
+  const double guard_dt = std::fmin(dt, std::fmax(0.0, probe.t_s - state.clock_t_s));
+  guard(program.limits, {force, torque, probe.condition, probe.forces_on, guard_dt}, state.guard);
   const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);
   settle(program, state.links, {move, coupled.reach, dt, order, coupled.shares_n, cues, fading, sum}, state.guard, state.passivity);
   state.last_probe = probe.position;
-  state.last_t_s = probe.t_s;
+  state.last_t_s = state.clock_t_s = probe.t_s;
   state.has_probe = true;
   ++state.ticks;
   report(program, state, out);

@@ -34,9 +34,10 @@ struct ChainState {
   AlignmentState alignment;
   SingleProxy single;  ///< baselines
   Vec3 last_probe{0.0};
-  double last_t_s = 0;
-  Vec3 force_n{0.0};  ///< that the chain asks for
-  GuardState guard;   ///< what the hand gets
+  double last_t_s = 0;   ///< of the last tick with a probe
+  double clock_t_s = 0;  ///< of the last tick: what a ramp of the guard counts, however long there was no probe
+  Vec3 force_n{0.0};     ///< that the chain asks for
+  GuardState guard;      ///< what the hand gets
   PassivityState passivity;
   std::uint64_t ticks = 0;
   bool has_probe = false;

@@ -72,13 +72,13 @@ DeviceInput HandMap::read() noexcept {
   const bool ready = input.status == DeviceStatus::ready && is_finite(input.position_m) && is_finite(input.orientation);
   const bool clutches = (input.buttons & clutch_mask_) != 0;
   if (ready) {
-    const std::uint32_t pressed = has_read_ ? input.buttons & ~last_buttons_ : 0u;
+    const std::uint32_t pressed = has_buttons_ ? input.buttons & ~last_buttons_ : 0u;
     if ((pressed & force_mask_) != 0) switched_on_ = !switched_on_;
     if (!input.recorded) map_pose(input, clutches && has_read_);
     last_buttons_ = input.buttons;
-    has_read_ = true;
+    has_read_ = has_buttons_ = true;
   } else {
-    switched_on_ = false;
+    switched_on_ = has_buttons_ = false;
   }
   input.forces_on = input.forces_on && !clutches && (force_mask_ == 0 || switched_on_);
   input.buttons &= ~(clutch_mask_ | force_mask_);

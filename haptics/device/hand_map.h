@@ -2,8 +2,8 @@
 ///   in:   x = s A x_d + o,   q = q_o A q_d      A: hand axes from device axes;  s: metres of hand per metre of device
 ///   out:  F_d = A^T F + g,   torque_d = A^T q_o^-1 torque      g: carries the grip, device axes
 /// Clutch: while its button is held the probe rests and the forces are off; on release o and q_o keep the difference, and the guard
-/// ramps the forces in. Force switch: off at the start and after a loss of the device; each press turns it over. Both buttons are
-/// masked: the scene does not see them.
+/// ramps the forces in. Force switch: off at the start and after a loss of the device; each press that is seen turns it over. Both
+/// buttons are masked: the scene does not see them.
 /// The force is not scaled, so that newtons of the scene are newtons of the hand; a spring K of the scene is then s K at the device.
 /// For that reason limits are made of the mechanism as the hand's metres have it (mechanics_of in haptics/servo/limits_for.h), so that
 /// K <= 2 b / T holds at the device. Energy of the hand's metres is s times the device's: passive stays passive.
@@ -49,7 +49,7 @@ class HandMap final : public Device {
   Quat offset_turn_{kNoRotation}, rest_turn_{kNoRotation};
   bool has_offset_ = false;
   std::uint32_t last_buttons_ = 0;
-  bool has_read_ = false, switched_on_ = false;
+  bool has_read_ = false, has_buttons_ = false, switched_on_ = false;
   bool fresh_ = false;  ///< a good pose was read since the last write
   bool forces_on_ = false;
   double gravity_weight_ = 0;

@@ -68,6 +68,11 @@ void leave_fifo() noexcept {
   sched_setscheduler(0, SCHED_OTHER, &parameter);
 }
 
+void leave_core() noexcept {
+  cpu_set_t cores;  // the first thread's, which no servo binds
+  if (sched_getaffinity(getpid(), sizeof cores, &cores) == 0) sched_setaffinity(0, sizeof cores, &cores);
+}
+
 RealtimeThread::RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes) {
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // at normal priority a wake-up may be 50 us late by default
   if (options.fifo) report_.fifo = take_fifo(options.priority, report_.notes);

@@ -28,6 +28,9 @@ bool take_fifo(int priority, std::vector<std::string>& notes);
 /// Back to normal priority.
 void leave_fifo() noexcept;
 
+/// The calling thread may run wherever the process may, though the thread that made it is bound to a core.
+void leave_core() noexcept;
+
 /// Prepares the calling thread before its first tick: touches its stack, then priority, core, memory. The whole process is locked
 /// (as pages are touched) where that is unlimited; otherwise only the stack and `own`, as far as the limit goes: a lock on all
 /// memory would make later allocations fail. Undone by the destructor, on the same thread.

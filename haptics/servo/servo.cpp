@@ -60,6 +60,7 @@ void Servo::stop() {
 
 void Servo::set_program(std::shared_ptr<const Program> program) {
   CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
+  for (const auto& alive : programs_) CATENA_ASSERT(alive->epoch != program->epoch);
   next_program_.publish(program.get());
   programs_.push_back(std::move(program));
 }
@@ -146,7 +147,7 @@ void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::Haptic
 
 /// A fixed priority is for ticks that fit into their period: a second or so of misses gives it back.
 void Servo::relax(bool missed) noexcept {
-  misses_in_row_ = missed ? misses_in_row_ + 1 : 0;
+  misses_in_row_ = missed ? std::min(misses_in_row_, kMissesUntilNormal) + 1 : 0;
   if (misses_in_row_ != kMissesUntilNormal || !realtime_.fifo) return;
   leave_fifo();
   counters_.left_fifo.store(true, std::memory_order_relaxed);
@@ -162,6 +163,8 @@ void Servo::loop() noexcept {
   exchange::HapticState out;
   device_.resume();
   stopped_ = false;
+  state_.guard = {};  // whatever an earlier run sent, this one begins at zero
+  suspend(state_.passivity);
 
   const auto period_ns = static_cast<std::int64_t>(1e9 / options_.rate_hz);
   Pace pace(period_ns, now_ns() + period_ns);

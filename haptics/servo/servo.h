@@ -45,9 +45,9 @@ class Servo {
   Servo& operator=(const Servo&) = delete;
 
   // frame side
-  void start();  ///< returns when the thread is prepared, just before its first tick
-  void stop();   ///< joins; the device has had a last zero force and is stopped
-  void set_program(std::shared_ptr<const Program> program);
+  void start();                                               ///< returns when the thread is prepared, just before its first tick
+  void stop();                                                ///< joins; the device has had a last zero force and is stopped
+  void set_program(std::shared_ptr<const Program> program);   ///< of an epoch of its own: by it the older ones are freed
   bool take(exchange::HapticState& state);                    ///< true if there was something newer
   std::uint64_t state_hash() const { return hash_.value(); }  ///< after stop()
   std::size_t programs_alive() const { return programs_.size(); }

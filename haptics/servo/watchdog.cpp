@@ -22,7 +22,9 @@ Watchdog::~Watchdog() {
 
 void Watchdog::watch(int fifo_priority) {
   std::vector<std::string> notes;  // the haptic thread has told them
-  if (fifo_priority > 0) take_fifo(fifo_priority, notes);
+  // a haptic thread that spins must not keep it from running: before it where that is permitted, and beside it
+  leave_core();
+  if (fifo_priority > 0 && !take_fifo(fifo_priority, notes)) take_fifo(fifo_priority - 1, notes);
   const std::chrono::nanoseconds nap(std::clamp<std::int64_t>(limit_ns_ / 8, 500'000, 10'000'000));
   std::int64_t stalled_since = -1;
   while (!stop_.load(std::memory_order_acquire)) {

@@ -14,7 +14,7 @@ namespace catena::haptics {
 
 class Watchdog {
  public:
-  /// Watches from now on, and counts the stalls in `trips`. `fifo_priority` > 0: at that fixed priority, if permitted.
+  /// Watches from now on, and counts the stalls in `trips`. `fifo_priority` > 0: at that fixed priority or the one below, if permitted.
   Watchdog(Device& device, double limit_s, int fifo_priority, std::atomic<std::uint64_t>& trips);
   ~Watchdog();  ///< joins; at most a few milliseconds
   Watchdog(const Watchdog&) = delete;

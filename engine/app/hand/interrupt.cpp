@@ -1,7 +1,5 @@
 #include "engine/app/hand/interrupt.h"
 
-#include <atomic>
-
 namespace catena::app {
 
 namespace {
@@ -22,6 +20,6 @@ Interrupt::~Interrupt() {
   for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
 }
 
-bool Interrupt::asked() const { return asked_to_end; }
+const std::atomic<bool>& Interrupt::flag() const { return asked_to_end; }
 
 }  // namespace catena::app

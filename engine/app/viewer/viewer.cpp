@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/app/hand/crash_guard.h"
 #include "engine/app/hand/hand_setup.h"
 #include "engine/app/hand/interrupt.h"
 #include "engine/app/hand/open_hand.h"
@@ -66,8 +67,9 @@ class Session {
   OpenHand hand_;
   haptics::MouseDevice* mouse_ = nullptr;  ///< hand_.device, if that is the mouse: the frame moves it
   Recording recording_;
-  std::unique_ptr<haptics::Servo> servo_;
   std::optional<Interrupt> interrupt_;
+  std::optional<CrashGuard> crash_guard_;
+  std::unique_ptr<haptics::Servo> servo_;
   std::vector<std::string> link_names_;
   exchange::HapticState felt_;
 
@@ -142,6 +144,11 @@ std::optional<Failure> Session::open() {
   auto swapchain = render::vk::Swapchain::create(renderer_->device(), std::max(1u, width), std::max(1u, height));
   if (!swapchain) return Failure{1, swapchain.error().message};
   swapchain_ = std::move(*swapchain);
+  // a device that pushes is let go by its own way out, Ctrl-C or not
+  if (mouse_ == nullptr) {
+    interrupt_.emplace();
+    crash_guard_.emplace(*hand_.device);
+  }
   servo_->start();
   if (mouse_ == nullptr) {
     if (!hand_.note.empty()) fmt::print(stderr, "catena: {}\n", hand_.note);
@@ -253,8 +260,6 @@ void Session::say_goodbye() {
 
 std::optional<Failure> Session::run() {
   std::int64_t last_input = now_ns();
-  // a device that pushes is let go by its own way out, Ctrl-C or not
-  if (mouse_ == nullptr) interrupt_.emplace();
   const std::int64_t start = now_ns();
   const bool always = options_.frames > 0 || options_.seconds > 0;
   bool busy = true, minimised = false;

@@ -45,6 +45,7 @@ Result<std::unique_ptr<Device>> open_emulated_falcon(const std::string& detail, 
   auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.firmware = settings.firmware.empty()});
   shared->device.mechanism().carry(detail == "still" ? still_hand() : gentle_hand());
   options.force_gain = settings.force_gain;
+  options.command_timeout_s = usb::falcon_command_timeout_s(settings.rate_hz);
   CATENA_TRY(std::unique_ptr<Device> device,
              usb::Falcon::open(std::make_unique<EmulatedSource>(std::move(shared), true), std::move(options)));
   return device;

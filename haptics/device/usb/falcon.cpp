@@ -62,25 +62,31 @@ Falcon::~Falcon() {
 DeviceInput Falcon::read() noexcept {
   poses_.take();
   const FalconPose& pose = poses_.front();
+  const std::int64_t now_ns = options_.clock();
   DeviceInput input;
   input.position_m = pose.position_m;
   input.buttons = pose.buttons;
-  input.age_s = pose.taken_ns == 0 ? 0 : 1e-9 * static_cast<double>(options_.clock() - pose.taken_ns);
+  input.age_s = pose.taken_ns == 0 ? 0 : 1e-9 * static_cast<double>(now_ns - pose.taken_ns);
+  // the I/O thread has taken the force away meanwhile: the servo must not go on where it was
+  const bool let_go = pushes_since_ns_ != 0 && 1e-9 * static_cast<double>(now_ns - pushes_since_ns_) >= options_.command_timeout_s;
   input.forces_on = pose.state == FalconState::ready;
   const bool homed = pose.state == FalconState::ready || pose.state == FalconState::waiting;
   if (pose.state == FalconState::booting || pose.state == FalconState::homing)
     input.status = DeviceStatus::starting;
-  else if (!homed || !pose.good || input.age_s > options_.lost_age_s)
+  else if (!homed || !pose.good || let_go || input.age_s > options_.lost_age_s)
     input.status = DeviceStatus::lost;
   return input;
 }
 
 void Falcon::write(const DeviceOutput& output) noexcept {
-  orders_.publish({is_finite(output.force_n) ? output.force_n : Vec3(0.0), options_.clock()});
+  const Order order{is_finite(output.force_n) ? output.force_n : Vec3(0.0), options_.clock()};
+  pushes_since_ns_ = max_abs(order.force_n) > 0 ? order.written_ns : 0;
+  orders_.publish(order);
 }
 
 void Falcon::resume() noexcept {
   // what was written before the stop must not come back
+  pushes_since_ns_ = 0;
   orders_.publish({Vec3(0.0), options_.clock()});
   stopped_.store(false);
 }
@@ -180,6 +186,9 @@ void Falcon::serve() noexcept {
       homed_.store(session.homed(), std::memory_order_relaxed);
       publish(session.pose());
     } else if (++silent == kTuneAfter) {
+      // setting up may take a second: not with a force on
+      session.let_go();
+      publish(session.pose());
       count(counters_.ftdi.retries);
       falcon_run_mode(ftdi);
     }
@@ -214,8 +223,9 @@ void Falcon::return_again() noexcept {
   boot.progress = [this](int attempt, double share) {
     boot_try_ = attempt;
     boot_percent_ = static_cast<int>(100 * share);
-    return !quit_;
+    return true;
   };
+  boot.give_up = [this] { return quit_.load(); };
   Ftdi ftdi(*transport_, counters_.ftdi);
   if (const Outcome booted = falcon_boot(ftdi, options_.firmware, boot, &counters_.uploads); !booted) {
     note(booted.error().message);

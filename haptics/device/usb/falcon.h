@@ -1,7 +1,8 @@
 /// The Novint Falcon as a Device. A thread of its own owns the bus: newest force -> packet out, packets in -> newest pose, one
 /// round trip after the other (1-2 ms); `read` and `write` exchange plain data with it through triple buffers and never wait.
 ///   force: sent with the Jacobian of the newest pose; zero when no force was written for `command_timeout_s` (a servo that
-///          hangs), after stop(), before homing and before the grip was once pulled out past 0.170 m (forces_on is false)
+///          hangs; the next read is `lost`, so that the force ramps in), after stop(), after three cycles without a frame, before
+///          homing and before the grip was once pulled out past 0.170 m (forces_on is false)
 ///   lost:  silent for `lost_after` cycles, or unplugged; the thread then waits for the device to come back, starts its firmware
 ///          again, and homing and arming begin anew
 /// The destructor sends zero force with the LEDs off; it waits for at most some tenths of a second.
@@ -18,6 +19,9 @@
 #include "haptics/device/usb/falcon_session.h"
 
 namespace catena::haptics::usb {
+
+/// After how long without an order the force is taken away: four periods of the servo, and no less than 20 ms.
+inline double falcon_command_timeout_s(double rate_hz) { return rate_hz > 200 ? 0.02 : 4 / rate_hz; }
 
 struct FalconOptions {
   std::vector<std::uint8_t> firmware;  ///< checked; empty: only a device that has some already
@@ -95,6 +99,9 @@ class Falcon final : public Device {
   FalconPose pose_;
   bool was_fresh_ = false;
   std::thread thread_;
+
+  // haptic thread only
+  std::int64_t pushes_since_ns_ = 0;  ///< the last write, if it was a force; 0: it was none
 };
 
 }  // namespace catena::haptics::usb

@@ -24,11 +24,14 @@ struct Step {
 Step failed(std::string what) { return {.what = std::move(what)}; }
 Step failed(UsbError error, std::string_view where) { return {.error = error, .what = fmt::format("{} {}", usb_error_text(error), where)}; }
 
+Step cancelled() { return {.cancelled = true, .what = "given up"}; }
+bool given_up(const FalconBootOptions& options) { return options.give_up && options.give_up(); }
+
 #define CATENA_USB(call, where) \
   if (const UsbError usb_error = (call); usb_error != UsbError::none) return failed(usb_error, where)
 
 // (1)-(2): the boot loader answers
-Step shake_hands(Ftdi& ftdi, int tries) {
+Step shake_hands(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(ftdi.purge(), "at the boot mode");
   CATENA_USB(ftdi.latency_ms(16), "at the boot mode");
   CATENA_USB(ftdi.baud(FtdiBaud::boot_9600), "at the boot mode");
@@ -40,10 +43,11 @@ Step shake_hands(Ftdi& ftdi, int tries) {
   constexpr std::uint8_t kHello[] = {0x0A, 0x43, 0x0D};
   constexpr std::uint8_t kAnswer[] = {0x0A, 0x44, 0x2C, 0x0D};  // some systems put a 0 before it
   std::size_t matched = 0;
-  for (int attempt = 0; attempt < tries; ++attempt) {
+  for (int attempt = 0; attempt < options.handshake_tries; ++attempt) {
     UsbError error = ftdi.write(kHello, kWriteMs);
     if (error == UsbError::gone) return failed(error, "at the hand shake");
     for (int i = 0; i < kHandshakeReads && error == UsbError::none; ++i) {
+      if (given_up(options)) return cancelled();
       std::span<const std::uint8_t> payload;
       error = ftdi.read(payload, kReadMs);
       if (error == UsbError::gone) return failed(error, "at the hand shake");
@@ -53,16 +57,17 @@ Step shake_hands(Ftdi& ftdi, int tries) {
       }
     }
   }
-  return failed(fmt::format("the boot loader did not answer {} hand shakes", tries));
+  return failed(fmt::format("the boot loader did not answer {} hand shakes", options.handshake_tries));
 }
 
 // (3): the loader listens for an image
-Step ready_for_image(Ftdi& ftdi) {
+Step ready_for_image(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(ftdi.dtr_low(), "before the image");
   CATENA_USB(ftdi.baud(FtdiBaud::image_140000), "before the image");
   constexpr std::uint8_t kAsk[] = {0x41};
   CATENA_USB(ftdi.write(kAsk, kWriteMs), "before the image");
   for (int idle = 0; idle < kEchoIdleReads; ++idle) {
+    if (given_up(options)) return cancelled();
     std::span<const std::uint8_t> payload;
     const UsbError error = ftdi.read(payload, kReadMs);
     if (error != UsbError::none && error != UsbError::timeout) return failed(error, "before the image");
@@ -77,12 +82,12 @@ Step ready_for_image(Ftdi& ftdi) {
 Step send_image(Ftdi& ftdi, std::span<const std::uint8_t> image, int attempt, const FalconBootOptions& options) {
   std::size_t sent = 0, echoed = 0;
   while (echoed < image.size()) {
-    if (options.progress && !options.progress(attempt, static_cast<double>(echoed) / static_cast<double>(image.size())))
-      return {.cancelled = true, .what = "given up"};
+    if (options.progress && !options.progress(attempt, static_cast<double>(echoed) / static_cast<double>(image.size()))) return cancelled();
     const auto chunk = image.subspan(sent, std::min(kFtdiPayloadBytes, image.size() - sent));
     CATENA_USB(ftdi.write(chunk, kWriteMs), fmt::format("at byte {} of the image", sent));
     sent += chunk.size();
     for (int idle = 0; echoed < sent; ++idle) {
+      if (given_up(options)) return cancelled();
       if (idle == kEchoIdleReads) return failed(fmt::format("no echo of byte {} of the image", echoed));
       std::span<const std::uint8_t> payload;
       const UsbError error = ftdi.read(payload, kReadMs);
@@ -100,16 +105,17 @@ Step send_image(Ftdi& ftdi, std::span<const std::uint8_t> image, int attempt, co
 }
 
 // firmware answers an I/O packet by a frame; a boot loader that echoes it does not run
-Step look(Ftdi& ftdi, int tries) {
+Step look(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(falcon_run_mode(ftdi), "at the run mode");
   // all three LEDs: as a frame it would be three buttons at once, so that an echo is told from an answer
   const FalconPacket ask = encode_command({.control = kFalconRed | kFalconGreen | kFalconBlue});
   FalconFramer framer;
   UsbError last = UsbError::none;
-  for (int attempt = 0; attempt < tries; ++attempt) {
+  for (int attempt = 0; attempt < options.probe_tries; ++attempt) {
     last = ftdi.write(ask, kProbeReadMs);
     if (last == UsbError::gone) return failed(last, "at the first packets");
     for (int i = 0; i < kProbeReads && last == UsbError::none; ++i) {
+      if (given_up(options)) return cancelled();
       std::span<const std::uint8_t> payload;
       last = ftdi.read(payload, kProbeReadMs);
       if (last == UsbError::gone) return failed(last, "at the first packets");
@@ -135,7 +141,8 @@ UsbError falcon_run_mode(Ftdi& ftdi) noexcept {
 }
 
 Result<bool> falcon_is_running(Ftdi& ftdi, const FalconBootOptions& options) {
-  const Step step = look(ftdi, options.probe_tries);
+  const Step step = look(ftdi, options);
+  if (step.cancelled) return Error{"Falcon: given up while it was looked at"};
   if (!step.done && step.error == UsbError::gone) return unplugged(step.error);
   return step.done;
 }
@@ -153,11 +160,11 @@ Outcome falcon_boot(Ftdi& ftdi, std::span<const std::uint8_t> image, const Falco
   for (int attempt = 1; attempt <= options.tries; ++attempt) {
     if (uploads != nullptr) count(*uploads);
     if (options.progress && !options.progress(attempt, 0)) return Error{"Falcon: given up before its firmware was sent"};
-    step = shake_hands(ftdi, options.handshake_tries);
+    step = shake_hands(ftdi, options);
     silent = step.done ? 0 : silent + 1;
-    if (step.done) step = ready_for_image(ftdi);
+    if (step.done) step = ready_for_image(ftdi, options);
     if (step.done) step = send_image(ftdi, image, attempt, options);
-    if (step.done) step = look(ftdi, options.probe_tries);
+    if (step.done) step = look(ftdi, options);
     if (step.done) return Done{};
     if (step.cancelled) return Error{"Falcon: given up while its firmware was being sent"};
     if (step.error == UsbError::gone) return unplugged(step.error);

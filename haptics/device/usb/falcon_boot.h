@@ -15,6 +15,8 @@ struct FalconBootOptions {
   int probe_tries = 12;       ///< I/O packets that ask for running firmware
   /// Told now and then: what is being done, and the share of the image that is sent. False: give up.
   std::function<bool(int attempt, double share)> progress;
+  /// Asked before every packet; true: give up at once.
+  std::function<bool()> give_up;
 };
 
 /// Purge; latency 1 ms; 1.5 Mbaud; purge.

@@ -6,7 +6,7 @@ namespace catena::haptics::usb {
 namespace {
 
 constexpr int kWriteMs = 20, kReadMs = 10, kReads = 16;
-constexpr int kFramesToBelieve = 3;
+constexpr int kFramesToBelieve = 3, kLeaveTries = 3;
 constexpr int kJumpCounts = 1000;  // 38 mm between two frames
 
 }  // namespace
@@ -57,7 +57,13 @@ FalconSession::Cycle FalconSession::cycle(const Vec3& force_n, bool forces) noex
 
 void FalconSession::leave() noexcept {
   sent_ = {};
-  ftdi_.write(encode_command(sent_), kWriteMs);
+  for (int i = 0; i < kLeaveTries; ++i)
+    if (const UsbError error = ftdi_.write(encode_command(sent_), kWriteMs); error == UsbError::none || error == UsbError::gone) return;
+}
+
+void FalconSession::let_go() noexcept {
+  pose_.good = false;
+  leave();
 }
 
 // compared with the last frame that was seen, believed or not

@@ -50,8 +50,10 @@ class FalconSession {
   enum class Cycle : std::uint8_t { frame, no_frame, gone };
   /// One packet each way. `force_n` counts only where `forces` and the state allow it.
   Cycle cycle(const Vec3& force_n, bool forces) noexcept;
-  /// Zero force, all LEDs off; the last packet before closing.
+  /// Zero force, all LEDs off; the last packet before closing. A time-out is tried again.
   void leave() noexcept;
+  /// Zero force until the next good frame: after cycles without one.
+  void let_go() noexcept;
 
   const FalconPose& pose() const { return pose_; }
   std::uint8_t homed() const { return homed_; }                ///< bits 0-2, of the last frame

@@ -40,6 +40,7 @@ Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const Dev
     return Error{"falcon:" + detail + ": which one? falcon, falcon:1 (the second one), ... was expected"};
   FalconOptions options;
   options.force_gain = settings.force_gain;
+  options.command_timeout_s = falcon_command_timeout_s(settings.rate_hz);
   options.realtime_priority = kIoPriority;
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, read_falcon_image(settings.firmware));

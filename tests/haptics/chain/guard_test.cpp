@@ -160,6 +160,59 @@ TEST(Guard, SwitchedOffItRampsOutAndBackIn) {
   EXPECT_NEAR(norm(g.state.force_n), 0.05, 1e-9);
 }
 
+TEST(Guard, SwitchingOffNeverRaisesTheForce) {
+  // while the slew limit holds a jump back
+  Guarded g;
+  g.limits.slew_n_per_s = 100;
+  g.run(3);
+  const double before = norm(g.state.force_n);
+  ASSERT_NEAR(before, 0.3, 1e-9);
+  g.on = false;
+  g.step();
+  EXPECT_LE(norm(g.state.force_n), before);
+  // while late ticks have taken half of it
+  Guarded late;
+  late.run(10);
+  late.run(5 + 10, Condition::late);
+  ASSERT_NEAR(norm(late.state.force_n), 2.5, 1e-9);
+  late.on = false;
+  for (double last = 2.5; norm(late.state.force_n) > 0; last = norm(late.state.force_n)) {
+    late.step(Condition::late);
+    ASSERT_LE(norm(late.state.force_n), last + 1e-12);
+  }
+  EXPECT_EQ(late.state.force_state, ForceState::off);
+  // while the hand pushes deeper, or the chain's force turns over
+  Guarded deeper;
+  deeper.limits.slew_n_per_s = 1000;
+  deeper.run(10);
+  deeper.on = false;
+  for (double k = 1; k < 25; ++k) {
+    const Vec3 last = deeper.state.force_n;
+    deeper.asked = kAsked * (static_cast<int>(k) % 2 == 0 ? 1 + k : -1 - k);
+    deeper.step();
+    ASSERT_LE(norm(deeper.state.force_n), norm(last) + 1e-12) << k;
+    ASSERT_LE(norm(deeper.state.force_n), 5 * std::fmax(0.0, 1 - k / 20) + 1e-9) << "never longer than the way to zero";
+  }
+  EXPECT_EQ(deeper.state.force_state, ForceState::off);
+}
+
+TEST(Guard, OffAndOnAgainGoesOnFromTheForceThatIsLeft) {
+  Guarded g;
+  g.limits.ramp_in_s = 0.5;
+  g.asked = kAsked * 0.1;
+  g.run(600);
+  g.on = false;
+  g.run(4);
+  g.asked = kAsked;  // deeper meanwhile: not felt
+  g.step();
+  const double left = norm(g.state.force_n);
+  ASSERT_LE(left, 0.5);
+  g.on = true;
+  g.step();
+  EXPECT_EQ(g.state.force_state, ForceState::ramping_in);
+  EXPECT_NEAR(norm(g.state.force_n), left + 5 * kTick / 0.5, 1e-9);
+}
+
 TEST(Guard, OffFromTheStartIsZeroFromTheStart) {
   Guarded g;
   g.on = false;

@@ -105,6 +105,57 @@ TEST_F(FalconDevice, ForceReachesTheMotorsAndStopsWithoutFreshOrders) {
   EXPECT_EQ(falcon->stats().stale_commands, 1u);
 }
 
+TEST_F(FalconDevice, AnOrderThatWasLetGoIsToldSoThatTheForceRampsIn) {
+  arm();
+  EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  fake_now_ns += 19000000;
+  EXPECT_EQ(falcon->read().status, DeviceStatus::ready) << "the motors still have it";
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  fake_now_ns += 25000000;
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_EQ(falcon->read().status, DeviceStatus::lost) << "zero meanwhile: a force that comes back at once would be a kick";
+  falcon->write({Vec3(0.0), Vec3(0.0)});
+  ASSERT_TRUE(cycles(3));
+  EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
+}
+
+TEST_F(FalconDevice, ADeviceThatSaysNothingGetsZeroBeforeItsLineIsSetUpAgain) {
+  options.lost_after = 1000000;
+  arm();
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  ASSERT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  const auto requests = fake->with([](test::FakeFalcon& f) { return f.controls.size(); });
+  fake->with([](test::FakeFalcon& f) { f.silent = true; });
+  ASSERT_TRUE(eventually([&] { return fake->with([&](test::FakeFalcon& f) { return f.controls.size() > requests; }); }));
+  EXPECT_EQ(fake->last().motors, FalconCounts{});
+  EXPECT_EQ(falcon->read().status, DeviceStatus::lost) << "so that the force ramps in";
+  ASSERT_TRUE(cycles(5));
+  EXPECT_EQ(fake->last().motors, FalconCounts{}) << "no frame, no force";
+  fake->with([](test::FakeFalcon& f) { f.silent = false; });
+  falcon->write({{0, 0, 1}, Vec3(0.0)});
+  EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+  EXPECT_EQ(falcon->read().status, DeviceStatus::ready);
+}
+
+TEST_F(FalconDevice, TheDestructorDoesNotWaitForADeviceThatDoesNotBoot) {
+  options.firmware = fake->image;
+  arm();
+  fake->with([](test::FakeFalcon& f) { f.plugged = false; });
+  ASSERT_TRUE(becomes(FalconState::absent));
+  fake->with([](test::FakeFalcon& f) {
+    f.firmware_runs = false;
+    f.deaf_handshakes = 1000000;
+    f.pace = 2ms;
+    f.plugged = true;
+  });
+  ASSERT_TRUE(eventually([&] { return fake->with([](test::FakeFalcon& f) { return f.handshakes > 0; }); }));
+  const int before = fake->with([](test::FakeFalcon& f) { return f.handshakes; });
+  falcon.reset();
+  EXPECT_LE(fake->handshakes, before + 10) << "of a hundred";
+}
+
 TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
   arm();
   falcon->write({{0, 0, 1}, Vec3(0.0)});
@@ -124,6 +175,12 @@ TEST_F(FalconDevice, StopIsZeroUntilResumeAndNothingOldComesBack) {
   });
   falcon->write({{0, 0, 1}, Vec3(0.0)});
   EXPECT_TRUE(eventually([&] { return fake->last().motors[0] < 0; }));
+}
+
+TEST(FalconTimeout, ASlowServoIsNotASilentOne) {
+  EXPECT_EQ(falcon_command_timeout_s(1000), 0.02);
+  EXPECT_EQ(falcon_command_timeout_s(4000), 0.02);
+  EXPECT_DOUBLE_EQ(falcon_command_timeout_s(100), 0.04);
 }
 
 TEST_F(FalconDevice, AForceThatIsNoNumberIsZero) {

@@ -76,6 +76,21 @@ TEST(HandMap, WhatIsNotAskedForPassesToTheBit) {
   EXPECT_EQ(std::memcmp(&run.device->output.torque_nm, &torque, sizeof torque), 0);
 }
 
+TEST(HandMap, AForceButtonThatIsHeldWhenTheDeviceComesBackIsNoPress) {
+  DeviceSettings settings;
+  settings.force_button = 1;
+  Mapped run(settings);
+  run.at(Vec3(0.0));
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+  run.at(Vec3(0.0));
+  run.device->input.status = DeviceStatus::lost;
+  EXPECT_FALSE(run.at(Vec3(0.0)).forces_on);
+  run.device->input.status = DeviceStatus::ready;
+  EXPECT_FALSE(run.at(Vec3(0.0), 1).forces_on) << "pressed while nobody looked";
+  run.at(Vec3(0.0));
+  EXPECT_TRUE(run.at(Vec3(0.0), 1).forces_on);
+}
+
 TEST(HandMap, AxesTurnThePoseThereAndTheForceBack) {
   DeviceSettings s;
   s.hand_from_device = axes();

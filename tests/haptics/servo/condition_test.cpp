@@ -189,6 +189,68 @@ TEST(Condition, ALostDeviceGetsNothingUntilItIsBack) {
   EXPECT_EQ(report.lost_ticks, 10u);
 }
 
+TEST(Condition, AForceComesBackByTheRampHoweverLongTheDeviceWasAway) {
+  Scripted device([](int k, DeviceInput& input) {
+    if (k >= 1000 && k < 2000) input.status = DeviceStatus::lost;
+  });
+  Seen seen;
+  seen.inputs.reserve(2600);
+  seen.outputs.reserve(2600);
+  auto ramped = program();
+  ramped->limits.ramp_in_s = 0.5;
+  ramped->limits.slew_n_per_s = 4000;
+  Servo servo(device, ramped, {.paced = false, .max_ticks = 2600, .sink = &seen});
+  servo.start();
+  while (servo.running()) nap_ms(1);
+  ASSERT_NEAR(norm(device.sent[999]), 2, 1e-12);
+  EXPECT_EQ(norm(device.sent[1999]), 0);
+  for (std::size_t k = 2000; k < 2400; ++k) {
+    ASSERT_EQ(seen.outputs[k].force_state, exchange::ForceState::ramping_in) << k;
+    ASSERT_NEAR(norm(device.sent[k]), 2 * static_cast<double>(k - 1999) / 500, 1e-6) << k;
+  }
+  EXPECT_NEAR(norm(device.sent[2599]), 2, 1e-12);
+}
+
+TEST(Condition, AStallBetweenTicksDoesNotShortenTheRamp) {
+  // the tick after the stall is the watchdog's, the one after it is in time again
+  ChainState state;
+  ChainScratch scratch;
+  exchange::HapticState out;
+  auto p = program();
+  p->limits.ramp_in_s = 0.5;
+  ProbeSample probe;
+  for (int k = 0; k < 600; ++k) {
+    probe.t_s = 1e-3 * k;
+    tick(*p, probe, state, scratch, out);
+  }
+  ASSERT_EQ(out.force_state, exchange::ForceState::on);
+  probe.t_s += 3;
+  probe.condition = exchange::Condition::watchdog;
+  tick(*p, probe, state, scratch, out);
+  EXPECT_EQ(norm(out.force_n), 0);
+  probe.t_s += 1e-3;
+  probe.condition = exchange::Condition::normal;
+  tick(*p, probe, state, scratch, out);
+  EXPECT_EQ(out.force_state, exchange::ForceState::ramping_in);
+  EXPECT_NEAR(norm(out.force_n), 2 * 1e-3 / 0.5, 1e-9);
+}
+
+TEST(Condition, AServoThatStartsAgainRampsInAgain) {
+  Scripted device([](int, DeviceInput&) {});
+  auto ramped = program();
+  ramped->limits.ramp_in_s = 0.1;
+  Servo servo(device, ramped, {.paced = false, .max_ticks = 200});
+  for (int run = 0; run < 2; ++run) {
+    device.sent.clear();
+    servo.start();
+    while (servo.running()) nap_ms(1);
+    servo.stop();
+    EXPECT_LE(norm(device.sent[0]), 0.03) << run;
+    EXPECT_NEAR(norm(device.sent[50]), 1, 0.05) << run;
+    EXPECT_NEAR(norm(device.sent[199]), 2, 1e-12) << run;
+  }
+}
+
 TEST(Condition, APoseThatIsNoNumberGetsNoForceInThatTick) {
   Scripted device([](int k, DeviceInput& input) {
     if (k == 10) input.position_m.y = std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -104,6 +105,41 @@ TEST(Realtime, AFixedPriorityIsGivenBackWhereTheTicksNeverFitIntoTheirPeriod) {
   EXPECT_FALSE(r.realtime.fifo);
   ASSERT_FALSE(r.realtime.notes.empty());
   EXPECT_NE(r.realtime.notes.back().find("given back"), std::string::npos);
+}
+
+/// Hangs in one read until it is stopped; notes how many cores its watchdog may run on.
+class Stuck final : public Device {
+ public:
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override {
+    for (int i = 0; i < 10000 && cores == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return {};
+  }
+  void write(const DeviceOutput&) noexcept override {}
+  void stop() noexcept override {
+    cpu_set_t set;
+    if (cores == 0 && sched_getaffinity(0, sizeof set, &set) == 0) cores = CPU_COUNT(&set);
+  }
+  std::atomic<int> cores{0};
+
+ private:
+  DeviceCapabilities capabilities_;
+};
+
+TEST(Realtime, TheWatchdogIsNotBoundToTheCoreOfTheThreadThatItWatches) {
+  cpu_set_t allowed;
+  ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  if (CPU_COUNT(&allowed) < 2) GTEST_SKIP() << "one core";
+  int core = 0;
+  while (!CPU_ISSET(static_cast<unsigned>(core), &allowed)) ++core;
+  Stuck device;
+  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 2, .realtime = {.fifo = false, .lock_memory = false, .cpu = core}});
+  servo.start();
+  while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  servo.stop();
+  EXPECT_EQ(servo.report().realtime.cpu, core);
+  EXPECT_GE(servo.report().watchdog_trips, 1u);
+  EXPECT_EQ(device.cores, CPU_COUNT(&allowed));
 }
 
 TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {

@@ -45,6 +45,14 @@ TEST(Servo, ThreadAndReplayGiveOneHash) {
   EXPECT_EQ(device.forces_written(), 5001u) << "one a tick, and a last zero";
 }
 
+TEST(ServoDeathTest, TwoProgramsOfOneEpochAreABug) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  SimulatedHand hand({{0, {0, 0, 0.4}}}, {});
+  Servo servo(hand, program_at(0.5, 1));
+  servo.set_program(program_at(0.5, 2));
+  EXPECT_DEATH(servo.set_program(program_at(0.6, 2)), "epoch") << "the frame side would free the one that runs";
+}
+
 TEST(Servo, NewProgramsTakeOverAndOldOnesAreFreedByTheFrameSide) {
   SimulatedHand hand({{0, {0, 0, 0.4}}}, {});
   Servo servo(hand, program_at(0.5, 1), {.rate_hz = 1000, .paced = false});

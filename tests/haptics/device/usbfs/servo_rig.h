@@ -47,9 +47,10 @@ class ServoRig {
   /// With the grip held there: the tick's probe, and what the motors get, both settled.
   bool settle(const Vec3& grip_m, exchange::HapticState& tick, EmulatedFalcon::Exchange& felt) {
     bus_.with([&](EmulatedFalcon& device) { device.mechanism().hold(grip_m); });
+    // a late tick there holds the force of another place
     const bool arrived = eventually([&] {
       servo_.take(tick);
-      return norm(tick.probe - world_of(grip_m)) < 1e-7;
+      return tick.force_state == ForceState::on && norm(tick.probe - world_of(grip_m)) < 1e-7;
     });
     // the order may have been written just after the I/O thread looked: two more frames, and one for the tick itself
     if (!arrived || !frames_pass(bus_, 4)) return false;
