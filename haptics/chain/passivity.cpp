@@ -4,8 +4,8 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kLeastEnergy = 1e-15;   // joules: below it is round-off
-constexpr double kLeastDamping = 1e-3;   // N s/m: below it is nothing
+constexpr double kLeastEnergy = 1e-15;  // joules: below it is round-off
+constexpr double kLeastDamping = 1e-3;  // N s/m: below it is nothing
 
 bool is_apart(const LinkState& link, bool has_gap) noexcept {
   return !link.on || link.released || link.status == Status::no_surface || (link.status == Status::budget && !has_gap);
@@ -135,8 +135,8 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
     state.damping_ns_per_m = step_damping(limits, move_m, tick.dt_s, next_j < -kLeastEnergy ? -next_j : 0, state.damping_ns_per_m);
     if (state.damping_ns_per_m > 0) {
       const Vec3 before = guard.force_n;
-      guard.force_n = at_most(before + brake(state.damping_ns_per_m, move_m, tick.dt_s),
-                              std::fmin(limits.max_force_n, program.coupling.max_force_n));
+      guard.force_n =
+          at_most(before + brake(state.damping_ns_per_m, move_m, tick.dt_s), std::fmin(limits.max_force_n, program.coupling.max_force_n));
       added_n = guard.force_n - before;
     }
   } else {

@@ -52,7 +52,7 @@ struct PassivityState {
   double let_go_j = 0;   ///< by springs that a switch took away: what may still fade
   double dissipated_j = 0;
   double damping_ns_per_m = 0;  ///< that the controller adds now
-  bool anew = true;  ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
+  bool anew = true;             ///< whatever the storage is now, nothing the hand did made it so: start, another program, a lost device
 
   double booked_j(std::size_t link) const noexcept { return given_j[link] + stored_j[link]; }
   double energy_j() const noexcept { return storage_j + balance_j; }

@@ -82,7 +82,7 @@ struct Program {
   std::vector<Link> links;  ///< at most kMaxLinks
   std::vector<Mode> modes;  ///< at most kMaxModes; the first whose switch is on orders the chain; none: all links as listed
   Coupling coupling;
-  Limits limits;              ///< what the device allows; all off without one
+  Limits limits;                 ///< what the device allows; all off without one
   double metres_per_unit = 1;    ///< S: metres of hand a world unit
   Vec3 workspace_origin{0.0};    ///< world position of the device's origin
   Mat3 workspace_rotation{1.0};  ///< world from device axes

@@ -11,11 +11,11 @@ namespace {
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
 using flow::Method;
+using haptics::same_bits;
 using haptics::test::build;
 using haptics::test::Fields;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::same_bits;
 
 constexpr double kL = 4, kLimit = 0.05;
 

@@ -12,9 +12,9 @@ using catena::test::analytic_vector;
 using catena::test::lambda_field;
 using flow::Method;
 using haptics::kEvaluationCap;
+using haptics::same_bits;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::same_bits;
 using haptics::test::Spread;
 
 Rig online(field::VectorFieldPtr field, const Vec3& seed, Method method = Method::rkf34, double tolerance = 1e-9) {

@@ -7,12 +7,12 @@ namespace catena::acceptance {
 namespace {
 
 using haptics::kEvaluationCap;
+using haptics::same_bits;
 using haptics::Status;
 using haptics::test::analytic;
 using haptics::test::isosurface;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::same_bits;
 using haptics::test::Spread;
 
 struct Slope {

@@ -13,10 +13,10 @@ namespace {
 
 using catena::test::lambda_field;
 using flow::Method;
+using haptics::same_bits;
 using haptics::test::isosurface;
 using haptics::test::Random;
 using haptics::test::Rig;
-using haptics::same_bits;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
