@@ -8,8 +8,8 @@
 #include "engine/app/device_check.h"
 #include "engine/app/hand/crash_guard.h"
 #include "engine/app/hand/interrupt.h"
+#include "engine/base/json_text.h"
 #include "engine/base/numbers.h"
-#include "engine/base/text.h"
 #include "haptics/device/registry.h"
 
 namespace catena::app {
@@ -29,17 +29,6 @@ std::string abilities(const haptics::DeviceCapabilities& c) {
   return line;
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : one_line(text)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
-std::string type_of(const std::string& name) { return name.substr(0, name.find(':')); }
-
 std::string how_to_open(const haptics::DeviceInfo& info) {
   if (info.name == "mouse") return "catena view SCENE";
   return "--device " + info.name;
@@ -50,13 +39,13 @@ void list(bool json) {
   if (json) fmt::print("[");
   for (std::size_t i = 0; i < found.size(); ++i) {
     const haptics::DeviceInfo& info = found[i];
-    const haptics::DeviceCapabilities c = haptics::nominal_capabilities(type_of(info.name));
+    const haptics::DeviceCapabilities c = haptics::nominal_capabilities(haptics::device_type_of(info.name));
     if (json) {
       fmt::print(
           "{}\n  {{\"name\": {}, \"present\": {}, \"detail\": {}, \"position\": true, \"orientation\": {}, \"max_force_n\": {}, "
           "\"max_torque_nm\": {}, \"buttons\": {}, \"workspace_m\": {}, \"open\": {}}}",
-          i == 0 ? "" : ",", quoted(info.name), info.present, quoted(info.detail), c.has_orientation, to_text(c.max_force_n),
-          to_text(c.max_torque_nm), c.buttons, to_text(c.workspace_m), quoted(how_to_open(info)));
+          i == 0 ? "" : ",", json_string(info.name), info.present, json_string(info.detail), c.has_orientation, to_text(c.max_force_n),
+          to_text(c.max_torque_nm), c.buttons, to_text(c.workspace_m), json_string(how_to_open(info)));
     } else {
       fmt::print("{:<22} {:<8} {}\n{:<32}{}; {}\n", info.name, info.present ? "here" : "not here", info.detail, "", abilities(c),
                  how_to_open(info));
@@ -89,12 +78,12 @@ void print_check(const haptics::Device& device, const std::string& name, const D
 }
 
 Outcome test(const Options& options) {
-  if (!haptics::is_device_type(type_of(options.name)))
+  if (!haptics::is_device_type(haptics::device_type_of(options.name)))
     return Error{"there is no device " + in_quotes(options.name) + "; one of " + haptics::device_types() + " was expected"};
   if (!(options.seconds > 0 && options.seconds <= 600))
     return Error{"--seconds is " + to_text(options.seconds) + "; a number above 0, up to 600, was expected"};
   haptics::DeviceSettings settings;
-  settings.type = type_of(options.name);
+  settings.type = haptics::device_type_of(options.name);
   settings.firmware = options.firmware;
   settings.tell = [](const std::string& news) { fmt::print(stderr, "{}\n", news); };
   auto opened = haptics::open_device(options.name, settings);

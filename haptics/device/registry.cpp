@@ -123,6 +123,8 @@ const DeviceType* find(const std::string& type) {
 
 }  // namespace
 
+std::string device_type_of(const std::string& name) { return name.substr(0, name.find(':')); }
+
 bool is_device_type(const std::string& type) { return find(type) != nullptr; }
 
 std::string device_types() {
@@ -145,7 +147,7 @@ DeviceCapabilities nominal_capabilities(const std::string& type) {
 
 Result<std::unique_ptr<Device>> open_device(const std::string& name, const DeviceSettings& settings) {
   const std::size_t colon = name.find(':');
-  const DeviceType* found = find(name.substr(0, colon));
+  const DeviceType* found = find(device_type_of(name));
   if (found == nullptr) return Error{"there is no device \"" + name + "\"; one of " + device_types() + " was expected"};
   if (colon != std::string::npos && colon + 1 == name.size())
     return Error{"device \"" + name + "\" has nothing after its colon; \"" + found->name + "\" or \"" + found->name +

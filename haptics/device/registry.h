@@ -15,6 +15,7 @@ struct DeviceInfo {
   std::string detail;   ///< one line: what it is, or why it cannot be opened
 };
 
+std::string device_type_of(const std::string& name);  ///< TYPE
 bool is_device_type(const std::string& type);
 std::string device_types();  ///< "falcon, mouse, null, ...": for messages
 /// Every device that could be used, present ones first. Looks at the USB bus.

@@ -5,6 +5,7 @@
 #pragma once
 #include <functional>
 
+#include "render/mirror/brick_distances.h"
 #include "render/mirror/grid_mirror.h"
 
 namespace catena::render {
@@ -16,8 +17,5 @@ struct BrickMap {
 
 /// `is_active` is asked once for each brick that has a valid cell.
 Result<BrickMap> make_brick_map(vk::Device& device, const GridMirror& mirror, const std::function<bool(const BrickRange&)>& is_active);
-
-/// The distances alone, x fastest (for make_brick_map and its test).
-std::vector<std::uint8_t> brick_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint8_t>& active);
 
 }  // namespace catena::render

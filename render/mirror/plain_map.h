@@ -2,11 +2,10 @@
 /// brick is plain (empty, or of one colour and density), and so, alike, are all bricks nearer than d (largest coordinate
 /// difference): a segment within that cube is integrated at once. Rebuilt when the transfer function changes.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "render/mirror/brick_distances.h"
 #include "render/mirror/packed_volume.h"
 
 namespace catena::render {
@@ -19,8 +18,5 @@ struct PlainMap {
 /// `look[c]`: codes c and c + 1 (and all between) look alike if look[c] == look[c + 1]; a code where the look varies within half a
 /// code of it has a number of its own.
 Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, std::span<const std::uint16_t, 256> look);
-
-/// The distances alone (for make_plain_map and its test). `kind` by brick, x fastest: 0 varies; equal numbers are alike.
-std::vector<std::uint8_t> plain_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint16_t>& kind);
 
 }  // namespace catena::render

@@ -16,7 +16,7 @@ Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, s
   if (scene.device) {
     CATENA_TRY(hand.settings, haptics::read_device_settings(*scene.device, scene.path));
   }
-  const std::string wanted = name.empty() ? hand.settings.type : name, type = wanted.substr(0, wanted.find(':'));
+  const std::string wanted = name.empty() ? hand.settings.type : name, type = haptics::device_type_of(wanted);
   if (type != hand.settings.type) {
     if (scene.device && haptics::is_device_type(type))
       hand.note = fmt::format("the scene's \"device\" describes a {}: not used for {}", hand.settings.type, wanted);

@@ -10,16 +10,9 @@
 namespace catena::haptics::test {
 namespace {
 
-std::unique_ptr<usb::Falcon> open_falcon(InProcessBus& bus) {
-  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), patient());
-  if (falcon) return std::move(*falcon);
-  ADD_FAILURE() << falcon.error().message;
-  return nullptr;
-}
-
 TEST(WholeCatenaFast, TheMotorsGetTheTicksForceToWithinHalfACount) {
   InProcessBus bus({.homed = true});
-  auto falcon = open_falcon(bus);
+  auto falcon = open_wrapped_falcon(bus.fd());
   ASSERT_NE(falcon, nullptr);
   ServoRig catena(bus, *falcon, ball_program(), {.rate_hz = 4000});
   ASSERT_TRUE(catena.start());
@@ -34,7 +27,7 @@ TEST(WholeCatenaFast, TheMotorsGetTheTicksForceToWithinHalfACount) {
 
 TEST(WholeCatenaFast, BetweenCountsTheProbeIsWithinAnEncoderStepOfTheGrip) {
   InProcessBus bus({.homed = true});
-  auto falcon = open_falcon(bus);
+  auto falcon = open_wrapped_falcon(bus.fd());
   ASSERT_NE(falcon, nullptr);
   ServoRig catena(bus, *falcon, ball_program(), {.rate_hz = 4000});
   ASSERT_TRUE(catena.start());
@@ -70,7 +63,7 @@ struct KeptTicks final : TickSink {
 
 TEST(WholeCatenaFast, AHandThatPushesInIsHeldByTheSurface) {
   InProcessBus bus({.homed = true, .seconds_per_frame = 5e-4});
-  auto falcon = open_falcon(bus);
+  auto falcon = open_wrapped_falcon(bus.fd());
   ASSERT_NE(falcon, nullptr);
   KeptTicks ticks;
   ServoRig catena(bus, *falcon, ball_program(), {.paced = false, .sink = &ticks});

@@ -10,18 +10,11 @@
 namespace catena::haptics::test {
 namespace {
 
-std::unique_ptr<usb::Falcon> open_falcon(InProcessBus& bus) {
-  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), patient());
-  if (falcon) return std::move(*falcon);
-  ADD_FAILURE() << falcon.error().message;
-  return nullptr;
-}
-
 TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
   const char* asked = std::getenv("CATENA_SOAK_TICKS");
   const std::uint64_t ticks = asked != nullptr ? std::strtoull(asked, nullptr, 10) : 20000;
   InProcessBus bus({.homed = true});
-  auto falcon = open_falcon(bus);
+  auto falcon = open_wrapped_falcon(bus.fd());
   ASSERT_NE(falcon, nullptr);
   ServoRig catena(bus, *falcon, ball_link_program(), {.paced = false});
   ASSERT_TRUE(catena.start());

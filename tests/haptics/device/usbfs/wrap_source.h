@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "haptics/device/usb/libusb_transport.h"
+#include "tests/haptics/device/usbfs/falcon_rig.h"
 
 namespace catena::haptics::test {
 
@@ -22,5 +23,13 @@ class WrapSource final : public usb::TransportSource {
  private:
   int fd_;
 };
+
+/// The driver over the in-process bus; nullptr and a failure where it does not open.
+inline std::unique_ptr<usb::Falcon> open_wrapped_falcon(int fd) {
+  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(fd), patient());
+  if (falcon) return std::move(*falcon);
+  ADD_FAILURE() << falcon.error().message;
+  return nullptr;
+}
 
 }  // namespace catena::haptics::test
