@@ -7,11 +7,23 @@
 
 namespace catena::app {
 
+inline constexpr int kMostFrames = 100000;
+
 struct RenderOptions {
   std::string source, output, size = "1024x768", quality, stats, probe;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
-  int frames = 1;
-  double orbit_deg = 0, phase = 0;
+  // outputs
+  int bits = 8;            ///< of -o FILE.png
+  std::string depth, ids;  ///< beside the picture
+  int tile = 0;            ///< samples; 0: chosen
+  int antialias = 1;       ///< samples a pixel, each way
+  // frames
+  int frames = 0;  ///< 0: not given
+  double fps = 25, phase = 0;
+  // the camera
+  std::string camera, view;
+  bool fit = false;
+  double orbit_deg = 0, elevation_deg = 0, zoom = 1;
   bool validation = false;
 };
 

@@ -6,129 +6,181 @@
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
 #include "engine/app/frame_stats.h"
+#include "engine/app/hand/interrupt.h"
+#include "engine/app/render/camera_motion.h"
 #include "engine/app/render/describe.h"
-#include "engine/app/render/numbering.h"
 #include "engine/app/render/options.h"
+#include "engine/app/render/outputs.h"
 #include "engine/app/render/quality_words.h"
 #include "engine/app/size_option.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
-#include "render/frame/camera.h"
-#include "render/vk/picture.h"
 
 namespace catena::app {
 
 namespace {
 
 constexpr int kUnreportedFrames = 3;
+constexpr int kMostPixels = 65536;  // each way
 
-// turns the camera about the vertical axis through its target
-void orbit(render::View& view, double degrees) {
-  const double angle = degrees * 3.14159265358979323846 / 180;
-  const Vec3 axis = direction(view.up);
-  const auto turn = [&](const Vec3& v) {
-    return v * std::cos(angle) + cross(axis, v) * std::sin(angle) + axis * (dot(axis, v) * (1 - std::cos(angle)));
-  };
-  view.position = view.target + turn(view.position - view.target);
+template <class T>
+T machine(Result<T> result) {
+  if (!result) throw MachineFailure{result.error().message};
+  return std::move(*result);
+}
+
+/// Draws frames of one scene and hands their bands on.
+class Frames {
+ public:
+  Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, Size size)
+      : scene_(scene), options_(options), motion_(motion), size_(size) {}
+
+  Result<render::FramePacket> packet(int frame) {
+    scene_.phase = options_.phase + static_cast<double>(frame) / motion_.frames();
+    CATENA_TRY(render::FramePacket packet, render::extract_frame(scene_, size_.width, size_.height));
+    packet.view = motion_.at(packet.view, render::packet_bounds(packet), static_cast<double>(size_.width) / size_.height, frame);
+    return packet;
+  }
+
+  /// Milliseconds from the start of extraction to the fence (of all tiles). Without outputs nothing is read back.
+  Result<double> draw(int frame, Outputs* outputs) {
+    const std::int64_t start = now_ns();
+    CATENA_TRY(const render::FramePacket next, packet(frame));
+    const double extract_ms = ms_since(start);
+    Outcome stopped = Done{};
+    bool interrupted = false;
+    const auto take = [&](const render::Band& band) -> Outcome {
+      interrupted = interrupt_.asked();
+      if (interrupted) return Error{"interrupted"};
+      if (band.height == 0) {
+        if (progress != nullptr) progress->at(++tiles_done_);
+        return Done{};
+      }
+      if (first_ms == 0) first_ms = ms_since_process_start();
+      return stopped = outputs->take(band);
+    };
+    if (outputs != nullptr) CATENA_CHECK(outputs->begin(frame));
+    const auto ms = render::draw_bands(*renderer, next, settings, plan, wants, outputs != nullptr ? take : decltype(nothing_)());
+    CATENA_CHECK(stopped);
+    if (interrupted || interrupt_.asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
+    if (!ms) throw MachineFailure{ms.error().message};
+    if (outputs != nullptr) CATENA_CHECK(outputs->end());
+    return extract_ms + *ms;
+  }
+
+  std::unique_ptr<render::Renderer> renderer;
+  render::RenderSettings settings;
+  render::TilePlan plan;
+  render::BandWants wants;
+  Progress* progress = nullptr;
+  double first_ms = 0;  ///< process start to the first pixels on the host
+
+ private:
+  scene::Scene& scene_;
+  const RenderOptions& options_;
+  const CameraMotion& motion_;
+  Size size_;
+  const Interrupt interrupt_{{SIGINT, SIGTERM, SIGHUP}};
+  double tiles_done_ = 0;
+  std::function<Outcome(const render::Band&)> nothing_;
+};
+
+/// Settings for the goal, measured on the picture, or on its middle tile.
+render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
+  const render::TilePlan& plan = frames.plan;
+  if (plan.count() == 1 && plan.antialias == 1) return machine(render::choose_quality(*frames.renderer, packet, goal));
+  const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
+  if (goal.kind == render::QualityGoal::Kind::time)
+    goal.value *= double(middle.drawn_width) * middle.drawn_height / (double(plan.samples_x()) * plan.samples_y());
+  return machine(render::choose_quality(*frames.renderer, render::tile_packet(packet, plan, middle), goal));
 }
 
 }  // namespace
 
 Outcome render_pictures(const RenderOptions& o) {
-  CATENA_TRY(const Size size, parse_size(o.size));
+  CATENA_TRY(const Size size, parse_size(o.size, kMostPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
-  if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
-  if (!o.output.ends_with(".png") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .png"};
+  CATENA_TRY(const CameraMotion motion, CameraMotion::make(o));
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, parse_quality(quality));
-  render::RenderSettings settings = wanted.settings;
   std::vector<std::string> inputs = inputs_of(scene);
   if (!o.probe.empty()) inputs.push_back(o.probe);
-  CATENA_CHECK(check_output(o.output, inputs));
-  if (!o.stats.empty()) CATENA_CHECK(check_output(o.stats, inputs));
-  if (!o.stats.empty() && same_file(o.stats, o.output)) return Error{o.stats + ": --stats and -o name one file: expected two"};
+  if (!o.camera.empty()) inputs.push_back(o.camera);
+  PictureShape shape{size.width, size.height, scene.background.transparent, o.bits, o.fps, {}};
+  CATENA_CHECK(check_outputs(o, shape, motion.frames(), inputs));
+  std::FILE* const words = uses_standard_output(o) ? stderr : stdout;
 
   // the chain is checked with the picture: one scene, two senses
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   CATENA_CHECK(place_cursor(scene, *program, o.probe));
-  CATENA_TRY(render::FramePacket packet, render::extract_frame(scene, size.width, size.height));
+  Frames frames(scene, o, motion, size);
+  CATENA_TRY(const render::FramePacket packet, frames.packet(0));
   FrameStats stats;
   stats.load_ms = ms_since(load_start);
   stats.cpu_bytes = field_bytes(scene);
+  stats.objects = packet.objects;
+  shape.legend = objects_json(packet.objects);
 
-  auto renderer = render::Renderer::create({.validation = o.validation, .choose = {}, .surface = {}});
-  if (!renderer) throw MachineFailure{renderer.error().message};
-  const bool every = is_numbered(o.output);
-  const auto draw = [&](int frame, std::vector<double>* times) -> Outcome {
-    const std::int64_t start = now_ns();
-    scene.phase = o.phase + static_cast<double>(frame) / std::max(1, o.frames);
-    CATENA_TRY(render::FramePacket next, render::extract_frame(scene, size.width, size.height));
-    orbit(next.view, o.orbit_deg * frame / std::max(1, o.frames));
-    const Outcome drawn = (*renderer)->draw(next, settings);
-    if (!drawn) throw MachineFailure{drawn.error().message};
-    if (times != nullptr) times->push_back(ms_since(start));
-    return Done{};
-  };
-  const auto read_back = [&]() -> render::Picture {
-    auto picture = (*renderer)->read_back();
-    if (!picture) throw MachineFailure{picture.error().message};
-    return std::move(*picture);
-  };
-
+  frames.renderer = machine(render::Renderer::create({.validation = o.validation, .choose = {}, .surface = {}}));
+  frames.settings = wanted.settings;
+  frames.wants = wanted_bands(o);
+  const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
+  frames.plan =
+      render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || wanted.settings.fast, frames.renderer->longest_side());
   if (wanted.goal) {
-    const auto choice = render::choose_quality(**renderer, packet, *wanted.goal);
-    if (!choice) throw MachineFailure{choice.error().message};
-    settings = choice->settings;
-    stats.estimated_rmse = choice->estimated_rmse;
-    fmt::print("quality {}: {}, error about {:.2f}/255{}\n", quality, describe(settings), choice->estimated_rmse,
-               choice->reached ? "" : " (nothing reached the goal: the nearest was taken)");
+    const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
+    frames.settings = choice.settings;
+    stats.estimated_rmse = choice.estimated_rmse;
+    fmt::print(words, "quality {}: {}, error about {:.2f}/255{}\n", quality, describe(frames.settings), choice.estimated_rmse,
+               choice.reached ? "" : " (nothing reached the goal: the nearest was taken)");
   }
-  stats.quality_mode = wanted.goal ? quality + ": " + describe(settings) : quality;
+  stats.quality_mode = wanted.goal ? quality + ": " + describe(frames.settings) : quality;
+  stats.tiles = frames.plan.count();
+  stats.device = frames.renderer->stats().device;
 
-  // the first picture, from process start to pixels on the host
-  CATENA_CHECK(draw(0, nullptr));
-  const render::Picture first = read_back();
-  stats.first_frame_ms = ms_since_process_start();
-  stats.device = (*renderer)->stats().device;
-  fmt::print("{}: {}x{}, {}, on {}\n", o.output, size.width, size.height, what_is_drawn(packet), stats.device);
-
-  // the reported frames come after a few unreported ones
-  const bool transparent = packet.background[3] < 1;
-  Progress progress("render", o.frames);
-  if (!o.stats.empty() || o.frames > 1) {
-    for (int k = 1; k < kUnreportedFrames; ++k) CATENA_CHECK(draw(0, nullptr));
-    for (int k = 0; k < o.frames; ++k) {
-      CATENA_CHECK(draw(k, &stats.frame_ms));
-      if (every) CATENA_CHECK(render::write_png(numbered(o.output, k), read_back(), transparent));
-      progress.at(k + 1);
+  // the first frame; the reported ones come after a few unreported ones
+  Outputs outputs(o, shape);
+  const bool more = motion.frames() > 1 && (outputs.takes_all_frames() || o.stats.empty());
+  {
+    Progress progress("render", frames.plan.count() * (more ? double(motion.frames()) : 1.0));
+    frames.progress = &progress;
+    CATENA_TRY(const double first, frames.draw(0, &outputs));
+    stats.first_frame_ms = frames.first_ms;
+    fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, size.width, size.height, what_is_drawn(packet),
+               stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device);
+    std::fflush(words);
+    for (int k = 1; k < kUnreportedFrames && !o.stats.empty(); ++k) CATENA_CHECK(frames.draw(0, nullptr));
+    for (int k = 0; k < motion.frames(); ++k) {
+      if (k == 0 && o.stats.empty()) {
+        stats.frame_ms.push_back(first);
+        continue;
+      }
+      CATENA_TRY(const double ms, frames.draw(k, k > 0 && outputs.takes_all_frames() ? &outputs : nullptr));
+      stats.frame_ms.push_back(ms);
     }
-    fmt::print("frame {:.1f} ms (median of {})\n", stats.median_ms(), stats.frame_ms.size());
+    frames.progress = nullptr;
   }
+  if (!o.stats.empty() || motion.frames() > 1)
+    fmt::print(words, "frame {:.1f} ms (median of {})\n", stats.median_ms(), stats.frame_ms.size());
 
-  std::int64_t encode_start = now_ns();
-  const auto finish = [&](const std::string& path) -> Outcome {
-    encode_start = now_ns();
-    if (!every) CATENA_CHECK(render::write_png(path, first, transparent));
-    stats.encode_ms = ms_since(encode_start);
-    return Done{};
-  };
-  const render::RenderStats gpu = (*renderer)->stats();
+  CATENA_CHECK(outputs.finish());
+  stats.encode_ms = outputs.ms_a_frame();
+  const render::RenderStats gpu = frames.renderer->stats();
   stats.driver = gpu.driver;
   stats.mirror_ms = gpu.mirror_ms;
   stats.gpu_bytes = gpu.gpu_bytes;
   stats.validation_messages = gpu.validation_messages;
-  for (const std::string& text : (*renderer)->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
-  if (o.stats.empty()) return finish(o.output);
+  for (const std::string& text : frames.renderer->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
+  if (o.stats.empty()) return outputs.commit();
   CATENA_TRY(OutputFile json, OutputFile::open(o.stats));
-  CATENA_CHECK(finish(o.output));
   json.write(stats.json());
-  const Outcome kept = json.commit();
-  if (!kept && !o.output.starts_with("/dev/") && !every) std::remove(o.output.c_str());
-  return kept;
+  CATENA_CHECK(json.finish());
+  CATENA_CHECK(outputs.commit());
+  return json.commit();
 }
 
 }  // namespace catena::app
