@@ -32,6 +32,14 @@ struct View {
   Window window{};
 };
 
+/// Where a tile of a large or supersampled picture lies in the whole (tiles.h). What is placed in pixels of the picture (overlays)
+/// counts in it; what is placed in the world follows from the view's window alone.
+struct Tile {
+  std::uint32_t x = 0, y = 0;                       ///< of the tile's first sample
+  std::uint32_t whole_width = 0, whole_height = 0;  ///< samples; 0: the packet is the whole picture
+  std::uint32_t scale = 1;                          ///< samples a pixel, each way
+};
+
 /// Keeps the half space to which `normal` points; `normal` need not be unit.
 struct ClipPlane {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
@@ -129,6 +137,7 @@ struct FramePacket {
   std::vector<IndicatorItem> indicators;
   std::vector<ClipPlane> clip;  ///< what all planes keep is drawn; at most kMostClipPlanes
   std::vector<ObjectName> objects;
+  Tile tile{};
 
   /// The next id, from 1 on.
   std::uint32_t add_object(std::string kind, std::string name) {
