@@ -146,16 +146,19 @@ Outcome render_pictures(const RenderOptions& o) {
   Outputs outputs(o, shape);
   const bool more = motion.frames() > 1 && (outputs.takes_all_frames() || o.stats.empty());
   {
-    Progress progress("render", frames.plan.count() * (more ? double(motion.frames()) : 1.0));
-    frames.progress = &progress;
+    const double parts = frames.plan.count() * (more ? double(motion.frames()) : 1.0);
+    Progress progress("render", parts);
+    frames.progress = parts > 1 ? &progress : nullptr;
     CATENA_TRY(const double first, frames.draw(0, &outputs));
     stats.first_frame_ms = frames.first_ms;
     fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, size.width, size.height, what_is_drawn(packet),
                stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device);
     std::fflush(words);
-    for (int k = 1; k < kUnreportedFrames && !o.stats.empty(); ++k) CATENA_CHECK(frames.draw(0, nullptr));
+    // a frame of many tiles has warmed up by itself
+    const bool timed = !o.stats.empty() && stats.tiles == 1;
+    for (int k = 1; k < kUnreportedFrames && timed; ++k) CATENA_CHECK(frames.draw(0, nullptr));
     for (int k = 0; k < motion.frames(); ++k) {
-      if (k == 0 && o.stats.empty()) {
+      if (k == 0 && !timed) {
         stats.frame_ms.push_back(first);
         continue;
       }

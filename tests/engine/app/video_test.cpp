@@ -22,7 +22,7 @@ namespace {
 using namespace catena;
 
 constexpr const char* kScene = R"({"fields": {"s": {"analytic": "torus", "resolution": 24}}, "isosurfaces": [{"field": "s", "level": 0.5}],
-  "camera": {"position": [4, -5, 3], "target": [0, 0, 0], "up": [0, 0, 1], "fovy_deg": 40}})";
+  "camera": {"position": [4, -5, 3], "target": [0, 0, 0], "up": [1, 0, 0], "fovy_deg": 40}})";
 
 /// PATH for as long as it lives.
 class Path {
