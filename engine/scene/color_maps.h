@@ -30,6 +30,9 @@ std::string not_a_color_map(std::string_view name);
 /// below hi. The name must be one (is_color_map); lo and hi finite.
 std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi);
 
+/// Whether a map can lie between them: fields hold floats, so they are two rising floats.
+bool is_color_range(double lo, double hi);
+
 /// What shows values that reach from lo to hi: the table if there is one, else the map, or `fallback`, over its range or lo..hi.
 std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
                                     std::string_view fallback = kDefaultLineMap);

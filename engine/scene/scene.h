@@ -45,8 +45,9 @@ struct FieldOverride {
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
 Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// A bare data file: its (first usable) scalar grid as a volume with a transfer function from its histogram, a vector grid
-/// as streamlines, a triangle mesh as it is; the camera is fitted.
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {});
+/// as streamlines, a triangle mesh as it is; the camera is fitted. `colors` may name a colour map and a range: a volume's
+/// opacity follows the range, lines show the speed by them.
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
 
 Entity find_field(const Scene& scene, std::string_view name);
 /// Loads on first use. `where` is the place that names the field, for messages.

@@ -164,13 +164,11 @@ Color table_color(const ColorTable& table, double value) {
   CATENA_ASSERT(!table.empty());
   if (std::isnan(value)) return {0.5f, 0.5f, 0.5f};
   if (value <= table.front().value) return color_of(table.front().color);
-  for (std::size_t i = 1; i < table.size(); ++i) {
-    const auto &a = table[i - 1], &b = table[i];
-    if (value > b.value) continue;
-    const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
-    return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
-  }
-  return color_of(table.back().color);
+  if (value >= table.back().value) return color_of(table.back().color);
+  const auto next = std::upper_bound(table.begin(), table.end(), value, [](double v, const auto& point) { return v < point.value; });
+  const auto &a = *(next - 1), &b = *next;
+  const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
+  return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
 }
 
 Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
