@@ -1,4 +1,5 @@
 /// Help for the eye: "bounding_box", "axes", "ground", "fog": true or an object; "lights": a list.
+#include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/read_parts.h"
 

@@ -6,8 +6,9 @@ namespace {
 
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
-  CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "indicator", "cursor", "camera", "background", "quality", "clip", "bounding_box", "axes", "ground", "fog", "lights"}));
+  CATENA_CHECK(json::only_keys(root, {"fields",      "chain",  "modes",        "coupling",  "workspace", "device", "volumes",
+                                      "isosurfaces", "meshes", "streamlines",  "indicator", "cursor",    "camera", "background",
+                                      "quality",     "clip",   "bounding_box", "axes",      "ground",    "fog",    "lights"}));
   // fields first: the other parts name them
   CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {

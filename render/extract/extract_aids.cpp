@@ -8,10 +8,10 @@
 namespace catena::render {
 namespace {
 
-constexpr double kLineShare = 0.0012;   // radius of lines by the diagonal
-constexpr double kTickShare = 0.015;    // length of ticks by the diagonal
-constexpr double kGroundShare = 1.6;    // the ground's edge by the diagonal
-constexpr double kGroundGap = 0.02;     // below what is drawn, by the diagonal
+constexpr double kLineShare = 0.0012;  // radius of lines by the diagonal
+constexpr double kTickShare = 0.015;   // length of ticks by the diagonal
+constexpr double kGroundShare = 1.6;   // the ground's edge by the diagonal
+constexpr double kGroundGap = 0.02;    // below what is drawn, by the diagonal
 constexpr int kTilesAcross = 16;
 
 Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
@@ -76,7 +76,7 @@ Outcome add_axes(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) 
     end[axis] = box.hi[axis];
     out[axis == 1 ? 0 : 1] = -tick;
     packet.aids.tubes.push_back(line(box.lo, end, radius, color, id));
-    for (const base::Tick& t : base::ticks(box.lo[axis], box.hi[axis], axes.ticks)) {
+    for (const Tick& t : nice_ticks(box.lo[axis], box.hi[axis], axes.ticks)) {
       Vec3 at = box.lo;
       at[axis] = t.value;
       packet.aids.tubes.push_back(line(at, at + out, radius, color, id));
@@ -107,7 +107,8 @@ void add_ground(const scene::Ground& ground, const Bounds& drawn, FramePacket& p
           geometry->vertices.push_back(p);
         for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) geometry->triangles.push_back(first + k);
       }
-    if (!geometry->triangles.empty()) packet.aids.meshes.push_back({std::move(geometry), color_of(ground.colors[std::size_t(shade)]), id, false});
+    if (!geometry->triangles.empty())
+      packet.aids.meshes.push_back({std::move(geometry), color_of(ground.colors[std::size_t(shade)]), id, false});
   }
 }
 

@@ -63,6 +63,8 @@ struct ObjectName {
 struct TransferTable {
   std::vector<std::array<double, 4>> colors;       ///< value, r, g, b
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
+  /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
+  std::vector<std::array<double, 2>> gradient_factors;
 };
 
 struct VolumeItem {
@@ -149,7 +151,7 @@ struct FramePacket {
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
-  std::vector<ClipPlane> clip;  ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<ClipPlane> clip;    ///< what all planes keep is drawn; at most kMostClipPlanes
   std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
   std::optional<FogItem> fog;
   AidItems aids;

@@ -21,7 +21,8 @@ namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass, &kMeshPass, &kStreamlinePass, &kCursorPass, &kIsosurfacePass, &kRaycastPass, &kComposePass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,        &kMeshPass,    &kStreamlinePass, &kCursorPass,
+                                        &kIsosurfacePass, &kRaycastPass, &kComposePass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;

@@ -70,7 +70,9 @@ Outcome TriangleDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tri
 bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
 
 bool same(const MeshItem& a, const MeshItem& b) {
-  return a.geometry == b.geometry && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
+  const bool alike =
+      a.geometry == b.geometry || (a.geometry->vertices == b.geometry->vertices && a.geometry->triangles == b.geometry->triangles);
+  return alike && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
 }
 
 bool same(const TubeItem& a, const TubeItem& b) {
