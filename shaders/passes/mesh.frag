@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/frame.h"
-#include "shaders/lib/lighting.glsl"
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
+#include "shaders/lib/lighting.glsl"
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_color;
 layout(location = 2) in vec3 in_view;
