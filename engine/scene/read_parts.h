@@ -40,6 +40,11 @@ Outcome read_cursor(Scene& scene, const json::Node& node);
 Outcome read_camera(Scene& scene, const json::Node& node);
 /// "clip": planes and boxes; "clip": false in an item, as `clipped`.
 Outcome read_clip(Scene& scene, const json::Node& node);
+Outcome read_bounding_box(Scene& scene, const json::Node& node);
+Outcome read_axes(Scene& scene, const json::Node& node);
+Outcome read_ground(Scene& scene, const json::Node& node);
+Outcome read_fog(Scene& scene, const json::Node& node);
+Outcome read_lights(Scene& scene, const json::Node& node);
 Outcome read_background(Scene& scene, const json::Node& node);
 Outcome read_quality(Scene& scene, const json::Node& node);
 

@@ -21,6 +21,11 @@ struct Scene {
   Camera camera;
   Background background;
   std::vector<ClipPlane> clip;
+  std::optional<BoundingBox> bounding_box;
+  std::optional<Axes> axes;
+  std::optional<Ground> ground;
+  std::optional<Fog> fog;
+  std::vector<Light> lights;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts

@@ -6,8 +6,9 @@ namespace {
 
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
-  CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "indicator", "cursor", "camera", "background", "quality", "clip"}));
+  CATENA_CHECK(json::only_keys(root, {"fields",      "chain",  "modes",        "coupling",  "workspace", "device", "volumes",
+                                      "isosurfaces", "meshes", "streamlines",  "indicator", "cursor",    "camera", "background",
+                                      "quality",     "clip",   "bounding_box", "axes",      "ground",    "fog",    "lights"}));
   // fields first: the other parts name them
   CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
@@ -28,7 +29,12 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"camera", read_camera},
                             {"background", read_background},
                             {"quality", read_quality},
-                            {"clip", read_clip}};
+                            {"clip", read_clip},
+                            {"bounding_box", read_bounding_box},
+                            {"axes", read_axes},
+                            {"ground", read_ground},
+                            {"fog", read_fog},
+                            {"lights", read_lights}};
   for (const Part& part : parts)
     if (const json::Node* node = root.find(part.key)) CATENA_CHECK(part.read(scene, *node));
   return Done{};

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,20 @@ struct ClipPlane {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
 };
 inline constexpr std::size_t kMostClipPlanes = 8;
+
+/// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
+struct LightItem {
+  Vec3 direction{0.0, 0.0, 1.0};
+  Color color{1, 1, 1};  ///< times the intensity
+  bool with_camera = false;
+};
+inline constexpr std::size_t kMostLights = 4;
+
+/// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
+struct FogItem {
+  Color color;
+  double start = 0, end = 1, most = 0.8;
+};
 
 /// What an id of the picture stands for.
 struct ObjectName {
@@ -118,6 +133,13 @@ struct CursorItem {
   std::uint32_t id = 0;
 };
 
+/// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.
+struct AidItems {
+  std::vector<TubeItem> tubes;
+  std::vector<MeshItem> meshes;
+  bool empty() const { return tubes.empty() && meshes.empty(); }
+};
+
 struct FramePacket {
   View view;
   std::uint32_t width = 1024, height = 768;
@@ -129,7 +151,10 @@ struct FramePacket {
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
-  std::vector<ClipPlane> clip;  ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<ClipPlane> clip;    ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
+  std::optional<FogItem> fog;
+  AidItems aids;
   std::vector<ObjectName> objects;
 
   /// The next id, from 1 on.
