@@ -7,16 +7,14 @@
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "render/frame/color.h"
+#include "render/frame/overlay_items.h"
 
 namespace catena::field {
 class ScalarGrid;
 }
 
 namespace catena::render {
-
-struct Color {
-  float r = 0, g = 0, b = 0;
-};
 
 struct View {
   Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};
@@ -97,6 +95,7 @@ struct FramePacket {
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
+  Overlay overlay;
 };
 
 }  // namespace catena::render
