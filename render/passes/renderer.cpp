@@ -14,6 +14,7 @@
 #include "render/passes/isosurface.h"
 #include "render/passes/mesh.h"
 #include "render/passes/mirrors.h"
+#include "render/passes/overlay.h"
 #include "render/passes/targets.h"
 #include "render/passes/upsample.h"
 #include "render/passes/volume.h"
@@ -107,6 +108,7 @@ struct Renderer::Parts {
   std::optional<FastVolumePass> fast_volume;
   std::optional<UpsamplePass> upsample;
   std::optional<ComposePass> compose;
+  std::optional<OverlayPass> overlay;
   bool drawn = false, drawn_opaque = false;
   double reference_depth = 0;
 
@@ -242,8 +244,13 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
   CATENA_TRY(const Work work, p.sort(packet, settings));
   CATENA_CHECK(p.prepare(packet, settings, work));
   const CameraRays rays = CameraRays::make(packet, p.bounds(work));
+  if (!p.overlay && !packet.overlay.empty()) {
+    CATENA_TRY(p.overlay, OverlayPass::create(*p.device));
+  }
+  if (p.overlay) CATENA_CHECK(p.overlay->prepare(packet, rays));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
   CATENA_CHECK(p.record(commands, packet, settings, work, rays));
+  if (p.overlay) CATENA_CHECK(p.overlay->record(commands, p.targets, work.opaque() ? &p.targets.opaque_depth : nullptr));
   CATENA_CHECK(commands.finish());
   p.drawn = true;
   p.drawn_opaque = work.opaque();
@@ -371,6 +378,7 @@ RenderStats Renderer::stats() const {
   stats.pipelines = device.counters().pipelines;
   stats.mirrors = parts_->mirrors->count();
   stats.mirror_ms = parts_->mirrors->build_ms() + (parts_->fast_volume ? parts_->fast_volume->build_ms() : 0);
+  if (parts_->overlay) stats.text_fault = parts_->overlay->fault();
   stats.validation_messages = device.messages().count();
   return stats;
 }

@@ -44,6 +44,7 @@ struct RenderStats {
   std::uint64_t pipelines = 0;            ///< created so far
   std::uint64_t mirrors = 0;              ///< grids mirrored now
   double mirror_ms = 0;                   ///< spent on building and uploading mirrors so far
+  std::string text_fault;                 ///< why text is left out, or empty
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
 
