@@ -8,6 +8,7 @@
 
 #include "engine/base/result.h"
 #include "engine/flow/curve.h"
+#include "engine/scene/annotations.h"
 #include "engine/scene/components.h"
 
 namespace catena::scene {
@@ -20,6 +21,7 @@ struct Scene {
   std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
   Camera camera;
   Background background;
+  Annotations annotations;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts

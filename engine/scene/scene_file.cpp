@@ -6,9 +6,11 @@ namespace {
 
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
-  CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "indicator", "cursor", "camera", "background", "quality"}));
-  // fields first: the other parts name them
+  CATENA_CHECK(
+      json::only_keys(root, {"fields", "chain",       "modes",     "coupling",   "workspace",   "device", "volumes", "isosurfaces",
+                             "meshes", "streamlines", "indicator", "cursor",     "scalar_bars", "labels", "title",   "orientation_marker",
+                             "status", "overlay",     "camera",    "background", "quality"}));
+  // fields first: the other parts name them; scalar bars name what is drawn
   CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
     const char* key;
@@ -25,6 +27,12 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"streamlines", read_streamlines},
                             {"indicator", read_indicator},
                             {"cursor", read_cursor},
+                            {"scalar_bars", read_scalar_bars},
+                            {"labels", read_labels},
+                            {"title", read_title},
+                            {"orientation_marker", read_orientation_marker},
+                            {"status", read_status},
+                            {"overlay", read_overlay},
                             {"camera", read_camera},
                             {"background", read_background},
                             {"quality", read_quality}};

@@ -31,6 +31,7 @@ struct FlatLines {
   std::vector<TubeItem> tubes;
   std::vector<std::vector<double>> arc_lengths;  ///< by point
   std::vector<ArrowItem> arrows;
+  ColorTable colors;  ///< of "color_by"
 };
 
 double domain_diagonal(const field::Field& field) {
@@ -134,7 +135,9 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
 
   // colours
   if (value) {
-    const ColorTable table = !set.color_by->colors.empty() ? set.color_by->colors : lo <= hi ? viridis(lo, hi) : viridis(0, 1);
+    const ColorTable& table = flat.colors = !set.color_by->colors.empty() ? set.color_by->colors
+                                            : lo <= hi                    ? viridis(lo, hi)
+                                                                          : viridis(0, 1);
     for (std::size_t i = 0; i < curves.size(); ++i)
       for (const double v : values[i]) flat.tubes[i].colors.push_back(table_color(table, v));
     for (std::size_t i = 0; i < flat.arrows.size(); ++i) flat.arrows[i].color = table_color(table, value->at(arrow_places[i]));
@@ -182,6 +185,11 @@ ColorTable viridis(double lo, double hi) {
         {lo + (hi - lo) * i / 8,
          {static_cast<float>(points[i][0]) / 255, static_cast<float>(points[i][1]) / 255, static_cast<float>(points[i][2]) / 255}});
   return table;
+}
+
+const ColorTable* shown_colors(const scene::World& world, scene::Entity set) {
+  if (!world.has<FlatLines>(set) || world.get<FlatLines>(set).colors.empty()) return nullptr;
+  return &world.get<FlatLines>(set).colors;
 }
 
 Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {

@@ -38,6 +38,8 @@ Canvas::Canvas(const FramePacket& packet, Typesetter& typesetter) : typesetter_(
   typesetter_.use_family(packet.overlay.font);
 }
 
+Color Canvas::around(const Color& text) { return luminance(text) > 0.5 ? grey(0) : grey(1); }
+
 double Canvas::hair() const { return std::max(1.0, std::round(px(kHairPt))); }
 
 TextExtent Canvas::measure(std::string_view text, const TextLook& look) const {
@@ -122,13 +124,12 @@ void Canvas::text(std::string_view text, const Vec2& at, Anchor anchor, const Te
   const Vec2 origin(std::floor(at.x), std::floor(at.y)), rest = at - origin;
   const Vec2 corner(rest.x * axis.x + rest.y * axis.y - text_share.x * set.extent.width,
                     rest.x * down.x + rest.y * down.y - text_share.y * set.extent.height);
-  const Color color = look.color ? *look.color : text_color_ ? *text_color_ : ink_;
-  const Color around = luminance(color) > 0.5 ? grey(0) : grey(1);
+  const Color color = text_color(look.color);
   const double halo_px = std::max(kHaloLeastPx, kHaloShare * size_px);
   for (const bool halo : {true, false})
     for (const SetGlyph& g : set.glyphs) {
       const double along = std::round(4 * (corner.x + g.x)) / 4;
-      add(OVERLAY_GLYPH, origin, axis, halo ? Paint{around, kHaloAlpha} : Paint{color});
+      add(OVERLAY_GLYPH, origin, axis, halo ? Paint{around(color), kHaloAlpha} : Paint{color});
       pens_.push_back({shapes_.size() - 1, typesetter_.font(look.bold), g.glyph, size_px, halo ? halo_px : 0, int(std::floor(along)),
                        int(std::lround(corner.y + g.y)), int(4 * (along - std::floor(along)))});
     }

@@ -42,6 +42,9 @@ class Canvas {
   Color ink() const { return ink_; }    ///< what is readable on the background
   Color halo() const { return halo_; }  ///< and what is not
 
+  Color text_color(const std::optional<Color>& own) const { return own ? *own : text_color_ ? *text_color_ : ink_; }
+  static Color around(const Color& text);  ///< black or white: what sets a text off
+
   /// Width and height of a text, pixels; of a rotated one as it lies in the picture.
   TextExtent measure(std::string_view text, const TextLook& look) const;
 

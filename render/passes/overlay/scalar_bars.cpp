@@ -56,7 +56,8 @@ std::vector<BarPlace> place_scalar_bars(const Canvas& canvas, const Overlay& ove
   for (const TextItem& text : overlay.texts)
     if (text.anchor == Anchor::top || text.anchor == Anchor::bottom) {
       const Side side = text.anchor == Anchor::top ? Side::top : Side::bottom;
-      const double height = canvas.measure(text.text, {text.size_pt, text.bold, false, {}}).height + std::fabs(canvas.px(text.offset_pt.y));
+      const TextExtent extent = canvas.measure(text.text, {text.size_pt, text.bold, false, {}});
+      const double height = extent.height + extent.descent + std::fabs(canvas.px(text.offset_pt.y));
       taken[int(side)] = std::max(taken[int(side)], height + canvas.px(kTitleGapPt));
     }
 

@@ -6,7 +6,7 @@
 namespace catena::render {
 namespace {
 
-constexpr double kDotPt = 2.2;
+constexpr double kDotPt = 2.2, kDotHaloAlpha = 0.75;
 const TextLook kRowLook{11, false, false, {}}, kHeadLook{11, true, false, {}};
 constexpr double kPanelAlpha = 0.5, kPadPt = 8, kRowPt = 16, kColumnPt = 12, kMeterPt = 5, kLeastWidthPt = 120;
 
@@ -44,8 +44,9 @@ void draw_labels(Canvas& canvas, const Overlay& overlay, const Camera& camera, d
     if (label.behind_hidden) canvas.hide(Canvas::Hiding{at, place->z - reference_depth});
     if (label.dot) {
       const double r = canvas.px(kDotPt);
-      canvas.box({at.x - r - 1, at.y - r - 1, 2 * r + 2, 2 * r + 2}, {canvas.halo(), 0.75}, r + 1);
-      canvas.box({at.x - r, at.y - r, 2 * r, 2 * r}, {label.color ? *label.color : canvas.ink()}, r);
+      const Color color = canvas.text_color(label.color);
+      canvas.box({at.x - r - 1, at.y - r - 1, 2 * r + 2, 2 * r + 2}, {Canvas::around(color), kDotHaloAlpha}, r + 1);
+      canvas.box({at.x - r, at.y - r, 2 * r, 2 * r}, {color}, r);
     }
     canvas.text(label.text, at + Vec2(canvas.px(label.offset_pt.x), canvas.px(label.offset_pt.y)), label.anchor,
                 {label.size_pt, false, false, label.color});
