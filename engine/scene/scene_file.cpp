@@ -6,12 +6,6 @@ namespace {
 
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
-  CATENA_CHECK(
-      json::only_keys(root, {"fields", "chain",       "modes",     "coupling",   "workspace",   "device", "volumes", "isosurfaces",
-                             "meshes", "streamlines", "indicator", "cursor",     "scalar_bars", "labels", "title",   "orientation_marker",
-                             "status", "overlay",     "camera",    "background", "quality"}));
-  // fields first: the other parts name them; scalar bars name what is drawn
-  CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
     const char* key;
     Outcome (*read)(Scene&, const json::Node&);
@@ -35,7 +29,13 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"overlay", read_overlay},
                             {"camera", read_camera},
                             {"background", read_background},
-                            {"quality", read_quality}};
+                            {"quality", read_quality},
+                            {"clip", read_clip}};
+  std::vector<std::string_view> keys{"fields"};
+  for (const Part& part : parts) keys.push_back(part.key);
+  CATENA_CHECK(json::only_keys(root, keys));
+  // fields first: the other parts name them; scalar bars name what is drawn
+  CATENA_CHECK(read_fields(scene, root, overrides));
   for (const Part& part : parts)
     if (const json::Node* node = root.find(part.key)) CATENA_CHECK(part.read(scene, *node));
   return Done{};

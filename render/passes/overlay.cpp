@@ -36,12 +36,29 @@ Outcome write_items(vk::Device& device, vk::Buffer& buffer, const std::vector<T>
   return Done{};
 }
 
-}  // namespace
+class OverlayPass final : public Pass {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device);
+  PassUse use(const Frame& frame) const override;
+  Outcome prepare(Frame& frame) override;
+  Outcome record(vk::Commands& commands, Frame& frame) override;
+  std::string note() const override { return typesetter_.fault(); }
 
-Result<OverlayPass> OverlayPass::create(vk::Device& device) {
-  OverlayPass self;
-  self.device_ = &device;
-  self.typesetter_ = std::make_unique<Typesetter>();
+ private:
+  OverlayPass() = default;
+  Outcome lay_out(Frame& frame);
+  Outcome upload_atlas(vk::Device& device);
+
+  Typesetter typesetter_;
+  vk::Pipeline draw_, blend_;
+  vk::Buffer shapes_, stops_, uniform_;
+  vk::Image atlas_, image_;
+  std::uint64_t atlas_version_ = 0;
+  std::uint32_t count_ = 0;
+};
+
+Result<std::unique_ptr<Pass>> OverlayPass::create(vk::Device& device) {
+  std::unique_ptr<OverlayPass> self(new OverlayPass);
   vk::GraphicsInfo draw;
   draw.vertex = kVertexShader;
   draw.fragment = kFragmentShader;
@@ -52,17 +69,24 @@ Result<OverlayPass> OverlayPass::create(vk::Device& device) {
                 {4, vk::Resource::texture}};
   draw.colors = {kOverlayFormat};
   draw.blend = true;
-  CATENA_TRY(self.draw_, vk::Pipeline::create(device, draw));
+  CATENA_TRY(self->draw_, vk::Pipeline::create(device, draw));
   vk::ComputeInfo blend;
   blend.shader = kBlendShader;
   blend.slots = {{0, vk::Resource::texture}, {1, vk::Resource::storage_image}};
-  CATENA_TRY(self.blend_, vk::Pipeline::create(device, blend));
-  return self;
+  CATENA_TRY(self->blend_, vk::Pipeline::create(device, blend));
+  return std::unique_ptr<Pass>(std::move(self));
 }
 
-Outcome OverlayPass::upload_atlas() {
-  const GlyphAtlas& atlas = typesetter_->atlas();
-  if (atlas_ && (atlas_version_ == atlas.version())) return Done{};
+/// The opaque depth hides labels that ask for it.
+PassUse OverlayPass::use(const Frame& frame) const {
+  const auto& labels = frame.packet.overlay.labels;
+  const bool hides = std::any_of(labels.begin(), labels.end(), [](const LabelItem& label) { return label.behind_hidden; });
+  return {hides ? frame.written & target::opaque_depth : 0, target::picture, true};
+}
+
+Outcome OverlayPass::upload_atlas(vk::Device& device) {
+  const GlyphAtlas& atlas = typesetter_.atlas();
+  if (atlas_ && atlas_version_ == atlas.version()) return Done{};
   // without a glyph: one row, never read
   const auto height = std::uint32_t(std::max(1, atlas.height()));
   if (!atlas_ || atlas_.info().extent.height != height) {
@@ -70,57 +94,64 @@ Outcome OverlayPass::upload_atlas() {
     info.format = kAtlasFormat;
     info.extent = {std::uint32_t(GlyphAtlas::kWidth), height, 1};
     info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    CATENA_TRY(atlas_, vk::Image::create(*device_, info));
+    CATENA_TRY(atlas_, vk::Image::create(device, info));
   }
-  CATENA_CHECK(vk::upload_planes(*device_, atlas_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
+  CATENA_CHECK(vk::upload_planes(device, atlas_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
     if (!atlas.pixels().empty()) std::memcpy(out, atlas.pixels().data(), atlas.pixels().size());
   }));
   atlas_version_ = atlas.version();
   return Done{};
 }
 
-Outcome OverlayPass::prepare(const FramePacket& packet, const CameraRays& rays) {
-  const Overlay& overlay = packet.overlay;
-  Canvas canvas(packet, *typesetter_);
-  draw_labels(canvas, overlay, rays.camera, rays.reference_depth);
+/// An image of the picture's size.
+Outcome OverlayPass::prepare(Frame& frame) {
+  const VkExtent3D& have = image_.info().extent;
+  if (image_ && have.width == frame.packet.width && have.height == frame.packet.height) return Done{};
+  vk::ImageInfo info;
+  info.format = kOverlayFormat;
+  info.extent = {frame.packet.width, frame.packet.height, 1};
+  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  CATENA_TRY(image_, vk::Image::create(frame.device, info));
+  return Done{};
+}
+
+/// The items as shapes; the camera is known now.
+Outcome OverlayPass::lay_out(Frame& frame) {
+  const Overlay& overlay = frame.packet.overlay;
+  Canvas canvas(frame.packet, typesetter_);
+  draw_labels(canvas, overlay, frame.rays.camera, frame.rays.reference_depth);
   draw_scalar_bars(canvas, overlay);
-  if (overlay.orientation_marker) draw_orientation_marker(canvas, *overlay.orientation_marker, rays.camera);
+  if (overlay.orientation_marker) draw_orientation_marker(canvas, *overlay.orientation_marker, frame.rays.camera);
   if (overlay.status) draw_status(canvas, *overlay.status);
   draw_texts(canvas, overlay);
   const std::vector<shared::OverlayShape>& shapes = canvas.finish();
   count_ = std::uint32_t(shapes.size());
-  slack_ = kSlackShare * rays.depth_far;
-  CATENA_CHECK(write_items(*device_, shapes_, shapes));
-  CATENA_CHECK(write_items(*device_, stops_, canvas.stops()));
-  CATENA_CHECK(upload_atlas());
-  const VkExtent3D& have = image_.info().extent;
-  if (image_ && have.width == packet.width && have.height == packet.height) return Done{};
-  vk::ImageInfo info;
-  info.format = kOverlayFormat;
-  info.extent = {packet.width, packet.height, 1};
-  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  CATENA_TRY(image_, vk::Image::create(*device_, info));
-  return Done{};
+  CATENA_CHECK(write_items(frame.device, shapes_, shapes));
+  CATENA_CHECK(write_items(frame.device, stops_, canvas.stops()));
+  return upload_atlas(frame.device);
 }
 
-Outcome OverlayPass::record(vk::Commands& commands, Targets& targets, vk::Image* opaque_depth) {
+Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
+  CATENA_CHECK(lay_out(frame));
   if (count_ == 0) return Done{};
+  Targets& targets = frame.targets;
+  const bool hides = (use(frame).reads & target::opaque_depth) != 0;
   const VkExtent3D& extent = image_.info().extent;
   shared::OverlayData data{};
   data.half_size = {0.5f * float(extent.width), 0.5f * float(extent.height)};
-  data.depth_slack = float(slack_);
-  data.has_depth = opaque_depth != nullptr;
-  CATENA_CHECK(write_uniform(*device_, uniform_, data));
+  data.depth_slack = float(kSlackShare * frame.rays.depth_far);
+  data.has_depth = hides;
+  CATENA_CHECK(write_uniform(frame.device, uniform_, data));
 
   // the shapes, in order
-  if (opaque_depth) commands.use(*opaque_depth, vk::kShaderRead);
-  const vk::ColorTarget target{&image_, std::array<float, 4>{0, 0, 0, 0}};
-  commands.begin_pass({&target, 1}, {});
+  if (hides) commands.use(targets.opaque_depth, vk::kShaderRead);
+  const vk::ColorTarget into{&image_, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&into, 1}, {});
   const vk::Binding drawn[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                {1, vk::Resource::buffer, &shapes_, nullptr, nullptr},
                                {2, vk::Resource::buffer, &stops_, nullptr, nullptr},
                                {3, vk::Resource::texture, nullptr, &atlas_, nullptr},
-                               {4, vk::Resource::texture, nullptr, opaque_depth ? opaque_depth : &targets.none, nullptr}};
+                               {4, vk::Resource::texture, nullptr, hides ? &targets.opaque_depth : &targets.none, nullptr}};
   commands.bind(draw_, drawn);
   commands.draw(6 * count_, 1);
   commands.end_pass();
@@ -132,8 +163,11 @@ Outcome OverlayPass::record(vk::Commands& commands, Targets& targets, vk::Image*
                                  {1, vk::Resource::storage_image, nullptr, &targets.picture, nullptr}};
   commands.bind(blend_, blended);
   commands.dispatch((extent.width + 15) / 16, (extent.height + 3) / 4, 1);
-  commands.use(targets.picture, vk::kTransferRead);
   return Done{};
 }
+
+}  // namespace
+
+const PassEntry kOverlayPass{"overlay", [](const Frame& frame) { return !frame.packet.overlay.empty(); }, OverlayPass::create};
 
 }  // namespace catena::render
