@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
@@ -163,6 +164,8 @@ struct Cursor {
   std::vector<Vec3> proxies;
   std::vector<bool> active;
   std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it
+  std::vector<exchange::Status> statuses;
+  std::vector<std::string> names;  ///< of the links, once the chain is made
   Vec3 force_n{0.0};
   double size = 0;  ///< glyph radius, world units; 0: fitted
   bool visible = false;

@@ -8,6 +8,7 @@
 
 #include "engine/base/result.h"
 #include "engine/flow/curve.h"
+#include "engine/scene/annotations.h"
 #include "engine/scene/components.h"
 
 namespace catena::scene {
@@ -20,6 +21,7 @@ struct Scene {
   std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
   Camera camera;
   Background background;
+  Annotations annotations;
   std::vector<ClipPlane> clip;
   std::optional<BoundingBox> bounding_box;
   std::optional<Axes> axes;

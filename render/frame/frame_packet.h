@@ -9,16 +9,14 @@
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "render/frame/color.h"
+#include "render/frame/overlay_items.h"
 
 namespace catena::field {
 class ScalarGrid;
 }
 
 namespace catena::render {
-
-struct Color {
-  float r = 0, g = 0, b = 0;
-};
 
 /// A part of the symmetric frustum of a view, or beyond it, in its half extents: an eye off the axis, a tile of a large picture.
 struct Window {
@@ -151,6 +149,7 @@ struct FramePacket {
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
+  Overlay overlay;
   std::vector<ClipPlane> clip;    ///< what all planes keep is drawn; at most kMostClipPlanes
   std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
   std::optional<FogItem> fog;

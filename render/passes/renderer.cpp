@@ -13,6 +13,7 @@
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
 #include "render/passes/mesh.h"
+#include "render/passes/overlay.h"
 #include "render/passes/raycast.h"
 #include "render/passes/streamlines.h"
 #include "render/vk/swapchain.h"
@@ -22,7 +23,7 @@ namespace {
 
 /// All that a picture can hold, in the order of drawing.
 constexpr const PassEntry* kPasses[] = {&kAidPass,        &kMeshPass,    &kStreamlinePass, &kCursorPass,
-                                        &kIsosurfacePass, &kRaycastPass, &kComposePass};
+                                        &kIsosurfacePass, &kRaycastPass, &kComposePass,    &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -265,7 +266,10 @@ RenderStats Renderer::stats() const {
   stats.mirrors = parts_->mirrors->count();
   stats.passes = parts_->drawn_passes;
   stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
-  for (const Pass* pass : parts_->active()) stats.mirror_ms += pass->build_ms();
+  for (const Pass* pass : parts_->active()) {
+    stats.mirror_ms += pass->build_ms();
+    if (std::string note = pass->note(); !note.empty()) stats.notes.push_back(std::move(note));
+  }
   stats.validation_messages = device.messages().count();
   return stats;
 }
