@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/color_option.h"
 #include "engine/base/result.h"
 
 namespace catena::app {
@@ -12,6 +13,7 @@ inline constexpr int kMostFrames = 100000;
 struct RenderOptions {
   std::string source, output, size = "1024x768", quality, stats, probe;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
+  ColorOption colors;
   // outputs
   int bits = 8;            ///< of -o FILE.png
   std::string depth, ids;  ///< beside the picture
