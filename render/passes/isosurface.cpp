@@ -1,6 +1,10 @@
 #include "render/passes/isosurface.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "render/passes/targets.h"
+#include "render/vk/upload.h"
 
 namespace catena::render {
 namespace {
@@ -11,6 +15,34 @@ constexpr std::uint32_t kVertexShader[] = {
 constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"
 };
+
+/// The pixels that the bricks with the level can cover; all where one of their corners is behind the eye.
+VkRect2D surface_area(const CellMap& cells, const GridMirror& mirror, const field::Mapping& mapping, const Camera& camera) {
+  if (cells.lo == cells.hi) return {};
+  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
+  double x0 = camera.width, y0 = camera.height, x1 = 0, y1 = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 local{(i & 1) ? cells.hi.x : cells.lo.x, (i & 2) ? cells.hi.y : cells.lo.y, (i & 4) ? cells.hi.z : cells.lo.z};
+    const auto pixel = project(camera, mapping.world_from_index(origin + local));
+    if (!pixel) return {{0, 0}, {std::uint32_t(camera.width), std::uint32_t(camera.height)}};
+    x0 = std::min(x0, pixel->x);
+    y0 = std::min(y0, pixel->y);
+    x1 = std::max(x1, pixel->x);
+    y1 = std::max(y1, pixel->y);
+  }
+  x0 = std::clamp(std::floor(x0) - 1, 0.0, camera.width);
+  y0 = std::clamp(std::floor(y0) - 1, 0.0, camera.height);
+  x1 = std::clamp(std::ceil(x1) + 1, x0, camera.width);
+  y1 = std::clamp(std::ceil(y1) + 1, y0, camera.height);
+  return {{std::int32_t(x0), std::int32_t(y0)}, {std::uint32_t(x1 - x0), std::uint32_t(y1 - y0)}};
+}
+
+VkRect2D intersection(const VkRect2D& a, const VkRect2D& b) {
+  const std::int32_t x0 = std::max(a.offset.x, b.offset.x), y0 = std::max(a.offset.y, b.offset.y);
+  const std::int32_t x1 = std::min(a.offset.x + std::int32_t(a.extent.width), b.offset.x + std::int32_t(b.extent.width));
+  const std::int32_t y1 = std::min(a.offset.y + std::int32_t(a.extent.height), b.offset.y + std::int32_t(b.extent.height));
+  return {{x0, y0}, {std::uint32_t(std::max(0, x1 - x0)), std::uint32_t(std::max(0, y1 - y0))}};
+}
 
 }  // namespace
 
@@ -38,15 +70,15 @@ Result<IsosurfacePass> IsosurfacePass::create(vk::Device& device) {
   return self;
 }
 
-Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags) {
-  vk::Pipeline& pipeline = pipelines_[flags];
+Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags, bool has_words) {
+  vk::Pipeline& pipeline = pipelines_[{flags, has_words}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
     info.fragment = kFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}};
     add_grid_slots(info.slots, 1);
-    info.constants = {flags};
+    info.constants = {flags, has_words ? 1u : 0u};
     info.colors = {kOpaqueFormat, kDepthValueFormat};
     info.depth = true;
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
@@ -54,12 +86,25 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags) {
   return &pipeline;
 }
 
+Outcome IsosurfacePass::make_cells(Surface& surface) {
+  surface.cells = make_cell_map(*surface.item.grid, *surface.state.mirror, surface.state.level);
+  surface.has_words = !surface.cells.words.empty();
+  surface.cells.words.resize(std::max<std::size_t>(4, surface.cells.words.size()));  // never read where there are none
+  CATENA_TRY(surface.words, vk::upload_buffer(*device_, std::as_bytes(std::span(surface.cells.words)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  surface.cells.words = {};
+  return Done{};
+}
+
 Outcome IsosurfacePass::prepare(std::span<const std::pair<const IsosurfaceItem*, std::shared_ptr<const GridMirror>>> items) {
   if (surfaces_.size() > items.size()) surfaces_.erase(surfaces_.begin() + std::ptrdiff_t(items.size()), surfaces_.end());
   while (surfaces_.size() < items.size()) surfaces_.emplace_back();
   for (std::size_t i = 0; i < items.size(); ++i) {
-    CATENA_CHECK(surfaces_[i].state.update(*device_, items[i].second, items[i].first->level));
-    surfaces_[i].item = *items[i].first;
+    Surface& surface = surfaces_[i];
+    const auto [item, mirror] = items[i];
+    const bool same = surface.words && surface.state.mirror == mirror && surface.state.level == float(item->level);
+    CATENA_CHECK(surface.state.update(*device_, mirror, item->level));
+    surface.item = *item;
+    if (!same) CATENA_CHECK(make_cells(surface));
   }
   return Done{};
 }
@@ -67,13 +112,16 @@ Outcome IsosurfacePass::prepare(std::span<const std::pair<const IsosurfaceItem*,
 Outcome IsosurfacePass::record(vk::Commands& commands, const CameraRays& rays, const VkRect2D& area) {
   for (Surface& surface : surfaces_) {
     shared::FrameData data = rays.frame();
+    const VkRect2D around = intersection(area, surface_area(surface.cells, *surface.state.mirror, surface.item.grid->mapping(), rays.camera));
+    if (around.extent.width == 0 || around.extent.height == 0) continue;
     data.grids[0] = surface_data(rays, surface.state, surface.item);
     CATENA_CHECK(write_uniform(*device_, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags()));
-    std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr}};
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags(), surface.has_words));
+    std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
+                                      {1, vk::Resource::buffer, &surface.words, nullptr, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
-    commands.scissor(area);
+    commands.scissor(around);
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }

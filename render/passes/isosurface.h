@@ -3,6 +3,7 @@
 #pragma once
 #include <map>
 
+#include "render/mirror/cell_map.h"
 #include "render/passes/camera_rays.h"
 #include "render/passes/grid_bindings.h"
 
@@ -31,15 +32,19 @@ class IsosurfacePass {
  private:
   struct Surface {
     SurfaceState state;
+    CellMap cells;  // without its words, which are in the buffer
+    vk::Buffer words;
+    bool has_words = false;
     IsosurfaceItem item;
     vk::Buffer uniform;
   };
   IsosurfacePass() = default;
-  Result<const vk::Pipeline*> pipeline(std::uint32_t flags);
+  Result<const vk::Pipeline*> pipeline(std::uint32_t flags, bool has_words);
+  Outcome make_cells(Surface& surface);
 
   vk::Device* device_ = nullptr;
   vk::Sampler linear_;
-  std::map<std::uint32_t, vk::Pipeline> pipelines_;
+  std::map<std::pair<std::uint32_t, bool>, vk::Pipeline> pipelines_;
   std::vector<Surface> surfaces_;
 };
 

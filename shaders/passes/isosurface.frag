@@ -8,6 +8,8 @@
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
+layout(constant_id = 1) const uint HAS_CELLS = 0;  // 0: the map of cells would be too large
+#define SURFACE_CELLS
 #include "shaders/lib/surface.glsl"
 
 layout(location = 0) out vec4 out_color;
