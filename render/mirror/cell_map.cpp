@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "engine/base/parallel_for.h"
 #include "render/mirror/brick_distances.h"
 #include "render/mirror/half.h"
+#include "render/vk/upload.h"
 
 namespace catena::render {
 namespace {
 
-constexpr int kApron = kBrick + 1;
+constexpr int kApron = kBrick + 1, kCellBrick = 4, kBlocks = kBrick / 2;
 constexpr std::size_t kVoxels = std::size_t(kApron) * kApron * kApron;
 
 /// Where the corners of a brick of 8^3 cells lie, nine bits a row of voxels; `slack` widens the level.
@@ -83,9 +85,9 @@ class Builder {
       for (int y = lo[1]; y < hi[1]; ++y) {
         std::uint32_t cells = rows.crossed(y, z) & in_x;
         if (!valid.empty() && cells) cells &= valid_cells(values, valid, y, z);
-        for (int half = 0; half < 2; ++half) {
-          const std::size_t word = map.word_index(2 * at.x + half, 2 * at.y + y / kCellBrick, 2 * at.z + z / kCellBrick) + 1 + z % kCellBrick / 2;
-          map.words[word] |= (cells >> (kCellBrick * half) & 0xfu) << (kCellBrick * (y % kCellBrick) + 16 * (z % 2));
+        for (int x = 0; cells; ++x, cells >>= 2) {
+          const std::size_t block = map.block_index(kBlocks * at.x + x, kBlocks * at.y + y / 2, kBlocks * at.z + z / 2);
+          map.texels[block] = std::uint16_t(map.texels[block] | (cells & 3u) << (2 * (y & 1) + 4 * (z & 1)));
         }
       }
   }
@@ -109,22 +111,33 @@ class Builder {
 
 /// Distances, the number of cells and what encloses their bricks.
 void finish(CellMap& map, const GridMirror& mirror) {
-  const auto [bx, by, bz] = map.bricks;
-  std::vector<std::uint8_t> active((map.words.size() - 3) / 3);
+  std::array<std::int32_t, 3> bricks{};
+  for (int axis = 0; axis < 3; ++axis) bricks[axis] = map.blocks[axis] / 2;
+  const auto [bx, by, bz] = bricks;
+  std::vector<std::uint8_t> active(std::size_t(bx) * by * bz);
   std::array<int, 3> least{bx, by, bz}, most{-1, -1, -1};
   for (std::size_t i = 0; i < active.size(); ++i) {
-    const std::uint32_t low = map.words[3 + 3 * i + 1], high = map.words[3 + 3 * i + 2];
-    active[i] = (low | high) != 0;
-    if (!active[i]) continue;
-    map.cells += std::uint64_t(std::popcount(low)) + std::uint64_t(std::popcount(high));
     const std::array<int, 3> at{int(i % bx), int(i / bx % by), int(i / bx / by)};
+    int cells = 0;
+    for (int c = 0; c < 8; ++c)
+      cells += std::popcount(map.texels[map.block_index(2 * at[0] + (c & 1), 2 * at[1] + (c >> 1 & 1), 2 * at[2] + (c >> 2))]);
+    if (!cells) continue;
+    active[i] = 1;
+    map.cells += std::uint64_t(cells);
     for (int axis = 0; axis < 3; ++axis) {
       least[axis] = std::min(least[axis], at[axis]);
       most[axis] = std::max(most[axis], at[axis]);
     }
   }
-  const std::vector<std::uint8_t> distance = brick_distances(map.bricks, active);
-  for (std::size_t i = 0; i < active.size(); ++i) map.words[3 + 3 * i] = distance[i];
+  const std::vector<std::uint8_t> distance = brick_distances(bricks, active);
+  parallel_for(std::size_t(map.blocks[1]) * map.blocks[2], 64, [&, bx = bx, by = by](std::size_t begin, std::size_t end) {
+    for (std::size_t line = begin; line < end; ++line) {
+      const std::size_t y = line % map.blocks[1] / 2, z = line / map.blocks[1] / 2;
+      const std::uint8_t* from = &distance[(z * by + y) * bx];
+      std::uint16_t* texels = &map.texels[line * map.blocks[0]];
+      for (int x = 0; x < map.blocks[0]; ++x) texels[x] = std::uint16_t(texels[x] | from[x / 2] << 8);
+    }
+  });
   if (map.cells == 0) return;
   for (int axis = 0; axis < 3; ++axis) {
     map.lo[axis] = std::max(mirror.box_lo[axis], double(kCellBrick * least[axis]));
@@ -134,23 +147,36 @@ void finish(CellMap& map, const GridMirror& mirror) {
 
 }  // namespace
 
-CellMap make_cell_map(const field::ScalarGrid& grid, const GridMirror& mirror, float level, std::uint64_t most_bytes) {
+CellMap make_cell_map(const field::ScalarGrid& grid, const GridMirror& mirror, float level, std::uint64_t most_texels) {
   CATENA_ASSERT(mirror.drawable);
   CellMap map;
-  std::size_t count = 1;
+  std::uint64_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    map.bricks[axis] = kBrick / kCellBrick * mirror.bricks[axis];
-    count *= std::size_t(map.bricks[axis]);
+    map.blocks[axis] = kBlocks * mirror.bricks[axis];
+    count *= std::uint64_t(map.blocks[axis]);
   }
   map.lo = mirror.box_lo;
   map.hi = mirror.box_hi;
-  if ((3 + 3 * count) * sizeof(std::uint32_t) > most_bytes) return map;
-  map.words.assign(3 + 3 * count, 0);
-  for (int axis = 0; axis < 3; ++axis) map.words[axis] = std::uint32_t(map.bricks[axis]);
+  if (count > most_texels) return map;
+  map.texels.assign(count, 0);
   map.lo = map.hi = Vec3(0.0);
   Builder(grid, mirror, level).build(map);
   finish(map, mirror);
   return map;
+}
+
+Result<vk::Image> upload_cell_map(vk::Device& device, const CellMap& map) {
+  vk::ImageInfo info;
+  info.type = VK_IMAGE_TYPE_3D;
+  info.format = VK_FORMAT_R16_UINT;
+  info.extent = {std::uint32_t(map.blocks[0]), std::uint32_t(map.blocks[1]), std::uint32_t(map.blocks[2])};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(vk::Image image, vk::Image::create(device, info));
+  const std::size_t plane = std::size_t(map.blocks[0]) * map.blocks[1];
+  CATENA_CHECK(vk::upload_planes(device, image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    std::memcpy(out, map.texels.data() + first * plane, count * plane * sizeof(std::uint16_t));
+  }));
+  return image;
 }
 
 }  // namespace catena::render

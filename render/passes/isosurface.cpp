@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "render/passes/targets.h"
-#include "render/vk/upload.h"
 
 namespace catena::render {
 namespace {
@@ -70,15 +69,15 @@ Result<IsosurfacePass> IsosurfacePass::create(vk::Device& device) {
   return self;
 }
 
-Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags, bool has_words) {
-  vk::Pipeline& pipeline = pipelines_[{flags, has_words}];
+Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags, bool has_cells) {
+  vk::Pipeline& pipeline = pipelines_[{flags, has_cells}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
     info.fragment = kFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
-    info.constants = {flags, has_words ? 1u : 0u};
+    info.constants = {flags, has_cells ? 1u : 0u};
     info.colors = {kOpaqueFormat, kDepthValueFormat};
     info.depth = true;
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
@@ -88,10 +87,11 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags, bool h
 
 Outcome IsosurfacePass::make_cells(Surface& surface) {
   surface.cells = make_cell_map(*surface.item.grid, *surface.state.mirror, surface.state.level);
-  surface.has_words = !surface.cells.words.empty();
-  surface.cells.words.resize(std::max<std::size_t>(4, surface.cells.words.size()));  // never read where there are none
-  CATENA_TRY(surface.words, vk::upload_buffer(*device_, std::as_bytes(std::span(surface.cells.words)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
-  surface.cells.words = {};
+  surface.cell_map = {};
+  if (!surface.cells.texels.empty()) {
+    CATENA_TRY(surface.cell_map, upload_cell_map(*device_, surface.cells));
+  }
+  surface.cells.texels = {};
   return Done{};
 }
 
@@ -101,7 +101,7 @@ Outcome IsosurfacePass::prepare(std::span<const std::pair<const IsosurfaceItem*,
   for (std::size_t i = 0; i < items.size(); ++i) {
     Surface& surface = surfaces_[i];
     const auto [item, mirror] = items[i];
-    const bool same = surface.words && surface.state.mirror == mirror && surface.state.level == float(item->level);
+    const bool same = surface.state.map.image && surface.state.mirror == mirror && surface.state.level == float(item->level);
     CATENA_CHECK(surface.state.update(*device_, mirror, item->level));
     surface.item = *item;
     if (!same) CATENA_CHECK(make_cells(surface));
@@ -117,9 +117,9 @@ Outcome IsosurfacePass::record(vk::Commands& commands, const CameraRays& rays, c
     data.grids[0] = surface_data(rays, surface.state, surface.item);
     CATENA_CHECK(write_uniform(*device_, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags(), surface.has_words));
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags(), bool(surface.cell_map)));
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
-                                      {1, vk::Resource::buffer, &surface.words, nullptr, nullptr}};
+                                      {1, vk::Resource::texture, nullptr, surface.cell_map ? &surface.cell_map : &bound.map->image, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
     commands.scissor(around);
     commands.bind(*pipe, bindings);

@@ -32,14 +32,13 @@ class IsosurfacePass {
  private:
   struct Surface {
     SurfaceState state;
-    CellMap cells;  // without its words, which are in the buffer
-    vk::Buffer words;
-    bool has_words = false;
+    CellMap cells;  // without its texels, which are in the image
+    vk::Image cell_map;  // none: too large
     IsosurfaceItem item;
     vk::Buffer uniform;
   };
   IsosurfacePass() = default;
-  Result<const vk::Pipeline*> pipeline(std::uint32_t flags, bool has_words);
+  Result<const vk::Pipeline*> pipeline(std::uint32_t flags, bool has_cells);
   Outcome make_cells(Surface& surface);
 
   vk::Device* device_ = nullptr;

@@ -139,23 +139,20 @@ void level_corners(int i, vec3 cell, out vec4 lo, out vec4 hi) {
 
 #ifdef SURFACE_CELLS
 // Walks to the next cell that holds the level, by render/mirror/cell_map.h.
-layout(scalar, binding = 1) readonly buffer Cells {
-  ivec3 cell_bricks;
-  uint cell_words[];
-};
+layout(binding = 1) uniform utexture3D cell_map;
 bool next_in_map(inout Walk walk, Way way, float to) {
-  const ivec3 stride = ivec3(3, 3 * cell_bricks.x, 3 * cell_bricks.x * cell_bricks.y);
   bool found = false;
   while (!found && !walk.done && walk.t < to) {
-    const ivec3 cell = ivec3(walk.cell), brick = cell >> 2, in_brick = cell & 3;
-    const int at = brick.x * stride.x + brick.y * stride.y + brick.z * stride.z;
-    const uint word = cell_words[at + 1 + (in_brick.z >> 1)];
-    found = (word >> (in_brick.x + 4 * in_brick.y + 16 * (in_brick.z & 1)) & 1u) != 0u;
+    const ivec3 cell = ivec3(walk.cell), odd = cell & 1;
+    const uint block = texelFetch(cell_map, cell >> 1, 0).r;
+    found = (block >> (odd.x + 2 * odd.y + 4 * odd.z) & 1u) != 0u;
     if (!found) {
-      const float distance = float(cell_words[at]);
-      const vec3 base = 4.0 * vec3(brick);
-      const bool empty = distance > 0.0;
-      leave_box(walk, way, empty ? base - (4.0 * distance - 4.0) : walk.cell, empty ? base + 4.0 * distance : walk.cell + 1.0);
+      // out of the bricks without, the block without, or the cell
+      const float distance = float(block >> 8);
+      const bool bricks = block > 255u, empty = (block & 255u) == 0u;
+      const vec3 base = bricks ? vec3(cell & ~3) : empty ? vec3(cell & ~1) : walk.cell;
+      const float before = bricks ? 4.0 * distance - 4.0 : 0.0, size = bricks ? 4.0 * distance : empty ? 2.0 : 1.0;
+      leave_box(walk, way, base - before, base + size);
     }
   }
   return found;
