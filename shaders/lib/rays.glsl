@@ -37,8 +37,8 @@ vec2 domain_interval(int i, LocalRay ray) {
 
 float buffer_depth(float t) {
   const float z = t + frame.reference_depth;
-  if (frame.orthographic != 0u) return (frame.depth_far - z) / (frame.depth_far - frame.depth_near);
-  return clamp(frame.depth_near / max(z, 1e-30), 0.0, 1.0);
+  const float parallel = float(frame.orthographic);
+  return parallel * (frame.depth_far - z) / (frame.depth_far - frame.depth_near) + (1.0 - parallel) * clamp(frame.depth_near / max(z, 1e-30), 0.0, 1.0);
 }
 
 // Depth at which the ray leaves the cube of empty bricks around the brick of `p` (at distance `d` the next active one), from p.

@@ -24,7 +24,7 @@ void main() {
   float t = NO_DEPTH;
   if (from < interval.y) t = first_crossing(0, ray, from, interval.y);
   vec3 color = vec3(0.0);
-  for (bool hit = t < NO_DEPTH; hit; hit = frame.spacing < 0.0) {
+  for (bool hit = t < NO_DEPTH; hit; hit = t < -NO_DEPTH) {
     const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
     color = lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q)));
   }
