@@ -1,8 +1,10 @@
 #include "render/passes/isosurface.h"
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 
+#include "render/mirror/cell_map.h"
+#include "render/passes/covered_area.h"
 #include "render/passes/targets.h"
 
 namespace catena::render {
@@ -15,33 +17,19 @@ constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"
 };
 
-/// The pixels that the bricks with the level can cover; all where one of their corners is behind the eye.
+/// The pixels that the bricks with the level can cover.
 VkRect2D surface_area(const CellMap& cells, const GridMirror& mirror, const field::Mapping& mapping, const Camera& camera) {
   if (cells.lo == cells.hi) return {};
   const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
-  double x0 = camera.width, y0 = camera.height, x1 = 0, y1 = 0;
+  std::array<Vec3, 8> corners;
   for (int i = 0; i < 8; ++i) {
     const Vec3 local{(i & 1) ? cells.hi.x : cells.lo.x, (i & 2) ? cells.hi.y : cells.lo.y, (i & 4) ? cells.hi.z : cells.lo.z};
-    const auto pixel = project(camera, mapping.world_from_index(origin + local));
-    if (!pixel) return {{0, 0}, {std::uint32_t(camera.width), std::uint32_t(camera.height)}};
-    x0 = std::min(x0, pixel->x);
-    y0 = std::min(y0, pixel->y);
-    x1 = std::max(x1, pixel->x);
-    y1 = std::max(y1, pixel->y);
+    corners[i] = mapping.world_from_index(origin + local);
   }
-  x0 = std::clamp(std::floor(x0) - 1, 0.0, camera.width);
-  y0 = std::clamp(std::floor(y0) - 1, 0.0, camera.height);
-  x1 = std::clamp(std::ceil(x1) + 1, x0, camera.width);
-  y1 = std::clamp(std::ceil(y1) + 1, y0, camera.height);
-  return {{std::int32_t(x0), std::int32_t(y0)}, {std::uint32_t(x1 - x0), std::uint32_t(y1 - y0)}};
+  return covered_area(corners, camera);
 }
 
-VkRect2D intersection(const VkRect2D& a, const VkRect2D& b) {
-  const std::int32_t x0 = std::max(a.offset.x, b.offset.x), y0 = std::max(a.offset.y, b.offset.y);
-  const std::int32_t x1 = std::min(a.offset.x + std::int32_t(a.extent.width), b.offset.x + std::int32_t(b.extent.width));
-  const std::int32_t y1 = std::min(a.offset.y + std::int32_t(a.extent.height), b.offset.y + std::int32_t(b.extent.height));
-  return {{x0, y0}, {std::uint32_t(std::max(0, x1 - x0)), std::uint32_t(std::max(0, y1 - y0))}};
-}
+bool is_opaque(const IsosurfaceItem& item) { return item.opacity >= 1; }
 
 }  // namespace
 
@@ -59,17 +47,42 @@ shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state,
   data.level = state.level;
   data.opacity = item.opacity;
   data.color = {item.color.r, item.color.g, item.color.b};
+  data.id = item.id;
+  data.clipped = item.clipped;
   return data;
 }
 
-Result<IsosurfacePass> IsosurfacePass::create(vk::Device& device) {
-  IsosurfacePass self;
-  self.device_ = &device;
-  CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
-  return self;
-}
+namespace {
 
-Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags, bool has_cells) {
+class IsosurfacePass final : public Pass {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
+    auto self = std::make_unique<IsosurfacePass>();
+    CATENA_TRY(self->linear_, vk::Sampler::create(device, vk::Filter::linear));
+    return std::unique_ptr<Pass>(std::move(self));
+  }
+  PassUse use(const Frame&) const override { return {0, target::opaque}; }
+  Outcome prepare(Frame& frame) override;
+  Bounds bounds() const override;
+  Outcome record(vk::Commands& commands, Frame& frame) override;
+
+ private:
+  struct Surface {
+    SurfaceState state;
+    CellMap cells;       // without its texels: they are in the image
+    vk::Image cell_map;  // none: it would be too large
+    IsosurfaceItem item;
+    vk::Buffer uniform;
+    Outcome make_cells(vk::Device& device);
+  };
+  Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags, bool has_cells);
+
+  vk::Sampler linear_;
+  std::map<std::pair<std::uint32_t, bool>, vk::Pipeline> pipelines_;
+  std::vector<Surface> surfaces_;
+};
+
+Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::uint32_t flags, bool has_cells) {
   vk::Pipeline& pipeline = pipelines_[{flags, has_cells}];
   if (!pipeline) {
     vk::GraphicsInfo info;
@@ -78,54 +91,70 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags, bool h
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
     info.constants = {flags, has_cells ? 1u : 0u};
-    info.colors = {kOpaqueFormat, kDepthValueFormat};
+    info.colors = opaque_formats();
     info.depth = true;
-    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+    CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
   }
   return &pipeline;
 }
 
-Outcome IsosurfacePass::make_cells(Surface& surface) {
-  surface.cells = make_cell_map(*surface.item.grid, *surface.state.mirror, surface.state.level);
-  surface.cell_map = {};
-  if (!surface.cells.texels.empty()) {
-    CATENA_TRY(surface.cell_map, upload_cell_map(*device_, surface.cells));
+Outcome IsosurfacePass::Surface::make_cells(vk::Device& device) {
+  cells = make_cell_map(*item.grid, *state.mirror, state.level);
+  cell_map = {};
+  if (!cells.texels.empty()) {
+    CATENA_TRY(cell_map, upload_cell_map(device, cells));
   }
-  surface.cells.texels = {};
+  cells.texels = {};
   return Done{};
 }
 
-Outcome IsosurfacePass::prepare(std::span<const std::pair<const IsosurfaceItem*, std::shared_ptr<const GridMirror>>> items) {
-  if (surfaces_.size() > items.size()) surfaces_.erase(surfaces_.begin() + std::ptrdiff_t(items.size()), surfaces_.end());
-  while (surfaces_.size() < items.size()) surfaces_.emplace_back();
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    Surface& surface = surfaces_[i];
-    const auto [item, mirror] = items[i];
-    const bool same = surface.state.map.image && surface.state.mirror == mirror && surface.state.level == float(item->level);
-    CATENA_CHECK(surface.state.update(*device_, mirror, item->level));
-    surface.item = *item;
-    if (!same) CATENA_CHECK(make_cells(surface));
+Outcome IsosurfacePass::prepare(Frame& frame) {
+  std::size_t count = 0;
+  for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
+    if (!is_opaque(item)) continue;
+    CATENA_TRY(auto mirror, frame.mirror(*item.grid));
+    if (!mirror->drawable) continue;
+    if (count == surfaces_.size()) surfaces_.emplace_back();
+    Surface& surface = surfaces_[count++];
+    const bool same = surface.state.map.image && surface.state.mirror == mirror && surface.state.level == float(item.level);
+    CATENA_CHECK(surface.state.update(frame.device, std::move(mirror), item.level));
+    surface.item = item;
+    if (!same) CATENA_CHECK(surface.make_cells(frame.device));
   }
+  while (surfaces_.size() > count) surfaces_.pop_back();
   return Done{};
 }
 
-Outcome IsosurfacePass::record(vk::Commands& commands, const CameraRays& rays, const VkRect2D& area) {
+Bounds IsosurfacePass::bounds() const {
+  Bounds all;
+  for (const Surface& surface : surfaces_) all.add(grid_bounds(*surface.item.grid));
+  return all;
+}
+
+Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
-    shared::FrameData data = rays.frame();
-    const VkRect2D around = intersection(area, surface_area(surface.cells, *surface.state.mirror, surface.item.grid->mapping(), rays.camera));
-    if (around.extent.width == 0 || around.extent.height == 0) continue;
-    data.grids[0] = surface_data(rays, surface.state, surface.item);
-    CATENA_CHECK(write_uniform(*device_, surface.uniform, data));
+    const VkRect2D area = surface_area(surface.cells, *surface.state.mirror, surface.item.grid->mapping(), frame.rays.camera);
+    if (area.extent.width == 0 || area.extent.height == 0) continue;
+    shared::FrameData data = frame.rays.frame();
+    data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
+    CATENA_CHECK(write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags(), bool(surface.cell_map)));
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags(), bool(surface.cell_map)));
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
                                       {1, vk::Resource::texture, nullptr, surface.cell_map ? &surface.cell_map : &bound.map->image, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
-    commands.scissor(around);
+    commands.scissor(area);
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }
   return Done{};
 }
+
+}  // namespace
+
+const PassEntry kIsosurfacePass{
+    "isosurfaces",
+    [](const Frame& frame) { return std::any_of(frame.packet.isosurfaces.begin(), frame.packet.isosurfaces.end(), is_opaque); },
+    IsosurfacePass::create};
 
 }  // namespace catena::render
