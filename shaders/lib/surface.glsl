@@ -80,50 +80,49 @@ float root_in(vec4 c, Bracket bracket) {
   return u;
 }
 
-// A walk along a ray through the cells of a grid.
-struct Walk {
-  vec3 cell;
-  float t;       // where the ray enters it
-  vec3 entered;  // 1 on the axis of the face that it came through, if it came through one
-  bool done;
-};
-
-// What does not change along a ray. An axis along which it does not move is never left.
+// A ray with its axes turned so that it moves towards greater coordinates: p' = -p on a turned axis, and cell c lies at c' = ~c.
+// Blocks of whole powers of two stay blocks. An axis along which it does not move is never left.
 struct Way {
-  LocalRay ray;
-  vec3 inverse, still;
-  bvec3 forward;
-  vec3 first, last;  // cells
+  vec3 origin, direction, inverse, still;
+  ivec3 turned;  // -1 on a turned axis
+  ivec3 end;     // one beyond the last cell
 };
 
 Way make_way(int i, LocalRay ray) {
-  const bvec3 stands = lessThan(abs(ray.direction), vec3(LEAST_DIRECTION));
+  const bvec3 stands = lessThan(abs(ray.direction), vec3(LEAST_DIRECTION)), backward = lessThan(ray.direction, vec3(0.0));
   Way way;
-  way.ray = ray;
-  way.inverse = mix(1.0 / ray.direction, vec3(0.0), stands);
+  way.turned = mix(ivec3(0), ivec3(-1), backward);
+  way.origin = mix(ray.origin, -ray.origin, backward);
+  way.direction = abs(ray.direction);
+  way.inverse = mix(1.0 / way.direction, vec3(0.0), stands);
   way.still = mix(vec3(0.0), vec3(NO_DEPTH), stands);
-  way.forward = forward_of(ray.direction);
-  way.first = frame.grids[i].lo;
-  way.last = frame.grids[i].hi - 1.0;
+  way.end = mix(ivec3(frame.grids[i].hi), -ivec3(frame.grids[i].lo), backward);
   return way;
 }
 
-vec3 exits(Way way, vec3 lo, vec3 hi) { return (mix(lo, hi, way.forward) - way.ray.origin) * way.inverse + way.still; }
+// Where the ray enters a cell; on the axis of the face that it came through, if it came through one, `entered` is true.
+struct Walk {
+  ivec3 cell;  // turned
+  float t;
+  bvec3 entered;
+};
+
+vec3 exits(Way way, ivec3 end) { return (vec3(end) - way.origin) * way.inverse + way.still; }
 float least_of(vec3 v) { return min(min(v.x, v.y), v.z); }
-vec3 axis_of(vec3 v, float least) {
+bvec3 axis_of(vec3 v, float least) {
   const bool x = v.x == least, y = !x && v.y == least;
-  return vec3(x ? 1.0 : 0.0, y ? 1.0 : 0.0, x || y ? 0.0 : 1.0);
+  return bvec3(x, y, !(x || y));
 }
 
-// Goes on to where the ray leaves the box of cells lo .. hi around the walk's cell.
-void leave_box(inout Walk walk, Way way, vec3 lo, vec3 hi) {
-  const vec3 leave = exits(way, lo, hi);
+// Goes on to where the ray leaves the box of cells around the walk's cell that ends before `end`. (Beyond the domain's last cell the
+// walk is beyond the ray's end.)
+void leave_box(inout Walk walk, Way way, ivec3 end) {
+  end = min(end, way.end);
+  const vec3 leave = exits(way, end);
   const float out_at = least_of(leave);
   walk.entered = axis_of(leave, out_at);
-  const vec3 inside = clamp(floor(way.ray.origin + out_at * way.ray.direction), max(lo, way.first), min(hi - 1.0, way.last));
-  walk.cell = mix(inside, mix(lo - 1.0, hi, way.forward), equal(walk.entered, vec3(1.0)));
+  walk.cell = mix(clamp(ivec3(floor(way.origin + out_at * way.direction)), walk.cell, end - 1), end, walk.entered);
   walk.t = max(walk.t, out_at);
-  walk.done = any(lessThan(walk.cell, way.first)) || any(greaterThan(walk.cell, way.last));
 }
 
 bool holds_level(vec4 lo, vec4 hi) {
@@ -131,8 +130,8 @@ bool holds_level(vec4 lo, vec4 hi) {
   return min(min(low.x, low.y), min(low.z, low.w)) < 0.0 && max(max(high.x, high.y), max(high.z, high.w)) >= 0.0;
 }
 
-void level_corners(int i, vec3 cell, out vec4 lo, out vec4 hi) {
-  cell_corners(i, ivec3(cell), lo, hi);
+void level_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
+  cell_corners(i, cell, lo, hi);
   lo -= frame.grids[i].level;
   hi -= frame.grids[i].level;
 }
@@ -142,17 +141,15 @@ void level_corners(int i, vec3 cell, out vec4 lo, out vec4 hi) {
 layout(binding = 1) uniform utexture3D cell_map;
 bool next_in_map(inout Walk walk, Way way, float to) {
   bool found = false;
-  while (!found && !walk.done && walk.t < to) {
-    const ivec3 cell = ivec3(walk.cell), odd = cell & 1;
+  while (!found && walk.t < to) {
+    const ivec3 cell = walk.cell ^ way.turned, odd = cell & 1;
     const uint block = texelFetch(cell_map, cell >> 1, 0).r;
     found = (block >> (odd.x + 2 * odd.y + 4 * odd.z) & 1u) != 0u;
     if (!found) {
       // out of the bricks without, the block without, or the cell
-      const float distance = float(block >> 8);
-      const bool bricks = block > 255u, empty = (block & 255u) == 0u;
-      const vec3 base = bricks ? vec3(cell & ~3) : empty ? vec3(cell & ~1) : walk.cell;
-      const float before = bricks ? 4.0 * distance - 4.0 : 0.0, size = bricks ? 4.0 * distance : empty ? 2.0 : 1.0;
-      leave_box(walk, way, base - before, base + size);
+      const int distance = int(block >> 8);
+      const int within = distance > 0 ? 3 : (block & 255u) == 0u ? 1 : 0;
+      leave_box(walk, way, (walk.cell | within) + (distance > 0 ? 4 * distance - 3 : 1));
     }
   }
   return found;
@@ -164,19 +161,15 @@ bool next_in_map(inout Walk walk, Way way, float to) { return false; }
 // The same by the bricks' ranges and the corners themselves.
 bool next_by_corners(int i, inout Walk walk, Way way, float to) {
   bool found = false;
-  while (!found && !walk.done && walk.t < to) {
-    const ivec3 cell = ivec3(walk.cell), brick = cell >> 3;
-    const int distance = empty_distance(brick_word(i, brick));
+  while (!found && walk.t < to) {
+    const ivec3 cell = walk.cell ^ way.turned;
+    const int distance = empty_distance(brick_word(i, cell >> 3));
     if (distance == 0) {
       vec4 lo, hi;
-      level_corners(i, walk.cell, lo, hi);
+      level_corners(i, cell, lo, hi);
       found = holds_level(lo, hi) && cell_is_valid(i, cell);
     }
-    if (!found) {
-      const bool empty = distance > 0;
-      leave_box(walk, way, empty ? vec3((brick - (distance - 1)) * BRICK) : walk.cell,
-                empty ? vec3((brick + distance) * BRICK) : walk.cell + 1.0);
-    }
+    if (!found) leave_box(walk, way, distance > 0 ? (walk.cell | 7) + (8 * distance - 7) : walk.cell + 1);
   }
   return found;
 }
@@ -186,17 +179,12 @@ bool next_by_corners(int i, inout Walk walk, Way way, float to) {
 // driver that executes both sides of every branch this keeps each stage out of the one within.
 float first_crossing(int i, LocalRay ray, float from, float to) {
   const Way way = make_way(i, ray);
-  Walk walk;
-  walk.cell = vec3(cell_of(i, ray.origin + from * ray.direction));
-  walk.t = from;
-  walk.entered = vec3(0.0);
-  walk.done = false;
-  const vec3 face = mix(vec3(0.0), vec3(1.0), way.forward);
+  Walk walk = Walk(cell_of(i, ray.origin + from * ray.direction) ^ way.turned, from, bvec3(false));
   bool found = false;
   vec4 cubic = vec4(0.0);
   Bracket bracket = Bracket(0.0, 0.0, 0.0, 1.0);
   vec2 piece = vec2(from);
-  while (!found && !walk.done && walk.t < to) {
+  while (!found && walk.t < to) {
 #ifdef SURFACE_CELLS
     const bool holds = HAS_CELLS != 0u ? next_in_map(walk, way, to) : next_by_corners(i, walk, way, to);
 #else
@@ -204,16 +192,18 @@ float first_crossing(int i, LocalRay ray, float from, float to) {
 #endif
     if (holds) {
       vec4 lo, hi;
-      level_corners(i, walk.cell, lo, hi);
-      const vec3 leave = exits(way, walk.cell, walk.cell + 1.0);
+      level_corners(i, walk.cell ^ way.turned, lo, hi);
+      const vec3 leave = exits(way, walk.cell + 1);
       const float out_at = least_of(leave), end = clamp(out_at, walk.t, to);
-      const vec3 left = out_at > to ? vec3(0.0) : axis_of(leave, out_at);
-      const vec3 a = clamp(ray.origin + walk.t * ray.direction - walk.cell, 0.0, 1.0);
-      const vec3 b = clamp(ray.origin + end * ray.direction - walk.cell, 0.0, 1.0);
-      cubic = cell_cubic(lo, hi, mix(a, 1.0 - face, equal(walk.entered, vec3(1.0))), mix(b, face, equal(left, vec3(1.0))));
+      const bool leaves = end == max(out_at, walk.t);  // else it ends within the cell
+      const bvec3 left = leaves ? axis_of(leave, out_at) : bvec3(false);
+      const vec3 a = mix(clamp(way.origin + walk.t * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(0.0), walk.entered);
+      const vec3 b = mix(clamp(way.origin + end * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(1.0), left);
+      const bvec3 turned = lessThan(way.turned, ivec3(0));
+      cubic = cell_cubic(lo, hi, mix(a, 1.0 - a, turned), mix(b, 1.0 - b, turned));
       found = first_bracket(cubic, bracket);
       piece = vec2(walk.t, end);
-      leave_box(walk, way, walk.cell, walk.cell + 1.0);
+      leave_box(walk, way, walk.cell + 1);
     }
   }
   return found ? mix(piece.x, piece.y, root_in(cubic, bracket)) : NO_DEPTH;
