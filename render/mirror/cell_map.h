@@ -15,8 +15,8 @@ namespace catena::render {
 struct CellMap {
   std::array<std::int32_t, 3> blocks{};  ///< an axis
   std::vector<std::uint16_t> texels;
-  std::uint64_t cells = 0;    ///< that hold the level
-  Vec3 lo{0.0}, hi{0.0};      ///< encloses them all; lo == hi: there is none
+  std::uint64_t cells = 0;  ///< that hold the level
+  Vec3 lo{0.0}, hi{0.0};    ///< encloses them all; lo == hi: there is none
 
   std::size_t block_index(int x, int y, int z) const { return (std::size_t(z) * blocks[1] + y) * blocks[0] + x; }
 };

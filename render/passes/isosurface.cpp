@@ -139,14 +139,17 @@ Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
     data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
     CATENA_CHECK(write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags(), bool(surface.cell_map)));
+    const bool has_cells = frame.settings.skip && surface.cell_map;
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags(), has_cells));
+    // without the map of cells its binding is never read; the map of bricks has the right type
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
-                                      {1, vk::Resource::texture, nullptr, surface.cell_map ? &surface.cell_map : &bound.map->image, nullptr}};
+                                      {1, vk::Resource::texture, nullptr, has_cells ? &surface.cell_map : &bound.map->image, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
     commands.scissor(area);
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }
+  commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
   return Done{};
 }
 

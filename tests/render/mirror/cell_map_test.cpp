@@ -108,13 +108,18 @@ TEST_F(CellMaps, HalvesAreAskedAsTheyAreStored) {
   const GridMirror mirror = mirror_of(*grid, {false, MirrorLayout::dense});
   ASSERT_EQ(mirror.offset, 0);
   const float level = 0.0500183f;
-  const CellMap map = make_cell_map(*grid, mirror, level), exact = make_cell_map(*grid, mirror_of(*grid, {true, MirrorLayout::dense}), level);
+  const CellMap map = make_cell_map(*grid, mirror, level),
+                exact = make_cell_map(*grid, mirror_of(*grid, {true, MirrorLayout::dense}), level);
   const float spacing = 0.05f / 1024;
   std::uint64_t differ = 0;
   for_each_cell(*grid, values.n, [&](int x, int y, int z, bool, float least, float greatest) {
     const bool here = bit_of(map, mirror, x, y, z);
-    if (least < level - spacing && greatest > level + spacing) EXPECT_TRUE(here);
-    if (least > level + spacing || greatest < level - spacing) EXPECT_FALSE(here);
+    if (least < level - spacing && greatest > level + spacing) {
+      ASSERT_TRUE(here);
+    }
+    if (least > level + spacing || greatest < level - spacing) {
+      ASSERT_FALSE(here);
+    }
     differ += here != bit_of(exact, mirror, x, y, z);
   });
   EXPECT_LT(differ, 20u);
@@ -143,7 +148,8 @@ TEST_F(CellMaps, DistancesAreThoseToTheNextBrickWithTheLevel) {
     for (int y = 0; y < map.blocks[1]; ++y)
       for (int x = 0; x < map.blocks[0]; ++x) {
         int nearest = 255;
-        for (const auto& a : active) nearest = std::min(nearest, std::max({std::abs(x / 2 - a[0]), std::abs(y / 2 - a[1]), std::abs(z / 2 - a[2])}));
+        for (const auto& a : active)
+          nearest = std::min(nearest, std::max({std::abs(x / 2 - a[0]), std::abs(y / 2 - a[1]), std::abs(z / 2 - a[2])}));
         ASSERT_EQ(map.texels[map.block_index(x, y, z)] >> 8, nearest);
       }
 }
