@@ -8,7 +8,7 @@
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
-layout(constant_id = 1) const uint HAS_CELLS = 0;  // 0: the map of cells would be too large
+layout(constant_id = 1) const uint HAS_CELLS = 0;  // 0: the map of cells would be too large, or is not wanted
 #define SURFACE_CELLS
 #include "shaders/lib/surface.glsl"
 
@@ -26,7 +26,7 @@ void main() {
   vec3 color = vec3(0.0);
   for (bool hit = t < NO_DEPTH; hit; hit = t < -NO_DEPTH) {
     const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
-    color = lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q)));
+    color = fogged(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), t);
   }
   if (t >= NO_DEPTH) discard;
   out_color = vec4(color, 1.0);
