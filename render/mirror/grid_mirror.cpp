@@ -18,6 +18,7 @@ namespace {
 using field::Index3;
 constexpr int kApron = kBrick + 1;
 constexpr std::uint32_t kSlotsAnAxis = 255;
+constexpr std::uint64_t kCellMapBytes = 128;  // a brick, cell_map.h
 
 /// Writes values as texels of the mirror's format. What is not finite becomes the least value (its cells are masked); what lies
 /// outside the range can only be outside the domain, where it must stay finite all the same.
@@ -148,7 +149,8 @@ class Builder {
     const auto mask_bytes = vk::image_bytes(device_, image_info(VK_FORMAT_R8_UINT, mask[0], mask[1], mask[2]));
     if (!value_bytes || !mask_bytes) return std::nullopt;
     const std::uint64_t staging = std::uint64_t(kApron) * values[0] * values[1] * encoder_.texel();
-    const std::uint64_t map = mirror_.ranges.size() * sizeof(std::uint32_t);
+    // a word a brick; for surfaces also the map of cells
+    const std::uint64_t map = mirror_.ranges.size() * (sizeof(std::uint32_t) + (encoder_.float32 ? kCellMapBytes : 0));
     return *value_bytes + (mirror_.masked ? *mask_bytes : 0) + std::max(staging, map) + map;
   }
 

@@ -57,7 +57,7 @@ struct GridMirror {
   const field::ScalarGrid& source(const field::ScalarGrid& grid) const { return coarse ? *coarse : grid; }
 };
 
-/// What make_grid_mirror and a brick map need at most, staging included; none where the device cannot hold it at any price.
+/// What make_grid_mirror and the maps of a volume or a surface need, staging included; none where the device cannot hold it at any price.
 std::optional<std::uint64_t> mirror_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
 
 Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);

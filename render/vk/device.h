@@ -43,6 +43,7 @@ struct DeviceInfo {
 /// What the device has done so far; tests read it.
 struct DeviceCounters {
   std::uint64_t bytes = 0;    ///< device memory held now
+  std::uint64_t peak = 0;     ///< the most that was ever held
   std::uint64_t uploads = 0;  ///< copies from staging memory
   std::uint64_t upload_bytes = 0;
   std::uint64_t pipelines = 0;  ///< created

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "render/vk/check.h"
@@ -45,6 +46,7 @@ Result<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& need
     return vulkan_error(result, fmt::format("allocate {} for {} ({} of {} held)", megabytes(needs.size), what, megabytes(counters.bytes),
                                             megabytes(device.info().memory_bytes)));
   counters.bytes += needs.size;
+  counters.peak = std::max(counters.peak, counters.bytes);
   ++counters.allocations;
   return memory;
 }
