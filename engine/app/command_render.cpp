@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/app/annotate_option.h"
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
 #include "engine/app/frame_stats.h"
@@ -31,6 +32,7 @@ struct Options {
   int frames = 1;
   double orbit_deg = 0, phase = 0;
   bool validation = false;
+  AnnotateOptions annotate;
 };
 
 /// Settings, or a goal that they have yet to be measured for.
@@ -112,6 +114,7 @@ Outcome render_pictures(const Options& o) {
   if (!o.output.ends_with(".png") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .png"};
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
+  CATENA_CHECK(annotate(scene, o.annotate));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, quality_of(quality));
   render::RenderSettings settings = wanted.settings;
@@ -190,6 +193,7 @@ Outcome render_pictures(const Options& o) {
   stats.mirror_ms = gpu.mirror_ms;
   stats.gpu_bytes = gpu.gpu_bytes;
   stats.validation_messages = gpu.validation_messages;
+  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", note);
   for (const std::string& text : (*renderer)->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
   if (o.stats.empty()) return finish(o.output);
   CATENA_TRY(OutputFile json, OutputFile::open(o.stats));
@@ -216,6 +220,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--probe", options->probe, "probe path, CSV: the cursor is drawn where the hand is at its end");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--stats", options->stats, "figures, JSON");
+  add_annotate_options(*command, options->annotate);
   command->add_flag("--validation", options->validation, "run with the Vulkan validation layers and count their messages");
   command->callback([&chosen, options] { chosen = [options] { return render_pictures(*options); }; });
 }
