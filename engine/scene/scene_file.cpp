@@ -30,7 +30,12 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"camera", read_camera},
                             {"background", read_background},
                             {"quality", read_quality},
-                            {"clip", read_clip}};
+                            {"clip", read_clip},
+                            {"bounding_box", read_bounding_box},
+                            {"axes", read_axes},
+                            {"ground", read_ground},
+                            {"fog", read_fog},
+                            {"lights", read_lights}};
   std::vector<std::string_view> keys{"fields"};
   for (const Part& part : parts) keys.push_back(part.key);
   CATENA_CHECK(json::only_keys(root, keys));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
 
@@ -173,6 +174,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
+  CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
   return packet;
 }
 

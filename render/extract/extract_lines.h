@@ -19,7 +19,5 @@ const std::vector<scene::TransferFunction::ColorPoint>* shown_colors(const scene
 
 /// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
 Color table_color(const std::vector<scene::TransferFunction::ColorPoint>& table, double value);
-/// Viridis (Smith and van der Walt), nine points from lo to hi.
-std::vector<scene::TransferFunction::ColorPoint> viridis(double lo, double hi);
 
 }  // namespace catena::render

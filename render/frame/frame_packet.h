@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,20 @@ struct ClipPlane {
 };
 inline constexpr std::size_t kMostClipPlanes = 8;
 
+/// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
+struct LightItem {
+  Vec3 direction{0.0, 0.0, 1.0};
+  Color color{1, 1, 1};  ///< times the intensity
+  bool with_camera = false;
+};
+inline constexpr std::size_t kMostLights = 4;
+
+/// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
+struct FogItem {
+  Color color;
+  double start = 0, end = 1, most = 0.8;
+};
+
 /// What an id of the picture stands for.
 struct ObjectName {
   std::uint32_t id = 0;
@@ -46,6 +61,8 @@ struct ObjectName {
 struct TransferTable {
   std::vector<std::array<double, 4>> colors;       ///< value, r, g, b
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
+  /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
+  std::vector<std::array<double, 2>> gradient_factors;
 };
 
 struct VolumeItem {
@@ -114,6 +131,13 @@ struct CursorItem {
   std::uint32_t id = 0;
 };
 
+/// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.
+struct AidItems {
+  std::vector<TubeItem> tubes;
+  std::vector<MeshItem> meshes;
+  bool empty() const { return tubes.empty() && meshes.empty(); }
+};
+
 struct FramePacket {
   View view;
   std::uint32_t width = 1024, height = 768;
@@ -126,7 +150,10 @@ struct FramePacket {
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
   Overlay overlay;
-  std::vector<ClipPlane> clip;  ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<ClipPlane> clip;    ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
+  std::optional<FogItem> fog;
+  AidItems aids;
   std::vector<ObjectName> objects;
 
   /// The next id, from 1 on.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "render/mirror/half.h"
+#include "render/passes/aids.h"
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
@@ -21,8 +22,8 @@ namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kMeshPass,    &kStreamlinePass, &kCursorPass, &kIsosurfacePass,
-                                        &kRaycastPass, &kComposePass,    &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,        &kMeshPass,    &kStreamlinePass, &kCursorPass,
+                                        &kIsosurfacePass, &kRaycastPass, &kComposePass,    &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -32,6 +33,8 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
   if (packet.clip.size() > kMostClipPlanes)
     return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMostClipPlanes)};
+  if (packet.lights.size() > kMostLights)
+    return Error{fmt::format("the scene has {} lights, expected at most {}", packet.lights.size(), kMostLights)};
   return Done{};
 }
 
