@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/app/annotate_option.h"
 #include "engine/app/color_option.h"
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
@@ -33,6 +34,7 @@ struct Options {
   int frames = 1;
   double orbit_deg = 0, phase = 0;
   bool validation = false;
+  AnnotateOptions annotate;
   ColorOption colors;
 };
 
@@ -116,6 +118,7 @@ Outcome render_pictures(const Options& o) {
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
+  CATENA_CHECK(annotate(scene, o.annotate));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, quality_of(quality));
   render::RenderSettings settings = wanted.settings;
@@ -194,6 +197,7 @@ Outcome render_pictures(const Options& o) {
   stats.mirror_ms = gpu.mirror_ms;
   stats.gpu_bytes = gpu.gpu_bytes;
   stats.validation_messages = gpu.validation_messages;
+  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", note);
   for (const std::string& text : (*renderer)->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
   if (o.stats.empty()) return finish(o.output);
   CATENA_TRY(OutputFile json, OutputFile::open(o.stats));
@@ -221,6 +225,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   options->colors.add_to(*command);
   command->add_option("--stats", options->stats, "figures, JSON");
+  add_annotate_options(*command, options->annotate);
   command->add_flag("--validation", options->validation, "run with the Vulkan validation layers and count their messages");
   command->callback([&chosen, options] { chosen = [options] { return render_pictures(*options); }; });
 }

@@ -202,7 +202,8 @@ bool Session::take_haptics() {
   bool changed = before.tick == 0 || before.probe != felt_.probe || before.force_n != felt_.force_n;
   for (int i = 0; i < felt_.link_count && !changed; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    changed = before.links[k].proxy != felt_.links[k].proxy || before.links[k].active != felt_.links[k].active;
+    changed = before.links[k].proxy != felt_.links[k].proxy || before.links[k].active != felt_.links[k].active ||
+              before.links[k].status != felt_.links[k].status;
   }
   return changed;
 }
@@ -222,6 +223,8 @@ std::optional<Failure> Session::draw(bool moving) {
   if (auto drawn = renderer_->draw(*packet, moving ? render::draft_settings() : render::balanced_settings()); !drawn)
     return Failure{1, drawn.error().message};
   const double ms = ms_since(start);
+  if (frames_ == 0)
+    for (const std::string& note : renderer_->stats().notes) fmt::print(stderr, "catena: {}\n", note);
   // the first picture pays for uploads and pipelines: it says nothing of the next
   if (moving && frames_ > 0) full_ms_ = frames_ == 1 ? ms * scale * scale : 0.7 * full_ms_ + 0.3 * ms * scale * scale;
   frame_ms_.push_back(ms);
