@@ -36,6 +36,7 @@ Outcome read_indicator(Scene& scene, const json::Node& node);
 Outcome read_cursor(Scene& scene, const json::Node& node);
 
 Outcome read_camera(Scene& scene, const json::Node& node);
+Outcome read_stereo(Scene& scene, const json::Node& node);
 Outcome read_background(Scene& scene, const json::Node& node);
 Outcome read_quality(Scene& scene, const json::Node& node);
 

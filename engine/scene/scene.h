@@ -9,6 +9,7 @@
 #include "engine/base/result.h"
 #include "engine/flow/curve.h"
 #include "engine/scene/components.h"
+#include "engine/scene/stereo.h"
 
 namespace catena::scene {
 
@@ -19,6 +20,7 @@ struct Scene {
   Workspace workspace;
   std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
   Camera camera;
+  Stereo stereo;
   Background background;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;

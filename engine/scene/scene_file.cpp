@@ -7,7 +7,7 @@ namespace {
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
   CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "indicator", "cursor", "camera", "background", "quality"}));
+                                      "streamlines", "indicator", "cursor", "camera", "stereo", "background", "quality"}));
   // fields first: the other parts name them
   CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
@@ -26,6 +26,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"indicator", read_indicator},
                             {"cursor", read_cursor},
                             {"camera", read_camera},
+                            {"stereo", read_stereo},
                             {"background", read_background},
                             {"quality", read_quality}};
   for (const Part& part : parts)
