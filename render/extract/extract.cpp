@@ -5,6 +5,7 @@
 
 #include "engine/base/assert.h"
 #include "render/extract/extract_lines.h"
+#include "render/extract/extract_stereo.h"
 
 namespace catena::render {
 
@@ -165,6 +166,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   packet.view = view_of(scene, packet);
+  set_eyes(packet, scene.stereo);
   return packet;
 }
 

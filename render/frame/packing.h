@@ -8,6 +8,7 @@
 ///   anaglyph_grey      the same of the luminance
 ///   rows, columns, checkerboard   pixel (x, y) from view y, x, x + y modulo n
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "engine/base/assert.h"
@@ -51,6 +52,14 @@ inline PackedSize packed_size(Packing packing, std::size_t views, std::uint32_t 
     default:
       break;
   }
+  return size;
+}
+
+/// Of each view, so that the packed picture fills W x H: the inverse, at least 1 x 1.
+inline PackedSize view_size(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height) {
+  PackedSize size{width, height};
+  if (packing == Packing::side_by_side) size.width = std::max<std::uint64_t>(1, width / views);
+  if (packing == Packing::top_bottom) size.height = std::max<std::uint64_t>(1, height / views);
   return size;
 }
 
