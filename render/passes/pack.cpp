@@ -87,10 +87,9 @@ Outcome PackPass::record(vk::Commands& commands) {
   for (vk::Image& view : views_) commands.use(view, vk::kFragmentRead);
   const vk::ColorTarget target{&packed_, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&target, 1}, {});
-  if (is_anaglyph(packing_))
-    CATENA_CHECK(record_anaglyph(commands));
-  else
-    for (std::size_t k = 0; k < (packing_ == Packing::single ? 1 : views_.size()); ++k) CATENA_CHECK(record_view(commands, k));
+  const std::size_t count = is_anaglyph(packing_) ? 0 : packing_ == Packing::single ? 1 : views_.size();
+  if (is_anaglyph(packing_)) CATENA_CHECK(record_anaglyph(commands));
+  for (std::size_t k = 0; k < count; ++k) CATENA_CHECK(record_view(commands, k));
   commands.end_pass();
   commands.use(packed_, vk::kTransferRead);
   return Done{};
