@@ -117,6 +117,7 @@ Outcome render_pictures(const Options& o) {
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
   CATENA_CHECK(o.stereo.apply(scene.stereo));
+  CATENA_CHECK(check_packed(scene.stereo, size));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, quality_of(quality));
   render::RenderSettings settings = wanted.settings;

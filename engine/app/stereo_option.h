@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "engine/app/size_option.h"
 #include "engine/base/result.h"
 #include "engine/scene/stereo.h"
+#include "render/extract/extract_stereo.h"
 
 namespace catena::app {
 
@@ -33,6 +35,16 @@ struct StereoChoice {
     return Done{};
   }
 };
+
+/// Several pictures in one may be more than a picture can hold.
+inline Outcome check_packed(const scene::Stereo& stereo, const Size& size) {
+  const auto packed = render::packed_size(render::packing_of(stereo), render::views_of(stereo), size.width, size.height);
+  if (packed.width >= 1 && packed.height >= 1 && packed.width <= kMostPixels && packed.height <= kMostPixels) return Done{};
+  return Error{"--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": with " +
+               std::to_string(render::views_of(stereo)) + " views " + std::string(scene::stereo_word(stereo.mode)) + " the picture has " +
+               std::to_string(packed.width) + "x" + std::to_string(packed.height) + " pixels, expected 1 to " +
+               std::to_string(kMostPixels) + " each way"};
+}
 
 inline void add_stereo_options(CLI::App& command, StereoChoice& choice) {
   command.add_option("--stereo", choice.mode,
