@@ -22,6 +22,7 @@ struct Scene {
   Camera camera;
   Stereo stereo;
   Background background;
+  std::vector<ClipPlane> clip;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts
