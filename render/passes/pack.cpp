@@ -67,8 +67,9 @@ Outcome PackPass::begin(Packing packing, std::size_t views, std::uint32_t width,
                              size.width, size.height, most)};
   packing_ = packing;
   size_ = size;
-  views_.resize(views);
-  data_.resize(views);
+  const std::size_t shown = packing == Packing::single ? 1 : views;
+  views_.resize(shown);
+  data_.resize(shown);
   return Done{};
 }
 
@@ -87,7 +88,7 @@ Outcome PackPass::record(vk::Commands& commands) {
   for (vk::Image& view : views_) commands.use(view, vk::kFragmentRead);
   const vk::ColorTarget target{&packed_, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&target, 1}, {});
-  const std::size_t count = is_anaglyph(packing_) ? 0 : packing_ == Packing::single ? 1 : views_.size();
+  const std::size_t count = is_anaglyph(packing_) ? 0 : views_.size();
   if (is_anaglyph(packing_)) CATENA_CHECK(record_anaglyph(commands));
   for (std::size_t k = 0; k < count; ++k) CATENA_CHECK(record_view(commands, k));
   commands.end_pass();

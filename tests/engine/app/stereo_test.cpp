@@ -82,7 +82,7 @@ TEST(RenderStereo, SideBySideIsTheLeftAndTheRightPicture) {
 
 TEST(RenderStereo, ByDefaultTheTargetHasNoDisparity) {
   const Picture pair = draw("", {"--stereo", "side-by-side"}).picture;
-  EXPECT_NEAR(middle(pair, 0, 80), middle(pair, 80, 160), 0.05);
+  EXPECT_NEAR(middle(pair, 0, 80), middle(pair, 80, 160), 0.15);  // without zero parallax: 3.7
 }
 
 TEST(RenderStereo, TheSceneSaysItAndTheOptionGoesFirst) {

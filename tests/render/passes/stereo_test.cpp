@@ -5,6 +5,7 @@
 
 #include "render/frame/camera.h"
 #include "render/stereo/eyes.h"
+#include "render/stereo/projections.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
@@ -28,9 +29,9 @@ class StereoPicture : public PictureTest {
   }
 };
 
-constexpr double kVoxel = 0.05;
+constexpr double kVoxel = 0.02;
 constexpr int kNodes = 33;
-constexpr double kRadius = 0.35;
+constexpr double kRadius = 0.15;
 
 /// Balls about `centre`: f = 1 in the middle, 0.5 at the radius, smooth.
 GridPtr ball_grid(const Vec3& centre) {
@@ -65,9 +66,9 @@ Centroid centroid(const Picture& picture) {
 enum class Kind { volume, surface, tube };
 constexpr Kind kKinds[] = {Kind::volume, Kind::surface, Kind::tube};
 
-/// One ball about the place, as a volume, an isosurface, or a short tube that is as long as it is thick.
-void add_ball(FramePacket& packet, Kind kind, const Vec3& centre, const Vec3& along) {
-  if (kind == Kind::volume) packet.volumes.push_back(volume_item(ball_grid(centre), {{0.1, 0}, {1, 6}}, {1, 0.6f, 0.2f}));
+/// One small thing about the place: a cloud, a ball, or a star of tubes across the camera's axis.
+void add_ball(FramePacket& packet, Kind kind, const Vec3& centre, const Camera& camera) {
+  if (kind == Kind::volume) packet.volumes.push_back(volume_item(ball_grid(centre), {{0.3, 0}, {1, 12}}, {1, 0.6f, 0.2f}));
   if (kind == Kind::surface) {
     IsosurfaceItem item;
     item.grid = ball_grid(centre);
@@ -75,19 +76,23 @@ void add_ball(FramePacket& packet, Kind kind, const Vec3& centre, const Vec3& al
     item.color = {0.3f, 0.7f, 1};
     packet.isosurfaces.push_back(item);
   }
-  if (kind == Kind::tube) {
+  for (int i = 0; kind == Kind::tube && i < 7; ++i) {
+    const double angle = std::acos(-1.0) * i / 7 + 0.1;
+    const Vec3 along = 1.5 * kRadius * (std::cos(angle) * camera.right + std::sin(angle) * camera.up);
     TubeItem item;
-    item.points = {centre - kRadius * along, centre + kRadius * along};
-    item.radius = kRadius;
+    item.points = {centre - along, centre + along};
+    item.radius = 0.1 * kRadius;
     item.color = {0.9f, 0.9f, 0.3f};
     packet.tubes.push_back(item);
   }
 }
 
 FramePacket oblique_packet(bool orthographic) {
-  FramePacket packet = packet_of({4.0, -7.0, 3.0}, {0.1, 0.2, -0.1});
+  FramePacket packet = packet_of({4.0, -7.0, 3.0}, {0.1, 0.2, -0.1}, 10);
+  packet.width = 256;
+  packet.height = 192;
   packet.view.orthographic = orthographic;
-  packet.view.height = 4;
+  packet.view.height = 1.4;
   return packet;
 }
 
@@ -97,23 +102,25 @@ TEST_F(StereoPicture, ABallHasTheDisparityOfItsDepthAndNoVerticalParallax) {
   for (const bool orthographic : {false, true}) {
     FramePacket packet = oblique_packet(orthographic);
     const Camera c = make_camera(packet.view, packet.width, packet.height, {});
-    constexpr double zero = 8.0, separation = 0.5;
+    constexpr double zero = 8.0, separation = 0.2;
     const std::vector<View> pair = eyes(packet.view, aspect(packet), {2, separation, zero});
     for (const Kind kind : kKinds)
       for (const double depth : {6.0, zero, 11.0}) {
         FramePacket one = packet;
-        add_ball(one, kind, c.position - depth * c.back, c.up);
+        add_ball(one, kind, c.position - depth * c.back, c);
         Centroid in[2];
         for (int k = 0; k < 2; ++k) {
           one.view = pair[std::size_t(k)];
           in[k] = centroid(draw(one, reference_settings()));
         }
-        const double shrinking = orthographic ? 1 : 1 / depth;
-        const double expected = separation * (depth - zero) / zero * shrinking * 0.5 * packet.height / c.half_height;
-        // a mask of pixels has a rougher centroid than a cloud
-        const double tolerance = kind == Kind::volume ? 0.01 : depth == zero ? 0.02 : 0.06;
+        // the outline of a ball of radius r is centred at x z / (z^2 - r^2), that of a star across the axis at x / z
+        const double r = kind == Kind::tube ? 0 : kRadius;
+        const double slope = orthographic ? 1 - depth / zero : depth / (depth * depth - r * r) - 1 / zero;
+        const double expected = -separation * slope * 0.5 * packet.height / c.half_height;
+        // hard edges have a rougher centroid than a cloud, and a tube's flat sides turn
+        const double tolerance = kind == Kind::volume || depth == zero ? 0.02 : kind == Kind::surface ? 0.15 : 0.3;
         EXPECT_NEAR(in[1].x - in[0].x, expected, tolerance) << int(kind) << " at " << depth << (orthographic ? " orthographic" : "");
-        EXPECT_NEAR(in[1].y, in[0].y, depth == zero ? 0.02 : 0.05);
+        EXPECT_NEAR(in[1].y, in[0].y, tolerance) << int(kind) << " at " << depth;
         // crossed nearer, uncrossed beyond
         const double sign = depth < zero ? -1 : depth > zero ? 1 : 0;
         EXPECT_GE(sign * (in[1].x - in[0].x), std::fabs(sign));
@@ -125,17 +132,17 @@ TEST_F(StereoPicture, VolumeSurfaceAndTubeCoincideInEachEye) {
   for (const bool orthographic : {false, true}) {
     FramePacket packet = oblique_packet(orthographic);
     const Camera c = make_camera(packet.view, packet.width, packet.height, {});
-    const Vec3 centre = c.position - 9.5 * c.back + 0.5 * c.right - 0.3 * c.up;
-    for (const View& eye : eyes(packet.view, aspect(packet), {3, 0.6, 7.0})) {
+    const Vec3 centre = c.position - 9.5 * c.back + 0.3 * c.right - 0.2 * c.up;
+    for (const View& eye : eyes(packet.view, aspect(packet), {3, 0.3, 7.0})) {
       packet.view = eye;
       const auto expected = project(make_camera(eye, packet.width, packet.height, {}), centre);
       ASSERT_TRUE(expected);
       for (const Kind kind : kKinds) {
         FramePacket one = packet;
-        add_ball(one, kind, centre, c.up);
+        add_ball(one, kind, centre, c);
         const Centroid found = centroid(draw(one, reference_settings()));
-        EXPECT_NEAR(found.x, expected->x, 0.1) << int(kind);
-        EXPECT_NEAR(found.y, expected->y, 0.1) << int(kind);
+        EXPECT_NEAR(found.x, expected->x, kind == Kind::volume ? 0.03 : 0.15) << int(kind);
+        EXPECT_NEAR(found.y, expected->y, kind == Kind::volume ? 0.03 : 0.15) << int(kind);
       }
     }
   }
@@ -147,12 +154,12 @@ FramePacket busy_packet() {
   packet.width = 96;
   packet.height = 72;
   const Camera c = make_camera(packet.view, packet.width, packet.height, {});
-  add_ball(packet, Kind::volume, c.position - 8.0 * c.back - 0.8 * c.right, c.up);
-  add_ball(packet, Kind::surface, c.position - 10.0 * c.back + 0.9 * c.right + 0.5 * c.up, c.up);
+  add_ball(packet, Kind::volume, c.position - 8.0 * c.back - 0.4 * c.right, c);
+  add_ball(packet, Kind::surface, c.position - 10.0 * c.back + 0.4 * c.right + 0.3 * c.up, c);
   TubeItem line;
   for (int i = 0; i <= 20; ++i)
-    line.points.push_back(c.position - (6.5 + 0.25 * i) * c.back + (0.1 * i - 1) * c.right + 0.5 * std::sin(0.5 * i) * c.up);
-  line.radius = 0.06;
+    line.points.push_back(c.position - (6.5 + 0.25 * i) * c.back + (0.06 * i - 0.6) * c.right + 0.3 * std::sin(0.5 * i) * c.up);
+  line.radius = 0.03;
   line.color = {0.2f, 0.9f, 0.4f};
   packet.tubes.push_back(line);
   return packet;
@@ -263,7 +270,7 @@ TEST_F(StereoPicture, EveryPackingIsMadeOfTheEyesOwnPictures) {
   for (const bool transparent : {true, false}) {
     FramePacket packet = busy_packet();
     if (!transparent) packet.background = {0.1f, 0.15f, 0.3f, 1};
-    packet.eyes = eyes(packet.view, aspect(packet), {2, 0.5, 8.0});
+    packet.eyes = eyes(packet.view, aspect(packet), {2, 0.3, 8.0});
     const std::vector<Picture> each = each_eye(packet);
     ASSERT_GT(max_difference(each[0], each[1]), 100) << "the eyes see the same";
     for (const Named& named : kPackings) {
@@ -280,7 +287,7 @@ TEST_F(StereoPicture, ThreeViewsAndOddSizes) {
   FramePacket packet = busy_packet();
   packet.width = 95;
   packet.height = 71;
-  packet.eyes = eyes(packet.view, aspect(packet), {3, 0.4, 8.0});
+  packet.eyes = eyes(packet.view, aspect(packet), {3, 0.2, 8.0});
   const std::vector<Picture> each = each_eye(packet);
   for (const Packing packing : {Packing::side_by_side, Packing::side_by_side_half, Packing::top_bottom, Packing::top_bottom_half,
                                 Packing::rows, Packing::columns, Packing::checkerboard}) {
@@ -300,7 +307,7 @@ TEST_F(StereoPicture, ThreeViewsAndOddSizes) {
 TEST_F(StereoPicture, ThePlainViewComesBackAfterAPair) {
   FramePacket packet = busy_packet();
   const Picture before = draw(packet);
-  packet.eyes = eyes(packet.view, aspect(packet), {2, 0.5, 8.0});
+  packet.eyes = eyes(packet.view, aspect(packet), {2, 0.3, 8.0});
   packet.packing = Packing::side_by_side;
   draw(packet);
   packet.eyes.clear();
@@ -309,7 +316,7 @@ TEST_F(StereoPicture, ThePlainViewComesBackAfterAPair) {
 
 TEST_F(StereoPicture, DepthIsTheFirstEyes) {
   FramePacket packet = busy_packet();
-  packet.eyes = eyes(packet.view, aspect(packet), {2, 0.5, 8.0});
+  packet.eyes = eyes(packet.view, aspect(packet), {2, 0.3, 8.0});
   FramePacket left = packet;
   left.view = packet.eyes[0];
   left.eyes.clear();
@@ -328,7 +335,7 @@ TEST_F(StereoPicture, GridsAndTablesAreMadeOnce) {
   FramePacket packet = busy_packet();
   draw(packet);
   const RenderStats mono = renderer_->stats();
-  packet.eyes = eyes(packet.view, aspect(packet), {4, 0.5, 8.0});
+  packet.eyes = eyes(packet.view, aspect(packet), {4, 0.3, 8.0});
   packet.packing = Packing::side_by_side;
   draw(packet);
   EXPECT_EQ(renderer_->stats().upload_bytes, mono.upload_bytes) << "another eye uploads nothing";
@@ -336,25 +343,24 @@ TEST_F(StereoPicture, GridsAndTablesAreMadeOnce) {
 }
 
 TEST_F(StereoPicture, AScreenInTheRoomShowsWhatLiesOnItAtItsPlace) {
-  // pixels that are not square, and the eye beside the screen
+  // pixels that are not square, the eye off the screen's middle
+  constexpr double half_width = 0.9, half_height = 0.6;
+  const auto view =
+      screen_view({{-half_width, 0.0, -half_height}, {half_width, 0.0, -half_height}, {-half_width, 0.0, half_height}}, {1.2, -6.0, 0.3});
+  ASSERT_TRUE(view);
   FramePacket packet;
   packet.width = 120;
   packet.height = 150;
   packet.background = {0, 0, 0, 0};
-  packet.view.position = {1.5, -6.0, 0.8};
-  packet.view.target = {1.5, 0.0, 0.8};
-  packet.view.fovy_deg = 40;
-  const double half_height = 6 * std::tan(20 * std::acos(-1.0) / 180), half_width = 2 * half_height;
-  packet.view.aspect = 2;
-  packet.view.window = {(-half_width - 1.5) / half_width, (half_width - 1.5) / half_width, (-half_height - 0.8) / half_height,
-                        (half_height - 0.8) / half_height};
-  const Vec3 centre(1.0, 0.0, -0.5);
+  packet.view = *view;
+  const Vec3 centre(0.2, 0.0, -0.2);
   for (const Kind kind : kKinds) {
     FramePacket one = packet;
-    add_ball(one, kind, centre, {0.0, 0.0, 1.0});
-    const Centroid found = centroid(draw(one, {}, std::to_string(int(kind))));
-    EXPECT_NEAR(found.x, 60 * (1 + centre.x / half_width), 0.15) << int(kind);
-    EXPECT_NEAR(found.y, 75 * (1 - centre.z / half_height), 0.35) << int(kind);
+    add_ball(one, kind, centre, make_camera(*view, 1, 1, {}));
+    const Centroid found = centroid(draw(one, reference_settings(), std::to_string(int(kind))));
+    const double tolerance = kind == Kind::volume ? 0.06 : 0.2;
+    EXPECT_NEAR(found.x, 60 * (1 + centre.x / half_width), tolerance) << int(kind);
+    EXPECT_NEAR(found.y, 75 * (1 - centre.z / half_height), tolerance) << int(kind);
   }
 }
 
