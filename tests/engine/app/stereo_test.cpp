@@ -111,6 +111,16 @@ TEST(RenderStereo, AnOrbitTakesTheEyesAlong) {
   EXPECT_GT(middle(*b, 80, 160), middle(*b, 0, 80) + 1);
 }
 
+TEST(RenderStereo, AGoalOfQualityIsMetEyeByEye) {
+  const std::string volume =
+      R"(, "volumes": [{"field": "s", "color": [[0, 0.1, 0.2, 0.9], [1, 1, 0.6, 0]], "opacity": [[0.3, 0], [1, 0.1]]}])";
+  for (const char* quality : {"error=1", "time=100000"}) {
+    const Drawn drawn = draw(volume, {"--stereo", "top-bottom", "--quality", quality});
+    EXPECT_EQ(drawn.picture.height, 120u);
+    EXPECT_NE(drawn.out.find("error about 0."), std::string::npos) << drawn.out;
+  }
+}
+
 TEST(RenderStereo, BadInputIsOneLine) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene(""));
