@@ -4,10 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "render/frame/color.h"
+#include "render/frame/overlay_items.h"
 #include "render/frame/packing.h"
 
 namespace catena::field {
@@ -15,10 +18,6 @@ class ScalarGrid;
 }
 
 namespace catena::render {
-
-struct Color {
-  float r = 0, g = 0, b = 0;
-};
 
 /// A part of the symmetric frustum of a view, or beyond it, in its half extents: an eye off the axis, a tile of a large picture.
 struct Window {
@@ -40,6 +39,20 @@ struct ClipPlane {
 };
 inline constexpr std::size_t kMostClipPlanes = 8;
 
+/// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
+struct LightItem {
+  Vec3 direction{0.0, 0.0, 1.0};
+  Color color{1, 1, 1};  ///< times the intensity
+  bool with_camera = false;
+};
+inline constexpr std::size_t kMostLights = 4;
+
+/// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
+struct FogItem {
+  Color color;
+  double start = 0, end = 1, most = 0.8;
+};
+
 /// What an id of the picture stands for.
 struct ObjectName {
   std::uint32_t id = 0;
@@ -50,6 +63,8 @@ struct ObjectName {
 struct TransferTable {
   std::vector<std::array<double, 4>> colors;       ///< value, r, g, b
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
+  /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
+  std::vector<std::array<double, 2>> gradient_factors;
 };
 
 struct VolumeItem {
@@ -118,6 +133,13 @@ struct CursorItem {
   std::uint32_t id = 0;
 };
 
+/// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.
+struct AidItems {
+  std::vector<TubeItem> tubes;
+  std::vector<MeshItem> meshes;
+  bool empty() const { return tubes.empty() && meshes.empty(); }
+};
+
 struct FramePacket {
   View view;
   std::vector<View> eyes{};  ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
@@ -131,7 +153,11 @@ struct FramePacket {
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
-  std::vector<ClipPlane> clip;  ///< what all planes keep is drawn; at most kMostClipPlanes
+  Overlay overlay;
+  std::vector<ClipPlane> clip;    ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
+  std::optional<FogItem> fog;
+  AidItems aids;
   std::vector<ObjectName> objects;
 
   /// The next id, from 1 on.
