@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
@@ -46,13 +47,14 @@ class Frames {
 
   /// Milliseconds from the start of extraction to the fence (of all tiles). Without outputs nothing is read back.
   Result<double> draw(int frame, Outputs* outputs) {
+    if (!interrupt_) interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
     const std::int64_t start = now_ns();
     CATENA_TRY(const render::FramePacket next, packet(frame));
     const double extract_ms = ms_since(start);
     Outcome stopped = Done{};
     bool interrupted = false;
     const auto take = [&](const render::Band& band) -> Outcome {
-      interrupted = interrupt_.asked();
+      interrupted = interrupt_->asked();
       if (interrupted) return Error{"interrupted"};
       if (band.height == 0) {
         if (progress != nullptr) progress->at(++tiles_done_);
@@ -64,7 +66,7 @@ class Frames {
     if (outputs != nullptr) CATENA_CHECK(outputs->begin(frame));
     const auto ms = render::draw_bands(*renderer, next, settings, plan, wants, outputs != nullptr ? take : decltype(nothing_)());
     CATENA_CHECK(stopped);
-    if (interrupted || interrupt_.asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
+    if (interrupted || interrupt_->asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
     if (!ms) throw MachineFailure{ms.error().message};
     if (outputs != nullptr) CATENA_CHECK(outputs->end());
     return extract_ms + *ms;
@@ -82,7 +84,7 @@ class Frames {
   const RenderOptions& options_;
   const CameraMotion& motion_;
   Size size_;
-  const Interrupt interrupt_{{SIGINT, SIGTERM, SIGHUP}};
+  std::optional<Interrupt> interrupt_;  // while it draws
   double tiles_done_ = 0;
   std::function<Outcome(const render::Band&)> nothing_;
 };
@@ -119,6 +121,8 @@ Outcome render_pictures(const RenderOptions& o) {
   CATENA_CHECK(place_cursor(scene, *program, o.probe));
   Frames frames(scene, o, motion, size);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
+  if (!o.ids.empty() && packet.objects.size() > 65535)
+    return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
   FrameStats stats;
   stats.load_ms = ms_since(load_start);
   stats.cpu_bytes = field_bytes(scene);
