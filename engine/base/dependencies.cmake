@@ -10,6 +10,7 @@ find_package(PkgConfig REQUIRED)
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
 pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)
+pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
 pkg_check_modules(JSONCPP REQUIRED IMPORTED_TARGET jsoncpp)
 pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)
 pkg_check_modules(FREETYPE REQUIRED IMPORTED_TARGET freetype2)

@@ -173,14 +173,14 @@ double pixel_size(const Camera& c, double depth) { return 2 * c.half_height / c.
 
 Vec3 default_direction() { return direction(Vec3(0.5, -1.0, 0.45)); }
 
-View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, double fovy_deg) {
+View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, double fovy_deg, const Vec3& up) {
   Bounds bounds = given;
   if (bounds.empty()) {
     bounds.add(Vec3(-1.0));
     bounds.add(Vec3(1.0));
   }
   Camera axes;
-  set_axes(axes, towards_eye, Vec3(0.0, 0.0, 1.0));
+  set_axes(axes, towards_eye, up);
   const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;
 
   // the nearest distance from which every corner lies inside the four planes of the frustum
@@ -195,7 +195,7 @@ View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, doubl
   View view;
   view.target = bounds.centre();
   view.position = view.target + 1.05 * distance * axes.back;
-  view.up = std::fabs(axes.back.z) < 0.999 ? Vec3(0.0, 0.0, 1.0) : axes.up;
+  view.up = std::fabs(dot(axes.back, direction(up))) < 0.999 ? up : axes.up;
   view.fovy_deg = fovy_deg;
   view.height = 2.1 * half_height;
   return view;

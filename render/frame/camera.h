@@ -68,7 +68,8 @@ double pixel_size(const Camera& camera, double depth);
 /// From the scene towards the eye: oblique, +z up.
 Vec3 default_direction();
 /// A view that frames the box: all its corners inside the picture with a margin of 5 % of the distance.
-/// An empty box counts as -1..1. `towards_eye` need not be unit.
-View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_direction(), double fovy_deg = 30);
+/// An empty box counts as -1..1. `towards_eye` and `up` need not be unit.
+View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_direction(), double fovy_deg = 30,
+              const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
 }  // namespace catena::render

@@ -24,7 +24,7 @@ bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet
 }
 
 bool RaycastPass::ends_at_half(const Frame& frame) const {
-  return fast_ && frame.settings.fast->ends_at_half() && !frame.has(target::opaque_depth);
+  return fast_ && frame.settings.fast->ends_at_half() && !frame.settings.float_picture && !frame.has(target::opaque_depth);
 }
 
 PassUse RaycastPass::use(const Frame& frame) const {

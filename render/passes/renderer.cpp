@@ -120,6 +120,7 @@ Outcome Renderer::Parts::prepare(Frame& frame) {
   }
   frame.written = 0;
   frame.rays = CameraRays::make(frame.packet, bounds);
+  targets.picture_format = frame.settings.float_picture ? kFloatPictureFormat : kPictureFormat;
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
@@ -193,13 +194,25 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
 
 Result<Picture> Renderer::read_back() {
   Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0);
+  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kPictureFormat);
   Picture picture;
   picture.width = p.shown().info().extent.width;
   picture.height = p.shown().info().extent.height;
   CATENA_TRY(picture.rgba, bytes_of<std::uint8_t>(*p.device, p.shown(), std::size_t(4) * picture.width * picture.height));
   return picture;
 }
+
+Result<FloatPicture> Renderer::read_back_float() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kFloatPictureFormat);
+  FloatPicture picture;
+  picture.width = p.targets.picture.info().extent.width;
+  picture.height = p.targets.picture.info().extent.height;
+  CATENA_TRY(picture.rgba, bytes_of<float>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height));
+  return picture;
+}
+
+std::uint32_t Renderer::longest_side() const { return parts_->device->info().limits.maxImageDimension2D; }
 
 bool Renderer::draws_fast(const FramePacket& packet) const { return RaycastPass::draws_fast(*parts_->device, packet); }
 

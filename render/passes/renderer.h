@@ -61,6 +61,10 @@ class Renderer {
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
   /// The last picture, straight alpha.
   Result<Picture> read_back();
+  /// The same in floats, for settings with `float_picture`.
+  Result<FloatPicture> read_back_float();
+  /// Pixels that a picture can have, each way, on this device.
+  std::uint32_t longest_side() const;
   /// Whether `RenderSettings::fast` holds for what the packet draws.
   bool draws_fast(const FramePacket& packet) const;
   /// The rays of every kProbeSpacing-th pixel alone, as a small picture over black: what `settings` make of them before anything is
