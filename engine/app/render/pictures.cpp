@@ -152,9 +152,10 @@ Outcome render_pictures(const RenderOptions& o) {
   frames.settings = wanted.settings;
   frames.wants = wanted_bands(o);
   const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
-  const std::uint32_t whole = render::views_of(scene.stereo) > 1 ? kMostPixels : tile;
-  frames.plan =
-      render::plan_tiles(size.width, size.height, antialias, whole, wanted.goal || wanted.settings.fast, frames.renderer->longest_side());
+  frames.plan = render::views_of(scene.stereo) > 1
+                    ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
+                    : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || wanted.settings.fast,
+                                         frames.renderer->longest_side());
   if (wanted.goal) {
     const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
     frames.settings = choice.settings;
