@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/color_option.h"
 #include "engine/base/result.h"
 
 namespace catena::app {
@@ -24,6 +25,7 @@ struct RenderOptions {
   std::string camera, view;
   bool fit = false;
   double orbit_deg = 0, elevation_deg = 0, zoom = 1;
+  ColorOption colors;
   bool validation = false;
 };
 

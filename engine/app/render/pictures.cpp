@@ -105,8 +105,9 @@ Outcome render_pictures(const RenderOptions& o) {
   CATENA_TRY(const Size size, parse_size(o.size, kMostPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   CATENA_TRY(const CameraMotion motion, CameraMotion::make(o));
+  CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
-  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
+  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, parse_quality(quality));
   std::vector<std::string> inputs = inputs_of(scene);
