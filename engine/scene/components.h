@@ -34,9 +34,16 @@ struct Rgb {
   float r = 0, g = 0, b = 0;
 };
 
+/// A colour map by its name, laid over a range once the values are known (color_maps.h).
+struct NamedColors {
+  std::string map;                             ///< empty: the default of what is coloured
+  std::optional<std::array<double, 2>> range;  ///< empty: that of the values
+};
+
 /// Piecewise-linear maps over field values, values rising. The scene gives either extinctions (sigma per world unit) or
 /// opacities (alpha per opacity_unit), which become sigma = -ln(1 - alpha) / opacity_unit at their points once the drawn
-/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear.
+/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear. A factor that follows the
+/// length of the field's gradient (field units per world unit) multiplies sigma.
 struct TransferFunction {
   struct ColorPoint {
     double value;
@@ -52,6 +59,12 @@ struct TransferFunction {
   std::vector<OpacityPoint> opacities;
   double opacity_unit = 0;  ///< world length; 0: the smallest voxel edge of the drawn grid
   std::vector<ExtinctionPoint> extinctions;
+  NamedColors named;  ///< where `colors` is empty
+  struct GradientPoint {
+    double gradient, factor;
+  };
+  std::vector<GradientPoint> gradient_factors;  ///< gradients rising, factors 0..1; empty: 1 everywhere
+  std::string file;                             ///< that it was read from; empty: the scene's own
 };
 
 struct Volume {
@@ -115,7 +128,8 @@ struct ColorBy {
   enum class What { field, speed, arc_length };
   What what = What::speed;
   Entity field;                                      ///< a scalar, or the magnitude of a vector
-  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: viridis over the values that are drawn
+  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
+  NamedColors named{};                               ///< viridis, the values that are drawn, where it does not say
 };
 
 struct StreamlineSet {

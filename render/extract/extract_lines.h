@@ -16,7 +16,5 @@ Outcome extract_indicators(scene::Scene& scene, FramePacket& packet);
 
 /// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
 Color table_color(const std::vector<scene::TransferFunction::ColorPoint>& table, double value);
-/// Viridis (Smith and van der Walt), nine points from lo to hi.
-std::vector<scene::TransferFunction::ColorPoint> viridis(double lo, double hi);
 
 }  // namespace catena::render

@@ -48,6 +48,8 @@ struct ObjectName {
 struct TransferTable {
   std::vector<std::array<double, 4>> colors;       ///< value, r, g, b
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
+  /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
+  std::vector<std::array<double, 2>> gradient_factors;
 };
 
 struct VolumeItem {
