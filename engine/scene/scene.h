@@ -21,7 +21,8 @@ struct Scene {
   Camera camera;
   Background background;
   std::vector<ClipPlane> clip;
-  std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
+  std::optional<bool> jitter;  ///< of rays; not stated: by the quality
+  std::string quality;         ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts
 

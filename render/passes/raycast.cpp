@@ -11,10 +11,35 @@ namespace {
 
 bool is_translucent(const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
-RaySettings ray_settings(const RenderSettings& s) { return {s.step_voxels, s.termination, s.skip}; }
+bool is_projected(const VolumeItem& item) { return item.projection != Projection::composite; }
+
+RaySettings ray_settings(const Frame& frame) {
+  const RenderSettings& s = frame.settings;
+  return {s.step_voxels, s.termination, s.skip, frame.packet.jitter.value_or(s.jitter)};
+}
 
 RayScene ray_scene(const Frame& frame) {
   return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, &frame.targets.none};
+}
+
+/// What can be drawn together.
+Outcome check(const Frame& frame, std::size_t volumes, std::size_t surfaces, std::size_t colors) {
+  const std::size_t layers = frame.layers.size(), grids = volumes + surfaces + colors;
+  if (volumes > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes, MAX_VOLUMES)};
+  if (surfaces > MAX_SURFACES)
+    return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", surfaces, MAX_SURFACES)};
+  if (layers > MAX_LAYERS) return Error{fmt::format("the scene has {} translucent layers, expected at most {}", layers, MAX_LAYERS)};
+  const std::size_t most = layers == 0 ? MAX_GRIDS : MAX_GRIDS_WITH_LAYERS;
+  if (grids > most)
+    return Error{
+        fmt::format("the scene has {} volumes, translucent isosurfaces and fields that colour them{}, expected at most {} together", grids,
+                    layers == 0 ? "" : " beside translucent triangles", most)};
+  const auto& items = frame.packet.volumes;
+  if (volumes + surfaces + layers > 1 && std::any_of(items.begin(), items.end(), is_projected))
+    return Error{
+        "a volume with a projection (maximum, minimum, average) stands beside another volume or something translucent, expected alone "
+        "over opaque things"};
+  return Done{};
 }
 
 }  // namespace
@@ -22,7 +47,10 @@ RayScene ray_scene(const Frame& frame) {
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
 
 bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet) {
-  return packet.volumes.size() == 1 && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
+  if (packet.volumes.size() != 1) return false;
+  const VolumeItem& item = packet.volumes.front();
+  return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() &&
+         std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
          can_be_packed(device, *packet.volumes.front().grid);
 }
 
@@ -48,29 +76,34 @@ Outcome RaycastPass::prepare(Frame& frame) {
     return fast_pass_->prepare(*fast_, *frame.settings.fast);
   }
 
-  std::vector<VolumePass::Mirrored<VolumeItem>> volumes;
-  std::vector<VolumePass::Mirrored<IsosurfaceItem>> surfaces;
+  std::vector<Mirrored<VolumeItem>> volumes;
+  std::vector<Mirrored<IsosurfaceItem>> surfaces;
+  std::size_t colors = 0;
   const auto mirror = [&](const auto& item, auto& list) -> Outcome {
     CATENA_TRY(auto mirrored, frame.mirror(*item.grid));
     if (!mirrored->drawable) return Done{};
     grids_.push_back(item.grid.get());
-    list.emplace_back(&item, std::move(mirrored));
+    list.push_back({&item, std::move(mirrored), nullptr});
+    if (!item.color_by) return Done{};
+    CATENA_TRY(mirrored, frame.mirror(*item.color_by->grid));
+    if (!mirrored->drawable) return Done{};
+    list.back().colors = std::move(mirrored);
+    ++colors;
     return Done{};
   };
   for (const VolumeItem& item : packet.volumes) CATENA_CHECK(mirror(item, volumes));
   for (const IsosurfaceItem& item : packet.isosurfaces)
     if (is_translucent(item)) CATENA_CHECK(mirror(item, surfaces));
-  if (volumes.size() > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes.size(), MAX_VOLUMES)};
-  if (surfaces.size() > MAX_SURFACES)
-    return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", surfaces.size(), MAX_SURFACES)};
-  if (frame.layers.size() > MAX_LAYERS)
-    return Error{fmt::format("the scene has {} translucent layers, expected at most {}", frame.layers.size(), MAX_LAYERS)};
-  const std::size_t grids = volumes.size() + surfaces.size(), most = frame.layers.empty() ? MAX_GRIDS : MAX_GRIDS_WITH_LAYERS;
-  if (grids > most)
-    return Error{fmt::format("the scene has {} volumes and translucent isosurfaces{}, expected at most {} together", grids,
-                             frame.layers.empty() ? "" : " beside translucent triangles", most)};
+  CATENA_CHECK(check(frame, volumes.size(), surfaces.size(), colors));
   any_ = !volumes.empty() || !surfaces.empty() || !frame.layers.empty();
+  projected_ = !volumes.empty() && is_projected(*volumes.front().item);
   if (!any_) return Done{};
+  if (projected_) {
+    if (!projection_pass_) {
+      CATENA_TRY(projection_pass_, ProjectionPass::create(frame.device));
+    }
+    return projection_pass_->prepare(*volumes.front().item, volumes.front().mirror);
+  }
   if (!exact_pass_) {
     CATENA_TRY(exact_pass_, VolumePass::create(frame.device));
   }
@@ -101,9 +134,15 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
     return Done{};
   }
   targets.begin(commands, target::volume, target::volume);
-  if (any_) CATENA_CHECK(exact_pass_->record(commands, frame.rays, ray_settings(frame.settings), area, ray_scene(frame)));
+  CATENA_CHECK(record_exact(commands, frame, frame.rays, area));
   commands.end_pass();
   return Done{};
+}
+
+Outcome RaycastPass::record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area) {
+  if (!any_) return Done{};
+  if (projected_) return projection_pass_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
+  return exact_pass_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
 }
 
 Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
@@ -116,9 +155,7 @@ Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uin
   const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&color, 1}, {});
   const VkExtent3D& extent = target.info().extent;
-  if (any_)
-    CATENA_CHECK(
-        exact_pass_->record(commands, rays, ray_settings(frame.settings), {{0, 0}, {extent.width, extent.height}}, ray_scene(frame)));
+  CATENA_CHECK(record_exact(commands, frame, rays, {{0, 0}, {extent.width, extent.height}}));
   commands.end_pass();
   return Done{};
 }

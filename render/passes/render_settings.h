@@ -15,6 +15,9 @@ struct RenderSettings {
   TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
   MirrorLayout layout = MirrorLayout::automatic;
   bool skip = true;  ///< leap over bricks that the transfer function leaves empty
+  /// Rays begin with a part of a step, another one at every pixel: grain instead of rings where the step is coarse. The packet may
+  /// say otherwise. The fast raycast has none.
+  bool jitter = false;
   /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
   std::optional<FastSettings> fast;
 };

@@ -14,13 +14,15 @@
 #include "render/passes/mesh.h"
 #include "render/passes/raycast.h"
 #include "render/passes/streamlines.h"
+#include "render/passes/surface_color.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kMeshPass, &kStreamlinePass, &kCursorPass, &kIsosurfacePass, &kRaycastPass, &kComposePass};
+constexpr const PassEntry* kPasses[] = {&kMeshPass,         &kStreamlinePass, &kCursorPass, &kIsosurfacePass,
+                                        &kSurfaceColorPass, &kRaycastPass,    &kComposePass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;

@@ -2,6 +2,7 @@
 // includer defines GRID_COUNT and, with layers, HAS_LAYERS.
 layout(constant_id = 2) const int VOLUMES = 1;   // grids 0 .. VOLUMES - 1
 layout(constant_id = 3) const int SURFACES = 0;  // the grids after them
+layout(constant_id = 8) const int COLOR_GRID_COUNT = 0;  // and after those
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
@@ -29,7 +30,7 @@ void pass_surface(int s, int surface, float t) {
   if (s < SURFACES && s == surface && through > frame.termination) {
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
     const float opacity = frame.grids[i].opacity;
-    color_sum += through * opacity * lit(frame.grids[i].color, world_gradient(i, p), eye_direction);
+    color_sum += through * opacity * lit(own_or_other(i, t, frame.grids[i].color), world_gradient(i, p), eye_direction);
     surfaces_through *= 1.0 - opacity;
     through *= 1.0 - opacity;
     const float past = t + 1e-3 / max(max(abs(rays[i].direction.x), abs(rays[i].direction.y)), abs(rays[i].direction.z));
@@ -47,6 +48,7 @@ void main() {
   const float end = begin_pixel(q);
 
   // where the ray meets each grid
+  for (int j = VOLUMES + SURFACES; j < VOLUMES + SURFACES + COLOR_GRID_COUNT; ++j) rays[j] = local_ray(j, q);
   for (int i = 0; i < VOLUMES; ++i) {
     rays[i] = local_ray(i, q);
     intervals[i] = seen_interval(i, q, end);

@@ -27,6 +27,9 @@ struct GridData {
   // volumes: the table's first entry, its last index, and the value range it spans
   uint table_start, table_last;
   float table_lo, table_per_value;
+  // volumes: the same of the factor by the length of the gradient
+  uint factor_start, factor_last;
+  float factor_lo, factor_per_gradient;
   // isosurfaces
   float level, opacity;
   vec3 color;
