@@ -5,7 +5,9 @@
 
 #include "engine/base/assert.h"
 #include "engine/scene/color_maps.h"
+#include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
+#include "render/extract/extract_overlay.h"
 
 namespace catena::render {
 
@@ -192,7 +194,9 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_streamlines(scene, packet));
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
+  extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
+  CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
   return packet;
 }
 

@@ -2,7 +2,7 @@
 ///   maximum, minimum   exact for the trilinear field of the texels, whatever the step: the extremes of each cell's cubic
 ///   average            midpoints of segments of the step; invalid cells do not count
 /// Colour and opacity come from the transfer function at that value; the opacity is 1 - exp(-sigma u) with the table's opacity_unit u
-/// (where the scene gave opacities, these at its points), as VTK takes it. Not shaded, as in VTK. Frame thread.
+/// (where the scene gave opacities, these at its points), as VTK takes it. Not shaded, as in VTK; fog leaves it as it is. Frame thread.
 #pragma once
 #include <array>
 #include <map>

@@ -49,7 +49,7 @@ Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::uni
 bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet) {
   if (packet.volumes.size() != 1) return false;
   const VolumeItem& item = packet.volumes.front();
-  return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() &&
+  return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
          std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
          can_be_packed(device, *packet.volumes.front().grid);
 }

@@ -62,7 +62,7 @@ Result<const vk::Pipeline*> VolumePass::pipeline(const Kind& kind) {
   } else {
     info.fragment = kind.single() ? vk::Spirv(kFragmentShader) : kind.layers > 0 ? vk::Spirv(kBlendLayersShader) : vk::Spirv(kBlendShader);
     info.constants = {kind.flags, kind.opaque,      kind.volumes, kind.surfaces, kind.layers,
-                      kind.modes, kind.color_grids, kind.jitter,  kind.colors};
+                      kind.modes, kind.color_grids, kind.jitter,  kind.colors,   kind.fog};
   }
   CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   return &pipeline;
@@ -176,7 +176,8 @@ Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const
             .surfaces = std::uint32_t(surfaces_.size()),
             .layers = std::uint32_t(scene.layers.size()),
             .jitter = settings.jitter,
-            .colors = std::uint32_t(colors_.size())};
+            .colors = std::uint32_t(colors_.size()),
+            .fog = rays.fog && rays.fog->most > 0};
   double edge = 0;
   for (const Volume& volume : volumes_) {
     data.grids[bound.size()] = volume_data(rays, volume);

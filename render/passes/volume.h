@@ -59,7 +59,7 @@ class VolumePass {
   };
   /// What a pipeline is made for.
   struct Kind {
-    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0;
+    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0;
     auto operator<=>(const Kind&) const = default;
     bool single() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
     bool layers_alone() const { return volumes == 0 && surfaces == 0; }

@@ -8,6 +8,7 @@ layout(constant_id = 1) const uint OPAQUE = 0;       // there is an opaque depth
 layout(constant_id = 5) const uint GRID_MODES = 0;   // two bits a grid: 1 a factor by the gradient, 2 colours by another grid,
 layout(constant_id = 6) const uint COLOR_GRIDS = 0;  // which one: four bits a grid
 layout(constant_id = 7) const uint JITTER = 0;
+layout(constant_id = 9) const uint FOG = 0;  // there is a depth cue
 
 #include "shaders/lib/tables.glsl"
 layout(binding = 2) uniform texture2D opaque_depth;
@@ -64,7 +65,7 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
     if (grid_skips(i)) {
       const ivec3 brick = cell_of(i, p) >> 3;
       const uint word = brick_word(i, brick);
-      distance = leap_distance(word);
+      distance = FOG != 0u && is_plain(word) ? 0 : leap_distance(word);  // fog colours what is plain
       seen = distance == 0 || is_plain(word);
       if (distance > 0) leap = min(leap, max(1, int(ceil(min(leave_empty(rays[i], p, brick, distance) / h, 1e6)))));
     }
@@ -75,14 +76,12 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
       if (valid) {
         vec4 c = transfer(i, sample_value(i, p));
         if (c.a > 0.0) {
-          if (grid_is_shaded(i) || has_factor(i)) {
-            const vec3 gradient = world_gradient(i, p);
-            if (has_factor(i)) c.a *= gradient_factor(i, length(gradient) * frame.grids[i].value_scale);
-            c.rgb = own_or_other(i, t, c.rgb);
-            if (grid_is_shaded(i)) c.rgb = lit(c.rgb, gradient, eye_direction);
-          } else {
-            c.rgb = own_or_other(i, t, c.rgb);
-          }
+          vec3 gradient = vec3(0.0);
+          if (grid_is_shaded(i) || has_factor(i)) gradient = world_gradient(i, p);
+          if (has_factor(i)) c.a *= gradient_factor(i, length(gradient) * frame.grids[i].value_scale);
+          c.rgb = own_or_other(i, t, c.rgb);
+          if (grid_is_shaded(i)) c.rgb = lit(c.rgb, gradient, eye_direction);
+          if (FOG != 0u) c.rgb = fogged(c.rgb, t);
           emitted += c.a * c.rgb;
           sigma_sum += c.a;
         }

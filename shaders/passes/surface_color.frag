@@ -23,5 +23,5 @@ void main() {
   const LocalRay ray = local_ray(0, q), other = local_ray(1, q);
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
   const vec3 color = color_at(1, other.origin + t * other.direction, frame.grids[0].color);
-  out_color = vec4(lit(color, world_gradient(0, p), -normalize(world_direction(q))), 1.0);
+  out_color = vec4(fogged(lit(color, world_gradient(0, p), -normalize(world_direction(q))), t), 1.0);
 }

@@ -16,7 +16,8 @@ using namespace catena::render::shared;
   ++compared
 
 TEST(SharedStructs, FrameAndGridData) {
-  for (const char* shader : {"blend.frag", "blend_layers.frag", "volume.frag", "projection.frag", "surface_color.frag", "isosurface.frag", "sample.comp"}) {
+  for (const char* shader :
+       {"blend.frag", "blend_layers.frag", "volume.frag", "projection.frag", "surface_color.frag", "isosurface.frag", "sample.comp"}) {
     auto all = struct_offsets(shader_words(shader));
     std::size_t compared = 0;
     {
@@ -54,6 +55,9 @@ TEST(SharedStructs, FrameAndGridData) {
     EXPECT_OFFSET(FrameData, half_size);
     EXPECT_OFFSET(FrameData, axis);
     EXPECT_OFFSET(FrameData, clip_count);
+    EXPECT_OFFSET(FrameData, light_count);
+    EXPECT_OFFSET(FrameData, lights);
+    EXPECT_OFFSET(FrameData, fog);
     EXPECT_OFFSET(FrameData, clips);
     EXPECT_OFFSET(FrameData, slope);
     EXPECT_OFFSET(FrameData, right);
@@ -83,6 +87,9 @@ TEST(SharedStructs, MeshFrameData) {
   EXPECT_OFFSET(MeshFrameData, scale);
   EXPECT_OFFSET(MeshFrameData, shift);
   EXPECT_OFFSET(MeshFrameData, clip_count);
+  EXPECT_OFFSET(MeshFrameData, light_count);
+  EXPECT_OFFSET(MeshFrameData, lights);
+  EXPECT_OFFSET(MeshFrameData, fog);
   EXPECT_OFFSET(MeshFrameData, clips);
   EXPECT_OFFSET(MeshFrameData, depth_near);
   EXPECT_OFFSET(MeshFrameData, depth_far);
