@@ -1,5 +1,5 @@
 /// catena render SCENE|FILE -o FILE.png [--size WxH] [--quality Q] [--frames N --orbit DEG] [--probe PATH.csv] [--stats FILE.json]
-///   [--colormap NAME] [--range LO HI]
+///   [--colormap NAME] [--range LO HI] [--stereo MODE]
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -7,16 +7,19 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/app/annotate_option.h"
 #include "engine/app/color_option.h"
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
 #include "engine/app/frame_stats.h"
 #include "engine/app/size_option.h"
+#include "engine/app/stereo_option.h"
 #include "engine/base/clock.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
+#include "render/extract/extract_stereo.h"
 #include "render/frame/camera.h"
 #include "render/passes/quality.h"
 #include "render/vk/picture.h"
@@ -33,6 +36,8 @@ struct Options {
   int frames = 1;
   double orbit_deg = 0, phase = 0;
   bool validation = false;
+  AnnotateOptions annotate;
+  StereoChoice stereo;
   ColorOption colors;
 };
 
@@ -116,6 +121,9 @@ Outcome render_pictures(const Options& o) {
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
+  CATENA_CHECK(annotate(scene, o.annotate));
+  CATENA_CHECK(o.stereo.apply(scene.stereo));
+  CATENA_CHECK(check_packed(scene.stereo, size));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, quality_of(quality));
   render::RenderSettings settings = wanted.settings;
@@ -141,6 +149,7 @@ Outcome render_pictures(const Options& o) {
     scene.phase = o.phase + static_cast<double>(frame) / std::max(1, o.frames);
     CATENA_TRY(render::FramePacket next, render::extract_frame(scene, size.width, size.height));
     orbit(next.view, o.orbit_deg * frame / std::max(1, o.frames));
+    render::set_eyes(next, scene.stereo);
     const Outcome drawn = (*renderer)->draw(next, settings);
     if (!drawn) throw MachineFailure{drawn.error().message};
     if (times != nullptr) times->push_back(ms_since(start));
@@ -167,7 +176,7 @@ Outcome render_pictures(const Options& o) {
   const render::Picture first = read_back();
   stats.first_frame_ms = ms_since_process_start();
   stats.device = (*renderer)->stats().device;
-  fmt::print("{}: {}x{}, {}, on {}\n", o.output, size.width, size.height, what_is_drawn(packet), stats.device);
+  fmt::print("{}: {}x{}, {}, on {}\n", o.output, first.width, first.height, what_is_drawn(packet), stats.device);
 
   // the reported frames come after a few unreported ones
   const bool transparent = packet.background[3] < 1;
@@ -194,6 +203,7 @@ Outcome render_pictures(const Options& o) {
   stats.mirror_ms = gpu.mirror_ms;
   stats.gpu_bytes = gpu.gpu_bytes;
   stats.validation_messages = gpu.validation_messages;
+  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", note);
   for (const std::string& text : (*renderer)->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
   if (o.stats.empty()) return finish(o.output);
   CATENA_TRY(OutputFile json, OutputFile::open(o.stats));
@@ -214,6 +224,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--size", options->size, "WxH")->capture_default_str();
   command->add_option("--quality", options->quality,
                       "draft, balanced, reference, time=MS, error=E (RMSE, 1/255) or step=VOXELS (default: the scene's, or balanced)");
+  add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "how many frames to draw and time")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--orbit", options->orbit_deg, "turn by so many degrees over the frames");
   command->add_option("--phase", options->phase, "where the pulses of streamlines are, 0 to 1; the frames add one round");
@@ -221,6 +232,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   options->colors.add_to(*command);
   command->add_option("--stats", options->stats, "figures, JSON");
+  add_annotate_options(*command, options->annotate);
   command->add_flag("--validation", options->validation, "run with the Vulkan validation layers and count their messages");
   command->callback([&chosen, options] { chosen = [options] { return render_pictures(*options); }; });
 }

@@ -50,6 +50,7 @@ Outcome read_status(Scene& scene, const json::Node& node);
 Outcome read_overlay(Scene& scene, const json::Node& node);
 
 Outcome read_camera(Scene& scene, const json::Node& node);
+Outcome read_stereo(Scene& scene, const json::Node& node);
 /// "clip": planes and boxes; "clip": false in an item, as `clipped`.
 Outcome read_clip(Scene& scene, const json::Node& node);
 /// "jitter": true or false.

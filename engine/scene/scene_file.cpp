@@ -28,6 +28,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"status", read_status},
                             {"overlay", read_overlay},
                             {"camera", read_camera},
+                            {"stereo", read_stereo},
                             {"background", read_background},
                             {"quality", read_quality},
                             {"clip", read_clip},

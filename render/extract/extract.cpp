@@ -8,6 +8,7 @@
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
+#include "render/extract/extract_stereo.h"
 
 namespace catena::render {
 
@@ -197,6 +198,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
   CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
+  set_eyes(packet, scene.stereo);
   return packet;
 }
 

@@ -11,6 +11,7 @@
 #include "engine/base/vec.h"
 #include "render/frame/color.h"
 #include "render/frame/overlay_items.h"
+#include "render/frame/packing.h"
 
 namespace catena::field {
 class ScalarGrid;
@@ -29,6 +30,7 @@ struct View {
   bool orthographic = false;
   double height = 1;
   Window window{};
+  double aspect = 0;  ///< width by height of the symmetric frustum; 0: as pixels are square
 };
 
 /// Keeps the half space to which `normal` points; `normal` need not be unit.
@@ -156,6 +158,8 @@ struct AidItems {
 
 struct FramePacket {
   View view;
+  std::vector<View> eyes{};  ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
+  Packing packing = Packing::single;
   std::uint32_t width = 1024, height = 768;
   std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
   std::vector<VolumeItem> volumes;

@@ -5,13 +5,14 @@ vec3 lit(vec3 color, vec3 normal, vec3 towards_eye) {
   const float length2 = dot(normal, normal);
   if (!(length2 > 0.0)) return 0.2 * color;
   vec3 sum = 0.2 * color;
-  if (frame.light_count == 0u) {
+  const uint lights = frame.light_count + uint(towards_eye.x < -2.0);  // as of_pixel (rays.glsl)
+  if (lights == 0u) {
     const float n = min(1.0, abs(dot(normal, towards_eye)) * inversesqrt(length2));
     const float mirrored = max(0.0, 2.0 * n * n - 1.0);
     sum += 0.7 * n * color + 0.2 * pow(mirrored, 20.0);
   } else {
     const vec3 n = normal * (inversesqrt(length2) * (dot(normal, towards_eye) < 0.0 ? -1.0 : 1.0));
-    for (uint i = 0u; i < frame.light_count; ++i) {
+    for (uint i = 0u; i < lights; ++i) {
       const vec3 l = frame.lights[i].direction;
       const float d = dot(n, l);
       const float mirrored = max(0.0, dot(2.0 * d * n - l, towards_eye));

