@@ -68,12 +68,24 @@ struct TransferFunction {
   std::string file;                             ///< that it was read from; empty: the scene's own
 };
 
+/// Colours by another scalar field at the same place of the world.
+struct FieldColors {
+  Entity field;
+  json::Node where;
+  std::vector<TransferFunction::ColorPoint> colors;
+  NamedColors named{};  ///< viridis, all values, where it does not say
+};
+
 struct Volume {
+  /// What a ray makes of its values: emission and absorption, or the look of one value.
+  enum class Projection { composite, maximum, minimum, average };
   Entity field;
   json::Node where;
   TransferFunction transfer;
   bool shade = false;
   bool clipped = true;  ///< the clip planes count
+  Projection projection = Projection::composite;
+  std::optional<FieldColors> color_by{};  ///< composite only
 };
 
 struct Isosurface {
@@ -83,6 +95,7 @@ struct Isosurface {
   Rgb color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
   bool clipped = true;  ///< the clip planes count
+  std::optional<FieldColors> color_by{};
 };
 
 /// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.

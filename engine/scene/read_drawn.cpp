@@ -57,14 +57,16 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 
 Outcome read_volumes(Scene& scene, const json::Node& node) {
   return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(
-        item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity", "shade", "clip"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity",
+                                        "shade", "clip", "projection", "color_by"}));
     Volume volume;
     volume.where = item;
     CATENA_TRY(volume.field, read_field_name(scene, item));
     CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
     CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
     CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(volume.color_by, read_field_colors(scene, item));
+    CATENA_CHECK(read_projection(volume, item));
     scene.world.emplace<Volume>(scene.world.create(), std::move(volume));
     return Done{};
   });
@@ -72,11 +74,12 @@ Outcome read_volumes(Scene& scene, const json::Node& node) {
 
 Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
   return each_item(node, "isosurfaces", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip", "color_by"}));
     Isosurface surface;
     surface.where = item;
     CATENA_TRY(surface.field, read_field_name(scene, item));
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(surface.color_by, read_field_colors(scene, item));
     CATENA_TRY(surface.level, json::require_number(item, "level"));
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
     CATENA_TRY(surface.opacity, json::get_number(item, "opacity", surface.opacity, json::Range::not_negative));

@@ -24,6 +24,11 @@ Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb
 /// Rows [value, r, g, b], values rising.
 Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what);
 
+/// "color_by": {"field", "color", "range", "transfer"} of a volume or an isosurface.
+Result<std::optional<FieldColors>> read_field_colors(const Scene& scene, const json::Node& object);
+/// "projection" of a volume, and whether it goes with what else the volume states.
+Outcome read_projection(Volume& volume, const json::Node& object);
+
 Outcome read_chain(Scene& scene, const json::Node& node);
 Outcome read_modes(Scene& scene, const json::Node& node);
 Outcome read_coupling(Scene& scene, const json::Node& node);
@@ -48,6 +53,8 @@ Outcome read_camera(Scene& scene, const json::Node& node);
 Outcome read_stereo(Scene& scene, const json::Node& node);
 /// "clip": planes and boxes; "clip": false in an item, as `clipped`.
 Outcome read_clip(Scene& scene, const json::Node& node);
+/// "jitter": true or false.
+Outcome read_jitter(Scene& scene, const json::Node& node);
 Outcome read_bounding_box(Scene& scene, const json::Node& node);
 Outcome read_axes(Scene& scene, const json::Node& node);
 Outcome read_ground(Scene& scene, const json::Node& node);

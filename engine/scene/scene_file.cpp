@@ -32,6 +32,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"background", read_background},
                             {"quality", read_quality},
                             {"clip", read_clip},
+                            {"jitter", read_jitter},
                             {"bounding_box", read_bounding_box},
                             {"axes", read_axes},
                             {"ground", read_ground},

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/scene/color_maps.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
@@ -55,13 +56,32 @@ Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene,
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
 }
 
+Result<std::optional<ColorSource>> color_source(scene::Scene& scene, const std::optional<scene::FieldColors>& by) {
+  if (!by) return std::optional<ColorSource>();
+  ColorSource source;
+  CATENA_TRY(source.grid, drawn_grid(scene, by->field, by->where, "\"color_by\""));
+  for (const auto& c : scene::color_table(by->colors, by->named, source.grid->min_value(), source.grid->max_value()))
+    source.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
+  return std::optional<ColorSource>(std::move(source));
+}
+
+Projection projection_of(scene::Volume::Projection projection) {
+  using From = scene::Volume::Projection;
+  return projection == From::maximum   ? Projection::maximum
+         : projection == From::minimum ? Projection::minimum
+         : projection == From::average ? Projection::average
+                                       : Projection::composite;
+}
+
 Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Volume>(scene.world)) {
     const scene::Volume& volume = scene.world.get<scene::Volume>(e);
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
+    CATENA_TRY(auto color_by, color_source(scene, volume.color_by));
     const std::uint32_t id = packet.add_object("volume", field_name(scene, volume.field));
-    packet.volumes.push_back({std::move(grid), std::move(transfer), volume.shade, id, volume.clipped});
+    packet.volumes.push_back(
+        {std::move(grid), std::move(transfer), volume.shade, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
   }
   return Done{};
 }
@@ -71,9 +91,10 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
+    CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
     const std::uint32_t id = packet.add_object("isosurface", field_name(scene, surface.field));
-    packet.isosurfaces.push_back(
-        {std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity), id, surface.clipped});
+    packet.isosurfaces.push_back({std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity), id,
+                                  surface.clipped, std::move(color_by)});
   }
   return Done{};
 }
@@ -164,6 +185,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   FramePacket packet;
   packet.width = width;
   packet.height = height;
+  packet.jitter = scene.jitter;
   for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
   const scene::Background& background = scene.background;
   packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};

@@ -65,6 +65,19 @@ struct TransferTable {
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
   /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
   std::vector<std::array<double, 2>> gradient_factors;
+  double opacity_unit = 0;  ///< the length whose opacity a projection takes, world units; 0: the smallest voxel edge
+};
+
+/// How a ray makes one colour of its values.
+///   composite   emission and absorption
+///   maximum     colour and opacity, over the table's opacity_unit, of the greatest value that the ray meets; minimum alike
+///   average     the same of the mean of its values
+enum class Projection { composite, maximum, minimum, average };
+
+/// Colours by another field at the same world place. Where that field has no value the item's own colour holds.
+struct ColorSource {
+  std::shared_ptr<const field::ScalarGrid> grid;
+  std::vector<std::array<double, 4>> colors;  ///< value, r, g, b
 };
 
 struct VolumeItem {
@@ -73,6 +86,8 @@ struct VolumeItem {
   bool shade = false;
   std::uint32_t id = 0;
   bool clipped = true;
+  Projection projection = Projection::composite;
+  std::optional<ColorSource> color_by{};  ///< composite only
 };
 
 struct IsosurfaceItem {
@@ -82,6 +97,7 @@ struct IsosurfaceItem {
   float opacity = 1;
   std::uint32_t id = 0;
   bool clipped = true;
+  std::optional<ColorSource> color_by{};
 };
 
 /// Triangles as they are, each lit by its own normal: what the hand feels. Made once a mesh, shared by frames.
@@ -158,6 +174,7 @@ struct FramePacket {
   std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
   std::optional<FogItem> fog;
   AidItems aids;
+  std::optional<bool> jitter;  ///< of rays; overrides RenderSettings::jitter
   std::vector<ObjectName> objects;
 
   /// The next id, from 1 on.

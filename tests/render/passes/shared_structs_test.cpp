@@ -17,7 +17,8 @@ using namespace catena::render::shared;
   ++compared
 
 TEST(SharedStructs, FrameAndGridData) {
-  for (const char* shader : {"blend.frag", "volume.frag", "isosurface.frag", "sample.comp"}) {
+  for (const char* shader :
+       {"blend.frag", "blend_layers.frag", "volume.frag", "projection.frag", "surface_color.frag", "isosurface.frag", "sample.comp"}) {
     auto all = struct_offsets(shader_words(shader));
     std::size_t compared = 0;
     {
@@ -38,6 +39,10 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, table_last);
       EXPECT_OFFSET(GridData, table_lo);
       EXPECT_OFFSET(GridData, table_per_value);
+      EXPECT_OFFSET(GridData, factor_start);
+      EXPECT_OFFSET(GridData, factor_last);
+      EXPECT_OFFSET(GridData, factor_lo);
+      EXPECT_OFFSET(GridData, factor_per_gradient);
       EXPECT_OFFSET(GridData, level);
       EXPECT_OFFSET(GridData, opacity);
       EXPECT_OFFSET(GridData, color);
