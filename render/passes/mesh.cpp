@@ -1,13 +1,21 @@
 #include "render/passes/mesh.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "render/passes/triangles.h"
 
 namespace catena::render {
-namespace {
+bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
 bool same(const MeshItem& a, const MeshItem& b) {
-  return a.geometry == b.geometry && render::same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
+  return a.geometry == b.geometry && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped && a.opacity == b.opacity &&
+         a.smooth == b.smooth && a.edges == b.edges;
 }
+
+namespace {
+
+bool is_opaque(const MeshItem& item) { return item.opacity >= 1; }
 
 class MeshPass final : public Pass {
  public:
@@ -18,17 +26,13 @@ class MeshPass final : public Pass {
   PassUse use(const Frame&) const override { return {0, target::opaque}; }
 
   Outcome prepare(Frame& frame) override {
-    const auto& items = frame.packet.meshes;
-    if (std::equal(items.begin(), items.end(), built_.begin(), built_.end(), [](const auto& a, const auto& b) { return same(a, b); }))
-      return Done{};
+    std::vector<MeshItem> items;
+    std::copy_if(frame.packet.meshes.begin(), frame.packet.meshes.end(), std::back_inserter(items), is_opaque);
+    if (all_same(items, built_)) return Done{};
     Shape shape;
-    for (const MeshItem& mesh : items) {
-      const std::size_t first = shape.vertices.size();
-      add_mesh(shape, mesh);
-      mark(shape, first, mesh.id, mesh.clipped);
-    }
+    for (const MeshItem& mesh : items) add_mesh(shape, mesh);
     CATENA_CHECK(triangles_.upload(frame.device, shape));
-    built_ = items;
+    built_ = std::move(items);
     return Done{};
   }
   Bounds bounds() const override { return triangles_.bounds(); }
@@ -43,6 +47,8 @@ class MeshPass final : public Pass {
 
 }  // namespace
 
-const PassEntry kMeshPass{"meshes", [](const Frame& frame) { return !frame.packet.meshes.empty(); }, MeshPass::create};
+const PassEntry kMeshPass{"meshes",
+                          [](const Frame& frame) { return std::any_of(frame.packet.meshes.begin(), frame.packet.meshes.end(), is_opaque); },
+                          MeshPass::create};
 
 }  // namespace catena::render

@@ -11,8 +11,10 @@
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
+#include "render/passes/layers.h"
 #include "render/passes/mesh.h"
 #include "render/passes/raycast.h"
+#include "render/passes/slice.h"
 #include "render/passes/streamlines.h"
 #include "render/vk/swapchain.h"
 
@@ -20,7 +22,8 @@ namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kMeshPass, &kStreamlinePass, &kCursorPass, &kIsosurfacePass, &kRaycastPass, &kComposePass};
+constexpr const PassEntry* kPasses[] = {&kMeshPass,  &kStreamlinePass, &kCursorPass,  &kIsosurfacePass,
+                                        &kSlicePass, &kLayersPass,     &kRaycastPass, &kComposePass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
