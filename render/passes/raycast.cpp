@@ -13,6 +13,10 @@ bool is_translucent(const IsosurfaceItem& item) { return item.opacity > 0 && ite
 
 RaySettings ray_settings(const RenderSettings& s) { return {s.step_voxels, s.termination, s.skip}; }
 
+RayScene ray_scene(const Frame& frame) {
+  return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, &frame.targets.none};
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
@@ -28,13 +32,14 @@ bool RaycastPass::ends_at_half(const Frame& frame) const {
 
 PassUse RaycastPass::use(const Frame& frame) const {
   const TargetSet reads = frame.has(target::opaque_depth) ? target::opaque_depth : 0;
+  // layers are not targets: record() waits for them
   return {reads, ends_at_half(frame) ? 0 : target::volume, true};
 }
 
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
-  fast_ = frame.settings.fast && draws_fast(frame.device, packet) ? &packet.volumes.front() : nullptr;
+  fast_ = frame.settings.fast && frame.layers.empty() && draws_fast(frame.device, packet) ? &packet.volumes.front() : nullptr;
   if (fast_) {
     grids_.push_back(fast_->grid.get());
     if (!fast_pass_) {
@@ -58,7 +63,13 @@ Outcome RaycastPass::prepare(Frame& frame) {
   if (volumes.size() > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes.size(), MAX_VOLUMES)};
   if (surfaces.size() > MAX_SURFACES)
     return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", surfaces.size(), MAX_SURFACES)};
-  any_ = !volumes.empty() || !surfaces.empty();
+  if (frame.layers.size() > MAX_LAYERS)
+    return Error{fmt::format("the scene has {} translucent layers, expected at most {}", frame.layers.size(), MAX_LAYERS)};
+  const std::size_t grids = volumes.size() + surfaces.size(), most = frame.layers.empty() ? MAX_GRIDS : MAX_GRIDS_WITH_LAYERS;
+  if (grids > most)
+    return Error{fmt::format("the scene has {} volumes and translucent isosurfaces{}, expected at most {} together", grids,
+                             frame.layers.empty() ? "" : " beside translucent triangles", most)};
+  any_ = !volumes.empty() || !surfaces.empty() || !frame.layers.empty();
   if (!any_) return Done{};
   if (!exact_pass_) {
     CATENA_TRY(exact_pass_, VolumePass::create(frame.device));
@@ -75,7 +86,10 @@ Bounds RaycastPass::bounds() const {
 Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &targets.opaque_depth : nullptr;
-  const VkRect2D area = covered_area(grids_, frame.rays.camera);
+  for (const Layer& layer : frame.layers)
+    for (vk::Image* image : {layer.color, layer.depth}) commands.use(*image, vk::kFragmentRead);
+  const VkRect2D whole{{0, 0}, {frame.packet.width, frame.packet.height}};
+  const VkRect2D area = frame.layers.empty() ? covered_area(grids_, frame.rays.camera) : whole;
   if (fast_) {
     const bool half = ends_at_half(frame);
     CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.picture.info().extent,
@@ -87,7 +101,7 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
     return Done{};
   }
   targets.begin(commands, target::volume, target::volume);
-  if (any_) CATENA_CHECK(exact_pass_->record(commands, frame.rays, ray_settings(frame.settings), area, opaque, targets.none));
+  if (any_) CATENA_CHECK(exact_pass_->record(commands, frame.rays, ray_settings(frame.settings), area, ray_scene(frame)));
   commands.end_pass();
   return Done{};
 }
@@ -95,14 +109,16 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
 Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   if (fast_) return fast_pass_->record_probe(commands, frame.rays, *frame.settings.fast, spacing, target, opaque, frame.targets.none);
+  for (const Layer& layer : frame.layers)
+    for (vk::Image* image : {layer.color, layer.depth}) commands.use(*image, vk::kFragmentRead);
   CameraRays rays = frame.rays;
   rays.spacing = spacing;
   const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&color, 1}, {});
   const VkExtent3D& extent = target.info().extent;
   if (any_)
-    CATENA_CHECK(exact_pass_->record(commands, rays, ray_settings(frame.settings), {{0, 0}, {extent.width, extent.height}}, opaque,
-                                     frame.targets.none));
+    CATENA_CHECK(
+        exact_pass_->record(commands, rays, ray_settings(frame.settings), {{0, 0}, {extent.width, extent.height}}, ray_scene(frame)));
   commands.end_pass();
   return Done{};
 }
@@ -110,7 +126,8 @@ Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uin
 const PassEntry kRaycastPass{"raycast",
                              [](const Frame& frame) {
                                const auto& surfaces = frame.packet.isosurfaces;
-                               return !frame.packet.volumes.empty() || std::any_of(surfaces.begin(), surfaces.end(), is_translucent);
+                               return !frame.packet.volumes.empty() || !frame.layers.empty() ||
+                                      std::any_of(surfaces.begin(), surfaces.end(), is_translucent);
                              },
                              RaycastPass::create};
 

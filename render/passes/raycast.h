@@ -1,5 +1,6 @@
-/// Everything that a ray blends, in order: volumes and translucent isosurfaces, in front of the opaque depth. A lone volume goes to
-/// the fast raycast where the settings ask for it and it can be packed (fast_volume.h); all else to the exact one (volume.h).
+/// Everything that a ray blends, in order: volumes, translucent isosurfaces and the layers of other passes, in front of the opaque depth. A
+/// lone volume goes to the fast raycast where the settings ask for it and it can be packed (fast_volume.h); all else to the exact one
+/// (volume.h).
 #pragma once
 #include <optional>
 

@@ -18,6 +18,14 @@ constexpr std::uint32_t kBlendShader[] = {
 #include "spirv/blend.frag.inc"
 };
 
+constexpr std::uint32_t kBlendLayersShader[] = {
+#include "spirv/blend_layers.frag.inc"
+};
+constexpr std::uint32_t kLayersShader[] = {
+#include "spirv/layers.frag.inc"
+};
+constexpr std::uint32_t kLayers = 27;  // bindings of their colours; those of their depths follow
+
 /// Below this share of active bricks a ray asks the brick map before it samples; above, asking costs more than it saves.
 constexpr double kSkipBelow = 0.95;
 
@@ -41,19 +49,28 @@ Result<VolumePass> VolumePass::create(vk::Device& device) {
   return self;
 }
 
-Result<const vk::Pipeline*> VolumePass::pipeline(std::uint32_t flags, std::uint32_t volumes, std::uint32_t surfaces, bool opaque) {
-  vk::Pipeline& pipeline = pipelines_[{flags, volumes, surfaces, opaque}];
-  if (!pipeline) {
-    vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    const bool single = volumes == 1 && surfaces == 0;
-    info.fragment = single ? vk::Spirv(kFragmentShader) : vk::Spirv(kBlendShader);
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}};
-    add_grid_slots(info.slots, single ? 1 : MAX_GRIDS);
-    info.constants = single ? std::vector<std::uint32_t>{flags, opaque} : std::vector<std::uint32_t>{flags, opaque, volumes, surfaces};
-    info.colors = {kVolumeFormat};
-    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+Result<const vk::Pipeline*> VolumePass::pipeline(const Kind& kind) {
+  vk::Pipeline& pipeline = pipelines_[kind];
+  if (pipeline) return &pipeline;
+  vk::GraphicsInfo info;
+  info.vertex = kVertexShader;
+  info.slots = {{0, vk::Resource::uniform}, {2, vk::Resource::texture}};
+  if (!kind.layers_alone()) info.slots.push_back({1, vk::Resource::buffer});
+  add_grid_slots(info.slots, kind.grid_slots());
+  if (kind.layers > 0)
+    for (std::uint32_t i = 0; i < 2 * MAX_LAYERS; ++i) info.slots.push_back({kLayers + i, vk::Resource::texture});
+  info.colors = {kVolumeFormat};
+  if (kind.layers_alone()) {
+    info.fragment = kLayersShader;
+    info.constants = {kind.opaque, kind.layers};
+  } else if (kind.single()) {
+    info.fragment = kFragmentShader;
+    info.constants = {kind.flags, kind.opaque};
+  } else {
+    info.fragment = kind.layers > 0 ? vk::Spirv(kBlendLayersShader) : vk::Spirv(kBlendShader);
+    info.constants = {kind.flags, kind.opaque, kind.volumes, kind.surfaces, kind.layers};
   }
+  CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   return &pipeline;
 }
 
@@ -92,7 +109,7 @@ Outcome VolumePass::prepare(std::span<const Mirrored<VolumeItem>> volumes, std::
 }
 
 Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
-                           const vk::Image* opaque_depth, const vk::Image& none) {
+                           const RayScene& scene) {
   // the frame's data
   shared::FrameData data = rays.frame();
   data.termination = float(settings.termination);
@@ -122,12 +139,19 @@ Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const
   // draw
   std::uint32_t flags = 0;
   for (std::size_t i = 0; i < bound.size(); ++i) flags |= bound[i].flags() << (4 * i);
-  CATENA_TRY(const vk::Pipeline* pipe,
-             pipeline(flags, std::uint32_t(volumes_.size()), std::uint32_t(surfaces_.size()), opaque_depth != nullptr));
+  const Kind kind{flags, scene.opaque_depth != nullptr, std::uint32_t(volumes_.size()), std::uint32_t(surfaces_.size()),
+                  std::uint32_t(scene.layers.size())};
+  CATENA_TRY(const vk::Pipeline* pipe, pipeline(kind));
   std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
-                                    {1, vk::Resource::buffer, &tables_, nullptr, nullptr},
-                                    {2, vk::Resource::texture, nullptr, opaque_depth ? opaque_depth : &none, nullptr}};
-  add_grid_bindings(bindings, bound, bound.size() == 1 && surfaces_.empty() ? 1 : MAX_GRIDS, linear_);
+                                    {2, vk::Resource::texture, nullptr, scene.opaque_depth ? scene.opaque_depth : scene.none, nullptr}};
+  if (!kind.layers_alone()) bindings.push_back({1, vk::Resource::buffer, &tables_, nullptr, nullptr});
+  add_grid_bindings(bindings, bound, kind.grid_slots(), linear_);
+  if (kind.layers > 0)
+    for (std::uint32_t i = 0; i < MAX_LAYERS; ++i) {
+      const Layer& layer = scene.layers[std::min<std::size_t>(i, scene.layers.size() - 1)];
+      bindings.push_back({kLayers + i, vk::Resource::texture, nullptr, layer.color, nullptr});
+      bindings.push_back({kLayers + MAX_LAYERS + i, vk::Resource::texture, nullptr, layer.depth, nullptr});
+    }
   commands.scissor(area);
   commands.bind(*pipe, bindings);
   commands.draw_triangle();

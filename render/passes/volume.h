@@ -1,10 +1,12 @@
-/// Volumes and translucent isosurfaces, one raycast for all of them (at most MAX_VOLUMES and MAX_SURFACES), in front of the opaque
-/// depth. Tables and brick maps are rebuilt only when a transfer function, a level or a grid changes.
+/// Volumes, translucent isosurfaces and layers, one raycast for all of them (at most MAX_VOLUMES, MAX_SURFACES and MAX_LAYERS, MAX_GRIDS
+/// grids together, MAX_GRIDS_WITH_LAYERS where there are layers), in front of the opaque depth. Tables and brick maps are rebuilt only when
+/// a transfer function, a level or a grid changes.
 #pragma once
-#include <array>
+#include <compare>
 #include <map>
 
 #include "render/passes/isosurface.h"
+#include "render/passes/pass.h"
 #include "render/passes/transfer_lut.h"
 
 namespace catena::render {
@@ -15,6 +17,13 @@ struct RaySettings {
   bool skip = true;
 };
 
+/// What a picture's rays meet beside grids.
+struct RayScene {
+  const vk::Image* opaque_depth = nullptr;  ///< null: nothing opaque
+  std::span<const Layer> layers{};
+  const vk::Image* none = nullptr;  ///< bound where there is nothing
+};
+
 class VolumePass {
  public:
   template <class Item>
@@ -22,9 +31,8 @@ class VolumePass {
 
   static Result<VolumePass> create(vk::Device& device);
   Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
-  /// Within a pass over the volume target. `opaque_depth` null: nothing opaque; `none` is bound instead.
-  Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
-                 const vk::Image* opaque_depth, const vk::Image& none);
+  /// Within a pass over the volume target.
+  Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
 
  private:
   struct Volume {
@@ -39,11 +47,19 @@ class VolumePass {
     IsosurfaceItem item;
   };
   VolumePass() = default;
-  Result<const vk::Pipeline*> pipeline(std::uint32_t flags, std::uint32_t volumes, std::uint32_t surfaces, bool opaque);
+  /// What a pipeline is made for.
+  struct Kind {
+    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0;
+    auto operator<=>(const Kind&) const = default;
+    bool single() const { return volumes == 1 && surfaces == 0 && layers == 0; }
+    bool layers_alone() const { return volumes == 0 && surfaces == 0; }
+    std::uint32_t grid_slots() const { return layers_alone() ? 0 : single() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS; }
+  };
+  Result<const vk::Pipeline*> pipeline(const Kind& kind);
 
   vk::Device* device_ = nullptr;
   vk::Sampler linear_;
-  std::map<std::array<std::uint32_t, 4>, vk::Pipeline> pipelines_;
+  std::map<Kind, vk::Pipeline> pipelines_;
   std::vector<Volume> volumes_;
   std::vector<Surface> surfaces_;
   vk::Buffer tables_, uniform_;

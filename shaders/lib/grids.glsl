@@ -7,26 +7,27 @@ layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 layout(binding = 3) uniform sampler3D values_0;
 layout(binding = 11) uniform utexture3D map_0;
 layout(binding = 19) uniform utexture3D mask_0;
-#if GRID_COUNT > 1
+#if GRID_COUNT > 1  // 6 or 8
 layout(binding = 4) uniform sampler3D values_1;
 layout(binding = 5) uniform sampler3D values_2;
 layout(binding = 6) uniform sampler3D values_3;
 layout(binding = 7) uniform sampler3D values_4;
 layout(binding = 8) uniform sampler3D values_5;
-layout(binding = 9) uniform sampler3D values_6;
-layout(binding = 10) uniform sampler3D values_7;
 layout(binding = 12) uniform utexture3D map_1;
 layout(binding = 13) uniform utexture3D map_2;
 layout(binding = 14) uniform utexture3D map_3;
 layout(binding = 15) uniform utexture3D map_4;
 layout(binding = 16) uniform utexture3D map_5;
-layout(binding = 17) uniform utexture3D map_6;
-layout(binding = 18) uniform utexture3D map_7;
 layout(binding = 20) uniform utexture3D mask_1;
 layout(binding = 21) uniform utexture3D mask_2;
 layout(binding = 22) uniform utexture3D mask_3;
 layout(binding = 23) uniform utexture3D mask_4;
 layout(binding = 24) uniform utexture3D mask_5;
+#if GRID_COUNT > 6
+layout(binding = 9) uniform sampler3D values_6;
+layout(binding = 10) uniform sampler3D values_7;
+layout(binding = 17) uniform utexture3D map_6;
+layout(binding = 18) uniform utexture3D map_7;
 layout(binding = 25) uniform utexture3D mask_6;
 layout(binding = 26) uniform utexture3D mask_7;
 #define SWITCH_GRID(i, CALL) \
@@ -40,6 +41,17 @@ layout(binding = 26) uniform utexture3D mask_7;
     case 6: return CALL(6);  \
     default: return CALL(7); \
   }
+#else
+#define SWITCH_GRID(i, CALL) \
+  switch (i) {               \
+    case 0: return CALL(0);  \
+    case 1: return CALL(1);  \
+    case 2: return CALL(2);  \
+    case 3: return CALL(3);  \
+    case 4: return CALL(4);  \
+    default: return CALL(5); \
+  }
+#endif
 #else
 #define SWITCH_GRID(i, CALL) return CALL(0);
 #endif

@@ -6,8 +6,10 @@
 #include "shaders/shared/language.h"
 
 #define MAX_VOLUMES 4
-#define MAX_SURFACES 4
+#define MAX_SURFACES 8
 #define MAX_GRIDS 8
+#define MAX_LAYERS 4
+#define MAX_GRIDS_WITH_LAYERS 6
 #define MAX_CLIPS 8
 #define NO_DEPTH 3.0e38f
 
