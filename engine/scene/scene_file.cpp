@@ -7,7 +7,7 @@ namespace {
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
   CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "indicator", "cursor", "camera", "background", "quality", "clip"}));
+                                      "slices", "streamlines", "indicator", "cursor", "camera", "background", "quality", "clip"}));
   // fields first: the other parts name them
   CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
@@ -22,6 +22,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"volumes", read_volumes},
                             {"isosurfaces", read_isosurfaces},
                             {"meshes", read_meshes},
+                            {"slices", read_slices},
                             {"streamlines", read_streamlines},
                             {"indicator", read_indicator},
                             {"cursor", read_cursor},

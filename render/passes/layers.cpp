@@ -19,7 +19,6 @@ constexpr std::uint32_t kMeshShader[] = {
 constexpr std::uint32_t kRestShader[] = {
 #include "spirv/layer_rest.frag.inc"
 };
-constexpr std::uint32_t kMostLayers = 4;
 
 using Clear = std::array<float, 4>;
 
@@ -48,9 +47,10 @@ class LayersPass final : public Pass {
   Outcome prepare_meshes(Frame& frame);
   Outcome prepare_images(Frame& frame);
   Result<const vk::Pipeline*> mesh_pipeline(vk::Device& device, std::uint32_t mode, bool has_opaque);
+  Outcome draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const Peel& peel);
   Outcome draw_all(vk::Commands& commands, Frame& frame, const Peel& peel);
   Outcome draw_rest(vk::Commands& commands, Frame& frame, const Peel& peel, Images& last, vk::Image& id);
-  bool collects_rest() const { return !meshes_.empty() || slices_.size() > kMostLayers; }
+  bool collects_rest() const { return !meshes_.empty() || slices_.size() > MAX_LAYERS; }
 
   SliceDrawer slice_drawer_;
   std::vector<TranslucentMesh> meshes_;
@@ -58,7 +58,7 @@ class LayersPass final : public Pass {
   std::map<std::array<std::uint32_t, 2>, vk::Pipeline> mesh_pipelines_;
   vk::Pipeline rest_pipeline_;
   std::uint32_t count_ = 0;
-  std::array<Images, kMostLayers> layers_;
+  std::array<Images, MAX_LAYERS> layers_;
   std::array<vk::Image, 2> ids_;  // of this layer and the one before
   vk::Image depth_buffer_, rest_;
 };
@@ -91,7 +91,7 @@ Outcome LayersPass::prepare_images(Frame& frame) {
     return Done{};
   };
   constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  for (std::uint32_t i = 0; i < kMostLayers; ++i) {
+  for (std::uint32_t i = 0; i < MAX_LAYERS; ++i) {
     if (i >= count_) {
       layers_[i] = {};
       continue;
@@ -108,7 +108,9 @@ Outcome LayersPass::prepare_images(Frame& frame) {
 Outcome LayersPass::prepare(Frame& frame) {
   CATENA_CHECK(prepare_meshes(frame));
   CATENA_CHECK(prepare_slices(frame, slices_, is_translucent));
-  count_ = collects_rest() ? kMostLayers : std::uint32_t(slices_.size());
+  std::stable_sort(meshes_.begin(), meshes_.end(), [](const auto& a, const auto& b) { return a.item.id < b.item.id; });
+  std::stable_sort(slices_.begin(), slices_.end(), [](const auto& a, const auto& b) { return a.id() < b.id(); });
+  count_ = collects_rest() ? MAX_LAYERS : std::uint32_t(slices_.size());
   CATENA_CHECK(prepare_images(frame));
   for (std::uint32_t i = 0; i < count_; ++i) frame.layers.push_back({&layers_[i].color, &layers_[i].depth});
   return Done{};
@@ -134,19 +136,26 @@ Result<const vk::Pipeline*> LayersPass::mesh_pipeline(vk::Device& device, std::u
   return &pipeline;
 }
 
+Outcome LayersPass::draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const Peel& peel) {
+  if (mesh.triangles.empty()) return Done{};
+  CATENA_CHECK(write_uniform(frame.device, mesh.layer_data, layer_data(frame.rays, mesh.item.opacity)));
+  CATENA_TRY(const vk::Pipeline* pipe, mesh_pipeline(frame.device, peel.mode, peel.opaque_depth != nullptr));
+  CATENA_TRY(const vk::Binding binding, mesh.triangles.frame_binding(frame.device, frame.rays));
+  std::vector<vk::Binding> bindings{binding};
+  add_peel_bindings(bindings, peel, mesh.layer_data);
+  commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
+  commands.bind(*pipe, bindings);
+  mesh.triangles.draw(commands);
+  return Done{};
+}
+
+/// In the order of ids: of things at one depth the depth buffer keeps the first, the next layer the next.
 Outcome LayersPass::draw_all(vk::Commands& commands, Frame& frame, const Peel& peel) {
-  for (TranslucentMesh& mesh : meshes_) {
-    if (mesh.triangles.empty()) continue;
-    CATENA_CHECK(write_uniform(frame.device, mesh.layer_data, layer_data(frame.rays, mesh.item.opacity)));
-    CATENA_TRY(const vk::Pipeline* pipe, mesh_pipeline(frame.device, peel.mode, peel.opaque_depth != nullptr));
-    CATENA_TRY(const vk::Binding binding, mesh.triangles.frame_binding(frame.device, frame.rays));
-    std::vector<vk::Binding> bindings{binding};
-    add_peel_bindings(bindings, peel, mesh.layer_data);
-    commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
-    commands.bind(*pipe, bindings);
-    mesh.triangles.draw(commands);
+  std::size_t m = 0, s = 0;
+  while (m < meshes_.size() || s < slices_.size()) {
+    const bool mesh = s == slices_.size() || (m < meshes_.size() && meshes_[m].item.id <= slices_[s].id());
+    CATENA_CHECK(mesh ? draw_mesh(commands, frame, meshes_[m++], peel) : slice_drawer_.draw(commands, frame.rays, slices_[s++], peel));
   }
-  for (Slice& slice : slices_) CATENA_CHECK(slice_drawer_.draw(commands, frame.rays, slice, peel));
   return Done{};
 }
 
@@ -187,7 +196,7 @@ Outcome LayersPass::record(vk::Commands& commands, Frame& frame) {
       commands.use(layers_[k - 1].depth, vk::kFragmentRead);
       commands.use(passed_id, vk::kFragmentRead);
     }
-    if (k + 1 == kMostLayers && collects_rest()) {
+    if (k + 1 == MAX_LAYERS && collects_rest()) {
       peel.mode = MODE_REST;
       CATENA_CHECK(draw_rest(commands, frame, peel, layers_[k], id));
       break;

@@ -22,7 +22,6 @@ bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
 }  // namespace
 
 bool is_translucent(const SliceItem& item) { return item.opacity < 1 && (item.opacity > 0 || !item.levels.empty()); }
-bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
 Result<bool> Slice::prepare(Frame& frame, const SliceItem& item) {
   CATENA_TRY(auto mirror, frame.mirror(*item.grid));

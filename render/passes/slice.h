@@ -18,6 +18,7 @@ class Slice {
   /// Uploads what changed; false: its grid cannot be drawn (thinner than a cell).
   Result<bool> prepare(Frame& frame, const SliceItem& item);
   const field::ScalarGrid& grid() const { return *item_.grid; }
+  std::uint32_t id() const { return item_.id; }
 
  private:
   friend class SliceDrawer;

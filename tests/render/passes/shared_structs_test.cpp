@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "shaders/shared/frame.h"
+#include "shaders/shared/layers.h"
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
@@ -16,7 +17,7 @@ using namespace catena::render::shared;
   ++compared
 
 TEST(SharedStructs, FrameAndGridData) {
-  for (const char* shader : {"blend.frag", "volume.frag", "isosurface.frag", "sample.comp"}) {
+  for (const char* shader : {"blend.frag", "volume.frag", "isosurface.frag", "slice.frag", "sample.comp"}) {
     auto all = struct_offsets(shader_words(shader));
     std::size_t compared = 0;
     {
@@ -83,6 +84,35 @@ TEST(SharedStructs, MeshFrameData) {
   EXPECT_OFFSET(MeshFrameData, depth_near);
   EXPECT_OFFSET(MeshFrameData, depth_far);
   EXPECT_OFFSET(MeshFrameData, orthographic);
+  EXPECT_EQ(found.size(), compared);
+}
+
+TEST(SharedStructs, LayerData) {
+  for (const char* shader : {"layer_mesh.frag", "slice.frag"}) {
+    auto all = struct_offsets(shader_words(shader));
+    const auto& found = all["LayerData"];
+    std::size_t compared = 0;
+    EXPECT_OFFSET(LayerData, reference_depth);
+    EXPECT_OFFSET(LayerData, depth_near);
+    EXPECT_OFFSET(LayerData, depth_far);
+    EXPECT_OFFSET(LayerData, orthographic);
+    EXPECT_OFFSET(LayerData, opacity);
+    EXPECT_EQ(found.size(), compared);
+  }
+}
+
+TEST(SharedStructs, SliceData) {
+  auto all = struct_offsets(shader_words("slice.frag"));
+  const auto& found = all["SliceData"];
+  std::size_t compared = 0;
+  EXPECT_OFFSET(SliceData, plane);
+  EXPECT_OFFSET(SliceData, normal);
+  EXPECT_OFFSET(SliceData, clip_slack);
+  EXPECT_OFFSET(SliceData, lit);
+  EXPECT_OFFSET(SliceData, color_last);
+  EXPECT_OFFSET(SliceData, level_count);
+  EXPECT_OFFSET(SliceData, line_color);
+  EXPECT_OFFSET(SliceData, half_width);
   EXPECT_EQ(found.size(), compared);
 }
 
