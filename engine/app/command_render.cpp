@@ -1,4 +1,5 @@
 /// catena render SCENE|FILE -o FILE.png [--size WxH] [--quality Q] [--frames N --orbit DEG] [--probe PATH.csv] [--stats FILE.json]
+///   [--colormap NAME] [--range LO HI]
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "engine/app/color_option.h"
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
 #include "engine/app/frame_stats.h"
@@ -31,6 +33,7 @@ struct Options {
   int frames = 1;
   double orbit_deg = 0, phase = 0;
   bool validation = false;
+  ColorOption colors;
 };
 
 /// Settings, or a goal that they have yet to be measured for.
@@ -110,8 +113,9 @@ Outcome render_pictures(const Options& o) {
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
   if (!o.output.ends_with(".png") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .png"};
+  CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
-  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
+  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, quality_of(quality));
   render::RenderSettings settings = wanted.settings;
@@ -215,6 +219,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--phase", options->phase, "where the pulses of streamlines are, 0 to 1; the frames add one round");
   command->add_option("--probe", options->probe, "probe path, CSV: the cursor is drawn where the hand is at its end");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
+  options->colors.add_to(*command);
   command->add_option("--stats", options->stats, "figures, JSON");
   command->add_flag("--validation", options->validation, "run with the Vulkan validation layers and count their messages");
   command->callback([&chosen, options] { chosen = [options] { return render_pictures(*options); }; });

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "engine/base/assert.h"
@@ -39,7 +40,7 @@ constexpr Anchor kGrey[] = {{0, 0x000000}, {255, 0xffffff}};
 constexpr Rgb kDusk[] = {{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f},
                          {0.72f, 0.79f, 0.52f}, {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}};
 
-constexpr int kCoolWarmSteps = 64;
+constexpr int kCoolWarmSteps = 256;  // its green falls steeply at the warm end
 
 struct ColorMap {
   std::string_view name;
@@ -127,6 +128,11 @@ std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi) {
   }
   points.push_back({hi, map->points[reversed ? 0 : count - 1].color});
   return points;
+}
+
+bool is_color_range(double lo, double hi) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return std::fabs(lo) <= most && std::fabs(hi) <= most && static_cast<float>(lo) < static_cast<float>(hi);
 }
 
 std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
@@ -194,6 +195,8 @@ struct Cursor {
   std::vector<Vec3> proxies;
   std::vector<bool> active;
   std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it
+  std::vector<exchange::Status> statuses;
+  std::vector<std::string> names;  ///< of the links, once the chain is made
   Vec3 force_n{0.0};
   double size = 0;  ///< glyph radius, world units; 0: fitted
   bool visible = false;
@@ -245,6 +248,47 @@ struct ClipPlane {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
 };
 inline constexpr std::size_t kMostClipPlanes = 8;
+
+/// Help for the eye: what shows where things stand. Sizes of 0 are fitted to what is drawn.
+struct BoundingBox {
+  Entity field;  ///< none: everything that is drawn
+  json::Node where;
+  Rgb color{0.7f, 0.7f, 0.7f};
+  double radius = 0;
+};
+
+/// Three edges of the box with ticks and numbers.
+struct Axes {
+  Entity field;  ///< none: everything that is drawn
+  json::Node where;
+  std::array<std::string, 3> names{"x", "y", "z"};
+  Rgb color{0.7f, 0.7f, 0.7f};
+  int ticks = 5;  ///< about so many an axis
+  double radius = 0;
+};
+
+/// A checkerboard across z.
+struct Ground {
+  std::optional<double> at;  ///< z; none: just below what is drawn
+  double size = 0, tile = 0;
+  std::array<Rgb, 2> colors{Rgb{0.42f, 0.42f, 0.44f}, Rgb{0.32f, 0.32f, 0.34f}};
+};
+
+/// Depth cue: colours turn to the fog's as the view depth goes from start to end.
+struct Fog {
+  std::optional<Rgb> color;          ///< none: the background's
+  std::optional<double> start, end;  ///< view depth, world units; none: the nearest and farthest of what is drawn
+  double most = 0.8;                 ///< share of the fog at the end
+};
+
+/// A light from far away. Without one there is a headlight.
+struct Light {
+  Vec3 direction{0.0, 0.0, 1.0};  ///< towards the light; camera: right, up, towards the eye
+  Rgb color{1, 1, 1};
+  double intensity = 1;
+  bool with_camera = false;
+};
+inline constexpr std::size_t kMostLights = 4;
 
 struct Background {
   Rgb color{0, 0, 0};

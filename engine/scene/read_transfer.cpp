@@ -27,7 +27,7 @@ Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std:
   return rows;
 }
 
-/// [lo, hi]; fields hold floats, so the ends must be two of them.
+/// [lo, hi]
 Result<std::optional<Pair>> read_range(const json::Node& object) {
   const json::Node* node = object.find("range");
   if (node == nullptr) return std::optional<Pair>();
@@ -35,8 +35,7 @@ Result<std::optional<Pair>> read_range(const json::Node& object) {
     return json::error_at(*node, "\"range\" is no pair; two rising numbers [lo, hi] were expected");
   CATENA_TRY(const double lo, json::as_number(node->items[0], "range[0]"));
   CATENA_TRY(const double hi, json::as_number(node->items[1], "range[1]"));
-  constexpr double most = std::numeric_limits<float>::max();
-  if (!(std::fabs(lo) <= most && std::fabs(hi) <= most && static_cast<float>(lo) < static_cast<float>(hi)))
+  if (!is_color_range(lo, hi))
     return json::error_at(*node, "\"range\" is [" + to_text(lo) + ", " + to_text(hi) + "]; two rising numbers [lo, hi] were expected");
   return std::optional<Pair>({lo, hi});
 }

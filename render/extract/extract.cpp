@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
+#include "render/extract/extract_overlay.h"
 #include "render/extract/extract_surfaces.h"
 
 namespace catena::render {
@@ -147,7 +149,9 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_streamlines(scene, packet));
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
+  extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
+  CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
   return packet;
 }
 

@@ -32,6 +32,7 @@ struct FlatLines {
   std::vector<TubeItem> tubes;
   std::vector<std::vector<double>> arc_lengths;  ///< by point
   std::vector<ArrowItem> arrows;
+  ColorTable colors;  ///< of "color_by"
 };
 
 double domain_diagonal(const field::Field& field) {
@@ -135,7 +136,7 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
 
   // colours
   if (value) {
-    const ColorTable table = scene::color_table(set.color_by->colors, set.color_by->named, lo, hi);
+    const ColorTable& table = flat.colors = scene::color_table(set.color_by->colors, set.color_by->named, lo, hi);
     for (std::size_t i = 0; i < curves.size(); ++i)
       for (const double v : values[i]) flat.tubes[i].colors.push_back(table_color(table, v));
     for (std::size_t i = 0; i < flat.arrows.size(); ++i) flat.arrows[i].color = table_color(table, value->at(arrow_places[i]));
@@ -164,13 +165,16 @@ Color table_color(const ColorTable& table, double value) {
   CATENA_ASSERT(!table.empty());
   if (std::isnan(value)) return {0.5f, 0.5f, 0.5f};
   if (value <= table.front().value) return color_of(table.front().color);
-  for (std::size_t i = 1; i < table.size(); ++i) {
-    const auto &a = table[i - 1], &b = table[i];
-    if (value > b.value) continue;
-    const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
-    return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
-  }
-  return color_of(table.back().color);
+  if (value >= table.back().value) return color_of(table.back().color);
+  const auto next = std::upper_bound(table.begin(), table.end(), value, [](double v, const auto& point) { return v < point.value; });
+  const auto &a = *(next - 1), &b = *next;
+  const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
+  return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
+}
+
+const ColorTable* shown_colors(const scene::World& world, scene::Entity set) {
+  if (!world.has<FlatLines>(set) || world.get<FlatLines>(set).colors.empty()) return nullptr;
+  return &world.get<FlatLines>(set).colors;
 }
 
 Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {

@@ -215,14 +215,13 @@ Outcome LayersPass::record(vk::Commands& commands, Frame& frame) {
 
 }  // namespace
 
-const PassEntry kLayersPass{"layers",
-                            [](const Frame& frame) {
-                              const FramePacket& packet = frame.packet;
-                              const auto any = [](const auto& items) {
-                                return std::any_of(items.begin(), items.end(), [](const auto& item) { return is_translucent(item); });
-                              };
-                              return any(packet.meshes) || any(packet.slices);
-                            },
-                            LayersPass::create};
+bool has_layers(const FramePacket& packet) {
+  const auto any = [](const auto& items) {
+    return std::any_of(items.begin(), items.end(), [](const auto& item) { return is_translucent(item); });
+  };
+  return any(packet.meshes) || any(packet.slices);
+}
+
+const PassEntry kLayersPass{"layers", [](const Frame& frame) { return has_layers(frame.packet); }, LayersPass::create};
 
 }  // namespace catena::render

@@ -10,6 +10,9 @@
 
 namespace catena::render {
 
+/// Whether the packet holds something translucent that layers are for.
+bool has_layers(const FramePacket& packet);
+
 extern const PassEntry kLayersPass;
 
 }  // namespace catena::render

@@ -8,11 +8,6 @@
 namespace catena::render {
 bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
-bool same(const MeshItem& a, const MeshItem& b) {
-  return a.geometry == b.geometry && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped && a.opacity == b.opacity &&
-         a.smooth == b.smooth && a.edges == b.edges;
-}
-
 namespace {
 
 bool is_opaque(const MeshItem& item) { return item.opacity >= 1; }

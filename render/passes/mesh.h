@@ -5,7 +5,6 @@
 namespace catena::render {
 
 bool is_translucent(const MeshItem& item);
-bool same(const MeshItem& a, const MeshItem& b);
 
 extern const PassEntry kMeshPass;
 

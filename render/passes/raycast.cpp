@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "render/passes/covered_area.h"
+#include "render/passes/layers.h"
 
 namespace catena::render {
 namespace {
@@ -22,7 +23,8 @@ RayScene ray_scene(const Frame& frame) {
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
 
 bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet) {
-  return packet.volumes.size() == 1 && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
+  return packet.volumes.size() == 1 && packet.lights.empty() && !packet.fog && !has_layers(packet) &&
+         std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
          can_be_packed(device, *packet.volumes.front().grid);
 }
 

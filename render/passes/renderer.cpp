@@ -8,11 +8,13 @@
 #include <limits>
 
 #include "render/mirror/half.h"
+#include "render/passes/aids.h"
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
 #include "render/passes/layers.h"
 #include "render/passes/mesh.h"
+#include "render/passes/overlay.h"
 #include "render/passes/raycast.h"
 #include "render/passes/slice.h"
 #include "render/passes/streamlines.h"
@@ -22,8 +24,8 @@ namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kMeshPass,  &kStreamlinePass, &kCursorPass,  &kIsosurfacePass,
-                                        &kSlicePass, &kLayersPass,     &kRaycastPass, &kComposePass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,   &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass,
+                                        &kSlicePass, &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -33,6 +35,8 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
   if (packet.clip.size() > kMostClipPlanes)
     return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMostClipPlanes)};
+  if (packet.lights.size() > kMostLights)
+    return Error{fmt::format("the scene has {} lights, expected at most {}", packet.lights.size(), kMostLights)};
   return Done{};
 }
 
@@ -264,7 +268,10 @@ RenderStats Renderer::stats() const {
   stats.mirrors = parts_->mirrors->count();
   stats.passes = parts_->drawn_passes;
   stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
-  for (const Pass* pass : parts_->active()) stats.mirror_ms += pass->build_ms();
+  for (const Pass* pass : parts_->active()) {
+    stats.mirror_ms += pass->build_ms();
+    if (std::string note = pass->note(); !note.empty()) stats.notes.push_back(std::move(note));
+  }
   stats.validation_messages = device.messages().count();
   return stats;
 }

@@ -30,6 +30,7 @@ struct RenderStats {
   std::vector<std::string> passes;        ///< of the last picture, in order
   std::uint64_t mirrors = 0;              ///< grids mirrored now
   double mirror_ms = 0;                   ///< spent on building and uploading mirrors so far
+  std::vector<std::string> notes;         ///< what the last picture lacks and why, a sentence each
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
 

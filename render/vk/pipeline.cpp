@@ -63,6 +63,10 @@ VkPipelineColorBlendAttachmentState blend_state(Blend blend) {
   state.srcColorBlendFactor = state.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
   state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
   state.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  if (blend == Blend::over) {
+    state.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  }
   if (blend == Blend::least) state.colorBlendOp = state.alphaBlendOp = VK_BLEND_OP_MIN;
   return state;
 }

@@ -84,6 +84,7 @@ void Buffer::release() {
 VkDeviceSize texel_bytes(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8_UINT:
+    case VK_FORMAT_R8_UNORM:
       return 1;
     case VK_FORMAT_R16_SFLOAT:
       return 2;

@@ -15,5 +15,5 @@ vec3 mesh_color() {
   const vec3 pixels = in_edges / max(a_pixel, vec3(1e-30));
   const float line = clamp(EDGE_HALF_WIDTH + 0.5 - min(min(pixels.x, pixels.y), pixels.z), 0.0, 1.0);
   const vec3 towards_eye = frame.orthographic != 0u ? vec3(0.0, 0.0, -1.0) : -normalize(in_view);
-  return mix(lit(in_color, in_normal, towards_eye), EDGE_DARKNESS * in_color, line);
+  return fogged(mix(lit(in_color, in_normal, towards_eye), EDGE_DARKNESS * in_color, line), in_depth);
 }

@@ -22,7 +22,7 @@ void main() {
   const float t = first_crossing(0, ray, interval.x, interval.y);
   if (t >= NO_DEPTH) discard;
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
-  out_color = vec4(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), 1.0);
+  out_color = vec4(fogged(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), t), 1.0);
   out_depth = t;
   out_id = frame.grids[0].id;
   gl_FragDepth = buffer_depth(t);

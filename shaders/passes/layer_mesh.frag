@@ -4,9 +4,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // Translucent triangles, into a layer.
 #include "shaders/shared/layers.h"
-#include "shaders/lib/lighting.glsl"
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
+#include "shaders/lib/lighting.glsl"
 #include "shaders/lib/mesh_color.glsl"
 #include "shaders/lib/peel.glsl"
 

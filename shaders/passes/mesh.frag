@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/frame.h"
-#include "shaders/lib/lighting.glsl"
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
+#include "shaders/lib/lighting.glsl"
 #include "shaders/lib/mesh_color.glsl"
 layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;

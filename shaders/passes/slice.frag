@@ -129,7 +129,7 @@ void main() {
     const float line = lines(hit, q);
     vec3 surface = table_color(hit.value);
     if (slice.lit != 0u) surface = lit(surface, slice.normal, -normalize(world_direction(q)));
-    color = mix(layer.opacity * surface, slice.line_color, line);
+    color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
     alpha = mix(layer.opacity, 1.0, line);
   }
   write_fragment(hit.seen && alpha > 0.0, color, alpha, hit.t, frame.grids[0].id);

@@ -105,6 +105,7 @@ std::optional<Failure> Session::open_scene() {
     hand_.device = std::move(mouse);
   }
   for (const haptics::Link& link : (*program)->links) link_names_.push_back(link.name);
+  scene.world.get<scene::Cursor>(scene.cursor).names = link_names_;
   haptics::ServoOptions servo;
   servo.rate_hz = hand_.settings.rate_hz;
   servo.forces = is_mouse || hand_.device->capabilities().max_force_n <= 0;

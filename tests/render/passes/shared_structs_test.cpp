@@ -51,6 +51,9 @@ TEST(SharedStructs, FrameAndGridData) {
     EXPECT_OFFSET(FrameData, half_size);
     EXPECT_OFFSET(FrameData, axis);
     EXPECT_OFFSET(FrameData, clip_count);
+    EXPECT_OFFSET(FrameData, light_count);
+    EXPECT_OFFSET(FrameData, lights);
+    EXPECT_OFFSET(FrameData, fog);
     EXPECT_OFFSET(FrameData, clips);
     EXPECT_OFFSET(FrameData, slope);
     EXPECT_OFFSET(FrameData, right);
@@ -80,6 +83,9 @@ TEST(SharedStructs, MeshFrameData) {
   EXPECT_OFFSET(MeshFrameData, scale);
   EXPECT_OFFSET(MeshFrameData, shift);
   EXPECT_OFFSET(MeshFrameData, clip_count);
+  EXPECT_OFFSET(MeshFrameData, light_count);
+  EXPECT_OFFSET(MeshFrameData, lights);
+  EXPECT_OFFSET(MeshFrameData, fog);
   EXPECT_OFFSET(MeshFrameData, clips);
   EXPECT_OFFSET(MeshFrameData, depth_near);
   EXPECT_OFFSET(MeshFrameData, depth_far);
