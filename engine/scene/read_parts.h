@@ -19,6 +19,8 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 
 /// Three numbers 0..1 as a colour.
 Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what);
+/// "opacity": 0..1.
+Result<double> read_opacity(const json::Node& object, double fallback);
 /// Member `key` as [r, g, b], 0..1.
 Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback);
 /// Rows [value, r, g, b], values rising.
@@ -38,6 +40,7 @@ Outcome read_device(Scene& scene, const json::Node& node);
 Outcome read_volumes(Scene& scene, const json::Node& node);
 Outcome read_isosurfaces(Scene& scene, const json::Node& node);
 Outcome read_meshes(Scene& scene, const json::Node& node);
+Outcome read_slices(Scene& scene, const json::Node& node);
 Outcome read_streamlines(Scene& scene, const json::Node& node);
 Outcome read_indicator(Scene& scene, const json::Node& node);
 Outcome read_cursor(Scene& scene, const json::Node& node);

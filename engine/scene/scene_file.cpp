@@ -18,6 +18,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"volumes", read_volumes},
                             {"isosurfaces", read_isosurfaces},
                             {"meshes", read_meshes},
+                            {"slices", read_slices},
                             {"streamlines", read_streamlines},
                             {"indicator", read_indicator},
                             {"cursor", read_cursor},

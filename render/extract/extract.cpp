@@ -9,6 +9,7 @@
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
 #include "render/extract/extract_stereo.h"
+#include "render/extract/extract_surfaces.h"
 
 namespace catena::render {
 
@@ -99,32 +100,6 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
   return Done{};
 }
 
-/// What this room keeps beside a SurfaceMesh: its triangles as plain data, made once.
-struct PlainMesh {
-  std::shared_ptr<const MeshGeometry> geometry;
-  std::uint64_t version = 0;
-};
-
-/// The drawn mesh is the felt one: the same object of the scene.
-Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
-  for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
-    const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
-    CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
-    if (!scene.world.has<PlainMesh>(e)) scene.world.emplace<PlainMesh>(e);
-    PlainMesh& plain = scene.world.get<PlainMesh>(e);
-    if (plain.version != mesh->version()) {
-      auto geometry = std::make_shared<MeshGeometry>();
-      geometry->vertices = mesh->vertices();
-      geometry->triangles.reserve(3 * mesh->triangles().size());
-      for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
-      plain = {std::move(geometry), mesh->version()};
-    }
-    const std::uint32_t id = packet.add_object("mesh", field_name(scene, surface.mesh));
-    packet.meshes.push_back({plain.geometry, color_of(surface.color), id, surface.clipped});
-  }
-  return Done{};
-}
-
 void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   Bounds drawn = packet_bounds(packet);
   if (drawn.empty()) {
@@ -163,6 +138,7 @@ Bounds packet_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));
   for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(domain_bounds(*surface.grid));
+  for (const SliceItem& slice : packet.slices) bounds.add(domain_bounds(*slice.grid));
   for (const MeshItem& mesh : packet.meshes)
     for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
   for (const TubeItem& tube : packet.tubes)
@@ -192,6 +168,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_volumes(scene, packet));
   CATENA_CHECK(extract_isosurfaces(scene, packet));
   CATENA_CHECK(extract_meshes(scene, packet));
+  CATENA_CHECK(extract_slices(scene, packet));
   CATENA_CHECK(extract_streamlines(scene, packet));
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));

@@ -100,15 +100,34 @@ struct IsosurfaceItem {
   std::optional<ColorSource> color_by{};
 };
 
-/// Triangles as they are, each lit by its own normal: what the hand feels. Made once a mesh, shared by frames.
+/// Triangles as they are: what the hand feels. Made once a mesh, shared by frames.
 struct MeshGeometry {
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
+  std::vector<Vec3> normals{};           ///< by vertex, for smooth shading; may be empty without it
+  std::vector<Color> colors{};           ///< by vertex; empty: the item's everywhere
 };
 
 struct MeshItem {
   std::shared_ptr<const MeshGeometry> geometry;
   Color color;
+  std::uint32_t id = 0;
+  bool clipped = true;
+  float opacity = 1;    ///< of one side; < 1: drawn in the layers
+  bool smooth = false;  ///< lit by the vertices' normals, not by each triangle's own
+  bool edges = false;   ///< the triangles' edges as lines
+};
+
+/// A plane through a grid, coloured by its values. Lines of constant value lie over it, opaque whatever the slice is.
+struct SliceItem {
+  std::shared_ptr<const field::ScalarGrid> grid;
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};     ///< world; normal need not be unit
+  std::vector<std::array<double, 4>> colors;  ///< value, r, g, b; piecewise linear
+  float opacity = 1;                          ///< < 1: drawn in the layers
+  bool lit = false;
+  std::vector<double> levels{};  ///< of the lines, rising
+  Color line_color{0, 0, 0};
+  float line_width = 1;  ///< pixels
   std::uint32_t id = 0;
   bool clipped = true;
 };
@@ -165,6 +184,7 @@ struct FramePacket {
   std::vector<VolumeItem> volumes;
   std::vector<IsosurfaceItem> isosurfaces;
   std::vector<MeshItem> meshes;
+  std::vector<SliceItem> slices;
   std::vector<TubeItem> tubes;
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;

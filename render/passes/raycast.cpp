@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "render/passes/covered_area.h"
+#include "render/passes/layers.h"
 
 namespace catena::render {
 namespace {
@@ -50,7 +51,7 @@ bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet
   if (packet.volumes.size() != 1) return false;
   const VolumeItem& item = packet.volumes.front();
   return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
-         std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
+         !has_layers(packet) && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
          can_be_packed(device, *packet.volumes.front().grid);
 }
 

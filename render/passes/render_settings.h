@@ -12,7 +12,7 @@ enum class TexelFormat { automatic, r16f, r32f };
 struct RenderSettings {
   double step_voxels = 1;                       ///< in smallest voxel edges
   double termination = 1.0 / 512;               ///< a ray ends when less than this gets through
-  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
+  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface or a slice, r16f elsewhere
   MirrorLayout layout = MirrorLayout::automatic;
   bool skip = true;  ///< leap over bricks that the transfer function leaves empty
   /// The picture target holds 32-bit floats instead of 8 bits: Renderer::read_back_float(). What is opaque has 11 bits of mantissa.

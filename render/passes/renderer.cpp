@@ -12,10 +12,12 @@
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
+#include "render/passes/layers.h"
 #include "render/passes/mesh.h"
 #include "render/passes/overlay.h"
 #include "render/passes/pack.h"
 #include "render/passes/raycast.h"
+#include "render/passes/slice.h"
 #include "render/passes/streamlines.h"
 #include "render/passes/surface_color.h"
 #include "render/vk/swapchain.h"
@@ -24,8 +26,8 @@ namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass,          &kMeshPass,    &kStreamlinePass, &kCursorPass, &kIsosurfacePass,
-                                        &kSurfaceColorPass, &kRaycastPass, &kComposePass,    &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,   &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass, &kSurfaceColorPass,
+                                        &kSlicePass, &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;

@@ -78,6 +78,8 @@ struct FrameData {
 };
 
 #define UNCLIPPED 0x80000000u  // in a vertex's id: the clip planes do not touch it
+#define CORNER_SHIFT 29        // in a vertex's id, two bits: 1 + its corner of a triangle whose edges are drawn, or 0
+#define ID_MASK 0x1fffffffu
 
 struct MeshFrameData {
   mat3 view_from_world;  // rows right, up, forward
