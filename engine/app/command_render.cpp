@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "engine/app/color_option.h"
 #include "engine/app/command.h"
 #include "engine/app/number_option.h"
 #include "engine/app/render/options.h"
@@ -29,6 +28,7 @@ void add_render(CLI::App& program, Work& chosen) {
       ->check(CLI::Range(8, 16384));
   command->add_option("--quality", options->quality,
                       "draft, balanced, reference, time=MS, error=E (RMSE, 1/255) or step=VOXELS (default: the scene's, or balanced)");
+  add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "how many frames to draw and time (default: 1; with --camera its duration times --fps)")
       ->check(CLI::Range(1, kMostFrames));
   command->add_option("--fps", options->fps, "frames a second of a video")->check(number_between(0.01, 1000))->capture_default_str();
@@ -43,6 +43,7 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   options->colors.add_to(*command);
   command->add_option("--stats", options->stats, "figures, JSON");
+  add_annotate_options(*command, options->annotate);
   command
       ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
       ->check(number_between(1, 1e9));

@@ -10,6 +10,7 @@
 #include "engine/flow/curve.h"
 #include "engine/scene/annotations.h"
 #include "engine/scene/components.h"
+#include "engine/scene/stereo.h"
 
 namespace catena::scene {
 
@@ -20,9 +21,11 @@ struct Scene {
   Workspace workspace;
   std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
   Camera camera;
+  Stereo stereo;
   Background background;
   Annotations annotations;
   std::vector<ClipPlane> clip;
+  std::optional<bool> jitter;  ///< of rays; not stated: by the quality
   std::optional<BoundingBox> bounding_box;
   std::optional<Axes> axes;
   std::optional<Ground> ground;

@@ -1,5 +1,5 @@
 /// Private to this room: nice values along a scalar bar and how they are written. Pure, any thread.
-///   values   multiples of 1, 2 or 5 times a power of ten within lo .. hi, about `count` of them
+///   values   of engine/base/ticks.h, about `count` of them
 ///   texts    with the decimals that the step needs; where numbers are very large or small a common factor "x 10^n" is taken out.
 ///            A format of the user's ("%.2f") is taken as it is, without a factor.
 #pragma once

@@ -8,10 +8,12 @@
 namespace catena::render {
 namespace {
 
-constexpr double kLineShare = 0.0012;  // radius of lines by the diagonal
-constexpr double kTickShare = 0.015;   // length of ticks by the diagonal
-constexpr double kGroundShare = 1.6;   // the ground's edge by the diagonal
-constexpr double kGroundGap = 0.02;    // below what is drawn, by the diagonal
+constexpr double kLineShare = 0.0012;                  // radius of lines by the diagonal
+constexpr double kTickShare = 0.015;                   // length of ticks by the diagonal
+constexpr double kLabelReach = 2.6, kNameReach = 5.5;  // from the axis, in ticks
+constexpr double kNumberPt = 10, kNamePt = 13;
+constexpr double kGroundShare = 1.6;  // the ground's edge by the diagonal
+constexpr double kGroundGap = 0.02;   // below what is drawn, by the diagonal
 constexpr int kTilesAcross = 16;
 
 Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
@@ -51,6 +53,17 @@ TubeItem line(const Vec3& a, const Vec3& b, double radius, const Color& color, s
   return tube;
 }
 
+LabelItem label(const Vec3& at, const std::string& text, double size_pt, const Color& color) {
+  LabelItem item;
+  item.at = at;
+  item.text = text;
+  item.anchor = Anchor::centre;
+  item.offset_pt = Vec2(0.0);
+  item.size_pt = size_pt;
+  item.color = color;
+  return item;
+}
+
 Outcome add_bounding_box(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::BoundingBox& box = *scene.bounding_box;
   CATENA_TRY(const Corners corners, corners_of(scene, box.field, box.where, drawn));
@@ -80,7 +93,10 @@ Outcome add_axes(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) 
       Vec3 at = box.lo;
       at[axis] = t.value;
       packet.aids.tubes.push_back(line(at, at + out, radius, color, id));
+      packet.overlay.labels.push_back(label(at + kLabelReach * out, t.label, kNumberPt, color));
     }
+    Vec3 middle = 0.5 * box.lo + 0.5 * end + kNameReach * out;
+    packet.overlay.labels.push_back(label(middle, axes.names[std::size_t(axis)], kNamePt, color));
   }
   return Done{};
 }

@@ -3,7 +3,7 @@
 ///   clip axes: Vulkan's, x right, y *down*, depth 0 at near and 1 at far
 ///   pixels: x right, y down, row 0 at the top; the centre of pixel (i, j) is at (i + 0.5, j + 0.5)
 /// Perspective: vertical field of view. Orthographic: `height` world units from bottom to top.
-/// The view's window is a part of the symmetric frustum of that angle or height; pixels are square.
+/// The view's window is a part of the symmetric frustum of that angle or height; pixels are square unless the view states an aspect.
 /// Near and far enclose the bounds that are given (what lies behind the eye is not seen). Pure functions, any thread.
 #pragma once
 #include <glm/mat4x4.hpp>
@@ -43,6 +43,9 @@ struct Camera {
 struct Ray {
   Vec3 origin{0.0}, direction{0.0};
 };
+
+/// Width by height of the view's symmetric frustum: as stated, or by square pixels.
+double frustum_aspect(const View& view, double width_px, double height_px);
 
 /// A degenerate up (along the axis) is replaced by another; a target at the position looks along +y.
 Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);

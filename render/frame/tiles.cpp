@@ -57,7 +57,7 @@ FramePacket tile_packet(const FramePacket& packet, const TilePlan& plan, const T
   part.view.window.right = whole.left + x * (area.drawn_x + area.drawn_width);
   part.view.window.top = whole.top - y * area.drawn_y;
   part.view.window.bottom = whole.top - y * (area.drawn_y + area.drawn_height);
-  part.tile = {area.drawn_x, area.drawn_y, plan.samples_x(), plan.samples_y(), plan.antialias};
+  part.overlay.frame = {double(area.drawn_x), double(area.drawn_y), double(plan.samples_x()), double(plan.samples_y())};
   return part;
 }
 

@@ -40,7 +40,8 @@ struct TilePlan {
 TilePlan plan_tiles(std::uint32_t width, std::uint32_t height, std::uint32_t antialias, std::uint32_t tile, bool lattices,
                     std::uint32_t most);
 
-/// The packet of one tile: its size, window and place. `packet` is that of the whole picture.
+/// The packet of one tile: its size, its window and the place of what lies in pixels of the picture (Overlay::frame). `packet` is that of
+/// the whole picture.
 FramePacket tile_packet(const FramePacket& packet, const TilePlan& plan, const TileArea& area);
 
 }  // namespace catena::render

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "engine/base/assert.h"
 #include "engine/base/clock.h"
@@ -105,10 +106,41 @@ Result<Samples> read(Renderer& renderer, const BandWants& wants, bool floats, bo
   return samples;
 }
 
+/// The packed picture of several eyes, in one piece: one band.
+Result<double> draw_packed(Renderer& renderer, const FramePacket& packet, const RenderSettings& given, const BandWants& wants,
+                           const std::function<Outcome(const Band&)>& take) {
+  CATENA_ASSERT(!wants.depth && !wants.ids);
+  RenderSettings settings = given;
+  settings.float_picture = wants.floats;
+  const std::int64_t start = now_ns();
+  CATENA_CHECK(renderer.draw(packet, settings));
+  const double ms = ms_since(start);
+  if (!take) return ms;
+  CATENA_TRY(Samples samples, read(renderer, wants, settings.float_picture, false));
+  const PackedSize size = packed_size(packet.packing, packet.eyes.size(), packet.width, packet.height);
+  Band band{
+      std::uint32_t(size.width), 0, std::uint32_t(size.height), std::move(samples.bytes.rgba), std::move(samples.floats.rgba), {}, {}};
+  CATENA_CHECK(take({band.width, 0, 0, {}, {}, {}, {}}));
+  CATENA_CHECK(take(band));
+  return ms;
+}
+
 }  // namespace
 
-Result<double> draw_bands(Renderer& renderer, const FramePacket& packet, const RenderSettings& given, const TilePlan& plan,
+Result<double> draw_bands(Renderer& renderer, const FramePacket& whole, const RenderSettings& given, const TilePlan& plan,
                           const BandWants& wants, const std::function<Outcome(const Band&)>& take) {
+  if (!whole.eyes.empty() && whole.packing != Packing::single) {
+    CATENA_ASSERT(plan.count() == 1 && plan.antialias == 1);
+    return draw_packed(renderer, whole, given, wants, take);
+  }
+  // a single eye is a view like any other
+  std::optional<FramePacket> one;
+  if (!whole.eyes.empty()) {
+    one = whole;
+    one->view = whole.eyes.front();
+    one->eyes.clear();
+  }
+  const FramePacket& packet = one ? *one : whole;
   CATENA_ASSERT(packet.width == plan.width && packet.height == plan.height);
   const std::uint32_t n = plan.antialias;
   RenderSettings settings = given;

@@ -1,6 +1,7 @@
 /// A picture of any size as bands of whole rows, from the top: tile by tile (render/frame/tiles.h), supersampled if asked, so that
 /// memory is bounded by one row of tiles.
 ///   antialias N: a pixel is the mean of its N x N samples, premultiplied display values (a box filter)
+///   several eyes that are packed into one picture: in one piece and one band, without antialiasing, depth or ids
 ///   depth: the nearest of the samples; id: that of the nearest sample
 /// Frame thread.
 #pragma once

@@ -26,6 +26,8 @@ struct CameraRays {
   /// whether it is clipped.
   shared::GridData grid(const GridMirror& mirror, const field::Mapping& whole) const;
   shared::MeshFrameData mesh(const Vec3& origin) const;
+  /// The signed distance from a plane along a pixel's ray.
+  shared::ClipData plane(const ClipPlane& plane) const;
 };
 
 /// The corners of a grid's domain.

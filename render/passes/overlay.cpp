@@ -19,6 +19,9 @@ constexpr std::uint32_t kFragmentShader[] = {
 constexpr std::uint32_t kBlendShader[] = {
 #include "spirv/overlay_blend.comp.inc"
 };
+constexpr std::uint32_t kBlendFloatShader[] = {
+#include "spirv/overlay_blend_float.comp.inc"
+};
 constexpr VkFormat kAtlasFormat = VK_FORMAT_R8_UNORM;
 constexpr VkFormat kOverlayFormat = VK_FORMAT_R8G8B8A8_UNORM;  // premultiplied
 constexpr vk::Use kComputeBoth{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
@@ -53,6 +56,7 @@ class OverlayPass final : public Pass {
   vk::Pipeline draw_, blend_;
   vk::Buffer shapes_, stops_, uniform_;
   vk::Image atlas_, image_;
+  VkFormat blend_format_ = VK_FORMAT_UNDEFINED;
   std::uint64_t atlas_version_ = 0;
   std::uint32_t count_ = 0;
 };
@@ -68,12 +72,8 @@ Result<std::unique_ptr<Pass>> OverlayPass::create(vk::Device& device) {
                 {3, vk::Resource::texture},
                 {4, vk::Resource::texture}};
   draw.colors = {kOverlayFormat};
-  draw.blend = true;
+  draw.blends = {vk::Blend::over};
   CATENA_TRY(self->draw_, vk::Pipeline::create(device, draw));
-  vk::ComputeInfo blend;
-  blend.shader = kBlendShader;
-  blend.slots = {{0, vk::Resource::texture}, {1, vk::Resource::storage_image}};
-  CATENA_TRY(self->blend_, vk::Pipeline::create(device, blend));
   return std::unique_ptr<Pass>(std::move(self));
 }
 
@@ -156,7 +156,16 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
   commands.draw(6 * count_, 1);
   commands.end_pass();
 
-  // into the picture
+  // into the picture, in its format
+  const VkFormat format = targets.picture.info().format;
+  if (!blend_ || format != blend_format_) {
+    vk::ComputeInfo blend;
+    blend.shader = vk::Spirv(kBlendShader);
+    if (format == VK_FORMAT_R32G32B32A32_SFLOAT) blend.shader = vk::Spirv(kBlendFloatShader);
+    blend.slots = {{0, vk::Resource::texture}, {1, vk::Resource::storage_image}};
+    CATENA_TRY(blend_, vk::Pipeline::create(frame.device, blend));
+    blend_format_ = format;
+  }
   commands.use(image_, vk::kFragmentRead);
   commands.use(targets.picture, kComputeBoth);
   const vk::Binding blended[] = {{0, vk::Resource::texture, nullptr, &image_, nullptr},

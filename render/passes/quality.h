@@ -23,6 +23,7 @@ struct QualityChoice {
   int pictures = 0;           ///< drawn on the way
 };
 
+/// Stereo: the first eye's picture is measured; the eyes share a time.
 /// Draws several pictures; the caller draws the chosen one.
 Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal);
 

@@ -1,10 +1,12 @@
-/// Everything that a ray blends, in order: volumes and translucent isosurfaces, in front of the opaque depth. A lone volume goes to
-/// the fast raycast where the settings ask for it and it can be packed (fast_volume.h); all else to the exact one (volume.h).
+/// Everything that a ray blends, in order: volumes, translucent isosurfaces and the layers of other passes, in front of the opaque depth. A
+/// lone volume goes to the fast raycast where the settings ask for it and it can be packed (fast_volume.h); all else to the exact one
+/// (volume.h).
 #pragma once
 #include <optional>
 
 #include "render/passes/fast_volume.h"
 #include "render/passes/pass.h"
+#include "render/passes/projection.h"
 #include "render/passes/volume.h"
 
 namespace catena::render {
@@ -20,17 +22,20 @@ class RaycastPass final : public Pass {
 
   /// The rays of every `spacing`-th pixel alone, into `target` (kVolumeFormat).
   Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target);
-  /// One volume and no translucent isosurface, of a grid that can be packed.
+  /// One volume and no translucent isosurface, of a grid that can be packed; composite, its look a matter of its value alone.
   static bool draws_fast(const vk::Device& device, const FramePacket& packet);
 
  private:
   RaycastPass() = default;
   bool ends_at_half(const Frame& frame) const;
+  /// The volumes, or the one that is projected; into the target that is begun.
+  Outcome record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area);
 
   std::optional<VolumePass> exact_pass_;
+  std::optional<ProjectionPass> projection_pass_;
   std::optional<FastVolumePass> fast_pass_;
   const VolumeItem* fast_ = nullptr;  ///< of this frame
-  bool any_ = false;
+  bool any_ = false, projected_ = false;
   std::vector<const field::ScalarGrid*> grids_;
 };
 

@@ -12,18 +12,22 @@
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
+#include "render/passes/layers.h"
 #include "render/passes/mesh.h"
 #include "render/passes/overlay.h"
+#include "render/passes/pack.h"
 #include "render/passes/raycast.h"
+#include "render/passes/slice.h"
 #include "render/passes/streamlines.h"
+#include "render/passes/surface_color.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass,        &kMeshPass,    &kStreamlinePass, &kCursorPass,
-                                        &kIsosurfacePass, &kRaycastPass, &kComposePass,    &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,   &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass, &kSurfaceColorPass,
+                                        &kSlicePass, &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -60,6 +64,9 @@ struct Renderer::Parts {
   std::array<std::unique_ptr<Pass>, std::size(kPasses)> passes;
   double gone_build_ms = 0;  ///< of passes that have gone
   TargetSet drawn = 0;       ///< by the last picture
+  std::optional<PackPass> pack;
+  bool packed = false;                            ///< the last picture is made of several views
+  std::uint32_t view_width = 0, view_height = 0;  ///< of one view; its depth and ids
   double reference_depth = 0;
   std::vector<std::string> drawn_passes;
   std::size_t sharers = 1;  ///< grids that must share what the budget leaves
@@ -71,8 +78,11 @@ struct Renderer::Parts {
   auto within_budget(const FramePacket& packet, const Work& work) -> decltype(work());
   std::uint64_t reserved(const Frame& frame) const;
   std::vector<Pass*> active(std::vector<std::string>* names = nullptr) const;
+  vk::Image& shown() { return packed ? pack->picture() : targets.picture; }
   Outcome prepare(Frame& frame);
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
+  Outcome draw(const FramePacket& packet, const RenderSettings& settings);
+  Outcome draw_eyes(const FramePacket& packet, const RenderSettings& settings);
 };
 
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
@@ -104,6 +114,7 @@ Outcome_ Renderer::Parts::kept_or_dropped(Outcome_ result) {
   }
   mirrors->clear();
   targets = Targets{};
+  pack.reset();
   drawn = 0;
   return result;
 }
@@ -111,7 +122,7 @@ Outcome_ Renderer::Parts::kept_or_dropped(Outcome_ result) {
 /// Once more where the budget refused and older frames, or the first of several grids, held what this one needs.
 template <class Work>
 auto Renderer::Parts::within_budget(const FramePacket& packet, const Work& work) -> decltype(work()) {
-  const std::size_t grids = packet.volumes.size() + packet.isosurfaces.size();
+  const std::size_t grids = packet.volumes.size() + packet.isosurfaces.size() + packet.slices.size();
   if (sharers != grids) sharers = 1;
   const std::uint64_t refused = device->counters().refused;
   const bool held = device->counters().bytes > 0;
@@ -121,14 +132,16 @@ auto Renderer::Parts::within_budget(const FramePacket& packet, const Work& work)
   return kept_or_dropped(work());
 }
 
-/// Bytes of the budget that are not for mirrors: the targets, their copy on the way back, and 1 MB of tables and vertices.
+/// Bytes of the budget that are not for mirrors: the targets, their copy on the way back, layers, and 1 MB of tables and vertices.
 std::uint64_t Renderer::Parts::reserved(const Frame& frame) const {
   TargetSet needed = target::picture | target::volume;
   for (const PassEntry* entry : kPasses)
     if (entry != &kRaycastPass && entry != &kComposePass && entry != &kOverlayPass && entry->wanted(frame)) needed |= target::opaque;
+  constexpr std::uint64_t kLayerBytes = 12 * MAX_LAYERS + 32;  // a pixel; layers.cpp
   const std::uint64_t pixels = std::uint64_t(frame.packet.width) * frame.packet.height;
-  return targets.bytes_to_come(frame.packet.width, frame.packet.height, needed) + pixels * vk::texel_bytes(targets.picture_format) +
-         1'000'000;
+  const std::uint64_t layers = has_layers(frame.packet) ? pixels * kLayerBytes : 0;
+  return layers + targets.bytes_to_come(frame.packet.width, frame.packet.height, needed) +
+         pixels * vk::texel_bytes(targets.picture_format) + 1'000'000;
 }
 
 /// Makes the passes that the packet wants and no others, uploads, and fixes the targets and the rays.
@@ -185,6 +198,38 @@ Outcome Renderer::Parts::record(vk::Commands& commands, Frame& frame, const std:
   return Done{};
 }
 
+/// One view, into targets.picture.
+Outcome Renderer::Parts::draw(const FramePacket& packet, const RenderSettings& settings) {
+  Frame frame{*device, *mirrors, targets, packet, settings, {}};
+  CATENA_CHECK(prepare(frame));
+  drawn_passes.clear();
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
+  CATENA_CHECK(record(commands, frame, active(&drawn_passes)));
+  commands.use(targets.picture, vk::kTransferRead);
+  CATENA_CHECK(commands.finish());
+  drawn = frame.written;
+  view_width = packet.width;
+  view_height = packet.height;
+  reference_depth = frame.rays.reference_depth;
+  return Done{};
+}
+
+/// One eye after the other (passes upload only what changed since the last); the first comes last, so that its depth and ids stay.
+Outcome Renderer::Parts::draw_eyes(const FramePacket& packet, const RenderSettings& settings) {
+  if (!pack) pack.emplace(*device);
+  CATENA_CHECK(pack->begin(packet.packing, packet.eyes.size(), packet.width, packet.height));
+  FramePacket one = packet;
+  one.eyes.clear();
+  for (std::size_t k = packet.packing == Packing::single ? 1 : packet.eyes.size(); k-- > 0;) {
+    one.view = packet.eyes[k];
+    CATENA_CHECK(draw(one, settings));
+    pack->keep(k, targets.picture);
+  }
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
+  CATENA_CHECK(pack->record(commands));
+  return commands.finish();
+}
+
 Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
   parts_->drawn = 0;
   CATENA_CHECK(check(packet, settings, parts_->device->info()));
@@ -199,26 +244,19 @@ Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings&
 
 Outcome Renderer::draw_once(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
-  Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
-  CATENA_CHECK(p.prepare(frame));
-  p.drawn_passes.clear();
-  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  CATENA_CHECK(p.record(commands, frame, p.active(&p.drawn_passes)));
-  commands.use(p.targets.picture, vk::kTransferRead);
-  CATENA_CHECK(commands.finish());
-  p.drawn = frame.written;
-  p.reference_depth = frame.rays.reference_depth;
-  return Done{};
+  p.packed = !packet.eyes.empty();
+  if (!p.packed) p.pack.reset();
+  return p.packed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
 }
 
 Result<Picture> Renderer::read_back() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kPictureFormat);
   Picture picture;
-  picture.width = p.targets.picture.info().extent.width;
-  picture.height = p.targets.picture.info().extent.height;
+  picture.width = p.shown().info().extent.width;
+  picture.height = p.shown().info().extent.height;
   CATENA_TRY(picture.rgba,
-             p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height)));
+             p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, p.shown(), std::size_t(4) * picture.width * picture.height)));
   return picture;
 }
 
@@ -242,20 +280,20 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
   Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
   CATENA_CHECK(p.prepare(frame));
 
-  // the solid things, whole; then the rays, into an image of their own
+  // all before the raycast, whole; then the rays, into an image of their own
   Picture picture;
   picture.width = (packet.width + kProbeSpacing - 1) / kProbeSpacing;
   picture.height = (packet.height + kProbeSpacing - 1) / kProbeSpacing;
   const std::size_t count = std::size_t(picture.width) * picture.height;
   vk::Image target;
-  std::vector<Pass*> solid;
+  std::vector<Pass*> before;
   RaycastPass* raycast = nullptr;
   for (Pass* pass : p.active()) {
     if ((raycast = dynamic_cast<RaycastPass*>(pass))) break;
-    if ((pass->use(frame).writes & target::opaque) != 0) solid.push_back(pass);
+    if ((pass->use(frame).writes & target::picture) == 0) before.push_back(pass);
   }
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  CATENA_CHECK(p.record(commands, frame, solid));
+  CATENA_CHECK(p.record(commands, frame, before));
   if (raycast) {
     vk::ImageInfo info;
     info.format = kVolumeFormat;
@@ -293,8 +331,8 @@ Result<DepthPicture> Renderer::read_depth() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0);
   DepthPicture picture;
-  picture.width = p.targets.picture.info().extent.width;
-  picture.height = p.targets.picture.info().extent.height;
+  picture.width = p.view_width;
+  picture.height = p.view_height;
   picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
   if ((p.drawn & target::opaque_depth) == 0) return picture;
   CATENA_TRY(const std::vector<float> relative,
@@ -308,8 +346,8 @@ Result<IdPicture> Renderer::read_ids() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0);
   IdPicture picture;
-  picture.width = p.targets.picture.info().extent.width;
-  picture.height = p.targets.picture.info().extent.height;
+  picture.width = p.view_width;
+  picture.height = p.view_height;
   picture.ids.assign(std::size_t(picture.width) * picture.height, 0);
   if ((p.drawn & target::opaque_id) == 0) return picture;
   CATENA_TRY(picture.ids, p.kept_or_dropped(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size())));
@@ -318,7 +356,7 @@ Result<IdPicture> Renderer::read_ids() {
 
 Result<bool> Renderer::present(vk::Swapchain& swapchain) {
   CATENA_ASSERT(parts_->drawn != 0);
-  return swapchain.present(parts_->targets.picture);
+  return swapchain.present(parts_->shown());
 }
 
 RenderStats Renderer::stats() const {

@@ -1,7 +1,8 @@
 /// The renderer: a frame packet in, a finished colour image out. It holds the list of passes (pass.h), in order:
-///   meshes, streamlines, cursor, isosurfaces -> raycast -> compose
+///   meshes, streamlines, cursor, isosurfaces, slices -> layers -> raycast -> compose
 /// A pass is created when a packet first wants it and goes when one no longer does; mirrors are kept by (grid version, texel
-/// format) and dropped when a packet no longer names the grid. Frame thread only.
+/// format) and dropped when a packet no longer names the grid. A packet with eyes is drawn once an eye and packed (pack.h); depth and
+/// ids are the first eye's. Frame thread only.
 /// All device memory keeps within vk::DeviceOptions::memory_budget_bytes; a grid that does not fit is drawn coarser and the stats
 /// say so. A call that fails leaves nothing of its frame behind: after VK_ERROR_OUT_OF_DEVICE_MEMORY a smaller packet can be drawn;
 /// after VK_ERROR_DEVICE_LOST (device().lost()) a new renderer draws the same packets.

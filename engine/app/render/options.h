@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/annotate_option.h"
 #include "engine/app/color_option.h"
+#include "engine/app/stereo_option.h"
 #include "engine/base/result.h"
 
 namespace catena::app {
@@ -13,7 +15,6 @@ inline constexpr int kMostFrames = 100000;
 struct RenderOptions {
   std::string source, output, size = "1024x768", quality, stats, probe;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
-  ColorOption colors;
   // outputs
   int bits = 8;            ///< of -o FILE.png
   std::string depth, ids;  ///< beside the picture
@@ -27,6 +28,10 @@ struct RenderOptions {
   bool fit = false;
   double orbit_deg = 0, elevation_deg = 0, zoom = 1;
   double gpu_memory_mb = 0;  ///< 0: what the driver offers
+  StereoChoice stereo;
+  // what is drawn
+  AnnotateOptions annotate;
+  ColorOption colors;
   bool validation = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
@@ -17,13 +18,14 @@
 #include "engine/base/output_file.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
+#include "render/extract/extract_stereo.h"
 
 namespace catena::app {
 
 namespace {
 
 constexpr int kUnreportedFrames = 3;
-constexpr int kMostPixels = 65536;  // each way
+constexpr int kMostTiledPixels = 65536;  // each way
 
 template <class T>
 T machine(Result<T> result) {
@@ -41,18 +43,20 @@ class Frames {
     scene_.phase = options_.phase + static_cast<double>(frame) / motion_.frames();
     CATENA_TRY(render::FramePacket packet, render::extract_frame(scene_, size_.width, size_.height));
     packet.view = motion_.at(packet.view, render::packet_bounds(packet), static_cast<double>(size_.width) / size_.height, frame);
+    render::set_eyes(packet, scene_.stereo);
     return packet;
   }
 
   /// Milliseconds from the start of extraction to the fence (of all tiles). Without outputs nothing is read back.
   Result<double> draw(int frame, Outputs* outputs) {
+    if (!interrupt_) interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
     const std::int64_t start = now_ns();
     CATENA_TRY(const render::FramePacket next, packet(frame));
     const double extract_ms = ms_since(start);
     Outcome stopped = Done{};
     bool interrupted = false;
     const auto take = [&](const render::Band& band) -> Outcome {
-      interrupted = interrupt_.asked();
+      interrupted = interrupt_->asked();
       if (interrupted) return Error{"interrupted"};
       if (band.height == 0) {
         if (progress != nullptr) progress->at(++tiles_done_);
@@ -64,7 +68,7 @@ class Frames {
     if (outputs != nullptr) CATENA_CHECK(outputs->begin(frame));
     const auto ms = render::draw_bands(*renderer, next, settings, plan, wants, outputs != nullptr ? take : decltype(nothing_)());
     CATENA_CHECK(stopped);
-    if (interrupted || interrupt_.asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
+    if (interrupted || interrupt_->asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
     if (!ms) throw MachineFailure{ms.error().message};
     if (outputs != nullptr) CATENA_CHECK(outputs->end());
     return extract_ms + *ms;
@@ -82,7 +86,7 @@ class Frames {
   const RenderOptions& options_;
   const CameraMotion& motion_;
   Size size_;
-  const Interrupt interrupt_{{SIGINT, SIGTERM, SIGHUP}};
+  std::optional<Interrupt> interrupt_;  // while it draws
   double tiles_done_ = 0;
   std::function<Outcome(const render::Band&)> nothing_;
 };
@@ -97,21 +101,37 @@ render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, 
   return machine(render::choose_quality(*frames.renderer, render::tile_packet(packet, plan, middle), goal));
 }
 
+/// Of the finished picture. Several eyes in one are drawn in one piece.
+Result<Size> picture_size(const RenderOptions& o, const scene::Stereo& stereo, const Size& size) {
+  if (render::views_of(stereo) < 2) return size;
+  const std::string mode = "with " + std::to_string(render::views_of(stereo)) + " views in one picture";
+  if (!o.depth.empty() || !o.ids.empty())
+    return Error{(o.depth.empty() ? "--ids: " : "--depth: ") + mode + " it would be one view's; --stereo left or right was expected"};
+  if (o.antialias > 1 || o.tile > 0)
+    return Error{(o.tile > 0 ? "--tile: " : "--antialias: ") + mode + " it is drawn in one piece; --stereo left or right was expected"};
+  CATENA_CHECK(check_packed(stereo, size));
+  const auto packed = render::packed_size(render::packing_of(stereo), render::views_of(stereo), size.width, size.height);
+  return Size{static_cast<std::uint32_t>(packed.width), static_cast<std::uint32_t>(packed.height)};
+}
+
 }  // namespace
 
 Outcome render_pictures(const RenderOptions& o) {
-  CATENA_TRY(const Size size, parse_size(o.size, kMostPixels));
+  CATENA_TRY(const Size size, parse_size(o.size, kMostTiledPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   CATENA_TRY(const CameraMotion motion, CameraMotion::make(o));
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
+  CATENA_CHECK(annotate(scene, o.annotate));
+  CATENA_CHECK(o.stereo.apply(scene.stereo));
+  CATENA_TRY(const Size picture, picture_size(o, scene.stereo, size));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, parse_quality(quality));
   std::vector<std::string> inputs = inputs_of(scene);
   if (!o.probe.empty()) inputs.push_back(o.probe);
   if (!o.camera.empty()) inputs.push_back(o.camera);
-  PictureShape shape{size.width, size.height, scene.background.transparent, o.bits, o.fps, {}};
+  PictureShape shape{picture.width, picture.height, scene.background.transparent, o.bits, o.fps, {}};
   CATENA_CHECK(check_outputs(o, shape, motion.frames(), inputs));
   std::FILE* const words = uses_standard_output(o) ? stderr : stdout;
 
@@ -120,6 +140,8 @@ Outcome render_pictures(const RenderOptions& o) {
   CATENA_CHECK(place_cursor(scene, *program, o.probe));
   Frames frames(scene, o, motion, size);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
+  if (!o.ids.empty() && packet.objects.size() > 65535)
+    return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
   FrameStats stats;
   stats.load_ms = ms_since(load_start);
   stats.cpu_bytes = field_bytes(scene);
@@ -133,8 +155,10 @@ Outcome render_pictures(const RenderOptions& o) {
   frames.settings = wanted.settings;
   frames.wants = wanted_bands(o);
   const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
-  frames.plan =
-      render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || wanted.settings.fast, frames.renderer->longest_side());
+  frames.plan = render::views_of(scene.stereo) > 1
+                    ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
+                    : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || wanted.settings.fast,
+                                         frames.renderer->longest_side());
   if (wanted.goal) {
     const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
     frames.settings = choice.settings;
@@ -157,7 +181,7 @@ Outcome render_pictures(const RenderOptions& o) {
     stats.first_frame_ms = frames.first_ms;
     stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
     for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", coarser.words());
-    fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, size.width, size.height, what_is_drawn(packet),
+    fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, picture.width, picture.height, what_is_drawn(packet),
                stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device);
     std::fflush(words);
     // a frame of many tiles has warmed up by itself
@@ -184,6 +208,7 @@ Outcome render_pictures(const RenderOptions& o) {
   stats.gpu_bytes = gpu.gpu_bytes;
   stats.gpu_budget_bytes = gpu.gpu_budget;
   stats.validation_messages = gpu.validation_messages;
+  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", note);
   for (const std::string& text : frames.renderer->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
   if (o.stats.empty()) return outputs.commit();
   CATENA_TRY(OutputFile json, OutputFile::open(o.stats));

@@ -191,6 +191,30 @@ TEST_F(Offscreen, TilesMakeTheSamePicture) {
   }
 }
 
+TEST_F(Offscreen, TextAndBarsLieInTheWholePictureNotInEachTile) {
+  std::string text = kBalls;
+  text.insert(text.rfind('}'),
+              R"(, "title": "Two balls, one of them seen through", "orientation_marker": true, "scalar_bars": [{"field": "far"}],
+    "labels": [{"at": [0, -0.75, 0], "text": "the nearest point"}])");
+  scene(text);
+  const std::vector<std::string> size{"--size", "220x160", "--quality", "reference"};
+  const auto draw = [&](const char* name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"-o", folder_ / name});
+    more.insert(more.end(), size.begin(), size.end());
+    rendered(more);
+  };
+  draw("o.png", {});
+  draw("t.png", {"--tile", "64"});
+  EXPECT_LE(most_different(picture("o.png"), picture("t.png")), 1);
+  // in 16 bits, too: the overlay is blended into floats
+  draw("d.png", {"--bits", "16"});
+  const Picture eight = picture("o.png");
+  const test::DeepPng deep = test::read_deep_png(folder_ / "d.png");
+  ASSERT_EQ(deep.channels, 3);
+  for (std::size_t i = 0; i < deep.values.size(); ++i) ASSERT_LE(std::abs(eight.rgba[i / 3 * 4 + i % 3] - deep.values[i] / 257.0), 1) << i;
+  keep("t.png", "tiled-overlay.png");
+}
+
 TEST_F(Offscreen, AntialiasingIsTheMeanOfTheSamples) {
   scene(kBalls);
   const std::string size = "60x40";

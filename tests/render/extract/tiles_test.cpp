@@ -51,8 +51,8 @@ TEST(Tiles, ATileSeesTheSameRays) {
     for (const auto& [column, row] : {std::pair{0u, 0u}, {2u, 1u}, {4u, 3u}}) {
       const TileArea a = plan.area(column, row);
       const FramePacket part = tile_packet(packet, plan, a);
-      EXPECT_EQ(part.tile.x, a.drawn_x);
-      EXPECT_EQ(part.tile.whole_width, 300u);
+      EXPECT_EQ(part.overlay.frame.x, a.drawn_x);
+      EXPECT_EQ(part.overlay.frame.width, 300);
       const Camera tile = make_camera(part.view, part.width, part.height, {});
       for (const double x : {0.5, 20.5}) {
         const Ray here = ray_through(tile, x, 7.5), there = ray_through(whole, a.drawn_x + x, a.drawn_y + 7.5);
