@@ -59,6 +59,7 @@ struct Volume {
   json::Node where;
   TransferFunction transfer;
   bool shade = false;
+  bool clipped = true;  ///< the clip planes count
 };
 
 struct Isosurface {
@@ -67,6 +68,7 @@ struct Isosurface {
   double level = 0;
   Rgb color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
+  bool clipped = true;  ///< the clip planes count
 };
 
 /// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.
@@ -82,6 +84,7 @@ struct SurfaceMesh {
   Entity mesh;
   json::Node where;
   Rgb color{0.8f, 0.8f, 0.9f};
+  bool clipped = true;  ///< the clip planes count
 };
 
 /// Seeds that are not listed one by one. Which members mean something follows from the kind.
@@ -128,6 +131,7 @@ struct StreamlineSet {
   double tolerance = 0;  ///< times L; 0: by the seeds' kind (lines.h)
   double arrows = 0;     ///< arrowheads every so far along a line, world units; 0: none
   double pulse = 0;      ///< bands of this length run along the lines as the scene's phase goes from 0 to 1; 0: none
+  bool clipped = true;   ///< the clip planes count
 };
 
 /// A short piece of the streamline through the cursor, with an arrowhead: what the flow does here.
@@ -190,6 +194,12 @@ struct Camera {
   double height = 1;   ///< orthographic: world units from bottom to top
   bool given = false;  ///< false: fitted to what is drawn
 };
+
+/// What is drawn lies on the side of the plane to which the normal points. A clip box is six of them.
+struct ClipPlane {
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+};
+inline constexpr std::size_t kMostClipPlanes = 8;
 
 struct Background {
   Rgb color{0, 0, 0};

@@ -108,12 +108,13 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 
 Outcome read_volumes(Scene& scene, const json::Node& node) {
   return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "color", "opacity", "opacity_unit", "extinction", "shade"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "color", "opacity", "opacity_unit", "extinction", "shade", "clip"}));
     Volume volume;
     volume.where = item;
     CATENA_TRY(volume.field, read_field_name(scene, item));
     CATENA_TRY(volume.transfer, read_transfer(item));
     CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
+    CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
     scene.world.emplace<Volume>(scene.world.create(), std::move(volume));
     return Done{};
   });
@@ -121,10 +122,11 @@ Outcome read_volumes(Scene& scene, const json::Node& node) {
 
 Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
   return each_item(node, "isosurfaces", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip"}));
     Isosurface surface;
     surface.where = item;
     CATENA_TRY(surface.field, read_field_name(scene, item));
+    CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
     CATENA_TRY(surface.level, json::require_number(item, "level"));
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
     CATENA_TRY(surface.opacity, json::get_number(item, "opacity", surface.opacity, json::Range::not_negative));
@@ -137,7 +139,7 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
 
 Outcome read_meshes(Scene& scene, const json::Node& node) {
   return each_item(node, "meshes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "opacity"}));
+    CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "opacity", "clip"}));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     if (!is_name(name))
       return json::error_at(*item.find("name"),
@@ -159,6 +161,7 @@ Outcome read_meshes(Scene& scene, const json::Node& node) {
     if (opacity != 1)
       return json::error_at(*item.find("opacity"), "\"opacity\" of a mesh is " + to_text(opacity) +
                                                        "; meshes are drawn opaque: 1, or \"drawn\": false, was expected");
+    CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
     CATENA_TRY(const bool drawn, json::get_boolean(item, "drawn", true));
     surface.mesh = scene.world.create();
     scene.world.emplace<Name>(surface.mesh, {name});

@@ -36,6 +36,8 @@ Outcome read_indicator(Scene& scene, const json::Node& node);
 Outcome read_cursor(Scene& scene, const json::Node& node);
 
 Outcome read_camera(Scene& scene, const json::Node& node);
+/// "clip": planes and boxes; "clip": false in an item, as `clipped`.
+Outcome read_clip(Scene& scene, const json::Node& node);
 Outcome read_background(Scene& scene, const json::Node& node);
 Outcome read_quality(Scene& scene, const json::Node& node);
 

@@ -20,6 +20,7 @@ struct Scene {
   std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
   Camera camera;
   Background background;
+  std::vector<ClipPlane> clip;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts

@@ -7,7 +7,7 @@ namespace {
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
   CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "indicator", "cursor", "camera", "background", "quality"}));
+                                      "streamlines", "indicator", "cursor", "camera", "background", "quality", "clip"}));
   // fields first: the other parts name them
   CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
@@ -27,7 +27,8 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"cursor", read_cursor},
                             {"camera", read_camera},
                             {"background", read_background},
-                            {"quality", read_quality}};
+                            {"quality", read_quality},
+                            {"clip", read_clip}};
   for (const Part& part : parts)
     if (const json::Node* node = root.find(part.key)) CATENA_CHECK(part.read(scene, *node));
   return Done{};

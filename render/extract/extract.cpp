@@ -57,7 +57,8 @@ Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
     const scene::Volume& volume = scene.world.get<scene::Volume>(e);
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
-    packet.volumes.push_back({std::move(grid), std::move(transfer), volume.shade});
+    const std::uint32_t id = packet.add_object("volume", field_name(scene, volume.field));
+    packet.volumes.push_back({std::move(grid), std::move(transfer), volume.shade, id, volume.clipped});
   }
   return Done{};
 }
@@ -67,7 +68,9 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
-    packet.isosurfaces.push_back({std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity)});
+    const std::uint32_t id = packet.add_object("isosurface", field_name(scene, surface.field));
+    packet.isosurfaces.push_back(
+        {std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity), id, surface.clipped});
   }
   return Done{};
 }
@@ -92,7 +95,8 @@ Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
       for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
       plain = {std::move(geometry), mesh->version()};
     }
-    packet.meshes.push_back({plain.geometry, color_of(surface.color)});
+    const std::uint32_t id = packet.add_object("mesh", field_name(scene, surface.mesh));
+    packet.meshes.push_back({plain.geometry, color_of(surface.color), id, surface.clipped});
   }
   return Done{};
 }
@@ -114,7 +118,8 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   for (const TubeItem& tube : packet.tubes) widest_tube = std::max(widest_tube, tube.radius);
   scene.world.each<scene::Cursor>([&](scene::Entity, const scene::Cursor& cursor) {
     if (!cursor.visible || !is_finite(cursor.probe)) return;
-    CursorItem item{cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving};
+    CursorItem item{
+        cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving, packet.add_object("cursor", "")};
     item.active.resize(item.proxies.size(), true);
     item.leaving.resize(item.proxies.size(), 0.0);
     if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
@@ -156,6 +161,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   FramePacket packet;
   packet.width = width;
   packet.height = height;
+  for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
   const scene::Background& background = scene.background;
   packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};
   CATENA_CHECK(extract_volumes(scene, packet));

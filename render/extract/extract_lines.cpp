@@ -196,9 +196,16 @@ Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
       CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
       CATENA_TRY(flat, flat_lines(scene, set, std::move(curves), any.vector));
     }
+    const bool named = scene.world.has<scene::Name>(set.field);
+    const std::uint32_t id = packet.add_object("streamlines", named ? scene.world.get<scene::Name>(set.field).value : "?");
+    const auto add = [&](auto& items, auto item) {
+      item.id = id;
+      item.clipped = set.clipped;
+      items.push_back(std::move(item));
+    };
     for (std::size_t i = 0; i < flat.tubes.size(); ++i)
-      packet.tubes.push_back(set.pulse > 0 ? with_pulse(flat.tubes[i], flat.arc_lengths[i], set.pulse, scene.phase) : flat.tubes[i]);
-    packet.arrows.insert(packet.arrows.end(), flat.arrows.begin(), flat.arrows.end());
+      add(packet.tubes, set.pulse > 0 ? with_pulse(flat.tubes[i], flat.arc_lengths[i], set.pulse, scene.phase) : flat.tubes[i]);
+    for (const ArrowItem& arrow : flat.arrows) add(packet.arrows, arrow);
   }
   return Done{};
 }
@@ -222,6 +229,7 @@ Outcome extract_indicators(scene::Scene& scene, FramePacket& packet) {
       const flow::Knot& end = (*curve)->closed() ? (*curve)->knots().front() : (*curve)->knots().back();
       IndicatorItem item{{flatten(**curve, {radius}), radius, color_of(indicator.color), {}},
                          {end.p, end.p + (kArrowLength * radius) * end.t, kArrowRadius * radius, color_of(indicator.color)}};
+      item.tube.id = packet.add_object("indicator", "");
       packet.indicators.push_back(std::move(item));
     }
   }

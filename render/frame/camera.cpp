@@ -68,7 +68,15 @@ Camera make_camera(const View& view, double width_px, double height_px, const Bo
   camera.height = height_px;
   camera.orthographic = view.orthographic;
   camera.half_height = view.orthographic ? 0.5 * view.height : std::tan(0.5 * view.fovy_deg * std::numbers::pi / 180);
-  camera.half_width = camera.half_height * width_px / height_px;
+  // pixels are square: the symmetric frustum's width follows from the window's
+  const Window& w = view.window;
+  const double share_x = 0.5 * (w.right - w.left), share_y = 0.5 * (w.top - w.bottom);
+  CATENA_ASSERT(share_x > 0 && share_y > 0);
+  const double whole_width = camera.half_height * share_y / share_x * width_px / height_px;
+  camera.centre_x = 0.5 * (w.left + w.right) * whole_width;
+  camera.centre_y = 0.5 * (w.bottom + w.top) * camera.half_height;
+  camera.half_width = share_x * whole_width;
+  camera.half_height *= share_y;
   set_axes(camera, view.position - view.target, view.up);
   const double distance = norm(view.position - view.target);
   set_depth_range(camera, bounds, distance > 0 ? distance : 1);
@@ -93,10 +101,14 @@ Mat4 clip_from_view(const Camera& c) {
   m[0][0] = 1 / c.half_width;
   m[1][1] = -1 / c.half_height;
   if (c.orthographic) {
+    m[3][0] = -c.centre_x / c.half_width;
+    m[3][1] = c.centre_y / c.half_height;
     m[2][2] = -1 / (c.far - c.near);
     m[3][2] = -c.near / (c.far - c.near);
     m[3][3] = 1;
   } else {
+    m[2][0] = c.centre_x / c.half_width;
+    m[2][1] = -c.centre_y / c.half_height;
     m[2][2] = -c.far / (c.far - c.near);
     m[3][2] = -c.far * c.near / (c.far - c.near);
     m[2][3] = -1;
@@ -110,6 +122,8 @@ Mat4 world_from_clip(const Camera& c) {
   Mat4 view_from_clip(0.0);
   view_from_clip[0][0] = c.half_width;
   view_from_clip[1][1] = -c.half_height;
+  view_from_clip[3][0] = c.centre_x;
+  view_from_clip[3][1] = c.centre_y;
   if (c.orthographic) {
     view_from_clip[2][2] = -(c.far - c.near);
     view_from_clip[3][2] = -c.near;
@@ -128,7 +142,7 @@ Mat4 world_from_clip(const Camera& c) {
 }
 
 Ray ray_through(const Camera& c, double x_px, double y_px) {
-  const double x = (2 * x_px / c.width - 1) * c.half_width, y = (1 - 2 * y_px / c.height) * c.half_height;
+  const double x = c.centre_x + (2 * x_px / c.width - 1) * c.half_width, y = c.centre_y + (1 - 2 * y_px / c.height) * c.half_height;
   const Vec3 offset = x * c.right + y * c.up;
   if (c.orthographic) return {c.position + offset, -c.back};
   return {c.position, direction(offset - c.back)};
@@ -139,13 +153,14 @@ std::optional<Vec3> project(const Camera& c, const Vec3& world) {
   const double depth = -dot(d, c.back);
   if (!c.orthographic && !(depth > 0)) return std::nullopt;
   const double scale = c.orthographic ? 1 : 1 / depth;
-  const double x = dot(d, c.right) * scale / c.half_width, y = dot(d, c.up) * scale / c.half_height;
+  const double x = (dot(d, c.right) * scale - c.centre_x) / c.half_width, y = (dot(d, c.up) * scale - c.centre_y) / c.half_height;
   return Vec3(0.5 * (x + 1) * c.width, 0.5 * (1 - y) * c.height, depth);
 }
 
 Vec3 unproject(const Camera& c, double x_px, double y_px, double depth) {
   const double scale = c.orthographic ? 1 : depth;
-  const double x = (2 * x_px / c.width - 1) * c.half_width * scale, y = (1 - 2 * y_px / c.height) * c.half_height * scale;
+  const double x = (c.centre_x + (2 * x_px / c.width - 1) * c.half_width) * scale;
+  const double y = (c.centre_y + (1 - 2 * y_px / c.height) * c.half_height) * scale;
   return c.position + x * c.right + y * c.up - depth * c.back;
 }
 

@@ -3,6 +3,7 @@
 ///   clip axes: Vulkan's, x right, y *down*, depth 0 at near and 1 at far
 ///   pixels: x right, y down, row 0 at the top; the centre of pixel (i, j) is at (i + 0.5, j + 0.5)
 /// Perspective: vertical field of view. Orthographic: `height` world units from bottom to top.
+/// The view's window is a part of the symmetric frustum of that angle or height; pixels are square.
 /// Near and far enclose the bounds that are given (what lies behind the eye is not seen). Pure functions, any thread.
 #pragma once
 #include <glm/mat4x4.hpp>
@@ -31,10 +32,11 @@ struct Camera {
   Vec3 position{0.0};
   Vec3 right{1.0, 0.0, 0.0}, up{0.0, 1.0, 0.0}, back{0.0, 0.0, 1.0};  ///< unit, orthogonal
   bool orthographic = false;
-  double half_height = 1;        ///< at the distance 1 (perspective: tan(fovy / 2)), or everywhere (orthographic), world units
-  double half_width = 1;         ///< half_height times the aspect
-  double near = 1, far = 2;      ///< along the axis, world units
-  double width = 1, height = 1;  ///< pixels
+  // the window, at the distance 1 (perspective) or everywhere (orthographic), world units
+  double half_height = 1, half_width = 1;
+  double centre_x = 0, centre_y = 0;  ///< of the window, from the axis, right and up
+  double near = 1, far = 2;           ///< along the axis, world units
+  double width = 1, height = 1;       ///< pixels
 };
 
 /// A half line; `direction` is unit.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/base/vec.h"
@@ -18,11 +19,29 @@ struct Color {
   float r = 0, g = 0, b = 0;
 };
 
+/// A part of the symmetric frustum of a view, or beyond it, in its half extents: an eye off the axis, a tile of a large picture.
+struct Window {
+  double left = -1, right = 1, bottom = -1, top = 1;
+};
+
 struct View {
   Vec3 position{0.0}, target{0.0}, up{0.0, 0.0, 1.0};
   double fovy_deg = 30;
   bool orthographic = false;
   double height = 1;
+  Window window{};
+};
+
+/// Keeps the half space to which `normal` points; `normal` need not be unit.
+struct ClipPlane {
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+};
+inline constexpr std::size_t kMostClipPlanes = 8;
+
+/// What an id of the picture stands for.
+struct ObjectName {
+  std::uint32_t id = 0;
+  std::string kind, name;
 };
 
 /// Piecewise-linear over field values; sigma is extinction per world unit.
@@ -35,6 +54,8 @@ struct VolumeItem {
   std::shared_ptr<const field::ScalarGrid> grid;
   TransferTable transfer;
   bool shade = false;
+  std::uint32_t id = 0;
+  bool clipped = true;
 };
 
 struct IsosurfaceItem {
@@ -42,6 +63,8 @@ struct IsosurfaceItem {
   double level = 0;
   Color color;
   float opacity = 1;
+  std::uint32_t id = 0;
+  bool clipped = true;
 };
 
 /// Triangles as they are, each lit by its own normal: what the hand feels. Made once a mesh, shared by frames.
@@ -53,6 +76,8 @@ struct MeshGeometry {
 struct MeshItem {
   std::shared_ptr<const MeshGeometry> geometry;
   Color color;
+  std::uint32_t id = 0;
+  bool clipped = true;
 };
 
 /// A tube around a polyline, already flattened from the curve finely enough for its radius.
@@ -61,6 +86,8 @@ struct TubeItem {
   double radius = 0;
   Color color;
   std::vector<Color> colors{};  ///< by point; empty: `color` everywhere
+  std::uint32_t id = 0;
+  bool clipped = true;
 };
 
 /// An arrowhead: a cone.
@@ -68,6 +95,8 @@ struct ArrowItem {
   Vec3 base{0.0}, tip{0.0};
   double radius = 0;
   Color color;
+  std::uint32_t id = 0;
+  bool clipped = true;
 };
 
 /// The local indicator: a short piece of the streamline through the cursor, with an arrowhead downstream.
@@ -76,7 +105,7 @@ struct IndicatorItem {
   ArrowItem arrow;
 };
 
-/// The cursor: probe, the proxy of every link, the links between them, the force.
+/// The cursor: probe, the proxy of every link, the links between them, the force. Clip planes do not touch it.
 struct CursorItem {
   Vec3 probe{0.0};
   std::vector<Vec3> proxies;
@@ -84,6 +113,7 @@ struct CursorItem {
   Vec3 force_n{0.0};
   double size = 0;              ///< radius of the probe's ball, world units
   std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it; empty: all 0
+  std::uint32_t id = 0;
 };
 
 struct FramePacket {
@@ -97,6 +127,14 @@ struct FramePacket {
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
+  std::vector<ClipPlane> clip;  ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<ObjectName> objects;
+
+  /// The next id, from 1 on.
+  std::uint32_t add_object(std::string kind, std::string name) {
+    objects.push_back({std::uint32_t(objects.size() + 1), std::move(kind), std::move(name)});
+    return objects.back().id;
+  }
 };
 
 }  // namespace catena::render

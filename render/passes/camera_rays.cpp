@@ -7,12 +7,31 @@ namespace {
 
 glm::vec3 narrow(const Vec3& v) { return glm::vec3(v); }
 
+/// The signed distance from a clip plane along the ray of a pixel, from the reference depth.
+shared::ClipData clip_of_ray(const CameraRays& rays, const ClipPlane& plane) {
+  const Camera& c = rays.camera;
+  const Vec3 normal = direction(plane.normal);
+  const double x = dot(normal, c.right) * (c.half_width / (0.5 * c.width)), y = -dot(normal, c.up) * (c.half_height / (0.5 * c.height));
+  shared::ClipData clip{};
+  clip.at = float(dot(normal, c.position - plane.point) + rays.reference_depth * dot(normal, rays.forward));
+  clip.along = float(dot(normal, rays.forward));
+  const double depth = c.orthographic ? 1 : rays.reference_depth;
+  clip.at_x = float(depth * x);
+  clip.at_y = float(depth * y);
+  if (!c.orthographic) {
+    clip.along_x = float(x);
+    clip.along_y = float(y);
+  }
+  return clip;
+}
+
 }  // namespace
 
 CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds) {
   CameraRays rays;
   rays.camera = make_camera(packet.view, packet.width, packet.height, bounds);
   rays.forward = -rays.camera.back;
+  rays.clip = packet.clip;
   if (bounds.empty()) return rays;
   rays.reference_depth = std::max(0.0, rays.view_depth(bounds.centre()));
   double farthest = 0;
@@ -29,6 +48,7 @@ shared::FrameData CameraRays::frame() const {
   f.half_size = {float(0.5 * camera.width), float(0.5 * camera.height)};
   const double slope_x = camera.half_width / (0.5 * camera.width), slope_y = camera.half_height / (0.5 * camera.height);
   if (!camera.orthographic) f.slope = {float(slope_x), float(slope_y)};
+  f.axis = {float(0.5 * camera.width - camera.centre_x / slope_x), float(0.5 * camera.height + camera.centre_y / slope_y)};
   f.right = narrow(camera.right);
   f.up = narrow(camera.up);
   f.forward = narrow(forward);
@@ -39,6 +59,8 @@ shared::FrameData CameraRays::frame() const {
   f.orthographic = camera.orthographic;
   f.spacing = float(spacing);
   f.first = glm::vec2(0.5f - 0.5f * float(spacing));
+  f.clip_count = std::uint32_t(clip.size());
+  for (std::size_t i = 0; i < clip.size(); ++i) f.clips[i] = clip_of_ray(*this, clip[i]);
   return f;
 }
 
@@ -80,9 +102,15 @@ shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
   m.offset = {float(dot(from_eye, camera.right)), float(dot(from_eye, camera.up)), float(dot(from_eye, forward))};
   m.offset_depth = float(dot(from_eye, forward) - reference_depth);
   m.scale = {float(1 / camera.half_width), float(1 / camera.half_height)};
+  m.shift = {float(-camera.centre_x / camera.half_width), float(camera.centre_y / camera.half_height)};
   m.depth_near = float(depth_near);
   m.depth_far = float(depth_far);
   m.orthographic = camera.orthographic;
+  m.clip_count = std::uint32_t(clip.size());
+  for (std::size_t i = 0; i < clip.size(); ++i) {
+    const Vec3 normal = direction(clip[i].normal);
+    m.clips[i] = glm::vec4(narrow(normal), float(dot(normal, origin - clip[i].point)));
+  }
   return m;
 }
 

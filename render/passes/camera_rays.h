@@ -13,13 +13,14 @@ struct CameraRays {
   Vec3 forward{0.0};
   double reference_depth = 0;
   double depth_near = 1, depth_far = 2;
+  std::vector<ClipPlane> clip;
   std::uint32_t spacing = 1;  ///< fragment (i, j) is the ray of pixel (spacing i, spacing j)
 
   /// `bounds` of everything drawn.
   static CameraRays make(const FramePacket& packet, const Bounds& bounds);
   double view_depth(const Vec3& world) const { return dot(world - camera.position, forward); }
   shared::FrameData frame() const;
-  /// The ray's part of a grid's data; the caller adds table, level and colour.
+  /// The ray's part of a grid's data; the caller adds table, level, colour, id and whether it is clipped.
   shared::GridData grid(const GridMirror& mirror, const field::Mapping& mapping) const;
   shared::MeshFrameData mesh(const Vec3& origin) const;
 };

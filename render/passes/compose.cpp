@@ -1,6 +1,9 @@
 #include "render/passes/compose.h"
 
+#include <map>
+
 #include "render/passes/grid_bindings.h"
+#include "render/passes/upsample.h"
 
 namespace catena::render {
 namespace {
@@ -12,9 +15,28 @@ constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/compose.frag.inc"
 };
 
-}  // namespace
+class ComposePass final : public Pass {
+ public:
+  explicit ComposePass(vk::Device& device) : upsample_(device) {}
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) { return std::unique_ptr<Pass>(new ComposePass(device)); }
+  PassUse use(const Frame& frame) const override {
+    return {frame.written & (target::opaque_color | target::volume), target::picture, true};
+  }
+  Outcome prepare(Frame&) override { return Done{}; }
+  Outcome record(vk::Commands& commands, Frame& frame) override;
 
-Outcome ComposePass::record(vk::Commands& commands, Targets& targets, const std::array<float, 4>& background, bool opaque, bool volume) {
+ private:
+  UpsamplePass upsample_;
+  std::map<std::uint32_t, vk::Pipeline> pipelines_;
+  vk::Buffer uniform_;
+};
+
+Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
+  Targets& targets = frame.targets;
+  const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
+  const std::array<float, 4>& background = frame.packet.background;
+  if (frame.half_lattice) return upsample_.record(commands, *frame.half_lattice, targets, background, opaque, frame.half_area);
+
   vk::Pipeline& pipeline = pipelines_[(opaque ? 1u : 0u) | (volume ? 2u : 0u)];
   if (!pipeline) {
     vk::GraphicsInfo info;
@@ -23,23 +45,23 @@ Outcome ComposePass::record(vk::Commands& commands, Targets& targets, const std:
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
     info.constants = {opaque, volume};
     info.colors = {kPictureFormat};
-    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+    CATENA_TRY(pipeline, vk::Pipeline::create(frame.device, info));
   }
   shared::ComposeData data{};
   data.background = {background[0], background[1], background[2], background[3]};
-  CATENA_CHECK(write_uniform(*device_, uniform_, data));
-  if (opaque) commands.use(targets.opaque_color, vk::kFragmentRead);
-  if (volume) commands.use(targets.volume, vk::kFragmentRead);
-  const vk::ColorTarget target{&targets.picture, std::array<float, 4>{0, 0, 0, 0}};
-  commands.begin_pass({&target, 1}, {});
+  CATENA_CHECK(write_uniform(frame.device, uniform_, data));
+  targets.begin(commands, target::picture, target::picture);
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, opaque ? &targets.opaque_color : &targets.none, nullptr},
                                   {2, vk::Resource::texture, nullptr, volume ? &targets.volume : &targets.none, nullptr}};
   commands.bind(pipeline, bindings);
   commands.draw_triangle();
   commands.end_pass();
-  commands.use(targets.picture, vk::kTransferRead);
   return Done{};
 }
+
+}  // namespace
+
+const PassEntry kComposePass{"compose", [](const Frame&) { return true; }, ComposePass::create};
 
 }  // namespace catena::render

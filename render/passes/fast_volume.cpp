@@ -199,6 +199,8 @@ Outcome FastVolumePass::write_frame(const CameraRays& rays, const FastSettings& 
   place.box_hi = Vec3(packed_.size.x - 1, packed_.size.y - 1, packed_.size.z - 1);
   shared::FrameData frame = rays.frame();
   frame.grids[0] = rays.grid(place, item_.grid->mapping());
+  frame.grids[0].id = item_.id;
+  frame.grids[0].clipped = item_.clipped;
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * item_.grid->mapping().smallest_edge());
   return write_uniform(*device_, frame_, frame);

@@ -1,5 +1,9 @@
 #include "render/passes/isosurface.h"
 
+#include <algorithm>
+#include <map>
+
+#include "render/passes/covered_area.h"
 #include "render/passes/targets.h"
 
 namespace catena::render {
@@ -11,6 +15,8 @@ constexpr std::uint32_t kVertexShader[] = {
 constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"
 };
+
+bool is_opaque(const IsosurfaceItem& item) { return item.opacity >= 1; }
 
 }  // namespace
 
@@ -28,17 +34,39 @@ shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state,
   data.level = state.level;
   data.opacity = item.opacity;
   data.color = {item.color.r, item.color.g, item.color.b};
+  data.id = item.id;
+  data.clipped = item.clipped;
   return data;
 }
 
-Result<IsosurfacePass> IsosurfacePass::create(vk::Device& device) {
-  IsosurfacePass self;
-  self.device_ = &device;
-  CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
-  return self;
-}
+namespace {
 
-Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags) {
+class IsosurfacePass final : public Pass {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
+    auto self = std::make_unique<IsosurfacePass>();
+    CATENA_TRY(self->linear_, vk::Sampler::create(device, vk::Filter::linear));
+    return std::unique_ptr<Pass>(std::move(self));
+  }
+  PassUse use(const Frame&) const override { return {0, target::opaque}; }
+  Outcome prepare(Frame& frame) override;
+  Bounds bounds() const override;
+  Outcome record(vk::Commands& commands, Frame& frame) override;
+
+ private:
+  struct Surface {
+    SurfaceState state;
+    IsosurfaceItem item;
+    vk::Buffer uniform;
+  };
+  Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags);
+
+  vk::Sampler linear_;
+  std::map<std::uint32_t, vk::Pipeline> pipelines_;
+  std::vector<Surface> surfaces_;
+};
+
+Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::uint32_t flags) {
   vk::Pipeline& pipeline = pipelines_[flags];
   if (!pipeline) {
     vk::GraphicsInfo info;
@@ -47,37 +75,56 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(std::uint32_t flags) {
     info.slots = {{0, vk::Resource::uniform}};
     add_grid_slots(info.slots, 1);
     info.constants = {flags};
-    info.colors = {kOpaqueFormat, kDepthValueFormat};
+    info.colors = opaque_formats();
     info.depth = true;
-    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+    CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
   }
   return &pipeline;
 }
 
-Outcome IsosurfacePass::prepare(std::span<const std::pair<const IsosurfaceItem*, std::shared_ptr<const GridMirror>>> items) {
-  if (surfaces_.size() > items.size()) surfaces_.erase(surfaces_.begin() + std::ptrdiff_t(items.size()), surfaces_.end());
-  while (surfaces_.size() < items.size()) surfaces_.emplace_back();
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    CATENA_CHECK(surfaces_[i].state.update(*device_, items[i].second, items[i].first->level));
-    surfaces_[i].item = *items[i].first;
+Outcome IsosurfacePass::prepare(Frame& frame) {
+  std::size_t count = 0;
+  for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
+    if (!is_opaque(item)) continue;
+    CATENA_TRY(auto mirror, frame.mirror(*item.grid));
+    if (!mirror->drawable) continue;
+    if (count == surfaces_.size()) surfaces_.emplace_back();
+    Surface& surface = surfaces_[count++];
+    CATENA_CHECK(surface.state.update(frame.device, std::move(mirror), item.level));
+    surface.item = item;
   }
+  while (surfaces_.size() > count) surfaces_.pop_back();
   return Done{};
 }
 
-Outcome IsosurfacePass::record(vk::Commands& commands, const CameraRays& rays, const VkRect2D& area) {
+Bounds IsosurfacePass::bounds() const {
+  Bounds all;
+  for (const Surface& surface : surfaces_) all.add(grid_bounds(*surface.item.grid));
+  return all;
+}
+
+Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
-    shared::FrameData data = rays.frame();
-    data.grids[0] = surface_data(rays, surface.state, surface.item);
-    CATENA_CHECK(write_uniform(*device_, surface.uniform, data));
+    const field::ScalarGrid* grid = surface.item.grid.get();
+    shared::FrameData data = frame.rays.frame();
+    data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
+    CATENA_CHECK(write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags()));
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags()));
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
-    commands.scissor(area);
+    commands.scissor(covered_area({&grid, 1}, frame.rays.camera));
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }
   return Done{};
 }
+
+}  // namespace
+
+const PassEntry kIsosurfacePass{
+    "isosurfaces",
+    [](const Frame& frame) { return std::any_of(frame.packet.isosurfaces.begin(), frame.packet.isosurfaces.end(), is_opaque); },
+    IsosurfacePass::create};
 
 }  // namespace catena::render

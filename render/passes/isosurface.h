@@ -1,10 +1,8 @@
 /// Opaque isosurfaces: the drawn surface is the level set of the trilinear field itself, found along each pixel's ray from the
 /// cubic of the cell (no triangles), written with its depth. Translucent ones are drawn by the volume pass, in order with volumes.
 #pragma once
-#include <map>
-
-#include "render/passes/camera_rays.h"
 #include "render/passes/grid_bindings.h"
+#include "render/passes/pass.h"
 
 namespace catena::render {
 
@@ -20,27 +18,6 @@ struct SurfaceState {
 /// The ray's numbers, level, colour and opacity.
 shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state, const IsosurfaceItem& item);
 
-class IsosurfacePass {
- public:
-  static Result<IsosurfacePass> create(vk::Device& device);
-  /// Prepares the surfaces of this frame, in order. Those whose grid cannot be drawn are left out.
-  Outcome prepare(std::span<const std::pair<const IsosurfaceItem*, std::shared_ptr<const GridMirror>>> items);
-  /// Within a pass over the opaque targets.
-  Outcome record(vk::Commands& commands, const CameraRays& rays, const VkRect2D& area);
-
- private:
-  struct Surface {
-    SurfaceState state;
-    IsosurfaceItem item;
-    vk::Buffer uniform;
-  };
-  IsosurfacePass() = default;
-  Result<const vk::Pipeline*> pipeline(std::uint32_t flags);
-
-  vk::Device* device_ = nullptr;
-  vk::Sampler linear_;
-  std::map<std::uint32_t, vk::Pipeline> pipelines_;
-  std::vector<Surface> surfaces_;
-};
+extern const PassEntry kIsosurfacePass;
 
 }  // namespace catena::render

@@ -8,62 +8,19 @@
 #include <limits>
 
 #include "render/mirror/half.h"
-#include "render/passes/camera_rays.h"
 #include "render/passes/compose.h"
-#include "render/passes/fast_volume.h"
+#include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
 #include "render/passes/mesh.h"
-#include "render/passes/mirrors.h"
-#include "render/passes/targets.h"
-#include "render/passes/upsample.h"
-#include "render/passes/volume.h"
+#include "render/passes/raycast.h"
+#include "render/passes/streamlines.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
 namespace {
 
-template <class Item>
-using Mirrored = VolumePass::Mirrored<Item>;
-
-/// The pixels that the grids' domains can cover; the whole picture when a corner is behind the eye.
-VkRect2D covered_area(const std::vector<const field::ScalarGrid*>& grids, const Camera& camera) {
-  double x0 = camera.width, y0 = camera.height, x1 = 0, y1 = 0;
-  for (const field::ScalarGrid* grid : grids) {
-    const field::Box& box = grid->index_box();
-    for (int i = 0; i < 8; ++i) {
-      const Vec3 index{(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z};
-      const auto pixel = project(camera, grid->mapping().world_from_index(index));
-      if (!pixel) return {{0, 0}, {std::uint32_t(camera.width), std::uint32_t(camera.height)}};
-      x0 = std::min(x0, pixel->x);
-      y0 = std::min(y0, pixel->y);
-      x1 = std::max(x1, pixel->x);
-      y1 = std::max(y1, pixel->y);
-    }
-  }
-  x0 = std::clamp(std::floor(x0) - 1, 0.0, camera.width);
-  y0 = std::clamp(std::floor(y0) - 1, 0.0, camera.height);
-  x1 = std::clamp(std::ceil(x1) + 1, x0, camera.width);
-  y1 = std::clamp(std::ceil(y1) + 1, y0, camera.height);
-  return {{std::int32_t(x0), std::int32_t(y0)}, {std::uint32_t(x1 - x0), std::uint32_t(y1 - y0)}};
-}
-
-/// What one frame draws, sorted by pass.
-struct Work {
-  std::vector<Mirrored<VolumeItem>> volumes;
-  std::vector<Mirrored<IsosurfaceItem>> opaque_surfaces, translucent_surfaces;
-  std::vector<const field::ScalarGrid*> grids;
-  const VolumeItem* fast = nullptr;  ///< the lone volume of the fast raycast; then `volumes` is empty
-  bool ends_at_half = false;         ///< the fast raycast needs no image of every pixel
-  bool meshes = false;
-  bool opaque() const { return meshes || !opaque_surfaces.empty(); }
-  bool raycast() const { return fast || !volumes.empty() || !translucent_surfaces.empty(); }
-};
-
-/// One volume and no translucent isosurface: nothing that a ray must blend.
-bool is_alone(const FramePacket& packet) {
-  const auto translucent = [](const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; };
-  return packet.volumes.size() == 1 && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), translucent);
-}
+/// All that a picture can hold, in the order of drawing.
+constexpr const PassEntry* kPasses[] = {&kMeshPass, &kStreamlinePass, &kCursorPass, &kIsosurfacePass, &kRaycastPass, &kComposePass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -71,51 +28,39 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
     return Error{fmt::format("a picture of {} x {} pixels cannot be drawn, expected 1 to {} each way", packet.width, packet.height, most)};
   if (!(settings.step_voxels > 0) || !std::isfinite(settings.step_voxels))
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
+  if (packet.clip.size() > kMostClipPlanes)
+    return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMostClipPlanes)};
   return Done{};
 }
 
+/// The bytes of an image, by way of a buffer of its own.
+template <class T>
+Result<std::vector<T>> bytes_of(vk::Device& device, vk::Image& image, std::size_t count) {
+  const std::size_t bytes = count * sizeof(T);
+  CATENA_TRY(const vk::Buffer buffer, vk::Buffer::create(device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
+  commands.copy(image, buffer);
+  CATENA_CHECK(commands.finish());
+  std::vector<T> values(count);
+  std::memcpy(values.data(), buffer.bytes().data(), bytes);
+  return values;
+}
+
 }  // namespace
-
-RenderSettings draft_settings() {
-  RenderSettings s;
-  s.step_voxels = 2;
-  s.fast = FastSettings{4, 4, -1, -1};
-  return s;
-}
-
-RenderSettings balanced_settings() {
-  RenderSettings s;
-  s.fast = FastSettings{2.5, 4, 0.7, 1.5};
-  return s;
-}
-
-RenderSettings reference_settings() {
-  RenderSettings s;
-  s.step_voxels = 0.1;
-  s.termination = 1e-4;
-  s.texels = TexelFormat::r32f;
-  return s;
-}
 
 struct Renderer::Parts {
   std::unique_ptr<vk::Device> device;  // first in, last out
   std::optional<Mirrors> mirrors;
   Targets targets;
-  std::optional<MeshPass> mesh;
-  std::optional<IsosurfacePass> isosurface;
-  std::optional<VolumePass> volume;
-  std::optional<FastVolumePass> fast_volume;
-  std::optional<UpsamplePass> upsample;
-  std::optional<ComposePass> compose;
-  bool drawn = false, drawn_opaque = false;
+  std::array<std::unique_ptr<Pass>, std::size(kPasses)> passes;
+  double gone_build_ms = 0;  ///< of passes that have gone
+  TargetSet drawn = 0;       ///< by the last picture
   double reference_depth = 0;
+  std::vector<std::string> drawn_passes;
 
-  Result<Work> sort(const FramePacket& packet, const RenderSettings& settings);
-  Bounds bounds(const Work& work) const;
-  Outcome prepare(const FramePacket& packet, const RenderSettings& settings, const Work& work);
-  Outcome record_opaque(vk::Commands& commands, const Work& work, const CameraRays& rays);
-  Outcome record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work,
-                 const CameraRays& rays);
+  std::vector<Pass*> active(std::vector<std::string>* names = nullptr) const;
+  Outcome prepare(Frame& frame);
+  Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
 };
 
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
@@ -125,201 +70,139 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const vk::DeviceOptions& opti
   std::unique_ptr<Renderer> self(new Renderer);
   CATENA_TRY(self->parts_->device, vk::Device::create(options));
   self->parts_->mirrors.emplace(*self->parts_->device);
-  self->parts_->upsample.emplace(*self->parts_->device);
-  self->parts_->compose.emplace(*self->parts_->device);
   return self;
 }
 
-/// Mirrors what the packet names and says which pass draws it.
-Result<Work> Renderer::Parts::sort(const FramePacket& packet, const RenderSettings& settings) {
-  Work work;
-  work.meshes =
-      !packet.meshes.empty() || !packet.tubes.empty() || !packet.arrows.empty() || !packet.cursors.empty() || !packet.indicators.empty();
+std::vector<Pass*> Renderer::Parts::active(std::vector<std::string>* names) const {
+  std::vector<Pass*> list;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (!passes[i]) continue;
+    list.push_back(passes[i].get());
+    if (names) names->push_back(kPasses[i]->name);
+  }
+  return list;
+}
+
+/// Makes the passes that the packet wants and no others, uploads, and fixes the targets and the rays.
+Outcome Renderer::Parts::prepare(Frame& frame) {
   mirrors->begin_frame();
-  const auto mirror = [&](const field::ScalarGrid& grid) {
-    const bool surface =
-        std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), [&](const auto& item) { return item.grid.get() == &grid; });
-    const bool float32 = settings.texels == TexelFormat::r32f || (settings.texels == TexelFormat::automatic && surface);
-    return mirrors->get(grid, {float32, settings.layout});
-  };
-  for (const VolumeItem& item : packet.volumes) {
-    CATENA_ASSERT(item.grid != nullptr);
-    if (settings.fast && is_alone(packet) && can_be_packed(*device, *item.grid)) {
-      work.grids.push_back(item.grid.get());
-      work.fast = &item;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (!kPasses[i]->wanted(frame)) {
+      if (passes[i]) gone_build_ms += passes[i]->build_ms();
+      passes[i].reset();
       continue;
     }
-    CATENA_TRY(auto mirrored, mirror(*item.grid));
-    if (!mirrored->drawable) continue;
-    work.grids.push_back(item.grid.get());
-    work.volumes.emplace_back(&item, std::move(mirrored));
-  }
-  for (const IsosurfaceItem& item : packet.isosurfaces) {
-    CATENA_ASSERT(item.grid != nullptr);
-    if (!(item.opacity > 0)) continue;
-    CATENA_TRY(auto mirrored, mirror(*item.grid));
-    if (!mirrored->drawable) continue;
-    work.grids.push_back(item.grid.get());
-    (item.opacity < 1 ? work.translucent_surfaces : work.opaque_surfaces).emplace_back(&item, std::move(mirrored));
+    if (!passes[i]) {
+      CATENA_TRY(passes[i], kPasses[i]->create(*device));
+    }
+    CATENA_CHECK(passes[i]->prepare(frame));
   }
   mirrors->drop_unused();
-  if (packet.volumes.empty()) fast_volume.reset();
-  work.ends_at_half = work.fast && settings.fast->ends_at_half() && !work.opaque();
-  if (work.volumes.size() > MAX_VOLUMES)
-    return Error{fmt::format("the scene has {} volumes, expected at most {}", work.volumes.size(), MAX_VOLUMES)};
-  if (work.translucent_surfaces.size() > MAX_SURFACES)
-    return Error{
-        fmt::format("the scene has {} translucent isosurfaces, expected at most {}", work.translucent_surfaces.size(), MAX_SURFACES)};
-  return work;
+  Bounds bounds;
+  TargetSet needed = target::picture;
+  for (Pass* pass : active()) {
+    bounds.add(pass->bounds());
+    const TargetSet writes = pass->use(frame).writes;
+    frame.written |= writes;
+    needed |= writes;
+  }
+  frame.written = 0;
+  frame.rays = CameraRays::make(frame.packet, bounds);
+  return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
-/// Of all that is drawn; `prepare` comes first.
-Bounds Renderer::Parts::bounds(const Work& work) const {
-  Bounds all;
-  for (const field::ScalarGrid* grid : work.grids) all.add(grid_bounds(*grid));
-  if (work.meshes) all.add(mesh->bounds());
-  return all;
-}
-
-/// Creates the passes that are needed and hands every pass its work, also none.
-Outcome Renderer::Parts::prepare(const FramePacket& packet, const RenderSettings& settings, const Work& work) {
-  if (!mesh && work.meshes) {
-    CATENA_TRY(mesh, MeshPass::create(*device));
-  }
-  if (!isosurface && !work.opaque_surfaces.empty()) {
-    CATENA_TRY(isosurface, IsosurfacePass::create(*device));
-  }
-  if (!volume && work.raycast() && !work.fast) {
-    CATENA_TRY(volume, VolumePass::create(*device));
-  }
-  if (!fast_volume && work.fast) {
-    CATENA_TRY(fast_volume, FastVolumePass::create(*device));
-  }
-  if (mesh) CATENA_CHECK(mesh->prepare(packet));
-  if (isosurface) CATENA_CHECK(isosurface->prepare(work.opaque_surfaces));
-  if (volume) CATENA_CHECK(volume->prepare(work.volumes, work.translucent_surfaces));
-  if (work.fast) CATENA_CHECK(fast_volume->prepare(*work.fast, *settings.fast));
-  return targets.ensure(*device, packet.width, packet.height, work.opaque(), work.raycast() && !work.ends_at_half);
-}
-
-Outcome Renderer::Parts::record_opaque(vk::Commands& commands, const Work& work, const CameraRays& rays) {
-  if (!work.opaque()) return Done{};
-  const vk::ColorTarget colors[] = {{&targets.opaque_color, std::array<float, 4>{0, 0, 0, 0}},
-                                    {&targets.opaque_depth, std::array<float, 4>{NO_DEPTH, 0, 0, 0}}};
-  commands.begin_pass(colors, {&targets.depth_buffer, 0.0f});
-  if (work.meshes) CATENA_CHECK(mesh->record(commands, rays));
-  if (isosurface) CATENA_CHECK(isosurface->record(commands, rays, covered_area(work.grids, rays.camera)));
-  commands.end_pass();
-  return Done{};
-}
-
-Outcome Renderer::Parts::record(vk::Commands& commands, const FramePacket& packet, const RenderSettings& settings, const Work& work,
-                                const CameraRays& rays) {
-  CATENA_CHECK(record_opaque(commands, work, rays));
-  const VkRect2D area = covered_area(work.grids, rays.camera);
-  if (work.raycast()) {
-    if (work.opaque()) commands.use(targets.opaque_depth, vk::kFragmentRead);
-    const vk::Image* opaque_depth = work.opaque() ? &targets.opaque_depth : nullptr;
-    if (work.fast) {
-      CATENA_CHECK(fast_volume->record(commands, rays, *settings.fast, area, targets.picture.info().extent,
-                                       work.ends_at_half ? nullptr : &targets.volume, opaque_depth, targets.none));
-      if (work.ends_at_half) return upsample->record(commands, fast_volume->half(), targets, packet.background, work.opaque(), area);
-      return compose->record(commands, targets, packet.background, work.opaque(), true);
+/// Neighbours with equal targets share one rendering scope; what is written first is cleared, what is read is moved there before.
+Outcome Renderer::Parts::record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list) {
+  TargetSet open = 0;
+  const auto close = [&] {
+    if (open != 0) commands.end_pass();
+    open = 0;
+  };
+  for (Pass* pass : list) {
+    const PassUse use = pass->use(frame);
+    CATENA_ASSERT((use.reads & ~frame.written) == 0);
+    if (use.own_scope || use.writes != open || use.reads != 0) close();
+    for (TargetSet one = 1; one <= use.reads; one <<= 1)
+      if ((use.reads & one) != 0) commands.use(targets.image(one), vk::kFragmentRead);
+    if (!use.own_scope) {
+      if (open == 0) targets.begin(commands, use.writes, use.writes & ~frame.written);
+      open = use.writes;
+      commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
     }
-    const vk::ColorTarget color{&targets.volume, std::array<float, 4>{0, 0, 0, 0}};
-    commands.begin_pass({&color, 1}, {});
-    CATENA_CHECK(
-        volume->record(commands, rays, {settings.step_voxels, settings.termination, settings.skip}, area, opaque_depth, targets.none));
-    commands.end_pass();
+    CATENA_CHECK(pass->record(commands, frame));
+    frame.written |= use.writes;
   }
-  return compose->record(commands, targets, packet.background, work.opaque(), work.raycast());
+  close();
+  return Done{};
 }
 
 Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
-  p.drawn = false;
+  p.drawn = 0;
   CATENA_CHECK(check(packet, settings, p.device->info()));
-  CATENA_TRY(const Work work, p.sort(packet, settings));
-  CATENA_CHECK(p.prepare(packet, settings, work));
-  const CameraRays rays = CameraRays::make(packet, p.bounds(work));
+  Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
+  CATENA_CHECK(p.prepare(frame));
+  p.drawn_passes.clear();
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  CATENA_CHECK(p.record(commands, packet, settings, work, rays));
+  CATENA_CHECK(p.record(commands, frame, p.active(&p.drawn_passes)));
+  commands.use(p.targets.picture, vk::kTransferRead);
   CATENA_CHECK(commands.finish());
-  p.drawn = true;
-  p.drawn_opaque = work.opaque();
-  p.reference_depth = rays.reference_depth;
+  p.drawn = frame.written;
+  p.reference_depth = frame.rays.reference_depth;
   return Done{};
 }
 
 Result<Picture> Renderer::read_back() {
   Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn);
+  CATENA_ASSERT(p.drawn != 0);
   Picture picture;
   picture.width = p.targets.picture.info().extent.width;
   picture.height = p.targets.picture.info().extent.height;
-  picture.rgba.resize(std::size_t(4) * picture.width * picture.height);
-  CATENA_TRY(const vk::Buffer buffer,
-             vk::Buffer::create(*p.device, picture.rgba.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
-  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  commands.copy(p.targets.picture, buffer);
-  CATENA_CHECK(commands.finish());
-  std::memcpy(picture.rgba.data(), buffer.bytes().data(), picture.rgba.size());
+  CATENA_TRY(picture.rgba, bytes_of<std::uint8_t>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height));
   return picture;
 }
 
-bool Renderer::draws_fast(const FramePacket& packet) const {
-  return is_alone(packet) && can_be_packed(*parts_->device, *packet.volumes.front().grid);
-}
+bool Renderer::draws_fast(const FramePacket& packet) const { return RaycastPass::draws_fast(*parts_->device, packet); }
 
 Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
-  p.drawn = false;
+  p.drawn = 0;
   CATENA_CHECK(check(packet, settings, p.device->info()));
-  CATENA_TRY(const Work work, p.sort(packet, settings));
-  CATENA_CHECK(p.prepare(packet, settings, work));
-  CameraRays rays = CameraRays::make(packet, p.bounds(work));
-  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  CATENA_CHECK(p.record_opaque(commands, work, rays));
+  Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
+  CATENA_CHECK(p.prepare(frame));
 
-  // the rays, into an image of their own
+  // the solid things, whole; then the rays, into an image of their own
   Picture picture;
   picture.width = (packet.width + kProbeSpacing - 1) / kProbeSpacing;
   picture.height = (packet.height + kProbeSpacing - 1) / kProbeSpacing;
   const std::size_t count = std::size_t(picture.width) * picture.height;
-  std::vector<float> volume(4 * count);
-  std::vector<std::uint16_t> opaque(work.opaque() ? 4 * std::size_t(packet.width) * packet.height : 0);
   vk::Image target;
-  vk::Buffer volume_bytes, opaque_bytes;
-  if (work.raycast()) {
+  std::vector<Pass*> solid;
+  RaycastPass* raycast = nullptr;
+  for (Pass* pass : p.active()) {
+    if ((raycast = dynamic_cast<RaycastPass*>(pass))) break;
+    if ((pass->use(frame).writes & target::opaque) != 0) solid.push_back(pass);
+  }
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+  CATENA_CHECK(p.record(commands, frame, solid));
+  if (raycast) {
     vk::ImageInfo info;
     info.format = kVolumeFormat;
     info.extent = {picture.width, picture.height, 1};
     info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     CATENA_TRY(target, vk::Image::create(*p.device, info));
-    const vk::Image* depth = work.opaque() ? &p.targets.opaque_depth : nullptr;
-    if (depth) commands.use(p.targets.opaque_depth, vk::kFragmentRead);
-    if (work.fast) {
-      CATENA_CHECK(p.fast_volume->record_probe(commands, rays, *settings.fast, kProbeSpacing, target, depth, p.targets.none));
-    } else {
-      rays.spacing = kProbeSpacing;
-      const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
-      commands.begin_pass({&color, 1}, {});
-      CATENA_CHECK(p.volume->record(commands, rays, {settings.step_voxels, settings.termination, settings.skip},
-                                    {{0, 0}, {picture.width, picture.height}}, depth, p.targets.none));
-      commands.end_pass();
-    }
-    const std::size_t bytes = volume.size() * sizeof(float);
-    CATENA_TRY(volume_bytes, vk::Buffer::create(*p.device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
-    commands.copy(target, volume_bytes);
-  }
-  if (work.opaque()) {
-    const std::size_t bytes = opaque.size() * sizeof(std::uint16_t);
-    CATENA_TRY(opaque_bytes, vk::Buffer::create(*p.device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
-    commands.copy(p.targets.opaque_color, opaque_bytes);
+    if (frame.has(target::opaque_depth)) commands.use(p.targets.opaque_depth, vk::kFragmentRead);
+    CATENA_CHECK(raycast->record_probe(commands, frame, kProbeSpacing, target));
   }
   CATENA_CHECK(commands.finish());
-  if (volume_bytes) std::memcpy(volume.data(), volume_bytes.bytes().data(), volume.size() * sizeof(float));
-  if (opaque_bytes) std::memcpy(opaque.data(), opaque_bytes.bytes().data(), opaque.size() * sizeof(std::uint16_t));
+  std::vector<float> volume(4 * count);
+  std::vector<std::uint16_t> opaque;
+  if (raycast) {
+    CATENA_TRY(volume, bytes_of<float>(*p.device, target, volume.size()));
+  }
+  if (frame.has(target::opaque_color)) {
+    CATENA_TRY(opaque, bytes_of<std::uint16_t>(*p.device, p.targets.opaque_color, 4 * std::size_t(packet.width) * packet.height));
+  }
 
   // volume over opaque over background over black
   picture.rgba.assign(4 * count, 255);
@@ -337,26 +220,32 @@ Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings&
 
 Result<DepthPicture> Renderer::read_depth() {
   Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn);
+  CATENA_ASSERT(p.drawn != 0);
   DepthPicture picture;
   picture.width = p.targets.picture.info().extent.width;
   picture.height = p.targets.picture.info().extent.height;
   picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
-  if (!p.drawn_opaque) return picture;
-  const std::size_t bytes = picture.depth.size() * sizeof(float);
-  CATENA_TRY(const vk::Buffer buffer, vk::Buffer::create(*p.device, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
-  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  commands.copy(p.targets.opaque_depth, buffer);
-  CATENA_CHECK(commands.finish());
-  std::vector<float> relative(picture.depth.size());
-  std::memcpy(relative.data(), buffer.bytes().data(), bytes);
+  if ((p.drawn & target::opaque_depth) == 0) return picture;
+  CATENA_TRY(const std::vector<float> relative, bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size()));
   for (std::size_t i = 0; i < relative.size(); ++i)
     if (relative[i] < NO_DEPTH) picture.depth[i] = float(double(relative[i]) + p.reference_depth);
   return picture;
 }
 
+Result<IdPicture> Renderer::read_ids() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0);
+  IdPicture picture;
+  picture.width = p.targets.picture.info().extent.width;
+  picture.height = p.targets.picture.info().extent.height;
+  picture.ids.assign(std::size_t(picture.width) * picture.height, 0);
+  if ((p.drawn & target::opaque_id) == 0) return picture;
+  CATENA_TRY(picture.ids, bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size()));
+  return picture;
+}
+
 Result<bool> Renderer::present(vk::Swapchain& swapchain) {
-  CATENA_ASSERT(parts_->drawn);
+  CATENA_ASSERT(parts_->drawn != 0);
   return swapchain.present(parts_->targets.picture);
 }
 
@@ -370,7 +259,9 @@ RenderStats Renderer::stats() const {
   stats.upload_bytes = device.counters().upload_bytes;
   stats.pipelines = device.counters().pipelines;
   stats.mirrors = parts_->mirrors->count();
-  stats.mirror_ms = parts_->mirrors->build_ms() + (parts_->fast_volume ? parts_->fast_volume->build_ms() : 0);
+  stats.passes = parts_->drawn_passes;
+  stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
+  for (const Pass* pass : parts_->active()) stats.mirror_ms += pass->build_ms();
   stats.validation_messages = device.messages().count();
   return stats;
 }

@@ -1,5 +1,6 @@
-/// The renderer: a frame packet in, a finished colour image out.   opaque (tubes, glyphs, isosurfaces) -> volume -> compose
-/// Passes, their pipelines and images are created when the first packet needs them; mirrors are kept by (grid version, texel
+/// The renderer: a frame packet in, a finished colour image out. It holds the list of passes (pass.h), in order:
+///   meshes, streamlines, cursor, isosurfaces -> raycast -> compose
+/// A pass is created when a packet first wants it and goes when one no longer does; mirrors are kept by (grid version, texel
 /// format) and dropped when a packet no longer names the grid. Frame thread only.
 #pragma once
 #include <cstdint>
@@ -10,8 +11,7 @@
 
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
-#include "render/mirror/grid_mirror.h"
-#include "render/passes/fast_settings.h"
+#include "render/passes/render_settings.h"
 #include "render/vk/device.h"
 #include "render/vk/picture.h"
 
@@ -21,27 +21,13 @@ namespace vk {
 class Swapchain;
 }
 
-enum class TexelFormat { automatic, r16f, r32f };
-
-struct RenderSettings {
-  double step_voxels = 1;                       ///< in smallest voxel edges
-  double termination = 1.0 / 512;               ///< a ray ends when less than this gets through
-  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
-  MirrorLayout layout = MirrorLayout::automatic;
-  bool skip = true;  ///< leap over bricks that the transfer function leaves empty
-  /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
-  std::optional<FastSettings> fast;
-};
-RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2
-RenderSettings balanced_settings();   ///< every 4th pixel at step 2.5, refined where the picture asks for it; where it cannot: step 1
-RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
-
 struct RenderStats {
   std::string device, driver;
   std::uint64_t gpu_bytes = 0;  ///< held now
   std::uint64_t uploads = 0;    ///< copies to the device so far
   std::uint64_t upload_bytes = 0;
   std::uint64_t pipelines = 0;            ///< created so far
+  std::vector<std::string> passes;        ///< of the last picture, in order
   std::uint64_t mirrors = 0;              ///< grids mirrored now
   double mirror_ms = 0;                   ///< spent on building and uploading mirrors so far
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
@@ -49,6 +35,12 @@ struct RenderStats {
 
 /// Pixels between the rays of Renderer::probe; prime to every lattice's spacing.
 inline constexpr std::uint32_t kProbeSpacing = 13;
+
+/// The nearest opaque object of every pixel, 0: none.
+struct IdPicture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint32_t> ids;
+};
 
 /// View depth of the nearest opaque surface: distance along the view axis, world units; infinite where there is none.
 struct DepthPicture {
@@ -74,6 +66,8 @@ class Renderer {
   Result<Picture> probe(const FramePacket& packet, const RenderSettings& settings);
   /// The opaque depth of the last picture.
   Result<DepthPicture> read_depth();
+  /// The ids of the last picture.
+  Result<IdPicture> read_ids();
   /// Shows the last picture in a window (scaled to it). False: the swapchain no longer fits, resize it.
   Result<bool> present(vk::Swapchain& swapchain);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/base/assert.h"
+#include "shaders/shared/frame.h"
 
 namespace catena::render {
 
@@ -14,7 +15,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kJointTurn = 0.35;  // a corner that turns more than this (radians) gets several rings
 
 std::uint32_t add_vertex(Shape& shape, const Vec3& position, const Vec3& normal, const Color& color) {
-  shape.vertices.push_back({position, normal, color});
+  shape.vertices.push_back({position, normal, color, 0});
   return static_cast<std::uint32_t>(shape.vertices.size() - 1);
 }
 
@@ -134,6 +135,10 @@ std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed)
 }
 
 }  // namespace
+
+void mark(Shape& shape, std::size_t first, std::uint32_t id, bool clipped) {
+  for (std::size_t i = first; i < shape.vertices.size(); ++i) shape.vertices[i].id = id | (clipped ? 0u : UNCLIPPED);
+}
 
 int tube_sides(double radius, double scene_size) {
   if (!(radius > 0) || !(scene_size > 0)) return 12;

@@ -16,6 +16,7 @@ struct MeshVertex {
   Vec3 position{0.0};
   Vec3 normal{0.0};  ///< unit, outward
   Color color;
+  std::uint32_t id = 0;  ///< of the object; shared::UNCLIPPED in it: the clip planes do not touch it
 };
 
 /// Indexed triangles in double precision; the uploader makes floats of them, relative to an origin of its choice.
@@ -23,6 +24,9 @@ struct Shape {
   std::vector<MeshVertex> vertices;
   std::vector<std::uint32_t> triangles;  ///< three indices each
 };
+
+/// Gives the vertices from `first` on to an object.
+void mark(Shape& shape, std::size_t first, std::uint32_t id, bool clipped);
 
 /// 8 to 16 by the radius' share of the scene's size (0: 12).
 int tube_sides(double radius, double scene_size);

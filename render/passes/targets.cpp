@@ -1,6 +1,7 @@
 #include "render/passes/targets.h"
 
-#include "render/vk/commands.h"
+#include "engine/base/assert.h"
+#include "shaders/shared/frame.h"
 
 namespace catena::render {
 namespace {
@@ -18,17 +19,20 @@ Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t
 
 }  // namespace
 
-Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, bool opaque, bool has_volume) {
+std::vector<VkFormat> opaque_formats() { return {kOpaqueFormat, kDepthValueFormat, kIdFormat}; }
+
+Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, TargetSet needed) {
   constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-  CATENA_CHECK(
-      fit(device, picture, kPictureFormat, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | read));
-  if (opaque) {
-    CATENA_CHECK(fit(device, opaque_color, kOpaqueFormat, width, height, color | read));
-    CATENA_CHECK(fit(device, opaque_depth, kDepthValueFormat, width, height, color | read));
-    CATENA_CHECK(fit(device, depth_buffer, kDepthBufferFormat, width, height, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
-  }
-  if (has_volume) CATENA_CHECK(fit(device, volume, kVolumeFormat, width, height, color | VK_IMAGE_USAGE_STORAGE_BIT));
+  const auto want = [&](TargetSet one, VkFormat format, VkImageUsageFlags usage) -> Outcome {
+    return (needed & one) != 0 ? fit(device, image(one), format, width, height, usage) : Done{};
+  };
+  CATENA_CHECK(want(target::picture, kPictureFormat, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
+  CATENA_CHECK(want(target::opaque_color, kOpaqueFormat, color | read));
+  CATENA_CHECK(want(target::opaque_depth, kDepthValueFormat, color | read));
+  CATENA_CHECK(want(target::opaque_id, kIdFormat, color | read));
+  CATENA_CHECK(want(target::depth_buffer, kDepthBufferFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
+  CATENA_CHECK(want(target::volume, kVolumeFormat, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
   if (!none) {
     CATENA_CHECK(fit(device, none, kPictureFormat, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT));
     CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
@@ -36,6 +40,37 @@ Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t h
     CATENA_CHECK(commands.finish());
   }
   return Done{};
+}
+
+vk::Image& Targets::image(TargetSet one) {
+  switch (one) {
+    case target::opaque_color:
+      return opaque_color;
+    case target::opaque_depth:
+      return opaque_depth;
+    case target::opaque_id:
+      return opaque_id;
+    case target::depth_buffer:
+      return depth_buffer;
+    case target::volume:
+      return volume;
+    default:
+      CATENA_ASSERT(one == target::picture);
+      return picture;
+  }
+}
+
+void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared) {
+  std::vector<vk::ColorTarget> colors;
+  for (const TargetSet one : {target::opaque_color, target::opaque_depth, target::opaque_id, target::volume, target::picture}) {
+    if ((writes & one) == 0) continue;
+    const std::array<float, 4> empty{one == target::opaque_depth ? NO_DEPTH : 0.0f, 0, 0, 0};
+    colors.push_back({&image(one), (cleared & one) != 0 ? std::optional(empty) : std::nullopt});
+  }
+  vk::DepthTarget depth;
+  if ((writes & target::depth_buffer) != 0)
+    depth = {&depth_buffer, (cleared & target::depth_buffer) != 0 ? std::optional(0.0f) : std::nullopt};
+  commands.begin_pass(colors, depth);
 }
 
 }  // namespace catena::render

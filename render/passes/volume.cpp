@@ -101,6 +101,8 @@ Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const
   for (const Volume& volume : volumes_) {
     shared::GridData& grid = data.grids[bound.size()];
     grid = rays.grid(*volume.mirror, volume.item.grid->mapping());
+    grid.id = volume.item.id;
+    grid.clipped = volume.item.clipped;
     grid.table_start = volume.table_start;
     grid.table_last = volume.lut.last();
     grid.table_lo = volume.lut.lo;

@@ -103,6 +103,7 @@ std::string lacks(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& p
   if (surface && !has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) return VK_KHR_SWAPCHAIN_EXTENSION_NAME;
   Features features;
   vkGetPhysicalDeviceFeatures2(physical, &features.core);
+  if (!features.core.features.shaderClipDistance) return "shaderClipDistance";
   if (!features.v12.timelineSemaphore) return "timelineSemaphore";
   if (!features.v12.scalarBlockLayout) return "scalarBlockLayout";
   if (!features.v13.dynamicRendering) return "dynamicRendering";
@@ -181,6 +182,7 @@ Outcome Device::create_device() {
   queue.pQueuePriorities = &priority;
 
   Features features;
+  features.core.features.shaderClipDistance = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;
   features.v12.scalarBlockLayout = VK_TRUE;
   features.v13.dynamicRendering = VK_TRUE;

@@ -47,8 +47,8 @@ vec4 march_packed(vec2 q, float end) {
   const vec3 world = world_direction(q);
   const float world_per_depth = length(world);
   const LocalRay ray = local_ray(0, q);
-  vec2 interval = domain_interval(0, ray);
-  interval = vec2(max(interval.x, frame.front), min(interval.y, end));
+  vec2 interval = visible_interval(0, ray, q);
+  interval.y = min(interval.y, end);
   if (!(interval.x < interval.y)) return vec4(0.0);
 
   const float h = frame.step_world / world_per_depth;

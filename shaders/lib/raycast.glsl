@@ -84,9 +84,9 @@ void march(float from, float to) {
 }
 
 // The part of a grid's domain that the ray sees; NO_DEPTH twice where there is none.
-vec2 seen_interval(int i, float end) {
-  vec2 interval = domain_interval(i, rays[i]);
-  interval = vec2(max(interval.x, frame.front), min(interval.y, end));
+vec2 seen_interval(int i, vec2 q, float end) {
+  vec2 interval = visible_interval(i, rays[i], q);
+  interval.y = min(interval.y, end);
   return interval.x < interval.y ? interval : vec2(NO_DEPTH);
 }
 
@@ -95,5 +95,5 @@ float begin_pixel(vec2 q) {
   const vec3 direction = world_direction(q);
   world_per_depth = length(direction);
   eye_direction = -direction / world_per_depth;
-  return OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.half_size), 0).r : NO_DEPTH;
+  return OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.axis), 0).r : NO_DEPTH;
 }

@@ -3,7 +3,7 @@ struct LocalRay {
   vec3 origin, direction;  // local position at depth t: origin + t direction
 };
 
-vec2 pixel_place() { return frame.spacing * gl_FragCoord.xy + frame.first - frame.half_size; }
+vec2 pixel_place() { return frame.spacing * gl_FragCoord.xy + frame.first - frame.axis; }
 
 LocalRay local_ray(int i, vec2 q) {
   LocalRay ray;
@@ -33,6 +33,30 @@ vec2 domain_interval(int i, LocalRay ray) {
       far[axis] = -near[axis];
     }
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+// What the clip planes leave of a ray; first > second where it is nothing.
+vec2 clip_interval(vec2 q) {
+  vec2 interval = vec2(-NO_DEPTH, NO_DEPTH);
+  for (uint i = 0u; i < frame.clip_count; ++i) {
+    const float at = frame.clips[i].at + frame.clips[i].at_x * q.x + frame.clips[i].at_y * q.y;
+    const float along = frame.clips[i].along + frame.clips[i].along_x * q.x + frame.clips[i].along_y * q.y;
+    const float t = abs(along) < LEAST_DIRECTION ? (at >= 0.0 ? -NO_DEPTH : NO_DEPTH) : -at / along;
+    if (along >= -LEAST_DIRECTION) interval.x = max(interval.x, t);
+    else interval.y = min(interval.y, t);
+  }
+  return interval;
+}
+
+// The part of a grid's domain that can be seen: from the eye on, within the clip planes. Entry >= exit where it is nothing.
+vec2 visible_interval(int i, LocalRay ray, vec2 q) {
+  vec2 interval = domain_interval(i, ray);
+  interval.x = max(interval.x, frame.front);
+  if (frame.grids[i].clipped != 0u) {
+    const vec2 kept = clip_interval(q);
+    interval = vec2(max(interval.x, kept.x), min(interval.y, kept.y));
+  }
+  return interval;
 }
 
 float buffer_depth(float t) {

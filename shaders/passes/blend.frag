@@ -21,11 +21,10 @@ void meet_surface(int s, vec2 q, float end) {
   const int i = VOLUMES + s;
   if (s < SURFACES) {
     rays[i] = local_ray(i, q);
-    const vec2 interval = domain_interval(i, rays[i]);
-    const float from = max(interval.x, frame.front);
+    const vec2 interval = visible_interval(i, rays[i], q);
     limits[s] = min(interval.y, end);
     crossings[s] = NO_DEPTH;
-    if (from < limits[s]) crossings[s] = first_crossing(i, rays[i], from, limits[s]);
+    if (interval.x < limits[s]) crossings[s] = first_crossing(i, rays[i], interval.x, limits[s]);
   }
 }
 
@@ -51,7 +50,7 @@ void main() {
   // where the ray meets each grid
   for (int i = 0; i < VOLUMES; ++i) {
     rays[i] = local_ray(i, q);
-    intervals[i] = seen_interval(i, end);
+    intervals[i] = seen_interval(i, q, end);
   }
   meet_surface(0, q, end);
   meet_surface(1, q, end);

@@ -12,17 +12,18 @@
 
 layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;
+layout(location = 2) out uint out_id;
 
 void main() {
   const vec2 q = pixel_place();
   const LocalRay ray = local_ray(0, q);
-  const vec2 interval = domain_interval(0, ray);
-  const float from = max(interval.x, frame.front);
-  if (!(from < interval.y)) discard;
-  const float t = first_crossing(0, ray, from, interval.y);
+  const vec2 interval = visible_interval(0, ray, q);
+  if (!(interval.x < interval.y)) discard;
+  const float t = first_crossing(0, ray, interval.x, interval.y);
   if (t >= NO_DEPTH) discard;
   const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
   out_color = vec4(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), 1.0);
   out_depth = t;
+  out_id = frame.grids[0].id;
   gl_FragDepth = buffer_depth(t);
 }

@@ -7,10 +7,13 @@ layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec3 in_color;
+layout(location = 3) in uint in_id;
 layout(location = 0) out vec3 out_normal;   // view axes: x right, y up, z forward
 layout(location = 1) out vec3 out_color;
 layout(location = 2) out vec3 out_view;     // position in the view
 layout(location = 3) out float out_depth;
+layout(location = 4) flat out uint out_id;
+out float gl_ClipDistance[MAX_CLIPS];
 
 void main() {
   const vec3 turned = frame.view_from_world * in_position;
@@ -19,7 +22,11 @@ void main() {
   out_color = in_color;
   out_view = view;
   out_depth = turned.z + frame.offset_depth;
-  const vec2 clip = vec2(view.x * frame.scale.x, -view.y * frame.scale.y);
+  out_id = in_id & ~UNCLIPPED;
+  const bool clipped = (in_id & UNCLIPPED) == 0u;
+  for (int i = 0; i < MAX_CLIPS; ++i)
+    gl_ClipDistance[i] = clipped && uint(i) < frame.clip_count ? dot(frame.clips[i].xyz, in_position) + frame.clips[i].w : 1.0;
+  const vec2 clip = vec2(view.x * frame.scale.x, -view.y * frame.scale.y) + frame.shift * (frame.orthographic != 0u ? 1.0 : view.z);
   if (frame.orthographic != 0u) gl_Position = vec4(clip, (frame.depth_far - view.z) / (frame.depth_far - frame.depth_near), 1.0);
   else gl_Position = vec4(clip, frame.depth_near, view.z);
 }

@@ -15,7 +15,7 @@ void main() {
   const vec2 q = pixel_place();
   const float end = begin_pixel(q);
   rays[0] = local_ray(0, q);
-  intervals[0] = seen_interval(0, end);
+  intervals[0] = seen_interval(0, q, end);
   if (intervals[0].x < NO_DEPTH) march(intervals[0].x, intervals[0].y);
   out_color = vec4(color_sum, 1.0 - through);
 }

@@ -45,13 +45,13 @@ void main() {
   float end = NO_DEPTH;
   if (OPAQUE != 0u) end = texelFetch(opaque_depth, clamp(ivec2(pixel), ivec2(0), ivec2(2.0 * frame.half_size) - 1), 0).r;
   if (REFINES == 0u) {
-    out_color = march_packed(pixel - frame.half_size, end);
+    out_color = march_packed(pixel - frame.axis, end);
   } else {
     const bool marked = MARCHES != 0u && texelFetch(blocks, at >> 2, 0).r != 0u && ((point.x | point.y) & 1) != 0;
     vec4 c = interpolated(point);
     if (MARCHES != 0u) {
       if (!marked) end = -NO_DEPTH;
-      const vec4 marched = march_packed(pixel - frame.half_size, end);
+      const vec4 marched = march_packed(pixel - frame.axis, end);
       if (marked) c = marched;
     }
     out_color = c;

@@ -1,5 +1,6 @@
 // What the passes of one picture share. Depth t is measured along the view axis in world units, from the reference depth: the
-// distance from the eye's plane is t + reference_depth. Pixel places q count from the centre of the picture.
+// distance from the eye's plane is t + reference_depth. Pixel places q count from the view axis: from
+// the centre of the picture, unless the frustum is off the axis.
 #ifndef CATENA_SHARED_FRAME_H
 #define CATENA_SHARED_FRAME_H
 #include "shaders/shared/language.h"
@@ -7,6 +8,7 @@
 #define MAX_VOLUMES 4
 #define MAX_SURFACES 4
 #define MAX_GRIDS 8
+#define MAX_CLIPS 8
 #define NO_DEPTH 3.0e38f
 
 CATENA_SHARED_BEGIN
@@ -26,10 +28,20 @@ struct GridData {
   // isosurfaces
   float level, opacity;
   vec3 color;
+  uint clipped;          // the clip planes count for it
+  uint id;               // of the object
+};
+
+// One clip plane as a ray meets it; kept where this is >= 0:
+//   (at + at_x q.x + at_y q.y) + t (along + along_x q.x + along_y q.y)
+struct ClipData {
+  float at, at_x, at_y;
+  float along, along_x, along_y;
 };
 
 struct FrameData {
   vec2 half_size;        // of the picture, pixels
+  vec2 axis;             // the pixel place where the view axis meets the picture, counted from its corner
   vec2 slope;            // world units a pixel at depth 1 from the eye; 0 if orthographic
   vec3 right, up, forward;
   float reference_depth;
@@ -40,16 +52,23 @@ struct FrameData {
   vec2 first;
   float step_world;      // length of a ray's segments
   float termination;     // a ray ends when less gets through
+  uint clip_count;
+  ClipData clips[MAX_CLIPS];
   GridData grids[MAX_GRIDS];
 };
+
+#define UNCLIPPED 0x80000000u  // in a vertex's id: the clip planes do not touch it
 
 struct MeshFrameData {
   mat3 view_from_world;  // rows right, up, forward
   vec3 offset;           // of the mesh's origin in the view: x, y, distance from the eye's plane
   float offset_depth;    // the same along the axis, from the reference depth
   vec2 scale;            // clip units per world unit (per slope, if perspective)
+  vec2 shift;            // clip units from the picture's centre to the view axis
   float depth_near, depth_far;
   uint orthographic;
+  uint clip_count;
+  vec4 clips[MAX_CLIPS]; // kept where dot(xyz, position) + w >= 0
 };
 
 struct ComposeData {

@@ -40,12 +40,17 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, level);
       EXPECT_OFFSET(GridData, opacity);
       EXPECT_OFFSET(GridData, color);
+      EXPECT_OFFSET(GridData, clipped);
+      EXPECT_OFFSET(GridData, id);
       EXPECT_EQ(found.at("[]"), sizeof(GridData));
       EXPECT_EQ(found.size(), compared + 1);
     }
     compared = 0;
     const auto& found = all["FrameData"];
     EXPECT_OFFSET(FrameData, half_size);
+    EXPECT_OFFSET(FrameData, axis);
+    EXPECT_OFFSET(FrameData, clip_count);
+    EXPECT_OFFSET(FrameData, clips);
     EXPECT_OFFSET(FrameData, slope);
     EXPECT_OFFSET(FrameData, right);
     EXPECT_OFFSET(FrameData, up);
@@ -72,6 +77,9 @@ TEST(SharedStructs, MeshFrameData) {
   EXPECT_OFFSET(MeshFrameData, offset);
   EXPECT_OFFSET(MeshFrameData, offset_depth);
   EXPECT_OFFSET(MeshFrameData, scale);
+  EXPECT_OFFSET(MeshFrameData, shift);
+  EXPECT_OFFSET(MeshFrameData, clip_count);
+  EXPECT_OFFSET(MeshFrameData, clips);
   EXPECT_OFFSET(MeshFrameData, depth_near);
   EXPECT_OFFSET(MeshFrameData, depth_far);
   EXPECT_OFFSET(MeshFrameData, orthographic);

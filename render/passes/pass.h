@@ -1,0 +1,60 @@
+/// A pass: one kind of thing that a picture can hold. It declares which targets it reads and writes; the renderer (renderer.cpp) holds
+/// the passes in order and derives clears, barriers and groups from the declarations. A pass is created when a packet first wants
+/// it; a scene without streamlines has no streamline pass.
+///   wanted -> prepare (uploads, pipelines) -> bounds (they fix near, far and the rays) -> record
+/// Frame thread only. To add one: a class here beside its shader, and a line in the list of renderer.cpp.
+#pragma once
+#include <memory>
+
+#include "render/frame/frame_packet.h"
+#include "render/passes/camera_rays.h"
+#include "render/passes/mirrors.h"
+#include "render/passes/render_settings.h"
+#include "render/passes/targets.h"
+#include "render/vk/commands.h"
+
+namespace catena::render {
+
+/// One picture while it is made: what its passes share.
+struct Frame {
+  vk::Device& device;
+  Mirrors& mirrors;
+  Targets& targets;
+  const FramePacket& packet;
+  const RenderSettings& settings;
+  CameraRays rays;                    ///< from record() on
+  TargetSet written = 0;              ///< by the passes before this one, or to be (prepare: of all passes)
+  vk::Image* half_lattice = nullptr;  ///< the volume on every 2nd pixel, instead of Target::volume
+  VkRect2D half_area{};
+
+  bool has(TargetSet targets_) const { return (written & targets_) != 0; }
+  /// The grid on the device, in the texel format that this packet asks for. Kept while packets name it.
+  Result<std::shared_ptr<const GridMirror>> mirror(const field::ScalarGrid& grid) const;
+};
+
+struct PassUse {
+  TargetSet reads = 0, writes = 0;
+  bool own_scope = false;  ///< begins and ends its rendering itself; else the renderer does, for all neighbours with equal targets
+};
+
+class Pass {
+ public:
+  virtual ~Pass() = default;
+  virtual PassUse use(const Frame& frame) const = 0;
+  /// Uploads what changed since the last frame.
+  virtual Outcome prepare(Frame& frame) = 0;
+  /// Of what prepare() found to draw.
+  virtual Bounds bounds() const { return {}; }
+  virtual Outcome record(vk::Commands& commands, Frame& frame) = 0;
+  /// Milliseconds spent so far on images made from grids, beside the mirrors.
+  virtual double build_ms() const { return 0; }
+};
+
+/// How the renderer knows a pass.
+struct PassEntry {
+  const char* name;
+  bool (*wanted)(const Frame& frame);
+  Result<std::unique_ptr<Pass>> (*create)(vk::Device& device);
+};
+
+}  // namespace catena::render

@@ -1,0 +1,117 @@
+#include "render/passes/raycast.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/passes/covered_area.h"
+
+namespace catena::render {
+namespace {
+
+bool is_translucent(const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; }
+
+RaySettings ray_settings(const RenderSettings& s) { return {s.step_voxels, s.termination, s.skip}; }
+
+}  // namespace
+
+Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
+
+bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet) {
+  return packet.volumes.size() == 1 && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
+         can_be_packed(device, *packet.volumes.front().grid);
+}
+
+bool RaycastPass::ends_at_half(const Frame& frame) const {
+  return fast_ && frame.settings.fast->ends_at_half() && !frame.has(target::opaque_depth);
+}
+
+PassUse RaycastPass::use(const Frame& frame) const {
+  const TargetSet reads = frame.has(target::opaque_depth) ? target::opaque_depth : 0;
+  return {reads, ends_at_half(frame) ? 0 : target::volume, true};
+}
+
+Outcome RaycastPass::prepare(Frame& frame) {
+  const FramePacket& packet = frame.packet;
+  grids_.clear();
+  fast_ = frame.settings.fast && draws_fast(frame.device, packet) ? &packet.volumes.front() : nullptr;
+  if (fast_) {
+    grids_.push_back(fast_->grid.get());
+    if (!fast_pass_) {
+      CATENA_TRY(fast_pass_, FastVolumePass::create(frame.device));
+    }
+    return fast_pass_->prepare(*fast_, *frame.settings.fast);
+  }
+
+  std::vector<VolumePass::Mirrored<VolumeItem>> volumes;
+  std::vector<VolumePass::Mirrored<IsosurfaceItem>> surfaces;
+  const auto mirror = [&](const auto& item, auto& list) -> Outcome {
+    CATENA_TRY(auto mirrored, frame.mirror(*item.grid));
+    if (!mirrored->drawable) return Done{};
+    grids_.push_back(item.grid.get());
+    list.emplace_back(&item, std::move(mirrored));
+    return Done{};
+  };
+  for (const VolumeItem& item : packet.volumes) CATENA_CHECK(mirror(item, volumes));
+  for (const IsosurfaceItem& item : packet.isosurfaces)
+    if (is_translucent(item)) CATENA_CHECK(mirror(item, surfaces));
+  if (volumes.size() > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes.size(), MAX_VOLUMES)};
+  if (surfaces.size() > MAX_SURFACES)
+    return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", surfaces.size(), MAX_SURFACES)};
+  any_ = !volumes.empty() || !surfaces.empty();
+  if (!any_) return Done{};
+  if (!exact_pass_) {
+    CATENA_TRY(exact_pass_, VolumePass::create(frame.device));
+  }
+  return exact_pass_->prepare(volumes, surfaces);
+}
+
+Bounds RaycastPass::bounds() const {
+  Bounds all;
+  for (const field::ScalarGrid* grid : grids_) all.add(grid_bounds(*grid));
+  return all;
+}
+
+Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
+  Targets& targets = frame.targets;
+  const vk::Image* opaque = frame.has(target::opaque_depth) ? &targets.opaque_depth : nullptr;
+  const VkRect2D area = covered_area(grids_, frame.rays.camera);
+  if (fast_) {
+    const bool half = ends_at_half(frame);
+    CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.picture.info().extent,
+                                    half ? nullptr : &targets.volume, opaque, targets.none));
+    if (half) {
+      frame.half_lattice = &fast_pass_->half();
+      frame.half_area = area;
+    }
+    return Done{};
+  }
+  targets.begin(commands, target::volume, target::volume);
+  if (any_) CATENA_CHECK(exact_pass_->record(commands, frame.rays, ray_settings(frame.settings), area, opaque, targets.none));
+  commands.end_pass();
+  return Done{};
+}
+
+Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
+  const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
+  if (fast_) return fast_pass_->record_probe(commands, frame.rays, *frame.settings.fast, spacing, target, opaque, frame.targets.none);
+  CameraRays rays = frame.rays;
+  rays.spacing = spacing;
+  const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&color, 1}, {});
+  const VkExtent3D& extent = target.info().extent;
+  if (any_)
+    CATENA_CHECK(exact_pass_->record(commands, rays, ray_settings(frame.settings), {{0, 0}, {extent.width, extent.height}}, opaque,
+                                     frame.targets.none));
+  commands.end_pass();
+  return Done{};
+}
+
+const PassEntry kRaycastPass{"raycast",
+                             [](const Frame& frame) {
+                               const auto& surfaces = frame.packet.isosurfaces;
+                               return !frame.packet.volumes.empty() || std::any_of(surfaces.begin(), surfaces.end(), is_translucent);
+                             },
+                             RaycastPass::create};
+
+}  // namespace catena::render

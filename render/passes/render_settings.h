@@ -1,0 +1,25 @@
+/// How well and how fast: what renderer and passes are told beside the packet.
+#pragma once
+#include <optional>
+
+#include "render/mirror/grid_mirror.h"
+#include "render/passes/fast_settings.h"
+
+namespace catena::render {
+
+enum class TexelFormat { automatic, r16f, r32f };
+
+struct RenderSettings {
+  double step_voxels = 1;                       ///< in smallest voxel edges
+  double termination = 1.0 / 512;               ///< a ray ends when less than this gets through
+  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
+  MirrorLayout layout = MirrorLayout::automatic;
+  bool skip = true;  ///< leap over bricks that the transfer function leaves empty
+  /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
+  std::optional<FastSettings> fast;
+};
+RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2
+RenderSettings balanced_settings();   ///< every 4th pixel at step 2.5, refined where the picture asks for it; where it cannot: step 1
+RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
+
+}  // namespace catena::render

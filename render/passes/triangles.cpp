@@ -1,0 +1,81 @@
+#include "render/passes/triangles.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "render/passes/grid_bindings.h"
+#include "render/passes/targets.h"
+#include "render/vk/upload.h"
+
+namespace catena::render {
+namespace {
+
+constexpr std::uint32_t kVertexShader[] = {
+#include "spirv/mesh.vert.inc"
+};
+constexpr std::uint32_t kFragmentShader[] = {
+#include "spirv/mesh.frag.inc"
+};
+
+struct Vertex {
+  glm::vec3 position, normal, color;
+  std::uint32_t id;
+};
+
+}  // namespace
+
+Outcome Triangles::upload(vk::Device& device, const Shape& shape) {
+  index_count_ = 0;
+  bounds_ = {};
+  if (shape.triangles.empty()) return Done{};
+  for (const MeshVertex& v : shape.vertices) bounds_.add(v.position);
+  origin_ = bounds_.centre();
+  std::vector<Vertex> vertices;
+  vertices.reserve(shape.vertices.size());
+  for (const MeshVertex& v : shape.vertices)
+    vertices.push_back({glm::vec3(v.position - origin_), glm::vec3(v.normal), {v.color.r, v.color.g, v.color.b}, v.id});
+  CATENA_TRY(vertices_, vk::upload_buffer(device, std::as_bytes(std::span(vertices)), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+  CATENA_TRY(indices_, vk::upload_buffer(device, std::as_bytes(std::span(shape.triangles)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+  index_count_ = std::uint32_t(shape.triangles.size());
+  return Done{};
+}
+
+Result<TriangleDrawer> TriangleDrawer::create(vk::Device& device) {
+  TriangleDrawer self;
+  self.device_ = &device;
+  vk::GraphicsInfo info;
+  info.vertex = kVertexShader;
+  info.fragment = kFragmentShader;
+  info.slots = {{0, vk::Resource::uniform}};
+  info.colors = opaque_formats();
+  info.depth = true;
+  info.vertex_stride = sizeof(Vertex);
+  info.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+                     {1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+                     {2, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
+                     {3, VK_FORMAT_R32_UINT, offsetof(Vertex, id)}};
+  CATENA_TRY(self.pipeline_, vk::Pipeline::create(device, info));
+  return self;
+}
+
+Outcome TriangleDrawer::draw(vk::Commands& commands, const CameraRays& rays, Triangles& triangles) {
+  if (triangles.index_count_ == 0) return Done{};
+  CATENA_CHECK(write_uniform(*device_, triangles.uniform_, rays.mesh(triangles.origin_)));
+  const vk::Binding binding{0, vk::Resource::uniform, &triangles.uniform_, nullptr, nullptr};
+  commands.bind(pipeline_, {&binding, 1});
+  commands.draw_indexed(triangles.vertices_, triangles.indices_, triangles.index_count_);
+  return Done{};
+}
+
+bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
+
+bool same(const TubeItem& a, const TubeItem& b) {
+  return a.radius == b.radius && same(a.color, b.color) && a.points == b.points && all_same(a.colors, b.colors) && a.id == b.id &&
+         a.clipped == b.clipped;
+}
+
+bool same(const ArrowItem& a, const ArrowItem& b) {
+  return a.base == b.base && a.tip == b.tip && a.radius == b.radius && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
+}
+
+}  // namespace catena::render

@@ -1,0 +1,44 @@
+/// Lit triangles into the opaque targets: what meshes, streamlines and the cursor have in common.
+#pragma once
+#include "render/passes/camera_rays.h"
+#include "render/passes/shapes.h"
+#include "render/vk/commands.h"
+
+namespace catena::render {
+
+/// A shape on the device.
+class Triangles {
+ public:
+  Outcome upload(vk::Device& device, const Shape& shape);
+  const Bounds& bounds() const { return bounds_; }
+
+ private:
+  friend class TriangleDrawer;
+  vk::Buffer vertices_, indices_, uniform_;
+  std::uint32_t index_count_ = 0;
+  Vec3 origin_{0.0};
+  Bounds bounds_;
+};
+
+/// Clip planes hold for vertices without shared::UNCLIPPED in their id.
+class TriangleDrawer {
+ public:
+  static Result<TriangleDrawer> create(vk::Device& device);
+  /// Within a pass over target::opaque.
+  Outcome draw(vk::Commands& commands, const CameraRays& rays, Triangles& triangles);
+
+ private:
+  TriangleDrawer() = default;
+  vk::Device* device_ = nullptr;
+  vk::Pipeline pipeline_;
+};
+
+bool same(const Color& a, const Color& b);
+bool same(const TubeItem& a, const TubeItem& b);
+bool same(const ArrowItem& a, const ArrowItem& b);
+template <class Items>
+bool all_same(const Items& a, const Items& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return same(x, y); });
+}
+
+}  // namespace catena::render

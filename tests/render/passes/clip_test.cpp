@@ -1,0 +1,103 @@
+/// Clip planes: what they leave of volumes, surfaces and triangles, against closed forms.
+#include <cmath>
+
+#include "render/frame/camera.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+/// A homogeneous box of 21^3 voxels seen along y, orthographic: one pixel is 0.25 units.
+FramePacket box_packet(double sigma) {
+  FramePacket packet;
+  packet.width = packet.height = 120;
+  packet.background = {0, 0, 0, 0};
+  packet.view.position = {10, -40, 10};
+  packet.view.target = {10, 10, 10};
+  packet.view.orthographic = true;
+  packet.view.height = 30;
+  packet.volumes.push_back(volume_item(make_grid({21, 21, 21}, [](const Vec3&) { return 0.5; }), {{0, sigma}, {1, sigma}}));
+  return packet;
+}
+
+double alpha_of(double sigma, double length) { return 255 * (1 - std::exp(-sigma * length)); }
+
+class Clip : public PictureTest {};
+
+TEST_F(Clip, AnObliquePlaneLeavesTheWedgeOfAHomogeneousBox) {
+  FramePacket packet = box_packet(0.1);
+  packet.clip = {{{10, 10, 10}, {0.3, 1, 0}}};  // y >= 10 - 0.3 (x - 10)
+  for (const bool fast : {false, true}) {
+    RenderSettings settings;
+    if (fast) settings.fast = FastSettings{1, 1, -1, -1};
+    const Picture picture = draw(packet, settings, fast ? "fast" : "exact");
+    for (std::uint32_t x = 24; x < 96; x += 3) {
+      const double world = 10 + (x + 0.5 - 60) * 0.25;
+      EXPECT_NEAR(picture.pixel(x, 60)[3], alpha_of(0.1, 20 - (10 - 0.3 * (world - 10))), 1.01) << x;
+    }
+  }
+}
+
+TEST_F(Clip, PlanesBehindAndAcrossTheViewInPerspective) {
+  FramePacket packet = box_packet(0.05);
+  packet.view.orthographic = false;
+  packet.view.fovy_deg = 30;
+  packet.clip = {{{0, 5, 0}, {0, 1, 0}}, {{12, 0, 0}, {-1, 0, 0}}};  // y >= 5, x <= 12
+  const Picture picture = draw(packet, {}, "two");
+  const Camera camera = make_camera(packet.view, 120, 120, {});
+  for (const Vec3& p : {Vec3(11.7, 5, 10), Vec3(8, 5, 12), Vec3(12.6, 5, 10), Vec3(13.5, 5, 10)}) {
+    const auto pixel = project(camera, p);
+    const Ray ray = ray_through(camera, std::floor(pixel->x) + 0.5, std::floor(pixel->y) + 0.5);
+    // entry at y = 5, exit at y = 20 or x = 12
+    const double enter = (5 - ray.origin.y) / ray.direction.y, leave = (20 - ray.origin.y) / ray.direction.y;
+    double to = leave;
+    if (ray.direction.x > 0) to = std::min(to, (12 - ray.origin.x) / ray.direction.x);
+    EXPECT_NEAR(picture.pixel(std::uint32_t(pixel->x), std::uint32_t(pixel->y))[3], alpha_of(0.05, std::max(0.0, to - enter)), 1.01);
+  }
+}
+
+TEST_F(Clip, ASurfaceIsMetAtItsNextCrossingAndTrianglesAreCut) {
+  FramePacket packet = box_packet(0);
+  packet.volumes.clear();
+  const auto sphere = make_grid({21, 21, 21}, [](const Vec3& p) { return norm(p - Vec3(10.0)); });
+  packet.isosurfaces.push_back({sphere, 6.0, {1, 1, 1}, 1.0f, 7});
+  TubeItem tube;
+  tube.points = {{10, 10, 0}, {10, 10, 3}};
+  tube.radius = 0.5;
+  tube.color = {1, 0, 0};
+  tube.id = 9;
+  packet.tubes.push_back(tube);
+  packet.clip = {{{0, 6, 0}, {0, 1, 0}}, {{0, 0, 2}, {0, 0, 3}}};  // y >= 6, z >= 2
+  draw(packet, {}, "cut");
+  const auto depth = renderer_->read_depth();
+  const auto ids = renderer_->read_ids();
+  ASSERT_TRUE(depth && ids);
+  // in the middle the front of the sphere is cut away: its back is seen through the opening
+  EXPECT_NEAR(depth->depth[60 * 120 + 60], 40 + 10 + 6, 0.05);
+  EXPECT_EQ(ids->ids[60 * 120 + 60], 7u);
+  // the tube: z >= 2 is left (rows: z = 10 - (row + 0.5 - 60) / 4)
+  const auto id_at = [&](double z) { return ids->ids[std::size_t(60 + (10 - z) * 4) * 120 + 60]; };
+  EXPECT_EQ(id_at(2.8), 9u);
+  EXPECT_EQ(id_at(1.0), 0u);
+  // not clipped: whole
+  packet.isosurfaces[0].clipped = packet.tubes[0].clipped = false;
+  draw(packet, {}, "whole");
+  const auto whole = renderer_->read_depth();
+  const auto whole_ids = renderer_->read_ids();
+  ASSERT_TRUE(whole && whole_ids);
+  EXPECT_NEAR(whole->depth[60 * 120 + 60], 40 + 10 - 6, 0.05);
+  EXPECT_EQ(whole_ids->ids[std::size_t(60 + (10 - 1.0) * 4) * 120 + 60], 9u);
+}
+
+TEST_F(Clip, MoreThanEightPlanesAreAnErrorInOneLine) {
+  FramePacket packet = box_packet(0.1);
+  packet.clip.resize(9);
+  const auto drawn = renderer_->draw(packet);
+  ASSERT_FALSE(drawn);
+  EXPECT_NE(drawn.error().message.find("9 clip planes"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace catena::test
