@@ -162,7 +162,11 @@ Result<Picture> Renderer::read_back() {
   return picture;
 }
 
-bool Renderer::draws_fast(const FramePacket& packet) const { return RaycastPass::draws_fast(*parts_->device, packet); }
+bool Renderer::draws_fast(const FramePacket& packet) const {
+  for (const Pass* pass : parts_->active())
+    if (const auto* raycast = dynamic_cast<const RaycastPass*>(pass); raycast && raycast->has_refused(packet)) return false;
+  return RaycastPass::draws_fast(*parts_->device, packet);
+}
 
 Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
@@ -261,7 +265,10 @@ RenderStats Renderer::stats() const {
   stats.mirrors = parts_->mirrors->count();
   stats.passes = parts_->drawn_passes;
   stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
-  for (const Pass* pass : parts_->active()) stats.mirror_ms += pass->build_ms();
+  for (const Pass* pass : parts_->active()) {
+    stats.mirror_ms += pass->build_ms();
+    if (std::string note = pass->note(); !note.empty()) stats.notes.push_back(std::move(note));
+  }
   stats.validation_messages = device.messages().count();
   return stats;
 }

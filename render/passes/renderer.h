@@ -28,6 +28,7 @@ struct RenderStats {
   std::uint64_t upload_bytes = 0;
   std::uint64_t pipelines = 0;            ///< created so far
   std::vector<std::string> passes;        ///< of the last picture, in order
+  std::vector<std::string> notes;         ///< what the last picture was drawn differently from what was asked, one line each
   std::uint64_t mirrors = 0;              ///< grids mirrored now
   double mirror_ms = 0;                   ///< spent on building and uploading mirrors so far
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
@@ -59,7 +60,7 @@ class Renderer {
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
   /// The last picture, straight alpha.
   Result<Picture> read_back();
-  /// Whether `RenderSettings::fast` holds for what the packet draws.
+  /// Whether `RenderSettings::fast` holds for what the packet draws. What it turns out to have no memory for, it holds no longer for.
   bool draws_fast(const FramePacket& packet) const;
   /// The rays of every kProbeSpacing-th pixel alone, as a small picture over black: what `settings` make of them before anything is
   /// interpolated. What quality.h measures errors with.
