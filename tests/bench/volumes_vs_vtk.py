@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Volumes against VTK, side by side: processor time a picture at equal error to each renderer's own converged picture.
 needs: python3-vtk9, python3-numpy, xvfb; volume_table of the preset release; noise256.raw fog256.raw rough256.raw in FIELDS
-usage: volumes_vs_vtk.py VOLUME_TABLE FIELDS WORK [CASE ...]      CASE: noise noise-shaded fog fog-shaded rough spike (default: all)
+usage: volumes_vs_vtk.py VOLUME_TABLE FIELDS WORK [CASE ...]      CASE: noise noise-shaded fog fog-shaded rough spike (default: all), or one of
+these and :gpu or :cpu for one mapper alone (converged pictures of the slower one take minutes on a busy machine)
 Both mappers of VTK at image sample distances 1 and 2, alternating with ours; converged pictures are kept in WORK between runs.
 Prints, for each of VTK's pictures: its error, its time, the cheapest of ours with no larger error, and the ratio. Errors are RMSE of
 8-bit RGB over covered pixels (either picture not black), in 1/255; times are medians of summed CPU milliseconds over threads."""
@@ -11,7 +12,7 @@ N, WIDTH, HEIGHT, VIEWS = 256, 1024, 768, 3
 COLOUR = ((0, .1, .1, .4), (.35, .1, .6, .8), (.6, .9, .8, .3), (1, .9, .2, .1))
 RAMP = ((0, 0), (.02, 0), (1, .1))
 SPIKE = ((0, 0), (.38, 0), (.4, .5), (.42, 0), (1, 0))
-# field, opacity, shaded, the mapper whose converged picture is VTK's truth, steps tried of VTK, and modes of ours
+# field, opacity, shaded, steps tried of VTK, modes of ours
 CASES = {
     "noise": ("noise", RAMP, 0, (1,), "fast=4,4,-1,-1 fast=3,4,1.1,-1 fast=3,4,.7,-1 fast=2,4,.5,-1 fast=2,2,0,-1"),
     "noise-shaded": ("noise", RAMP, 1, (1,), "fast=4,4,-1,-1 fast=3,4,1,-1 fast=3,2,0,-1 fast=2,2,0,-1 fast=2,2,0,-1,smooth fast=2,4,.5,-1,smooth"),
@@ -22,7 +23,7 @@ CASES = {
 }
 
 
-def vtk_side(raw, opacity, shade, truths, work, tag):
+def vtk_side(raw, opacity, shade, work, tag):
     """In a process of its own: reads lines `mapper step distance views`, answers with one JSON line each."""
     import numpy as np
     import vtk
@@ -135,13 +136,14 @@ def vtk_side(raw, opacity, shade, truths, work, tag):
 def main(table, fields, work, names):
     os.makedirs(work, exist_ok=True)
     env = dict(os.environ, LIBGL_ALWAYS_SOFTWARE="1", LP_NUM_THREADS="2", CATENA_PICTURES=work, CATENA_VIEWS=str(VIEWS))
-    for name in names:
+    for case in names:
+        name, _, only = case.partition(":")
         field, opacity, shade, steps, modes = CASES[name]
         raw, begin = f"{fields}/{field}{N}.raw", time.time()
         vtk = subprocess.Popen(["xvfb-run", "-a", sys.executable, __file__, "--vtk", name, raw, work], env=env, stdin=subprocess.PIPE,
                                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         ours_env = dict(env, **({"CATENA_SPIKE": "1"} if name == "spike" else {}))
-        jobs = [(k, s, d) for k in ("gpu", "cpu") for s in steps for d in (1, 2)]
+        jobs = [(k, s, d) for k in ("gpu", "cpu") if only in ("", k) for s in steps for d in (1, 2)]
         modes, theirs, ours = modes.split(), [], []
         # alternating: one of theirs, some of ours
         for i, (kind, step, distance) in enumerate(jobs):
@@ -157,7 +159,7 @@ def main(table, fields, work, names):
                 ours += [{"what": o["what"], "cpu_ms": 2 * o["half_cpu_ms"], "rmse": o["rmse_covered"]} for o in map(json.loads, out.splitlines())]
         vtk.stdin.close()
         vtk.wait()
-        print(f"## {name}   ({time.time() - begin:.0f} s)")
+        print(f"## {case}   ({time.time() - begin:.0f} s)")
         for o in sorted(ours, key=lambda o: o["cpu_ms"]):
             print(f"  ours {o['cpu_ms']:8.0f} ms   {o['rmse']:.2f}   {o['what']}")
         for v in theirs:
@@ -170,8 +172,8 @@ def main(table, fields, work, names):
 if __name__ == "__main__":
     if len(sys.argv) > 1 and sys.argv[1] == "--vtk":
         case = CASES[sys.argv[2]]
-        vtk_side(sys.argv[3], case[1], case[2], None, sys.argv[4], sys.argv[2])
-    elif len(sys.argv) < 4 or any(c not in CASES for c in sys.argv[4:]):
+        vtk_side(sys.argv[3], case[1], case[2], sys.argv[4], sys.argv[2])
+    elif len(sys.argv) < 4 or any(c.partition(":")[0] not in CASES for c in sys.argv[4:]):
         sys.exit(__doc__)
     else:
         main(sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:] or list(CASES))
