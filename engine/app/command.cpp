@@ -29,17 +29,23 @@ Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std:
   return overrides;
 }
 
-Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options) {
+Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors) {
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, field_overrides(field_options));
-  if (is_scene_file(path)) return scene::read_scene(path, overrides);
+  if (is_scene_file(path)) {
+    if (!colors.map.empty() || colors.range) return Error{path + ": --colormap and --range go with a data file; a scene says its colours"};
+    return scene::read_scene(path, overrides);
+  }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
-  return scene::scene_for_file(path);
+  return scene::scene_for_file(path, {}, colors);
 }
 
 std::vector<std::string> inputs_of(const scene::Scene& scene) {
   std::vector<std::string> inputs{scene.path};
   scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
     if (source.file) inputs.push_back(source.file->path);
+  });
+  scene.world.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) {
+    if (!volume.transfer.file.empty()) inputs.push_back(volume.transfer.file);
   });
   scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) { inputs.push_back(source.path); });
   return inputs;

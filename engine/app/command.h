@@ -38,7 +38,9 @@ struct MachineFailure {
 
 /// A scene file (.json), or a bare data file.
 bool is_scene_file(const std::string& path);
-Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {});
+/// `colors` is for a bare data file.
+Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {},
+                                const scene::NamedColors& colors = {});
 /// NAME=FILE[:GRID], as the command line gives them.
 Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std::string>& field_options);
 /// The scene file itself and every data file that its fields name: what no output may overwrite.

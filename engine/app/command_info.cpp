@@ -10,6 +10,7 @@
 #include "engine/base/numbers.h"
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
+#include "engine/scene/color_maps.h"
 #include "haptics/constraints/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
@@ -113,13 +114,18 @@ Outcome describe_scene(const std::string& path) {
 
 void add_info(CLI::App& program, Work& chosen) {
   auto path = std::make_shared<std::string>();
-  auto schema = std::make_shared<bool>(false);
+  auto schema = std::make_shared<bool>(false), maps = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
   command->add_option("FILE", *path,
                       "a data file (.vdb .nii .nii.gz), a triangle mesh (.stl .obj), a scene (.json) or a recording (.catlog)");
   command->add_flag("--schema", *schema, "print the JSON Schema of a scene's chain instead");
-  command->callback([&chosen, path, schema] {
-    chosen = [path, schema]() -> Outcome {
+  command->add_flag("--colormaps", *maps, "list the colour maps instead");
+  command->callback([&chosen, path, schema, maps] {
+    chosen = [path, schema, maps]() -> Outcome {
+      if (*maps) {
+        for (const std::string_view name : scene::color_map_names()) fmt::print("{}\n{}_r\n", name, name);
+        return Done{};
+      }
       if (*schema) {
         fmt::print("{}\n", haptics::chain_schema());
         return Done{};

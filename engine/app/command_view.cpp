@@ -2,10 +2,12 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "engine/app/annotate_option.h"
 #include "engine/app/command.h"
 #include "engine/app/hand/realtime_option.h"
 #include "engine/app/number_option.h"
 #include "engine/app/size_option.h"
+#include "engine/app/stereo_option.h"
 #include "engine/app/viewer/viewer.h"
 #include "engine/base/output_file.h"
 
@@ -19,12 +21,16 @@ struct Options {
   int frames = 0;
   double seconds = 0;
   RealtimeChoice realtime;
+  AnnotateOptions annotate;
+  StereoChoice stereo;
 };
 
 Outcome open_window(const Options& o, int& exit_code) {
   CATENA_TRY(const Size size, parse_size(o.size));
   ViewOptions options;
   CATENA_TRY(options.scene, open_scene(o.source, o.fields));
+  CATENA_CHECK(annotate(options.scene, o.annotate));
+  CATENA_CHECK(o.stereo.apply(options.scene.stereo));
   if (!o.screenshot.empty()) CATENA_CHECK(check_output(o.screenshot, inputs_of(options.scene)));
   if (!o.servo_stats.empty()) CATENA_CHECK(check_output(o.servo_stats, inputs_of(options.scene)));
   const std::pair<const char*, const std::string&> outputs[] = {
@@ -58,12 +64,14 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
       ->capture_default_str();
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
+  add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
   command->add_option("--servo-stats", options->servo_stats, "the servo's ticks, missed deadlines, histograms, JSON");
   command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
   command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
+  add_annotate_options(*command, options->annotate);
   add_realtime_options(*command, options->realtime);
   command->callback([&chosen, &exit_code, options] { chosen = [&exit_code, options] { return open_window(*options, exit_code); }; });
 }

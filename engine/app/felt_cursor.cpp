@@ -31,6 +31,9 @@ Outcome place_cursor(scene::Scene& scene, const haptics::Program& program, const
   exchange::HapticState last;
   for (const haptics::ProbeSample& probe : path) haptics::tick(program, probe, *state, *scratch, last);
   scene::update_cursor(scene, last);
+  scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+  cursor.names.clear();
+  for (const haptics::Link& link : program.links) cursor.names.push_back(link.name);
   return Done{};
 }
 

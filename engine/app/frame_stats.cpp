@@ -21,10 +21,20 @@ std::string FrameStats::json() const {
       "  \"frame_ms\": {{\"median\": {:.3f}, \"p99\": {:.3f}, \"max\": {:.3f}}},\n"
       "  \"first_frame_ms\": {:.3f},\n  \"load_ms\": {:.3f},\n  \"mirror_ms\": {:.3f},\n  \"encode_ms\": {:.3f},\n"
       "  \"quality\": {{\"mode\": {}, \"estimated_rmse\": {}}},\n"
+      "  \"tiles\": {},\n  \"objects\": {},\n"
       "  \"cpu_bytes\": {},\n  \"gpu_bytes\": {},\n  \"validation_messages\": {}\n}}\n",
       json_string(device), json_string(driver), frame_ms.size(), median_ms(), quantile(times, 0.99), quantile(times, 1), first_frame_ms,
       load_ms, mirror_ms, encode_ms, json_string(quality_mode),
-      estimated_rmse ? fmt::format("{:.4f}", *estimated_rmse) : std::string("null"), cpu_bytes, gpu_bytes, validation_messages);
+      estimated_rmse ? fmt::format("{:.4f}", *estimated_rmse) : std::string("null"), tiles, objects_json(objects), cpu_bytes, gpu_bytes,
+      validation_messages);
+}
+
+std::string objects_json(const std::vector<render::ObjectName>& objects) {
+  std::string text = "[";
+  for (const render::ObjectName& object : objects)
+    text += fmt::format("{}{{\"id\": {}, \"kind\": {}, \"name\": {}}}", text.size() > 1 ? ", " : "", object.id, json_string(object.kind),
+                        json_string(object.name));
+  return text + "]";
 }
 
 std::uint64_t field_bytes(const scene::Scene& scene) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
+#include "render/frame/frame_packet.h"
 
 namespace catena::app {
 
@@ -14,12 +15,17 @@ struct FrameStats {
   std::vector<double> frame_ms;  ///< start of extraction to the fence of the colour image
   double first_frame_ms = 0, load_ms = 0, mirror_ms = 0, encode_ms = 0;
   std::string quality_mode;
-  std::optional<double> estimated_rmse;  ///< 1/255; measured for time= and error= only
+  std::optional<double> estimated_rmse;     ///< 1/255; measured for time= and error= only
+  std::uint32_t tiles = 1;                  ///< that a frame is drawn in
+  std::vector<render::ObjectName> objects;  ///< what the ids of --ids stand for
   std::uint64_t cpu_bytes = 0, gpu_bytes = 0, validation_messages = 0;
 
   double median_ms() const;
   std::string json() const;
 };
+
+/// [{"id": 1, "kind": "volume", "name": "density"}, ..], on one line.
+std::string objects_json(const std::vector<render::ObjectName>& objects);
 
 /// Bytes of all grids that the scene has loaded; a grid that several entities share counts once.
 std::uint64_t field_bytes(const scene::Scene& scene);

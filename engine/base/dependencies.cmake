@@ -10,8 +10,11 @@ find_package(PkgConfig REQUIRED)
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
 pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)
+pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
 pkg_check_modules(JSONCPP REQUIRED IMPORTED_TARGET jsoncpp)
 pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)
+pkg_check_modules(FREETYPE REQUIRED IMPORTED_TARGET freetype2)
+pkg_check_modules(FONTCONFIG REQUIRED IMPORTED_TARGET fontconfig)
 add_library(JsonCpp::JsonCpp ALIAS PkgConfig::JSONCPP)
 
 if(NOT TARGET CLI11::CLI11)

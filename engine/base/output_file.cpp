@@ -71,6 +71,10 @@ void OutputFile::write(std::string_view text) {
   if (error_ == 0 && std::fwrite(text.data(), 1, text.size(), file_) != text.size()) error_ = errno != 0 ? errno : EIO;
 }
 
+void OutputFile::seek(std::uint64_t position) {
+  if (error_ == 0 && ::fseeko(file_, static_cast<off_t>(position), SEEK_SET) != 0) error_ = errno;
+}
+
 Outcome OutputFile::finish() {
   if (file_ != nullptr) {
     if (std::fflush(file_) != 0 && error_ == 0) error_ = errno;

@@ -1,6 +1,7 @@
 /// An output that is either complete or not there: written to a temporary file beside its place, renamed by commit().
 /// Places that are no regular files (/dev/stdout, /dev/full, pipes) are written directly. Errors name the path and why.
 #pragma once
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -25,6 +26,8 @@ class OutputFile {
   OutputFile& operator=(OutputFile&&) = delete;
 
   void write(std::string_view text);  ///< failures are kept for finish()
+  bool failed() const { return error_ != 0; }
+  void seek(std::uint64_t position);  ///< regular files; failures are kept for finish()
   /// Everything is on its way to the disk, or one line why not.
   Outcome finish();
   /// finish(), then the rename to the final name.

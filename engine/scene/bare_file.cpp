@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/transfer.h"
 
@@ -75,8 +76,12 @@ Result<Scene> scene_for_mesh(const std::string& path) {
 
 }  // namespace
 
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid) {
-  if (mesh::is_mesh_file(path)) return scene_for_mesh(path);
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
+  const bool colored = !colors.map.empty() || colors.range;
+  if (mesh::is_mesh_file(path)) {
+    if (colored) return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
+    return scene_for_mesh(path);
+  }
   if (path.ends_with(".raw"))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
   field::LoadRequest request;
@@ -103,7 +108,10 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid) {
     volume.field = field;
     volume.where = where;
     volume.shade = true;
+    volume.transfer.named.range = colors.range;
     complete_transfer(volume.transfer, *loaded.scalar->grid());
+    if (!colors.map.empty())
+      volume.transfer.colors = named_map(colors.map, volume.transfer.colors.front().value, volume.transfer.colors.back().value);
     scene.world.emplace<Volume>(drawn, std::move(volume));
     return scene;
   }
@@ -112,6 +120,10 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid) {
   set.where = where;
   set.seeds.points = lattice_seeds(*loaded.vector);
   set.color = kLineColor;
+  if (colored) {
+    set.color_by.emplace();
+    set.color_by->named = colors;
+  }
   set.length = kLengthShare * loaded.vector->length();
   set.tolerance = kDrawnTolerance;
   if (!set.seeds.points.empty()) scene.world.emplace<StreamlineSet>(drawn, std::move(set));

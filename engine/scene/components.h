@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
@@ -34,9 +35,16 @@ struct Rgb {
   float r = 0, g = 0, b = 0;
 };
 
+/// A colour map by its name, laid over a range once the values are known (color_maps.h).
+struct NamedColors {
+  std::string map;                             ///< empty: the default of what is coloured
+  std::optional<std::array<double, 2>> range;  ///< empty: that of the values
+};
+
 /// Piecewise-linear maps over field values, values rising. The scene gives either extinctions (sigma per world unit) or
 /// opacities (alpha per opacity_unit), which become sigma = -ln(1 - alpha) / opacity_unit at their points once the drawn
-/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear.
+/// grid is known (its smallest voxel edge is the default unit). Between the points sigma is linear. A factor that follows the
+/// length of the field's gradient (field units per world unit) multiplies sigma.
 struct TransferFunction {
   struct ColorPoint {
     double value;
@@ -52,6 +60,12 @@ struct TransferFunction {
   std::vector<OpacityPoint> opacities;
   double opacity_unit = 0;  ///< world length; 0: the smallest voxel edge of the drawn grid
   std::vector<ExtinctionPoint> extinctions;
+  NamedColors named;  ///< where `colors` is empty
+  struct GradientPoint {
+    double gradient, factor;
+  };
+  std::vector<GradientPoint> gradient_factors;  ///< gradients rising, factors 0..1; empty: 1 everywhere
+  std::string file;                             ///< that it was read from; empty: the scene's own
 };
 
 struct Volume {
@@ -115,7 +129,8 @@ struct ColorBy {
   enum class What { field, speed, arc_length };
   What what = What::speed;
   Entity field;                                      ///< a scalar, or the magnitude of a vector
-  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: viridis over the values that are drawn
+  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
+  NamedColors named{};                               ///< viridis, the values that are drawn, where it does not say
 };
 
 struct StreamlineSet {
@@ -149,6 +164,8 @@ struct Cursor {
   std::vector<Vec3> proxies;
   std::vector<bool> active;
   std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it
+  std::vector<exchange::Status> statuses;
+  std::vector<std::string> names;  ///< of the links, once the chain is made
   Vec3 force_n{0.0};
   double size = 0;  ///< glyph radius, world units; 0: fitted
   bool visible = false;
@@ -200,6 +217,47 @@ struct ClipPlane {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
 };
 inline constexpr std::size_t kMostClipPlanes = 8;
+
+/// Help for the eye: what shows where things stand. Sizes of 0 are fitted to what is drawn.
+struct BoundingBox {
+  Entity field;  ///< none: everything that is drawn
+  json::Node where;
+  Rgb color{0.7f, 0.7f, 0.7f};
+  double radius = 0;
+};
+
+/// Three edges of the box with ticks and numbers.
+struct Axes {
+  Entity field;  ///< none: everything that is drawn
+  json::Node where;
+  std::array<std::string, 3> names{"x", "y", "z"};
+  Rgb color{0.7f, 0.7f, 0.7f};
+  int ticks = 5;  ///< about so many an axis
+  double radius = 0;
+};
+
+/// A checkerboard across z.
+struct Ground {
+  std::optional<double> at;  ///< z; none: just below what is drawn
+  double size = 0, tile = 0;
+  std::array<Rgb, 2> colors{Rgb{0.42f, 0.42f, 0.44f}, Rgb{0.32f, 0.32f, 0.34f}};
+};
+
+/// Depth cue: colours turn to the fog's as the view depth goes from start to end.
+struct Fog {
+  std::optional<Rgb> color;          ///< none: the background's
+  std::optional<double> start, end;  ///< view depth, world units; none: the nearest and farthest of what is drawn
+  double most = 0.8;                 ///< share of the fog at the end
+};
+
+/// A light from far away. Without one there is a headlight.
+struct Light {
+  Vec3 direction{0.0, 0.0, 1.0};  ///< towards the light; camera: right, up, towards the eye
+  Rgb color{1, 1, 1};
+  double intensity = 1;
+  bool with_camera = false;
+};
+inline constexpr std::size_t kMostLights = 4;
 
 struct Background {
   Rgb color{0, 0, 0};

@@ -3,64 +3,16 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/read_transfer.h"
 
 namespace catena::scene {
 namespace {
-
-Result<Rgb> rgb_of(const Vec3& c, const json::Node& node, std::string_view what) {
-  for (int i = 0; i < 3; ++i)
-    if (!(c[i] >= 0 && c[i] <= 1))
-      return json::error_at(node, in_quotes(what) + " holds " + to_text(c[i]) + "; colour components from 0 to 1 were expected");
-  return Rgb{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
-}
 
 Result<Rgb> get_color(const json::Node& object, std::string_view key, const Rgb& fallback) {
   const json::Node* node = object.find(key);
   if (node == nullptr) return fallback;
   CATENA_TRY(const Vec3 c, json::as_vec3(*node, key));
-  return rgb_of(c, *node, key);
-}
-
-/// Rows [value, ...] of a table, values rising strictly, at least one.
-Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std::string_view what, std::size_t width) {
-  CATENA_TRY(auto rows, json::as_rows(node, what, width));
-  if (rows.empty())
-    return json::error_at(node, in_quotes(what) + " is empty; at least one row of " + std::to_string(width) + " numbers was expected");
-  for (std::size_t i = 1; i < rows.size(); ++i)
-    if (!(rows[i][0] > rows[i - 1][0]))
-      return json::error_at(node.items[i], in_quotes(what) + " has the value " + to_text(rows[i][0]) + " after " + to_text(rows[i - 1][0]) +
-                                               "; strictly rising values were expected");
-  return rows;
-}
-
-Result<TransferFunction> read_transfer(const json::Node& node) {
-  TransferFunction transfer;
-  if (const json::Node* color = node.find("color")) {
-    CATENA_TRY(transfer.colors, read_color_table(*color, "color"));
-  }
-  const json::Node *opacity = node.find("opacity"), *extinction = node.find("extinction"), *unit = node.find("opacity_unit");
-  if (opacity != nullptr && extinction != nullptr)
-    return json::error_at(*extinction, "both \"opacity\" and \"extinction\" are given; one of them was expected");
-  if (unit != nullptr && opacity == nullptr)
-    return json::error_at(*unit, "\"opacity_unit\" is given without \"opacity\"; the table \"opacity\" was expected beside it");
-  if (opacity != nullptr) {
-    CATENA_TRY(const auto rows, read_table(*opacity, "opacity", 2));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!(rows[i][1] >= 0 && rows[i][1] < 1))
-        return json::error_at(opacity->items[i], "\"opacity\" holds " + to_text(rows[i][1]) + "; an opacity 0 <= a < 1 was expected");
-      transfer.opacities.push_back({rows[i][0], rows[i][1]});
-    }
-    CATENA_TRY(transfer.opacity_unit, json::get_number(node, "opacity_unit", 0, json::Range::positive));
-  }
-  if (extinction != nullptr) {
-    CATENA_TRY(const auto rows, read_table(*extinction, "extinction", 2));
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!(rows[i][1] >= 0))
-        return json::error_at(extinction->items[i], "\"extinction\" holds " + to_text(rows[i][1]) + "; a sigma >= 0 was expected");
-      transfer.extinctions.push_back({rows[i][0], rows[i][1]});
-    }
-  }
-  return transfer;
+  return as_color(c, *node, key);
 }
 
 /// Empty where `path` is a mesh file that is there.
@@ -85,17 +37,14 @@ Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
 
 }  // namespace
 
-Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback) { return get_color(object, key, fallback); }
-
-Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what) {
-  std::vector<TransferFunction::ColorPoint> colors;
-  CATENA_TRY(const auto rows, read_table(node, what, 4));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    CATENA_TRY(const Rgb rgb, rgb_of({rows[i][1], rows[i][2], rows[i][3]}, node.items[i], what));
-    colors.push_back({rows[i][0], rgb});
-  }
-  return colors;
+Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what) {
+  for (int i = 0; i < 3; ++i)
+    if (!(c[i] >= 0 && c[i] <= 1))
+      return json::error_at(node, in_quotes(what) + " holds " + to_text(c[i]) + "; colour components from 0 to 1 were expected");
+  return Rgb{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
 }
+
+Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback) { return get_color(object, key, fallback); }
 
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
   CATENA_TRY(const std::string name, json::require_string(object, key));
@@ -108,11 +57,12 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 
 Outcome read_volumes(Scene& scene, const json::Node& node) {
   return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "color", "opacity", "opacity_unit", "extinction", "shade", "clip"}));
+    CATENA_CHECK(json::only_keys(
+        item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity", "shade", "clip"}));
     Volume volume;
     volume.where = item;
     CATENA_TRY(volume.field, read_field_name(scene, item));
-    CATENA_TRY(volume.transfer, read_transfer(item));
+    CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
     CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
     CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
     scene.world.emplace<Volume>(scene.world.create(), std::move(volume));

@@ -17,6 +17,8 @@ Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<Fiel
 /// The entity of the field that member `key` of `object` names; an error lists the known ones.
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
 
+/// Three numbers 0..1 as a colour.
+Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what);
 /// Member `key` as [r, g, b], 0..1.
 Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback);
 /// Rows [value, r, g, b], values rising.
@@ -35,9 +37,22 @@ Outcome read_streamlines(Scene& scene, const json::Node& node);
 Outcome read_indicator(Scene& scene, const json::Node& node);
 Outcome read_cursor(Scene& scene, const json::Node& node);
 
+Outcome read_scalar_bars(Scene& scene, const json::Node& node);
+Outcome read_labels(Scene& scene, const json::Node& node);
+Outcome read_title(Scene& scene, const json::Node& node);
+Outcome read_orientation_marker(Scene& scene, const json::Node& node);
+Outcome read_status(Scene& scene, const json::Node& node);
+Outcome read_overlay(Scene& scene, const json::Node& node);
+
 Outcome read_camera(Scene& scene, const json::Node& node);
+Outcome read_stereo(Scene& scene, const json::Node& node);
 /// "clip": planes and boxes; "clip": false in an item, as `clipped`.
 Outcome read_clip(Scene& scene, const json::Node& node);
+Outcome read_bounding_box(Scene& scene, const json::Node& node);
+Outcome read_axes(Scene& scene, const json::Node& node);
+Outcome read_ground(Scene& scene, const json::Node& node);
+Outcome read_fog(Scene& scene, const json::Node& node);
+Outcome read_lights(Scene& scene, const json::Node& node);
 Outcome read_background(Scene& scene, const json::Node& node);
 Outcome read_quality(Scene& scene, const json::Node& node);
 

@@ -2,20 +2,23 @@
 #include "engine/base/text.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/read_transfer.h"
 
 namespace catena::scene {
 namespace {
 
-/// "color_by": a field's name, "speed" or "arc_length"; "color" is then a table [[value, r, g, b], ...] or left out.
+/// "color_by": a field's name, "speed" or "arc_length"; the colours are then those of read_transfer.h.
 Outcome read_color_by(const Scene& scene, const json::Node& item, StreamlineSet& set) {
   const json::Node *by = item.find("color_by"), *color = item.find("color");
-  const bool table =
-      color != nullptr && color->kind == json::Kind::array && !color->items.empty() && color->items[0].kind == json::Kind::array;
+  const bool of_values =
+      color != nullptr && (color->kind == json::Kind::string ||
+                           (color->kind == json::Kind::array && !color->items.empty() && color->items[0].kind == json::Kind::array));
   if (by == nullptr) {
-    if (table)
-      return json::error_at(
-          *color,
-          "\"color\" is a table, but nothing says of what; \"color_by\": a field, \"speed\" or \"arc_length\" was expected beside it");
+    for (const json::Node* node : {of_values ? color : nullptr, item.find("range"), item.find("transfer")})
+      if (node != nullptr)
+        return json::error_at(*node,
+                              in_quotes(node->label) + (node == color && color->kind == json::Kind::array ? " is a table" : " is given") +
+                                  ", but nothing says of what; \"color_by\": a field, \"speed\" or \"arc_length\" was expected beside it");
     CATENA_TRY(set.color, read_color(item, "color", set.color));
     return Done{};
   }
@@ -32,9 +35,12 @@ Outcome read_color_by(const Scene& scene, const json::Node& item, StreamlineSet&
     scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
     return json::error_at(*by, "unknown \"color_by\" " + in_quotes(name) + "; known: " + joined(names) + suggestion(name, names));
   }
-  if (color == nullptr) return Done{};
-  if (!table) return json::error_at(*color, "\"color\" beside \"color_by\" is no table; rows [value, r, g, b] were expected");
-  CATENA_TRY(set.color_by->colors, read_color_table(*color, "color"));
+  if (color != nullptr && !of_values)
+    return json::error_at(*color,
+                          "\"color\" beside \"color_by\" is no table; rows [value, r, g, b], or the name of a colour map, were expected");
+  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
+  set.color_by->colors = std::move(scale.colors);
+  set.color_by->named = std::move(scale.named);
   return Done{};
 }
 
@@ -44,8 +50,8 @@ Outcome read_streamlines(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"streamlines\" is no array; an array of objects was expected");
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(
-        item, {"field", "seeds", "radius", "color", "color_by", "kind", "min_speed", "length", "tolerance", "arrows", "pulse", "clip"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "seeds", "radius", "color", "color_by", "range", "transfer", "kind", "min_speed", "length",
+                                        "tolerance", "arrows", "pulse", "clip"}));
     StreamlineSet set;
     set.where = item;
     CATENA_TRY(set.field, read_field_name(scene, item));

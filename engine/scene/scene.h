@@ -8,7 +8,9 @@
 
 #include "engine/base/result.h"
 #include "engine/flow/curve.h"
+#include "engine/scene/annotations.h"
 #include "engine/scene/components.h"
+#include "engine/scene/stereo.h"
 
 namespace catena::scene {
 
@@ -19,8 +21,15 @@ struct Scene {
   Workspace workspace;
   std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
   Camera camera;
+  Stereo stereo;
   Background background;
+  Annotations annotations;
   std::vector<ClipPlane> clip;
+  std::optional<BoundingBox> bounding_box;
+  std::optional<Axes> axes;
+  std::optional<Ground> ground;
+  std::optional<Fog> fog;
+  std::vector<Light> lights;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts
@@ -46,8 +55,9 @@ struct FieldOverride {
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
 Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// A bare data file: its (first usable) scalar grid as a volume with a transfer function from its histogram, a vector grid
-/// as streamlines, a triangle mesh as it is; the camera is fitted.
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {});
+/// as streamlines, a triangle mesh as it is; the camera is fitted. `colors` may name a colour map and a range: a volume's
+/// opacity follows the range, lines show the speed by them.
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
 
 Entity find_field(const Scene& scene, std::string_view name);
 /// Loads on first use. `where` is the place that names the field, for messages.

@@ -6,10 +6,6 @@ namespace {
 
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
-  CATENA_CHECK(json::only_keys(root, {"fields", "chain", "modes", "coupling", "workspace", "device", "volumes", "isosurfaces", "meshes",
-                                      "streamlines", "indicator", "cursor", "camera", "background", "quality", "clip"}));
-  // fields first: the other parts name them
-  CATENA_CHECK(read_fields(scene, root, overrides));
   struct Part {
     const char* key;
     Outcome (*read)(Scene&, const json::Node&);
@@ -25,10 +21,27 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"streamlines", read_streamlines},
                             {"indicator", read_indicator},
                             {"cursor", read_cursor},
+                            {"scalar_bars", read_scalar_bars},
+                            {"labels", read_labels},
+                            {"title", read_title},
+                            {"orientation_marker", read_orientation_marker},
+                            {"status", read_status},
+                            {"overlay", read_overlay},
                             {"camera", read_camera},
+                            {"stereo", read_stereo},
                             {"background", read_background},
                             {"quality", read_quality},
-                            {"clip", read_clip}};
+                            {"clip", read_clip},
+                            {"bounding_box", read_bounding_box},
+                            {"axes", read_axes},
+                            {"ground", read_ground},
+                            {"fog", read_fog},
+                            {"lights", read_lights}};
+  std::vector<std::string_view> keys{"fields"};
+  for (const Part& part : parts) keys.push_back(part.key);
+  CATENA_CHECK(json::only_keys(root, keys));
+  // fields first: the other parts name them; scalar bars name what is drawn
+  CATENA_CHECK(read_fields(scene, root, overrides));
   for (const Part& part : parts)
     if (const json::Node* node = root.find(part.key)) CATENA_CHECK(part.read(scene, *node));
   return Done{};

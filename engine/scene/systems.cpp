@@ -14,10 +14,12 @@ void update_cursor(Scene& scene, const exchange::HapticState& state) {
   cursor.proxies.clear();
   cursor.active.clear();
   cursor.leaving.clear();
+  cursor.statuses.clear();
   for (int i = 0; i < links; ++i) {
     const exchange::LinkReport& link = state.links[static_cast<std::size_t>(i)];
     cursor.proxies.push_back(link.proxy);
     cursor.active.push_back(link.active);
+    cursor.statuses.push_back(link.status);
     cursor.leaving.push_back(link.left ? 1.0 : std::clamp(link.leaving, 0.0, 1.0));
   }
 }

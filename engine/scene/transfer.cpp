@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/scene/color_maps.h"
+
 namespace catena::scene {
 namespace {
 
@@ -14,23 +16,18 @@ constexpr double kLowEnd = 0.15, kLowShare = 0.1, kDominantShare = 0.3;  // wher
 constexpr double kMargin = 0.06, kOpticalDepth = 2.5;
 constexpr int kRampPoints = 17;
 
-/// From dusk blue over green to ivory: light enough on black, dark enough on white.
-constexpr std::array<Rgb, 6> kMap = {{{0.16f, 0.24f, 0.52f},
-                                      {0.15f, 0.47f, 0.62f},
-                                      {0.33f, 0.66f, 0.58f},
-                                      {0.72f, 0.79f, 0.52f},
-                                      {0.95f, 0.80f, 0.55f},
-                                      {0.99f, 0.96f, 0.90f}}};
-
 struct Range {
   double lo = 0, hi = 0, background = 0;
 };
 
-Range range_of(std::vector<float> values, bool masked) {
+using Given = std::optional<std::array<double, 2>>;
+
+Range range_of(std::vector<float> values, bool masked, const Given& given) {
   std::sort(values.begin(), values.end());
   const auto percentile = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
   Range range{percentile(0.005), percentile(0.998), 0};
   if (!(range.lo < range.hi)) range = {values.front(), values.back(), 0};
+  if (given) range = {(*given)[0], (*given)[1], 0};
   range.background = range.lo;
   if (!(range.lo < range.hi)) return range;
 
@@ -87,14 +84,13 @@ void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid
   if (!transfer.colors.empty() && !opaque) return;
   std::vector<float> values = sample_values(grid, kMostSamples);
   if (values.empty()) values.push_back(0);
-  const Range range = range_of(values, grid.has_mask());
+  const Range range = range_of(values, grid.has_mask(), transfer.named.range);
   const bool flat = !(range.lo < range.hi);
 
   if (transfer.colors.empty()) {
-    const std::size_t count = flat ? 1 : kMap.size();
-    for (std::size_t i = 0; i < count; ++i)
-      transfer.colors.push_back(
-          {range.lo + (range.hi - range.lo) * static_cast<double>(i) / (kMap.size() - 1), kMap[flat ? kMap.size() / 2 : i]});
+    const bool all = !transfer.named.map.empty();
+    transfer.colors =
+        color_table({}, transfer.named, all ? grid.min_value() : range.lo, all ? grid.max_value() : range.hi, kDefaultVolumeMap);
   }
   if (!opaque) return;
 

@@ -14,7 +14,8 @@ namespace catena::scene {
 /// At most about `most` finite values of valid cells' voxels, spread over the grid in blocks of 8^3.
 std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most);
 
-/// Fills what is missing: colours if there are none, extinctions if there are neither extinctions nor opacities.
+/// Fills what is missing: colours if there are none, extinctions if there are neither extinctions nor opacities. A stated range
+/// replaces that of the percentiles; a map named without one reaches over all values.
 void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid);
 
 }  // namespace catena::scene

@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
+#include "render/extract/extract_overlay.h"
+#include "render/extract/extract_stereo.h"
 
 namespace catena::render {
 
@@ -170,7 +173,10 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_streamlines(scene, packet));
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
+  extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
+  CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
+  set_eyes(packet, scene.stereo);
   return packet;
 }
 

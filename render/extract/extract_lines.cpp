@@ -7,6 +7,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/numbers.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/lines.h"
 #include "render/extract/flatten.h"
 
@@ -31,6 +32,7 @@ struct FlatLines {
   std::vector<TubeItem> tubes;
   std::vector<std::vector<double>> arc_lengths;  ///< by point
   std::vector<ArrowItem> arrows;
+  ColorTable colors;  ///< of "color_by"
 };
 
 double domain_diagonal(const field::Field& field) {
@@ -134,7 +136,7 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
 
   // colours
   if (value) {
-    const ColorTable table = !set.color_by->colors.empty() ? set.color_by->colors : lo <= hi ? viridis(lo, hi) : viridis(0, 1);
+    const ColorTable& table = flat.colors = scene::color_table(set.color_by->colors, set.color_by->named, lo, hi);
     for (std::size_t i = 0; i < curves.size(); ++i)
       for (const double v : values[i]) flat.tubes[i].colors.push_back(table_color(table, v));
     for (std::size_t i = 0; i < flat.arrows.size(); ++i) flat.arrows[i].color = table_color(table, value->at(arrow_places[i]));
@@ -163,25 +165,16 @@ Color table_color(const ColorTable& table, double value) {
   CATENA_ASSERT(!table.empty());
   if (std::isnan(value)) return {0.5f, 0.5f, 0.5f};
   if (value <= table.front().value) return color_of(table.front().color);
-  for (std::size_t i = 1; i < table.size(); ++i) {
-    const auto &a = table[i - 1], &b = table[i];
-    if (value > b.value) continue;
-    const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
-    return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
-  }
-  return color_of(table.back().color);
+  if (value >= table.back().value) return color_of(table.back().color);
+  const auto next = std::upper_bound(table.begin(), table.end(), value, [](double v, const auto& point) { return v < point.value; });
+  const auto &a = *(next - 1), &b = *next;
+  const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
+  return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
 }
 
-ColorTable viridis(double lo, double hi) {
-  static constexpr int points[9][3] = {{68, 1, 84},    {71, 45, 123}, {59, 82, 139},  {44, 114, 142}, {33, 145, 140},
-                                       {40, 174, 128}, {94, 201, 98}, {173, 220, 48}, {253, 231, 37}};
-  if (!(hi > lo)) return {{lo, {33 / 255.0f, 145 / 255.0f, 140 / 255.0f}}};
-  ColorTable table;
-  for (int i = 0; i < 9; ++i)
-    table.push_back(
-        {lo + (hi - lo) * i / 8,
-         {static_cast<float>(points[i][0]) / 255, static_cast<float>(points[i][1]) / 255, static_cast<float>(points[i][2]) / 255}});
-  return table;
+const ColorTable* shown_colors(const scene::World& world, scene::Entity set) {
+  if (!world.has<FlatLines>(set) || world.get<FlatLines>(set).colors.empty()) return nullptr;
+  return &world.get<FlatLines>(set).colors;
 }
 
 Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {

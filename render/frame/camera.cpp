@@ -60,6 +60,12 @@ void Bounds::add(const Bounds& other) {
   add(other.hi);
 }
 
+double frustum_aspect(const View& view, double width_px, double height_px) {
+  if (view.aspect > 0) return view.aspect;
+  const Window& w = view.window;
+  return (w.top - w.bottom) / (w.right - w.left) * width_px / height_px;
+}
+
 Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds) {
   CATENA_ASSERT(width_px >= 1 && height_px >= 1);
   Camera camera;
@@ -68,11 +74,10 @@ Camera make_camera(const View& view, double width_px, double height_px, const Bo
   camera.height = height_px;
   camera.orthographic = view.orthographic;
   camera.half_height = view.orthographic ? 0.5 * view.height : std::tan(0.5 * view.fovy_deg * std::numbers::pi / 180);
-  // pixels are square: the symmetric frustum's width follows from the window's
   const Window& w = view.window;
   const double share_x = 0.5 * (w.right - w.left), share_y = 0.5 * (w.top - w.bottom);
   CATENA_ASSERT(share_x > 0 && share_y > 0);
-  const double whole_width = camera.half_height * share_y / share_x * width_px / height_px;
+  const double whole_width = camera.half_height * frustum_aspect(view, width_px, height_px);
   camera.centre_x = 0.5 * (w.left + w.right) * whole_width;
   camera.centre_y = 0.5 * (w.bottom + w.top) * camera.half_height;
   camera.half_width = share_x * whole_width;
@@ -168,14 +173,14 @@ double pixel_size(const Camera& c, double depth) { return 2 * c.half_height / c.
 
 Vec3 default_direction() { return direction(Vec3(0.5, -1.0, 0.45)); }
 
-View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, double fovy_deg) {
+View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, double fovy_deg, const Vec3& up) {
   Bounds bounds = given;
   if (bounds.empty()) {
     bounds.add(Vec3(-1.0));
     bounds.add(Vec3(1.0));
   }
   Camera axes;
-  set_axes(axes, towards_eye, Vec3(0.0, 0.0, 1.0));
+  set_axes(axes, towards_eye, up);
   const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;
 
   // the nearest distance from which every corner lies inside the four planes of the frustum
@@ -190,7 +195,7 @@ View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, doubl
   View view;
   view.target = bounds.centre();
   view.position = view.target + 1.05 * distance * axes.back;
-  view.up = std::fabs(axes.back.z) < 0.999 ? Vec3(0.0, 0.0, 1.0) : axes.up;
+  view.up = std::fabs(dot(axes.back, direction(up))) < 0.999 ? up : axes.up;
   view.fovy_deg = fovy_deg;
   view.height = 2.1 * half_height;
   return view;

@@ -3,7 +3,7 @@
 ///   clip axes: Vulkan's, x right, y *down*, depth 0 at near and 1 at far
 ///   pixels: x right, y down, row 0 at the top; the centre of pixel (i, j) is at (i + 0.5, j + 0.5)
 /// Perspective: vertical field of view. Orthographic: `height` world units from bottom to top.
-/// The view's window is a part of the symmetric frustum of that angle or height; pixels are square.
+/// The view's window is a part of the symmetric frustum of that angle or height; pixels are square unless the view states an aspect.
 /// Near and far enclose the bounds that are given (what lies behind the eye is not seen). Pure functions, any thread.
 #pragma once
 #include <glm/mat4x4.hpp>
@@ -44,6 +44,9 @@ struct Ray {
   Vec3 origin{0.0}, direction{0.0};
 };
 
+/// Width by height of the view's symmetric frustum: as stated, or by square pixels.
+double frustum_aspect(const View& view, double width_px, double height_px);
+
 /// A degenerate up (along the axis) is replaced by another; a target at the position looks along +y.
 Camera make_camera(const View& view, double width_px, double height_px, const Bounds& bounds);
 
@@ -65,7 +68,8 @@ double pixel_size(const Camera& camera, double depth);
 /// From the scene towards the eye: oblique, +z up.
 Vec3 default_direction();
 /// A view that frames the box: all its corners inside the picture with a margin of 5 % of the distance.
-/// An empty box counts as -1..1. `towards_eye` need not be unit.
-View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_direction(), double fovy_deg = 30);
+/// An empty box counts as -1..1. `towards_eye` and `up` need not be unit.
+View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_direction(), double fovy_deg = 30,
+              const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
 }  // namespace catena::render

@@ -4,20 +4,20 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "render/frame/color.h"
+#include "render/frame/overlay_items.h"
+#include "render/frame/packing.h"
 
 namespace catena::field {
 class ScalarGrid;
 }
 
 namespace catena::render {
-
-struct Color {
-  float r = 0, g = 0, b = 0;
-};
 
 /// A part of the symmetric frustum of a view, or beyond it, in its half extents: an eye off the axis, a tile of a large picture.
 struct Window {
@@ -30,6 +30,7 @@ struct View {
   bool orthographic = false;
   double height = 1;
   Window window{};
+  double aspect = 0;  ///< width by height of the symmetric frustum; 0: as pixels are square
 };
 
 /// Keeps the half space to which `normal` points; `normal` need not be unit.
@@ -37,6 +38,20 @@ struct ClipPlane {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
 };
 inline constexpr std::size_t kMostClipPlanes = 8;
+
+/// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
+struct LightItem {
+  Vec3 direction{0.0, 0.0, 1.0};
+  Color color{1, 1, 1};  ///< times the intensity
+  bool with_camera = false;
+};
+inline constexpr std::size_t kMostLights = 4;
+
+/// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
+struct FogItem {
+  Color color;
+  double start = 0, end = 1, most = 0.8;
+};
 
 /// What an id of the picture stands for.
 struct ObjectName {
@@ -48,6 +63,8 @@ struct ObjectName {
 struct TransferTable {
   std::vector<std::array<double, 4>> colors;       ///< value, r, g, b
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
+  /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
+  std::vector<std::array<double, 2>> gradient_factors;
 };
 
 struct VolumeItem {
@@ -116,8 +133,17 @@ struct CursorItem {
   std::uint32_t id = 0;
 };
 
+/// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.
+struct AidItems {
+  std::vector<TubeItem> tubes;
+  std::vector<MeshItem> meshes;
+  bool empty() const { return tubes.empty() && meshes.empty(); }
+};
+
 struct FramePacket {
   View view;
+  std::vector<View> eyes{};  ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
+  Packing packing = Packing::single;
   std::uint32_t width = 1024, height = 768;
   std::array<float, 4> background{0, 0, 0, 1};  ///< alpha 0: transparent
   std::vector<VolumeItem> volumes;
@@ -127,7 +153,11 @@ struct FramePacket {
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
-  std::vector<ClipPlane> clip;  ///< what all planes keep is drawn; at most kMostClipPlanes
+  Overlay overlay;
+  std::vector<ClipPlane> clip;    ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
+  std::optional<FogItem> fog;
+  AidItems aids;
   std::vector<ObjectName> objects;
 
   /// The next id, from 1 on.

@@ -25,6 +25,24 @@ shared::ClipData clip_of_ray(const CameraRays& rays, const ClipPlane& plane) {
   return clip;
 }
 
+glm::vec3 color_of(const Color& c) { return {c.r, c.g, c.b}; }
+
+/// Unit, in the world.
+Vec3 towards(const Camera& c, const LightItem& light) {
+  const Vec3 d = direction(light.direction);
+  return light.with_camera ? d.x * c.right + d.y * c.up + d.z * c.back : d;
+}
+
+shared::FogData fog_of(const CameraRays& rays) {
+  shared::FogData fog{};
+  if (!rays.fog) return fog;
+  fog.color = color_of(rays.fog->color);
+  fog.start = float(rays.fog->start - rays.reference_depth);
+  fog.per_depth = float(1 / std::max(rays.fog->end - rays.fog->start, 1e-30));
+  fog.most = float(rays.fog->most);
+  return fog;
+}
+
 }  // namespace
 
 CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds) {
@@ -32,6 +50,8 @@ CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds) {
   rays.camera = make_camera(packet.view, packet.width, packet.height, bounds);
   rays.forward = -rays.camera.back;
   rays.clip = packet.clip;
+  rays.lights = packet.lights;
+  rays.fog = packet.fog;
   if (bounds.empty()) return rays;
   rays.reference_depth = std::max(0.0, rays.view_depth(bounds.centre()));
   double farthest = 0;
@@ -61,6 +81,9 @@ shared::FrameData CameraRays::frame() const {
   f.first = glm::vec2(0.5f - 0.5f * float(spacing));
   f.clip_count = std::uint32_t(clip.size());
   for (std::size_t i = 0; i < clip.size(); ++i) f.clips[i] = clip_of_ray(*this, clip[i]);
+  f.light_count = std::uint32_t(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) f.lights[i] = {narrow(towards(camera, lights[i])), color_of(lights[i].color)};
+  f.fog = fog_of(*this);
   return f;
 }
 
@@ -106,6 +129,12 @@ shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
   m.depth_near = float(depth_near);
   m.depth_far = float(depth_far);
   m.orthographic = camera.orthographic;
+  m.light_count = std::uint32_t(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Vec3 l = towards(camera, lights[i]);
+    m.lights[i] = {{float(dot(l, camera.right)), float(dot(l, camera.up)), float(dot(l, forward))}, color_of(lights[i].color)};
+  }
+  m.fog = fog_of(*this);
   m.clip_count = std::uint32_t(clip.size());
   for (std::size_t i = 0; i < clip.size(); ++i) {
     const Vec3 normal = direction(clip[i].normal);

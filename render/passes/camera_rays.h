@@ -14,6 +14,8 @@ struct CameraRays {
   double reference_depth = 0;
   double depth_near = 1, depth_far = 2;
   std::vector<ClipPlane> clip;
+  std::vector<LightItem> lights;
+  std::optional<FogItem> fog;
   std::uint32_t spacing = 1;  ///< fragment (i, j) is the ray of pixel (spacing i, spacing j)
 
   /// `bounds` of everything drawn.

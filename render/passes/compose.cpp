@@ -27,7 +27,7 @@ class ComposePass final : public Pass {
 
  private:
   UpsamplePass upsample_;
-  std::map<std::uint32_t, vk::Pipeline> pipelines_;
+  std::map<std::pair<VkFormat, std::uint32_t>, vk::Pipeline> pipelines_;
   vk::Buffer uniform_;
 };
 
@@ -37,14 +37,14 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   const std::array<float, 4>& background = frame.packet.background;
   if (frame.half_lattice) return upsample_.record(commands, *frame.half_lattice, targets, background, opaque, frame.half_area);
 
-  vk::Pipeline& pipeline = pipelines_[(opaque ? 1u : 0u) | (volume ? 2u : 0u)];
+  vk::Pipeline& pipeline = pipelines_[{targets.picture_format, (opaque ? 1u : 0u) | (volume ? 2u : 0u)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
     info.fragment = kFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
     info.constants = {opaque, volume};
-    info.colors = {kPictureFormat};
+    info.colors = {targets.picture_format};
     CATENA_TRY(pipeline, vk::Pipeline::create(frame.device, info));
   }
   shared::ComposeData data{};

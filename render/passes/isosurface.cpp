@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "render/mirror/cell_map.h"
 #include "render/passes/covered_area.h"
 #include "render/passes/targets.h"
 
@@ -15,6 +16,18 @@ constexpr std::uint32_t kVertexShader[] = {
 constexpr std::uint32_t kFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"
 };
+
+/// The pixels that the bricks with the level can cover.
+VkRect2D surface_area(const CellMap& cells, const GridMirror& mirror, const field::Mapping& mapping, const Camera& camera) {
+  if (cells.lo == cells.hi) return {};
+  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
+  std::array<Vec3, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 local{(i & 1) ? cells.hi.x : cells.lo.x, (i & 2) ? cells.hi.y : cells.lo.y, (i & 4) ? cells.hi.z : cells.lo.z};
+    corners[i] = mapping.world_from_index(origin + local);
+  }
+  return covered_area(corners, camera);
+}
 
 bool is_opaque(const IsosurfaceItem& item) { return item.opacity >= 1; }
 
@@ -56,30 +69,43 @@ class IsosurfacePass final : public Pass {
  private:
   struct Surface {
     SurfaceState state;
+    CellMap cells;       // without its texels: they are in the image
+    vk::Image cell_map;  // none: it would be too large
     IsosurfaceItem item;
     vk::Buffer uniform;
+    Outcome make_cells(vk::Device& device);
   };
-  Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags);
+  Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags, bool has_cells);
 
   vk::Sampler linear_;
-  std::map<std::uint32_t, vk::Pipeline> pipelines_;
+  std::map<std::pair<std::uint32_t, bool>, vk::Pipeline> pipelines_;
   std::vector<Surface> surfaces_;
 };
 
-Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::uint32_t flags) {
-  vk::Pipeline& pipeline = pipelines_[flags];
+Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::uint32_t flags, bool has_cells) {
+  vk::Pipeline& pipeline = pipelines_[{flags, has_cells}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kVertexShader;
     info.fragment = kFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
-    info.constants = {flags};
+    info.constants = {flags, has_cells ? 1u : 0u};
     info.colors = opaque_formats();
     info.depth = true;
     CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
   }
   return &pipeline;
+}
+
+Outcome IsosurfacePass::Surface::make_cells(vk::Device& device) {
+  cells = make_cell_map(*item.grid, *state.mirror, state.level);
+  cell_map = {};
+  if (!cells.texels.empty()) {
+    CATENA_TRY(cell_map, upload_cell_map(device, cells));
+  }
+  cells.texels = {};
+  return Done{};
 }
 
 Outcome IsosurfacePass::prepare(Frame& frame) {
@@ -90,8 +116,10 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
     if (!mirror->drawable) continue;
     if (count == surfaces_.size()) surfaces_.emplace_back();
     Surface& surface = surfaces_[count++];
+    const bool same = surface.state.map.image && surface.state.mirror == mirror && surface.state.level == float(item.level);
     CATENA_CHECK(surface.state.update(frame.device, std::move(mirror), item.level));
     surface.item = item;
+    if (!same) CATENA_CHECK(surface.make_cells(frame.device));
   }
   while (surfaces_.size() > count) surfaces_.pop_back();
   return Done{};
@@ -105,18 +133,23 @@ Bounds IsosurfacePass::bounds() const {
 
 Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
-    const field::ScalarGrid* grid = surface.item.grid.get();
+    const VkRect2D area = surface_area(surface.cells, *surface.state.mirror, surface.item.grid->mapping(), frame.rays.camera);
+    if (area.extent.width == 0 || area.extent.height == 0) continue;
     shared::FrameData data = frame.rays.frame();
     data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
     CATENA_CHECK(write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags()));
-    std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr}};
+    const bool has_cells = frame.settings.skip && surface.cell_map;
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags(), has_cells));
+    // without the map of cells its binding is never read; the map of bricks has the right type
+    std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
+                                      {1, vk::Resource::texture, nullptr, has_cells ? &surface.cell_map : &bound.map->image, nullptr}};
     add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
-    commands.scissor(covered_area({&grid, 1}, frame.rays.camera));
+    commands.scissor(area);
     commands.bind(*pipe, bindings);
     commands.draw_triangle();
   }
+  commands.scissor({{0, 0}, {frame.packet.width, frame.packet.height}});
   return Done{};
 }
 

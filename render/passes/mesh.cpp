@@ -5,10 +5,6 @@
 namespace catena::render {
 namespace {
 
-bool same(const MeshItem& a, const MeshItem& b) {
-  return a.geometry == b.geometry && render::same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
-}
-
 class MeshPass final : public Pass {
  public:
   static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
@@ -19,8 +15,7 @@ class MeshPass final : public Pass {
 
   Outcome prepare(Frame& frame) override {
     const auto& items = frame.packet.meshes;
-    if (std::equal(items.begin(), items.end(), built_.begin(), built_.end(), [](const auto& a, const auto& b) { return same(a, b); }))
-      return Done{};
+    if (all_same(items, built_)) return Done{};
     Shape shape;
     for (const MeshItem& mesh : items) {
       const std::size_t first = shape.vertices.size();

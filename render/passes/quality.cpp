@@ -194,6 +194,15 @@ class Search {
   int pictures_ = 0;
 };
 
+/// The packet as its first eye sees it.
+FramePacket first_eye(const FramePacket& packet) {
+  FramePacket one = packet;
+  one.view = packet.eyes.front();
+  one.eyes.clear();
+  one.packing = Packing::single;
+  return one;
+}
+
 }  // namespace
 
 std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
@@ -209,12 +218,17 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
 }
 
 Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, DrawTimer timer) {
+  if (!packet.eyes.empty()) {
+    const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
+    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, timer);
+  }
   Search search(renderer, packet);
   CATENA_CHECK(search.begin());
   return goal.kind == QualityGoal::Kind::error ? search.for_error(goal.value) : search.for_time(goal.value, timer);
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
+  if (!packet.eyes.empty()) return estimate_rmse(renderer, first_eye(packet), settings);
   Search search(renderer, packet);
   CATENA_CHECK(search.begin());
   return search.of_picture(settings);

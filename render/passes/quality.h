@@ -30,6 +30,7 @@ struct QualityChoice {
 /// The milliseconds of drawing a packet with these settings, once they are warm; the tests put their own in its place.
 using DrawTimer = std::function<Result<double>(const RenderSettings&)>;
 
+/// Stereo: the first eye's picture is measured; the eyes share a time.
 /// Draws several pictures; the caller draws the chosen one.
 Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, DrawTimer timer = nullptr);
 

@@ -18,12 +18,13 @@ RaySettings ray_settings(const RenderSettings& s) { return {s.step_voxels, s.ter
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
 
 bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet) {
-  return packet.volumes.size() == 1 && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
+  return packet.volumes.size() == 1 && packet.lights.empty() && !packet.fog &&
+         std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
          can_be_packed(device, *packet.volumes.front().grid);
 }
 
 bool RaycastPass::ends_at_half(const Frame& frame) const {
-  return fast_ && frame.settings.fast->ends_at_half() && !frame.has(target::opaque_depth);
+  return fast_ && frame.settings.fast->ends_at_half() && !frame.settings.float_picture && !frame.has(target::opaque_depth);
 }
 
 PassUse RaycastPass::use(const Frame& frame) const {

@@ -15,6 +15,8 @@ struct RenderSettings {
   TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
   MirrorLayout layout = MirrorLayout::automatic;
   bool skip = true;  ///< leap over bricks that the transfer function leaves empty
+  /// The picture target holds 32-bit floats instead of 8 bits: Renderer::read_back_float(). What is opaque has 11 bits of mantissa.
+  bool float_picture = false;
   /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
   std::optional<FastSettings> fast;
 };

@@ -8,10 +8,13 @@
 #include <limits>
 
 #include "render/mirror/half.h"
+#include "render/passes/aids.h"
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
 #include "render/passes/mesh.h"
+#include "render/passes/overlay.h"
+#include "render/passes/pack.h"
 #include "render/passes/raycast.h"
 #include "render/passes/streamlines.h"
 #include "render/vk/swapchain.h"
@@ -20,7 +23,8 @@ namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kMeshPass, &kStreamlinePass, &kCursorPass, &kIsosurfacePass, &kRaycastPass, &kComposePass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,        &kMeshPass,    &kStreamlinePass, &kCursorPass,
+                                        &kIsosurfacePass, &kRaycastPass, &kComposePass,    &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -30,6 +34,8 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
   if (packet.clip.size() > kMostClipPlanes)
     return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMostClipPlanes)};
+  if (packet.lights.size() > kMostLights)
+    return Error{fmt::format("the scene has {} lights, expected at most {}", packet.lights.size(), kMostLights)};
   return Done{};
 }
 
@@ -55,12 +61,18 @@ struct Renderer::Parts {
   std::array<std::unique_ptr<Pass>, std::size(kPasses)> passes;
   double gone_build_ms = 0;  ///< of passes that have gone
   TargetSet drawn = 0;       ///< by the last picture
+  std::optional<PackPass> pack;
+  bool packed = false;                            ///< the last picture is made of several views
+  std::uint32_t view_width = 0, view_height = 0;  ///< of one view; its depth and ids
   double reference_depth = 0;
   std::vector<std::string> drawn_passes;
 
   std::vector<Pass*> active(std::vector<std::string>* names = nullptr) const;
+  vk::Image& shown() { return packed ? pack->picture() : targets.picture; }
   Outcome prepare(Frame& frame);
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
+  Outcome draw(const FramePacket& packet, const RenderSettings& settings);
+  Outcome draw_eyes(const FramePacket& packet, const RenderSettings& settings);
 };
 
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
@@ -108,6 +120,7 @@ Outcome Renderer::Parts::prepare(Frame& frame) {
   }
   frame.written = 0;
   frame.rays = CameraRays::make(frame.packet, bounds);
+  targets.picture_format = frame.settings.float_picture ? kFloatPictureFormat : kPictureFormat;
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
@@ -136,31 +149,70 @@ Outcome Renderer::Parts::record(vk::Commands& commands, Frame& frame, const std:
   return Done{};
 }
 
+/// One view, into targets.picture.
+Outcome Renderer::Parts::draw(const FramePacket& packet, const RenderSettings& settings) {
+  Frame frame{*device, *mirrors, targets, packet, settings, {}};
+  CATENA_CHECK(prepare(frame));
+  drawn_passes.clear();
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
+  CATENA_CHECK(record(commands, frame, active(&drawn_passes)));
+  commands.use(targets.picture, vk::kTransferRead);
+  CATENA_CHECK(commands.finish());
+  drawn = frame.written;
+  view_width = packet.width;
+  view_height = packet.height;
+  reference_depth = frame.rays.reference_depth;
+  return Done{};
+}
+
+/// One eye after the other (passes upload only what changed since the last); the first comes last, so that its depth and ids stay.
+Outcome Renderer::Parts::draw_eyes(const FramePacket& packet, const RenderSettings& settings) {
+  if (!pack) pack.emplace(*device);
+  CATENA_CHECK(pack->begin(packet.packing, packet.eyes.size(), packet.width, packet.height));
+  FramePacket one = packet;
+  one.eyes.clear();
+  for (std::size_t k = packet.packing == Packing::single ? 1 : packet.eyes.size(); k-- > 0;) {
+    one.view = packet.eyes[k];
+    CATENA_CHECK(draw(one, settings));
+    pack->keep(k, targets.picture);
+  }
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device));
+  CATENA_CHECK(pack->record(commands));
+  return commands.finish();
+}
+
 Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
   p.drawn = 0;
   CATENA_CHECK(check(packet, settings, p.device->info()));
-  Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
-  CATENA_CHECK(p.prepare(frame));
-  p.drawn_passes.clear();
-  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  CATENA_CHECK(p.record(commands, frame, p.active(&p.drawn_passes)));
-  commands.use(p.targets.picture, vk::kTransferRead);
-  CATENA_CHECK(commands.finish());
-  p.drawn = frame.written;
-  p.reference_depth = frame.rays.reference_depth;
-  return Done{};
+  p.packed = !packet.eyes.empty();
+  if (!p.packed) p.pack.reset();
+  const Outcome done = p.packed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
+  if (!done) p.drawn = 0;
+  return done;
 }
 
 Result<Picture> Renderer::read_back() {
   Parts& p = *parts_;
-  CATENA_ASSERT(p.drawn != 0);
+  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kPictureFormat);
   Picture picture;
-  picture.width = p.targets.picture.info().extent.width;
-  picture.height = p.targets.picture.info().extent.height;
-  CATENA_TRY(picture.rgba, bytes_of<std::uint8_t>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height));
+  picture.width = p.shown().info().extent.width;
+  picture.height = p.shown().info().extent.height;
+  CATENA_TRY(picture.rgba, bytes_of<std::uint8_t>(*p.device, p.shown(), std::size_t(4) * picture.width * picture.height));
   return picture;
 }
+
+Result<FloatPicture> Renderer::read_back_float() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kFloatPictureFormat);
+  FloatPicture picture;
+  picture.width = p.targets.picture.info().extent.width;
+  picture.height = p.targets.picture.info().extent.height;
+  CATENA_TRY(picture.rgba, bytes_of<float>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height));
+  return picture;
+}
+
+std::uint32_t Renderer::longest_side() const { return parts_->device->info().limits.maxImageDimension2D; }
 
 bool Renderer::draws_fast(const FramePacket& packet) const {
   for (const Pass* pass : parts_->active())
@@ -226,8 +278,8 @@ Result<DepthPicture> Renderer::read_depth() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0);
   DepthPicture picture;
-  picture.width = p.targets.picture.info().extent.width;
-  picture.height = p.targets.picture.info().extent.height;
+  picture.width = p.view_width;
+  picture.height = p.view_height;
   picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
   if ((p.drawn & target::opaque_depth) == 0) return picture;
   CATENA_TRY(const std::vector<float> relative, bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size()));
@@ -240,8 +292,8 @@ Result<IdPicture> Renderer::read_ids() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0);
   IdPicture picture;
-  picture.width = p.targets.picture.info().extent.width;
-  picture.height = p.targets.picture.info().extent.height;
+  picture.width = p.view_width;
+  picture.height = p.view_height;
   picture.ids.assign(std::size_t(picture.width) * picture.height, 0);
   if ((p.drawn & target::opaque_id) == 0) return picture;
   CATENA_TRY(picture.ids, bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size()));
@@ -250,7 +302,7 @@ Result<IdPicture> Renderer::read_ids() {
 
 Result<bool> Renderer::present(vk::Swapchain& swapchain) {
   CATENA_ASSERT(parts_->drawn != 0);
-  return swapchain.present(parts_->targets.picture);
+  return swapchain.present(parts_->shown());
 }
 
 RenderStats Renderer::stats() const {

@@ -1,7 +1,8 @@
 /// The renderer: a frame packet in, a finished colour image out. It holds the list of passes (pass.h), in order:
 ///   meshes, streamlines, cursor, isosurfaces -> raycast -> compose
 /// A pass is created when a packet first wants it and goes when one no longer does; mirrors are kept by (grid version, texel
-/// format) and dropped when a packet no longer names the grid. Frame thread only.
+/// format) and dropped when a packet no longer names the grid. A packet with eyes is drawn once an eye and packed (pack.h); depth and
+/// ids are the first eye's. Frame thread only.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -28,9 +29,9 @@ struct RenderStats {
   std::uint64_t upload_bytes = 0;
   std::uint64_t pipelines = 0;            ///< created so far
   std::vector<std::string> passes;        ///< of the last picture, in order
-  std::vector<std::string> notes;         ///< what the last picture was drawn differently from what was asked, one line each
   std::uint64_t mirrors = 0;              ///< grids mirrored now
   double mirror_ms = 0;                   ///< spent on building and uploading mirrors so far
+  std::vector<std::string> notes;         ///< what the last picture lacks, or was drawn otherwise than asked, and why, a sentence each
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
 
@@ -60,6 +61,10 @@ class Renderer {
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
   /// The last picture, straight alpha.
   Result<Picture> read_back();
+  /// The same in floats, for settings with `float_picture`.
+  Result<FloatPicture> read_back_float();
+  /// Pixels that a picture can have, each way, on this device.
+  std::uint32_t longest_side() const;
   /// Whether `RenderSettings::fast` holds for what the packet draws. What it turns out to have no memory for, it holds no longer for.
   bool draws_fast(const FramePacket& packet) const;
   /// The rays of every kProbeSpacing-th pixel alone, as a small picture over black: what `settings` make of them before anything is

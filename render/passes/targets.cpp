@@ -8,7 +8,7 @@ namespace {
 
 Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
   const VkExtent3D& have = image.info().extent;
-  if (image && have.width == width && have.height == height) return Done{};
+  if (image && image.info().format == format && have.width == width && have.height == height) return Done{};
   vk::ImageInfo info;
   info.format = format;
   info.extent = {width, height, 1};
@@ -27,7 +27,7 @@ Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t h
   const auto want = [&](TargetSet one, VkFormat format, VkImageUsageFlags usage) -> Outcome {
     return (needed & one) != 0 ? fit(device, image(one), format, width, height, usage) : Done{};
   };
-  CATENA_CHECK(want(target::picture, kPictureFormat, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
+  CATENA_CHECK(want(target::picture, picture_format, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
   CATENA_CHECK(want(target::opaque_color, kOpaqueFormat, color | read));
   CATENA_CHECK(want(target::opaque_depth, kDepthValueFormat, color | read));
   CATENA_CHECK(want(target::opaque_id, kIdFormat, color | read));

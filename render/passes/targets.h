@@ -20,15 +20,17 @@ inline constexpr VkFormat kOpaqueFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kDepthValueFormat = VK_FORMAT_R32_SFLOAT;  ///< depth t of shared/frame.h
 inline constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT;            ///< the object's id, 0: none
 inline constexpr VkFormat kDepthBufferFormat = VK_FORMAT_D32_SFLOAT;
-inline constexpr VkFormat kVolumeFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< premultiplied
-inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;      ///< straight alpha
+inline constexpr VkFormat kVolumeFormat = VK_FORMAT_R32G32B32A32_SFLOAT;        ///< premultiplied
+inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;            ///< straight alpha
+inline constexpr VkFormat kFloatPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< the same, not rounded
 
 /// The formats of a pipeline that draws into target::opaque, in the order of its outputs.
 std::vector<VkFormat> opaque_formats();
 
 struct Targets {
   vk::Image opaque_color, opaque_depth, opaque_id, depth_buffer, volume, picture;
-  vk::Image none;  ///< one texel, bound where a pass has no input
+  VkFormat picture_format = kPictureFormat;  ///< or kFloatPictureFormat; pipelines that draw into the picture follow it
+  vk::Image none;                            ///< one texel, bound where a pass has no input
 
   Outcome ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, TargetSet needed);
   vk::Image& image(TargetSet one);

@@ -69,6 +69,12 @@ Outcome TriangleDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tri
 
 bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
 
+bool same(const MeshItem& a, const MeshItem& b) {
+  const bool alike =
+      a.geometry == b.geometry || (a.geometry->vertices == b.geometry->vertices && a.geometry->triangles == b.geometry->triangles);
+  return alike && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
+}
+
 bool same(const TubeItem& a, const TubeItem& b) {
   return a.radius == b.radius && same(a.color, b.color) && a.points == b.points && all_same(a.colors, b.colors) && a.id == b.id &&
          a.clipped == b.clipped;

@@ -34,6 +34,7 @@ class TriangleDrawer {
 };
 
 bool same(const Color& a, const Color& b);
+bool same(const MeshItem& a, const MeshItem& b);
 bool same(const TubeItem& a, const TubeItem& b);
 bool same(const ArrowItem& a, const ArrowItem& b);
 template <class Items>

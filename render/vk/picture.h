@@ -1,4 +1,4 @@
-/// Pictures on the host and PNG files (8 bit). Values are display values, unchanged; alpha is straight.
+/// Pictures on the host and PNG files. Values are display values, unchanged; alpha is straight.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -15,7 +15,15 @@ struct Picture {
   const std::uint8_t* pixel(std::uint32_t x, std::uint32_t y) const { return rgba.data() + 4 * (std::size_t(y) * width + x); }
 };
 
-/// Writes RGBA (`alpha`) or RGB. A regular file is written beside its place and renamed when complete; nothing half-written stays.
+/// The same before rounding: display values from 0 to 1.
+struct FloatPicture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<float> rgba;
+
+  const float* pixel(std::uint32_t x, std::uint32_t y) const { return rgba.data() + 4 * (std::size_t(y) * width + x); }
+};
+
+/// Writes RGBA (`alpha`) or RGB, 8 bits. A regular file is written beside its place and renamed when complete; nothing half-written stays.
 Outcome write_png(const std::string& path, const Picture& picture, bool alpha);
 Result<Picture> read_png(const std::string& path);
 

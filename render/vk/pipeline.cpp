@@ -115,7 +115,7 @@ Result<Pipeline> Pipeline::create(Device& device, const GraphicsInfo& info) {
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
 
-  // fixed state: viewport and scissor at record time, no culling, no blending
+  // fixed state: viewport and scissor at record time, no culling
   VkPipelineViewportStateCreateInfo viewport{};
   viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
   viewport.viewportCount = viewport.scissorCount = 1;
@@ -138,6 +138,11 @@ Result<Pipeline> Pipeline::create(Device& device, const GraphicsInfo& info) {
   depth.depthCompareOp = VK_COMPARE_OP_GREATER;
   VkPipelineColorBlendAttachmentState blend_one{};
   blend_one.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  if (info.blend) {
+    blend_one.blendEnable = VK_TRUE;
+    blend_one.srcColorBlendFactor = blend_one.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+    blend_one.dstColorBlendFactor = blend_one.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  }
   const std::vector<VkPipelineColorBlendAttachmentState> blends(info.colors.size(), blend_one);
   VkPipelineColorBlendStateCreateInfo blend{};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;

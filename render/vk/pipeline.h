@@ -31,6 +31,7 @@ struct GraphicsInfo {
   std::vector<std::uint32_t> constants;  ///< specialisation constants 0, 1, 2, .. of the fragment shader
   std::vector<VkFormat> colors;
   bool depth = false;               ///< D32F, reversed: greater is nearer
+  bool blend = false;               ///< premultiplied colours over what is there
   std::uint32_t vertex_stride = 0;  ///< 0: no vertex buffer
   std::vector<VertexAttribute> attributes;
 };

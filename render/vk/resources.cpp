@@ -84,8 +84,10 @@ void Buffer::release() {
 VkDeviceSize texel_bytes(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8_UINT:
+    case VK_FORMAT_R8_UNORM:
       return 1;
     case VK_FORMAT_R16_SFLOAT:
+    case VK_FORMAT_R16_UINT:
       return 2;
     case VK_FORMAT_R32_SFLOAT:
     case VK_FORMAT_R32_UINT:

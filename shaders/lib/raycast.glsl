@@ -48,7 +48,7 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
         vec4 c = transfer(i, sample_value(i, p));
         if (c.a > 0.0) {
           if (grid_is_shaded(i)) c.rgb = lit(c.rgb, world_gradient(i, p), eye_direction);
-          emitted += c.a * c.rgb;
+          emitted += c.a * fogged(c.rgb, t);
           sigma_sum += c.a;
         }
       }

@@ -35,12 +35,18 @@ vec2 domain_interval(int i, LocalRay ray) {
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
-// What the clip planes leave of a ray; first > second where it is nothing.
-vec2 clip_interval(vec2 q) {
-  vec2 interval = vec2(-NO_DEPTH, NO_DEPTH);
-  for (uint i = 0u; i < frame.clip_count; ++i) {
-    const float at = frame.clips[i].at + frame.clips[i].at_x * q.x + frame.clips[i].at_y * q.y;
-    const float along = frame.clips[i].along + frame.clips[i].along_x * q.x + frame.clips[i].along_y * q.y;
+// A number of the uniform buffer for the bound of a loop. The CPU driver makes a shader that branches on nothing but uniforms anew at
+// every draw (milliseconds; 0.1 s without its disk cache); this looks like something of the pixel.
+uint of_pixel(uint number, vec2 q) { return number + uint(q.x < -1e30); }
+
+// The part of a grid's domain that can be seen: from the eye on, within the clip planes. Entry >= exit where it is nothing.
+vec2 visible_interval(int i, LocalRay ray, vec2 q) {
+  vec2 interval = domain_interval(i, ray);
+  interval.x = max(interval.x, frame.front);
+  const uint planes = of_pixel(frame.grids[i].clipped * frame.clip_count, q);
+  for (uint k = 0u; k < planes; ++k) {
+    const float at = frame.clips[k].at + frame.clips[k].at_x * q.x + frame.clips[k].at_y * q.y;
+    const float along = frame.clips[k].along + frame.clips[k].along_x * q.x + frame.clips[k].along_y * q.y;
     const float t = abs(along) < LEAST_DIRECTION ? (at >= 0.0 ? -NO_DEPTH : NO_DEPTH) : -at / along;
     if (along >= -LEAST_DIRECTION) interval.x = max(interval.x, t);
     else interval.y = min(interval.y, t);
@@ -48,21 +54,10 @@ vec2 clip_interval(vec2 q) {
   return interval;
 }
 
-// The part of a grid's domain that can be seen: from the eye on, within the clip planes. Entry >= exit where it is nothing.
-vec2 visible_interval(int i, LocalRay ray, vec2 q) {
-  vec2 interval = domain_interval(i, ray);
-  interval.x = max(interval.x, frame.front);
-  if (frame.grids[i].clipped != 0u) {
-    const vec2 kept = clip_interval(q);
-    interval = vec2(max(interval.x, kept.x), min(interval.y, kept.y));
-  }
-  return interval;
-}
-
 float buffer_depth(float t) {
   const float z = t + frame.reference_depth;
-  if (frame.orthographic != 0u) return (frame.depth_far - z) / (frame.depth_far - frame.depth_near);
-  return clamp(frame.depth_near / max(z, 1e-30), 0.0, 1.0);
+  const float parallel = float(frame.orthographic);
+  return parallel * (frame.depth_far - z) / (frame.depth_far - frame.depth_near) + (1.0 - parallel) * clamp(frame.depth_near / max(z, 1e-30), 0.0, 1.0);
 }
 
 // Depth at which the ray leaves the cube of empty bricks around the brick of `p` (at distance `d` the next active one), from p.

@@ -2,15 +2,30 @@
 // come exactly from the polar form of the trilinear function (a and b: entry and exit within the cell, F the blossom):
 //   B0 = F(a,a,a)   B1 = (F(b,a,a) + F(a,b,a) + F(a,a,b)) / 3   B2 = (F(a,b,b) + F(b,a,b) + F(b,b,a)) / 3   B3 = F(b,b,b)
 // All of one sign: no root. Else the cubic is cut at its extrema and the first monotonic piece that changes sign is bracketed.
+// Watertight: the value at a face is one number for both cells (the coordinate across the face is exactly 0 or 1, and nothing is
+// contracted), so that no change of sign falls between them. A cell whose corners lie on one side is passed without a look.
+
+float blend_exactly(float a, float b, float w) {
+  precise float r = a * (1.0 - w) + b * w;
+  return r;
+}
+vec2 blend_exactly(vec2 a, vec2 b, float w) {
+  precise vec2 r = a * (1.0 - w) + b * w;
+  return r;
+}
+vec4 blend_exactly(vec4 a, vec4 b, float w) {
+  precise vec4 r = a * (1.0 - w) + b * w;
+  return r;
+}
 
 vec4 cell_cubic(vec4 lo, vec4 hi, vec3 a, vec3 b) {
-  const vec4 za = mix(lo, hi, a.z), zb = mix(lo, hi, b.z);
-  const vec2 ya_za = mix(za.xy, za.zw, a.y), yb_za = mix(za.xy, za.zw, b.y);
-  const vec2 ya_zb = mix(zb.xy, zb.zw, a.y), yb_zb = mix(zb.xy, zb.zw, b.y);
-  const float aaa = mix(ya_za.x, ya_za.y, a.x), baa = mix(ya_za.x, ya_za.y, b.x);
+  const vec4 za = blend_exactly(lo, hi, a.z), zb = blend_exactly(lo, hi, b.z);
+  const vec2 ya_za = blend_exactly(za.xy, za.zw, a.y), yb_zb = blend_exactly(zb.xy, zb.zw, b.y);
+  const vec2 yb_za = mix(za.xy, za.zw, b.y), ya_zb = mix(zb.xy, zb.zw, a.y);
+  const float aaa = blend_exactly(ya_za.x, ya_za.y, a.x), baa = mix(ya_za.x, ya_za.y, b.x);
   const float aba = mix(yb_za.x, yb_za.y, a.x), bba = mix(yb_za.x, yb_za.y, b.x);
   const float aab = mix(ya_zb.x, ya_zb.y, a.x), bab = mix(ya_zb.x, ya_zb.y, b.x);
-  const float abb = mix(yb_zb.x, yb_zb.y, a.x), bbb = mix(yb_zb.x, yb_zb.y, b.x);
+  const float abb = mix(yb_zb.x, yb_zb.y, a.x), bbb = blend_exactly(yb_zb.x, yb_zb.y, b.x);
   return vec4(aaa, (baa + aba + aab) / 3.0, (abb + bab + bba) / 3.0, bbb);
 }
 
@@ -20,134 +35,176 @@ float cubic_at(vec4 c, float u) {
   return mix(q.x, q.y, u);
 }
 
-// The root of a monotonic piece with a change of sign: false position (Illinois), kept in its bracket.
-float bracketed_root(vec4 c, float a, float b, float fa, float fb) {
-  float u = a;
-  for (int i = 0; i < 24; ++i) {
-    const float span = fb - fa;
-    u = abs(span) > 0.0 ? clamp(a - fa * (b - a) / span, a, b) : 0.5 * (a + b);
-    const float f = cubic_at(c, u);
-    if (f == 0.0 || b - a < 1e-7) break;
-    if ((f >= 0.0) == (fb >= 0.0)) {
-      b = u;
-      fb = f;
-      fa *= 0.5;
-    } else {
-      const float old = fb;
-      a = u;
-      fa = f;
-      fb = old * 0.5;
-    }
-  }
-  return u;
-}
+// A monotonic piece of a cubic with a change of sign: its ends and the values there.
+struct Bracket {
+  float a, b, fa, fb;
+};
 
-// The least root in 0..1; negative if there is none.
-float first_root(vec4 c) {
-  if ((c.x >= 0.0 && c.y >= 0.0 && c.z >= 0.0 && c.w >= 0.0) || (c.x < 0.0 && c.y < 0.0 && c.z < 0.0 && c.w < 0.0)) return -1.0;
+// The first of them in 0..1, if there is one.
+bool first_bracket(vec4 c, out Bracket bracket) {
+  bracket = Bracket(0.0, 1.0, c.x, c.w);
+  // all coefficients on one side: no root
+  if (min(min(c.x, c.y), min(c.z, c.w)) >= 0.0 || max(max(c.x, c.y), max(c.z, c.w)) < 0.0) return false;
   // extrema: roots of the derivative, a quadratic with the Bernstein coefficients d
   const vec3 d = c.yzw - c.xyz;
   const float qa = d.x - 2.0 * d.y + d.z, qb = d.y - d.x, qc = d.x;
-  vec2 cut = vec2(1.0);
   const float discriminant = qb * qb - qa * qc;
   if (discriminant > 0.0) {
     const float w = -(qb + (qb >= 0.0 ? 1.0 : -1.0) * sqrt(discriminant));
     const float r0 = abs(qa) > 0.0 ? w / qa : 1.0, r1 = abs(w) > 0.0 ? qc / w : 1.0;
-    cut = clamp(vec2(min(r0, r1), max(r0, r1)), 0.0, 1.0);
+    const vec2 cut = clamp(vec2(min(r0, r1), max(r0, r1)), 0.0, 1.0);
+    const float f1 = cubic_at(c, cut.x), f2 = cubic_at(c, cut.y);
+    if ((c.x >= 0.0) != (f1 >= 0.0)) bracket = Bracket(0.0, cut.x, c.x, f1);
+    else if ((f1 >= 0.0) != (f2 >= 0.0)) bracket = Bracket(cut.x, cut.y, f1, f2);
+    else bracket = Bracket(cut.y, 1.0, f2, c.w);
   }
-  const float f0 = c.x, f1 = cubic_at(c, cut.x), f2 = cubic_at(c, cut.y), f3 = c.w;
-  if ((f0 >= 0.0) != (f1 >= 0.0)) return bracketed_root(c, 0.0, cut.x, f0, f1);
-  if ((f1 >= 0.0) != (f2 >= 0.0)) return bracketed_root(c, cut.x, cut.y, f1, f2);
-  if ((f2 >= 0.0) != (f3 >= 0.0)) return bracketed_root(c, cut.y, 1.0, f2, f3);
-  return -1.0;
+  return (bracket.fa >= 0.0) != (bracket.fb >= 0.0);
 }
 
-// A walk along a ray through the cells of a grid.
-struct Walk {
-  ivec3 cell;
-  float t, leave;  // depths at which the ray enters and leaves the cell
-  int side;        // of the level, where the last cell was left: 1, -1; 0 unknown
-  bool done;
-  vec4 lo, hi;     // the corners, less the level
+// Its root: Newton's steps from the chord's root, halves of the bracket where they would leave it.
+float root_in(vec4 c, Bracket bracket) {
+  const vec3 d = 3.0 * (c.yzw - c.xyz);
+  float a = bracket.a, b = bracket.b;
+  float u = clamp(a - bracket.fa * (b - a) / (bracket.fb - bracket.fa), a, b);
+  float moved = 1.0;
+  for (int i = 0; i < 24 && moved > 1e-5; ++i) {
+    const float f = cubic_at(c, u);
+    if ((f >= 0.0) == (bracket.fb >= 0.0)) b = u;
+    else a = u;
+    const vec2 slopes = mix(d.xy, d.yz, u);
+    const float next = u - f / mix(slopes.x, slopes.y, u);
+    const float kept = next >= a && next <= b ? next : 0.5 * (a + b);
+    moved = abs(kept - u);
+    u = kept;
+  }
+  return u;
+}
+
+// A ray with its axes turned so that it moves towards greater coordinates: p' = -p on a turned axis, and cell c lies at c' = ~c.
+// Blocks of whole powers of two stay blocks. An axis along which it does not move is never left.
+struct Way {
+  vec3 origin, direction, inverse, still;
+  ivec3 turned;  // -1 on a turned axis
+  ivec3 end;     // one beyond the last cell
 };
 
-void leave_cell(inout Walk walk, LocalRay ray, vec3 inverse, bvec3 forward, ivec3 first, ivec3 last) {
-  const vec3 leave = (mix(vec3(walk.cell), vec3(walk.cell + 1), forward) - ray.origin) * inverse;
-  const ivec3 towards = ivec3(mix(vec3(-1.0), vec3(1.0), forward));
-  const bool x = leave.x <= min(leave.y, leave.z), y = !x && leave.y <= leave.z;
-  walk.cell += ivec3(x ? towards.x : 0, y ? towards.y : 0, x || y ? 0 : towards.z);
-  walk.t = walk.leave;
-  walk.done = any(lessThan(walk.cell, first)) || any(greaterThan(walk.cell, last));
+Way make_way(int i, LocalRay ray) {
+  const bvec3 stands = lessThan(abs(ray.direction), vec3(LEAST_DIRECTION)), backward = lessThan(ray.direction, vec3(0.0));
+  Way way;
+  way.turned = mix(ivec3(0), ivec3(-1), backward);
+  way.origin = mix(ray.origin, -ray.origin, backward);
+  way.direction = abs(ray.direction);
+  way.inverse = mix(1.0 / way.direction, vec3(0.0), stands);
+  way.still = mix(vec3(0.0), vec3(NO_DEPTH), stands);
+  way.end = mix(ivec3(frame.grids[i].hi), -ivec3(frame.grids[i].lo), backward);
+  return way;
 }
 
-// Leaps to where the ray leaves the empty bricks around the walk's cell.
-void leave_bricks(inout Walk walk, LocalRay ray, vec3 inverse, bvec3 forward, ivec3 first, ivec3 last, int distance) {
-  const ivec3 brick = walk.cell >> 3;
-  const ivec3 lo = (brick - (distance - 1)) * BRICK, hi = (brick + distance) * BRICK;
-  const vec3 leave = (mix(vec3(lo), vec3(hi), forward) - ray.origin) * inverse;
-  const float out_at = min(min(leave.x, leave.y), leave.z);
-  const ivec3 inside = clamp(ivec3(floor(ray.origin + out_at * ray.direction)), max(lo, first), min(hi - 1, last));
-  const ivec3 beyond = ivec3(mix(vec3(lo - 1), vec3(hi), forward));
-  const bool x = leave.x == out_at, y = !x && leave.y == out_at;
-  walk.cell = ivec3(x ? beyond.x : inside.x, y ? beyond.y : inside.y, x || y ? inside.z : beyond.z);
+// Where the ray enters a cell; on the axis of the face that it came through, if it came through one, `entered` is true.
+struct Walk {
+  ivec3 cell;  // turned
+  float t;
+  bvec3 entered;
+};
+
+vec3 exits(Way way, ivec3 end) { return (vec3(end) - way.origin) * way.inverse + way.still; }
+float least_of(vec3 v) { return min(min(v.x, v.y), v.z); }
+bvec3 axis_of(vec3 v, float least) {
+  const bool x = v.x == least, y = !x && v.y == least;
+  return bvec3(x, y, !(x || y));
+}
+
+// Goes on to where the ray leaves the box of cells around the walk's cell that ends before `end`. (Beyond the domain's last cell the
+// walk is beyond the ray's end.)
+void leave_box(inout Walk walk, Way way, ivec3 end) {
+  end = min(end, way.end);
+  const vec3 leave = exits(way, end);
+  const float out_at = least_of(leave);
+  walk.entered = axis_of(leave, out_at);
+  walk.cell = mix(clamp(ivec3(floor(way.origin + out_at * way.direction)), walk.cell, end - 1), end, walk.entered);
   walk.t = max(walk.t, out_at);
-  walk.side = 0;
-  walk.done = any(lessThan(walk.cell, first)) || any(greaterThan(walk.cell, last));
 }
 
-// The first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH if there is none. An inner loop walks to
-// the next cell whose corners lie on both sides, the outer one solves its cubic: on a driver that executes both sides of every
-// branch this keeps the solver out of the walk.
-float first_crossing(int i, LocalRay ray, float from, float to) {
-  const float level = frame.grids[i].level;
-  const ivec3 first = ivec3(frame.grids[i].lo), last = ivec3(frame.grids[i].hi) - 1;
-  const vec3 inverse = safe_inverse(ray.direction);
-  const bvec3 forward = forward_of(ray.direction);
-  Walk walk;
-  walk.cell = cell_of(i, ray.origin + from * ray.direction);
-  walk.t = walk.leave = from;
-  walk.side = 0;
-  walk.done = false;
-  float found = NO_DEPTH;
-  while (found == NO_DEPTH && !walk.done && walk.t < to) {
-    bool candidate = false;
-    while (!candidate && !walk.done && walk.t < to) {
-      const int distance = empty_distance(brick_word(i, walk.cell >> 3));
-      if (distance > 0) {
-        leave_bricks(walk, ray, inverse, forward, first, last, distance);
-      } else {
-        const vec3 leave = (mix(vec3(walk.cell), vec3(walk.cell + 1), forward) - ray.origin) * inverse;
-        walk.leave = clamp(min(min(leave.x, leave.y), leave.z), walk.t, to);
-        cell_corners(i, walk.cell, walk.lo, walk.hi);
-        walk.lo -= level;
-        walk.hi -= level;
-        const vec4 low = min(walk.lo, walk.hi), high = max(walk.lo, walk.hi);
-        const bool above = min(min(low.x, low.y), min(low.z, low.w)) >= 0.0, below = max(max(high.x, high.y), max(high.z, high.w)) < 0.0;
-        const int here = above ? 1 : below ? -1 : 0;
-        bool valid = true;
-        if (grid_is_masked(i)) valid = cell_is_valid(i, walk.cell);
-        // also where rounding at a face hid the change of sign
-        candidate = valid && (here == 0 || here == -walk.side);
-        if (!candidate) {
-          walk.side = valid ? here : 0;
-          leave_cell(walk, ray, inverse, forward, first, last);
-        }
-      }
-    }
-    if (candidate) {
-      const vec3 a = clamp(ray.origin + walk.t * ray.direction - vec3(walk.cell), 0.0, 1.0);
-      const vec3 b = clamp(ray.origin + walk.leave * ray.direction - vec3(walk.cell), 0.0, 1.0);
-      const vec4 c = cell_cubic(walk.lo, walk.hi, a, b);
-      const int entered = c.x >= 0.0 ? 1 : -1;
-      if (walk.side == -entered) {
-        found = walk.t;
-      } else {
-        const float u = first_root(c);
-        if (u >= 0.0) found = mix(walk.t, walk.leave, u);
-        walk.side = c.w >= 0.0 ? 1 : -1;
-        leave_cell(walk, ray, inverse, forward, first, last);
-      }
+bool holds_level(vec4 lo, vec4 hi) {
+  const vec4 low = min(lo, hi), high = max(lo, hi);
+  return min(min(low.x, low.y), min(low.z, low.w)) < 0.0 && max(max(high.x, high.y), max(high.z, high.w)) >= 0.0;
+}
+
+void level_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
+  cell_corners(i, cell, lo, hi);
+  lo -= frame.grids[i].level;
+  hi -= frame.grids[i].level;
+}
+
+#ifdef SURFACE_CELLS
+// Walks to the next cell that holds the level, by render/mirror/cell_map.h.
+layout(binding = 1) uniform utexture3D cell_map;
+bool next_in_map(inout Walk walk, Way way, float to) {
+  bool found = false;
+  while (!found && walk.t < to) {
+    const ivec3 cell = walk.cell ^ way.turned, odd = cell & 1;
+    const uint block = texelFetch(cell_map, cell >> 1, 0).r;
+    found = (block >> (odd.x + 2 * odd.y + 4 * odd.z) & 1u) != 0u;
+    if (!found) {
+      // out of the bricks without, the block without, or the cell
+      const int distance = int(block >> 8);
+      const int within = distance > 0 ? 3 : (block & 255u) == 0u ? 1 : 0;
+      leave_box(walk, way, (walk.cell | within) + (distance > 0 ? 4 * distance - 3 : 1));
     }
   }
   return found;
+}
+#else
+bool next_in_map(inout Walk walk, Way way, float to) { return false; }
+#endif
+
+// The same by the bricks' ranges and the corners themselves.
+bool next_by_corners(int i, inout Walk walk, Way way, float to) {
+  bool found = false;
+  while (!found && walk.t < to) {
+    const ivec3 cell = walk.cell ^ way.turned;
+    const int distance = empty_distance(brick_word(i, cell >> 3));
+    if (distance == 0) {
+      vec4 lo, hi;
+      level_corners(i, cell, lo, hi);
+      found = holds_level(lo, hi) && cell_is_valid(i, cell);
+    }
+    if (!found) leave_box(walk, way, distance > 0 ? (walk.cell | 7) + (8 * distance - 7) : walk.cell + 1);
+  }
+  return found;
+}
+
+// The first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH if there is none. An inner loop walks to the
+// next cell whose corners lie on both sides, the outer one asks its cubic for a root, which is solved for when all is found: on a
+// driver that executes both sides of every branch this keeps each stage out of the one within.
+float first_crossing(int i, LocalRay ray, float from, float to) {
+  const Way way = make_way(i, ray);
+  Walk walk = Walk(cell_of(i, ray.origin + from * ray.direction) ^ way.turned, from, bvec3(false));
+  bool found = false;
+  vec4 cubic = vec4(0.0);
+  Bracket bracket = Bracket(0.0, 0.0, 0.0, 1.0);
+  vec2 piece = vec2(from);
+  while (!found && walk.t < to) {
+#ifdef SURFACE_CELLS
+    const bool holds = HAS_CELLS != 0u ? next_in_map(walk, way, to) : next_by_corners(i, walk, way, to);
+#else
+    const bool holds = next_by_corners(i, walk, way, to);
+#endif
+    if (holds) {
+      vec4 lo, hi;
+      level_corners(i, walk.cell ^ way.turned, lo, hi);
+      const vec3 leave = exits(way, walk.cell + 1);
+      const float out_at = least_of(leave), end = clamp(out_at, walk.t, to);
+      const bool leaves = end == max(out_at, walk.t);  // else it ends within the cell
+      const bvec3 left = leaves ? axis_of(leave, out_at) : bvec3(false);
+      const vec3 a = mix(clamp(way.origin + walk.t * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(0.0), walk.entered);
+      const vec3 b = mix(clamp(way.origin + end * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(1.0), left);
+      const bvec3 turned = lessThan(way.turned, ivec3(0));
+      cubic = cell_cubic(lo, hi, mix(a, 1.0 - a, turned), mix(b, 1.0 - b, turned));
+      found = first_bracket(cubic, bracket);
+      piece = vec2(walk.t, end);
+      leave_box(walk, way, walk.cell + 1);
+    }
+  }
+  return found ? mix(piece.x, piece.y, root_in(cubic, bracket)) : NO_DEPTH;
 }

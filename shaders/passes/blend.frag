@@ -34,7 +34,7 @@ void pass_surface(int s, int surface, float t) {
   if (s < SURFACES && s == surface && through > frame.termination) {
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
     const float opacity = frame.grids[i].opacity;
-    color_sum += through * opacity * lit(frame.grids[i].color, world_gradient(i, p), eye_direction);
+    color_sum += through * opacity * fogged(lit(frame.grids[i].color, world_gradient(i, p), eye_direction), t);
     surfaces_through *= 1.0 - opacity;
     through *= 1.0 - opacity;
     const float past = t + 1e-3 / max(max(abs(rays[i].direction.x), abs(rays[i].direction.y)), abs(rays[i].direction.z));

@@ -8,21 +8,28 @@
 #include "shaders/lib/grids.glsl"
 #include "shaders/lib/rays.glsl"
 #include "shaders/lib/lighting.glsl"
+layout(constant_id = 1) const uint HAS_CELLS = 0;  // 0: the map of cells would be too large, or is not wanted
+#define SURFACE_CELLS
 #include "shaders/lib/surface.glsl"
 
 layout(location = 0) out vec4 out_color;
 layout(location = 1) out float out_depth;
 layout(location = 2) out uint out_id;
 
+// The loops are taken once or not at all: this driver leaves out a loop that no pixel of a group enters, but not a branch.
 void main() {
   const vec2 q = pixel_place();
   const LocalRay ray = local_ray(0, q);
   const vec2 interval = visible_interval(0, ray, q);
-  if (!(interval.x < interval.y)) discard;
-  const float t = first_crossing(0, ray, interval.x, interval.y);
+  float t = NO_DEPTH;
+  if (interval.x < interval.y) t = first_crossing(0, ray, interval.x, interval.y);
+  vec3 color = vec3(0.0);
+  for (bool hit = t < NO_DEPTH; hit; hit = t < -NO_DEPTH) {
+    const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
+    color = fogged(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), t);
+  }
   if (t >= NO_DEPTH) discard;
-  const vec3 p = clamp(ray.origin + t * ray.direction, frame.grids[0].lo, frame.grids[0].hi);
-  out_color = vec4(lit(frame.grids[0].color, world_gradient(0, p), -normalize(world_direction(q))), 1.0);
+  out_color = vec4(color, 1.0);
   out_depth = t;
   out_id = frame.grids[0].id;
   gl_FragDepth = buffer_depth(t);

@@ -2,9 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/shared/frame.h"
-#include "shaders/lib/lighting.glsl"
 
 layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
+#include "shaders/lib/lighting.glsl"
 layout(location = 0) in vec3 in_normal;
 layout(location = 1) in vec3 in_color;
 layout(location = 2) in vec3 in_view;
@@ -16,7 +16,7 @@ layout(location = 2) out uint out_id;
 
 void main() {
   const vec3 towards_eye = frame.orthographic != 0u ? vec3(0.0, 0.0, -1.0) : -normalize(in_view);
-  out_color = vec4(lit(in_color, in_normal, towards_eye), 1.0);
+  out_color = vec4(fogged(lit(in_color, in_normal, towards_eye), in_depth), 1.0);
   out_depth = in_depth;
   out_id = in_id;
 }

@@ -9,6 +9,7 @@
 #define MAX_SURFACES 4
 #define MAX_GRIDS 8
 #define MAX_CLIPS 8
+#define MAX_LIGHTS 4
 #define NO_DEPTH 3.0e38f
 
 CATENA_SHARED_BEGIN
@@ -30,6 +31,17 @@ struct GridData {
   vec3 color;
   uint clipped;          // the clip planes count for it
   uint id;               // of the object
+};
+
+// A light from far away; the direction points to it, and is unit: in world axes, in the view's for triangles.
+struct LightData {
+  vec3 direction, color;
+};
+
+// Depth cue: a colour at depth t takes min(most, (t - start) per_depth most) of the fog's.
+struct FogData {
+  vec3 color;
+  float start, per_depth, most;  // most 0: none
 };
 
 // One clip plane as a ray meets it; kept where this is >= 0:
@@ -54,6 +66,9 @@ struct FrameData {
   float termination;     // a ray ends when less gets through
   uint clip_count;
   ClipData clips[MAX_CLIPS];
+  uint light_count;      // 0: a headlight
+  LightData lights[MAX_LIGHTS];
+  FogData fog;
   GridData grids[MAX_GRIDS];
 };
 
@@ -68,6 +83,9 @@ struct MeshFrameData {
   float depth_near, depth_far;
   uint orthographic;
   uint clip_count;
+  uint light_count;
+  LightData lights[MAX_LIGHTS];
+  FogData fog;
   vec4 clips[MAX_CLIPS]; // kept where dot(xyz, position) + w >= 0
 };
 

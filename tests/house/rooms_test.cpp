@@ -134,7 +134,8 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   std::map<std::string, std::set<std::string>> users;  // library -> files
   for (const char* top : {"engine", "haptics", "render"}) {
     for (const Include& include : all_includes(top)) {
-      for (const char* library : {"openvdb/", "nanovdb/", "vulkan/", "GLFW/", "json/", "tbb/", "nifti1_io.h", "png.h", "CLI/"})
+      for (const char* library :
+           {"openvdb/", "nanovdb/", "vulkan/", "GLFW/", "json/", "tbb/", "nifti1_io.h", "png.h", "CLI/", "ft2build.h", "fontconfig/"})
         if (include.to.starts_with(library)) users[library].insert(include.from);
     }
   }
@@ -153,6 +154,8 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   only_in("vulkan/", {"render/", "engine/app/viewer/"});
   only_in("GLFW/", {"engine/app/viewer/"});
   only_in("png.h", {"render/vk/"});
+  only_in("ft2build.h", {"render/text/"});
+  only_in("fontconfig/", {"render/text/"});
   only_in("CLI/", {"engine/app/"});
   EXPECT_LE(users["openvdb/"].size(), 4u) << "openvdb headers cost 10 s of build each";
   for (const char* library : {"openvdb/", "vulkan/", "json/"}) EXPECT_FALSE(users[library].empty()) << library;

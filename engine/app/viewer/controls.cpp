@@ -107,6 +107,7 @@ std::string_view key_help() {
          "space                the hand's button 1\n"
          "F                    a haptic device's forces on and off (off at first)\n"
          "R                    the first view again\n"
+         "F2                   the next stereo mode\n"
          "F1, ?                these keys\n"
          "Q, Esc               quit\n";
 }

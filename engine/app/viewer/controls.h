@@ -16,8 +16,9 @@ struct Input {
   double dx = 0, dy = 0, wheel = 0;
   bool left = false, middle = false, right = false;  ///< held
   bool shift = false, control = false, space = false;
-  bool toggle_hand = false, toggle_forces = false, reset_view = false, help = false, quit = false;  ///< pressed in this piece
-  bool damaged = false;                                                                             ///< the window system lost the picture
+  bool toggle_hand = false, toggle_forces = false, reset_view = false, next_stereo = false, help = false,
+       quit = false;     ///< pressed in this piece
+  bool damaged = false;  ///< the window system lost the picture
 };
 
 struct Controls {

@@ -22,6 +22,7 @@
 #include "haptics/extract/extract.h"
 #include "haptics/servo/servo.h"
 #include "render/extract/extract.h"
+#include "render/extract/extract_stereo.h"
 #include "render/passes/renderer.h"
 #include "render/vk/picture.h"
 #include "render/vk/swapchain.h"
@@ -105,6 +106,7 @@ std::optional<Failure> Session::open_scene() {
     hand_.device = std::move(mouse);
   }
   for (const haptics::Link& link : (*program)->links) link_names_.push_back(link.name);
+  scene.world.get<scene::Cursor>(scene.cursor).names = link_names_;
   haptics::ServoOptions servo;
   servo.rate_hz = hand_.settings.rate_hz;
   servo.forces = is_mouse || hand_.device->capabilities().max_force_n <= 0;
@@ -178,6 +180,11 @@ Changed Session::take_input(double wait_s) {
     changed.hand = changed.hand || by_piece.hand;
     quit_ = quit_ || input.quit;
     stale_ = stale_ || input.damaged;
+    if (input.next_stereo) {
+      auto& mode = options_.scene.stereo.mode;
+      mode = static_cast<scene::StereoMode>((static_cast<int>(mode) + 1) % scene::kStereoModes);
+      changed.view = true;
+    }
     if (input.toggle_forces && mouse_ == nullptr) {
       servo_->set_forces(!servo_->forces());
       say_forces();
@@ -201,7 +208,8 @@ bool Session::take_haptics() {
   bool changed = before.tick == 0 || before.probe != felt_.probe || before.force_n != felt_.force_n;
   for (int i = 0; i < felt_.link_count && !changed; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    changed = before.links[k].proxy != felt_.links[k].proxy || before.links[k].active != felt_.links[k].active;
+    changed = before.links[k].proxy != felt_.links[k].proxy || before.links[k].active != felt_.links[k].active ||
+              before.links[k].status != felt_.links[k].status;
   }
   return changed;
 }
@@ -214,13 +222,18 @@ std::optional<Failure> Session::draw(bool moving) {
     if (auto resized = swapchain_->resize(width, height); !resized) return Failure{1, resized.error().message};
 
   // while something moves: coarser steps, and half the pixels in both directions if need be
-  const std::uint32_t scale = moving && full_ms_ > kSlowMs ? 2 : 1;
+  const scene::Stereo& stereo = options_.scene.stereo;
+  const render::Packing packing = render::packing_of(stereo);
+  const std::uint32_t scale = moving && full_ms_ > kSlowMs && !render::is_interlaced(packing) ? 2 : 1;
+  const auto eye = render::view_size(packing, render::views_of(stereo), std::max(1u, width / scale), std::max(1u, height / scale));
   const std::int64_t start = now_ns();
-  auto packet = render::extract_frame(options_.scene, std::max(1u, width / scale), std::max(1u, height / scale));
+  auto packet = render::extract_frame(options_.scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) return Failure{2, packet.error().message};
   if (auto drawn = renderer_->draw(*packet, moving ? render::draft_settings() : render::balanced_settings()); !drawn)
     return Failure{1, drawn.error().message};
   const double ms = ms_since(start);
+  if (frames_ == 0)
+    for (const std::string& note : renderer_->stats().notes) fmt::print(stderr, "catena: {}\n", note);
   // the first picture pays for uploads and pipelines: it says nothing of the next
   if (moving && frames_ > 0) full_ms_ = frames_ == 1 ? ms * scale * scale : 0.7 * full_ms_ + 0.3 * ms * scale * scale;
   frame_ms_.push_back(ms);
@@ -244,6 +257,7 @@ void Session::update_title() {
   if (const std::string text = hand_.device->status_text(); !text.empty()) title += "  " + text;
   if (recording_.failed()) title += "  the recording has stopped";
   if (mouse_ == nullptr) title += servo_->forces() ? "  [forces on]" : "  [forces off]";
+  if (options_.scene.stereo.mode != scene::StereoMode::mono) title += fmt::format("  [{}]", scene::stereo_word(options_.scene.stereo.mode));
   if (controls_.hand_mode) title += "  [hand]";
   window_->set_title(title);
   last_title_ = now_ns();

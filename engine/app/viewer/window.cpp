@@ -97,6 +97,7 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
     }
     if (key == GLFW_KEY_F) p.current.toggle_forces = !p.current.toggle_forces;
     if (key == GLFW_KEY_R) p.current.reset_view = true;
+    if (key == GLFW_KEY_F2) p.current.next_stereo = true;
     if (key == GLFW_KEY_F1) p.current.help = true;
     if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) p.current.quit = true;
   });

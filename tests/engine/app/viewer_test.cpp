@@ -104,6 +104,29 @@ TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
   EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"missed_deadlines\""), std::string::npos);
 }
 
+TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
+  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  ASSERT_EQ(on_display(view() + " --stereo side-by-side --frames 2 --screenshot " + (folder_ / "pair.png")), 0) << log();
+  const render::Picture pair = picture("pair.png");
+  ASSERT_EQ(pair.width, 320u);
+  ASSERT_EQ(pair.height, 240u);
+  // both halves show the lines
+  int red[2] = {0, 0};
+  for (std::size_t i = 0; i < pair.rgba.size(); i += 4)
+    if (pair.rgba[i] > 80 && pair.rgba[i + 1] < pair.rgba[i] / 2) ++red[(i / 4) % 320 / 160];
+  EXPECT_GT(red[0], 200);
+  EXPECT_GT(red[1], 200);
+  if (!has("xdotool")) return;
+  std::ostringstream script;
+  script << view() << " --stereo top-bottom-half &\n"
+         << "for i in $(seq 200); do xdotool search --name 'top-bottom-half' > /dev/null 2>&1 && break; sleep 0.1; done\n"
+         << "xdotool mousemove 160 120; sleep 0.3; xdotool key F2\n"
+         << "for i in $(seq 100); do xdotool search --name '[[]anaglyph[]]' > /dev/null 2>&1 && echo arrived && break; sleep 0.1; done\n"
+         << "xdotool key q; wait $!\n";
+  ASSERT_EQ(on_display(script.str()), 0) << log();
+  EXPECT_NE(log().find("arrived"), std::string::npos) << log();
+}
+
 TEST_F(Viewer, DrawsForSoManySeconds) {
   if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
   ASSERT_EQ(on_display(view() + " --seconds 1 --servo-stats " + (folder_ / "servo.json")), 0) << log();

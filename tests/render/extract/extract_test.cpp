@@ -76,6 +76,23 @@ TEST(Extract, OpacityBecomesExtinctionAtItsPoints) {
   EXPECT_NEAR(volume.grid->max_value(), std::sqrt(12.0), 1e-6);
 }
 
+TEST(Extract, GradientFactorsComeAlong) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "volumes": [{"field": "s", "extinction": [[1, 3]],
+    "gradient_opacity": [[0, 0.25], [2, 1]]}]})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.volumes.size(), 1u);
+  EXPECT_EQ(packet.volumes[0].transfer.gradient_factors, (std::vector<std::array<double, 2>>{{0, 0.25}, {2, 1}}));
+}
+
+TEST(Extract, LinesAreColouredByANamedMapOverARange) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kCircle + R"(}, "streamlines": [{"field": "v", "seeds": [[0.5, 0, 0], [1.5, 0, 0]],
+    "color_by": "speed", "color": "grey", "range": [0, 1]}]})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.tubes.size(), 2u);
+  EXPECT_NEAR(packet.tubes[0].colors[0].g, 0.5, 1e-3);
+  EXPECT_EQ(packet.tubes[1].colors[0].g, 1) << "beyond the range: its end";
+}
+
 TEST(Extract, TheUnitOfOpacityIsTheSmallestVoxelEdge) {
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "volumes": [{"field": "s", "opacity": [[1, 0.5]]}]})");
   EXPECT_DOUBLE_EQ(packet_of(scene).volumes[0].transfer.extinctions[0][1], std::log(2.0) / 0.5);  // 4 / 8 cells

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "shaders/shared/frame.h"
+#include "shaders/shared/pack.h"
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
@@ -50,6 +51,9 @@ TEST(SharedStructs, FrameAndGridData) {
     EXPECT_OFFSET(FrameData, half_size);
     EXPECT_OFFSET(FrameData, axis);
     EXPECT_OFFSET(FrameData, clip_count);
+    EXPECT_OFFSET(FrameData, light_count);
+    EXPECT_OFFSET(FrameData, lights);
+    EXPECT_OFFSET(FrameData, fog);
     EXPECT_OFFSET(FrameData, clips);
     EXPECT_OFFSET(FrameData, slope);
     EXPECT_OFFSET(FrameData, right);
@@ -79,11 +83,32 @@ TEST(SharedStructs, MeshFrameData) {
   EXPECT_OFFSET(MeshFrameData, scale);
   EXPECT_OFFSET(MeshFrameData, shift);
   EXPECT_OFFSET(MeshFrameData, clip_count);
+  EXPECT_OFFSET(MeshFrameData, light_count);
+  EXPECT_OFFSET(MeshFrameData, lights);
+  EXPECT_OFFSET(MeshFrameData, fog);
   EXPECT_OFFSET(MeshFrameData, clips);
   EXPECT_OFFSET(MeshFrameData, depth_near);
   EXPECT_OFFSET(MeshFrameData, depth_far);
   EXPECT_OFFSET(MeshFrameData, orthographic);
   EXPECT_EQ(found.size(), compared);
+}
+
+TEST(SharedStructs, PackAndAnaglyphData) {
+  auto pack = struct_offsets(shader_words("pack.frag"));
+  auto anaglyph = struct_offsets(shader_words("anaglyph.frag"));
+  std::size_t compared = 0;
+  {
+    const auto& found = pack["PackData"];
+    EXPECT_OFFSET(PackData, first);
+    EXPECT_OFFSET(PackData, block_x);
+    EXPECT_OFFSET(PackData, block_y);
+    EXPECT_OFFSET(PackData, view);
+    EXPECT_OFFSET(PackData, views);
+    EXPECT_EQ(found.size(), compared);
+  }
+  const auto& found = anaglyph["AnaglyphData"];
+  EXPECT_EQ(found.at("left"), offsetof(AnaglyphData, left));
+  EXPECT_EQ(found.at("right"), offsetof(AnaglyphData, right));
 }
 
 TEST(SharedStructs, ComposeData) {

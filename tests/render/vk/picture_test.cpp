@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 
+#include "render/vk/exr_writer.h"
+#include "render/vk/png_writer.h"
+#include "tests/render/support/read_files.h"
 #include "tests/support/support.h"
 
 namespace catena::test {
@@ -59,6 +64,108 @@ TEST(Png, ReadingSomethingElseIsAnError) {
   write_file(folder / "a.png", "not a picture");
   EXPECT_FALSE(read_png(folder / "a.png"));
   EXPECT_FALSE(read_png(folder / "missing.png"));
+}
+
+TEST(Png, SixteenBitsComeBackInAllTheirBytes) {
+  const TemporaryFolder folder;
+  for (const int channels : {1, 3, 4}) {
+    std::vector<std::uint16_t> values;
+    for (std::uint32_t i = 0; i < 11u * 5u * unsigned(channels); ++i) values.push_back(std::uint16_t(i * 1237u + 258u));
+    auto png = PngWriter::open(folder / "a.png", {11, 5, 16, channels, "Objects", "[1, 2]"});
+    ASSERT_TRUE(png) << png.error().message;
+    // in bands of 2, 1 and 2 rows
+    const std::size_t row = 11 * std::size_t(channels);
+    const std::span<const std::uint16_t> all(values);
+    for (const auto& [first, count] : {std::pair{0, 2}, {2, 1}, {3, 2}})
+      ASSERT_TRUE(png->rows(all.subspan(std::size_t(first) * row, std::size_t(count) * row)));
+    EXPECT_FALSE(exists(folder / "a.png")) << "not before the commit";
+    ASSERT_TRUE(png->finish());
+    ASSERT_TRUE(png->commit());
+    const DeepPng back = read_deep_png(folder / "a.png");
+    EXPECT_EQ(back.bits, 16);
+    EXPECT_EQ(back.channels, channels);
+    EXPECT_EQ(back.values, values);
+    EXPECT_EQ(back.text.at("Objects"), "[1, 2]");
+    std::filesystem::remove(folder / "a.png");
+  }
+}
+
+TEST(Png, AWriterThatIsDroppedLeavesNothing) {
+  const TemporaryFolder folder;
+  {
+    auto png = PngWriter::open(folder / "a.png", {4, 4, 8, 3});
+    ASSERT_TRUE(png);
+    ASSERT_TRUE(png->rows(std::vector<std::uint8_t>(12, 7)));
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 0);
+}
+
+TEST(Png, LevelsRoundToTheNearest) {
+  EXPECT_EQ(to_level(0, 65535), 0u);
+  EXPECT_EQ(to_level(1, 65535), 65535u);
+  EXPECT_EQ(to_level(0.5f, 65535), 32768u);  // 32767.5 + 0.5
+  EXPECT_EQ(to_level(0.4f / 65535, 65535), 0u);
+  EXPECT_EQ(to_level(0.6f / 65535, 65535), 1u);
+  EXPECT_EQ(to_level(-3, 65535), 0u);
+  EXPECT_EQ(to_level(7, 65535), 65535u);
+  EXPECT_EQ(to_level(std::numeric_limits<float>::quiet_NaN(), 65535), 0u);
+  EXPECT_EQ(to_level(0.5f, 255), 128u);
+}
+
+TEST(Exr, FloatsComeBackToTheBit) {
+  const TemporaryFolder folder;
+  std::vector<float> values;
+  for (int i = 0; i < 9 * 40 * 4; ++i) values.push_back(std::ldexp(float(i) + 0.3f, i % 60 - 30));
+  values[5] = std::numeric_limits<float>::infinity();
+  auto exr = ExrWriter::open(folder / "a.exr", {9, 40, {"R", "G", "B", "A"}, "a test"});
+  ASSERT_TRUE(exr) << exr.error().message;
+  const std::span<const float> all(values);
+  // in bands that do not match OpenEXR's blocks of 16 rows
+  for (const auto& [first, count] : {std::pair{0, 7}, {7, 20}, {27, 13}})
+    ASSERT_TRUE(exr->rows(all.subspan(std::size_t(first) * 36, std::size_t(count) * 36)));
+  ASSERT_TRUE(exr->finish());
+  ASSERT_TRUE(exr->commit());
+  const ExrPicture back = read_exr(folder / "a.exr");
+  EXPECT_EQ(back.width, 9);
+  EXPECT_EQ(back.height, 40);
+  EXPECT_EQ(back.comments, "a test");
+  ASSERT_EQ(back.channels.size(), 4u);
+  const char* names[] = {"R", "G", "B", "A"};
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(back.channels.at(names[i % 4])[i / 4], values[i]) << i;
+}
+
+TEST(Exr, AFullDiskAndAMissingFolderAreReported) {
+  const TemporaryFolder folder;
+  const auto missing = ExrWriter::open(folder / "no/a.exr", {2, 2, {"Z"}});
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("No such file or directory"), std::string::npos);
+  {
+    auto dropped = ExrWriter::open(folder / "a.exr", {2, 2, {"Z"}});
+    ASSERT_TRUE(dropped);
+    ASSERT_TRUE(dropped->rows(std::vector<float>{1, 2}));
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 0);
+  if (!exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  auto full = ExrWriter::open("/dev/full", {2, 2, {"Z"}});
+  ASSERT_TRUE(full);
+  ASSERT_TRUE(full->rows(std::vector<float>{1, 2, 3, 4}));
+  const auto finished = full->finish();
+  ASSERT_FALSE(finished);
+  EXPECT_NE(finished.error().message.find("No space left"), std::string::npos);
+}
+
+TEST(Exr, DisplayValuesBecomeLinearLight) {
+  // IEC 61966-2-1: 0.5 is 0.21404 of the light, 0.04 lies on the straight part
+  EXPECT_FLOAT_EQ(linear_from_display(0), 0);
+  EXPECT_FLOAT_EQ(linear_from_display(1), 1);
+  EXPECT_NEAR(linear_from_display(0.5f), 0.2140411, 1e-6);
+  EXPECT_NEAR(linear_from_display(0.04f), 0.04 / 12.92, 1e-7);
+  const float rgba[] = {0.5f, 1, 0, 0.25f};
+  const auto c = premultiplied_linear(rgba);
+  EXPECT_NEAR(c[0], 0.25 * 0.2140411, 1e-6);
+  EXPECT_FLOAT_EQ(c[1], 0.25f);
+  EXPECT_FLOAT_EQ(c[2], 0);
+  EXPECT_FLOAT_EQ(c[3], 0.25f);
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+#include "engine/app/render/camera_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/frame/camera_moves.h"
+
+namespace catena::app {
+
+Result<CameraMotion> CameraMotion::make(const RenderOptions& o) {
+  CameraMotion motion;
+  if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
+  if (!(std::fabs(o.elevation_deg) <= 90)) return Error{"--elevation: expected an angle from -90 to 90 degrees"};
+  if (!(o.zoom >= 1e-3 && o.zoom <= 1e6)) return Error{"--zoom: expected a factor from 0.001 to 1000000"};
+  if (!o.view.empty()) {
+    motion.towards_eye_ = render::axis_direction(o.view);
+    if (!motion.towards_eye_) return Error{"--view " + o.view + ": expected +x, -x, +y, -y, +z, -z (the way the camera looks) or iso"};
+  }
+  if (!o.camera.empty()) {
+    if (motion.towards_eye_ || o.fit) return Error{"--camera " + o.camera + ": goes without --view and --fit"};
+    CATENA_TRY(motion.path_, render::read_camera_path(o.camera));
+  }
+  motion.fit_ = o.fit;
+  motion.orbit_deg_ = o.orbit_deg;
+  motion.elevation_deg_ = o.elevation_deg;
+  motion.zoom_ = o.zoom;
+  const double by_path = motion.path_ ? motion.path_->duration_s() * o.fps + 1 : 1;
+  if (o.frames == 0 && by_path > kMostFrames)
+    return Error{o.camera + ": at " + std::to_string(o.fps) + " frames a second there are more than 100000: expected --frames N"};
+  motion.frames_ = o.frames > 0 ? o.frames : std::max(1, static_cast<int>(std::lround(by_path)));
+  return motion;
+}
+
+render::View CameraMotion::at(const render::View& base, const render::Bounds& bounds, double aspect, int frame) const {
+  render::View view = base;
+  if (path_) view = path_->at(view, path_->start_s() + (frames_ > 1 ? path_->duration_s() * frame / (frames_ - 1) : 0));
+  if (towards_eye_) {
+    view = render::fit_view(bounds, aspect, *towards_eye_, base.fovy_deg);
+    view.orthographic = base.orthographic;
+  } else if (fit_) {
+    view = render::fitted(view, bounds, aspect);
+  }
+  view.window = base.window;
+  view = render::zoomed(view, zoom_);
+  return render::turned(view, orbit_deg_ * frame / frames_, elevation_deg_);
+}
+
+}  // namespace catena::app

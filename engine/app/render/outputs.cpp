@@ -1,0 +1,146 @@
+#include "engine/app/render/outputs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "engine/app/render/numbering.h"
+#include "engine/app/render/video_writer.h"
+#include "engine/base/clock.h"
+#include "engine/base/output_file.h"
+
+namespace catena::app {
+namespace {
+
+bool is_device(const std::string& path) { return path.starts_with("/dev/"); }
+
+Outcome check_kind(const std::string& path, const char* option, std::initializer_list<const char*> ends) {
+  std::string expected;
+  for (const char* end : ends) {
+    if (path.ends_with(end)) return Done{};
+    expected += (expected.empty() ? "" : ", ") + std::string(end);
+  }
+  if (is_device(path)) return Done{};
+  return Error{path + ": expected a name for " + option + " that ends in " + expected};
+}
+
+/// Every file that will be written, with the option that names it.
+std::vector<std::pair<std::string, std::string>> files_of(const RenderOptions& o, int frames) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& [path, option] : {std::pair{o.output, "-o"}, {o.depth, "--depth"}, {o.ids, "--ids"}}) {
+    if (path.empty()) continue;
+    const int count = is_numbered(path) && !video_kind(path) ? frames : 1;
+    for (int k = 0; k < count; ++k) files.emplace_back(count > 1 || is_numbered(path) ? numbered(path, k) : path, option);
+  }
+  if (!o.stats.empty()) files.emplace_back(o.stats, "--stats");
+  return files;
+}
+
+}  // namespace
+
+Outcome check_outputs(const RenderOptions& o, const PictureShape& shape, int frames, const std::vector<std::string>& inputs) {
+  CATENA_CHECK(check_kind(o.output, "-o", {".png", ".exr", ".mp4", ".webm", ".gif"}));
+  if (!o.depth.empty()) CATENA_CHECK(check_kind(o.depth, "--depth", {".exr"}));
+  if (!o.ids.empty()) CATENA_CHECK(check_kind(o.ids, "--ids", {".png"}));
+  if (o.bits == 16 && !o.output.ends_with(".png") && !is_device(o.output))
+    return Error{"--bits 16: goes with -o FILE.png, not with " + o.output};
+  if (video_kind(o.output)) {
+    if (frames < 2) return Error{o.output + ": a video has several frames: expected --frames N (and --orbit DEG), or --camera PATH.csv"};
+    CATENA_CHECK(check_video(o.output, {shape.width, shape.height, shape.fps, shape.alpha}));
+  }
+  std::map<std::string, std::string> seen;
+  std::string first;
+  for (const auto& [path, option] : files_of(o, frames)) {
+    // links and other spellings of one place
+    std::error_code code;
+    const std::string place = std::filesystem::weakly_canonical(path, code).string();
+    if (!std::filesystem::exists(path, code) || std::filesystem::is_regular_file(path, code)) {
+      const auto [at, fresh] = seen.emplace(place, option);
+      if (!fresh)
+        return Error{path + ": " + at->second + " and " + option + " name one file: expected " +
+                     (at->second == option ? "one a frame" : "two")};
+    }
+    CATENA_CHECK(check_output(path, inputs));
+  }
+  return Done{};
+}
+
+bool uses_standard_output(const RenderOptions& o) {
+  const auto is_stdout = [](const std::string& path) {
+    std::error_code code;
+    return path == "/dev/stdout" || path == "/dev/fd/1" || path == "/proc/self/fd/1" ||
+           (is_device(path) && path != "/dev/null" && std::filesystem::equivalent(path, "/dev/stdout", code));
+  };
+  return is_stdout(o.output) || is_stdout(o.depth) || is_stdout(o.ids) || is_stdout(o.stats);
+}
+
+render::BandWants wanted_bands(const RenderOptions& o) {
+  const bool floats = o.bits == 16 || o.output.ends_with(".exr");
+  return {!floats, floats, !o.depth.empty(), !o.ids.empty()};
+}
+
+bool Outputs::takes_all_frames() const {
+  return video_kind(options_.output) || is_numbered(options_.output) || is_numbered(options_.depth) || is_numbered(options_.ids);
+}
+
+Outcome Outputs::open(const std::string& path, int frame,
+                      Result<std::unique_ptr<Sink>> (*opener)(const std::string&, const PictureShape&)) {
+  if (path.empty()) return Done{};
+  const bool video = video_kind(path).has_value(), each = is_numbered(path) && !video;
+  if (!each && frame > 0) return Done{};
+  CATENA_TRY(std::unique_ptr<Sink> sink, opener(each ? numbered(path, frame) : path, shape_));
+  (video ? of_all_ : each ? of_frame_ : of_first_).push_back(std::move(sink));
+  return Done{};
+}
+
+Outcome Outputs::begin(int frame) {
+  const std::int64_t start = now_ns();
+  frame_ = frame;
+  CATENA_CHECK(open(options_.output, frame, open_picture));
+  CATENA_CHECK(open(options_.depth, frame, open_depth));
+  CATENA_CHECK(open(options_.ids, frame, open_ids));
+  ms_ += ms_since(start);
+  return Done{};
+}
+
+Outcome Outputs::take(const render::Band& band) {
+  const std::int64_t start = now_ns();
+  for (auto* sinks : {&of_frame_, &of_first_, &of_all_})
+    for (const auto& sink : *sinks) CATENA_CHECK(sink->take(band));
+  ms_ += ms_since(start);
+  return Done{};
+}
+
+Outcome Outputs::end() {
+  const std::int64_t start = now_ns();
+  for (const auto& sink : of_frame_) CATENA_CHECK(sink->finish());
+  for (const auto& sink : of_frame_) CATENA_CHECK(sink->commit());
+  of_frame_.clear();
+  for (auto& sink : of_first_) {
+    CATENA_CHECK(sink->finish());
+    done_.push_back(std::move(sink));
+  }
+  of_first_.clear();
+  ms_ += ms_since(start);
+  ++frames_;
+  return Done{};
+}
+
+Outcome Outputs::finish() {
+  const std::int64_t start = now_ns();
+  for (auto& sink : of_all_) {
+    CATENA_CHECK(sink->finish());
+    done_.push_back(std::move(sink));
+  }
+  of_all_.clear();
+  ms_ += ms_since(start);
+  return Done{};
+}
+
+Outcome Outputs::commit() {
+  for (const auto& sink : done_) CATENA_CHECK(sink->commit());
+  done_.clear();
+  return Done{};
+}
+
+}  // namespace catena::app

@@ -1,0 +1,43 @@
+/// The files of `catena render`: what is checked before any work, and what is open while frames are drawn.
+/// Numbered names ("turn_%03d.png") are a file a frame, committed with it; a video takes all frames; a plain name the first frame.
+/// Videos and plain names are committed last, all together.
+#pragma once
+#include <vector>
+
+#include "engine/app/render/options.h"
+#include "engine/app/render/sinks.h"
+
+namespace catena::app {
+
+/// Refuses: kinds of file that do not exist, no ffmpeg, sizes that a video cannot hold, an output that is an input or another output.
+Outcome check_outputs(const RenderOptions& options, const PictureShape& shape, int frames, const std::vector<std::string>& inputs);
+/// Whether something is written to standard output; what the program says then goes to standard error.
+bool uses_standard_output(const RenderOptions& options);
+/// What the bands must hold for them.
+render::BandWants wanted_bands(const RenderOptions& options);
+
+class Outputs {
+ public:
+  Outputs(const RenderOptions& options, const PictureShape& shape) : options_(options), shape_(shape) {}
+  /// Whether frames after the first are written.
+  bool takes_all_frames() const;
+  Outcome begin(int frame);
+  Outcome take(const render::Band& band);
+  /// Finishes the frame; numbered files are committed.
+  Outcome end();
+  /// All that is left is on its way to the disk; then the renames.
+  Outcome finish();
+  Outcome commit();
+  double ms_a_frame() const { return frames_ > 0 ? ms_ / frames_ : 0; }  ///< spent on encoding and writing
+
+ private:
+  Outcome open(const std::string& path, int frame, Result<std::unique_ptr<Sink>> (*opener)(const std::string&, const PictureShape&));
+
+  const RenderOptions& options_;
+  PictureShape shape_;
+  std::vector<std::unique_ptr<Sink>> of_frame_, of_first_, of_all_, done_;
+  int frame_ = 0, frames_ = 0;
+  double ms_ = 0;
+};
+
+}  // namespace catena::app

@@ -1,0 +1,215 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/app/command.h"
+#include "engine/app/felt_cursor.h"
+#include "engine/app/frame_stats.h"
+#include "engine/app/hand/interrupt.h"
+#include "engine/app/render/camera_motion.h"
+#include "engine/app/render/describe.h"
+#include "engine/app/render/options.h"
+#include "engine/app/render/outputs.h"
+#include "engine/app/render/quality_words.h"
+#include "engine/app/size_option.h"
+#include "engine/base/clock.h"
+#include "engine/base/output_file.h"
+#include "haptics/extract/extract.h"
+#include "render/extract/extract.h"
+#include "render/extract/extract_stereo.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr int kUnreportedFrames = 3;
+constexpr int kMostTiledPixels = 65536;  // each way
+
+template <class T>
+T machine(Result<T> result) {
+  if (!result) throw MachineFailure{result.error().message};
+  return std::move(*result);
+}
+
+/// Draws frames of one scene and hands their bands on.
+class Frames {
+ public:
+  Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, Size size)
+      : scene_(scene), options_(options), motion_(motion), size_(size) {}
+
+  Result<render::FramePacket> packet(int frame) {
+    scene_.phase = options_.phase + static_cast<double>(frame) / motion_.frames();
+    CATENA_TRY(render::FramePacket packet, render::extract_frame(scene_, size_.width, size_.height));
+    packet.view = motion_.at(packet.view, render::packet_bounds(packet), static_cast<double>(size_.width) / size_.height, frame);
+    render::set_eyes(packet, scene_.stereo);
+    return packet;
+  }
+
+  /// Milliseconds from the start of extraction to the fence (of all tiles). Without outputs nothing is read back.
+  Result<double> draw(int frame, Outputs* outputs) {
+    if (!interrupt_) interrupt_.emplace(std::vector{SIGINT, SIGTERM, SIGHUP});
+    const std::int64_t start = now_ns();
+    CATENA_TRY(const render::FramePacket next, packet(frame));
+    const double extract_ms = ms_since(start);
+    Outcome stopped = Done{};
+    bool interrupted = false;
+    const auto take = [&](const render::Band& band) -> Outcome {
+      interrupted = interrupt_->asked();
+      if (interrupted) return Error{"interrupted"};
+      if (band.height == 0) {
+        if (progress != nullptr) progress->at(++tiles_done_);
+        return Done{};
+      }
+      if (first_ms == 0) first_ms = ms_since_process_start();
+      return stopped = outputs->take(band);
+    };
+    if (outputs != nullptr) CATENA_CHECK(outputs->begin(frame));
+    const auto ms = render::draw_bands(*renderer, next, settings, plan, wants, outputs != nullptr ? take : decltype(nothing_)());
+    CATENA_CHECK(stopped);
+    if (interrupted || interrupt_->asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
+    if (!ms) throw MachineFailure{ms.error().message};
+    if (outputs != nullptr) CATENA_CHECK(outputs->end());
+    return extract_ms + *ms;
+  }
+
+  std::unique_ptr<render::Renderer> renderer;
+  render::RenderSettings settings;
+  render::TilePlan plan;
+  render::BandWants wants;
+  Progress* progress = nullptr;
+  double first_ms = 0;  ///< process start to the first pixels on the host
+
+ private:
+  scene::Scene& scene_;
+  const RenderOptions& options_;
+  const CameraMotion& motion_;
+  Size size_;
+  std::optional<Interrupt> interrupt_;  // while it draws
+  double tiles_done_ = 0;
+  std::function<Outcome(const render::Band&)> nothing_;
+};
+
+/// Settings for the goal, measured on the picture, or on its middle tile.
+render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
+  const render::TilePlan& plan = frames.plan;
+  if (plan.count() == 1 && plan.antialias == 1) return machine(render::choose_quality(*frames.renderer, packet, goal));
+  const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
+  if (goal.kind == render::QualityGoal::Kind::time)
+    goal.value *= double(middle.drawn_width) * middle.drawn_height / (double(plan.samples_x()) * plan.samples_y());
+  return machine(render::choose_quality(*frames.renderer, render::tile_packet(packet, plan, middle), goal));
+}
+
+/// Of the finished picture. Several eyes in one are drawn in one piece.
+Result<Size> picture_size(const RenderOptions& o, const scene::Stereo& stereo, const Size& size) {
+  if (render::views_of(stereo) < 2) return size;
+  const std::string mode = "with " + std::to_string(render::views_of(stereo)) + " views in one picture";
+  if (!o.depth.empty() || !o.ids.empty())
+    return Error{(o.depth.empty() ? "--ids: " : "--depth: ") + mode + " it would be one view's; --stereo left or right was expected"};
+  if (o.antialias > 1 || o.tile > 0)
+    return Error{(o.tile > 0 ? "--tile: " : "--antialias: ") + mode + " it is drawn in one piece; --stereo left or right was expected"};
+  CATENA_CHECK(check_packed(stereo, size));
+  const auto packed = render::packed_size(render::packing_of(stereo), render::views_of(stereo), size.width, size.height);
+  return Size{static_cast<std::uint32_t>(packed.width), static_cast<std::uint32_t>(packed.height)};
+}
+
+}  // namespace
+
+Outcome render_pictures(const RenderOptions& o) {
+  CATENA_TRY(const Size size, parse_size(o.size, kMostTiledPixels));
+  if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
+  CATENA_TRY(const CameraMotion motion, CameraMotion::make(o));
+  CATENA_TRY(const scene::NamedColors colors, o.colors.named());
+  const std::int64_t load_start = now_ns();
+  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
+  CATENA_CHECK(annotate(scene, o.annotate));
+  CATENA_CHECK(o.stereo.apply(scene.stereo));
+  CATENA_TRY(const Size picture, picture_size(o, scene.stereo, size));
+  const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
+  CATENA_TRY(const Quality wanted, parse_quality(quality));
+  std::vector<std::string> inputs = inputs_of(scene);
+  if (!o.probe.empty()) inputs.push_back(o.probe);
+  if (!o.camera.empty()) inputs.push_back(o.camera);
+  PictureShape shape{picture.width, picture.height, scene.background.transparent, o.bits, o.fps, {}};
+  CATENA_CHECK(check_outputs(o, shape, motion.frames(), inputs));
+  std::FILE* const words = uses_standard_output(o) ? stderr : stdout;
+
+  // the chain is checked with the picture: one scene, two senses
+  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  CATENA_CHECK(place_cursor(scene, *program, o.probe));
+  Frames frames(scene, o, motion, size);
+  CATENA_TRY(const render::FramePacket packet, frames.packet(0));
+  if (!o.ids.empty() && packet.objects.size() > 65535)
+    return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
+  FrameStats stats;
+  stats.load_ms = ms_since(load_start);
+  stats.cpu_bytes = field_bytes(scene);
+  stats.objects = packet.objects;
+  shape.legend = objects_json(packet.objects);
+
+  frames.renderer = machine(render::Renderer::create({.validation = o.validation, .choose = {}, .surface = {}}));
+  frames.settings = wanted.settings;
+  frames.wants = wanted_bands(o);
+  const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
+  frames.plan = render::views_of(scene.stereo) > 1
+                    ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
+                    : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || wanted.settings.fast,
+                                         frames.renderer->longest_side());
+  if (wanted.goal) {
+    const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
+    frames.settings = choice.settings;
+    stats.estimated_rmse = choice.estimated_rmse;
+    fmt::print(words, "quality {}: {}, error about {:.2f}/255{}\n", quality, describe(frames.settings), choice.estimated_rmse,
+               choice.reached ? "" : " (nothing reached the goal: the nearest was taken)");
+  }
+  stats.quality_mode = wanted.goal ? quality + ": " + describe(frames.settings) : quality;
+  stats.tiles = frames.plan.count();
+  stats.device = frames.renderer->stats().device;
+
+  // the first frame; the reported ones come after a few unreported ones
+  Outputs outputs(o, shape);
+  const bool more = motion.frames() > 1 && (outputs.takes_all_frames() || o.stats.empty());
+  {
+    const double parts = frames.plan.count() * (more ? double(motion.frames()) : 1.0);
+    Progress progress("render", parts);
+    frames.progress = parts > 1 ? &progress : nullptr;
+    CATENA_TRY(const double first, frames.draw(0, &outputs));
+    stats.first_frame_ms = frames.first_ms;
+    fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, picture.width, picture.height, what_is_drawn(packet),
+               stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device);
+    std::fflush(words);
+    // a frame of many tiles has warmed up by itself
+    const bool timed = !o.stats.empty() && stats.tiles == 1;
+    for (int k = 1; k < kUnreportedFrames && timed; ++k) CATENA_CHECK(frames.draw(0, nullptr));
+    for (int k = 0; k < motion.frames(); ++k) {
+      if (k == 0 && !timed) {
+        stats.frame_ms.push_back(first);
+        continue;
+      }
+      CATENA_TRY(const double ms, frames.draw(k, k > 0 && outputs.takes_all_frames() ? &outputs : nullptr));
+      stats.frame_ms.push_back(ms);
+    }
+    frames.progress = nullptr;
+  }
+  if (!o.stats.empty() || motion.frames() > 1)
+    fmt::print(words, "frame {:.1f} ms (median of {})\n", stats.median_ms(), stats.frame_ms.size());
+
+  CATENA_CHECK(outputs.finish());
+  stats.encode_ms = outputs.ms_a_frame();
+  const render::RenderStats gpu = frames.renderer->stats();
+  stats.driver = gpu.driver;
+  stats.mirror_ms = gpu.mirror_ms;
+  stats.gpu_bytes = gpu.gpu_bytes;
+  stats.validation_messages = gpu.validation_messages;
+  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", note);
+  for (const std::string& text : frames.renderer->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
+  if (o.stats.empty()) return outputs.commit();
+  CATENA_TRY(OutputFile json, OutputFile::open(o.stats));
+  json.write(stats.json());
+  CATENA_CHECK(json.finish());
+  CATENA_CHECK(outputs.commit());
+  return json.commit();
+}
+
+}  // namespace catena::app

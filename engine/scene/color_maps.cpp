@@ -1,0 +1,146 @@
+#include "engine/scene/color_maps.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "engine/base/assert.h"
+#include "engine/base/text.h"
+#include "engine/scene/color_spaces.h"
+
+namespace catena::scene {
+namespace {
+
+/// An entry of a published map of 256: the maps are linear between these.
+struct Anchor {
+  int entry;
+  std::uint32_t rgb;
+};
+
+constexpr Anchor kViridis[] = {{0, 0x440154},   {17, 0x481a6c},  {34, 0x472f7d},  {52, 0x404588},  {81, 0x32648e},  {120, 0x23898e},
+                               {141, 0x1e9d89}, {153, 0x22a884}, {166, 0x2fb47c}, {179, 0x44bf70}, {192, 0x5ec962}, {209, 0x86d549},
+                               {236, 0xcde11d}, {243, 0xdfe318}, {248, 0xece51b}, {253, 0xf8e621}, {255, 0xfde725}};
+constexpr Anchor kCividis[] = {{0, 0x00224e},   {20, 0x003070},  {23, 0x013271},  {28, 0x123570},  {35, 0x203a6f},
+                               {53, 0x38476c},  {85, 0x575d6d},  {134, 0x828079}, {167, 0xa29975}, {199, 0xc3b369},
+                               {225, 0xdfca57}, {242, 0xf2da44}, {251, 0xfde334}, {254, 0xfee636}, {255, 0xfee838}};
+constexpr Anchor kInferno[] = {{0, 0x000004},   {3, 0x010108},   {11, 0x060419},  {22, 0x120a32},  {31, 0x1f0c48},  {40, 0x2f0a5b},
+                               {49, 0x3e0966},  {61, 0x520e6d},  {76, 0x6a176e},  {94, 0x87216b},  {117, 0xab2f5e}, {137, 0xc83f4b},
+                               {155, 0xdf5337}, {175, 0xf1711f}, {193, 0xfa9008}, {199, 0xfb9b06}, {204, 0xfca50a}, {213, 0xfbb61a},
+                               {225, 0xf8cd37}, {235, 0xf4e156}, {244, 0xf1f179}, {251, 0xf6fa96}, {255, 0xfcffa4}};
+constexpr Anchor kMagma[] = {{0, 0x000004},   {5, 0x02020b},   {16, 0x0a0822},  {32, 0x1d1147},  {45, 0x311165},  {54, 0x400f74},
+                             {66, 0x54137d},  {90, 0x792282},  {117, 0xa5317e}, {139, 0xc83e73}, {154, 0xdf4a68}, {167, 0xee5b5e},
+                             {179, 0xf7705c}, {190, 0xfb8560}, {206, 0xfea36f}, {229, 0xfecd90}, {255, 0xfcfdbf}};
+constexpr Anchor kPlasma[] = {{0, 0x0d0887},   {7, 0x20068f},   {26, 0x43039e},  {49, 0x6700a8},  {62, 0x7b02a8},
+                              {73, 0x8b0aa5},  {92, 0xa51f99},  {124, 0xc8437b}, {161, 0xe76e5b}, {191, 0xf89441},
+                              {216, 0xfeb82c}, {233, 0xfbd324}, {250, 0xf3f027}, {254, 0xf0f724}, {255, 0xf0f921}};
+constexpr Anchor kGrey[] = {{0, 0x000000}, {255, 0xffffff}};
+
+/// From dusk blue over green to ivory: light enough on black, dark enough on white.
+constexpr Rgb kDusk[] = {{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f},
+                         {0.72f, 0.79f, 0.52f}, {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}};
+
+constexpr int kCoolWarmSteps = 256;  // its green falls steeply at the warm end
+
+struct ColorMap {
+  std::string_view name;
+  std::vector<ColorPoint> points;  ///< values 0 to 1
+};
+
+std::vector<ColorPoint> from_anchors(std::span<const Anchor> anchors) {
+  std::vector<ColorPoint> points;
+  const auto component = [](std::uint32_t rgb, int shift) { return static_cast<float>((rgb >> shift) & 255u) / 255.0f; };
+  for (const auto& [entry, rgb] : anchors) points.push_back({entry / 255.0, {component(rgb, 16), component(rgb, 8), component(rgb, 0)}});
+  return points;
+}
+
+std::vector<ColorPoint> dusk() {
+  std::vector<ColorPoint> points;
+  for (const Rgb& rgb : kDusk) points.push_back({static_cast<double>(points.size()) / (std::size(kDusk) - 1), rgb});
+  return points;
+}
+
+std::vector<ColorPoint> cool_warm() {
+  const Vec3 cool = srgb_from_lab(lab_from_msh({80, 1.08, -1.1})), warm = srgb_from_lab(lab_from_msh({80, 1.08, 0.5}));
+  std::vector<ColorPoint> points;
+  for (int i = 0; i <= kCoolWarmSteps; ++i) {
+    const double t = static_cast<double>(i) / kCoolWarmSteps;
+    const Vec3 c = between_colors(ColorSpace::diverging, cool, warm, t);
+    points.push_back({t, {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)}});
+  }
+  return points;
+}
+
+const std::vector<ColorMap>& color_maps() {
+  static const std::vector<ColorMap> maps = {{"viridis", from_anchors(kViridis)}, {"cividis", from_anchors(kCividis)},
+                                             {"inferno", from_anchors(kInferno)}, {"magma", from_anchors(kMagma)},
+                                             {"plasma", from_anchors(kPlasma)},   {"cool-warm", cool_warm()},
+                                             {"grey", from_anchors(kGrey)},       {"dusk", dusk()}};
+  return maps;
+}
+
+const ColorMap* find_map(std::string_view name) {
+  if (name.ends_with("_r")) name.remove_suffix(2);
+  for (const ColorMap& map : color_maps())
+    if (map.name == name) return &map;
+  return nullptr;
+}
+
+Rgb mixed(const Rgb& a, const Rgb& b, float t) { return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)}; }
+
+Rgb middle_of(const std::vector<ColorPoint>& points) {
+  std::size_t i = 1;
+  while (points[i].value < 0.5) ++i;
+  return mixed(points[i - 1].color, points[i].color,
+               static_cast<float>((0.5 - points[i - 1].value) / (points[i].value - points[i - 1].value)));
+}
+
+}  // namespace
+
+const std::vector<std::string_view>& color_map_names() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> all;
+    for (const ColorMap& map : color_maps()) all.push_back(map.name);
+    return all;
+  }();
+  return names;
+}
+
+bool is_color_map(std::string_view name) { return find_map(name) != nullptr; }
+
+std::string not_a_color_map(std::string_view name) {
+  return in_quotes(name) + " is no colour map; one of " + joined(color_map_names()) + ", or one of them with \"_r\", was expected" +
+         suggestion(name, color_map_names());
+}
+
+std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi) {
+  const ColorMap* map = find_map(name);
+  CATENA_ASSERT(map != nullptr && std::isfinite(lo) && std::isfinite(hi));
+  if (!(lo < hi)) return {{lo, middle_of(map->points)}};
+  std::vector<ColorPoint> points;
+  const bool reversed = name.ends_with("_r");
+  const std::size_t count = map->points.size();
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    const ColorPoint& point = map->points[reversed ? count - 1 - i : i];
+    const double t = reversed ? 1 - point.value : point.value, value = i == 0 ? lo : (1 - t) * lo + t * hi;
+    // in a range of a few bits neighbours fall together
+    if (i == 0 || (value > points.back().value && value < hi)) points.push_back({value, point.color});
+  }
+  points.push_back({hi, map->points[reversed ? 0 : count - 1].color});
+  return points;
+}
+
+bool is_color_range(double lo, double hi) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return std::fabs(lo) <= most && std::fabs(hi) <= most && static_cast<float>(lo) < static_cast<float>(hi);
+}
+
+std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                    std::string_view fallback) {
+  if (!table.empty()) return table;
+  const std::string_view name = named.map.empty() ? fallback : std::string_view(named.map);
+  if (named.range) return named_map(name, (*named.range)[0], (*named.range)[1]);
+  return lo <= hi ? named_map(name, lo, hi) : named_map(name, 0, 1);
+}
+
+}  // namespace catena::scene

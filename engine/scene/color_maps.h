@@ -1,0 +1,40 @@
+/// Colour maps by name: for volumes, lines, slices and the legends beside them. Display (sRGB) values.
+///   viridis, inferno, magma, plasma   N. Smith, S. van der Walt, 2015
+///   cividis                           J. Nunez, C. Anderton, R. Renslow, PLoS ONE 13(7), 2018: the same to the colour-blind
+///   cool-warm                         K. Moreland, ISVC 2009: computed, Msh (80, 1.08, -1.1) over white to (80, 1.08, 0.5)
+///   grey                              black to white
+///   dusk                              Catena's own, from blue over green to ivory: what volumes without colours have
+/// Each name also with "_r": reversed. Piecewise linear; of the published 256 entries no component is further off than
+/// 0.90/255; cool-warm: 0.3/255 at eight of its author's 33 points. Pure functions, any thread.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/scene/components.h"
+
+namespace catena::scene {
+
+using ColorPoint = TransferFunction::ColorPoint;
+
+inline constexpr std::string_view kDefaultLineMap = "viridis";
+inline constexpr std::string_view kDefaultVolumeMap = "dusk";
+
+/// Without the reversed ones.
+const std::vector<std::string_view>& color_map_names();
+bool is_color_map(std::string_view name);
+/// For messages: `"virids" is no colour map; one of viridis, ..., or one of them with "_r", was expected (did you mean ...?)`.
+std::string not_a_color_map(std::string_view name);
+
+/// The map from lo to hi, values rising strictly, colours as they are at both ends; its middle colour alone where lo is not
+/// below hi. The name must be one (is_color_map); lo and hi finite.
+std::vector<ColorPoint> named_map(std::string_view name, double lo, double hi);
+
+/// Whether a map can lie between them: fields hold floats, so they are two rising floats.
+bool is_color_range(double lo, double hi);
+
+/// What shows values that reach from lo to hi: the table if there is one, else the map, or `fallback`, over its range or lo..hi.
+std::vector<ColorPoint> color_table(const std::vector<ColorPoint>& table, const NamedColors& named, double lo, double hi,
+                                    std::string_view fallback = kDefaultLineMap);
+
+}  // namespace catena::scene

@@ -1,0 +1,219 @@
+#include "engine/scene/read_transfer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/read_parts.h"
+
+namespace catena::scene {
+namespace {
+
+using Pair = std::array<double, 2>;
+
+/// Rows [value, ...] of a table, values rising strictly, at least one.
+Result<std::vector<std::vector<double>>> read_table(const json::Node& node, std::string_view what, std::size_t width) {
+  CATENA_TRY(auto rows, json::as_rows(node, what, width));
+  if (rows.empty())
+    return json::error_at(node, in_quotes(what) + " is empty; at least one row of " + std::to_string(width) + " numbers was expected");
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if (!(rows[i][0] > rows[i - 1][0]))
+      return json::error_at(node.items[i], in_quotes(what) + " has the value " + to_text(rows[i][0]) + " after " + to_text(rows[i - 1][0]) +
+                                               "; strictly rising values were expected");
+  return rows;
+}
+
+/// [lo, hi]
+Result<std::optional<Pair>> read_range(const json::Node& object) {
+  const json::Node* node = object.find("range");
+  if (node == nullptr) return std::optional<Pair>();
+  if (node->kind != json::Kind::array || node->items.size() != 2)
+    return json::error_at(*node, "\"range\" is no pair; two rising numbers [lo, hi] were expected");
+  CATENA_TRY(const double lo, json::as_number(node->items[0], "range[0]"));
+  CATENA_TRY(const double hi, json::as_number(node->items[1], "range[1]"));
+  if (!is_color_range(lo, hi))
+    return json::error_at(*node, "\"range\" is [" + to_text(lo) + ", " + to_text(hi) + "]; two rising numbers [lo, hi] were expected");
+  return std::optional<Pair>({lo, hi});
+}
+
+/// "color" and "range".
+Outcome read_colors(const json::Node& object, std::vector<ColorPoint>& colors, NamedColors& named) {
+  CATENA_TRY(named.range, read_range(object));
+  const json::Node* color = object.find("color");
+  if (color == nullptr) return Done{};
+  if (color->kind == json::Kind::string) {
+    if (!is_color_map(color->string)) return json::error_at(*color, "\"color\": " + not_a_color_map(color->string));
+    named.map = color->string;
+    return Done{};
+  }
+  CATENA_TRY(colors, read_color_table(*color, "color"));
+  if (named.range)
+    return json::error_at(
+        *object.find("range"),
+        "\"range\" is given beside a table \"color\", whose rows say their values; a colour map's name was expected there");
+  return Done{};
+}
+
+Outcome read_gradient_opacity(const json::Node& object, TransferFunction& transfer) {
+  const json::Node* node = object.find("gradient_opacity");
+  if (node == nullptr) return Done{};
+  CATENA_TRY(const auto rows, read_table(*node, "gradient_opacity", 2));
+  transfer.gradient_factors.clear();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!(rows[i][0] >= 0))
+      return json::error_at(node->items[i],
+                            "\"gradient_opacity\" holds the gradient " + to_text(rows[i][0]) + "; a length >= 0 was expected");
+    if (!(rows[i][1] >= 0 && rows[i][1] <= 1))
+      return json::error_at(node->items[i],
+                            "\"gradient_opacity\" holds the factor " + to_text(rows[i][1]) + "; a number from 0 to 1 was expected");
+    transfer.gradient_factors.push_back({rows[i][0], rows[i][1]});
+  }
+  return Done{};
+}
+
+/// "opacity", "opacity_unit", "extinction", "gradient_opacity".
+Outcome read_opacities(const json::Node& object, TransferFunction& transfer) {
+  const json::Node *opacity = object.find("opacity"), *extinction = object.find("extinction"), *unit = object.find("opacity_unit");
+  if (opacity != nullptr && extinction != nullptr)
+    return json::error_at(*extinction, "both \"opacity\" and \"extinction\" are given; one of them was expected");
+  if (unit != nullptr && opacity == nullptr)
+    return json::error_at(*unit, "\"opacity_unit\" is given without \"opacity\"; the table \"opacity\" was expected beside it");
+  if (opacity != nullptr) {
+    CATENA_TRY(const auto rows, read_table(*opacity, "opacity", 2));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!(rows[i][1] >= 0 && rows[i][1] < 1))
+        return json::error_at(opacity->items[i], "\"opacity\" holds " + to_text(rows[i][1]) + "; an opacity 0 <= a < 1 was expected");
+      transfer.opacities.push_back({rows[i][0], rows[i][1]});
+    }
+    CATENA_TRY(transfer.opacity_unit, json::get_number(object, "opacity_unit", 0, json::Range::positive));
+  }
+  if (extinction != nullptr) {
+    CATENA_TRY(const auto rows, read_table(*extinction, "extinction", 2));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!(rows[i][1] >= 0))
+        return json::error_at(extinction->items[i], "\"extinction\" holds " + to_text(rows[i][1]) + "; a sigma >= 0 was expected");
+      transfer.extinctions.push_back({rows[i][0], rows[i][1]});
+    }
+  }
+  return read_gradient_opacity(object, transfer);
+}
+
+/// Calls each(value) for every value of the tables, and of the range of a named map.
+template <class Each>
+void each_value(TransferFunction& transfer, Each&& each) {
+  for (auto& p : transfer.colors) each(p.value);
+  for (auto& p : transfer.opacities) each(p.value);
+  for (auto& p : transfer.extinctions) each(p.value);
+  if (transfer.named.range)
+    for (double& v : *transfer.named.range) each(v);
+}
+
+bool rises(const TransferFunction& transfer) {
+  const auto falls = [](const auto& a, const auto& b) { return !(a.value < b.value); };
+  return std::adjacent_find(transfer.colors.begin(), transfer.colors.end(), falls) == transfer.colors.end() &&
+         std::adjacent_find(transfer.opacities.begin(), transfer.opacities.end(), falls) == transfer.opacities.end() &&
+         std::adjacent_find(transfer.extinctions.begin(), transfer.extinctions.end(), falls) == transfer.extinctions.end();
+}
+
+/// Lays the tables anew, from their own ends to `range`.
+Outcome lay_anew(TransferFunction& transfer, const Pair& range, const json::Node& where) {
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  each_value(transfer, [&](const double& v) { lo = std::min(lo, v), hi = std::max(hi, v); });
+  if (lo <= hi) {
+    each_value(transfer, [&](double& v) {
+      const double t = (v - lo) / (hi - lo);
+      v = (1 - t) * range[0] + t * range[1];
+    });
+    // one value alone, or values that fall together
+    if (!(lo < hi) || !std::isfinite(hi - lo) || !rises(transfer))
+      return json::error_at(where, "\"range\" cannot hold the values of the transfer file, which reach from " + to_text(lo) + " to " +
+                                       to_text(hi) + "; a wider range was expected");
+  }
+  if (transfer.colors.empty()) transfer.named.range = range;
+  return Done{};
+}
+
+/// The file that "transfer" names.
+Result<TransferFunction> read_transfer_file(const std::string& scene_path, const json::Node& object) {
+  const json::Node& node = *object.find("transfer");
+  for (const char* key : {"color", "opacity", "extinction"})
+    if (const json::Node* other = object.find(key))
+      return json::error_at(*other,
+                            "both \"transfer\" and " + in_quotes(key) + " are given; a transfer file that says all, or none, was expected");
+  CATENA_TRY(const std::string name, json::as_string(node, "transfer"));
+  const std::string path = resolved_path(scene_path, name);
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(path, code))
+    return json::error_at(node, "\"transfer\": " + in_quotes(path) +
+                                    (std::filesystem::exists(path, code) ? " is not a file" : " does not exist") +
+                                    "; a transfer file (JSON) was expected");
+  CATENA_TRY(const std::string text, read_text(path, "a transfer file (JSON)"));
+  CATENA_TRY(TransferFunction transfer, parse_transfer(text, path));
+  transfer.file = path;
+  CATENA_TRY(const std::optional<Pair> range, read_range(object));
+  if (range) CATENA_CHECK(lay_anew(transfer, *range, *object.find("range")));
+  return transfer;
+}
+
+}  // namespace
+
+Result<std::vector<ColorPoint>> read_color_table(const json::Node& node, std::string_view what) {
+  std::vector<ColorPoint> colors;
+  CATENA_TRY(const auto rows, read_table(node, what, 4));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    CATENA_TRY(const Rgb rgb, as_color({rows[i][1], rows[i][2], rows[i][3]}, node.items[i], what));
+    colors.push_back({rows[i][0], rgb});
+  }
+  return colors;
+}
+
+Result<ColorScale> read_color_scale(const std::string& scene_path, const json::Node& object) {
+  ColorScale scale;
+  if (object.find("transfer") == nullptr) {
+    CATENA_CHECK(read_colors(object, scale.colors, scale.named));
+    return scale;
+  }
+  CATENA_TRY(TransferFunction transfer, read_transfer_file(scene_path, object));
+  if (transfer.colors.empty() && transfer.named.map.empty())
+    return json::error_at(*object.find("transfer"),
+                          "\"transfer\": " + in_quotes(transfer.file) + " holds no colours; \"color\" was expected in it");
+  scale.colors = std::move(transfer.colors);
+  scale.named = std::move(transfer.named);
+  return scale;
+}
+
+Result<TransferFunction> read_transfer(const std::string& scene_path, const json::Node& object) {
+  if (object.find("transfer") == nullptr) {
+    TransferFunction transfer;
+    CATENA_CHECK(read_colors(object, transfer.colors, transfer.named));
+    CATENA_CHECK(read_opacities(object, transfer));
+    return transfer;
+  }
+  CATENA_TRY(TransferFunction transfer, read_transfer_file(scene_path, object));
+  if (const json::Node* unit = object.find("opacity_unit")) {
+    if (transfer.opacities.empty())
+      return json::error_at(*unit, "\"opacity_unit\" is given, but the transfer file holds no \"opacity\"; one in it was expected");
+    CATENA_TRY(transfer.opacity_unit, json::get_number(object, "opacity_unit", 0, json::Range::positive));
+  }
+  CATENA_CHECK(read_gradient_opacity(object, transfer));
+  return transfer;
+}
+
+Result<TransferFunction> parse_transfer(std::string_view text, const std::string& path) {
+  CATENA_TRY(const json::Node root, json::parse(text, path));
+  if (root.kind == json::Kind::array) return read_paraview_map(root);
+  CATENA_CHECK(json::expect_object(root, "the transfer function"));
+  CATENA_CHECK(json::only_keys(root, {"color", "range", "opacity", "opacity_unit", "extinction", "gradient_opacity"}));
+  TransferFunction transfer;
+  CATENA_CHECK(read_colors(root, transfer.colors, transfer.named));
+  CATENA_CHECK(read_opacities(root, transfer));
+  if (root.members.empty())
+    return json::error_at(root, "the transfer function is empty; \"color\", \"opacity\" or \"extinction\" was expected");
+  return transfer;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,45 @@
+/// What a stereo picture is made of: the words of "stereo": {"mode"} and of `--stereo`.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace catena::scene {
+
+/// In the order of the words; a viewer goes through them in this order.
+enum class StereoMode {
+  mono,
+  left,
+  right,
+  side_by_side,
+  side_by_side_half,
+  cross_eyed,
+  top_bottom,
+  top_bottom_half,
+  anaglyph,
+  anaglyph_grey,
+  row_interlaced,
+  column_interlaced,
+  checkerboard
+};
+inline constexpr int kStereoModes = 13;
+
+/// "side-by-side" and so on.
+std::string_view stereo_word(StereoMode mode);
+std::optional<StereoMode> stereo_mode(std::string_view word);
+/// "mono, left, .. or checkerboard"
+std::string stereo_words();
+/// Whether the mode takes two eyes and no other number.
+bool needs_a_pair(StereoMode mode);
+
+/// The eyes of the picture. Lengths in world units.
+struct Stereo {
+  StereoMode mode = StereoMode::mono;
+  std::optional<double> separation;     ///< of neighbouring eyes; none: a 30th of the zero-parallax distance
+  std::optional<double> zero_parallax;  ///< distance from the eyes to where both see the same; none: to the camera's target
+  int views = 2;                        ///< for the modes that take any number
+  bool swap = false;                    ///< the right eye's picture in the left eye's place
+};
+inline constexpr int kMostStereoViews = 64;
+
+}  // namespace catena::scene

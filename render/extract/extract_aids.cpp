@@ -1,0 +1,161 @@
+#include "render/extract/extract_aids.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/ticks.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kLineShare = 0.0012;                  // radius of lines by the diagonal
+constexpr double kTickShare = 0.015;                   // length of ticks by the diagonal
+constexpr double kLabelReach = 2.6, kNameReach = 5.5;  // from the axis, in ticks
+constexpr double kNumberPt = 10, kNamePt = 13;
+constexpr double kGroundShare = 1.6;  // the ground's edge by the diagonal
+constexpr double kGroundGap = 0.02;   // below what is drawn, by the diagonal
+constexpr int kTilesAcross = 16;
+
+Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
+
+/// Corner i + 2 j + 4 k of a box that may be oblique.
+using Corners = std::array<Vec3, 8>;
+
+Result<Corners> corners_of(scene::Scene& scene, scene::Entity named, const json::Node& where, const Bounds& drawn) {
+  Corners corners;
+  if (!named) {
+    Bounds bounds = drawn;
+    if (bounds.empty()) {
+      bounds.add(Vec3(-1.0));
+      bounds.add(Vec3(1.0));
+    }
+    for (int i = 0; i < 8; ++i) corners[i] = bounds.corner(i);
+    return corners;
+  }
+  CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, named, where));
+  const field::Field* field = any.scalar ? static_cast<const field::Field*>(any.scalar.get()) : any.vector.get();
+  Bounds index;
+  index.add(field->index_box().lo);
+  index.add(field->index_box().hi);
+  for (int i = 0; i < 8; ++i) corners[i] = field->mapping().world_from_index(index.corner(i));
+  return corners;
+}
+
+double diagonal_of(const Corners& corners) { return norm(corners[7] - corners[0]); }
+
+TubeItem line(const Vec3& a, const Vec3& b, double radius, const Color& color, std::uint32_t id) {
+  TubeItem tube;
+  tube.points = {a, b};
+  tube.radius = radius;
+  tube.color = color;
+  tube.id = id;
+  tube.clipped = false;
+  return tube;
+}
+
+LabelItem label(const Vec3& at, const std::string& text, double size_pt, const Color& color) {
+  LabelItem item;
+  item.at = at;
+  item.text = text;
+  item.anchor = Anchor::centre;
+  item.offset_pt = Vec2(0.0);
+  item.size_pt = size_pt;
+  item.color = color;
+  return item;
+}
+
+Outcome add_bounding_box(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  const scene::BoundingBox& box = *scene.bounding_box;
+  CATENA_TRY(const Corners corners, corners_of(scene, box.field, box.where, drawn));
+  const double radius = box.radius > 0 ? box.radius : kLineShare * diagonal_of(corners);
+  const std::uint32_t id = packet.add_object("bounding box", "");
+  for (std::size_t i = 0; i < 8; ++i)
+    for (std::size_t axis = 1; axis < 8; axis *= 2)
+      if ((i & axis) == 0) packet.aids.tubes.push_back(line(corners[i], corners[i | axis], radius, color_of(box.color), id));
+  return Done{};
+}
+
+/// The edges that meet at the corner of least x, y, z; ticks point away from the box.
+Outcome add_axes(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  const scene::Axes& axes = *scene.axes;
+  CATENA_TRY(const Corners corners, corners_of(scene, axes.field, axes.where, drawn));
+  Bounds box;
+  for (const Vec3& p : corners) box.add(p);
+  const double radius = axes.radius > 0 ? axes.radius : kLineShare * box.diagonal(), tick = kTickShare * box.diagonal();
+  const Color color = color_of(axes.color);
+  const std::uint32_t id = packet.add_object("axes", "");
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 end = box.lo, out(0.0);
+    end[axis] = box.hi[axis];
+    out[axis == 1 ? 0 : 1] = -tick;
+    packet.aids.tubes.push_back(line(box.lo, end, radius, color, id));
+    for (const Tick& t : nice_ticks(box.lo[axis], box.hi[axis], axes.ticks)) {
+      Vec3 at = box.lo;
+      at[axis] = t.value;
+      packet.aids.tubes.push_back(line(at, at + out, radius, color, id));
+      packet.overlay.labels.push_back(label(at + kLabelReach * out, t.label, kNumberPt, color));
+    }
+    Vec3 middle = 0.5 * box.lo + 0.5 * end + kNameReach * out;
+    packet.overlay.labels.push_back(label(middle, axes.names[std::size_t(axis)], kNamePt, color));
+  }
+  return Done{};
+}
+
+/// Both colours of the checkerboard, one mesh each.
+void add_ground(const scene::Ground& ground, const Bounds& drawn, FramePacket& packet) {
+  Bounds bounds = drawn;
+  if (bounds.empty()) {
+    bounds.add(Vec3(-1.0));
+    bounds.add(Vec3(1.0));
+  }
+  const double diagonal = bounds.diagonal();
+  const double size = ground.size > 0 ? ground.size : ground.tile > 0 ? kTilesAcross * ground.tile : kGroundShare * diagonal;
+  const int tiles = std::clamp(static_cast<int>(std::lround(ground.tile > 0 ? size / ground.tile : kTilesAcross)), 1, 1000);
+  const double edge = size / tiles, z = ground.at.value_or(bounds.lo.z - kGroundGap * diagonal);
+  const std::uint32_t id = packet.add_object("ground", "");
+  for (int shade = 0; shade < 2; ++shade) {
+    auto geometry = std::make_shared<MeshGeometry>();
+    for (int j = 0; j < tiles; ++j)
+      for (int i = (j + shade) % 2; i < tiles; i += 2) {
+        const double x = bounds.centre().x + edge * (i - 0.5 * tiles), y = bounds.centre().y + edge * (j - 0.5 * tiles);
+        const auto first = static_cast<std::uint32_t>(geometry->vertices.size());
+        for (const Vec3& p : {Vec3(x, y, z), Vec3(x + edge, y, z), Vec3(x + edge, y + edge, z), Vec3(x, y + edge, z)})
+          geometry->vertices.push_back(p);
+        for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) geometry->triangles.push_back(first + k);
+      }
+    if (!geometry->triangles.empty())
+      packet.aids.meshes.push_back({std::move(geometry), color_of(ground.colors[std::size_t(shade)]), id, false});
+  }
+}
+
+FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& packet) {
+  FogItem item;
+  item.color = fog.color ? color_of(*fog.color) : Color{packet.background[0], packet.background[1], packet.background[2]};
+  item.most = fog.most;
+  const Vec3 forward = direction(packet.view.target - packet.view.position);
+  double nearest = 0, farthest = 1;
+  for (int i = 0; i < 8 && !drawn.empty(); ++i) {
+    const double depth = dot(drawn.corner(i) - packet.view.position, forward);
+    nearest = i == 0 ? depth : std::min(nearest, depth);
+    farthest = i == 0 ? depth : std::max(farthest, depth);
+  }
+  item.start = fog.start.value_or(std::max(0.0, nearest));
+  item.end = std::max(fog.end.value_or(farthest), item.start + 1e-9 * (1 + std::fabs(item.start)));
+  return item;
+}
+
+}  // namespace
+
+Outcome extract_aids(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  if (scene.bounding_box) CATENA_CHECK(add_bounding_box(scene, drawn, packet));
+  if (scene.axes) CATENA_CHECK(add_axes(scene, drawn, packet));
+  if (scene.ground) add_ground(*scene.ground, drawn, packet);
+  if (scene.fog) packet.fog = fog_of(*scene.fog, drawn, packet);
+  for (const scene::Light& light : scene.lights) {
+    const auto i = static_cast<float>(light.intensity);
+    packet.lights.push_back({light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.with_camera});
+  }
+  return Done{};
+}
+
+}  // namespace catena::render

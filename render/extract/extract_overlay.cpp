@@ -1,0 +1,116 @@
+#include "render/extract/extract_overlay.h"
+
+#include "engine/base/assert.h"
+#include "render/extract/bar_ticks.h"
+#include "render/extract/extract_lines.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kTitleSizePt = 17, kTitleTopPt = 12;
+
+std::optional<Color> color_of(const std::optional<scene::Rgb>& c) {
+  if (!c) return std::nullopt;
+  return Color{c->r, c->g, c->b};
+}
+
+std::string name_of(const scene::World& world, scene::Entity e) { return world.has<scene::Name>(e) ? world.get<scene::Name>(e).value : ""; }
+
+/// The colours that an entity shows, and what it calls them.
+struct Shown {
+  const std::vector<scene::TransferFunction::ColorPoint>* colors = nullptr;
+  std::string name;
+};
+
+Shown shown_by(const scene::World& world, scene::Entity e) {
+  if (world.has<scene::Volume>(e)) {
+    const scene::Volume& volume = world.get<scene::Volume>(e);
+    return {&volume.transfer.colors, name_of(world, volume.field)};
+  }
+  CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
+  const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
+  const auto* colors = shown_colors(world, e);
+  switch (set.color_by->what) {
+    case scene::ColorBy::What::field:
+      return {colors, name_of(world, set.color_by->field)};
+    case scene::ColorBy::What::speed:
+      return {colors, "|" + name_of(world, set.field) + "|"};
+    case scene::ColorBy::What::arc_length:
+      return {colors, "arc length"};
+  }
+  return {};
+}
+
+Anchor anchor_of(scene::PictureCorner corner) {
+  constexpr Anchor anchors[] = {Anchor::bottom_left, Anchor::bottom_right, Anchor::top_left, Anchor::top_right};
+  return anchors[static_cast<int>(corner)];
+}
+
+void extract_scalar_bars(const scene::Scene& scene, Overlay& overlay) {
+  for (const scene::ScalarBar& bar : scene.annotations.scalar_bars) {
+    const Shown shown = shown_by(scene.world, bar.shown);
+    if (shown.colors == nullptr || shown.colors->empty()) continue;
+    ScalarBarItem item;
+    for (const auto& point : *shown.colors) item.colors.push_back({point.value, point.color.r, point.color.g, point.color.b});
+    BarScale scale = bar_scale(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format);
+    item.ticks = std::move(scale.ticks);
+    item.factor = std::move(scale.factor);
+    item.title = bar.title ? *bar.title : shown.name;
+    item.side = static_cast<Side>(bar.side);
+    overlay.scalar_bars.push_back(std::move(item));
+  }
+}
+
+/// What the visible cursor feels.
+void extract_status(const scene::Scene& scene, Overlay& overlay) {
+  if (!scene.annotations.status || !scene.cursor || !scene.world.has<scene::Cursor>(scene.cursor)) return;
+  const scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+  if (!cursor.visible) return;
+  StatusItem& status = overlay.status.emplace();
+  status.force_n = norm(cursor.force_n);
+  status.max_force_n = scene.coupling.max_force_n;
+  for (std::size_t i = 0; i < cursor.statuses.size(); ++i)
+    status.rows.push_back({i < cursor.names.size() ? cursor.names[i] : "link " + std::to_string(i + 1),
+                           exchange::status_word(cursor.statuses[i]), i >= cursor.active.size() || cursor.active[i]});
+}
+
+}  // namespace
+
+void extract_overlay(const scene::Scene& scene, FramePacket& packet) {
+  const scene::Annotations& from = scene.annotations;
+  Overlay& overlay = packet.overlay;
+  overlay.font = from.font;
+  overlay.scale = from.scale;
+  overlay.color = color_of(from.color);
+  extract_scalar_bars(scene, overlay);
+  extract_status(scene, overlay);
+  for (const scene::Label& label : from.labels) {
+    LabelItem item;
+    item.at = label.at;
+    item.text = label.text;
+    item.color = color_of(label.color);
+    item.size_pt = label.size_pt;
+    item.dot = label.dot;
+    item.behind_hidden = label.hidden_behind;
+    item.offset_pt = {label.dot ? 6.0 : 0.0, 0.0};
+    item.anchor = label.dot ? Anchor::left : Anchor::centre;
+    overlay.labels.push_back(std::move(item));
+  }
+  if (!from.title.empty()) {
+    TextItem title;
+    title.text = from.title;
+    title.anchor = Anchor::top;
+    title.offset_pt = {0.0, kTitleTopPt};
+    title.size_pt = kTitleSizePt;
+    title.bold = true;
+    overlay.texts.push_back(std::move(title));
+  }
+  if (from.orientation_marker) {
+    OrientationMarkerItem& marker = overlay.orientation_marker.emplace();
+    marker.anchor = anchor_of(from.orientation_marker->corner);
+    marker.size_pt = from.orientation_marker->size_pt;
+    marker.names = from.orientation_marker->names;
+  }
+}
+
+}  // namespace catena::render

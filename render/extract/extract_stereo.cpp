@@ -1,0 +1,60 @@
+#include "render/extract/extract_stereo.h"
+
+#include <algorithm>
+
+#include "render/frame/camera.h"
+#include "render/stereo/eyes.h"
+
+namespace catena::render {
+
+using scene::StereoMode;
+
+Packing packing_of(const scene::Stereo& stereo) {
+  switch (stereo.mode) {
+    case StereoMode::mono:
+    case StereoMode::left:
+    case StereoMode::right:
+      return Packing::single;
+    case StereoMode::side_by_side:
+    case StereoMode::cross_eyed:
+      return Packing::side_by_side;
+    case StereoMode::side_by_side_half:
+      return Packing::side_by_side_half;
+    case StereoMode::top_bottom:
+      return Packing::top_bottom;
+    case StereoMode::top_bottom_half:
+      return Packing::top_bottom_half;
+    case StereoMode::anaglyph:
+      return Packing::anaglyph;
+    case StereoMode::anaglyph_grey:
+      return Packing::anaglyph_grey;
+    case StereoMode::row_interlaced:
+      return Packing::rows;
+    case StereoMode::column_interlaced:
+      return Packing::columns;
+    case StereoMode::checkerboard:
+      return Packing::checkerboard;
+  }
+  return Packing::single;
+}
+
+std::size_t views_of(const scene::Stereo& stereo) {
+  if (stereo.mode == StereoMode::mono || stereo.mode == StereoMode::left || stereo.mode == StereoMode::right) return 1;
+  return scene::needs_a_pair(stereo.mode) ? 2 : static_cast<std::size_t>(stereo.views);
+}
+
+void set_eyes(FramePacket& packet, const scene::Stereo& stereo) {
+  packet.eyes.clear();
+  packet.packing = packing_of(stereo);
+  if (stereo.mode == StereoMode::mono) return;
+  EyeSettings settings;
+  settings.views = std::max<std::size_t>(2, views_of(stereo));
+  settings.separation = stereo.separation;
+  settings.zero_parallax = stereo.zero_parallax;
+  packet.eyes = eyes(packet.view, frustum_aspect(packet.view, packet.width, packet.height), settings);
+  if (stereo.swap != (stereo.mode == StereoMode::cross_eyed)) std::reverse(packet.eyes.begin(), packet.eyes.end());
+  if (stereo.mode == StereoMode::left || stereo.mode == StereoMode::right)
+    packet.eyes = {stereo.mode == StereoMode::left ? packet.eyes.front() : packet.eyes.back()};
+}
+
+}  // namespace catena::render

@@ -1,0 +1,10 @@
+/// A display (sRGB) colour, as it is written into the picture.
+#pragma once
+
+namespace catena::render {
+
+struct Color {
+  float r = 0, g = 0, b = 0;
+};
+
+}  // namespace catena::render

@@ -1,0 +1,102 @@
+/// What is written and drawn over the finished picture, as plain data.
+///   points   lengths and text sizes are in points of a picture whose shorter side has kPicturePoints of them, so that a picture of
+///            640 x 480 and one of 3840 x 2880 look alike; x to the right, y down
+///   text     UTF-8, '\n' ends a line; without a colour it is white or black, whichever the background leaves readable
+/// A packet whose overlay is empty has no overlay pass. World units elsewhere. Plain data, any thread.
+#pragma once
+#include <array>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/vec.h"
+#include "render/frame/color.h"
+
+namespace catena::render {
+
+using Vec2 = glm::dvec2;
+
+inline constexpr double kPicturePoints = 576;
+
+/// A point of a box: of the picture, of a block of text.
+enum class Anchor { top_left, top, top_right, left, centre, right, bottom_left, bottom, bottom_right };
+
+/// Text at a place of the picture: the text's own anchor point lies on the picture's, moved by `offset_pt`.
+struct TextItem {
+  std::string text;
+  Anchor anchor = Anchor::top_left;
+  Vec2 offset_pt{0.0};
+  double size_pt = 12;
+  bool bold = false;
+  std::optional<Color> color{};
+};
+
+/// Text at a point of the world: the anchor point of the text's box lies where `at` projects to, moved by `offset_pt`. Not drawn
+/// where `at` is behind the eye.
+struct LabelItem {
+  Vec3 at{0.0};
+  std::string text;
+  Anchor anchor = Anchor::left;
+  Vec2 offset_pt{4.0, 0.0};
+  double size_pt = 12;
+  std::optional<Color> color{};
+  bool dot = false;            ///< a small dot at the point itself
+  bool behind_hidden = false;  ///< left out where an opaque surface stands before `at`
+};
+
+enum class Side { right, left, bottom, top };
+
+/// A value on a scalar bar and what is written beside it.
+struct BarTick {
+  double value = 0;
+  std::string text;
+};
+
+/// The colours of a map over its values, with ticks and a title. Bars on one side stand beside each other.
+struct ScalarBarItem {
+  std::vector<std::array<double, 4>> colors;  ///< value, r, g, b: piecewise linear, values rising; one row: one colour
+  std::vector<BarTick> ticks;
+  std::string title;
+  std::string factor;  ///< beside the values, for instance "x 10^-5"
+  Side side = Side::right;
+};
+
+/// The world's axes as the camera sees them: arrows in red, green and blue with their letters.
+struct OrientationMarkerItem {
+  Anchor anchor = Anchor::bottom_left;
+  double size_pt = 84;  ///< of the square that holds it
+  std::array<std::string, 3> names{"X", "Y", "Z"};
+};
+
+/// What is felt: the force as a number and a bar of its share of the largest, and a line for every link.
+struct StatusItem {
+  struct Row {
+    std::string name, word;  ///< "curve", "OK"
+    bool active = true;
+  };
+  double force_n = 0, max_force_n = 0;  ///< newtons; no bar if the largest is 0
+  std::vector<Row> rows;
+  Anchor anchor = Anchor::top_left;
+};
+
+/// Where the packet's picture lies within a larger one of which it is a tile, pixels. Width 0: it is the whole picture.
+struct OverlayFrame {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+
+struct Overlay {
+  std::vector<TextItem> texts;
+  std::vector<LabelItem> labels;
+  std::vector<ScalarBarItem> scalar_bars;
+  std::optional<OrientationMarkerItem> orientation_marker;
+  std::optional<StatusItem> status;
+  std::string font = "DejaVu Sans";  ///< a family; the nearest that is installed is taken
+  double scale = 1;                  ///< of everything
+  std::optional<Color> color{};      ///< of all text that has none of its own
+  OverlayFrame frame{};
+
+  bool empty() const { return texts.empty() && labels.empty() && scalar_bars.empty() && !orientation_marker && !status; }
+};
+
+}  // namespace catena::render

@@ -1,0 +1,157 @@
+#include "render/passes/overlay/canvas.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shaders/shared/frame.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kHairPt = 0.75;
+constexpr double kHaloShare = 0.09, kHaloLeastPx = 1;  // of the text's size
+constexpr double kHaloAlpha = 0.75;
+constexpr double kDarkInk = 0.08;
+
+double luminance(const Color& c) { return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; }
+Color grey(double v) { return {float(v), float(v), float(v)}; }
+glm::vec2 narrow(const Vec2& v) { return glm::vec2(v); }
+double length(const Vec2& v) { return std::hypot(v.x, v.y); }
+
+}  // namespace
+
+Vec2 anchor_share(Anchor anchor) {
+  const int i = static_cast<int>(anchor);
+  return {0.5 * (i % 3), 0.5 * (i / 3)};
+}
+
+Canvas::Canvas(const FramePacket& packet, Typesetter& typesetter) : typesetter_(typesetter), text_color_(packet.overlay.color) {
+  const OverlayFrame& frame = packet.overlay.frame;
+  size_ = frame.width > 0 ? Vec2(frame.width, frame.height) : Vec2(packet.width, packet.height);
+  if (frame.width > 0) corner_ = {frame.x, frame.y};
+  scale_ = packet.overlay.scale * std::min(size_.x, size_.y) / kPicturePoints;
+  // transparent pictures end on paper more often than not
+  const auto& b = packet.background;
+  const bool light = b[3] < 0.5f || luminance({b[0], b[1], b[2]}) > 0.5;
+  ink_ = grey(light ? kDarkInk : 1);
+  halo_ = grey(light ? 1 : 0);
+  typesetter_.use_family(packet.overlay.font);
+}
+
+Color Canvas::around(const Color& text) { return luminance(text) > 0.5 ? grey(0) : grey(1); }
+
+double Canvas::hair() const { return std::max(1.0, std::round(px(kHairPt))); }
+
+TextExtent Canvas::measure(std::string_view text, const TextLook& look) const {
+  TextExtent extent = typesetter_.measure(text, {px(look.size_pt), look.bold, 0});
+  if (look.rotated) std::swap(extent.width, extent.height);
+  return extent;
+}
+
+shared::OverlayShape& Canvas::add(std::uint32_t kind, const Vec2& origin, const Vec2& axis, const Paint& paint) {
+  shared::OverlayShape shape{};
+  shape.kind = kind;
+  shape.origin = narrow(origin - corner_);
+  shape.axis_x = narrow(axis);
+  shape.axis_y = narrow({-axis.y, axis.x});
+  shape.color = {paint.color.r, paint.color.g, paint.color.b, float(paint.alpha)};
+  shape.hide_depth = NO_DEPTH;
+  if (hiding_) {
+    shape.anchor = narrow(hiding_->at - corner_);
+    shape.hide_depth = float(hiding_->depth);
+  }
+  return shapes_.emplace_back(shape);
+}
+
+void Canvas::box(const Rect& rect, const Paint& paint, double radius, double stroke) {
+  const Vec2 half(0.5 * rect.width, 0.5 * rect.height);
+  shared::OverlayShape& s = add(OVERLAY_BOX, Vec2(rect.x, rect.y) + half, {1.0, 0.0}, paint);
+  s.hi = narrow(half);
+  s.lo = -s.hi;
+  s.size = {s.hi, float(radius), float(stroke)};
+}
+
+void Canvas::line(const Vec2& from, const Vec2& to, double width, const Paint& paint) {
+  const double l = length(to - from);
+  shared::OverlayShape& s = add(OVERLAY_BOX, 0.5 * (from + to), l > 0 ? (to - from) / l : Vec2(1.0, 0.0), paint);
+  s.hi = narrow({0.5 * l, 0.5 * width});
+  s.lo = -s.hi;
+  s.size = {s.hi, 0.0f, 0.0f};
+}
+
+void Canvas::ramp(const Rect& rect, bool upright, std::span<const shared::OverlayStop> stops) {
+  const Vec2 half(0.5 * rect.width, 0.5 * rect.height);
+  shared::OverlayShape& s = add(OVERLAY_RAMP, Vec2(rect.x, rect.y) + half, upright ? Vec2(0.0, -1.0) : Vec2(1.0, 0.0), {});
+  s.hi = narrow(upright ? Vec2(half.y, half.x) : half);
+  s.lo = -s.hi;
+  s.size = {s.hi, 0.0f, 0.0f};
+  s.first_stop = std::uint32_t(stops_.size());
+  stops_.insert(stops_.end(), stops.begin(), stops.end());
+  s.last_stop = std::uint32_t(stops_.size() - 1);
+}
+
+void Canvas::tube(const Vec2& from, const Vec2& to, double radius, const Color& color) {
+  line(from, to, 2 * radius, {color});
+  shapes_.back().kind = OVERLAY_TUBE;
+}
+
+void Canvas::cone(const Vec2& base, const Vec2& tip, double radius, const Color& color) {
+  const double l = length(tip - base);
+  if (!(l > 0)) return;
+  shared::OverlayShape& s = add(OVERLAY_CONE, base, (tip - base) / l, {color});
+  s.lo = narrow({0.0, -radius});
+  s.hi = narrow({l, radius});
+  s.size = {float(l), float(radius), 0.0f, 0.0f};
+}
+
+void Canvas::ellipse(const Vec2& centre, const Vec2& axis, double along, double across, const Color& color, bool ball) {
+  shared::OverlayShape& s = add(OVERLAY_ELLIPSE, centre, axis, {color});
+  s.hi = narrow({along, across});
+  s.lo = -s.hi;
+  s.size = {s.hi, ball ? 1.0f : 0.0f, 0.0f};
+}
+
+void Canvas::text(std::string_view text, const Vec2& at, Anchor anchor, const TextLook& look) {
+  const Vec2 share = anchor_share(anchor);
+  // along the text and down across it
+  const Vec2 axis = look.rotated ? Vec2(0.0, -1.0) : Vec2(1.0, 0.0), down(-axis.y, axis.x);
+  const Vec2 text_share = look.rotated ? Vec2(1 - share.y, share.x) : share;
+  const double size_px = px(look.size_pt);
+  const SetText set = typesetter_.set(text, {size_px, look.bold, text_share.x});
+  if (set.glyphs.empty()) return;
+
+  // pens stand on whole pixels across the line and on quarters along it
+  const Vec2 origin(std::floor(at.x), std::floor(at.y)), rest = at - origin;
+  const Vec2 corner(rest.x * axis.x + rest.y * axis.y - text_share.x * set.extent.width,
+                    rest.x * down.x + rest.y * down.y - text_share.y * set.extent.height);
+  const Color color = text_color(look.color);
+  const double halo_px = std::max(kHaloLeastPx, kHaloShare * size_px);
+  for (const bool halo : {true, false})
+    for (const SetGlyph& g : set.glyphs) {
+      const double along = std::round(4 * (corner.x + g.x)) / 4;
+      add(OVERLAY_GLYPH, origin, axis, halo ? Paint{around(color), kHaloAlpha} : Paint{color});
+      pens_.push_back({shapes_.size() - 1, typesetter_.font(look.bold), g.glyph, size_px, halo ? halo_px : 0, int(std::floor(along)),
+                       int(std::lround(corner.y + g.y)), int(4 * (along - std::floor(along)))});
+    }
+}
+
+void Canvas::place_glyphs() {
+  for (const Pen& pen : pens_) {
+    shared::OverlayShape& s = shapes_[pen.shape];
+    const GlyphAtlas::Entry* entry = typesetter_.atlas().get(*pen.font, pen.glyph, pen.size_px, pen.quarter, pen.halo_px);
+    if (entry == nullptr) continue;  // stays empty
+    s.lo = {float(pen.x + entry->left), float(pen.y - entry->top)};
+    s.hi = s.lo + glm::vec2(float(entry->width), float(entry->height));
+    s.texel = {float(entry->x), float(entry->y)};
+  }
+}
+
+const std::vector<shared::OverlayShape>& Canvas::finish() {
+  const std::uint64_t generation = typesetter_.atlas().generation();
+  place_glyphs();
+  // the atlas was full and started anew: what was placed before has moved
+  if (typesetter_.atlas().generation() != generation) place_glyphs();
+  return shapes_;
+}
+
+}  // namespace catena::render

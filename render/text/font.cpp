@@ -1,0 +1,115 @@
+#include "render/text/font.h"
+
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include FT_GLYPH_H
+#include FT_OUTLINE_H
+#include FT_STROKER_H
+#include FT_TRUETYPE_TABLES_H
+
+#include <cmath>
+
+#include "engine/base/assert.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kUnit = 64;                      // FreeType's pixels are 26.6
+constexpr FT_Int32 kUnscaled = FT_LOAD_NO_SCALE;  // measures in font units
+constexpr FT_Int32 kHinted = FT_LOAD_TARGET_LIGHT | FT_LOAD_NO_BITMAP;
+
+FT_F26Dot6 fixed(double px) { return static_cast<FT_F26Dot6>(std::lround(kUnit * px)); }
+
+struct GlyphOwner {
+  FT_Glyph glyph = nullptr;
+  ~GlyphOwner() {
+    if (glyph != nullptr) FT_Done_Glyph(glyph);
+  }
+};
+
+}  // namespace
+
+struct Font::Parts {
+  FT_Library library = nullptr;
+  FT_Face face = nullptr;
+  FT_Stroker stroker = nullptr;
+  double cap_height = 0;  // font units
+
+  Parts() = default;
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+  ~Parts() {
+    if (stroker != nullptr) FT_Stroker_Done(stroker);
+    if (face != nullptr) FT_Done_Face(face);
+    if (library != nullptr) FT_Done_FreeType(library);
+  }
+  double per_unit(double size_px) const { return size_px / face->units_per_EM; }
+  void set_size(double size_px) const { FT_Set_Char_Size(face, 0, std::max<FT_F26Dot6>(1, fixed(size_px)), 72, 72); }
+};
+
+Font::Font() : parts_(std::make_unique<Parts>()) {}
+Font::~Font() = default;
+Font::Font(Font&&) noexcept = default;
+Font& Font::operator=(Font&&) noexcept = default;
+
+Result<Font> Font::open(const FontFile& file) {
+  Font self;
+  Parts& p = *self.parts_;
+  const bool good = FT_Init_FreeType(&p.library) == 0 && FT_New_Face(p.library, file.path.c_str(), file.index, &p.face) == 0 &&
+                    FT_IS_SCALABLE(p.face) && p.face->units_per_EM > 0 && FT_Stroker_New(p.library, &p.stroker) == 0;
+  if (!good) return Error{file.path + ": the font cannot be read: text is left out; a TrueType or OpenType font was expected"};
+  const auto* os2 = static_cast<const TT_OS2*>(FT_Get_Sfnt_Table(p.face, FT_SFNT_OS2));
+  if (os2 != nullptr && os2->version >= 2 && os2->sCapHeight > 0) {
+    p.cap_height = os2->sCapHeight;
+  } else if (FT_Load_Char(p.face, 'H', kUnscaled) == 0) {
+    p.cap_height = static_cast<double>(p.face->glyph->metrics.horiBearingY);
+  }
+  return self;
+}
+
+FontMeasures Font::measures(double size_px) const {
+  const double unit = parts_->per_unit(size_px);
+  return {unit * parts_->cap_height, -unit * parts_->face->descender, unit * parts_->face->height};
+}
+
+std::uint32_t Font::glyph_of(char32_t code) const { return FT_Get_Char_Index(parts_->face, code); }
+
+double Font::advance(std::uint32_t glyph, double size_px) const {
+  if (FT_Load_Glyph(parts_->face, glyph, kUnscaled) != 0) return 0;
+  return parts_->per_unit(size_px) * static_cast<double>(parts_->face->glyph->metrics.horiAdvance);
+}
+
+double Font::kerning(std::uint32_t left, std::uint32_t right, double size_px) const {
+  FT_Vector by{};
+  if (!FT_HAS_KERNING(parts_->face) || FT_Get_Kerning(parts_->face, left, right, FT_KERNING_UNSCALED, &by) != 0) return 0;
+  return parts_->per_unit(size_px) * static_cast<double>(by.x);
+}
+
+GlyphBitmap Font::rasterise(std::uint32_t glyph, double size_px, double shift_px, double halo_px) const {
+  const FT_Face face = parts_->face;
+  parts_->set_size(size_px);
+  GlyphOwner owner;
+  if (FT_Load_Glyph(face, glyph, kHinted) != 0 || face->glyph->format != FT_GLYPH_FORMAT_OUTLINE ||
+      FT_Get_Glyph(face->glyph, &owner.glyph) != 0)
+    return {};
+  if (halo_px > 0) {
+    FT_Stroker_Set(parts_->stroker, fixed(halo_px), FT_STROKER_LINECAP_ROUND, FT_STROKER_LINEJOIN_ROUND, 0);
+    if (FT_Glyph_StrokeBorder(&owner.glyph, parts_->stroker, 0, 1) != 0) return {};
+  }
+  FT_Vector shift{fixed(shift_px), 0};
+  if (FT_Glyph_To_Bitmap(&owner.glyph, FT_RENDER_MODE_NORMAL, &shift, 1) != 0) return {};
+  const auto* made = reinterpret_cast<const FT_BitmapGlyphRec*>(owner.glyph);
+  GlyphBitmap out;
+  out.width = static_cast<int>(made->bitmap.width);
+  out.height = static_cast<int>(made->bitmap.rows);
+  out.left = made->left;
+  out.top = made->top;
+  CATENA_ASSERT(out.width == 0 || made->bitmap.pixel_mode == FT_PIXEL_MODE_GRAY);
+  for (int y = 0; y < out.height; ++y) {
+    const unsigned char* row = made->bitmap.buffer + static_cast<std::ptrdiff_t>(y) * made->bitmap.pitch;
+    out.coverage.insert(out.coverage.end(), row, row + out.width);
+  }
+  return out;
+}
+
+}  // namespace catena::render

@@ -1,0 +1,120 @@
+/// What a scene writes over its picture: every key, and one line for every mistake.
+#include "engine/scene/annotations.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/scene/scene.h"
+#include "engine/scene/systems.h"
+
+namespace catena::scene {
+namespace {
+
+std::string with(const std::string& body) {
+  return R"({"fields": {"d": {"analytic": "sphere", "resolution": 5}, "e": {"analytic": "plane"}, "v": {"analytic": "circle"}},
+  "volumes": [{"field": "d"}],
+  "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}, {"field": "v", "seeds": [[1, 0, 0]], "color_by": "speed"}],
+)" + body +
+         "}";
+}
+
+void expect_error(const std::string& body, const std::vector<std::string>& parts) {
+  const auto scene = parse_scene(with(body), "scene.json");
+  ASSERT_FALSE(scene) << body;
+  EXPECT_EQ(scene.error().message.rfind("scene.json:4: ", 0), 0u) << scene.error().message;
+  for (const std::string& part : parts) EXPECT_NE(scene.error().message.find(part), std::string::npos) << scene.error().message;
+}
+
+TEST(Annotations, EveryKeyIsRead) {
+  const auto scene = parse_scene(with(R"("title": "A field",
+    "scalar_bars": [{"volume": 0, "title": "rho", "position": "left", "ticks": 9, "format": "%.2f kg"},
+                    {"streamlines": 1, "position": "bottom"}, {"field": "v"}, {"field": "d", "position": "top", "title": ""}],
+    "labels": [{"at": [1, 2, 3], "text": "here", "color": [1, 0.5, 0], "size": 20, "dot": false, "hidden_behind": true}, {"at": [0, 0, 0], "text": "µ"}],
+    "orientation_marker": {"position": "top-right", "size": 120, "names": ["R", "A", "S"]},
+    "status": true, "overlay": {"font": "Liberation Sans", "scale": 1.5, "color": [1, 1, 0]})"),
+                                 "scene.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const Annotations& all = scene->annotations;
+  EXPECT_EQ(all.title, "A field");
+  ASSERT_EQ(all.scalar_bars.size(), 4u);
+  EXPECT_TRUE(scene->world.has<Volume>(all.scalar_bars[0].shown));
+  EXPECT_EQ(all.scalar_bars[0].title, "rho");
+  EXPECT_EQ(all.scalar_bars[0].side, PictureSide::left);
+  EXPECT_EQ(all.scalar_bars[0].ticks, 9);
+  EXPECT_EQ(all.scalar_bars[0].format, "%.2f kg");
+  EXPECT_TRUE(scene->world.has<StreamlineSet>(all.scalar_bars[1].shown));
+  EXPECT_EQ(all.scalar_bars[1].side, PictureSide::bottom);
+  EXPECT_FALSE(all.scalar_bars[1].title);
+  EXPECT_EQ(all.scalar_bars[2].shown, all.scalar_bars[1].shown) << "the set that has colours";
+  EXPECT_EQ(all.scalar_bars[3].shown, all.scalar_bars[0].shown);
+  EXPECT_EQ(all.scalar_bars[3].title, "") << "no title, on purpose";
+  ASSERT_EQ(all.labels.size(), 2u);
+  EXPECT_EQ(all.labels[0].at, Vec3(1, 2, 3));
+  EXPECT_EQ(all.labels[0].color->g, 0.5f);
+  EXPECT_EQ(all.labels[0].size_pt, 20);
+  EXPECT_FALSE(all.labels[0].dot);
+  EXPECT_TRUE(all.labels[0].hidden_behind);
+  EXPECT_FALSE(all.labels[1].color);
+  ASSERT_TRUE(all.orientation_marker);
+  EXPECT_EQ(all.orientation_marker->corner, PictureCorner::top_right);
+  EXPECT_EQ(all.orientation_marker->names[2], "S");
+  EXPECT_TRUE(all.status);
+  EXPECT_EQ(all.font, "Liberation Sans");
+  EXPECT_EQ(all.scale, 1.5);
+  EXPECT_EQ(all.color->b, 0.0f);
+}
+
+TEST(Annotations, NothingIsWrittenUnlessAsked) {
+  const auto scene = parse_scene(with(R"("orientation_marker": false)"), "scene.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const Annotations& all = scene->annotations;
+  EXPECT_TRUE(all.scalar_bars.empty() && all.labels.empty() && all.title.empty() && !all.orientation_marker && !all.status);
+  const auto bar = first_scalar_bar(scene->world);
+  ASSERT_TRUE(bar);
+  EXPECT_TRUE(scene->world.has<Volume>(bar->shown));
+  EXPECT_FALSE(first_scalar_bar(World()));
+}
+
+TEST(Annotations, MistakesAreOneLine) {
+  expect_error(R"("scalar_bars": {})", {"array of objects was expected"});
+  expect_error(R"("scalar_bars": [{}])", {"names nothing", "\"volume\": INDEX", "expected"});
+  expect_error(R"("scalar_bars": [{"volume": 0, "field": "d"}])", {"several things", "expected"});
+  expect_error(R"("scalar_bars": [{"volume": 1}])", {"\"volume\"", "expected"});
+  expect_error(R"("scalar_bars": [{"streamlines": 0}])", {"one colour", "\"color_by\" was expected"});
+  expect_error(R"("scalar_bars": [{"field": "e"}])", {"no volume", "\"e\"", "expected"});
+  expect_error(R"("scalar_bars": [{"field": "x"}])", {"unknown field \"x\""});
+  expect_error(R"("scalar_bars": [{"volume": 0, "position": "middle"}])", {"right, left, bottom, top"});
+  expect_error(R"("scalar_bars": [{"volume": 0, "ticks": 1}])", {"\"ticks\"", "expected"});
+  for (const char* format : {"%d", "%s", "%n", "%", "2", "%.2f %.2f", "%.200f", "%*f", "%-5f", "%.f"})
+    expect_error(R"("scalar_bars": [{"volume": 0, "format": ")" + std::string(format) + "\"}]", {"\"format\"", "%.2f", "expected"});
+  expect_error(R"("scalar_bars": [{"volume": 0, "tick": 3}])", {"\"tick\"", "ticks"});
+  expect_error(R"("labels": [{"text": "a"}])", {"\"at\" is missing"});
+  expect_error(R"("labels": [{"at": [0, 0, 0]}])", {"\"text\" is missing"});
+  expect_error(R"("labels": [{"at": [0, 0, 0], "text": "a", "size": 0}])", {"\"size\"", "> 0 was expected"});
+  expect_error(R"("labels": [{"at": [0, 0, 0], "text": "a", "size": 1000}])", {"576"});
+  expect_error(R"("labels": [{"at": [0, 0, 0], "text": "a", "color": [2, 0, 0]}])", {"from 0 to 1"});
+  expect_error(R"("title": 3)", {"title", "expected"});
+  expect_error(R"("orientation_marker": 3)", {"true, false or an object was expected"});
+  expect_error(R"("orientation_marker": {"position": "left"})", {"bottom-left, bottom-right, top-left, top-right"});
+  expect_error(R"("orientation_marker": {"names": ["a"]})", {"names of x, y and z were expected"});
+  expect_error(R"("status": "on")", {"true or false was expected"});
+  expect_error(R"("overlay": {"scale": 0})", {"> 0 was expected"});
+  expect_error(R"("overlay": {"scale": 100})", {"at most 20"});
+  expect_error(R"("overlay": {"fonts": "x"})", {"\"fonts\"", "font"});
+  const auto none = parse_scene(R"({"scalar_bars": [{"volume": 0}]})", "scene.json");
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("has no volumes"), std::string::npos) << none.error().message;
+}
+
+TEST(Annotations, TheCursorKeepsWhatEveryLinkSays) {
+  auto scene = parse_scene("{}", "scene.json");
+  ASSERT_TRUE(scene);
+  exchange::HapticState state;
+  state.link_count = 2;
+  state.links[1].status = exchange::Status::boundary;
+  update_cursor(*scene, state);
+  update_cursor(*scene, state);
+  EXPECT_EQ(scene->world.get<Cursor>(scene->cursor).statuses, (std::vector{exchange::Status::ok, exchange::Status::boundary}));
+}
+
+}  // namespace
+}  // namespace catena::scene

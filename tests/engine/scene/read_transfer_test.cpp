@@ -1,0 +1,228 @@
+/// The colours and opacities of a scene: maps by name, ranges, transfer files, ParaView's colour maps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/scene/color_maps.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/transfer.h"
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace {
+
+class ReadTransfer : public testing::Test {
+ protected:
+  /// A scene with one volume, keys from line 2 on; the transfer file of its folder is t.json.
+  Result<Scene> volume(const std::string& keys) {
+    return parse_scene(
+        "{\"fields\": {\"ball\": {\"analytic\": \"sphere\", \"resolution\": 9}}, \"volumes\": [{\"field\": \"ball\",\n" + keys + "}]}",
+        folder_ / "s.json");
+  }
+  TransferFunction transfer_of(const std::string& keys) {
+    const auto scene = volume(keys);
+    EXPECT_TRUE(scene) << scene.error().message;
+    TransferFunction transfer;
+    if (scene) scene->world.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
+    return transfer;
+  }
+  /// The same out of a file.
+  TransferFunction file_of(const std::string& text, const std::string& more = "") {
+    test::write_file(folder_ / "t.json", text);
+    return transfer_of("\"transfer\": \"t.json\"" + more);
+  }
+  void refused(const std::string& keys, const std::string& start, std::initializer_list<const char*> parts) {
+    const auto scene = volume(keys);
+    ASSERT_FALSE(scene) << keys;
+    const std::string& message = scene.error().message;
+    EXPECT_TRUE(message.starts_with((folder_ / start) + ": ")) << message << "\nfor " << keys;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    for (const char* part : parts) EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks " << part;
+  }
+  void file_refused(const std::string& text, int line, std::initializer_list<const char*> parts) {
+    test::write_file(folder_ / "t.json", text);
+    refused("\"transfer\": \"t.json\"", "t.json:" + std::to_string(line), parts);
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ReadTransfer, MapsByName) {
+  TransferFunction transfer = transfer_of("\"color\": \"cividis_r\", \"range\": [-1, 2.5]");
+  EXPECT_TRUE(transfer.colors.empty());
+  EXPECT_EQ(transfer.named.map, "cividis_r");
+  EXPECT_EQ(*transfer.named.range, (std::array<double, 2>{-1, 2.5}));
+  EXPECT_FALSE(transfer_of("\"color\": \"grey\"").named.range);
+  refused("\"color\": \"virdis\"", "s.json:2", {"no colour map", "viridis, cividis", "did you mean \"viridis\"?"});
+  refused("\"color\": 3", "s.json:2", {"expected"});
+  refused("\"color\": \"grey\",\n\"range\": [1, 1]", "s.json:3", {"two rising numbers [lo, hi] were expected"});
+  refused("\"color\": \"grey\", \"range\": [1, 2, 3]", "s.json:2", {"two rising numbers [lo, hi] were expected"});
+  refused("\"color\": \"grey\", \"range\": [1, 1e39]", "s.json:2", {"two rising numbers [lo, hi] were expected"});
+  refused("\"color\": \"grey\", \"range\": [0, null]", "s.json:2", {"finite number was expected"});
+  refused("\"color\": [[0, 0, 0, 0]],\n\"range\": [0, 1]", "s.json:3", {"beside a table", "expected"});
+}
+
+TEST_F(ReadTransfer, GradientOpacity) {
+  const TransferFunction transfer = transfer_of("\"gradient_opacity\": [[0, 0], [2, 0.5], [4, 1]]");
+  ASSERT_EQ(transfer.gradient_factors.size(), 3u);
+  EXPECT_EQ(transfer.gradient_factors[1].gradient, 2);
+  EXPECT_EQ(transfer.gradient_factors[1].factor, 0.5);
+  refused("\"gradient_opacity\": [[-1, 0]]", "s.json:2", {"gradient -1", ">= 0 was expected"});
+  refused("\"gradient_opacity\": [[0, 0],\n[1, 1.5]]", "s.json:3", {"factor 1.5", "from 0 to 1 was expected"});
+  refused("\"gradient_opacity\": [[0, 0], [0, 1]]", "s.json:2", {"strictly rising"});
+  refused("\"gradient_opacity\": []", "s.json:2", {"empty", "expected"});
+}
+
+TEST_F(ReadTransfer, AFileHoldsTheKeysOfAVolume) {
+  const TransferFunction transfer = file_of(
+      R"({"color": [[0, 1, 0, 0], [2, 0, 0, 1]], "opacity": [[0, 0], [1, 0.5]], "opacity_unit": 0.25, "gradient_opacity": [[0, 0.5]]})");
+  ASSERT_EQ(transfer.colors.size(), 2u);
+  EXPECT_EQ(transfer.colors[1].color.b, 1);
+  EXPECT_EQ(transfer.opacities.at(1).alpha, 0.5);
+  EXPECT_EQ(transfer.opacity_unit, 0.25);
+  EXPECT_EQ(transfer.gradient_factors.size(), 1u);
+  EXPECT_EQ(transfer.file, folder_ / "t.json");
+  // what stands beside the file comes first
+  const TransferFunction beside = transfer_of("\"transfer\": \"t.json\", \"opacity_unit\": 3, \"gradient_opacity\": [[0, 0], [1, 1]]");
+  EXPECT_EQ(beside.opacity_unit, 3);
+  EXPECT_EQ(beside.gradient_factors.size(), 2u);
+  EXPECT_EQ(file_of(R"({"color": "inferno", "extinction": [[0, 3]]})").named.map, "inferno");
+}
+
+TEST_F(ReadTransfer, ARangeLaysTheTablesOfAFileAnew) {
+  const std::string tables = R"({"color": [[0, 1, 0, 0], [1, 0, 1, 0], [4, 0, 0, 1]], "extinction": [[2, 0], [3, 7]]})";
+  const TransferFunction transfer = file_of(tables, ", \"range\": [10, 12]");
+  EXPECT_EQ(transfer.colors[0].value, 10);
+  EXPECT_EQ(transfer.colors[1].value, 10.5);
+  EXPECT_EQ(transfer.colors[2].value, 12);
+  EXPECT_EQ(transfer.extinctions[0].value, 11);
+  EXPECT_EQ(transfer.extinctions[1].sigma, 7);
+  const TransferFunction named = file_of(R"({"color": "grey", "range": [0, 1], "extinction": [[0.5, 2]]})", ", \"range\": [2, 6]");
+  EXPECT_EQ(*named.named.range, (std::array<double, 2>{2, 6}));
+  EXPECT_EQ(named.extinctions[0].value, 4);
+  test::write_file(folder_ / "t.json", R"({"extinction": [[1, 2]]})");
+  refused("\"transfer\": \"t.json\",\n\"range\": [0, 1]", "s.json:3", {"wider range was expected"});
+}
+
+TEST_F(ReadTransfer, ErrorsNameTheTransferFilesLine) {
+  file_refused("{\"color\": [[0, 0, 0, 0],\n[0, 1, 1, 1]]}", 2, {"strictly rising"});
+  file_refused("{\n\"colour\": \"grey\"}", 2, {"unknown key \"colour\"", "did you mean \"color\"?"});
+  file_refused("{\n\"color\": \"gray\"}", 2, {"did you mean \"grey\"?"});
+  file_refused("{\"transfer\": \"t.json\"}", 1, {"unknown key"});
+  file_refused("{}", 1, {"empty", "was expected"});
+  file_refused("3", 1, {"object {...} was expected"});
+  file_refused("{\"color\": ", 1, {"JSON", "expected"});
+  refused("\"transfer\": \"none.json\"", "s.json:2", {"does not exist", "expected"});
+  refused("\"transfer\": \".\"", "s.json:2", {"is not a file", "expected"});
+  refused("\"transfer\": 3", "s.json:2", {"expected"});
+  refused("\"transfer\": \"t.json\",\n\"opacity\": [[0, 0]]", "s.json:3", {"both \"transfer\" and \"opacity\"", "expected"});
+  test::write_file(folder_ / "t.json", R"({"color": "grey"})");
+  refused("\"transfer\": \"t.json\",\n\"opacity_unit\": 2", "s.json:3", {"no \"opacity\"", "expected"});
+}
+
+TEST_F(ReadTransfer, ParaViewsColourMaps) {
+  const TransferFunction transfer = file_of(R"([{"Name": "bone", "ColorSpace": "RGB", "NanColor": [1, 0, 0], "Creator": "someone",
+    "RGBPoints": [-100, 0, 0, 0, 300, 1, 0.5, 0.25], "Points": [-100, 0, 0.5, 0, 300, 1, 0.5, 0]}])");
+  ASSERT_EQ(transfer.colors.size(), 2u);
+  EXPECT_EQ(transfer.colors[0].value, -100);
+  EXPECT_EQ(transfer.colors[1].color.g, 0.5f);
+  ASSERT_EQ(transfer.opacities.size(), 2u);
+  EXPECT_EQ(transfer.opacities[0].alpha, 0);
+  EXPECT_EQ(transfer.opacities[1].alpha, 0.999);
+  EXPECT_EQ(transfer.opacity_unit, 0) << "one voxel";
+}
+
+/// ParaView's "Cool to Warm": two saturated ends about a grey, of which Moreland's table is the result.
+TEST_F(ReadTransfer, ParaViewsSpacesBecomeLinearPieces) {
+  const auto map = [](const std::string& space, const std::string& points) {
+    return "[{\"ColorSpace\": \"" + space + "\", \"RGBPoints\": [" + points + "]}]";
+  };
+  const auto colors = file_of(map("Diverging", "0, 0.2298, 0.2987, 0.7537, 1, 0.8654, 0.8654, 0.8654, 2, 0.7057, 0.0156, 0.1502")).colors;
+  const auto table = named_map("cool-warm", 0, 2);
+  ASSERT_GT(colors.size(), 60u);
+  for (const ColorPoint& point : colors) {
+    const auto near = std::min_element(table.begin(), table.end(), [&](const auto& a, const auto& b) {
+      return std::fabs(a.value - point.value) < std::fabs(b.value - point.value);
+    });
+    EXPECT_NEAR(near->color.r, point.color.r, 0.006) << point.value;
+    EXPECT_NEAR(near->color.g, point.color.g, 0.006) << point.value;
+    EXPECT_NEAR(near->color.b, point.color.b, 0.006) << point.value;
+  }
+  const auto hues = file_of(map("HSV", "0, 1, 0, 0, 1, 0, 1, 0")).colors;
+  EXPECT_EQ(hues.size(), 33u);
+  EXPECT_NEAR(hues[16].color.r, 1, 1e-6);
+  EXPECT_NEAR(hues[16].color.g, 1, 1e-6) << "through yellow";
+  const auto lab = file_of(map("Lab", "0, 0, 0, 0, 1, 1, 1, 1")).colors;
+  EXPECT_NEAR(lab[16].color.g, 0.4663, 2e-3) << "half the lightness";
+}
+
+TEST_F(ReadTransfer, ParaViewsErrors) {
+  file_refused("[]", 1, {"0 colour maps", "array of one was expected"});
+  file_refused("[{}, {}]", 1, {"2 colour maps"});
+  file_refused("[{\"Name\": \"a\"}]", 1, {"RGBPoints", "expected"});
+  file_refused("[{\n\"RGBPoints\": [0, 0, 0]}]", 2, {"four numbers for each point were expected"});
+  file_refused("[{\"RGBPoints\": [0, 0, 0, 0,\n0, 1, 1, 1]}]", 2, {"strictly rising"});
+  file_refused("[{\"RGBPoints\": [0, 0, 2, 0]}]", 1, {"colour components from 0 to 1"});
+  file_refused("[{\"RGBPoints\": [0, 0, 0, 0],\n\"ColorSpace\": \"Step\"}]", 2, {"RGB, HSV, Lab or Diverging was expected"});
+  file_refused("[{\"RGBPoints\": [0, 0, 0, 0],\n\"Points\": [0, 2, 0.5, 0]}]", 2, {"opacity 2", "from 0 to 1"});
+  file_refused("[{\"RGBPoints\": [0, 0, 0, 0],\n\"Points\": [0, 0, 0.3, 0, 1, 1, 0.5, 0]}]", 2, {"bent", "was expected"});
+}
+
+TEST_F(ReadTransfer, LinesTakeTheSameKeys) {
+  const auto lines = [&](const std::string& keys) {
+    return parse_scene(
+        "{\"fields\": {\"v\": {\"analytic\": \"circle\"}}, \"streamlines\": [{\"field\": \"v\", \"seeds\": [[1, 0, 0]],\n" + keys + "}]}",
+        folder_ / "s.json");
+  };
+  const auto by = [&](const std::string& keys) {
+    const auto scene = lines(keys);
+    EXPECT_TRUE(scene) << scene.error().message;
+    ColorBy result;
+    if (scene) scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { result = *set.color_by; });
+    return result;
+  };
+  EXPECT_EQ(by("\"color_by\": \"speed\", \"color\": \"plasma\"").named.map, "plasma");
+  EXPECT_EQ((*by("\"color_by\": \"speed\", \"range\": [0, 3]").named.range)[1], 3);
+  test::write_file(folder_ / "t.json", R"({"color": [[0, 1, 0, 0], [2, 0, 0, 1]]})");
+  EXPECT_EQ(by("\"color_by\": \"speed\", \"transfer\": \"t.json\"").colors.size(), 2u);
+  for (const char* keys : {"\"color\": \"plasma\"", "\"range\": [0, 1]", "\"transfer\": \"t.json\"", "\"color\": [[0, 0, 0, 0]]"}) {
+    const auto scene = lines(keys);
+    ASSERT_FALSE(scene) << keys;
+    EXPECT_NE(scene.error().message.find("s.json:2: "), std::string::npos) << scene.error().message;
+    EXPECT_NE(scene.error().message.find("\"color_by\""), std::string::npos) << scene.error().message;
+  }
+  test::write_file(folder_ / "t.json", R"({"extinction": [[0, 1]]})");
+  const auto scene = lines("\"color_by\": \"speed\",\n\"transfer\": \"t.json\"");
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().message.find("s.json:3: "), std::string::npos) << scene.error().message;
+  EXPECT_NE(scene.error().message.find("no colours"), std::string::npos) << scene.error().message;
+}
+
+/// |x| on a cube of side 4: its values reach from 0 to 2 sqrt(3).
+TEST_F(ReadTransfer, AMapLiesOverTheValuesOrTheRange) {
+  const auto drawn = [&](const std::string& keys) {
+    auto scene = volume(keys);
+    EXPECT_TRUE(scene) << scene.error().message;
+    const auto any = use_drawn_field(*scene, find_field(*scene, "ball"), {});
+    EXPECT_TRUE(any) << any.error().message;
+    TransferFunction transfer;
+    scene->world.each<Volume>([&](Entity, const Volume& v) { transfer = v.transfer; });
+    return transfer;
+  };
+  const TransferFunction all = drawn("\"color\": \"viridis\"");
+  EXPECT_EQ(all.colors.front().value, 0);
+  EXPECT_NEAR(all.colors.back().value, std::sqrt(12.0), 1e-6);
+  EXPECT_FALSE(all.extinctions.empty());
+  const TransferFunction part = drawn("\"color\": \"viridis\", \"range\": [1, 2]");
+  EXPECT_EQ(part.colors.front().value, 1);
+  EXPECT_EQ(part.colors.back().value, 2);
+  EXPECT_EQ(part.extinctions.front().value, 1) << "the ramp of the opacity lies there too";
+  EXPECT_EQ(part.extinctions.back().value, 2);
+  const TransferFunction plain = drawn("\"range\": [1, 2]");
+  EXPECT_EQ(plain.colors.size(), 6u) << "the default map";
+  EXPECT_EQ(plain.colors.front().value, 1);
+  const TransferFunction both = drawn("\"color\": \"grey\", \"extinction\": [[0, 2]]");
+  EXPECT_EQ(both.extinctions.size(), 1u);
+}
+
+}  // namespace
+}  // namespace catena::scene

@@ -1,0 +1,101 @@
+/// Transfer files out of hostile hands: a transfer function that can be drawn, or one line with the file's name.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/scene/color_maps.h"
+#include "engine/scene/read_transfer.h"
+#include "tests/fuzz/mutate.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace {
+
+constexpr int kMutations = 20000;
+
+const std::string kOwn[] = {
+    R"({ /* bone */ "color": [[-1000, 0.2, 0.1, 0.1], [200, 0.9, 0.8, 0.7], [3000, 1, 1, 1]], "opacity": [[200, 0], [400, 0.2], [1e3, 0.9]],
+         "opacity_unit": 1.5, "gradient_opacity": [[0, 0], [50, 0.5], [300, 1]] })",
+    R"({"color": "plasma_r", "range": [0.5, 80], "extinction": [[0.5, 0], [80, 3]]})"};
+const std::string kParaView[] = {
+    R"([{"ColorSpace": "Diverging", "Name": "Cool to Warm", "NanColor": [1, 1, 0], "RGBPoints": [0, 0.23, 0.3, 0.754, 0.5, 0.865, 0.865, 0.865,
+         1, 0.706, 0.016, 0.15], "Points": [0, 0, 0.5, 0, 1, 1, 0.5, 0]}])",
+    R"([{"ColorSpace": "HSV", "RGBPoints": [-1, 0, 0, 1, 1, 1, 0, 0]}])"};
+
+template <class Table>
+void expect_rising(const Table& table, const std::string& text) {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(table[i].value)) << text;
+    if (i > 0) {
+      EXPECT_LT(table[i - 1].value, table[i].value) << text;
+    }
+  }
+}
+
+bool check(const std::string& text) {
+  const auto read = scene::parse_transfer(text, "t.json");
+  if (!read) {
+    const std::string& message = read.error().message;
+    EXPECT_TRUE(message.starts_with("t.json:")) << message << "\nfor\n" << text;
+    EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message << "\nfor\n" << text;
+    EXPECT_LT(message.size(), 1000u) << message;
+    return false;
+  }
+  const auto colors = scene::color_table(read->colors, read->named, -1, 1);
+  expect_rising(colors, text);
+  for (const auto& point : colors)
+    for (const float c : {point.color.r, point.color.g, point.color.b}) EXPECT_TRUE(c >= 0 && c <= 1) << c << " for\n" << text;
+  expect_rising(read->opacities, text);
+  expect_rising(read->extinctions, text);
+  for (const auto& point : read->opacities) EXPECT_TRUE(point.alpha >= 0 && point.alpha < 1) << text;
+  for (const auto& point : read->extinctions) EXPECT_TRUE(point.sigma >= 0) << text;
+  for (const auto& point : read->gradient_factors) EXPECT_TRUE(point.gradient >= 0 && point.factor >= 0 && point.factor <= 1) << text;
+  return true;
+}
+
+TEST(TransferFuzz, TheSeedsAreValid) {
+  for (const auto& seed : {kOwn[0], kOwn[1], kParaView[0], kParaView[1]}) EXPECT_TRUE(check(seed)) << seed;
+}
+
+TEST(TransferFuzz, EveryTruncationAndByteTurned) {
+  for (const auto& seed : {kOwn[0], kOwn[1], kParaView[0], kParaView[1]})
+    for (std::size_t n = 0; n < seed.size(); ++n) {
+      EXPECT_FALSE(check(seed.substr(0, n))) << n;
+      std::string text = seed;
+      text[n] = static_cast<char>(text[n] ^ 0x81);
+      check(text);
+    }
+}
+
+TEST(TransferFuzz, Mutations) {
+  test::Random random{4};
+  int read = 0;
+  for (int i = 0; i < kMutations && !HasFailure(); ++i)
+    read += check(test::mutate(i % 2 ? kOwn[random.below(2)] : kParaView[random.below(2)], random)) ? 1 : 0;
+  EXPECT_GT(read, 0);
+  EXPECT_LT(read, kMutations);
+}
+
+/// Any range beside any file: laid anew, or one line.
+TEST(TransferFuzz, RangesBesideFiles) {
+  const test::TemporaryFolder folder;
+  const std::string ranges[] = {"[0, 1]", "[1, 0]", "[-1e38, 1e38]", "[0, 1e-45]", "[1, 1.0000001]", "[\"a\", 1]", "{}", "[1e300, 2e300]"};
+  for (const auto& seed : {kOwn[0], kOwn[1], kParaView[0], kParaView[1]}) {
+    test::write_file(folder / "t.json", seed);
+    for (const std::string& range : ranges) {
+      const auto object = json::parse("{\"transfer\": \"t.json\", \"range\": " + range + "}", folder / "s.json");
+      ASSERT_TRUE(object);
+      const auto transfer = scene::read_transfer(folder / "s.json", *object);
+      if (!transfer) {
+        EXPECT_TRUE(transfer.error().message.starts_with(folder / "s.json:1: ")) << transfer.error().message;
+        continue;
+      }
+      expect_rising(transfer->colors, range);
+      expect_rising(transfer->opacities, range);
+      expect_rising(transfer->extinctions, range);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace catena

@@ -1,0 +1,99 @@
+#include "render/frame/camera_moves.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace catena::render {
+namespace {
+
+void expect_near(const Vec3& a, const Vec3& b) { EXPECT_LE(norm(a - b), 1e-12) << a.x << " " << a.y << " " << a.z; }
+
+Bounds slab() {
+  Bounds b;
+  b.add(Vec3(-1.0, -2.0, -3.0));
+  b.add(Vec3(1.0, 2.0, 5.0));
+  return b;
+}
+
+View from_south() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4}; }
+
+TEST(CameraMoves, AxisViewsLookAlongTheirAxisAndSeeEverything) {
+  const struct {
+    const char* words;
+    Vec3 looks, up;
+  } cases[] = {{"+x", {1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}}, {"-x", {-1.0, 0.0, 0.0}, {0.0, 0.0, 1.0}},
+               {"+y", {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}, {"-y", {0.0, -1.0, 0.0}, {0.0, 0.0, 1.0}},
+               {"+z", {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}}, {"-z", {0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}}};
+  for (const auto& c : cases) {
+    const auto view = axis_view(slab(), 4.0 / 3, c.words);
+    ASSERT_TRUE(view) << c.words;
+    const Camera camera = make_camera(*view, 400, 300, slab());
+    expect_near(-camera.back, c.looks);
+    expect_near(camera.up, c.up);
+    expect_near(view->target, slab().centre());
+    for (int i = 0; i < 8; ++i) {
+      const auto p = project(camera, slab().corner(i));
+      ASSERT_TRUE(p);
+      EXPECT_TRUE(p->x > 0 && p->x < 400 && p->y > 0 && p->y < 300) << c.words;
+    }
+  }
+  for (const char* words : {"x", "+w", "", "++", "+xy", "top"}) EXPECT_FALSE(axis_view(slab(), 1, words)) << words;
+}
+
+TEST(CameraMoves, IsoSeesThreeSidesAlike) {
+  const auto towards_eye = axis_direction("iso");
+  ASSERT_TRUE(towards_eye);
+  EXPECT_NEAR(towards_eye->x, 1 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(towards_eye->y, -1 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(towards_eye->z, 1 / std::sqrt(3.0), 1e-12);
+}
+
+TEST(CameraMoves, ATurnGoesCounterClockwiseSeenFromAbove) {
+  expect_near(turned(from_south(), 90, 0).position, {10.0, 0.0, 0.0});
+  expect_near(turned(from_south(), 180, 0).position, {0.0, 10.0, 0.0});
+  expect_near(turned(from_south(), 360, 0).position, from_south().position);
+}
+
+TEST(CameraMoves, ElevationRaisesTheEyeAndNeverFlips) {
+  const double s = 10 / std::sqrt(2.0);
+  expect_near(turned(from_south(), 0, 45).position, {0.0, -s, s});
+  expect_near(turned(from_south(), 0, -45).position, {0.0, -s, -s});
+  expect_near(turned(from_south(), 90, 45).position, {s, 0.0, s});
+  // straight above, then beyond: the top of the picture turns with the eye
+  const Camera above = make_camera(turned(from_south(), 0, 90), 10, 10, {});
+  expect_near(above.back, {0.0, 0.0, 1.0});
+  expect_near(above.up, {0.0, 1.0, 0.0});
+  const Camera beyond = make_camera(turned(turned(from_south(), 0, 60), 0, 60), 10, 10, {});
+  EXPECT_LT(beyond.up.z, 0);
+  EXPECT_GT(beyond.up.y, 0);
+}
+
+TEST(CameraMoves, ZoomEnlargesByItsFactor) {
+  for (const bool orthographic : {false, true}) {
+    View view = from_south();
+    view.orthographic = orthographic;
+    const Camera before = make_camera(view, 200, 200, {}), after = make_camera(zoomed(view, 2.5), 200, 200, {});
+    const Vec3 point(0.3, 1.0, 0.2);
+    EXPECT_NEAR(project(after, point)->x - 100, 2.5 * (project(before, point)->x - 100), 1e-9);
+    EXPECT_NEAR(project(after, point)->y - 100, 2.5 * (project(before, point)->y - 100), 1e-9);
+  }
+}
+
+TEST(CameraMoves, FittedKeepsDirectionUpAngleAndProjection) {
+  View view{{30.0, -4.0, 1.0}, {29.0, 2.0, 3.0}, {0.2, 0.1, 1.0}, 50, true, 9};
+  const View fit = fitted(view, slab(), 1.5);
+  const Camera a = make_camera(view, 300, 200, {}), b = make_camera(fit, 300, 200, slab());
+  expect_near(a.back, b.back);
+  expect_near(a.up, b.up);
+  EXPECT_EQ(fit.fovy_deg, 50);
+  EXPECT_TRUE(fit.orthographic);
+  for (int i = 0; i < 8; ++i) {
+    const auto p = project(b, slab().corner(i));
+    ASSERT_TRUE(p);
+    EXPECT_TRUE(p->x > 0 && p->x < 300 && p->y > 0 && p->y < 200);
+  }
+}
+
+}  // namespace
+}  // namespace catena::render

@@ -1,0 +1,130 @@
+/// The scene's annotations as the picture's overlay: colours, ticks and words.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/scene/systems.h"
+#include "render/extract/bar_ticks.h"
+#include "render/extract/extract.h"
+
+namespace catena::render {
+namespace {
+
+FramePacket packet_of(const std::string& text) {
+  auto scene = scene::parse_scene(text, "test.json");
+  EXPECT_TRUE(scene) << scene.error().message;
+  auto packet = extract_frame(*scene, 320, 240);
+  EXPECT_TRUE(packet) << packet.error().message;
+  return std::move(*packet);
+}
+
+std::string texts(const BarScale& scale) {
+  std::string all;
+  for (const BarTick& tick : scale.ticks) all += (all.empty() ? "" : " ") + tick.text;
+  return all + (scale.factor.empty() ? "" : " | " + scale.factor);
+}
+
+TEST(BarTicks, AreNiceAndSayWhatTheyAre) {
+  EXPECT_EQ(texts(bar_scale(0, 1, 5, "")), "0.0 0.2 0.4 0.6 0.8 1.0");
+  EXPECT_EQ(texts(bar_scale(-0.97, 1.1, 5, "")), "−0.5 0.0 0.5 1.0");
+  EXPECT_EQ(texts(bar_scale(0, 100, 5, "")), "0 20 40 60 80 100");
+  EXPECT_EQ(texts(bar_scale(101325, 101425, 3, "")), "1.0135 1.0140 | ×10⁵");
+  EXPECT_EQ(texts(bar_scale(0, 4e-7, 5, "")), "0 1 2 3 4 | ×10⁻⁷");
+  EXPECT_EQ(texts(bar_scale(0, 3.1e12, 4, "")), "0 1 2 3 | ×10¹²");
+  EXPECT_EQ(texts(bar_scale(0, 1, 3, "%.2f K")), "0.00 K 0.50 K 1.00 K");
+  EXPECT_EQ(texts(bar_scale(-1e-3, 1e-3, 3, "%.0e")), "−1e−03 0e+00 1e−03");
+  EXPECT_EQ(texts(bar_scale(5, 5, 5, "")), "5");
+  EXPECT_TRUE(bar_scale(0, INFINITY, 5, "").ticks.empty());
+}
+
+TEST(BarTicks, LieWithinTheRangeAtEqualSteps) {
+  for (const double lo : {-7.3e5, -1.0, 0.0, 1e-9, 3.3, 1e6})
+    for (const double width : {1e-8, 0.37, 1.0, 86.0, 2.2e7})
+      for (const int count : {2, 5, 12}) {
+        const double hi = lo + width;
+        if (!(width > 1e-9 * std::fabs(lo))) continue;
+        const BarScale scale = bar_scale(lo, hi, count, "");
+        ASSERT_GE(scale.ticks.size(), 1u) << lo << " " << hi;
+        ASSERT_LE(scale.ticks.size(), std::size_t(2 * count));
+        for (std::size_t i = 0; i < scale.ticks.size(); ++i) {
+          EXPECT_GE(scale.ticks[i].value, lo - 1e-8 * width - 1e-15 * std::fabs(lo));
+          EXPECT_LE(scale.ticks[i].value, hi + 1e-8 * width + 1e-15 * std::fabs(hi));
+          if (i < 2) continue;
+          EXPECT_NEAR(scale.ticks[i].value - scale.ticks[i - 1].value, scale.ticks[1].value - scale.ticks[0].value, 1e-6 * width);
+        }
+      }
+}
+
+TEST(ExtractOverlay, BarsShowTheColoursOfWhatTheyName) {
+  const FramePacket packet = packet_of(R"({"fields": {"d": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle"}},
+    "volumes": [{"field": "d", "color": [[0, 0, 0, 0], [1, 1, 0, 0.5], [2, 1, 1, 1]]}],
+    "streamlines": [{"field": "v", "seeds": [[1, 0, 0], [0.5, 0, 0]], "color_by": "speed"}],
+    "scalar_bars": [{"volume": 0}, {"streamlines": 0, "title": "m/s", "position": "bottom", "format": "%.1f"}]})");
+  ASSERT_EQ(packet.overlay.scalar_bars.size(), 2u);
+  const ScalarBarItem& volume = packet.overlay.scalar_bars[0];
+  EXPECT_EQ(volume.colors, packet.volumes[0].transfer.colors);
+  EXPECT_EQ(volume.title, "d");
+  EXPECT_EQ(volume.side, Side::right);
+  ASSERT_EQ(volume.ticks.size(), 5u);
+  EXPECT_EQ(volume.ticks[1].value, 0.5);
+  EXPECT_EQ(volume.ticks[1].text, "0.5");
+  // streamlines of their own range: speeds 0.5 to 1
+  const ScalarBarItem& lines = packet.overlay.scalar_bars[1];
+  EXPECT_NEAR(lines.colors.front()[0], 0.5, 1e-5);
+  EXPECT_NEAR(lines.colors.back()[0], 1, 1e-5);
+  EXPECT_EQ(lines.title, "m/s");
+  EXPECT_EQ(lines.side, Side::bottom);
+  EXPECT_EQ(lines.ticks.at(1).text, "0.6");
+}
+
+TEST(ExtractOverlay, AHistogramsColoursAreShownToo) {
+  const FramePacket packet = packet_of(
+      R"({"fields": {"d": {"analytic": "gaussian", "resolution": 17}}, "volumes": [{"field": "d"}], "scalar_bars": [{"field": "d"}]})");
+  ASSERT_EQ(packet.overlay.scalar_bars.size(), 1u);
+  EXPECT_EQ(packet.overlay.scalar_bars[0].colors, packet.volumes[0].transfer.colors);
+}
+
+TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
+  auto scene = scene::parse_scene(R"({"coupling": {"max_force": 4}, "status": true})", "test.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_FALSE(extract_frame(*scene, 32, 32)->overlay.status) << "no hand, nothing to say";
+  exchange::HapticState state;
+  state.force_n = {0, 3, 4};
+  state.link_count = 2;
+  state.links[0].active = true;
+  state.links[1].status = exchange::Status::released;
+  scene::update_cursor(*scene, state);
+  scene->world.get<scene::Cursor>(scene->cursor).names = {"curve"};
+  const auto packet = extract_frame(*scene, 32, 32);
+  ASSERT_TRUE(packet && packet->overlay.status);
+  const StatusItem& status = *packet->overlay.status;
+  EXPECT_EQ(status.force_n, 5);
+  EXPECT_EQ(status.max_force_n, 4);
+  ASSERT_EQ(status.rows.size(), 2u);
+  EXPECT_EQ(status.rows[0].name, "curve");
+  EXPECT_EQ(status.rows[0].word, "OK");
+  EXPECT_TRUE(status.rows[0].active);
+  EXPECT_EQ(status.rows[1].name, "link 2");
+  EXPECT_EQ(status.rows[1].word, "RELEASED");
+  EXPECT_FALSE(status.rows[1].active);
+}
+
+TEST(ExtractOverlay, TitleLabelsAndMarkerGoOver) {
+  const FramePacket packet = packet_of(R"({"title": "T", "labels": [{"at": [1, 2, 3], "text": "a", "hidden_behind": true}],
+    "orientation_marker": {"position": "top-left"}, "overlay": {"scale": 2, "font": "F"}})");
+  const Overlay& overlay = packet.overlay;
+  ASSERT_EQ(overlay.texts.size(), 1u);
+  EXPECT_EQ(overlay.texts[0].text, "T");
+  EXPECT_EQ(overlay.texts[0].anchor, Anchor::top);
+  ASSERT_EQ(overlay.labels.size(), 1u);
+  EXPECT_EQ(overlay.labels[0].at, Vec3(1, 2, 3));
+  EXPECT_TRUE(overlay.labels[0].behind_hidden);
+  ASSERT_TRUE(overlay.orientation_marker);
+  EXPECT_EQ(overlay.orientation_marker->anchor, Anchor::top_left);
+  EXPECT_EQ(overlay.scale, 2);
+  EXPECT_EQ(overlay.font, "F");
+  EXPECT_TRUE(packet_of("{}").overlay.empty());
+}
+
+}  // namespace
+}  // namespace catena::render
