@@ -68,12 +68,24 @@ struct TransferFunction {
   std::string file;                             ///< that it was read from; empty: the scene's own
 };
 
+/// Colours by another scalar field at the same place of the world.
+struct FieldColors {
+  Entity field;
+  json::Node where;
+  std::vector<TransferFunction::ColorPoint> colors;
+  NamedColors named{};  ///< viridis, all values, where it does not say
+};
+
 struct Volume {
+  /// What a ray makes of its values: emission and absorption, or the look of one value.
+  enum class Projection { composite, maximum, minimum, average };
   Entity field;
   json::Node where;
   TransferFunction transfer;
   bool shade = false;
   bool clipped = true;  ///< the clip planes count
+  Projection projection = Projection::composite;
+  std::optional<FieldColors> color_by{};  ///< composite only
 };
 
 struct Isosurface {
@@ -83,6 +95,7 @@ struct Isosurface {
   Rgb color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
   bool clipped = true;  ///< the clip planes count
+  std::optional<FieldColors> color_by{};
 };
 
 /// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.
@@ -93,13 +106,44 @@ struct MeshSource {
   mesh::MeshPtr loaded;       ///< felt and drawn: one object
 };
 
+/// A field's values on a surface.
+struct SurfaceColors {
+  Entity field;                                      ///< a scalar, or the magnitude of a vector
+  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
+  NamedColors named{};                               ///< viridis, the values that are drawn, where it does not say
+};
+
 /// A mesh that is drawn.
 struct SurfaceMesh {
   Entity mesh;
   json::Node where;
   Rgb color{0.8f, 0.8f, 0.9f};
   bool clipped = true;  ///< the clip planes count
+  double opacity = 1;
+  bool smooth = false;  ///< "shading": the felt mesh is flat
+  bool edges = false;
+  std::optional<SurfaceColors> color_by;
 };
+
+/// A plane through a field, coloured by its values, with lines of constant value.
+struct Slice {
+  SurfaceColors shown;
+  json::Node where;
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+  double opacity = 1;
+  bool lit = false;
+  bool clipped = true;  ///< the clip planes count
+  struct Contours {
+    json::Node where;
+    std::vector<double> levels;  ///< rising; or
+    int count = 0;               ///< so many within the colours' range, its ends left out; or
+    double spacing = 0;          ///< all multiples
+    Rgb color{0, 0, 0};
+    double width = 1;  ///< pixels
+  };
+  std::optional<Contours> contours;
+};
+inline constexpr int kMostContours = 1000;
 
 /// Seeds that are not listed one by one. Which members mean something follows from the kind.
 struct SeedPattern {

@@ -24,6 +24,23 @@ std::string mesh_fault(const std::string& path) {
   return {};
 }
 
+/// "color", or "color_by": a field's name, and the colours of read_transfer.h.
+Outcome read_mesh_color(const Scene& scene, const json::Node& item, SurfaceMesh& surface) {
+  if (item.find("color_by") == nullptr) {
+    for (const char* key : {"range", "transfer"})
+      if (const json::Node* node = item.find(key))
+        return json::error_at(*node, in_quotes(key) + " is given, but nothing says of what; \"color_by\": a field was expected beside it");
+    CATENA_TRY(surface.color, get_color(item, "color", surface.color));
+    return Done{};
+  }
+  surface.color_by.emplace();
+  CATENA_TRY(surface.color_by->field, read_field_name(scene, item, "color_by"));
+  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
+  surface.color_by->colors = std::move(scale.colors);
+  surface.color_by->named = std::move(scale.named);
+  return Done{};
+}
+
 /// Calls read(item) for each object of an array.
 template <class Read>
 Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
@@ -36,6 +53,13 @@ Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
 }
 
 }  // namespace
+
+Result<double> read_opacity(const json::Node& object, double fallback) {
+  CATENA_TRY(const double opacity, json::get_number(object, "opacity", fallback, json::Range::not_negative));
+  if (opacity > 1)
+    return json::error_at(*object.find("opacity"), "\"opacity\" is " + to_text(opacity) + "; a number from 0 to 1 was expected");
+  return opacity;
+}
 
 Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what) {
   for (int i = 0; i < 3; ++i)
@@ -57,14 +81,16 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 
 Outcome read_volumes(Scene& scene, const json::Node& node) {
   return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(
-        item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity", "shade", "clip"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity",
+                                        "shade", "clip", "projection", "color_by"}));
     Volume volume;
     volume.where = item;
     CATENA_TRY(volume.field, read_field_name(scene, item));
     CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
     CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
     CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(volume.color_by, read_field_colors(scene, item));
+    CATENA_CHECK(read_projection(volume, item));
     scene.world.emplace<Volume>(scene.world.create(), std::move(volume));
     return Done{};
   });
@@ -72,16 +98,15 @@ Outcome read_volumes(Scene& scene, const json::Node& node) {
 
 Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
   return each_item(node, "isosurfaces", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip", "color_by"}));
     Isosurface surface;
     surface.where = item;
     CATENA_TRY(surface.field, read_field_name(scene, item));
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(surface.color_by, read_field_colors(scene, item));
     CATENA_TRY(surface.level, json::require_number(item, "level"));
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
-    CATENA_TRY(surface.opacity, json::get_number(item, "opacity", surface.opacity, json::Range::not_negative));
-    if (surface.opacity > 1)
-      return json::error_at(*item.find("opacity"), "\"opacity\" is " + to_text(surface.opacity) + "; a number from 0 to 1 was expected");
+    CATENA_TRY(surface.opacity, read_opacity(item, surface.opacity));
     scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));
     return Done{};
   });
@@ -89,7 +114,8 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
 
 Outcome read_meshes(Scene& scene, const json::Node& node) {
   return each_item(node, "meshes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "opacity", "clip"}));
+    CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "color_by", "range", "transfer", "opacity",
+                                        "shading", "edges", "clip"}));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     if (!is_name(name))
       return json::error_at(*item.find("name"),
@@ -106,11 +132,11 @@ Outcome read_meshes(Scene& scene, const json::Node& node) {
     CATENA_TRY(source.placement.offset, json::get_vec3(item, "offset", source.placement.offset));
     SurfaceMesh surface;
     surface.where = item;
-    CATENA_TRY(surface.color, get_color(item, "color", surface.color));
-    CATENA_TRY(const double opacity, json::get_number(item, "opacity", 1));
-    if (opacity != 1)
-      return json::error_at(*item.find("opacity"), "\"opacity\" of a mesh is " + to_text(opacity) +
-                                                       "; meshes are drawn opaque: 1, or \"drawn\": false, was expected");
+    CATENA_CHECK(read_mesh_color(scene, item, surface));
+    CATENA_TRY(surface.opacity, read_opacity(item, surface.opacity));
+    CATENA_TRY(const int shading, json::get_choice(item, "shading", 0, {"flat", "smooth"}));
+    surface.smooth = shading == 1;
+    CATENA_TRY(surface.edges, json::get_boolean(item, "edges", false));
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
     CATENA_TRY(const bool drawn, json::get_boolean(item, "drawn", true));
     surface.mesh = scene.world.create();

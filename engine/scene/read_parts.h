@@ -19,10 +19,17 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 
 /// Three numbers 0..1 as a colour.
 Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what);
+/// "opacity": 0..1.
+Result<double> read_opacity(const json::Node& object, double fallback);
 /// Member `key` as [r, g, b], 0..1.
 Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback);
 /// Rows [value, r, g, b], values rising.
 Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what);
+
+/// "color_by": {"field", "color", "range", "transfer"} of a volume or an isosurface.
+Result<std::optional<FieldColors>> read_field_colors(const Scene& scene, const json::Node& object);
+/// "projection" of a volume, and whether it goes with what else the volume states.
+Outcome read_projection(Volume& volume, const json::Node& object);
 
 Outcome read_chain(Scene& scene, const json::Node& node);
 Outcome read_modes(Scene& scene, const json::Node& node);
@@ -33,6 +40,7 @@ Outcome read_device(Scene& scene, const json::Node& node);
 Outcome read_volumes(Scene& scene, const json::Node& node);
 Outcome read_isosurfaces(Scene& scene, const json::Node& node);
 Outcome read_meshes(Scene& scene, const json::Node& node);
+Outcome read_slices(Scene& scene, const json::Node& node);
 Outcome read_streamlines(Scene& scene, const json::Node& node);
 Outcome read_indicator(Scene& scene, const json::Node& node);
 Outcome read_cursor(Scene& scene, const json::Node& node);
@@ -48,6 +56,8 @@ Outcome read_camera(Scene& scene, const json::Node& node);
 Outcome read_stereo(Scene& scene, const json::Node& node);
 /// "clip": planes and boxes; "clip": false in an item, as `clipped`.
 Outcome read_clip(Scene& scene, const json::Node& node);
+/// "jitter": true or false.
+Outcome read_jitter(Scene& scene, const json::Node& node);
 Outcome read_bounding_box(Scene& scene, const json::Node& node);
 Outcome read_axes(Scene& scene, const json::Node& node);
 Outcome read_ground(Scene& scene, const json::Node& node);

@@ -25,6 +25,7 @@ struct Scene {
   Background background;
   Annotations annotations;
   std::vector<ClipPlane> clip;
+  std::optional<bool> jitter;  ///< of rays; not stated: by the quality
   std::optional<BoundingBox> bounding_box;
   std::optional<Axes> axes;
   std::optional<Ground> ground;

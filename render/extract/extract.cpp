@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/scene/color_maps.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
 #include "render/extract/extract_stereo.h"
+#include "render/extract/extract_surfaces.h"
 
 namespace catena::render {
 
@@ -55,13 +57,32 @@ Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene,
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
 }
 
+Result<std::optional<ColorSource>> color_source(scene::Scene& scene, const std::optional<scene::FieldColors>& by) {
+  if (!by) return std::optional<ColorSource>();
+  ColorSource source;
+  CATENA_TRY(source.grid, drawn_grid(scene, by->field, by->where, "\"color_by\""));
+  for (const auto& c : scene::color_table(by->colors, by->named, source.grid->min_value(), source.grid->max_value()))
+    source.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
+  return std::optional<ColorSource>(std::move(source));
+}
+
+Projection projection_of(scene::Volume::Projection projection) {
+  using From = scene::Volume::Projection;
+  return projection == From::maximum   ? Projection::maximum
+         : projection == From::minimum ? Projection::minimum
+         : projection == From::average ? Projection::average
+                                       : Projection::composite;
+}
+
 Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Volume>(scene.world)) {
     const scene::Volume& volume = scene.world.get<scene::Volume>(e);
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
+    CATENA_TRY(auto color_by, color_source(scene, volume.color_by));
     const std::uint32_t id = packet.add_object("volume", field_name(scene, volume.field));
-    packet.volumes.push_back({std::move(grid), std::move(transfer), volume.shade, id, volume.clipped});
+    packet.volumes.push_back(
+        {std::move(grid), std::move(transfer), volume.shade, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
   }
   return Done{};
 }
@@ -71,35 +92,10 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
+    CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
     const std::uint32_t id = packet.add_object("isosurface", field_name(scene, surface.field));
-    packet.isosurfaces.push_back(
-        {std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity), id, surface.clipped});
-  }
-  return Done{};
-}
-
-/// What this room keeps beside a SurfaceMesh: its triangles as plain data, made once.
-struct PlainMesh {
-  std::shared_ptr<const MeshGeometry> geometry;
-  std::uint64_t version = 0;
-};
-
-/// The drawn mesh is the felt one: the same object of the scene.
-Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
-  for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
-    const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
-    CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
-    if (!scene.world.has<PlainMesh>(e)) scene.world.emplace<PlainMesh>(e);
-    PlainMesh& plain = scene.world.get<PlainMesh>(e);
-    if (plain.version != mesh->version()) {
-      auto geometry = std::make_shared<MeshGeometry>();
-      geometry->vertices = mesh->vertices();
-      geometry->triangles.reserve(3 * mesh->triangles().size());
-      for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
-      plain = {std::move(geometry), mesh->version()};
-    }
-    const std::uint32_t id = packet.add_object("mesh", field_name(scene, surface.mesh));
-    packet.meshes.push_back({plain.geometry, color_of(surface.color), id, surface.clipped});
+    packet.isosurfaces.push_back({std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity), id,
+                                  surface.clipped, std::move(color_by)});
   }
   return Done{};
 }
@@ -142,6 +138,7 @@ Bounds packet_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));
   for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(domain_bounds(*surface.grid));
+  for (const SliceItem& slice : packet.slices) bounds.add(domain_bounds(*slice.grid));
   for (const MeshItem& mesh : packet.meshes)
     for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
   for (const TubeItem& tube : packet.tubes)
@@ -164,12 +161,14 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   FramePacket packet;
   packet.width = width;
   packet.height = height;
+  packet.jitter = scene.jitter;
   for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
   const scene::Background& background = scene.background;
   packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};
   CATENA_CHECK(extract_volumes(scene, packet));
   CATENA_CHECK(extract_isosurfaces(scene, packet));
   CATENA_CHECK(extract_meshes(scene, packet));
+  CATENA_CHECK(extract_slices(scene, packet));
   CATENA_CHECK(extract_streamlines(scene, packet));
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));

@@ -1,6 +1,6 @@
-/// The only door from the scene to the eye: volumes, isosurfaces, meshes, streamline sets, the visible cursor, background and camera
-/// become one frame packet; the ECS is not read after it. Loads (once) only the fields that something drawn names, and takes
-/// every streamline from `use_curve`: the drawn tube and the felt link are the same object. Frame thread.
+/// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, the visible cursor, background and
+/// camera become one frame packet; the ECS is not read after it. Loads (once) only the fields that something drawn names, and takes every
+/// streamline from `use_curve`: the drawn tube and the felt link are the same object. Frame thread.
 #pragma once
 #include <cstdint>
 

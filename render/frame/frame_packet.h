@@ -65,6 +65,19 @@ struct TransferTable {
   std::vector<std::array<double, 2>> extinctions;  ///< value, sigma
   /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
   std::vector<std::array<double, 2>> gradient_factors;
+  double opacity_unit = 0;  ///< the length whose opacity a projection takes, world units; 0: the smallest voxel edge
+};
+
+/// How a ray makes one colour of its values.
+///   composite   emission and absorption
+///   maximum     colour and opacity, over the table's opacity_unit, of the greatest value that the ray meets; minimum alike
+///   average     the same of the mean of its values
+enum class Projection { composite, maximum, minimum, average };
+
+/// Colours by another field at the same world place. Where that field has no value the item's own colour holds.
+struct ColorSource {
+  std::shared_ptr<const field::ScalarGrid> grid;
+  std::vector<std::array<double, 4>> colors;  ///< value, r, g, b
 };
 
 struct VolumeItem {
@@ -73,6 +86,8 @@ struct VolumeItem {
   bool shade = false;
   std::uint32_t id = 0;
   bool clipped = true;
+  Projection projection = Projection::composite;
+  std::optional<ColorSource> color_by{};  ///< composite only
 };
 
 struct IsosurfaceItem {
@@ -82,17 +97,37 @@ struct IsosurfaceItem {
   float opacity = 1;
   std::uint32_t id = 0;
   bool clipped = true;
+  std::optional<ColorSource> color_by{};
 };
 
-/// Triangles as they are, each lit by its own normal: what the hand feels. Made once a mesh, shared by frames.
+/// Triangles as they are: what the hand feels. Made once a mesh, shared by frames.
 struct MeshGeometry {
   std::vector<Vec3> vertices;
   std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
+  std::vector<Vec3> normals{};           ///< by vertex, for smooth shading; may be empty without it
+  std::vector<Color> colors{};           ///< by vertex; empty: the item's everywhere
 };
 
 struct MeshItem {
   std::shared_ptr<const MeshGeometry> geometry;
   Color color;
+  std::uint32_t id = 0;
+  bool clipped = true;
+  float opacity = 1;    ///< of one side; < 1: drawn in the layers
+  bool smooth = false;  ///< lit by the vertices' normals, not by each triangle's own
+  bool edges = false;   ///< the triangles' edges as lines
+};
+
+/// A plane through a grid, coloured by its values. Lines of constant value lie over it, opaque whatever the slice is.
+struct SliceItem {
+  std::shared_ptr<const field::ScalarGrid> grid;
+  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};     ///< world; normal need not be unit
+  std::vector<std::array<double, 4>> colors;  ///< value, r, g, b; piecewise linear
+  float opacity = 1;                          ///< < 1: drawn in the layers
+  bool lit = false;
+  std::vector<double> levels{};  ///< of the lines, rising
+  Color line_color{0, 0, 0};
+  float line_width = 1;  ///< pixels
   std::uint32_t id = 0;
   bool clipped = true;
 };
@@ -149,6 +184,7 @@ struct FramePacket {
   std::vector<VolumeItem> volumes;
   std::vector<IsosurfaceItem> isosurfaces;
   std::vector<MeshItem> meshes;
+  std::vector<SliceItem> slices;
   std::vector<TubeItem> tubes;
   std::vector<ArrowItem> arrows;
   std::vector<CursorItem> cursors;
@@ -158,6 +194,7 @@ struct FramePacket {
   std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
   std::optional<FogItem> fog;
   AidItems aids;
+  std::optional<bool> jitter;  ///< of rays; overrides RenderSettings::jitter
   std::vector<ObjectName> objects;
 
   /// The next id, from 1 on.

@@ -7,24 +7,6 @@ namespace {
 
 glm::vec3 narrow(const Vec3& v) { return glm::vec3(v); }
 
-/// The signed distance from a clip plane along the ray of a pixel, from the reference depth.
-shared::ClipData clip_of_ray(const CameraRays& rays, const ClipPlane& plane) {
-  const Camera& c = rays.camera;
-  const Vec3 normal = direction(plane.normal);
-  const double x = dot(normal, c.right) * (c.half_width / (0.5 * c.width)), y = -dot(normal, c.up) * (c.half_height / (0.5 * c.height));
-  shared::ClipData clip{};
-  clip.at = float(dot(normal, c.position - plane.point) + rays.reference_depth * dot(normal, rays.forward));
-  clip.along = float(dot(normal, rays.forward));
-  const double depth = c.orthographic ? 1 : rays.reference_depth;
-  clip.at_x = float(depth * x);
-  clip.at_y = float(depth * y);
-  if (!c.orthographic) {
-    clip.along_x = float(x);
-    clip.along_y = float(y);
-  }
-  return clip;
-}
-
 glm::vec3 color_of(const Color& c) { return {c.r, c.g, c.b}; }
 
 /// Unit, in the world.
@@ -80,7 +62,7 @@ shared::FrameData CameraRays::frame() const {
   f.spacing = float(spacing);
   f.first = glm::vec2(0.5f - 0.5f * float(spacing));
   f.clip_count = std::uint32_t(clip.size());
-  for (std::size_t i = 0; i < clip.size(); ++i) f.clips[i] = clip_of_ray(*this, clip[i]);
+  for (std::size_t i = 0; i < clip.size(); ++i) f.clips[i] = plane(clip[i]);
   f.light_count = std::uint32_t(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) f.lights[i] = {narrow(towards(camera, lights[i])), color_of(lights[i].color)};
   f.fog = fog_of(*this);
@@ -141,6 +123,23 @@ shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
     m.clips[i] = glm::vec4(narrow(normal), float(dot(normal, origin - clip[i].point)));
   }
   return m;
+}
+
+shared::ClipData CameraRays::plane(const ClipPlane& plane) const {
+  const Camera& c = camera;
+  const Vec3 normal = direction(plane.normal);
+  const double x = dot(normal, c.right) * (c.half_width / (0.5 * c.width)), y = -dot(normal, c.up) * (c.half_height / (0.5 * c.height));
+  shared::ClipData clip_data{};
+  clip_data.at = float(dot(normal, c.position - plane.point) + reference_depth * dot(normal, forward));
+  clip_data.along = float(dot(normal, forward));
+  const double depth = c.orthographic ? 1 : reference_depth;
+  clip_data.at_x = float(depth * x);
+  clip_data.at_y = float(depth * y);
+  if (!c.orthographic) {
+    clip_data.along_x = float(x);
+    clip_data.along_y = float(y);
+  }
+  return clip_data;
 }
 
 Bounds grid_bounds(const field::ScalarGrid& grid) {

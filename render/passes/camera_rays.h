@@ -25,6 +25,8 @@ struct CameraRays {
   /// The ray's part of a grid's data; the caller adds table, level, colour, id and whether it is clipped.
   shared::GridData grid(const GridMirror& mirror, const field::Mapping& mapping) const;
   shared::MeshFrameData mesh(const Vec3& origin) const;
+  /// The signed distance from a plane along a pixel's ray.
+  shared::ClipData plane(const ClipPlane& plane) const;
 };
 
 /// The corners of a grid's domain.

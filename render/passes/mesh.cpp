@@ -1,9 +1,16 @@
 #include "render/passes/mesh.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "render/passes/triangles.h"
 
 namespace catena::render {
+bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
+
 namespace {
+
+bool is_opaque(const MeshItem& item) { return item.opacity >= 1; }
 
 class MeshPass final : public Pass {
  public:
@@ -14,16 +21,13 @@ class MeshPass final : public Pass {
   PassUse use(const Frame&) const override { return {0, target::opaque}; }
 
   Outcome prepare(Frame& frame) override {
-    const auto& items = frame.packet.meshes;
+    std::vector<MeshItem> items;
+    std::copy_if(frame.packet.meshes.begin(), frame.packet.meshes.end(), std::back_inserter(items), is_opaque);
     if (all_same(items, built_)) return Done{};
     Shape shape;
-    for (const MeshItem& mesh : items) {
-      const std::size_t first = shape.vertices.size();
-      add_mesh(shape, mesh);
-      mark(shape, first, mesh.id, mesh.clipped);
-    }
+    for (const MeshItem& mesh : items) add_mesh(shape, mesh);
     CATENA_CHECK(triangles_.upload(frame.device, shape));
-    built_ = items;
+    built_ = std::move(items);
     return Done{};
   }
   Bounds bounds() const override { return triangles_.bounds(); }
@@ -38,6 +42,8 @@ class MeshPass final : public Pass {
 
 }  // namespace
 
-const PassEntry kMeshPass{"meshes", [](const Frame& frame) { return !frame.packet.meshes.empty(); }, MeshPass::create};
+const PassEntry kMeshPass{"meshes",
+                          [](const Frame& frame) { return std::any_of(frame.packet.meshes.begin(), frame.packet.meshes.end(), is_opaque); },
+                          MeshPass::create};
 
 }  // namespace catena::render

@@ -72,7 +72,7 @@ Result<std::unique_ptr<Pass>> OverlayPass::create(vk::Device& device) {
                 {3, vk::Resource::texture},
                 {4, vk::Resource::texture}};
   draw.colors = {kOverlayFormat};
-  draw.blend = true;
+  draw.blends = {vk::Blend::over};
   CATENA_TRY(self->draw_, vk::Pipeline::create(device, draw));
   return std::unique_ptr<Pass>(std::move(self));
 }

@@ -15,6 +15,13 @@
 
 namespace catena::render {
 
+/// Something translucent that triangles drew, to be blended with what rays meet, in order: premultiplied colours, and the depth t
+/// (shaders/shared/frame.h, R32_SFLOAT) of each; NO_DEPTH: nothing at this pixel. Of the picture's size.
+struct Layer {
+  vk::Image* color = nullptr;
+  vk::Image* depth = nullptr;
+};
+
 /// One picture while it is made: what its passes share.
 struct Frame {
   vk::Device& device;
@@ -26,6 +33,9 @@ struct Frame {
   TargetSet written = 0;              ///< by the passes before this one, or to be (prepare: of all passes)
   vk::Image* half_lattice = nullptr;  ///< the volume on every 2nd pixel, instead of Target::volume
   VkRect2D half_area{};
+  /// The nearest first at every pixel, at most MAX_LAYERS. A pass before the raycast appends them in prepare() and draws them in
+  /// record(); the raycast blends them, also where there is no volume.
+  std::vector<Layer> layers{};
 
   bool has(TargetSet targets_) const { return (written & targets_) != 0; }
   /// The grid on the device, in the texel format that this packet asks for. Kept while packets name it.

@@ -5,21 +5,53 @@
 #include <algorithm>
 
 #include "render/passes/covered_area.h"
+#include "render/passes/layers.h"
 
 namespace catena::render {
 namespace {
 
 bool is_translucent(const IsosurfaceItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
-RaySettings ray_settings(const RenderSettings& s) { return {s.step_voxels, s.termination, s.skip}; }
+bool is_projected(const VolumeItem& item) { return item.projection != Projection::composite; }
+
+RaySettings ray_settings(const Frame& frame) {
+  const RenderSettings& s = frame.settings;
+  return {s.step_voxels, s.termination, s.skip, frame.packet.jitter.value_or(s.jitter)};
+}
+
+RayScene ray_scene(const Frame& frame) {
+  return {frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr, frame.layers, &frame.targets.none};
+}
+
+/// What can be drawn together.
+Outcome check(const Frame& frame, std::size_t volumes, std::size_t surfaces, std::size_t colors) {
+  const std::size_t layers = frame.layers.size(), grids = volumes + surfaces + colors;
+  if (volumes > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes, MAX_VOLUMES)};
+  if (surfaces > MAX_SURFACES)
+    return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", surfaces, MAX_SURFACES)};
+  if (layers > MAX_LAYERS) return Error{fmt::format("the scene has {} translucent layers, expected at most {}", layers, MAX_LAYERS)};
+  const std::size_t most = layers == 0 ? MAX_GRIDS : MAX_GRIDS_WITH_LAYERS;
+  if (grids > most)
+    return Error{
+        fmt::format("the scene has {} volumes, translucent isosurfaces and fields that colour them{}, expected at most {} together", grids,
+                    layers == 0 ? "" : " beside translucent triangles", most)};
+  const auto& items = frame.packet.volumes;
+  if (volumes + surfaces + layers > 1 && std::any_of(items.begin(), items.end(), is_projected))
+    return Error{
+        "a volume with a projection (maximum, minimum, average) stands beside another volume or something translucent, expected alone "
+        "over opaque things"};
+  return Done{};
+}
 
 }  // namespace
 
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
 
 bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet) {
-  return packet.volumes.size() == 1 && packet.lights.empty() && !packet.fog &&
-         std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
+  if (packet.volumes.size() != 1) return false;
+  const VolumeItem& item = packet.volumes.front();
+  return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
+         !has_layers(packet) && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
          can_be_packed(device, *packet.volumes.front().grid);
 }
 
@@ -29,6 +61,7 @@ bool RaycastPass::ends_at_half(const Frame& frame) const {
 
 PassUse RaycastPass::use(const Frame& frame) const {
   const TargetSet reads = frame.has(target::opaque_depth) ? target::opaque_depth : 0;
+  // layers are not targets: record() waits for them
   return {reads, ends_at_half(frame) ? 0 : target::volume, true};
 }
 
@@ -64,30 +97,41 @@ bool RaycastPass::prepare_fast(Frame& frame) {
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
-  wanted_fast_ = frame.settings.fast && draws_fast(frame.device, packet);
+  wanted_fast_ = frame.settings.fast && frame.layers.empty() && draws_fast(frame.device, packet);
   fast_ = wanted_fast_ && prepare_fast(frame) ? &packet.volumes.front() : nullptr;
   if (fast_) {
     grids_.push_back(fast_->grid.get());
     return Done{};
   }
 
-  std::vector<VolumePass::Mirrored<VolumeItem>> volumes;
-  std::vector<VolumePass::Mirrored<IsosurfaceItem>> surfaces;
+  std::vector<Mirrored<VolumeItem>> volumes;
+  std::vector<Mirrored<IsosurfaceItem>> surfaces;
+  std::size_t colors = 0;
   const auto mirror = [&](const auto& item, auto& list) -> Outcome {
     CATENA_TRY(auto mirrored, frame.mirror(*item.grid));
     if (!mirrored->drawable) return Done{};
     grids_.push_back(item.grid.get());
-    list.emplace_back(&item, std::move(mirrored));
+    list.push_back({&item, std::move(mirrored), nullptr});
+    if (!item.color_by) return Done{};
+    CATENA_TRY(mirrored, frame.mirror(*item.color_by->grid));
+    if (!mirrored->drawable) return Done{};
+    list.back().colors = std::move(mirrored);
+    ++colors;
     return Done{};
   };
   for (const VolumeItem& item : packet.volumes) CATENA_CHECK(mirror(item, volumes));
   for (const IsosurfaceItem& item : packet.isosurfaces)
     if (is_translucent(item)) CATENA_CHECK(mirror(item, surfaces));
-  if (volumes.size() > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes.size(), MAX_VOLUMES)};
-  if (surfaces.size() > MAX_SURFACES)
-    return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", surfaces.size(), MAX_SURFACES)};
-  any_ = !volumes.empty() || !surfaces.empty();
+  CATENA_CHECK(check(frame, volumes.size(), surfaces.size(), colors));
+  any_ = !volumes.empty() || !surfaces.empty() || !frame.layers.empty();
+  projected_ = !volumes.empty() && is_projected(*volumes.front().item);
   if (!any_) return Done{};
+  if (projected_) {
+    if (!projection_pass_) {
+      CATENA_TRY(projection_pass_, ProjectionPass::create(frame.device));
+    }
+    return projection_pass_->prepare(*volumes.front().item, volumes.front().mirror);
+  }
   if (!exact_pass_) {
     CATENA_TRY(exact_pass_, VolumePass::create(frame.device));
   }
@@ -103,7 +147,10 @@ Bounds RaycastPass::bounds() const {
 Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &targets.opaque_depth : nullptr;
-  const VkRect2D area = covered_area(grids_, frame.rays.camera);
+  for (const Layer& layer : frame.layers)
+    for (vk::Image* image : {layer.color, layer.depth}) commands.use(*image, vk::kFragmentRead);
+  const VkRect2D whole{{0, 0}, {frame.packet.width, frame.packet.height}};
+  const VkRect2D area = frame.layers.empty() ? covered_area(grids_, frame.rays.camera) : whole;
   if (fast_) {
     const bool half = ends_at_half(frame);
     CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.picture.info().extent,
@@ -115,22 +162,28 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
     return Done{};
   }
   targets.begin(commands, target::volume, target::volume);
-  if (any_) CATENA_CHECK(exact_pass_->record(commands, frame.rays, ray_settings(frame.settings), area, opaque, targets.none));
+  CATENA_CHECK(record_exact(commands, frame, frame.rays, area));
   commands.end_pass();
   return Done{};
+}
+
+Outcome RaycastPass::record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area) {
+  if (!any_) return Done{};
+  if (projected_) return projection_pass_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
+  return exact_pass_->record(commands, rays, ray_settings(frame), area, ray_scene(frame));
 }
 
 Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) {
   const vk::Image* opaque = frame.has(target::opaque_depth) ? &frame.targets.opaque_depth : nullptr;
   if (fast_) return fast_pass_->record_probe(commands, frame.rays, *frame.settings.fast, spacing, target, opaque, frame.targets.none);
+  for (const Layer& layer : frame.layers)
+    for (vk::Image* image : {layer.color, layer.depth}) commands.use(*image, vk::kFragmentRead);
   CameraRays rays = frame.rays;
   rays.spacing = spacing;
   const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&color, 1}, {});
   const VkExtent3D& extent = target.info().extent;
-  if (any_)
-    CATENA_CHECK(exact_pass_->record(commands, rays, ray_settings(frame.settings), {{0, 0}, {extent.width, extent.height}}, opaque,
-                                     frame.targets.none));
+  CATENA_CHECK(record_exact(commands, frame, rays, {{0, 0}, {extent.width, extent.height}}));
   commands.end_pass();
   return Done{};
 }
@@ -138,7 +191,8 @@ Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uin
 const PassEntry kRaycastPass{"raycast",
                              [](const Frame& frame) {
                                const auto& surfaces = frame.packet.isosurfaces;
-                               return !frame.packet.volumes.empty() || std::any_of(surfaces.begin(), surfaces.end(), is_translucent);
+                               return !frame.packet.volumes.empty() || !frame.layers.empty() ||
+                                      std::any_of(surfaces.begin(), surfaces.end(), is_translucent);
                              },
                              RaycastPass::create};
 

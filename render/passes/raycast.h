@@ -1,11 +1,12 @@
-/// Everything that a ray blends, in order: volumes and translucent isosurfaces, in front of the opaque depth. A lone volume goes to
-/// the fast raycast where the settings ask for it and it can be packed (fast_volume.h); all else to the exact one (volume.h), and so
-/// does what there is no memory for: the picture is slower then, and the stats' notes say so.
+/// Everything that a ray blends, in order: volumes, translucent isosurfaces and the layers of other passes, in front of the opaque depth. A
+/// lone volume goes to the fast raycast where the settings ask for it and it can be packed (fast_volume.h); all else to the exact one
+/// (volume.h), and so does what there is no memory for: the picture is slower then, and the stats' notes say so.
 #pragma once
 #include <optional>
 
 #include "render/passes/fast_volume.h"
 #include "render/passes/pass.h"
+#include "render/passes/projection.h"
 #include "render/passes/volume.h"
 
 namespace catena::render {
@@ -22,7 +23,7 @@ class RaycastPass final : public Pass {
 
   /// The rays of every `spacing`-th pixel alone, into `target` (kVolumeFormat).
   Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target);
-  /// One volume and no translucent isosurface, of a grid that can be packed.
+  /// One volume and no translucent isosurface, of a grid that can be packed; composite, its look a matter of its value alone.
   static bool draws_fast(const vk::Device& device, const FramePacket& packet);
   /// The fast raycast was tried and had no memory for it.
   bool has_refused(const FramePacket& packet) const {
@@ -39,13 +40,16 @@ class RaycastPass final : public Pass {
     std::string reason;
   };
   bool prepare_fast(Frame& frame);
+  /// The volumes, or the one that is projected; into the target that is begun.
+  Outcome record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area);
 
   std::optional<VolumePass> exact_pass_;
+  std::optional<ProjectionPass> projection_pass_;
   std::optional<FastVolumePass> fast_pass_;
   const VolumeItem* fast_ = nullptr;  ///< of this frame
   Refused refused_;
   bool wanted_fast_ = false;
-  bool any_ = false;
+  bool any_ = false, projected_ = false;
   std::vector<const field::ScalarGrid*> grids_;
 };
 

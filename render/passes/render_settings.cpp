@@ -5,6 +5,7 @@ namespace catena::render {
 RenderSettings draft_settings() {
   RenderSettings s;
   s.step_voxels = 2;
+  s.jitter = true;
   s.fast = FastSettings{4, 4, -1, -1};
   return s;
 }

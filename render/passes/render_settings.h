@@ -12,15 +12,18 @@ enum class TexelFormat { automatic, r16f, r32f };
 struct RenderSettings {
   double step_voxels = 1;                       ///< in smallest voxel edges
   double termination = 1.0 / 512;               ///< a ray ends when less than this gets through
-  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface, r16f elsewhere
+  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface or a slice, r16f elsewhere
   MirrorLayout layout = MirrorLayout::automatic;
   bool skip = true;  ///< leap over bricks that the transfer function leaves empty
   /// The picture target holds 32-bit floats instead of 8 bits: Renderer::read_back_float(). What is opaque has 11 bits of mantissa.
   bool float_picture = false;
+  /// Rays begin with a part of a step, another one at every pixel: grain instead of rings where the step is coarse. The packet may
+  /// say otherwise. The fast raycast has none.
+  bool jitter = false;
   /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
   std::optional<FastSettings> fast;
 };
-RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2
+RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2, jittered
 RenderSettings balanced_settings();   ///< every 4th pixel at step 2.5, refined where the picture asks for it; where it cannot: step 1
 RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
 

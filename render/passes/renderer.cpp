@@ -12,19 +12,22 @@
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
 #include "render/passes/isosurface.h"
+#include "render/passes/layers.h"
 #include "render/passes/mesh.h"
 #include "render/passes/overlay.h"
 #include "render/passes/pack.h"
 #include "render/passes/raycast.h"
+#include "render/passes/slice.h"
 #include "render/passes/streamlines.h"
+#include "render/passes/surface_color.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass,        &kMeshPass,    &kStreamlinePass, &kCursorPass,
-                                        &kIsosurfacePass, &kRaycastPass, &kComposePass,    &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,   &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass, &kSurfaceColorPass,
+                                        &kSlicePass, &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -227,20 +230,20 @@ Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings&
   Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
   CATENA_CHECK(p.prepare(frame));
 
-  // the solid things, whole; then the rays, into an image of their own
+  // all before the raycast, whole; then the rays, into an image of their own
   Picture picture;
   picture.width = (packet.width + kProbeSpacing - 1) / kProbeSpacing;
   picture.height = (packet.height + kProbeSpacing - 1) / kProbeSpacing;
   const std::size_t count = std::size_t(picture.width) * picture.height;
   vk::Image target;
-  std::vector<Pass*> solid;
+  std::vector<Pass*> before;
   RaycastPass* raycast = nullptr;
   for (Pass* pass : p.active()) {
     if ((raycast = dynamic_cast<RaycastPass*>(pass))) break;
-    if ((pass->use(frame).writes & target::opaque) != 0) solid.push_back(pass);
+    if ((pass->use(frame).writes & target::picture) == 0) before.push_back(pass);
   }
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
-  CATENA_CHECK(p.record(commands, frame, solid));
+  CATENA_CHECK(p.record(commands, frame, before));
   if (raycast) {
     vk::ImageInfo info;
     info.format = kVolumeFormat;

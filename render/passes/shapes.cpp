@@ -183,18 +183,28 @@ void add_tube(Shape& shape, const TubeItem& tube, int sides) {
 
 void add_mesh(Shape& shape, const MeshItem& mesh) {
   CATENA_ASSERT(mesh.geometry != nullptr && mesh.geometry->triangles.size() % 3 == 0);
-  const std::vector<Vec3>& vertices = mesh.geometry->vertices;
-  const std::vector<std::uint32_t>& triangles = mesh.geometry->triangles;
+  const MeshGeometry& geometry = *mesh.geometry;
+  const std::vector<std::uint32_t>& triangles = geometry.triangles;
+  CATENA_ASSERT(!mesh.smooth || geometry.normals.size() == geometry.vertices.size());
+  CATENA_ASSERT(geometry.colors.empty() || geometry.colors.size() == geometry.vertices.size());
   shape.vertices.reserve(shape.vertices.size() + triangles.size());
   shape.triangles.reserve(shape.triangles.size() + triangles.size());
+  const std::size_t start = shape.vertices.size();
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
-    const Vec3 &a = vertices[triangles[i]], &b = vertices[triangles[i + 1]], &c = vertices[triangles[i + 2]];
-    const Vec3 normal = direction(cross(direction(b - a), direction(c - a)));
+    const auto corner = [&](std::size_t k) -> const Vec3& { return geometry.vertices[triangles[i + k]]; };
+    const Vec3 normal = direction(cross(direction(corner(1) - corner(0)), direction(corner(2) - corner(0))));
     if (max_abs(normal) == 0) continue;
-    const std::uint32_t first = add_vertex(shape, a, normal, mesh.color);
-    add_vertex(shape, b, normal, mesh.color);
-    add_triangle(shape, first, first + 1, add_vertex(shape, c, normal, mesh.color));
+    const auto first = static_cast<std::uint32_t>(shape.vertices.size());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = triangles[i + k];
+      add_vertex(shape, corner(k), mesh.smooth ? geometry.normals[v] : normal, geometry.colors.empty() ? mesh.color : geometry.colors[v]);
+    }
+    add_triangle(shape, first, first + 1, first + 2);
   }
+  mark(shape, start, mesh.id, mesh.clipped);
+  if (!mesh.edges) return;
+  for (std::size_t i = start; i < shape.vertices.size(); ++i)
+    shape.vertices[i].id |= static_cast<std::uint32_t>(1 + (i - start) % 3) << CORNER_SHIFT;
 }
 
 void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides) {

@@ -16,7 +16,7 @@ struct MeshVertex {
   Vec3 position{0.0};
   Vec3 normal{0.0};  ///< unit, outward
   Color color;
-  std::uint32_t id = 0;  ///< of the object; shared::UNCLIPPED in it: the clip planes do not touch it
+  std::uint32_t id = 0;  ///< of the object; UNCLIPPED in it: the clip planes do not touch it; its corner of a triangle with edges
 };
 
 /// Indexed triangles in double precision; the uploader makes floats of them, relative to an origin of its choice.
@@ -35,7 +35,7 @@ int tube_sides(double radius, double scene_size);
 /// Colours by point run linearly between them. Closed: the last point repeats the first. Non-finite points are a bug of the caller.
 void add_tube(Shape& shape, const TubeItem& tube, int sides);
 
-/// Appends a mesh, flat: three vertices a triangle, with its normal. Triangles without an area are left out.
+/// Appends a mesh: three vertices a triangle, with its normal or their own, and marked. Triangles without an area are left out.
 void add_mesh(Shape& shape, const MeshItem& mesh);
 
 void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides = 20);

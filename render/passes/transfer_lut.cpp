@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/assert.h"
+
 namespace catena::render {
 namespace {
 
@@ -46,13 +48,39 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   }
   lut.visible_before.resize(lut.entries.size() + 1);
   for (std::size_t i = 0; i < lut.entries.size(); ++i) lut.visible_before[i + 1] = lut.visible_before[i] + (lut.entries[i].a > 0);
+  lut.run.resize(lut.entries.size());
+  for (std::size_t i = 1; i < lut.entries.size(); ++i) lut.run[i] = std::uint16_t(lut.run[i - 1] + (lut.entries[i] != lut.entries[i - 1]));
   return lut;
 }
 
+float TransferLut::index(float value) const { return std::clamp((value - lo) * per_value, 0.0f, float(last())); }
+
 bool TransferLut::visible(const BrickRange& range) const {
-  const auto index = [this](float value) { return std::clamp((value - lo) * per_value, 0.0f, float(last())); };
   const auto from = std::uint32_t(std::floor(index(range.least))), to = std::uint32_t(std::ceil(index(range.greatest)));
   return visible_before[to + 1] > visible_before[from];
+}
+
+std::uint16_t TransferLut::look(const BrickRange& range) const {
+  if (!visible(range)) return 1;
+  const float least = index(range.least), greatest = index(range.greatest);
+  const auto from = std::size_t(std::floor(least)), to = std::size_t(std::ceil(greatest));
+  if (run[from] == run[to]) return std::uint16_t(2 + run[from]);
+  // one value between two different entries
+  constexpr float parts = 8;
+  static_assert(2 + kEntries + parts * kEntries < 65536);
+  return range.least == range.greatest ? std::uint16_t(2 + kEntries + std::lround(parts * least)) : 0;
+}
+
+FactorLut make_factor_lut(const std::vector<std::array<double, 2>>& factors) {
+  constexpr std::size_t entries = 1024;
+  CATENA_ASSERT(!factors.empty());
+  const double lo = factors.front()[0], hi = factors.back()[0];
+  FactorLut lut;
+  lut.lo = float(lo);
+  lut.per_gradient = hi > lo ? float((entries - 1) / (hi - lo)) : 0;
+  for (std::size_t i = 0; i < entries; ++i)
+    lut.entries.emplace_back(float(piecewise(factors, lo + (hi - lo) * double(i) / (entries - 1), 1)), 0, 0, 0);
+  return lut;
 }
 
 }  // namespace catena::render

@@ -40,30 +40,38 @@ Outcome Triangles::upload(vk::Device& device, const Shape& shape) {
   return Done{};
 }
 
-Result<TriangleDrawer> TriangleDrawer::create(vk::Device& device) {
-  TriangleDrawer self;
-  self.device_ = &device;
-  vk::GraphicsInfo info;
+Result<vk::Binding> Triangles::frame_binding(vk::Device& device, const CameraRays& rays) {
+  CATENA_CHECK(write_uniform(device, uniform_, rays.mesh(origin_)));
+  return vk::Binding{0, vk::Resource::uniform, &uniform_, nullptr, nullptr};
+}
+
+void set_triangle_stage(vk::GraphicsInfo& info) {
   info.vertex = kVertexShader;
-  info.fragment = kFragmentShader;
-  info.slots = {{0, vk::Resource::uniform}};
-  info.colors = opaque_formats();
-  info.depth = true;
+  info.slots.push_back({0, vk::Resource::uniform});
   info.vertex_stride = sizeof(Vertex);
   info.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
                      {1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
                      {2, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
                      {3, VK_FORMAT_R32_UINT, offsetof(Vertex, id)}};
+}
+
+Result<TriangleDrawer> TriangleDrawer::create(vk::Device& device) {
+  TriangleDrawer self;
+  self.device_ = &device;
+  vk::GraphicsInfo info;
+  set_triangle_stage(info);
+  info.fragment = kFragmentShader;
+  info.colors = opaque_formats();
+  info.depth = true;
   CATENA_TRY(self.pipeline_, vk::Pipeline::create(device, info));
   return self;
 }
 
 Outcome TriangleDrawer::draw(vk::Commands& commands, const CameraRays& rays, Triangles& triangles) {
-  if (triangles.index_count_ == 0) return Done{};
-  CATENA_CHECK(write_uniform(*device_, triangles.uniform_, rays.mesh(triangles.origin_)));
-  const vk::Binding binding{0, vk::Resource::uniform, &triangles.uniform_, nullptr, nullptr};
+  if (triangles.empty()) return Done{};
+  CATENA_TRY(const vk::Binding binding, triangles.frame_binding(*device_, rays));
   commands.bind(pipeline_, {&binding, 1});
-  commands.draw_indexed(triangles.vertices_, triangles.indices_, triangles.index_count_);
+  triangles.draw(commands);
   return Done{};
 }
 
@@ -71,8 +79,11 @@ bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a
 
 bool same(const MeshItem& a, const MeshItem& b) {
   const bool alike =
-      a.geometry == b.geometry || (a.geometry->vertices == b.geometry->vertices && a.geometry->triangles == b.geometry->triangles);
-  return alike && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
+      a.geometry == b.geometry ||
+      (a.geometry && b.geometry && a.geometry->vertices == b.geometry->vertices && a.geometry->triangles == b.geometry->triangles &&
+       a.geometry->normals == b.geometry->normals && all_same(a.geometry->colors, b.geometry->colors));
+  return alike && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped && a.opacity == b.opacity && a.smooth == b.smooth &&
+         a.edges == b.edges;
 }
 
 bool same(const TubeItem& a, const TubeItem& b) {

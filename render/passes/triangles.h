@@ -11,14 +11,20 @@ class Triangles {
  public:
   Outcome upload(vk::Device& device, const Shape& shape);
   const Bounds& bounds() const { return bounds_; }
+  bool empty() const { return index_count_ == 0; }
+  /// Writes the frame's numbers and binds them at 0.
+  Result<vk::Binding> frame_binding(vk::Device& device, const CameraRays& rays);
+  void draw(vk::Commands& commands) const { commands.draw_indexed(vertices_, indices_, index_count_); }
 
  private:
-  friend class TriangleDrawer;
   vk::Buffer vertices_, indices_, uniform_;
   std::uint32_t index_count_ = 0;
   Vec3 origin_{0.0};
   Bounds bounds_;
 };
+
+/// The vertex stage of every pipeline that draws Triangles.
+void set_triangle_stage(vk::GraphicsInfo& info);
 
 /// Clip planes hold for vertices without shared::UNCLIPPED in their id.
 class TriangleDrawer {

@@ -1,11 +1,13 @@
-/// Volumes and translucent isosurfaces, one raycast for all of them (at most MAX_VOLUMES and MAX_SURFACES), in front of the opaque
-/// depth. Tables and brick maps are rebuilt only when a transfer function, a level or a grid changes.
+/// Volumes, translucent isosurfaces and layers, one raycast for all of them (at most MAX_VOLUMES, MAX_SURFACES and MAX_LAYERS, MAX_GRIDS
+/// grids together with those that colour them, MAX_GRIDS_WITH_LAYERS where there are layers), in front of the opaque depth. Tables and
+/// brick maps are rebuilt only when a transfer function, a level or a grid changes.
 #pragma once
-#include <array>
+#include <compare>
 #include <map>
 
+#include "render/passes/color_grid.h"
 #include "render/passes/isosurface.h"
-#include "render/passes/transfer_lut.h"
+#include "render/passes/pass.h"
 
 namespace catena::render {
 
@@ -13,39 +15,70 @@ struct RaySettings {
   double step_voxels = 1;
   double termination = 1.0 / 512;
   bool skip = true;
+  bool jitter = false;
+};
+
+/// What a picture's rays meet beside grids.
+struct RayScene {
+  const vk::Image* opaque_depth = nullptr;  ///< null: nothing opaque
+  std::span<const Layer> layers{};
+  const vk::Image* none = nullptr;  ///< bound where there is nothing
+};
+
+/// An item with the mirror of its grid, and of the grid that colours it, if there is one.
+template <class Item>
+struct Mirrored {
+  const Item* item = nullptr;
+  std::shared_ptr<const GridMirror> mirror, colors;
 };
 
 class VolumePass {
  public:
-  template <class Item>
-  using Mirrored = std::pair<const Item*, std::shared_ptr<const GridMirror>>;
-
   static Result<VolumePass> create(vk::Device& device);
   Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
-  /// Within a pass over the volume target. `opaque_depth` null: nothing opaque; `none` is bound instead.
-  Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
-                 const vk::Image* opaque_depth, const vk::Image& none);
+  /// Within a pass over the volume target.
+  Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
 
  private:
   struct Volume {
     std::shared_ptr<const GridMirror> mirror;
     VolumeItem item;
     TransferLut lut;
+    FactorLut factors;
     BrickMap map;
-    std::uint32_t table_start = 0;
+    std::uint32_t table_start = 0, factor_start = 0;
   };
   struct Surface {
     SurfaceState state;
     IsosurfaceItem item;
   };
+  struct Colors {
+    ColorGrid grid;
+    std::size_t owner = 0;  ///< a volume, or behind those a surface
+    std::uint32_t table_start = 0;
+  };
+  /// What a pipeline is made for.
+  struct Kind {
+    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0;
+    auto operator<=>(const Kind&) const = default;
+    bool single() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
+    bool layers_alone() const { return volumes == 0 && surfaces == 0; }
+    std::uint32_t grid_slots() const { return layers_alone() ? 0 : single() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS; }
+  };
   VolumePass() = default;
-  Result<const vk::Pipeline*> pipeline(std::uint32_t flags, std::uint32_t volumes, std::uint32_t surfaces, bool opaque);
+  Result<bool> update_volume(Volume& volume, const Mirrored<VolumeItem>& next);
+  Result<bool> update_colors(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
+  Outcome upload_tables();
+  shared::GridData volume_data(const CameraRays& rays, const Volume& volume) const;
+  std::vector<vk::Binding> bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) const;
+  Result<const vk::Pipeline*> pipeline(const Kind& kind);
 
   vk::Device* device_ = nullptr;
   vk::Sampler linear_;
-  std::map<std::array<std::uint32_t, 4>, vk::Pipeline> pipelines_;
+  std::map<Kind, vk::Pipeline> pipelines_;
   std::vector<Volume> volumes_;
   std::vector<Surface> surfaces_;
+  std::vector<Colors> colors_;
   vk::Buffer tables_, uniform_;
 };
 

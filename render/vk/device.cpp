@@ -104,6 +104,7 @@ std::string lacks(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& p
   Features features;
   vkGetPhysicalDeviceFeatures2(physical, &features.core);
   if (!features.core.features.shaderClipDistance) return "shaderClipDistance";
+  if (!features.core.features.independentBlend) return "independentBlend";
   if (!features.v12.timelineSemaphore) return "timelineSemaphore";
   if (!features.v12.scalarBlockLayout) return "scalarBlockLayout";
   if (!features.v13.dynamicRendering) return "dynamicRendering";
@@ -183,6 +184,7 @@ Outcome Device::create_device() {
 
   Features features;
   features.core.features.shaderClipDistance = VK_TRUE;
+  features.core.features.independentBlend = VK_TRUE;
   features.v12.timelineSemaphore = VK_TRUE;
   features.v12.scalarBlockLayout = VK_TRUE;
   features.v13.dynamicRendering = VK_TRUE;

@@ -55,6 +55,22 @@ struct Specialization {
   Specialization& operator=(const Specialization&) = delete;
 };
 
+VkPipelineColorBlendAttachmentState blend_state(Blend blend) {
+  VkPipelineColorBlendAttachmentState state{};
+  if (blend == Blend::keep) return state;
+  state.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  state.blendEnable = blend != Blend::replace;
+  state.srcColorBlendFactor = state.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
+  state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
+  state.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  if (blend == Blend::over) {
+    state.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  }
+  if (blend == Blend::least) state.colorBlendOp = state.alphaBlendOp = VK_BLEND_OP_MIN;
+  return state;
+}
+
 }  // namespace
 
 VkDescriptorType descriptor_type(Resource resource) {
@@ -136,14 +152,8 @@ Result<Pipeline> Pipeline::create(Device& device, const GraphicsInfo& info) {
   depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
   depth.depthTestEnable = depth.depthWriteEnable = info.depth;
   depth.depthCompareOp = VK_COMPARE_OP_GREATER;
-  VkPipelineColorBlendAttachmentState blend_one{};
-  blend_one.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  if (info.blend) {
-    blend_one.blendEnable = VK_TRUE;
-    blend_one.srcColorBlendFactor = blend_one.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-    blend_one.dstColorBlendFactor = blend_one.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-  }
-  const std::vector<VkPipelineColorBlendAttachmentState> blends(info.colors.size(), blend_one);
+  std::vector<VkPipelineColorBlendAttachmentState> blends(info.colors.size(), blend_state(Blend::replace));
+  for (std::size_t i = 0; i < info.blends.size(); ++i) blends[i] = blend_state(info.blends[i]);
   VkPipelineColorBlendStateCreateInfo blend{};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   blend.attachmentCount = std::uint32_t(blends.size());

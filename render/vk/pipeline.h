@@ -25,13 +25,22 @@ struct VertexAttribute {
   std::uint32_t offset = 0;
 };
 
+/// What becomes of a colour target's texel.
+enum class Blend {
+  replace,
+  over,     ///< premultiplied colours over what is there
+  keep,     ///< nothing is written
+  collect,  ///< rgb <- rgb + source; alpha <- alpha (1 - source)
+  least,    ///< the lesser of both
+};
+
 struct GraphicsInfo {
   Spirv vertex, fragment;
   std::vector<Slot> slots;
   std::vector<std::uint32_t> constants;  ///< specialisation constants 0, 1, 2, .. of the fragment shader
   std::vector<VkFormat> colors;
+  std::vector<Blend> blends{};      ///< by colour; empty: replace
   bool depth = false;               ///< D32F, reversed: greater is nearer
-  bool blend = false;               ///< premultiplied colours over what is there
   std::uint32_t vertex_stride = 0;  ///< 0: no vertex buffer
   std::vector<VertexAttribute> attributes;
 };

@@ -7,26 +7,29 @@ layout(scalar, binding = 0) uniform Frame { FrameData frame; };
 layout(binding = 3) uniform sampler3D values_0;
 layout(binding = 11) uniform utexture3D map_0;
 layout(binding = 19) uniform utexture3D mask_0;
-#if GRID_COUNT > 1
+#if GRID_COUNT > 1  // 2, 6 or 8
 layout(binding = 4) uniform sampler3D values_1;
+layout(binding = 12) uniform utexture3D map_1;
+layout(binding = 20) uniform utexture3D mask_1;
+#endif
+#if GRID_COUNT > 2
 layout(binding = 5) uniform sampler3D values_2;
 layout(binding = 6) uniform sampler3D values_3;
 layout(binding = 7) uniform sampler3D values_4;
 layout(binding = 8) uniform sampler3D values_5;
-layout(binding = 9) uniform sampler3D values_6;
-layout(binding = 10) uniform sampler3D values_7;
-layout(binding = 12) uniform utexture3D map_1;
 layout(binding = 13) uniform utexture3D map_2;
 layout(binding = 14) uniform utexture3D map_3;
 layout(binding = 15) uniform utexture3D map_4;
 layout(binding = 16) uniform utexture3D map_5;
-layout(binding = 17) uniform utexture3D map_6;
-layout(binding = 18) uniform utexture3D map_7;
-layout(binding = 20) uniform utexture3D mask_1;
 layout(binding = 21) uniform utexture3D mask_2;
 layout(binding = 22) uniform utexture3D mask_3;
 layout(binding = 23) uniform utexture3D mask_4;
 layout(binding = 24) uniform utexture3D mask_5;
+#if GRID_COUNT > 6
+layout(binding = 9) uniform sampler3D values_6;
+layout(binding = 10) uniform sampler3D values_7;
+layout(binding = 17) uniform utexture3D map_6;
+layout(binding = 18) uniform utexture3D map_7;
 layout(binding = 25) uniform utexture3D mask_6;
 layout(binding = 26) uniform utexture3D mask_7;
 #define SWITCH_GRID(i, CALL) \
@@ -39,6 +42,23 @@ layout(binding = 26) uniform utexture3D mask_7;
     case 5: return CALL(5);  \
     case 6: return CALL(6);  \
     default: return CALL(7); \
+  }
+#else
+#define SWITCH_GRID(i, CALL) \
+  switch (i) {               \
+    case 0: return CALL(0);  \
+    case 1: return CALL(1);  \
+    case 2: return CALL(2);  \
+    case 3: return CALL(3);  \
+    case 4: return CALL(4);  \
+    default: return CALL(5); \
+  }
+#endif
+#elif GRID_COUNT > 1
+#define SWITCH_GRID(i, CALL) \
+  switch (i) {               \
+    case 0: return CALL(0);  \
+    default: return CALL(1); \
   }
 #else
 #define SWITCH_GRID(i, CALL) return CALL(0);
@@ -70,6 +90,9 @@ uint mask_texel(int i, ivec3 at) {
 
 ivec3 slot_of(uint word) { return ivec3(word & 255u, word >> 8 & 255u, word >> 16 & 255u); }
 int empty_distance(uint word) { return int(word >> 24); }
+// maps of volumes (render/mirror/brick_map.h)
+int leap_distance(uint word) { return int(word >> 24 & 127u); }
+bool is_plain(uint word) { return word >> 31 != 0u; }
 
 // The cell that holds a local position of the domain.
 ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }

@@ -1,12 +1,16 @@
 // Emission and absorption along the pixel's ray, in front of the opaque depth:
 //   T(t) = S exp(-tau),  tau += sigma h per segment,  C += c (T_before - T_after),  S *= 1 - opacity at a surface
 // Optical depth is summed and the exponential taken of the sum, so that rounding does not pile up over many segments. The value
-// of a segment is the one at its middle; the last segment of a piece is its exact rest. The includer defines VOLUMES (grids
+// of a segment is the one at its middle; the last segment of a piece is its exact rest, and with jitter the first one is a part of
+// a segment too. What is plain (empty, or of one colour and sigma) is one segment. The includer defines VOLUMES (grids
 // 0 .. VOLUMES - 1) and GRID_COUNT.
-layout(constant_id = 1) const uint OPAQUE = 0;  // there is an opaque depth
+layout(constant_id = 1) const uint OPAQUE = 0;       // there is an opaque depth
+layout(constant_id = 5) const uint GRID_MODES = 0;   // two bits a grid: 1 a factor by the gradient, 2 colours by another grid,
+layout(constant_id = 6) const uint COLOR_GRIDS = 0;  // which one: four bits a grid
+layout(constant_id = 7) const uint JITTER = 0;
+layout(constant_id = 9) const uint FOG = 0;  // there is a depth cue
 
-// r, g, b, sigma (per world unit), piecewise linear
-layout(scalar, binding = 1) readonly buffer Tables { vec4 table[]; };
+#include "shaders/lib/tables.glsl"
 layout(binding = 2) uniform texture2D opaque_depth;
 layout(location = 0) out vec4 out_color;  // premultiplied
 
@@ -14,11 +18,15 @@ LocalRay rays[GRID_COUNT];
 vec2 intervals[GRID_COUNT];
 vec3 eye_direction;
 float world_per_depth;
+float early = 0.0;  // what the first segment lacks, in segments
 float optical_depth = 0.0, surfaces_through = 1.0, through = 1.0;
 vec3 color_sum = vec3(0.0);
 
+bool has_factor(int i) { return (GRID_MODES >> (2 * i) & 1u) != 0u; }
+bool has_other_color(int i) { return (GRID_MODES >> (2 * i) & 2u) != 0u; }
+
 vec4 transfer(int i, float value) {
-  const float x = clamp((value - frame.grids[i].table_lo) * frame.grids[i].table_per_value, 0.0, float(frame.grids[i].table_last));
+  const float x = table_place(i, value);
   const uint cell = min(uint(x), frame.grids[i].table_last - 1u);
   const uint at = frame.grids[i].table_start + cell;
   const float f = x - float(cell);
@@ -27,28 +35,54 @@ vec4 transfer(int i, float value) {
   return vec4(mix(table[at].rgb, table[at + 1u].rgb, f), sigma);
 }
 
-// What volume i adds at depth t of its ray: sigma and sigma-weighted colour. Lowers `leap` to the segments (of depth h) that may
-// be passed over. Called with constants only: loops over textures are not unrolled once they branch.
+// By the length of the gradient, field units per world unit.
+float gradient_factor(int i, float gradient) {
+  const float x = clamp((gradient - frame.grids[i].factor_lo) * frame.grids[i].factor_per_gradient, 0.0, float(frame.grids[i].factor_last));
+  const uint cell = min(uint(x), frame.grids[i].factor_last - 1u);
+  const uint at = frame.grids[i].factor_start + cell;
+  return mix(table[at].r, table[at + 1u].r, x - float(cell));
+}
+
+#if GRID_COUNT > 1
+#include "shaders/lib/color_by.glsl"
+// The colour of grid i at depth t by the other grid, if it has one.
+vec3 own_or_other(int i, float t, vec3 own) {
+  if (!has_other_color(i)) return own;
+  const int j = int(COLOR_GRIDS >> (4 * i) & 15u);
+  return color_at(j, rays[j].origin + t * rays[j].direction, own);
+}
+#else
+vec3 own_or_other(int i, float t, vec3 own) { return own; }
+#endif
+
+// What volume i adds at depth t of its ray: sigma and sigma-weighted colour. Lowers `leap` to the segments (of depth h) over which it
+// stays the same. Called with constants only: loops over textures are not unrolled once they branch.
 void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_sum, inout int leap) {
   if (i < VOLUMES && (VOLUMES == 1 || (t >= intervals[i].x && t <= intervals[i].y))) {
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
-    int empty = 0;
-    ivec3 brick = ivec3(0);
+    int distance = 0;
+    bool seen = true;
     if (grid_skips(i)) {
-      brick = cell_of(i, p) >> 3;
-      empty = empty_distance(brick_word(i, brick));
+      const ivec3 brick = cell_of(i, p) >> 3;
+      const uint word = brick_word(i, brick);
+      distance = FOG != 0u && is_plain(word) ? 0 : leap_distance(word);  // fog colours what is plain
+      seen = distance == 0 || is_plain(word);
+      if (distance > 0) leap = min(leap, max(1, int(ceil(min(leave_empty(rays[i], p, brick, distance) / h, 1e6)))));
     }
-    if (empty > 0) {
-      leap = min(leap, max(1, int(ceil(min(leave_empty(rays[i], p, brick, empty) / h, 1e6)))));
-    } else {
-      leap = 1;
+    if (distance == 0) leap = 1;
+    if (seen) {
       bool valid = true;
       if (grid_is_masked(i)) valid = cell_is_valid(i, cell_of(i, p));
       if (valid) {
         vec4 c = transfer(i, sample_value(i, p));
         if (c.a > 0.0) {
-          if (grid_is_shaded(i)) c.rgb = lit(c.rgb, world_gradient(i, p), eye_direction);
-          emitted += c.a * fogged(c.rgb, t);
+          vec3 gradient = vec3(0.0);
+          if (grid_is_shaded(i) || has_factor(i)) gradient = world_gradient(i, p);
+          if (has_factor(i)) c.a *= gradient_factor(i, length(gradient) * frame.grids[i].value_scale);
+          c.rgb = own_or_other(i, t, c.rgb);
+          if (grid_is_shaded(i)) c.rgb = lit(c.rgb, gradient, eye_direction);
+          if (FOG != 0u) c.rgb = fogged(c.rgb, t);
+          emitted += c.a * c.rgb;
           sigma_sum += c.a;
         }
       }
@@ -59,11 +93,14 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
 // Segments of one length over [from, to], in which the same volumes are met throughout.
 void march(float from, float to) {
   const float h = frame.step_world / world_per_depth;
-  const int count = max(1, int(ceil((to - from) / h - 1e-3)));
+  const int count = max(1, int(ceil((to - from) / h + early - 1e-3)));
   for (int k = 0; k < count && through > frame.termination;) {
-    const float begin = from + float(k) * h;
-    const float extent = k == count - 1 ? to - begin : h;
-    const float t = begin + 0.5 * extent;
+    float begin = from + float(k) * h, extent = h;
+    if (JITTER != 0u) {
+      begin = k == 0 ? from : begin - early * h;
+      extent = k == 0 ? (1.0 - early) * h : h;
+    }
+    const float t = begin + 0.5 * (k == count - 1 ? to - begin : extent);
     int leap = count;
     vec3 emitted = vec3(0.0);
     float sigma_sum = 0.0;
@@ -73,6 +110,7 @@ void march(float from, float to) {
     add_volume(2, t, h, emitted, sigma_sum, leap);
     add_volume(3, t, h, emitted, sigma_sum, leap);
 #endif
+    extent = k + leap >= count ? to - begin : extent + float(leap - 1) * h;
     k += leap;
     if (sigma_sum > 0.0) {
       optical_depth += sigma_sum * extent * world_per_depth;
@@ -95,5 +133,7 @@ float begin_pixel(vec2 q) {
   const vec3 direction = world_direction(q);
   world_per_depth = length(direction);
   eye_direction = -direction / world_per_depth;
+  // interleaved gradient noise (J. Jimenez, 2014): neighbours differ much, so that the eye averages over them
+  if (JITTER != 0u) early = fract(52.9829189 * fract(dot(floor(q + frame.axis), vec2(0.06711056, 0.00583715))));
   return OPAQUE != 0u ? texelFetch(opaque_depth, ivec2(q + frame.axis), 0).r : NO_DEPTH;
 }

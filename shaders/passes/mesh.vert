@@ -13,6 +13,7 @@ layout(location = 1) out vec3 out_color;
 layout(location = 2) out vec3 out_view;     // position in the view
 layout(location = 3) out float out_depth;
 layout(location = 4) flat out uint out_id;
+layout(location = 5) out vec3 out_edges;    // distances from the triangle's edges, 1 at the opposite corner; 1 where they are not drawn
 out float gl_ClipDistance[MAX_CLIPS];
 
 void main() {
@@ -22,7 +23,9 @@ void main() {
   out_color = in_color;
   out_view = view;
   out_depth = turned.z + frame.offset_depth;
-  out_id = in_id & ~UNCLIPPED;
+  out_id = in_id & ID_MASK;
+  const uint corner = in_id >> CORNER_SHIFT & 3u;
+  out_edges = corner == 0u ? vec3(1.0) : vec3(corner == 1u, corner == 2u, corner == 3u);
   const bool clipped = (in_id & UNCLIPPED) == 0u;
   for (int i = 0; i < MAX_CLIPS; ++i)
     gl_ClipDistance[i] = clipped && uint(i) < frame.clip_count ? dot(frame.clips[i].xyz, in_position) + frame.clips[i].w : 1.0;

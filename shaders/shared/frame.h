@@ -6,8 +6,10 @@
 #include "shaders/shared/language.h"
 
 #define MAX_VOLUMES 4
-#define MAX_SURFACES 4
+#define MAX_SURFACES 8
 #define MAX_GRIDS 8
+#define MAX_LAYERS 4
+#define MAX_GRIDS_WITH_LAYERS 6
 #define MAX_CLIPS 8
 #define MAX_LIGHTS 4
 #define NO_DEPTH 3.0e38f
@@ -26,6 +28,9 @@ struct GridData {
   // volumes: the table's first entry, its last index, and the value range it spans
   uint table_start, table_last;
   float table_lo, table_per_value;
+  // volumes: the same of the factor by the length of the gradient
+  uint factor_start, factor_last;
+  float factor_lo, factor_per_gradient;
   // isosurfaces
   float level, opacity;
   vec3 color;
@@ -73,6 +78,8 @@ struct FrameData {
 };
 
 #define UNCLIPPED 0x80000000u  // in a vertex's id: the clip planes do not touch it
+#define CORNER_SHIFT 29        // in a vertex's id, two bits: 1 + its corner of a triangle whose edges are drawn, or 0
+#define ID_MASK 0x1fffffffu
 
 struct MeshFrameData {
   mat3 view_from_world;  // rows right, up, forward

@@ -190,7 +190,7 @@ TEST(UseMesh, BadMeshesAreRefusedWithTheirLine) {
   refused(R"({"name": "a", "file": "none.stl"})", "does not exist; a .stl or .obj file was expected");
   refused(R"({"name": "a", "file": "quad.ply"})", "unknown kind");
   refused(R"({"name": "A", "file": "quad.obj"})", "is not allowed");
-  refused(R"({"name": "a", "file": "quad.obj", "opacity": 0.5})", "\"opacity\" of a mesh is 0.5; meshes are drawn opaque");
+  refused(R"({"name": "a", "file": "quad.obj", "opacity": 1.5})", "\"opacity\" is 1.5; a number from 0 to 1 was expected");
   refused(R"({"name": "a", "file": "quad.obj", "scale": 0})", "scale");
   refused(R"({"name": "a", "file": "quad.obj", "colour": [1, 0, 0]})", "colour");
   refused(R"({"name": "a", "file": "quad.obj"}, {"name": "a", "file": "quad.obj"})", "a second mesh is called \"a\"");

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "shaders/shared/frame.h"
+#include "shaders/shared/layers.h"
 #include "shaders/shared/pack.h"
 #include "tests/render/support/spirv.h"
 
@@ -17,7 +18,8 @@ using namespace catena::render::shared;
   ++compared
 
 TEST(SharedStructs, FrameAndGridData) {
-  for (const char* shader : {"blend.frag", "volume.frag", "isosurface.frag", "sample.comp"}) {
+  for (const char* shader : {"blend.frag", "blend_layers.frag", "volume.frag", "projection.frag", "surface_color.frag", "isosurface.frag",
+                             "slice.frag", "sample.comp"}) {
     auto all = struct_offsets(shader_words(shader));
     std::size_t compared = 0;
     {
@@ -38,6 +40,10 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, table_last);
       EXPECT_OFFSET(GridData, table_lo);
       EXPECT_OFFSET(GridData, table_per_value);
+      EXPECT_OFFSET(GridData, factor_start);
+      EXPECT_OFFSET(GridData, factor_last);
+      EXPECT_OFFSET(GridData, factor_lo);
+      EXPECT_OFFSET(GridData, factor_per_gradient);
       EXPECT_OFFSET(GridData, level);
       EXPECT_OFFSET(GridData, opacity);
       EXPECT_OFFSET(GridData, color);
@@ -109,6 +115,35 @@ TEST(SharedStructs, PackAndAnaglyphData) {
   const auto& found = anaglyph["AnaglyphData"];
   EXPECT_EQ(found.at("left"), offsetof(AnaglyphData, left));
   EXPECT_EQ(found.at("right"), offsetof(AnaglyphData, right));
+}
+
+TEST(SharedStructs, LayerData) {
+  for (const char* shader : {"layer_mesh.frag", "slice.frag"}) {
+    auto all = struct_offsets(shader_words(shader));
+    const auto& found = all["LayerData"];
+    std::size_t compared = 0;
+    EXPECT_OFFSET(LayerData, reference_depth);
+    EXPECT_OFFSET(LayerData, depth_near);
+    EXPECT_OFFSET(LayerData, depth_far);
+    EXPECT_OFFSET(LayerData, orthographic);
+    EXPECT_OFFSET(LayerData, opacity);
+    EXPECT_EQ(found.size(), compared);
+  }
+}
+
+TEST(SharedStructs, SliceData) {
+  auto all = struct_offsets(shader_words("slice.frag"));
+  const auto& found = all["SliceData"];
+  std::size_t compared = 0;
+  EXPECT_OFFSET(SliceData, plane);
+  EXPECT_OFFSET(SliceData, normal);
+  EXPECT_OFFSET(SliceData, clip_slack);
+  EXPECT_OFFSET(SliceData, lit);
+  EXPECT_OFFSET(SliceData, color_last);
+  EXPECT_OFFSET(SliceData, level_count);
+  EXPECT_OFFSET(SliceData, line_color);
+  EXPECT_OFFSET(SliceData, half_width);
+  EXPECT_EQ(found.size(), compared);
 }
 
 TEST(SharedStructs, ComposeData) {

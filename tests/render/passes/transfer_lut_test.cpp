@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace catena::test {
@@ -57,6 +58,33 @@ TEST(TransferLut, VisibleRanges) {
   EXPECT_TRUE(lut.visible({0, 1}));
   EXPECT_TRUE(lut.visible({0.95f, 1}));
   EXPECT_TRUE(lut.visible({0.44f, 0.441f}));
+}
+
+TEST(TransferLut, LooksAreEqualWhereTheyAreAlike) {
+  TransferTable t;
+  t.colors = {{0, 0.5, 0.5, 0.5}, {1, 0.5, 0.5, 0.5}};
+  t.extinctions = {{0, 0}, {0.2, 0}, {0.4, 2}, {0.6, 2}, {1, 3}};
+  const TransferLut lut = make_transfer_lut(t, {0, 1});
+  EXPECT_EQ(lut.look({0, 0.15f}), 1);
+  EXPECT_EQ(lut.look({0.1f, 0.3f}), 0);
+  EXPECT_GT(lut.look({0.42f, 0.58f}), 1);
+  EXPECT_EQ(lut.look({0.42f, 0.45f}), lut.look({0.5f, 0.58f})) << "on one level stretch";
+  EXPECT_EQ(lut.look({0.55f, 0.7f}), 0);
+  EXPECT_GT(lut.look({0.7f, 0.7f}), 1) << "one value is plain on a slope too";
+  EXPECT_NE(lut.look({0.7f, 0.7f}), lut.look({0.8f, 0.8f}));
+  EXPECT_NE(lut.look({0.7f, 0.7f}), lut.look({0.5f, 0.5f}));
+}
+
+TEST(TransferLut, FactorsAreHeldBeyondTheirEnds) {
+  const FactorLut lut = make_factor_lut({{1, 0.2}, {3, 1}, {5, 0.5}});
+  const auto at = [&](double g) {
+    const double x = std::clamp((g - lut.lo) * lut.per_gradient, 0.0, double(lut.entries.size() - 1));
+    const auto i = std::min(std::size_t(x), lut.entries.size() - 2);
+    return lut.entries[i].x + (x - double(i)) * (lut.entries[i + 1].x - lut.entries[i].x);
+  };
+  for (const auto& [g, factor] : {std::pair{0.0, 0.2}, {1.0, 0.2}, {2.0, 0.6}, {4.0, 0.75}, {5.0, 0.5}, {50.0, 0.5}})
+    EXPECT_NEAR(at(g), factor, 1e-3) << g;
+  EXPECT_EQ(make_factor_lut({{2, 0.5}}).entries.front().x, 0.5f);
 }
 
 }  // namespace

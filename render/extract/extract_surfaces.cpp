@@ -1,0 +1,218 @@
+#include "render/extract/extract_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/assert.h"
+#include "engine/base/numbers.h"
+#include "engine/scene/color_maps.h"
+#include "render/extract/extract_lines.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kMostVoxels = 1 << 28;  ///< of a grid of magnitudes
+
+Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
+
+std::string name_of(const scene::Scene& scene, scene::Entity entity) {
+  return scene.world.has<scene::Name>(entity) ? scene.world.get<scene::Name>(entity).value : std::string("?");
+}
+
+template <class T>
+std::vector<scene::Entity> owners_of(const scene::World& world) {
+  std::vector<scene::Entity> owners;
+  world.each<T>([&](scene::Entity e, const T&) { owners.push_back(e); });
+  return owners;
+}
+
+const json::Node& member_or(const json::Node& node, std::string_view key) {
+  const json::Node* member = node.find(key);
+  return member == nullptr ? node : *member;
+}
+
+// ---- meshes ----
+
+/// What this room keeps beside a SurfaceMesh: its triangles as plain data, made once.
+struct PlainMesh {
+  std::shared_ptr<const MeshGeometry> geometry;
+  std::uint64_t version = 0, field_version = 0;
+};
+
+std::vector<Color> vertex_colors(const mesh::TriangleMesh& mesh, const field::AnyField& shown, const scene::SurfaceColors& by) {
+  std::vector<double> values;
+  values.reserve(mesh.vertices().size());
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  field::Cursor cursor;
+  for (const Vec3& p : mesh.vertices()) {
+    double value = NAN;
+    if (shown.scalar) {
+      const field::ScalarSample sample = shown.scalar->sample(p, cursor);
+      if (sample.inside) value = sample.value;
+    } else {
+      const field::VectorSample sample = shown.vector->sample(p, cursor);
+      if (sample.inside) value = norm(sample.value);
+    }
+    values.push_back(value);
+    if (!std::isfinite(value)) continue;
+    lo = std::min(lo, value);
+    hi = std::max(hi, value);
+  }
+  if (!(lo <= hi)) lo = hi = 0;
+  const auto table = scene::color_table(by.colors, by.named, lo, hi);
+  std::vector<Color> colors;
+  colors.reserve(values.size());
+  for (const double value : values) colors.push_back(table_color(table, value));
+  return colors;
+}
+
+// ---- slices ----
+
+/// What this room keeps beside a Slice of a vector field.
+struct PlainMagnitude {
+  std::shared_ptr<const field::ScalarGrid> grid;
+  std::uint64_t version = 0;
+};
+
+Result<std::shared_ptr<const field::ScalarGrid>> sliced_grid(scene::Scene& scene, scene::Entity e) {
+  const scene::Entity field = scene.world.get<scene::Slice>(e).shown.field;
+  CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, field, scene.world.get<scene::Slice>(e).where));
+  if (any.scalar) return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
+  const field::VectorGrid& grid = *any.vector->grid();
+  if (!scene.world.has<PlainMagnitude>(e)) scene.world.emplace<PlainMagnitude>(e);
+  PlainMagnitude& plain = scene.world.get<PlainMagnitude>(e);
+  if (plain.version != grid.version()) {
+    const Vec3 size = grid.index_box().hi - grid.index_box().lo + 1.0;
+    if (size.x * size.y * size.z > kMostVoxels)
+      return json::error_at(member_or(scene.world.get<scene::Slice>(e).where, "field"),
+                            "\"" + name_of(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
+                                " voxels; a vector field of at most " + to_text(kMostVoxels) + " was expected for a slice");
+    plain = {magnitude_grid(grid), grid.version()};
+  }
+  return plain.grid;
+}
+
+/// Whether the plane meets the domain.
+bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
+  const field::Box& box = grid.index_box();
+  const Vec3 normal = direction(slice.normal);
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner{(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z};
+    const double distance = dot(normal, grid.mapping().world_from_index(corner) - slice.point);
+    least = std::min(least, distance);
+    most = std::max(most, distance);
+  }
+  const double slack = 1e-6 * (most - least);
+  return least <= slack && most >= -slack;
+}
+
+}  // namespace
+
+Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
+    const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
+    CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
+    field::AnyField shown;
+    if (surface.color_by) {
+      CATENA_TRY(shown, scene::use_field(scene, surface.color_by->field, surface.where));
+    }
+    const std::uint64_t field_version = shown.get() ? shown.get()->version() : 0;
+    if (!scene.world.has<PlainMesh>(e)) scene.world.emplace<PlainMesh>(e);
+    PlainMesh& plain = scene.world.get<PlainMesh>(e);
+    if (plain.version != mesh->version() || plain.field_version != field_version) {
+      auto geometry = std::make_shared<MeshGeometry>();
+      geometry->vertices = mesh->vertices();
+      geometry->triangles.reserve(3 * mesh->triangles().size());
+      for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
+      for (std::uint32_t v = 0; surface.smooth && v < geometry->vertices.size(); ++v) geometry->normals.push_back(mesh->vertex_normal(v));
+      if (shown.get()) geometry->colors = vertex_colors(*mesh, shown, *surface.color_by);
+      plain = {std::move(geometry), mesh->version(), field_version};
+    }
+    MeshItem item{plain.geometry, color_of(surface.color), packet.add_object("mesh", name_of(scene, surface.mesh)), surface.clipped};
+    item.opacity = static_cast<float>(surface.opacity);
+    item.smooth = surface.smooth;
+    item.edges = surface.edges;
+    packet.meshes.push_back(std::move(item));
+  }
+  return Done{};
+}
+
+Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contours, double lo, double hi) {
+  if (!contours.levels.empty()) return contours.levels;
+  std::vector<double> levels;
+  for (int i = 0; i < contours.count; ++i) levels.push_back(lo + (hi - lo) * (i + 1) / (contours.count + 1));
+  if (!(contours.spacing > 0)) return levels;
+  const double first = std::ceil(lo / contours.spacing), last = std::floor(hi / contours.spacing);
+  if (last - first + 1 > scene::kMostContours)
+    return json::error_at(member_or(contours.where, "spacing"), "\"spacing\" is " + to_text(contours.spacing) + ", which gives " +
+                                                                    to_text(last - first + 1) + " levels; at most " +
+                                                                    to_text(scene::kMostContours) + " were expected");
+  for (double n = first; n <= last; ++n) levels.push_back(n * contours.spacing);
+  return levels;
+}
+
+Outcome extract_slices(scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::Slice>(scene.world)) {
+    CATENA_TRY(auto grid, sliced_grid(scene, e));
+    const scene::Slice& slice = scene.world.get<scene::Slice>(e);
+    if (!cuts(slice, *grid))
+      return json::error_at(slice.where, "the slice's plane does not meet the domain of \"" + name_of(scene, slice.shown.field) +
+                                             "\"; a plane that cuts it was expected");
+    SliceItem item;
+    item.grid = grid;
+    item.point = slice.point;
+    item.normal = slice.normal;
+    for (const auto& row : scene::color_table(slice.shown.colors, slice.shown.named, grid->min_value(), grid->max_value()))
+      item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
+    item.opacity = static_cast<float>(slice.opacity);
+    item.lit = slice.lit;
+    if (slice.contours) {
+      // between the colours' ends: that is what the eye sees told apart
+      const bool spread = item.colors.size() > 1 && item.colors.front()[0] < item.colors.back()[0];
+      const double lo = spread ? item.colors.front()[0] : grid->min_value(), hi = spread ? item.colors.back()[0] : grid->max_value();
+      const bool multiples = slice.contours->spacing > 0;
+      CATENA_TRY(item.levels, contour_levels(*slice.contours, multiples ? grid->min_value() : lo, multiples ? grid->max_value() : hi));
+      item.line_color = color_of(slice.contours->color);
+      item.line_width = static_cast<float>(slice.contours->width);
+    }
+    item.id = packet.add_object("slice", name_of(scene, slice.shown.field));
+    item.clipped = slice.clipped;
+    packet.slices.push_back(std::move(item));
+  }
+  return Done{};
+}
+
+std::shared_ptr<const field::ScalarGrid> magnitude_grid(const field::VectorGrid& grid) {
+  const field::Box& box = grid.index_box();
+  const field::Index3 origin{int(box.lo.x), int(box.lo.y), int(box.lo.z)};
+  const field::Index3 size{int(box.hi.x - box.lo.x) + 1, int(box.hi.y - box.lo.y) + 1, int(box.hi.z - box.lo.z) + 1};
+  const std::size_t plane = std::size_t(size.x) * std::size_t(size.y), count = plane * std::size_t(size.z);
+
+  // plane by plane
+  std::vector<float> values(count), xyz(3 * plane);
+  for (int z = 0; z < size.z; ++z) {
+    grid.read_block({origin.x, origin.y, origin.z + z}, {size.x, size.y, 1}, xyz);
+    for (std::size_t i = 0; i < plane; ++i)
+      values[std::size_t(z) * plane + i] = static_cast<float>(norm(Vec3(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2])));
+  }
+
+  // the corners of the cells that count; a cell between such corners counts too, as all its corners are valid
+  std::vector<std::uint8_t> valid;
+  if (grid.has_mask()) {
+    valid.assign(count, 0);
+    field::Cursor cursor;
+    for (int z = 0; z + 1 < size.z; ++z)
+      for (int y = 0; y + 1 < size.y; ++y)
+        for (int x = 0; x + 1 < size.x; ++x) {
+          if (!grid.sample(grid.mapping().world_from_index(box.lo + Vec3(x + 0.5, y + 0.5, z + 0.5)), cursor).inside) continue;
+          for (int i = 0; i < 8; ++i)
+            valid[std::size_t(z + (i >> 2)) * plane + std::size_t(y + ((i >> 1) & 1)) * std::size_t(size.x) + std::size_t(x + (i & 1))] = 1;
+        }
+  }
+  field::Mapping mapping = grid.mapping();
+  mapping.origin = mapping.world_from_index(box.lo);
+  return field::make_scalar_grid(grid.name(), mapping, size, values, valid);
+}
+
+}  // namespace catena::render

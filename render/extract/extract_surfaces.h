@@ -1,0 +1,24 @@
+/// Meshes and slices of the scene as plain data. A vector field is shown by its magnitude: on slices by a grid of the magnitudes at the
+/// voxels, made once and interpolated between them; on meshes at each vertex.
+#pragma once
+#include "engine/base/result.h"
+#include "engine/scene/scene.h"
+#include "render/frame/frame_packet.h"
+
+namespace catena::render {
+
+/// The drawn mesh is the felt one: the same object of the scene. Colours by a field are those of its values at the vertices;
+/// grey outside its domain.
+Outcome extract_meshes(scene::Scene& scene, FramePacket& packet);
+
+/// Errors: a plane that misses the field, a spacing that gives more than scene::kMostContours lines, a vector grid too large for
+/// its magnitudes.
+Outcome extract_slices(scene::Scene& scene, FramePacket& packet);
+
+/// Levels within lo..hi: those listed, `count` of them at equal distances with the ends left out, or all multiples of `spacing`.
+Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contours, double lo, double hi);
+
+/// |v| at the voxels, NaN where v is; cells that the vector grid excludes are excluded.
+std::shared_ptr<const field::ScalarGrid> magnitude_grid(const field::VectorGrid& grid);
+
+}  // namespace catena::render

@@ -1,0 +1,163 @@
+#include "render/passes/slice.h"
+
+#include <algorithm>
+
+#include "render/passes/covered_area.h"
+#include "render/vk/upload.h"
+
+namespace catena::render {
+namespace {
+
+constexpr std::uint32_t kVertexShader[] = {
+#include "spirv/screen.vert.inc"
+};
+constexpr std::uint32_t kFragmentShader[] = {
+#include "spirv/slice.frag.inc"
+};
+constexpr std::uint32_t kSlice = 1, kColors = 2, kLevels = 4;
+constexpr double kClipSlack = 1e-3;  ///< of a voxel's smallest edge
+
+bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
+
+}  // namespace
+
+bool is_translucent(const SliceItem& item) { return item.opacity < 1 && (item.opacity > 0 || !item.levels.empty()); }
+
+Result<bool> Slice::prepare(Frame& frame, const SliceItem& item) {
+  CATENA_TRY(auto mirror, frame.mirror(*item.grid));
+  if (!mirror->drawable) return false;
+  if (mirror_ != mirror) {
+    mirror_ = std::move(mirror);
+    CATENA_TRY(map_, make_brick_map(frame.device, *mirror_, [](const BrickRange&) { return true; }));
+  }
+  if (!colors_ || item.colors != item_.colors) {
+    std::vector<glm::vec4> rows;
+    for (const auto& row : item.colors) rows.emplace_back(float(row[0]), float(row[1]), float(row[2]), float(row[3]));
+    CATENA_ASSERT(!rows.empty());
+    CATENA_TRY(colors_, vk::upload_buffer(frame.device, std::as_bytes(std::span(rows)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  }
+  if (!levels_ || item.levels != item_.levels) {
+    std::vector<float> levels(item.levels.begin(), item.levels.end());
+    if (levels.empty()) levels.push_back(0);
+    CATENA_TRY(levels_, vk::upload_buffer(frame.device, std::as_bytes(std::span(levels)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  }
+  item_ = item;
+  return true;
+}
+
+Result<SliceDrawer> SliceDrawer::create(vk::Device& device) {
+  SliceDrawer self;
+  self.device_ = &device;
+  CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
+  vk::ImageInfo info;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  info.format = kIdFormat;
+  CATENA_TRY(self.none_id_, vk::Image::create(device, info));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
+  commands.use(self.none_id_, vk::kFragmentRead);
+  CATENA_CHECK(commands.finish());
+  return self;
+}
+
+Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint32_t mode, bool has_opaque) {
+  vk::Pipeline& pipeline = pipelines_[{flags, mode, has_opaque}];
+  if (!pipeline) {
+    vk::GraphicsInfo info;
+    info.vertex = kVertexShader;
+    info.fragment = kFragmentShader;
+    info.slots = {
+        {0, vk::Resource::uniform}, {kSlice, vk::Resource::uniform}, {kColors, vk::Resource::buffer}, {kLevels, vk::Resource::buffer}};
+    add_grid_slots(info.slots, 1);
+    info.constants = {flags};
+    set_peel_stage(info, mode, has_opaque);
+    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+  }
+  return &pipeline;
+}
+
+Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const Peel& peel) {
+  const SliceItem& item = slice.item_;
+  const field::ScalarGrid* grid = item.grid.get();
+
+  // the frame's data
+  shared::FrameData frame = rays.frame();
+  frame.grids[0] = rays.grid(*slice.mirror_, grid->mapping());
+  frame.grids[0].id = item.id;
+  frame.grids[0].clipped = item.clipped;
+  CATENA_CHECK(write_uniform(*device_, slice.frame_data_, frame));
+  shared::SliceData data{};
+  data.plane = rays.plane({item.point, item.normal});
+  data.normal = glm::vec3(direction(item.normal));
+  data.clip_slack = float(kClipSlack * grid->mapping().smallest_edge());
+  data.lit = item.lit;
+  data.color_last = std::uint32_t(item.colors.size() - 1);
+  data.level_count = std::uint32_t(item.levels.size());
+  data.line_color = {item.line_color.r, item.line_color.g, item.line_color.b};
+  data.half_width = 0.5f * item.line_width;
+  CATENA_CHECK(write_uniform(*device_, slice.slice_data_, data));
+  CATENA_CHECK(write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
+
+  // draw
+  const BoundGrid bound{slice.mirror_, &slice.map_, false, true};
+  CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags(), peel.mode, peel.opaque_depth != nullptr));
+  std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &slice.frame_data_, nullptr, nullptr},
+                                    {kSlice, vk::Resource::uniform, &slice.slice_data_, nullptr, nullptr},
+                                    {kColors, vk::Resource::buffer, &slice.colors_, nullptr, nullptr},
+                                    {kLevels, vk::Resource::buffer, &slice.levels_, nullptr, nullptr}};
+  add_grid_bindings(bindings, {&bound, 1}, 1, linear_);
+  add_peel_bindings(bindings, peel, slice.layer_data_);
+  commands.scissor(covered_area({&grid, 1}, rays.camera));
+  commands.bind(*pipe, bindings);
+  commands.draw_triangle();
+  return Done{};
+}
+
+Outcome prepare_slices(Frame& frame, std::vector<Slice>& slices, bool (*chosen)(const SliceItem&)) {
+  std::size_t count = 0;
+  for (const SliceItem& item : frame.packet.slices) {
+    if (!chosen(item)) continue;
+    if (count == slices.size()) slices.emplace_back();
+    CATENA_TRY(const bool drawn, slices[count].prepare(frame, item));
+    if (drawn) ++count;
+  }
+  while (slices.size() > count) slices.pop_back();
+  return Done{};
+}
+
+namespace {
+
+/// The opaque ones.
+class SlicePass final : public Pass {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
+    CATENA_TRY(SliceDrawer drawer, SliceDrawer::create(device));
+    return std::unique_ptr<Pass>(new SlicePass(std::move(drawer)));
+  }
+  PassUse use(const Frame&) const override { return {0, target::opaque}; }
+  Outcome prepare(Frame& frame) override { return prepare_slices(frame, slices_, is_opaque); }
+  Bounds bounds() const override {
+    Bounds all;
+    for (const Slice& slice : slices_) all.add(grid_bounds(slice.grid()));
+    return all;
+  }
+  Outcome record(vk::Commands& commands, Frame& frame) override {
+    Peel peel;
+    peel.none = &frame.targets.none;
+    peel.none_id = &drawer_.none_id();
+    for (Slice& slice : slices_) CATENA_CHECK(drawer_.draw(commands, frame.rays, slice, peel));
+    return Done{};
+  }
+
+ private:
+  explicit SlicePass(SliceDrawer drawer) : drawer_(std::move(drawer)) {}
+  SliceDrawer drawer_;
+  std::vector<Slice> slices_;
+};
+
+}  // namespace
+
+const PassEntry kSlicePass{
+    "slices", [](const Frame& frame) { return std::any_of(frame.packet.slices.begin(), frame.packet.slices.end(), is_opaque); },
+    SlicePass::create};
+
+}  // namespace catena::render

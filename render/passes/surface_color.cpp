@@ -1,0 +1,119 @@
+#include "render/passes/surface_color.h"
+
+#include <algorithm>
+#include <map>
+
+#include "render/passes/color_grid.h"
+#include "render/passes/covered_area.h"
+#include "render/vk/upload.h"
+
+namespace catena::render {
+namespace {
+
+constexpr std::uint32_t kVertexShader[] = {
+#include "spirv/screen.vert.inc"
+};
+constexpr std::uint32_t kFragmentShader[] = {
+#include "spirv/surface_color.frag.inc"
+};
+constexpr std::uint32_t kIds = 27;
+
+bool is_wanted(const IsosurfaceItem& item) { return item.opacity >= 1 && item.color_by && item.id != 0; }
+
+class SurfaceColorPass final : public Pass {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
+    auto self = std::make_unique<SurfaceColorPass>();
+    CATENA_TRY(self->linear_, vk::Sampler::create(device, vk::Filter::linear));
+    return std::unique_ptr<Pass>(std::move(self));
+  }
+  PassUse use(const Frame&) const override { return {target::opaque_depth | target::opaque_id, target::opaque_color}; }
+  Outcome prepare(Frame& frame) override;
+  Outcome record(vk::Commands& commands, Frame& frame) override;
+
+ private:
+  struct Surface {
+    IsosurfaceItem item;
+    std::shared_ptr<const GridMirror> mirror;
+    BrickMap map;  ///< of the surface's own grid
+    ColorGrid colors;
+    vk::Buffer uniform, table;
+  };
+  Result<const vk::Pipeline*> pipeline(vk::Device& device, std::uint32_t flags);
+
+  vk::Sampler linear_;
+  std::map<std::uint32_t, vk::Pipeline> pipelines_;
+  std::vector<Surface> surfaces_;
+};
+
+Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::uint32_t flags) {
+  vk::Pipeline& pipeline = pipelines_[flags];
+  if (!pipeline) {
+    vk::GraphicsInfo info;
+    info.vertex = kVertexShader;
+    info.fragment = kFragmentShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}, {kIds, vk::Resource::texture}};
+    add_grid_slots(info.slots, 2);
+    info.constants = {flags};
+    info.colors = {kOpaqueFormat};
+    CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
+  }
+  return &pipeline;
+}
+
+Outcome SurfaceColorPass::prepare(Frame& frame) {
+  std::size_t count = 0;
+  for (const IsosurfaceItem& item : frame.packet.isosurfaces) {
+    if (!is_wanted(item)) continue;
+    CATENA_TRY(auto mirror, frame.mirror(*item.grid));
+    CATENA_TRY(auto colors, frame.mirror(*item.color_by->grid));
+    if (!mirror->drawable || !colors->drawable) continue;
+    if (count == surfaces_.size()) surfaces_.emplace_back();
+    Surface& surface = surfaces_[count++];
+    surface.item = item;
+    if (surface.mirror != mirror) {
+      surface.mirror = std::move(mirror);
+      CATENA_TRY(surface.map, make_word_map(frame.device, *surface.mirror, std::vector<std::uint8_t>(surface.mirror->ranges.size())));
+    }
+    CATENA_TRY(const bool fresh, surface.colors.update(frame.device, std::move(colors), *item.color_by));
+    if (!fresh) continue;
+    CATENA_TRY(surface.table,
+               vk::upload_buffer(frame.device, std::as_bytes(std::span(surface.colors.lut.entries)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  }
+  while (surfaces_.size() > count) surfaces_.pop_back();
+  return Done{};
+}
+
+Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
+  for (Surface& surface : surfaces_) {
+    const field::ScalarGrid* grid = surface.item.grid.get();
+    const Color& own = surface.item.color;
+    shared::FrameData data = frame.rays.frame();
+    data.grids[0] = frame.rays.grid(*surface.mirror, grid->mapping());
+    data.grids[0].id = surface.item.id;
+    data.grids[0].color = {own.r, own.g, own.b};
+    data.grids[1] = frame.rays.grid(*surface.colors.mirror, surface.item.color_by->grid->mapping());
+    set_table(data.grids[1], surface.colors.lut, 0);
+    CATENA_CHECK(write_uniform(frame.device, surface.uniform, data));
+    const BoundGrid bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.bound()};
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound[0].flags() | bound[1].flags() << 4));
+    std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
+                                      {1, vk::Resource::buffer, &surface.table, nullptr, nullptr},
+                                      {2, vk::Resource::texture, nullptr, &frame.targets.opaque_depth, nullptr},
+                                      {kIds, vk::Resource::texture, nullptr, &frame.targets.opaque_id, nullptr}};
+    add_grid_bindings(bindings, bound, 2, linear_);
+    commands.scissor(covered_area({&grid, 1}, frame.rays.camera));
+    commands.bind(*pipe, bindings);
+    commands.draw_triangle();
+  }
+  return Done{};
+}
+
+}  // namespace
+
+const PassEntry kSurfaceColorPass{
+    "surface colours",
+    [](const Frame& frame) { return std::any_of(frame.packet.isosurfaces.begin(), frame.packet.isosurfaces.end(), is_wanted); },
+    SurfaceColorPass::create};
+
+}  // namespace catena::render

@@ -1,0 +1,13 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Translucent triangles, into a layer.
+#include "shaders/shared/layers.h"
+
+layout(scalar, binding = 0) uniform Frame { MeshFrameData frame; };
+#include "shaders/lib/lighting.glsl"
+#include "shaders/lib/mesh_color.glsl"
+#include "shaders/lib/peel.glsl"
+
+void main() { write_fragment(true, layer.opacity * mesh_color(), layer.opacity, in_depth, in_id); }

@@ -1,0 +1,136 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// A plane through a grid: where the pixel's ray meets it, the trilinear value, coloured, with lines of constant value.
+#include "shaders/shared/layers.h"
+#define GRID_COUNT 1
+#include "shaders/lib/grids.glsl"
+#include "shaders/lib/rays.glsl"
+#include "shaders/lib/lighting.glsl"
+#include "shaders/lib/peel.glsl"
+
+layout(scalar, binding = 1) uniform Slice { SliceData slice; };
+layout(scalar, binding = 2) readonly buffer Colors { vec4 colors[]; };  // value, r, g, b
+layout(scalar, binding = 4) readonly buffer Levels { float levels[]; };
+
+// What the ray of pixel place q meets, and how it changes from pixel to pixel.
+struct Hit {
+  bool seen;
+  float t, value;
+  vec3 p;          // local
+  vec2 gradient;   // of the value, a pixel
+};
+
+vec3 table_color(float value) {
+  uint a = 0u, b = slice.color_last;
+  if (!(value > colors[a].x)) return colors[a].yzw;
+  if (value >= colors[b].x) return colors[b].yzw;
+  while (b - a > 1u) {
+    const uint middle = (a + b) >> 1;
+    if (colors[middle].x <= value) a = middle;
+    else b = middle;
+  }
+  return mix(colors[a].yzw, colors[b].yzw, (value - colors[a].x) / max(colors[b].x - colors[a].x, 1e-37));
+}
+
+// The trilinear value and its gradient, local; false in a cell that is not drawn.
+bool value_at(vec3 p, out float value, out vec3 gradient) {
+  value = 0.0;
+  gradient = vec3(0.0);
+  const ivec3 cell = cell_of(0, p);
+  if (empty_distance(brick_word(0, cell >> 3)) > 0) return false;
+  if (grid_is_masked(0) && !cell_is_valid(0, cell)) return false;
+  vec4 lo, hi;
+  cell_corners(0, cell, lo, hi);
+  const vec3 f = clamp(p - vec3(cell), 0.0, 1.0);
+  const vec4 z = mix(lo, hi, f.z), along_z = hi - lo;
+  const vec2 y = mix(z.xy, z.zw, f.y), along_y = z.zw - z.xy;
+  const vec2 zy = mix(along_z.xy, along_z.zw, f.y);
+  value = mix(y.x, y.y, f.x);
+  gradient = vec3(y.y - y.x, mix(along_y.x, along_y.y, f.x), mix(zy.x, zy.y, f.x));
+  return true;
+}
+
+bool is_clipped(vec2 q, float t) {
+  for (uint i = 0u; i < frame.clip_count; ++i) {
+    const float at = frame.clips[i].at + frame.clips[i].at_x * q.x + frame.clips[i].at_y * q.y;
+    const float along = frame.clips[i].along + frame.clips[i].along_x * q.x + frame.clips[i].along_y * q.y;
+    if (at + t * along < -slice.clip_slack) return true;
+  }
+  return false;
+}
+
+#define FACE_SLACK 1e-3  // voxels: a plane in a face of the domain is drawn
+
+Hit meet(vec2 q) {
+  Hit hit;
+  hit.value = 0.0;
+  hit.gradient = vec2(0.0);
+  const LocalRay ray = local_ray(0, q);
+  const float at = slice.plane.at + slice.plane.at_x * q.x + slice.plane.at_y * q.y;
+  const float along = slice.plane.along + slice.plane.along_x * q.x + slice.plane.along_y * q.y;
+  hit.seen = abs(along) > LEAST_DIRECTION;
+  hit.t = hit.seen ? -at / along : NO_DEPTH;
+  hit.seen = hit.seen && hit.t >= frame.front && abs(hit.t) < NO_DEPTH;
+  hit.p = ray.origin + (hit.seen ? hit.t : 0.0) * ray.direction;
+  const vec3 lo = frame.grids[0].lo, hi = frame.grids[0].hi;
+  hit.seen = hit.seen && all(greaterThanEqual(hit.p, lo - FACE_SLACK)) && all(lessThanEqual(hit.p, hi + FACE_SLACK));
+  hit.p = clamp(hit.p, lo, hi);
+  if (!hit.seen) return hit;
+  vec3 local;
+  hit.seen = value_at(hit.p, hit.value, local);
+  // the plane's own ray from pixel to pixel
+  const vec3 x = frame.grids[0].origin_x + hit.t * frame.grids[0].direction_x -
+                 (slice.plane.at_x + hit.t * slice.plane.along_x) / along * ray.direction;
+  const vec3 y = frame.grids[0].origin_y + hit.t * frame.grids[0].direction_y -
+                 (slice.plane.at_y + hit.t * slice.plane.along_y) / along * ray.direction;
+  hit.gradient = vec2(dot(local, x), dot(local, y));
+  return hit;
+}
+
+// How much of the pixel a line of the level covers. Its distance is that of the foot on the value's tangent, measured again at
+// that foot (the value bends, and its gradient jumps from cell to cell).
+float line_cover(Hit hit, vec2 q, float level) {
+  const float steepness2 = dot(hit.gradient, hit.gradient);
+  if (!(steepness2 > 0.0)) return 0.0;
+  vec2 foot = (level - hit.value) / steepness2 * hit.gradient;
+  if (length(foot) > slice.half_width + 2.0) return 0.0;
+  const Hit there = meet(q + foot);
+  const float again = dot(there.gradient, there.gradient);
+  if (there.seen && again > 0.0) {
+    const vec2 more = (level - there.value) / again * there.gradient;
+    if (length(more) < 1.0) foot += more;
+  }
+  return clamp(slice.half_width + 0.5 - length(foot), 0.0, 1.0) * min(1.0, 2.0 * slice.half_width);
+}
+
+float lines(Hit hit, vec2 q) {
+  if (slice.level_count == 0u) return 0.0;
+  uint a = 0u, b = slice.level_count;  // levels before a are below the value, from b on above
+  while (a < b) {
+    const uint middle = (a + b) >> 1;
+    if (levels[middle] <= hit.value) a = middle + 1u;
+    else b = middle;
+  }
+  float cover = 0.0;
+  if (a > 0u) cover = line_cover(hit, q, levels[a - 1u]);
+  if (a < slice.level_count) cover = max(cover, line_cover(hit, q, levels[a]));
+  return cover;
+}
+
+void main() {
+  const vec2 q = pixel_place();
+  Hit hit = meet(q);
+  if (hit.seen && frame.grids[0].clipped != 0u) hit.seen = !is_clipped(q, hit.t);
+  vec3 color = vec3(0.0);
+  float alpha = 0.0;
+  if (hit.seen) {
+    const float line = lines(hit, q);
+    vec3 surface = table_color(hit.value);
+    if (slice.lit != 0u) surface = lit(surface, slice.normal, -normalize(world_direction(q)));
+    color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
+    alpha = mix(layer.opacity, 1.0, line);
+  }
+  write_fragment(hit.seen && alpha > 0.0, color, alpha, hit.t, frame.grids[0].id);
+}

@@ -1,0 +1,61 @@
+/// `catena render` of slices and translucent meshes from the outside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "render/vk/picture.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using namespace catena;
+
+test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+
+/// z on the plane y = 0, -2..2, black to blue, a white line at 1; before it a red mesh over the right half, half translucent.
+const std::string kScene = R"({"fields": {"z": {"analytic": "plane", "resolution": 17}},
+  "slices": [{"field": "z", "axis": "y", "at": 0, "color": [[-2, 0, 0, 0], [2, 0, 0, 1]], OPACITY
+              "contours": {"levels": [1], "width": 2, "color": [1, 1, 1]}}],
+  "meshes": [{"name": "m", "file": "quad.obj", "color": [1, 0, 0], "opacity": 0.5, "shading": "smooth"}],
+  "camera": {"position": [0, -10, 0], "target": [0, 0, 0], "up": [0, 0, 1], "projection": "orthographic", "height": 4.8}})";
+
+TEST(RenderSlices, ASliceWithALineBehindATranslucentMesh) {
+  for (const double opacity : {1.0, 0.5}) {
+    const test::TemporaryFolder folder;
+    std::string scene = kScene;
+    scene.replace(scene.find("OPACITY"), 7, "\"opacity\": " + std::to_string(opacity) + ",");
+    test::write_file(folder / "s.json", scene);
+    test::write_file(folder / "quad.obj", "v 0 -1 -3\nv 3 -1 -3\nv 3 -1 3\nv 0 -1 3\nf 1 2 3 4\n");
+    const auto run =
+        program({"render", folder / "s.json", "-o", folder / "o.png", "--size", "128x96", "--validation", "--stats", folder / "o.json"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos);
+    const auto picture = render::read_png(folder / "o.png");
+    ASSERT_TRUE(picture);
+    EXPECT_TRUE(
+        render::write_png(std::string(CATENA_BINARY_DIR) + "/app-slice-" + (opacity < 1 ? "half" : "whole") + ".png", *picture, true));
+    for (const std::uint32_t y : {10u, 40u, 60u, 84u}) {
+      const double z = 2.4 - (y + 0.5) * 0.05, blue = 255 * opacity * (z + 2) / 4;  // 0.05 a pixel
+      EXPECT_NEAR(picture->pixel(40, y)[2], blue, 2) << y;
+      EXPECT_EQ(picture->pixel(40, y)[0], 0);
+      // before it: 0.5 of the lit red (facing the eye, with the white highlight of 0.2)
+      EXPECT_NEAR(picture->pixel(90, y)[0], 0.5 * 255 * 1.1, 2) << y;
+      EXPECT_NEAR(picture->pixel(90, y)[2], 0.5 * 255 * 0.2 + 0.5 * blue, 2) << y;
+    }
+    EXPECT_GT(picture->pixel(40, 27)[0] + picture->pixel(40, 28)[0], 400) << "the line of z = 1";
+    EXPECT_EQ(picture->pixel(10, 48)[2], 0) << "beside the domain";
+  }
+}
+
+TEST(RenderSlices, WhatCannotBeDrawnIsOneLine) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"z": {"analytic": "plane", "resolution": 9}},
+    "slices": [{"field": "z", "axis": "y", "at": 7}]})");
+  const auto run = program({"render", folder / "s.json", "-o", folder / "o.png"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("s.json:2"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("does not meet the domain"), std::string::npos) << run.err;
+}
+
+}  // namespace

@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/field/grid.h"
+#include "render/extract/extract.h"
+#include "render/extract/extract_surfaces.h"
+#include "tests/support/support.h"
+
+namespace catena::render {
+namespace {
+
+Result<FramePacket> extract(const std::string& text, const std::string& path = "test.json") {
+  auto scene = scene::parse_scene(text, path);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return extract_frame(*scene, 32, 32);
+}
+
+std::string sliced(const std::string& keys) {
+  return R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle", "resolution": 9}},
+    "slices": [{)" +
+         keys + "}]}";
+}
+
+TEST(ExtractSlices, PlaneColoursAndLevelsReachThePacket) {
+  const auto packet = extract(sliced(R"("field": "s", "axis": "z", "at": 0.5, "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "opacity": 0.5,
+    "contours": {"count": 3, "width": 2, "color": [0, 1, 0]}, "clip": false)"));
+  ASSERT_TRUE(packet) << packet.error().message;
+  ASSERT_EQ(packet->slices.size(), 1u);
+  const SliceItem& slice = packet->slices[0];
+  EXPECT_EQ(slice.point, Vec3(0, 0, 0.5));
+  EXPECT_EQ(slice.normal, Vec3(0, 0, 1));
+  ASSERT_EQ(slice.colors.size(), 2u);
+  EXPECT_EQ(slice.colors[1], (std::array<double, 4>{2, 0, 0, 1}));
+  EXPECT_EQ(slice.levels, (std::vector<double>{0.5, 1, 1.5}));
+  EXPECT_EQ(slice.line_width, 2);
+  EXPECT_EQ(slice.opacity, 0.5f);
+  EXPECT_FALSE(slice.clipped);
+  ASSERT_EQ(packet->objects.size(), 1u);
+  EXPECT_EQ(packet->objects[0].kind, "slice");
+  EXPECT_EQ(packet->objects[0].id, slice.id);
+  // the fitted camera looks at the domain
+  EXPECT_NEAR(packet_bounds(*packet).diagonal(), 4 * std::sqrt(3.0), 1e-9);
+}
+
+TEST(ExtractSlices, NamedColoursCoverTheFieldAndMultiplesLieWithinIt) {
+  const auto packet = extract(sliced(R"("field": "s", "axis": "z", "at": 0, "contours": {"spacing": 0.75})"));
+  ASSERT_TRUE(packet);
+  const SliceItem& slice = packet->slices[0];
+  EXPECT_EQ(slice.colors.front()[0], slice.grid->min_value());
+  EXPECT_EQ(slice.colors.back()[0], slice.grid->max_value());
+  EXPECT_EQ(slice.levels, (std::vector<double>{0, 0.75, 1.5, 2.25, 3}));
+}
+
+TEST(ExtractSlices, AVectorFieldIsShownByItsMagnitude) {
+  const auto packet = extract(sliced(R"("field": "v", "axis": "z", "at": 0)"));
+  ASSERT_TRUE(packet) << packet.error().message;
+  field::Cursor cursor;
+  for (const Vec3& p : {Vec3(1, 0.5, 0), Vec3(-1.5, 2, 1), Vec3(0, 0, -2)})
+    EXPECT_NEAR(packet->slices[0].grid->sample(p, cursor).value, std::hypot(p.x, p.y), 1e-6);
+}
+
+TEST(ExtractSlices, TheMagnitudesKeepMaskPlaceAndHoles) {
+  std::vector<float> xyz;
+  std::vector<std::uint8_t> valid;
+  for (int z = 0; z < 4; ++z)
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < 6; ++x) {
+        xyz.insert(xyz.end(), {float(x), float(2 * y), z == 3 && x == 5 && y == 4 ? NAN : float(z)});
+        valid.push_back(x < 4);
+      }
+  const auto mapping = field::Mapping::from_linear(Mat3(0.5), {10, 20, 30});
+  const auto grid = field::make_vector_grid("v", mapping, {6, 5, 4}, xyz, valid);
+  const auto magnitude = magnitude_grid(*grid);
+  const auto whole = magnitude_grid(*field::make_vector_grid("v", mapping, {6, 5, 4}, xyz));
+  field::Cursor one, two, three;
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 5; ++x) {
+        const Vec3 middle = mapping.world_from_index(Vec3(x + 0.5, y + 0.5, z + 0.5));
+        EXPECT_EQ(magnitude->sample(middle, one).inside, grid->sample(middle, two).inside) << x << y << z;
+        EXPECT_EQ(whole->sample(middle, three).inside, !(x == 4 && y == 3 && z == 2)) << x << y << z;
+        if (x == 4 && y == 3 && z == 2) continue;
+        EXPECT_NEAR(magnitude->sample(mapping.world_from_index(Vec3(x, y, z)), one).value, norm(Vec3(x, 2 * y, z)), 1e-5);
+      }
+}
+
+TEST(ExtractSlices, WhatCannotBeDrawnIsSaidWithItsLine) {
+  for (const auto& [keys, expected] : {std::pair{R"("field": "s", "axis": "z", "at": 2.5)", "does not meet the domain"},
+                                       {R"("field": "s", "axis": "z", "at": 0, "contours": {"spacing": 1e-6})", "levels; at most 1000"}}) {
+    const auto packet = extract(sliced(keys));
+    ASSERT_FALSE(packet) << keys;
+    EXPECT_NE(packet.error().message.find(expected), std::string::npos) << packet.error().message;
+    EXPECT_EQ(packet.error().message.find("test.json:2"), 0u) << packet.error().message;
+  }
+}
+
+TEST(ExtractMeshes, NormalsColoursAndOpacity) {
+  const test::TemporaryFolder folder;
+  // two faces at right angles
+  test::write_file(folder / "fold.obj", "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 0 1\nv 0 1 1\nf 1 3 4 2\nf 1 2 6 5\n");
+  const std::string fields = R"({"fields": {"x": {"analytic": "linear", "resolution": 9}}, "meshes": [{"name": "m", "file": "fold.obj")";
+  auto packet = extract(fields + R"(, "shading": "smooth", "opacity": 0.25, "edges": true}]})", folder / "s.json");
+  ASSERT_TRUE(packet) << packet.error().message;
+  const MeshItem& item = packet->meshes[0];
+  EXPECT_TRUE(item.smooth && item.edges);
+  EXPECT_EQ(item.opacity, 0.25f);
+  ASSERT_EQ(item.geometry->normals.size(), 6u);
+  for (std::size_t v = 0; v < 6; ++v) {
+    const Vec3 &p = item.geometry->vertices[v], n = direction(item.geometry->normals[v]);
+    const Vec3 expected = p.x > 0 ? Vec3(0, 0, 1) : p.z > 0 ? Vec3(1, 0, 0) : direction(Vec3(1, 0, 1));
+    EXPECT_LE(norm(n - expected), 1e-12) << v;
+  }
+  packet = extract(fields + R"(, "color_by": "x", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0]]}]})", folder / "s.json");
+  ASSERT_TRUE(packet) << packet.error().message;
+  const MeshGeometry& colored = *packet->meshes[0].geometry;
+  EXPECT_TRUE(colored.normals.empty());
+  ASSERT_EQ(colored.colors.size(), 6u);
+  const auto field = field::make_analytic("linear", {});
+  ASSERT_TRUE(field);
+  field::Cursor cursor;
+  for (std::size_t v = 0; v < 6; ++v) {
+    const double value = field->scalar->sample(colored.vertices[v], cursor).value;
+    EXPECT_NEAR(colored.colors[v].r, std::clamp(0.5 * value, 0.0, 1.0), 1e-6) << v;
+  }
+}
+
+}  // namespace
+}  // namespace catena::render

@@ -1,0 +1,177 @@
+/// Projections of a volume: the greatest, the least and the mean value along every ray, against dense sampling in double precision.
+#include <cmath>
+
+#include "render/frame/camera.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+struct Found {
+  double greatest = -HUGE_VAL, least = HUGE_VAL, mean = 0;
+  bool any = false;
+};
+
+/// Over the ray's part in the domain, in valid cells, not behind `end`.
+Found along(const field::ScalarGrid& grid, const Ray& ray, double from = 0, double end = 1e9) {
+  const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
+  double enter = from, leave = end;
+  for (int a = 0; a < 3; ++a) {
+    const double s = (grid.index_box().lo[a] - o[a]) / d[a], t = (grid.index_box().hi[a] - o[a]) / d[a];
+    enter = std::max(enter, std::min(s, t));
+    leave = std::min(leave, std::max(s, t));
+  }
+  Found found;
+  if (!(enter < leave)) return found;
+  const int steps = 3000;
+  field::Cursor cursor;
+  int count = 0;
+  for (int k = 0; k < steps; ++k) {
+    const auto sample = grid.sample(ray.origin + (enter + (k + 0.5) * (leave - enter) / steps) * ray.direction, cursor);
+    if (!sample.inside) continue;
+    found.greatest = std::max(found.greatest, sample.value);
+    found.least = std::min(found.least, sample.value);
+    found.mean += sample.value;
+    ++count;
+  }
+  found.any = count > 0;
+  found.mean /= std::max(1, count);
+  return found;
+}
+
+double of(const Found& found, Projection projection) {
+  return projection == Projection::maximum ? found.greatest : projection == Projection::minimum ? found.least : found.mean;
+}
+
+GridPtr rough_grid(const std::function<bool(const Vec3&)>& valid = nullptr) {
+  return make_grid(
+      {40, 36, 32},
+      [](const Vec3& p) { return 0.5 + 0.2 * std::sin(0.9 * p.x) + 0.15 * std::cos(0.8 * p.y) * std::sin(0.7 * p.z + 0.3 * p.x); },
+      field::Mapping::from_linear(Mat3(0.8, 0.3, 0, -0.4, 1.1, 0.2, 0.1, 0, 1.3), {-50, 40, 3}), valid);
+}
+
+/// Grey by value, opacity 1/2 over half a unit everywhere.
+VolumeItem grey_item(GridPtr grid, Projection projection) {
+  VolumeItem item = volume_item(std::move(grid), {{0, std::log(4.0)}, {1, std::log(4.0)}});
+  item.transfer.colors = {{0, 0, 0, 0}, {1, 1, 1, 1}};
+  item.transfer.opacity_unit = 0.5;
+  item.projection = projection;
+  return item;
+}
+
+const char* name_of(Projection projection) {
+  return projection == Projection::maximum ? "maximum" : projection == Projection::minimum ? "minimum" : "average";
+}
+
+class ProjectionTest : public PictureTest {
+ protected:
+  /// Largest difference of colours, over rays that meet something; alpha is checked on all.
+  double worst(const Picture& picture, const FramePacket& packet, Projection projection, const std::function<Found(const Ray&)>& found) {
+    const Camera camera = make_camera(packet.view, packet.width, packet.height, Bounds{});
+    double worst = 0;
+    int hits = 0, disagree = 0;
+    for (std::uint32_t y = 0; y < packet.height; y += 2)
+      for (std::uint32_t x = 0; x < packet.width; x += 2) {
+        const Found f = found(ray_through(camera, x + 0.5, y + 0.5));
+        const int alpha = picture.pixel(x, y)[3];
+        if (f.any != (alpha > 0)) {
+          ++disagree;  // grazing rays
+          continue;
+        }
+        if (!f.any) continue;
+        EXPECT_NEAR(alpha, 127.5, 1);
+        ++hits;
+        worst = std::max(worst, std::fabs(picture.pixel(x, y)[0] - 255 * of(f, projection)));
+      }
+    EXPECT_GT(hits, 500);
+    EXPECT_LE(disagree, 2);
+    return worst;
+  }
+};
+
+TEST_F(ProjectionTest, ExtremesAreExactWhateverTheStep) {
+  const auto grid = rough_grid();
+  const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
+  FramePacket packet = packet_of(centre + Vec3(70, -60, 50), centre, 32);
+  RenderSettings settings;
+  settings.texels = TexelFormat::r32f;
+  settings.step_voxels = 4;
+  for (const Projection projection : {Projection::maximum, Projection::minimum})
+    for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas}) {
+      settings.layout = layout;
+      packet.volumes = {grey_item(grid, projection)};
+      const Picture picture = draw(packet, settings, name_of(projection));
+      EXPECT_LE(worst(picture, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 1.01) << name_of(projection);
+    }
+}
+
+TEST_F(ProjectionTest, TheMeanIsThatOfTheRay) {
+  const auto grid = rough_grid();
+  const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
+  FramePacket packet = packet_of(centre + Vec3(70, -60, 50), centre, 32);
+  packet.view.orthographic = true;
+  packet.view.height = 60;
+  RenderSettings settings;
+  settings.texels = TexelFormat::r32f;
+  settings.step_voxels = 0.25;
+  packet.volumes = {grey_item(grid, Projection::average)};
+  const Picture picture = draw(packet, settings, "average");
+  EXPECT_LE(worst(picture, packet, Projection::average, [&](const Ray& ray) { return along(*grid, ray); }), 1.01);
+}
+
+TEST_F(ProjectionTest, InvalidCellsDoNotCount) {
+  const auto grid = rough_grid([](const Vec3& p) { return p.x < 26 || p.y < 12; });
+  const Vec3 centre = grid->mapping().world_from_index({19.5, 17.5, 15.5});
+  FramePacket packet = packet_of(centre + Vec3(70, -60, 50), centre, 32);
+  RenderSettings settings;
+  settings.texels = TexelFormat::r32f;
+  settings.step_voxels = 0.05;
+  for (const Projection projection : {Projection::maximum, Projection::average}) {
+    packet.volumes = {grey_item(grid, projection)};
+    const Picture picture = draw(packet, settings, name_of(projection));
+    EXPECT_LE(worst(picture, packet, projection, [&](const Ray& ray) { return along(*grid, ray); }), 2.01) << name_of(projection);
+  }
+}
+
+TEST_F(ProjectionTest, EndsAtOpaqueThingsAndClipPlanes) {
+  // value y / 20 seen along y: greatest where the ray ends, least where it begins
+  const auto grid = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y / 20; });
+  FramePacket packet;
+  packet.width = packet.height = 64;
+  packet.background = {0, 0, 0, 0};
+  packet.view.position = {10, -40, 10};
+  packet.view.target = {10, 10, 10};
+  packet.view.orthographic = true;
+  packet.view.height = 16;
+  packet.clip = {{{0, 3, 0}, {0, 1, 0}}};
+  const auto blocker = make_grid({21, 21, 21}, [](const Vec3& p) { return p.y + 0.2 * (p.x - 10); });
+  IsosurfaceItem wall;
+  wall.grid = blocker;
+  wall.level = 14;
+  wall.color = {0, 0, 0};
+  packet.isosurfaces = {wall};
+  const double lambert = 1 / std::sqrt(1.04), mirrored = 2 * lambert * lambert - 1, behind = 0.2 * std::pow(mirrored, 20);
+  for (const Projection projection : {Projection::maximum, Projection::minimum, Projection::average}) {
+    packet.volumes = {grey_item(grid, projection)};
+    const Picture picture = draw(packet, {}, name_of(projection));
+    for (std::uint32_t x = 4; x < 64; x += 8) {
+      const double world = 10 + (x + 0.5 - 32) * 0.25, end = 14 - 0.2 * (world - 10);
+      const double value = projection == Projection::maximum ? end : projection == Projection::minimum ? 3 : 0.5 * (3 + end);
+      EXPECT_NEAR(picture.pixel(x, 32)[0], 255 * (0.5 * value / 20 + 0.5 * behind), 1.5) << name_of(projection) << x;
+    }
+  }
+}
+
+TEST_F(ProjectionTest, StandsAloneOrIsRefusedWithASentence) {
+  const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return p.x / 8; });
+  FramePacket packet = packet_of({20, -20, 20}, {4, 4, 4});
+  packet.volumes = {grey_item(grid, Projection::maximum), grey_item(grid, Projection::composite)};
+  const auto drawn = renderer_->draw(packet);
+  ASSERT_FALSE(drawn);
+  EXPECT_NE(drawn.error().message.find("expected alone"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace catena::test

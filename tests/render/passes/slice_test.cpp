@@ -1,0 +1,347 @@
+/// Slices: colours, lines, depths and ids against closed forms and an independent evaluation on the CPU.
+#include <algorithm>
+#include <cmath>
+
+#include "render/frame/camera.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+class SlicePicture : public PictureTest {};
+
+const std::vector<std::array<double, 4>> kTable{{-4, 0.1, 0.0, 0.9}, {-1, 0.9, 0.2, 0.1}, {0.5, 0.2, 1.0, 0.3}, {6, 1.0, 0.9, 0.0}};
+
+std::array<double, 3> table_color(const std::vector<std::array<double, 4>>& table, double value) {
+  if (value <= table.front()[0]) return {table.front()[1], table.front()[2], table.front()[3]};
+  for (std::size_t i = 1; i < table.size(); ++i)
+    if (value <= table[i][0]) {
+      const double u = (value - table[i - 1][0]) / (table[i][0] - table[i - 1][0]);
+      std::array<double, 3> c{};
+      for (std::size_t k = 0; k < 3; ++k) c[k] = (1 - u) * table[i - 1][k + 1] + u * table[i][k + 1];
+      return c;
+    }
+  return {table.back()[1], table.back()[2], table.back()[3]};
+}
+
+/// Turned and sheared, anisotropic, away from the origin.
+field::Mapping sheared() {
+  const Mat3 turn = Mat3(Vec3(0.8, 0.6, 0.0), Vec3(-0.6, 0.8, 0.0), Vec3(0.0, 0.0, 1.0));
+  const Mat3 shear = Mat3(Vec3(0.10, 0.0, 0.0), Vec3(0.04, 0.13, 0.0), Vec3(-0.03, 0.05, 0.08));
+  return field::Mapping::from_linear(turn * shear, {5, -3, 2});
+}
+
+GridPtr wavy_grid(const std::function<bool(const Vec3&)>& valid = nullptr) {
+  return make_grid(
+      {24, 20, 28}, [](const Vec3& p) { return 3 * std::sin(0.5 * p.x) * std::cos(0.35 * p.y) + 0.1 * p.z; }, sheared(), valid);
+}
+
+Vec3 centre_of(const field::ScalarGrid& grid) {
+  return grid.mapping().world_from_index(0.5 * grid.index_box().lo + 0.5 * grid.index_box().hi);
+}
+
+SliceItem slice_of(GridPtr grid, const Vec3& point, const Vec3& normal) {
+  SliceItem item;
+  item.grid = std::move(grid);
+  item.point = point;
+  item.normal = normal;
+  item.colors = kTable;
+  return item;
+}
+
+/// Where the ray of a pixel meets a plane; index space, and how far (voxels) it is within the domain.
+struct Met {
+  Vec3 world{0.0}, index{0.0};
+  double inside = 0, view_depth = 0;
+};
+Met meet(const Camera& camera, const SliceItem& item, double x, double y) {
+  const Ray ray = ray_through(camera, x, y);
+  const double s = dot(item.normal, item.point - ray.origin) / dot(item.normal, ray.direction);
+  Met met;
+  met.world = ray.origin + s * ray.direction;
+  met.index = item.grid->mapping().index_from_world(met.world);
+  met.inside = HUGE_VAL;
+  for (int a = 0; a < 3; ++a)
+    met.inside = std::min({met.inside, met.index[a] - item.grid->index_box().lo[a], item.grid->index_box().hi[a] - met.index[a]});
+  met.view_depth = dot(met.world - camera.position, -camera.back);
+  return met;
+}
+
+TEST_F(SlicePicture, EveryPixelOfAShearedGridHasItsTableColourDepthAndId) {
+  const auto grid = wavy_grid();
+  for (const bool orthographic : {false, true}) {
+    FramePacket packet = packet_of(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
+    packet.view.orthographic = orthographic;
+    packet.view.height = 3;
+    packet.slices = {slice_of(grid, centre_of(*grid) + Vec3(0.1, 0, 0.05), {0.5, -0.6, 0.9})};
+    packet.slices[0].id = 17;
+    const Picture picture = draw(packet, {}, orthographic ? "orthographic" : "perspective");
+    const auto depth = renderer_->read_depth();
+    const auto ids = renderer_->read_ids();
+    ASSERT_TRUE(depth && ids);
+    const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
+    int inside = 0, worst = 0;
+    double worst_depth = 0;
+    for (std::uint32_t y = 0; y < packet.height; ++y)
+      for (std::uint32_t x = 0; x < packet.width; ++x) {
+        const Met met = meet(camera, packet.slices[0], x + 0.5, y + 0.5);
+        if (std::fabs(met.inside) < 0.01) continue;
+        const std::uint8_t* p = picture.pixel(x, y);
+        const std::size_t at = y * packet.width + x;
+        ASSERT_EQ(p[3], met.inside > 0 ? 255 : 0) << x << " " << y;
+        ASSERT_EQ(ids->ids[at], met.inside > 0 ? 17u : 0u);
+        if (met.inside <= 0) continue;
+        ++inside;
+        field::Cursor cursor;
+        const auto color = table_color(kTable, grid->sample(met.world, cursor).value);
+        for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(int(std::lround(255 * color[c])) - int(p[c])));
+        worst_depth = std::max(worst_depth, std::fabs(depth->depth[at] - met.view_depth));
+      }
+    EXPECT_GT(inside, 3000);
+    EXPECT_LE(worst, 1);
+    EXPECT_LE(worst_depth, 2e-5);
+    RecordProperty("worst_color", worst);
+  }
+}
+
+/// Of a line one pixel and more wide: its darkness along a row or a column, as a place.
+double centroid(const Picture& picture, std::uint32_t from, std::uint32_t to, std::uint32_t row, double* sum_out = nullptr) {
+  double sum = 0, moment = 0;
+  for (std::uint32_t x = from; x < to; ++x) {
+    const double dark = 1 - picture.pixel(x, row)[1] / 255.0;
+    sum += dark;
+    moment += dark * (x + 0.5);
+  }
+  if (sum_out) *sum_out = sum;
+  return moment / sum;
+}
+
+/// x + 2 y on a plane seen at right angles: lines at x = level - 2 y, of the asked width across.
+TEST_F(SlicePicture, LinesOfALinearFieldAreWhereTheyBelongAndAsWideAsAsked) {
+  const auto grid = make_grid({33, 33, 9}, [](const Vec3& p) { return p.x + 2 * p.y; });
+  FramePacket packet = packet_of({16, 16, 40}, {16, 16, 0});
+  packet.view.up = {0, 1, 0};
+  packet.view.orthographic = true;
+  packet.view.height = 30;  // 0.25 a pixel
+  packet.background = {1, 1, 1, 1};
+  packet.slices = {slice_of(grid, {0, 0, 4}, {0, 0, 1})};
+  packet.slices[0].colors = {{0, 1, 1, 1}};
+  packet.slices[0].levels = {30.1, 48.33, 63};
+  for (const double width : {1.0, 2.0, 5.0}) {
+    packet.slices[0].line_width = float(width);
+    const Picture picture = draw(packet, {}, "w" + std::to_string(int(width)));
+    for (const double level : packet.slices[0].levels)
+      for (std::uint32_t row = 30; row < 90; row += 7) {
+        const double y = 16 + (59.5 - row) * 0.25, x = level - 2 * y, px = 80 + (x - 16) / 0.25;
+        if (px < 20 || px > 140) continue;
+        double sum = 0;
+        EXPECT_NEAR(centroid(picture, std::uint32_t(px) - 12, std::uint32_t(px) + 13, row, &sum), px, 0.05) << level << " " << row;
+        // across a row the line is wider by 1 / cos of its slope
+        EXPECT_NEAR(sum, width * std::sqrt(5.0), 0.02 * width + 0.1) << level << " " << row;
+      }
+  }
+}
+
+/// In perspective and askew: the darkest pixels lie where the plane, the level and the row meet.
+TEST_F(SlicePicture, LinesInPerspectiveAreWithinATenthOfAPixel) {
+  const auto grid = make_grid({32, 32, 32}, [](const Vec3& p) { return p.x - 0.3 * p.y + 0.5 * p.z; });
+  FramePacket packet = packet_of({-10, -45, 40}, {15.5, 15.5, 15.5}, 40);
+  packet.background = {1, 1, 1, 1};
+  packet.slices = {slice_of(grid, {15.5, 15.5, 15.5}, {0.2, -0.5, 0.8})};
+  packet.slices[0].colors = {{0, 1, 1, 1}};
+  packet.slices[0].levels = {12.3, 18.9, 24};
+  packet.slices[0].line_width = 2;
+  const Picture picture = draw(packet, {}, "lines");
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
+  const auto value = [&](double x, double y) {
+    const Met met = meet(camera, packet.slices[0], x, y);
+    return met.inside > 1 ? met.index.x - 0.3 * met.index.y + 0.5 * met.index.z : NAN;
+  };
+  int found = 0;
+  for (std::uint32_t row = 20; row < 110; row += 3)
+    for (std::uint32_t x = 12; x < 148; ++x)
+      for (const double level : packet.slices[0].levels) {
+        const double a = value(x, row + 0.5), b = value(x + 1, row + 0.5);
+        if (std::isnan(value(x - 10, row + 0.5)) || std::isnan(value(x + 10, row + 0.5)) || (a - level) * (b - level) >= 0) continue;
+        // flat lines blur along a row
+        if (std::fabs(value(x, row + 0.5) - value(x, row + 1.5)) > 1.5 * std::fabs(a - b)) continue;
+        EXPECT_NEAR(centroid(picture, x - 6, x + 7, row), x + (level - a) / (b - a), 0.1) << row << " " << level;
+        ++found;
+      }
+  EXPECT_GT(found, 20);
+}
+
+/// A cone of trilinear cells: its line is a circle within what the grid itself leaves of one, and keeps its width.
+TEST_F(SlicePicture, ACurvedLineKeepsItsWidthOverTheCells) {
+  const auto grid = make_grid({33, 33, 5}, [](const Vec3& p) { return norm(Vec3(p.x - 16.2, p.y - 15.7, 0)); });
+  FramePacket packet = packet_of({16, 16, 40}, {16, 16, 0});
+  packet.view.up = {0, 1, 0};
+  packet.view.orthographic = true;
+  packet.view.height = 30;
+  packet.background = {1, 1, 1, 1};
+  packet.slices = {slice_of(grid, {0, 0, 2}, {0, 0, 1})};
+  packet.slices[0].colors = {{0, 1, 1, 1}};
+  packet.slices[0].levels = {9};
+  packet.slices[0].line_width = 2;
+  const Picture picture = draw(packet, {}, "circle");
+  for (int i = 0; i < 72; ++i) {
+    const double angle = 2 * M_PI * i / 72;
+    const auto dark_at = [&](double r) {  // bilinear
+      const double x = 80 + (16.2 + r * std::cos(angle) - 16) / 0.25 - 0.5, y = 60 - (15.7 + r * std::sin(angle) - 16) / 0.25 - 0.5;
+      const auto i0 = std::uint32_t(x), j0 = std::uint32_t(y);
+      const double u = x - i0, v = y - j0;
+      const auto d = [&](std::uint32_t a, std::uint32_t b) { return 1 - picture.pixel(a, b)[1] / 255.0; };
+      return (1 - v) * ((1 - u) * d(i0, j0) + u * d(i0 + 1, j0)) + v * ((1 - u) * d(i0, j0 + 1) + u * d(i0 + 1, j0 + 1));
+    };
+    double sum = 0, moment = 0;
+    for (double r = 7.5; r < 10.5; r += 0.01) {
+      sum += 0.01 * dark_at(r);
+      moment += 0.01 * r * dark_at(r);
+    }
+    EXPECT_NEAR(sum / 0.25, 2, 0.15) << i;
+    EXPECT_NEAR(moment / sum, 9, 0.03) << i;
+  }
+}
+
+/// The line of a level on a slice is where the isosurface of that level is cut.
+TEST_F(SlicePicture, ALineLiesOnTheCutOfTheIsosurface) {
+  const auto grid = wavy_grid();
+  FramePacket packet = packet_of(centre_of(*grid) + Vec3(0, 0, 8), centre_of(*grid));
+  packet.view.up = {0, 1, 0};
+  packet.view.orthographic = true;
+  packet.view.height = 3;
+  const Vec3 point = centre_of(*grid) + Vec3(0, 0, 0.3);
+  SliceItem slice = slice_of(grid, point, {0, 0, 1});
+  slice.colors = {{0, 1, 1, 1}};
+  slice.levels = {1.5};
+  packet.slices = {slice};
+  const Picture lines = draw(packet, {}, "line");
+  packet.slices.clear();
+  IsosurfaceItem surface;
+  surface.grid = grid;
+  surface.level = 1.5;
+  surface.color = {1, 0, 0};
+  packet.isosurfaces = {surface};
+  packet.clip = {{point, {0, 0, -1}}};  // from the plane downwards
+  draw(packet, {}, "cut");
+  const auto depth = renderer_->read_depth();
+  ASSERT_TRUE(depth);
+  // beside the line, on the side where the surface begins at the plane, its depth is nearly the plane's
+  const double plane = 8 - 0.3;
+  int checked = 0;
+  for (std::uint32_t y = 2; y + 2 < packet.height; ++y)
+    for (std::uint32_t x = 2; x + 2 < packet.width; ++x) {
+      const float d = depth->depth[y * packet.width + x];
+      if (!(std::fabs(d - plane) < 0.001)) continue;
+      double darkest = 0;
+      for (std::uint32_t b = y - 1; b <= y + 1; ++b)
+        for (std::uint32_t a = x - 1; a <= x + 1; ++a) darkest = std::max(darkest, 1 - lines.pixel(a, b)[1] / 255.0);
+      EXPECT_GT(darkest, 0.3) << x << " " << y;
+      ++checked;
+    }
+  EXPECT_GT(checked, 5);
+}
+
+TEST_F(SlicePicture, MaskedAndUndefinedCellsAreTransparent) {
+  const auto masked = make_grid(
+      {16, 16, 16}, [](const Vec3& p) { return p.x; }, {}, [](const Vec3& p) { return p.x < 8; });
+  const auto holed = make_grid({16, 16, 16}, [](const Vec3& p) { return p.x == 11 && p.y == 7 ? NAN : p.x; });
+  FramePacket packet = packet_of({7.5, 7.5, 40}, {7.5, 7.5, 0});
+  packet.view.up = {0, 1, 0};
+  packet.view.orthographic = true;
+  packet.view.height = 24;  // 0.2 a pixel
+  const auto column = [](double x) { return std::uint32_t(80 + (x - 7.5) / 0.2); };
+  const auto row = [](double y) { return std::uint32_t(60 - (y - 7.5) / 0.2); };
+  for (const float opacity : {1.0f, 0.5f}) {
+    packet.slices = {slice_of(masked, {0, 0, 7.5}, {0, 0, 1})};
+    packet.slices[0].opacity = opacity;
+    const Picture left = draw(packet, {}, "masked");
+    const int alpha = opacity == 1 ? 255 : 128;
+    EXPECT_NEAR(left.pixel(column(6.8), 60)[3], alpha, 1);
+    EXPECT_EQ(left.pixel(column(7.3), 60)[3], 0);
+    EXPECT_EQ(left.pixel(column(12), 60)[3], 0);
+    packet.slices[0].grid = holed;
+    const Picture hole = draw(packet, {}, "hole");
+    for (const double y : {6.2, 7.8}) EXPECT_EQ(hole.pixel(column(10.3), row(y))[3], 0);
+    EXPECT_NEAR(hole.pixel(column(9.8), row(7.5))[3], alpha, 1);
+    EXPECT_NEAR(hole.pixel(column(11), row(8.3))[3], alpha, 1);
+  }
+}
+
+TEST_F(SlicePicture, PlanesInTheDomainsFacesAndTheirCornersAreDrawn) {
+  const auto grid = make_grid({9, 9, 9}, [](const Vec3& p) { return p.x; });
+  FramePacket packet = packet_of({4, 4, 40}, {4, 4, 0});
+  packet.view.up = {0, 1, 0};
+  packet.view.orthographic = true;
+  packet.view.height = 12;  // 0.1 a pixel
+  for (const double z : {0.0, 8.0}) {
+    packet.slices = {slice_of(grid, {0, 0, z}, {0, 0, z > 4 ? 1.0 : -1.0})};
+    const Picture picture = draw(packet, {}, "z" + std::to_string(int(z)));
+    int covered = 0;
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) covered += picture.rgba[i] == 255;
+    EXPECT_EQ(covered, 80 * 80) << z;
+  }
+  packet.slices = {slice_of(grid, {0, 0, 8.01}, {0, 0, 1})};
+  const Picture beyond = draw(packet);
+  for (std::size_t i = 3; i < beyond.rgba.size(); i += 4) ASSERT_EQ(beyond.rgba[i], 0);
+}
+
+/// The clip planes cut it unless it says no; one that lies in a clip plane stays.
+TEST_F(SlicePicture, ClipPlanesCutASliceAndKeepOneThatLiesInThem) {
+  const auto grid = make_grid({17, 17, 17}, [](const Vec3& p) { return p.x; });
+  FramePacket packet = packet_of({2, -14, 34}, {8, 8, 8}, 40);
+  packet.slices = {slice_of(grid, {8, 8, 8}, {0.3, 0.2, 1})};
+  const auto covered = [](const Picture& picture) {
+    int n = 0;
+    for (std::size_t i = 3; i < picture.rgba.size(); i += 4) n += picture.rgba[i] == 255;
+    return n;
+  };
+  const int whole = covered(draw(packet, {}, "whole"));
+  packet.clip = {{{8, 8, 8}, {-0.3, -0.2, -1}}};
+  EXPECT_EQ(covered(draw(packet, {}, "in_plane")), whole);
+  packet.clip = {{{8, 8, 8}, {1, 0, 0}}};
+  const int half = covered(draw(packet, {}, "half"));
+  EXPECT_LT(half, 0.7 * whole);
+  EXPECT_GT(half, 0.3 * whole);
+  packet.slices[0].clipped = false;
+  EXPECT_EQ(covered(draw(packet, {}, "unclipped")), whole);
+}
+
+TEST_F(SlicePicture, ALitSliceIsShadedByItsNormalAndSlicesHideEachOther) {
+  const auto grid = make_grid({17, 17, 17}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({8, -30, 8}, {8, 8, 8});
+  packet.view.orthographic = true;
+  packet.view.height = 24;
+  packet.slices = {slice_of(grid, {8, 8, 8}, {std::sqrt(3.0), 1, 0})};
+  packet.slices[0].colors = {{0, 0, 0, 1}};
+  packet.slices[0].lit = true;
+  EXPECT_NEAR(draw(packet, {}, "lit").pixel(80, 60)[2], 255 * (0.2 + 0.7 * 0.5), 1.5);
+  SliceItem red = slice_of(grid, {8, 8, 8}, {-std::sqrt(3.0), 1, 0});
+  red.colors = {{0, 1, 0, 0}};
+  packet.slices.push_back(red);
+  for (const bool turned : {false, true}) {
+    if (turned) std::swap(packet.slices[0], packet.slices[1]);
+    const Picture cross = draw(packet, {}, "cross");
+    // the blue one comes nearer on the right, the red one on the left
+    EXPECT_GT(cross.pixel(90, 60)[2], 100);
+    EXPECT_EQ(cross.pixel(90, 60)[0], 0);
+    EXPECT_EQ(cross.pixel(70, 60)[0], 255);
+  }
+}
+
+/// The atlas layout and the dense one draw the same.
+TEST_F(SlicePicture, BricksAndDenseImagesAgree) {
+  const auto grid = wavy_grid();
+  FramePacket packet = packet_of(centre_of(*grid) + Vec3(2.5, -4, 3), centre_of(*grid));
+  packet.slices = {slice_of(grid, centre_of(*grid), {0.5, -0.6, 0.9})};
+  packet.slices[0].levels = {-1, 0, 1, 2};
+  RenderSettings dense, atlas;
+  dense.layout = MirrorLayout::dense;
+  atlas.layout = MirrorLayout::atlas;
+  EXPECT_LE(max_difference(draw(packet, dense, "dense"), draw(packet, atlas, "atlas")), 1);
+}
+
+}  // namespace
+}  // namespace catena::test
