@@ -74,7 +74,7 @@ Hit meet(vec2 q) {
   hit.t = hit.seen ? -at / along : NO_DEPTH;
   hit.seen = hit.seen && hit.t >= frame.front && abs(hit.t) < NO_DEPTH;
   hit.p = ray.origin + (hit.seen ? hit.t : 0.0) * ray.direction;
-  const vec3 lo = frame.grids[0].lo, hi = frame.grids[0].hi;
+  const vec3 lo = frame.grids[0].domain_lo, hi = frame.grids[0].domain_hi;
   hit.seen = hit.seen && all(greaterThanEqual(hit.p, lo - FACE_SLACK)) && all(lessThanEqual(hit.p, hi + FACE_SLACK));
   hit.p = clamp(hit.p, lo, hi);
   if (!hit.seen) return hit;
