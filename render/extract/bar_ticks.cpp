@@ -39,7 +39,9 @@ std::string superscript(int n) {
 BarScale bar_scale(double lo, double hi, int count, const std::string& format) {
   BarScale scale;
   if (!std::isfinite(lo) || !std::isfinite(hi)) return scale;
-  const std::vector<Tick> ticks = nice_ticks(lo, hi, count);
+  // nice steps are coarse: rather a few ticks more than too few
+  std::vector<Tick> ticks = nice_ticks(lo, hi, count);
+  for (int about = count + 1; about <= 2 * count && static_cast<int>(ticks.size()) + 1 < count; ++about) ticks = nice_ticks(lo, hi, about);
   if (!format.empty() || ticks.size() < 2) {
     for (const Tick& tick : ticks) scale.ticks.push_back({tick.value, formatted(format.empty() ? "%.6g" : format, tick.value)});
     return scale;

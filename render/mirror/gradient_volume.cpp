@@ -55,7 +55,7 @@ double root_mean_square(const Values& values) {
 
 }  // namespace
 
-Result<vk::Image> make_gradient_volume(vk::Device& device, const field::ScalarGrid& grid) {
+Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::ScalarGrid& grid) {
   CATENA_ASSERT(can_be_packed(device, grid));
   const field::Box& box = grid.index_box();
   const auto whole = [](double a) { return std::int32_t(std::lround(a)); };
@@ -70,14 +70,16 @@ Result<vk::Image> make_gradient_volume(vk::Device& device, const field::ScalarGr
                     std::span(values.v).subspan(begin * plane, (end - begin) * plane));
   });
   const auto longest = float(3 * root_mean_square(values));
+  GradientVolume volume;
+  volume.unit = longest / 127;
 
   vk::ImageInfo info;
   info.type = VK_IMAGE_TYPE_3D;
   info.format = VK_FORMAT_R8G8B8A8_UNORM;
   info.extent = {std::uint32_t(n.x), std::uint32_t(n.y), std::uint32_t(n.z)};
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  CATENA_TRY(vk::Image image, vk::Image::create(device, info));
-  CATENA_CHECK(vk::upload_planes(device, image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+  CATENA_TRY(volume.image, vk::Image::create(device, info));
+  CATENA_CHECK(vk::upload_planes(device, volume.image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     parallel_for(std::size_t(count) * n.y, 64, [&](std::size_t begin, std::size_t end) {
       const auto code = [](float a) { return std::byte(std::lround(128 + 127 * a)); };
       for (std::size_t line = begin; line < end; ++line) {
@@ -88,12 +90,12 @@ Result<vk::Image> make_gradient_volume(vk::Device& device, const field::ScalarGr
           to[0] = code(g.x * scale);
           to[1] = code(g.y * scale);
           to[2] = code(g.z * scale);
-          to[3] = std::byte(0);
+          to[3] = std::byte(g.length() > longest ? 255 : 0);
         }
       }
     });
   }));
-  return image;
+  return volume;
 }
 
 }  // namespace catena::render

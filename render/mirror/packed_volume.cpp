@@ -47,6 +47,11 @@ bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid) {
          std::min({n.x, n.y, n.z}) >= 2 && std::max({n.x, n.y, n.z}) <= limit && n.x * n.y * n.z <= kMostVoxels;
 }
 
+std::uint64_t packed_bytes(const field::ScalarGrid& grid) {
+  const Index3 n = extent_of(grid).size;
+  return sizeof(std::uint32_t) * std::uint64_t(n.x) * std::uint64_t(n.y) * std::uint64_t(n.z);
+}
+
 ValueInterval range_to_encode(const Index3& size, const std::vector<float>& values, const ValueInterval& active) {
   const std::size_t plane = std::size_t(size.x) * size.y;
   const float from = float(active.least), to = float(active.greatest);

@@ -37,6 +37,9 @@ struct PackedVolume {
 /// Whether a grid can be packed on this device: no masked cells, at least a cell thick, and of a size that pays.
 bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid);
 
+/// Of its words, and of gradients (render/mirror/gradient_volume.h) as many again.
+std::uint64_t packed_bytes(const field::ScalarGrid& grid);
+
 Result<PackedVolume> make_packed_volume(vk::Device& device, const field::ScalarGrid& grid, const ValueInterval& active);
 
 /// The range of values to encode (for make_packed_volume and its test): `values` x fastest.

@@ -67,7 +67,9 @@ Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t
   return Done{};
 }
 
-bool same(const TransferTable& a, const TransferTable& b) { return a.colors == b.colors && a.extinctions == b.extinctions; }
+bool same_look(const VolumeItem& a, const VolumeItem& b) {
+  return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.shade == b.shade;
+}
 
 }  // namespace
 
@@ -87,10 +89,10 @@ Result<FastVolumePass> FastVolumePass::create(vk::Device& device) {
 Outcome FastVolumePass::prepare(const VolumeItem& item, const FastSettings& settings) {
   const std::int64_t start = now_ns();
   const bool other_grid = !packed_.words || version_ != item.grid->version();
-  const bool other_look = other_grid || !same(item_.transfer, item.transfer);
+  const bool other_look = other_grid || !same_look(item_, item);
   item_ = item;
   if (other_grid) gradients_ = {};
-  if (item.shade && settings.smooth_gradients && !gradients_) {
+  if (item.shade && settings.smooth_gradients && !gradients_.image) {
     CATENA_TRY(gradients_, make_gradient_volume(*device_, *item.grid));
     build_ms_ += ms_since(start);
   }
@@ -98,14 +100,14 @@ Outcome FastVolumePass::prepare(const VolumeItem& item, const FastSettings& sett
 
   const double background = item.grid->background();
   const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
-  const ValueInterval active = active_interval(item.transfer, values);
+  const ValueInterval active = active_interval(item.transfer, values, item.shade);
   if (other_grid || !(active == active_)) {
     packed_ = {};
     CATENA_TRY(packed_, make_packed_volume(*device_, *item.grid, active));
     version_ = item.grid->version();
     active_ = active;
   }
-  const PreintegratedTable table = make_preintegrated(item.transfer, packed_.lo, packed_.per_code);
+  const PreintegratedTable table = make_preintegrated(item.transfer, packed_.lo, packed_.per_code, item.shade);
   vk::ImageInfo info;
   info.format = VK_FORMAT_R32G32_UINT;
   info.extent = {256, 256, 1};
@@ -220,7 +222,7 @@ Outcome FastVolumePass::draw(vk::Commands& commands, Level& level, const Draw& d
                                   {5, vk::Resource::texture, nullptr, &map_.image, nullptr},
                                   {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
                                   {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
-                                  {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients_ : &no_gradients_, &linear_}};
+                                  {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients_.image : &no_gradients_, &linear_}};
   commands.scissor(draw.area);
   commands.bind(*pipe, bindings);
   if (draw.tiles) {
@@ -275,7 +277,7 @@ Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, c
     const bool marches = !coarser || refine_255 >= 0;
     const VkExtent3D from = coarser ? coarser->info().extent : VkExtent3D{1, 1, 1};
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
-    const shared::LatticeData data{float(spacing), apron, float(refine_255 / 255), from.width, from.height};
+    const shared::LatticeData data{float(spacing), apron, float(refine_255 / 255), from.width, from.height, gradient_unit()};
     CATENA_CHECK(write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
@@ -301,7 +303,7 @@ Outcome FastVolumePass::record_probe(vk::Commands& commands, const CameraRays& r
   CATENA_CHECK(write_frame(rays, settings));
   CATENA_CHECK(fit(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
-  CATENA_CHECK(write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1}));
+  CATENA_CHECK(write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1, gradient_unit()}));
   const VkExtent3D& extent = target.info().extent;
   return draw(
       commands, probe_,

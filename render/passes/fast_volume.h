@@ -41,6 +41,7 @@ class FastVolumePass {
   Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
   Result<const vk::Pipeline*> pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const { return item_.shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
+  float gradient_unit() const { return packed_.per_code > 0 ? float(gradients_.unit / packed_.per_code) : 0.0f; }
   Outcome write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque);
   Outcome mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth);
@@ -65,7 +66,8 @@ class FastVolumePass {
   std::uint64_t version_ = 0;
   PackedVolume packed_;
   PlainMap map_;
-  vk::Image table_, gradients_;
+  vk::Image table_;
+  GradientVolume gradients_;
   vk::Image no_gradients_;  ///< one voxel, bound where shading does not ask for them
   vk::Sampler linear_;
   vk::Buffer frame_;

@@ -58,7 +58,7 @@ class Pass {
   virtual Outcome record(vk::Commands& commands, Frame& frame) = 0;
   /// Milliseconds spent so far on images made from grids, beside the mirrors.
   virtual double build_ms() const { return 0; }
-  /// What the last picture lacks and why, one sentence; empty: nothing.
+  /// What the last picture lacks, or was drawn otherwise than asked, and why, one sentence; empty: nothing.
   virtual std::string note() const { return {}; }
 };
 

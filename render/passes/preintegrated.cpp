@@ -31,18 +31,19 @@ std::array<std::uint32_t, 2> entry(const Look& mean) {
 
 }  // namespace
 
-ValueInterval active_interval(const TransferTable& table, const ValueInterval& values) {
+ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded) {
   constexpr int last = 4096;
   const auto value = [&](int i) { return values.least + (values.greatest - values.least) * i / last; };
   std::vector<Look> looks(last + 1);
   for (int i = 0; i <= last; ++i) looks[i] = look_at(table, value(i));
   int first = 0, final = last;
-  while (first < last && looks[first + 1] == looks[0]) ++first;
-  while (final > first && looks[final - 1] == looks[last]) --final;
+  const auto trims = [&](const Look& end) { return !shaded || !(end[0] > 0); };
+  while (trims(looks[0]) && first < last && looks[first + 1] == looks[0]) ++first;
+  while (trims(looks[last]) && final > first && looks[final - 1] == looks[last]) --final;
   return {value(first), value(final)};
 }
 
-PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code) {
+PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded) {
   // running integrals by the trapezium rule
   std::vector<Look> looks(kSamples), integral(kSamples);
   PreintegratedTable out;
@@ -61,7 +62,7 @@ PreintegratedTable make_preintegrated(const TransferTable& table, double lo, dou
   // runs of codes between which nothing changes
   std::array<bool, kCodes> alike{};  // code and the next
   for (int a = 0; a + 1 < kCodes; ++a) {
-    alike[a] = true;
+    alike[a] = !shaded || !(looks[a * kFine][0] > 0);
     for (int k = a * kFine; k < (a + 1) * kFine && alike[a]; ++k) alike[a] = looks[k] == looks[k + 1];
     out.look[a + 1] = std::uint16_t(out.look[a] + (alike[a] ? 0 : 1));
   }

@@ -13,8 +13,9 @@
 namespace catena::render {
 
 /// Where the picture depends on the value: the transfer function is one colour and density (or nothing) below and above.
-/// Within `values`; resolved to 1 / 4096 of it.
-ValueInterval active_interval(const TransferTable& table, const ValueInterval& values);
+/// Within `values`; resolved to 1 / 4096 of it. `shaded`: what is visible depends on the gradient too, so that only what is invisible
+/// is left out, and no two codes look alike unless they are.
+ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded);
 
 struct PreintegratedTable {
   std::vector<std::array<std::uint32_t, 2>> entries;  ///< a + 256 b
@@ -23,6 +24,6 @@ struct PreintegratedTable {
 };
 
 /// `lo`, `per_code`: of the packed volume.
-PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code);
+PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded);
 
 }  // namespace catena::render

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "engine/base/clock.h"
+#include "render/passes/refinement.h"
 
 namespace catena::render {
 namespace {
@@ -76,6 +77,11 @@ class Search {
 
   Outcome begin() {
     CATENA_TRY(truth_, renderer_.probe(packet_, converged()));
+    if (!renderer_.draws_fast(packet_)) return Done{};
+    // it may have no memory for the grid
+    CATENA_TRY(const double rays, of_rays(fast(8, 1, 0, -1)));
+    (void)rays;
+    fast_ = renderer_.draws_fast(packet_);
     return Done{};
   }
 
@@ -94,7 +100,7 @@ class Search {
   }
 
   Result<QualityChoice> for_error(double e) {
-    if (renderer_.draws_fast(packet_)) {
+    if (fast_) {
       CATENA_TRY(auto candidates, fast_candidates(e));
       std::optional<Tried> failed[kPlans][2];  // the latest of a plan and shading
       for (int drawn = 0; drawn < kMostPictures && !candidates.empty(); candidates.erase(candidates.begin())) {
@@ -115,25 +121,22 @@ class Search {
     return choice(reference_settings(), 0, true);
   }
 
-  Result<QualityChoice> for_time(double ms) {
-    std::vector<RenderSettings> slower_and_slower;
-    if (renderer_.draws_fast(packet_))
-      slower_and_slower = {fast(8, 4, -1, -1),   fast(5, 4, -1, -1),  fast(4, 4, -1, -1), fast(4, 4, 1, -1),
-                           fast(3, 4, 0.7, -1),  fast(2, 4, 0.5, -1), fast(2, 2, 0, -1),  fast(2, 2, 0, 0.7),
-                           fast(1.5, 2, 0, 0.4), fast(1.5, 1, 0, -1), fast(1, 1, 0, -1),  fast(0.5, 1, 0, -1)};
-    for (const double step : kExactSteps)
-      if (slower_and_slower.empty() || step < 1) slower_and_slower.push_back(exact(step));
-    std::optional<QualityChoice> best;
-    for (const RenderSettings& settings : slower_and_slower) {
+  Result<QualityChoice> for_time(double ms, const DrawTimer& timer) {
+    const bool shaded = std::any_of(packet_.volumes.begin(), packet_.volumes.end(), [](const VolumeItem& item) { return item.shade; });
+    std::vector<RenderSettings> settings;
+    std::vector<TimedPicture> tried;
+    for (const RenderSettings& next : quality_ladder({fast_, shaded})) {
       // the first picture pays for pipelines and mirrors
-      CATENA_TRY(const double error, of_picture(settings));
-      const std::int64_t start = now_ns();
-      CATENA_CHECK(renderer_.draw(packet_, settings));
-      const bool quick = ms_since(start) <= ms;
-      if (!best || (quick && error < best->estimated_rmse)) best = choice(settings, error, quick);
-      if (!quick) break;
+      CATENA_TRY(const double error, of_picture(next));
+      CATENA_TRY(const double took, timer ? timer(next) : slower_of_two(next));
+      settings.push_back(next);
+      tried.push_back({took, error});
+      if (took > ms) break;
     }
-    return *best;
+    const std::size_t best = best_within(tried, ms);
+    QualityChoice chosen = choice(settings[best], tried[best].rmse, tried[best].ms <= ms);
+    chosen.expected_ms = tried[best].ms;
+    return chosen;
   }
 
  private:
@@ -170,11 +173,24 @@ class Search {
     return all;
   }
 
-  QualityChoice choice(const RenderSettings& settings, double error, bool reached) const { return {settings, error, reached, pictures_}; }
+  Result<double> slower_of_two(const RenderSettings& settings) {
+    double slower = 0;
+    for (int k = 0; k < 2; ++k) {
+      const std::int64_t start = now_ns();
+      CATENA_CHECK(renderer_.draw(packet_, settings));
+      slower = std::max(slower, ms_since(start));
+    }
+    return slower;
+  }
+
+  QualityChoice choice(const RenderSettings& settings, double error, bool reached) const {
+    return {settings, error, 0, reached, pictures_};
+  }
 
   Renderer& renderer_;
   const FramePacket& packet_;
   Picture truth_;
+  bool fast_ = false;
   int pictures_ = 0;
 };
 
@@ -189,14 +205,26 @@ FramePacket first_eye(const FramePacket& packet) {
 
 }  // namespace
 
-Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal) {
+std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
+  CATENA_ASSERT(!tried.empty());
+  std::size_t best = 0;
+  const auto better = [ms](const TimedPicture& a, const TimedPicture& b) {
+    if ((a.ms <= ms) != (b.ms <= ms)) return a.ms <= ms;
+    return a.ms <= ms ? a.rmse < b.rmse : a.ms < b.ms;
+  };
+  for (std::size_t i = 1; i < tried.size(); ++i)
+    if (better(tried[i], tried[best])) best = i;
+  return best;
+}
+
+Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, DrawTimer timer) {
   if (!packet.eyes.empty()) {
     const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
-    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share});
+    return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, timer);
   }
   Search search(renderer, packet);
   CATENA_CHECK(search.begin());
-  return goal.kind == QualityGoal::Kind::error ? search.for_error(goal.value) : search.for_time(goal.value);
+  return goal.kind == QualityGoal::Kind::error ? search.for_error(goal.value) : search.for_time(goal.value, timer);
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {

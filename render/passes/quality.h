@@ -2,10 +2,13 @@
 /// of a sparse lattice (every 13th each way, prime to the lattices that are interpolated) against converged rays through them.
 ///   RMSE: 8-bit RGB over the background on black, all pixels, in 1/255; its statistical error is a few per cent
 /// error=E: every ray step whose rays alone stay below E (tried on the lattice: cheap) with every plan of interpolation, in the order
-/// of their expected cost; the first whose finished picture stays below E. time=MS: the least error among settings that were drawn within
-/// MS. What the fast raycast cannot draw or cannot reach is left to the exact one. Frame thread.
+/// of their expected cost; the first whose finished picture stays below E. time=MS: the ladder of refinement.h from the cheapest on, until
+/// a picture takes longer than MS; the least error among those that did not. More time therefore never makes the error worse.
+/// What the fast raycast cannot draw or cannot reach is left to the exact one. Frame thread.
 #pragma once
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "render/passes/renderer.h"
 
@@ -19,13 +22,24 @@ struct QualityGoal {
 struct QualityChoice {
   RenderSettings settings;
   double estimated_rmse = 0;  ///< 1/255
+  double expected_ms = 0;     ///< time=MS: what the picture took, the slower of two
   bool reached = true;        ///< false: nothing was good (or quick) enough; the nearest was taken
   int pictures = 0;           ///< drawn on the way
 };
 
+/// The milliseconds of drawing a packet with these settings, once they are warm; the tests put their own in its place.
+using DrawTimer = std::function<Result<double>(const RenderSettings&)>;
+
 /// Stereo: the first eye's picture is measured; the eyes share a time.
 /// Draws several pictures; the caller draws the chosen one.
-Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal);
+Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, DrawTimer timer = nullptr);
+
+/// One setting that was tried.
+struct TimedPicture {
+  double ms = 0, rmse = 0;
+};
+/// The least error among those that took at most `ms`; where none did, the quickest.
+std::size_t best_within(const std::vector<TimedPicture>& tried, double ms);
 
 /// The error of the picture that `settings` draw, measured the same way.
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);

@@ -65,16 +65,43 @@ PassUse RaycastPass::use(const Frame& frame) const {
   return {reads, ends_at_half(frame) ? 0 : target::volume, true};
 }
 
+/// False: there is no memory for it.
+bool RaycastPass::prepare_fast(Frame& frame) {
+  const VolumeItem& item = frame.packet.volumes.front();
+  const FastSettings& settings = *frame.settings.fast;
+  const bool gradients = item.shade && settings.smooth_gradients;
+  const std::uint64_t version = item.grid->version(), needed = packed_bytes(*item.grid) * (gradients ? 2 : 1);
+  if (!refused_.reason.empty() && refused_.version == version && refused_.most_bytes == settings.most_bytes &&
+      refused_.gradients == gradients)
+    return false;
+  refused_ = {version, settings.most_bytes, gradients, {}};
+  Outcome prepared = Done{};
+  if (needed > settings.most_bytes) {
+    prepared = Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, settings.most_bytes >> 20)};
+  } else {
+    if (!fast_pass_) {
+      auto created = FastVolumePass::create(frame.device);
+      if (created)
+        fast_pass_.emplace(std::move(*created));
+      else
+        prepared = created.error();
+    }
+    if (prepared) prepared = fast_pass_->prepare(item, settings);
+  }
+  if (prepared) return true;
+  fast_pass_.reset();
+  refused_.reason = fmt::format("the grid \"{}\" is drawn by exact rays, slower: {}", item.grid->name(), prepared.error().message);
+  return false;
+}
+
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
-  fast_ = frame.settings.fast && frame.layers.empty() && draws_fast(frame.device, packet) ? &packet.volumes.front() : nullptr;
+  wanted_fast_ = frame.settings.fast && frame.layers.empty() && draws_fast(frame.device, packet);
+  fast_ = wanted_fast_ && prepare_fast(frame) ? &packet.volumes.front() : nullptr;
   if (fast_) {
     grids_.push_back(fast_->grid.get());
-    if (!fast_pass_) {
-      CATENA_TRY(fast_pass_, FastVolumePass::create(frame.device));
-    }
-    return fast_pass_->prepare(*fast_, *frame.settings.fast);
+    return Done{};
   }
 
   std::vector<Mirrored<VolumeItem>> volumes;

@@ -273,7 +273,11 @@ Result<FloatPicture> Renderer::read_back_float() {
 
 std::uint32_t Renderer::longest_side() const { return parts_->device->info().limits.maxImageDimension2D; }
 
-bool Renderer::draws_fast(const FramePacket& packet) const { return RaycastPass::draws_fast(*parts_->device, packet); }
+bool Renderer::draws_fast(const FramePacket& packet) const {
+  for (const Pass* pass : parts_->active())
+    if (const auto* raycast = dynamic_cast<const RaycastPass*>(pass); raycast && raycast->has_refused(packet)) return false;
+  return RaycastPass::draws_fast(*parts_->device, packet);
+}
 
 Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;

@@ -37,8 +37,8 @@ struct RenderStats {
   std::vector<MirrorCoarsening> mirror_coarsening;  ///< of the grids that do not fit into the memory budget
   std::uint64_t gpu_budget = 0;                     ///< bytes that may be held
   double mirror_ms = 0;                             ///< spent on building and uploading mirrors so far
-  std::vector<std::string> notes;                   ///< what the last picture lacks and why, a sentence each
-  std::uint64_t validation_messages = 0;            ///< warnings and errors of the validation layer so far
+  std::vector<std::string> notes;         ///< what the last picture lacks, or was drawn otherwise than asked, and why, a sentence each
+  std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
 
 /// Pixels between the rays of Renderer::probe; prime to every lattice's spacing.
@@ -71,7 +71,7 @@ class Renderer {
   Result<FloatPicture> read_back_float();
   /// Pixels that a picture can have, each way, on this device.
   std::uint32_t longest_side() const;
-  /// Whether `RenderSettings::fast` holds for what the packet draws.
+  /// Whether `RenderSettings::fast` holds for what the packet draws. What it turns out to have no memory for, it holds no longer for.
   bool draws_fast(const FramePacket& packet) const;
   /// The rays of every kProbeSpacing-th pixel alone, as a small picture over black: what `settings` make of them before anything is
   /// interpolated. What quality.h measures errors with.

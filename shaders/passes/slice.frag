@@ -53,7 +53,8 @@ bool value_at(vec3 p, out float value, out vec3 gradient) {
 }
 
 bool is_clipped(vec2 q, float t) {
-  for (uint i = 0u; i < frame.clip_count; ++i) {
+  const uint planes = of_pixel(frame.clip_count, gl_FragCoord.xy);
+  for (uint i = 0u; i < planes; ++i) {
     const float at = frame.clips[i].at + frame.clips[i].at_x * q.x + frame.clips[i].at_y * q.y;
     const float along = frame.clips[i].along + frame.clips[i].along_x * q.x + frame.clips[i].along_y * q.y;
     if (at + t * along < -slice.clip_slack) return true;

@@ -14,6 +14,7 @@ struct LatticeData {
   float apron;       // texels before the picture's first; coarser lattices have COARSE_APRON
   float threshold;   // a block is marched where interpolation is expected to err by more (display units)
   uint width, height;  // of the lattice that this one refines, texels
+  float gradient_unit; // codes a voxel in one count of the gradient volume
 };
 
 // From every 2nd pixel to the picture, in invocations from lattice point first_x, first_y on.

@@ -25,6 +25,7 @@ namespace {
 
 using namespace catena;
 
+constexpr int kFinePoints = 64;  // from one opacity point to the next
 constexpr double kPi = 3.14159265358979323846;
 
 double cpu_ms() {
@@ -53,7 +54,13 @@ render::FramePacket packet_of(const std::string& raw, int n, bool shade) {
   render::VolumeItem item;
   item.grid = field::make_scalar_grid("density", {}, {n, n, n}, values);
   item.transfer.colors = {{0, .1, .1, .4}, {.35, .1, .6, .8}, {.6, .9, .8, .3}, {1, .9, .2, .1}};
-  for (const auto& [value, alpha] : opacity_of(raw)) item.transfer.extinctions.push_back({value, -std::log1p(-alpha) / (n / 128.0)});
+  // VTK interpolates opacity, not extinction
+  const auto opacity = opacity_of(raw);
+  for (std::size_t i = 0; i + 1 < opacity.size(); ++i)
+    for (int k = i == 0 ? 0 : 1; k <= kFinePoints; ++k) {
+      const double f = double(k) / kFinePoints, alpha = std::lerp(opacity[i][1], opacity[i + 1][1], f);
+      item.transfer.extinctions.push_back({std::lerp(opacity[i][0], opacity[i + 1][0], f), -std::log1p(-alpha) / (n / 128.0)});
+    }
   item.shade = shade;
   render::FramePacket packet;
   packet.volumes.push_back(item);

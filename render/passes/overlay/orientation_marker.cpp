@@ -10,7 +10,8 @@ constexpr double kArrowShare = 0.37;    // of the square: an arrow's length
 constexpr double kRadiusShare = 0.045;  // of the arrow's length: the shaft's radius
 constexpr double kConeStart = 0.70, kConeRadius = 0.15;
 constexpr double kLetterGapPt = 8;
-constexpr float kShade = 0.62f;  // a cone's base, seen from behind
+constexpr double kAlongView = 0.3;  // shorter arrows than that share are seen from their end
+constexpr float kShade = 0.62f;     // a cone's base, seen from behind
 
 const Color kAxisColors[3] = {{0.90f, 0.20f, 0.18f}, {0.25f, 0.75f, 0.25f}, {0.25f, 0.45f, 0.95f}};
 
@@ -58,10 +59,20 @@ void draw_orientation_marker(Canvas& canvas, const OrientationMarkerItem& marker
       canvas.ellipse(base, unit, squeezed, wide, color, true);
       canvas.cone(base, tip, wide, color);
     }
-    canvas.text(marker.names[std::size_t(arrow.axis)], tip + canvas.px(kLetterGapPt) * (seen > 0.2 ? unit : Vec2(unit.x * 0.5, -1.0)),
-                Anchor::centre, {12, true, false, {}});
   }
   if (!ball) canvas.ellipse(place.centre, {1.0, 0.0}, 1.7 * radius, 1.7 * radius, {0.75f, 0.75f, 0.75f}, true);
+
+  // letters over all arrows; that of an axis along the view stands where the others are not
+  for (const Arrow& arrow : arrows) {
+    Vec2 aside = arrow.along;
+    if (std::hypot(aside.x, aside.y) < kAlongView) {
+      aside = arrow.along - arrows[0].along - arrows[1].along - arrows[2].along;
+      if (!(std::hypot(aside.x, aside.y) > 1e-3)) aside = {0.0, 1.0};
+    }
+    aside /= std::hypot(aside.x, aside.y);
+    canvas.text(marker.names[std::size_t(arrow.axis)], place.centre + place.arrow * arrow.along + canvas.px(kLetterGapPt) * aside,
+                Anchor::centre, {12, true, false, {}});
+  }
 }
 
 }  // namespace catena::render

@@ -13,7 +13,7 @@ render::Picture picture_of(const std::string& drawn) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", R"({"fields": {"d": {"analytic": "constant", "resolution": 9, "box": [-1, 1]}},)" + drawn +
                                           R"(, "background": "transparent",
-    "camera": {"position": [0, -8, 0], "target": [0, 0, 0], "up": [0, 0, 1], "orthographic": true, "height": 3}})");
+    "camera": {"position": [0, -8, 0], "target": [0, 0, 0], "up": [0, 0, 1], "projection": "orthographic", "height": 3}})");
   const auto run = test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "o.png", "--size", "64x64",
                                                       "--validation", "--stats", folder / "o.json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -228,6 +228,65 @@ TEST_F(FastVolume, WhatItCannotDrawIsDrawnExactly) {
   EXPECT_EQ(max_difference(draw(packet, fast(4, 4)), draw(packet)), 0);
 }
 
+TEST_F(FastVolume, WhatDoesNotFitInMemoryIsDrawnExactlyAndSaid) {
+  FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
+  packet.volumes = {coloured(waves(), true)};
+  const Picture exact = draw(packet);
+  RenderSettings settings = fast(4, 4);
+  EXPECT_GT(max_difference(draw(packet, settings), exact), 0);
+  EXPECT_TRUE(renderer_->stats().notes.empty());
+  settings.fast->most_bytes = 4 * 48 * 40 * 44 - 1;
+  EXPECT_EQ(max_difference(draw(packet, settings), exact), 0);
+  ASSERT_EQ(renderer_->stats().notes.size(), 1u);
+  EXPECT_NE(renderer_->stats().notes[0].find("\"density\" is drawn by exact rays"), std::string::npos) << renderer_->stats().notes[0];
+  EXPECT_FALSE(renderer_->draws_fast(packet));
+  // it fits without gradients of its own, but not with them
+  settings.fast->most_bytes += 1;
+  EXPECT_GT(max_difference(draw(packet, settings), exact), 0);
+  EXPECT_TRUE(renderer_->stats().notes.empty());
+  EXPECT_TRUE(renderer_->draws_fast(packet));
+  settings.fast->smooth_gradients = true;
+  EXPECT_EQ(max_difference(draw(packet, settings), exact), 0);
+  EXPECT_EQ(renderer_->stats().notes.size(), 1u);
+  draw(packet);  // exact rays were asked for: nothing to say
+  EXPECT_TRUE(renderer_->stats().notes.empty());
+}
+
+TEST_F(FastVolume, LitPlainRegionsAreNotLeaptOver) {
+  // one colour and density all through, so that the light alone varies
+  const auto grid =
+      make_grid({40, 40, 40}, [](const Vec3& p) { return 0.5 + 0.3 * std::sin(0.5 * p.x) * std::sin(0.4 * p.y + 0.3 * p.z); });
+  FramePacket packet = packet_of({100, -70, 60}, {19.5, 19.5, 19.5});
+  packet.background = {0, 0, 0, 1};
+  packet.volumes = {volume_item(grid, {{0, 0.05}, {1, 0.05}}, {0.9f, 0.7f, 0.4f})};
+  packet.volumes[0].shade = true;
+  const Picture exact = draw(packet, reference_settings(), "exact");
+  EXPECT_LT(rmse(draw(packet, fast(1, 1), "fast"), exact), 1);
+  EXPECT_LT(rmse(draw(packet, fast(2, 1)), exact), 1.2);
+}
+
+TEST_F(FastVolume, LightIsThatOfTheDerivativeAlongTheRay) {
+  // five codes a voxel along x: the light is one number a ray, the cosine of ray and x
+  const auto grid = make_grid({52, 41, 41}, [](const Vec3& p) { return p.x / 51; });
+  FramePacket packet = packet_of({95, -60, 40}, {25, 20, 20}, 35);
+  packet.background = {0, 0, 0, 1};
+  packet.volumes = {volume_item(grid, {{0, 0.5}, {1, 0.5}})};  // nothing gets through
+  packet.volumes[0].shade = true;
+  Bounds none;
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, none);
+  for (const bool smooth : {false, true}) {
+    RenderSettings settings = fast(3, 1);
+    settings.fast->smooth_gradients = smooth;
+    const Picture picture = draw(packet, settings, smooth ? "smooth" : "cell");
+    for (std::uint32_t y = 40; y < 80; ++y)
+      for (std::uint32_t x = 60; x < 100; ++x) {
+        const double n = std::fabs(ray_through(camera, x + 0.5, y + 0.5).direction.x);
+        const double light = 0.2 + 0.7 * n + 0.2 * std::pow(std::max(0.0, 2 * n * n - 1), 20);
+        ASSERT_NEAR(picture.pixel(x, y)[1], 255 * std::min(1.0, light), 2) << x << " " << y << smooth;
+      }
+  }
+}
+
 TEST_F(FastVolume, TransferFunctionsAndGridsMayChange) {
   FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
   packet.background = {0, 0, 0, 1};

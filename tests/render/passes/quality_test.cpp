@@ -1,6 +1,8 @@
 /// The estimate against the truth, and goals that are reached.
 #include "render/passes/quality.h"
 
+#include "render/passes/refinement.h"
+
 #include <cmath>
 
 #include "tests/render/support/frames.h"
@@ -80,6 +82,33 @@ TEST_F(Quality, TimeTakesTheBestOfWhatIsQuickEnough) {
   EXPECT_EQ(none->pictures, 1);
   EXPECT_LT(plenty->estimated_rmse, 0.3);
   EXPECT_LT(plenty->estimated_rmse, none->estimated_rmse);
+}
+
+TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
+  // times by the ladder's own costs: the same on every machine
+  for (const bool shade : {false, true}) {
+    const FramePacket packet = scene(shade);
+    const DrawTimer timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
+    double last = 1e9;
+    for (const double ms : {4.0, 8.0, 30.0, 400.0}) {
+      const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, ms}, timer);
+      ASSERT_TRUE(choice);
+      EXPECT_TRUE(choice->reached) << ms;
+      EXPECT_LE(choice->expected_ms, ms);
+      EXPECT_DOUBLE_EQ(choice->expected_ms, 100 * relative_cost(choice->settings, shade));
+      EXPECT_LE(choice->estimated_rmse, last) << ms;
+      last = choice->estimated_rmse;
+    }
+    EXPECT_LT(last, 0.6);
+  }
+}
+
+TEST(QualityWithin, TheLeastErrorInTimeElseTheQuickest) {
+  const std::vector<TimedPicture> tried{{10, 3}, {20, 1}, {15, 2}, {40, 0.5}, {60, 0.6}};
+  EXPECT_EQ(best_within(tried, 5), 0u);
+  EXPECT_EQ(best_within(tried, 16), 2u);
+  EXPECT_EQ(best_within(tried, 39), 1u);
+  EXPECT_EQ(best_within(tried, 100), 3u);
 }
 
 TEST_F(Quality, ScenesWithoutVolumesAreExactAlready) {

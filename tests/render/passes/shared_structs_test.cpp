@@ -5,6 +5,7 @@
 
 #include "shaders/shared/frame.h"
 #include "shaders/shared/layers.h"
+#include "shaders/shared/overlay.h"
 #include "shaders/shared/pack.h"
 #include "tests/render/support/spirv.h"
 
@@ -32,6 +33,8 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, direction_y);
       EXPECT_OFFSET(GridData, lo);
       EXPECT_OFFSET(GridData, hi);
+      EXPECT_OFFSET(GridData, domain_lo);
+      EXPECT_OFFSET(GridData, domain_hi);
       EXPECT_OFFSET(GridData, texel);
       EXPECT_OFFSET(GridData, world_gradient);
       EXPECT_OFFSET(GridData, value_offset);
@@ -149,6 +152,43 @@ TEST(SharedStructs, SliceData) {
 TEST(SharedStructs, ComposeData) {
   auto all = struct_offsets(shader_words("compose.frag"));
   EXPECT_EQ(all["ComposeData"].at("background"), offsetof(ComposeData, background));
+}
+
+TEST(SharedStructs, Overlay) {
+  for (const char* shader : {"overlay.vert", "overlay.frag"}) {
+    auto all = struct_offsets(shader_words(shader));
+    const auto& found = all["OverlayShape"];
+    std::size_t compared = 0;
+    EXPECT_OFFSET(OverlayShape, origin);
+    EXPECT_OFFSET(OverlayShape, axis_x);
+    EXPECT_OFFSET(OverlayShape, axis_y);
+    EXPECT_OFFSET(OverlayShape, lo);
+    EXPECT_OFFSET(OverlayShape, hi);
+    EXPECT_OFFSET(OverlayShape, color);
+    EXPECT_OFFSET(OverlayShape, size);
+    EXPECT_OFFSET(OverlayShape, texel);
+    EXPECT_OFFSET(OverlayShape, first_stop);
+    EXPECT_OFFSET(OverlayShape, last_stop);
+    EXPECT_OFFSET(OverlayShape, kind);
+    EXPECT_OFFSET(OverlayShape, anchor);
+    EXPECT_OFFSET(OverlayShape, hide_depth);
+    EXPECT_EQ(found.at("[]"), sizeof(OverlayShape));
+    EXPECT_EQ(found.size(), compared + 1);
+  }
+  std::size_t compared = 0;
+  auto all = struct_offsets(shader_words("overlay.frag"));
+  {
+    const auto& found = all["OverlayStop"];
+    EXPECT_OFFSET(OverlayStop, place);
+    EXPECT_OFFSET(OverlayStop, color);
+    EXPECT_EQ(found.at("[]"), sizeof(OverlayStop));
+  }
+  all = struct_offsets(shader_words("overlay.vert"));
+  const auto& found = all["OverlayData"];
+  EXPECT_OFFSET(OverlayData, half_size);
+  EXPECT_OFFSET(OverlayData, depth_slack);
+  EXPECT_OFFSET(OverlayData, has_depth);
+  EXPECT_EQ(compared, 5u);
 }
 
 }  // namespace

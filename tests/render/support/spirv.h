@@ -28,7 +28,14 @@ inline std::vector<std::uint32_t> shader_words(const std::string& name) {
 
 /// Member offsets by struct and member name, and the stride of arrays of a struct under the member name "[]".
 inline std::map<std::string, std::map<std::string, std::uint32_t>> struct_offsets(const std::vector<std::uint32_t>& words) {
-  enum : std::uint32_t { op_name = 5, op_member_name = 6, op_type_array = 28, op_decorate = 71, op_member_decorate = 72 };
+  enum : std::uint32_t {
+    op_name = 5,
+    op_member_name = 6,
+    op_type_array = 28,
+    op_type_runtime_array = 29,
+    op_decorate = 71,
+    op_member_decorate = 72
+  };
   enum : std::uint32_t { array_stride = 6, offset = 35 };
   std::map<std::uint32_t, std::string> names;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> member_names;
@@ -39,7 +46,7 @@ inline std::map<std::string, std::map<std::string, std::uint32_t>> struct_offset
     const auto text = [&](std::size_t at) { return std::string(reinterpret_cast<const char*>(&words[at])); };
     if (op == op_name) names[words[i + 1]] = text(i + 2);
     if (op == op_member_name) member_names[{words[i + 1], words[i + 2]}] = text(i + 3);
-    if (op == op_type_array) element_of[words[i + 1]] = words[i + 2];
+    if (op == op_type_array || op == op_type_runtime_array) element_of[words[i + 1]] = words[i + 2];
     if (op == op_decorate && words[i + 2] == array_stride) strides[words[i + 1]] = words[i + 3];
     if (op == op_member_decorate && words[i + 3] == offset) offsets[{words[i + 1], words[i + 2]}] = words[i + 4];
     if (words[i] >> 16 == 0) break;
