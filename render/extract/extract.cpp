@@ -134,6 +134,12 @@ View view_of(const scene::Scene& scene, const FramePacket& packet) {
 
 }  // namespace
 
+void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
+  packet.view = view;
+  set_fog(scene, packet_bounds(packet), packet);
+  set_eyes(packet, scene.stereo);
+}
+
 Bounds packet_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));

@@ -15,6 +15,9 @@ namespace catena::render {
 /// a seed that starts nothing.
 Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height);
 
+/// Another view of the packet of this scene; what follows from the view, the eyes and the fog's range, is made anew.
+void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
+
 /// The world box of all that the packet draws: the domains of grids, tubes, cursors. Also what near and far enclose.
 Bounds packet_bounds(const FramePacket& packet);
 

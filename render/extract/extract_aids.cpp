@@ -140,17 +140,22 @@ FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& pa
     farthest = i == 0 ? depth : std::max(farthest, depth);
   }
   item.start = fog.start.value_or(std::max(0.0, nearest));
-  item.end = std::max(fog.end.value_or(farthest), item.start + 1e-9 * (1 + std::fabs(item.start)));
+  const double least = 1e-9 * (drawn.empty() ? 1 : drawn.diagonal()) + 1e-12 * std::fabs(item.start);  // the fog's share divides by it
+  item.end = std::max(fog.end.value_or(farthest), item.start + least);
   return item;
 }
 
 }  // namespace
 
+void set_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  if (scene.fog) packet.fog = fog_of(*scene.fog, drawn, packet);
+}
+
 Outcome extract_aids(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   if (scene.bounding_box) CATENA_CHECK(add_bounding_box(scene, drawn, packet));
   if (scene.axes) CATENA_CHECK(add_axes(scene, drawn, packet));
   if (scene.ground) add_ground(*scene.ground, drawn, packet);
-  if (scene.fog) packet.fog = fog_of(*scene.fog, drawn, packet);
+  set_fog(scene, drawn, packet);
   for (const scene::Light& light : scene.lights) {
     const auto i = static_cast<float>(light.intensity);
     packet.lights.push_back({light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.with_camera});

@@ -2,6 +2,9 @@
 // lit: the normal is turned towards the eye. Without lights of the scene a headlight sits at the eye. Without a normal only the
 // ambient share is left. The includer declares `frame` with light_count, lights and fog.
 vec3 lit(vec3 color, vec3 normal, vec3 towards_eye) {
+  const float size = max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
+  if (!(size > 0.0)) return 0.2 * color;
+  normal /= size;  // gradients of 1e24 or 1e-24 have no square
   const float length2 = dot(normal, normal);
   if (!(length2 > 0.0)) return 0.2 * color;
   vec3 sum = 0.2 * color;

@@ -90,17 +90,24 @@ Hit meet(vec2 q) {
   return hit;
 }
 
+bool is_steep(Hit hit) { return any(greaterThan(abs(hit.gradient), vec2(0.0))); }
+
+// Pixels to the level by the value's tangent. Gradients of 1e24 or 1e-24 have no square: their direction is squared.
+vec2 step_to(Hit hit, float level) {
+  const float size = max(abs(hit.gradient.x), abs(hit.gradient.y));
+  const vec2 along = hit.gradient / size;
+  return (level - hit.value) / size / dot(along, along) * along;
+}
+
 // How much of the pixel a line of the level covers. Its distance is that of the foot on the value's tangent, measured again at
 // that foot (the value bends, and its gradient jumps from cell to cell).
 float line_cover(Hit hit, vec2 q, float level) {
-  const float steepness2 = dot(hit.gradient, hit.gradient);
-  if (!(steepness2 > 0.0)) return 0.0;
-  vec2 foot = (level - hit.value) / steepness2 * hit.gradient;
+  if (!is_steep(hit)) return 0.0;
+  vec2 foot = step_to(hit, level);
   if (length(foot) > slice.half_width + 2.0) return 0.0;
   const Hit there = meet(q + foot);
-  const float again = dot(there.gradient, there.gradient);
-  if (there.seen && again > 0.0) {
-    const vec2 more = (level - there.value) / again * there.gradient;
+  if (there.seen && is_steep(there)) {
+    const vec2 more = step_to(there, level);
     if (length(more) < 1.0) foot += more;
   }
   return clamp(slice.half_width + 0.5 - length(foot), 0.0, 1.0) * min(1.0, 2.0 * slice.half_width);

@@ -42,8 +42,9 @@ class Frames {
   Result<render::FramePacket> packet(int frame) {
     scene_.phase = options_.phase + static_cast<double>(frame) / motion_.frames();
     CATENA_TRY(render::FramePacket packet, render::extract_frame(scene_, size_.width, size_.height));
-    packet.view = motion_.at(packet.view, render::packet_bounds(packet), static_cast<double>(size_.width) / size_.height, frame);
-    render::set_eyes(packet, scene_.stereo);
+    const render::View view =
+        motion_.at(packet.view, render::packet_bounds(packet), static_cast<double>(size_.width) / size_.height, frame);
+    render::set_view(scene_, view, packet);
     return packet;
   }
 

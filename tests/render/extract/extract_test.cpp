@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "tests/support/support.h"
 
@@ -58,6 +59,38 @@ TEST(Extract, AMeshIsOneObjectInEveryFrame) {
 TEST(Extract, TransparentBackgroundHasNoAlpha) {
   scene::Scene scene = scene_of(R"({"fields": {}, "chain": [], "background": "transparent"})");
   EXPECT_EQ(packet_of(scene).background[3], 0.0f);
+}
+
+TEST(Extract, FogSpansWhatIsDrawnInAWorldOfAnySize) {
+  for (const double size : {1.0, 1e-9, 1e-12, 1e9}) {
+    const test::TemporaryFolder folder;
+    char line[128];
+    std::snprintf(line, sizeof line, "v 0 0 0\nv %g 0 0\nv 0 %g 0\nf 1 2 3\n", size, size);
+    test::write_file(folder / "t.obj", line);
+    auto scene = scene::parse_scene(R"({"meshes": [{"name": "a", "file": "t.obj"}], "fog": true})", folder / "s.json");
+    ASSERT_TRUE(scene) << scene.error().message;
+    const FramePacket packet = packet_of(*scene);
+    ASSERT_TRUE(packet.fog);
+    EXPECT_GT(packet.fog->end - packet.fog->start, 0.1 * size) << size;
+    EXPECT_LT(packet.fog->end - packet.fog->start, 1.5 * size) << size;
+  }
+}
+
+TEST(Extract, FogAndEyesFollowAViewThatMoves) {
+  scene::Scene scene = scene_of(R"({"fields": {)" + kSphere +
+                                R"(}, "isosurfaces": [{"field": "s", "level": 1}], "fog": true,
+      "stereo": {"mode": "left"}, "camera": {"position": [0, -10, 0], "target": [0, 0, 0]}})");
+  FramePacket packet = packet_of(scene);
+  ASSERT_TRUE(packet.fog);
+  EXPECT_NEAR(packet.fog->start, 8, 1e-9);  // the sphere's field spans -2..2
+  EXPECT_NEAR(packet.fog->end, 12, 1e-9);
+  View far = packet.view;
+  far.position = {0, -100, 0};
+  set_view(scene, far, packet);
+  EXPECT_NEAR(packet.fog->start, 98, 1e-9);
+  EXPECT_NEAR(packet.fog->end, 102, 1e-9);
+  ASSERT_EQ(packet.eyes.size(), 1u);
+  EXPECT_LT(norm(packet.eyes[0].position - far.position), 5);
 }
 
 TEST(Extract, OpacityBecomesExtinctionAtItsPoints) {
