@@ -9,7 +9,7 @@ constexpr double kMostPoints = 576;
 
 /// What has colours that a bar can show.
 bool has_colors(const World& world, Entity e) {
-  return world.has<Volume>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by);
+  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by);
 }
 
 template <class T>
@@ -36,6 +36,7 @@ Entity shown_field(const World& world, Entity field) {
     if (!found && shows && has_colors(world, e)) found = e;
   };
   world.each<Volume>([&](Entity e, const Volume& volume) { take(e, volume.field == field); });
+  world.each<Slice>([&](Entity e, const Slice& slice) { take(e, slice.shown.field == field); });
   world.each<StreamlineSet>([&](Entity e, const StreamlineSet& set) {
     const bool other = set.color_by && set.color_by->what == ColorBy::What::field;
     take(e, (other ? set.color_by->field : set.field) == field);
@@ -45,11 +46,12 @@ Entity shown_field(const World& world, Entity field) {
 
 Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   int given = 0;
-  for (const char* key : {"volume", "streamlines", "field"}) given += item.find(key) != nullptr;
+  for (const char* key : {"volume", "slice", "streamlines", "field"}) given += item.find(key) != nullptr;
   if (given != 1)
     return json::error_at(item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
-                                    "; one of \"volume\": INDEX, \"streamlines\": INDEX, \"field\": NAME was expected");
+                                    "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"field\": NAME was expected");
   if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes");
+  if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices");
   if (const json::Node* node = item.find("streamlines")) {
     CATENA_TRY(const Entity set, read_index<StreamlineSet>(scene, item, "streamlines", "streamlines"));
     if (!has_colors(scene.world, set))
@@ -59,7 +61,7 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.world, field);
   if (!shown)
-    return json::error_at(*item.find("field"), "no volume and no coloured streamlines show " +
+    return json::error_at(*item.find("field"), "no volume, slice or coloured streamlines show " +
                                                    in_quotes(scene.world.get<Name>(field).value) + "; a field with colours was expected");
   return shown;
 }
@@ -102,6 +104,7 @@ std::optional<ScalarBar> first_scalar_bar(const World& world) {
     bar->shown = e;
   };
   world.each<Volume>([&](Entity e, const Volume&) { take(e); });
+  world.each<Slice>([&](Entity e, const Slice&) { take(e); });
   world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { take(e); });
   return bar;
 }
@@ -110,7 +113,7 @@ Outcome read_scalar_bars(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"scalar_bars\" is no array; an array of objects was expected");
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(item, {"volume", "streamlines", "field", "title", "position", "ticks", "format"}));
+    CATENA_CHECK(json::only_keys(item, {"volume", "slice", "streamlines", "field", "title", "position", "ticks", "format"}));
     ScalarBar bar;
     bar.where = item;
     CATENA_TRY(bar.shown, read_shown(scene, item));

@@ -16,20 +16,42 @@ std::optional<Color> color_of(const std::optional<scene::Rgb>& c) {
 
 std::string name_of(const scene::World& world, scene::Entity e) { return world.has<scene::Name>(e) ? world.get<scene::Name>(e).value : ""; }
 
-/// The colours that an entity shows, and what it calls them.
+/// The colours that an entity shows (value, r, g, b), and what it calls them.
 struct Shown {
-  const std::vector<scene::TransferFunction::ColorPoint>* colors = nullptr;
+  std::vector<std::array<double, 4>> colors;
   std::string name;
 };
 
-Shown shown_by(const scene::World& world, scene::Entity e) {
+std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunction::ColorPoint>& points) {
+  std::vector<std::array<double, 4>> rows;
+  for (const auto& point : points) rows.push_back({point.value, point.color.r, point.color.g, point.color.b});
+  return rows;
+}
+
+/// The packet's slices are in the order of their owners.
+const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, const FramePacket& packet) {
+  std::size_t i = 0, found = packet.slices.size();
+  world.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
+    if (e == wanted) found = i;
+    ++i;
+  });
+  return found < packet.slices.size() ? &packet.slices[found] : nullptr;
+}
+
+Shown shown_by(const scene::World& world, scene::Entity e, const FramePacket& packet) {
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);
-    return {&volume.transfer.colors, name_of(world, volume.field)};
+    return {rows_of(volume.transfer.colors), name_of(world, volume.field)};
+  }
+  if (world.has<scene::Slice>(e)) {
+    const SliceItem* slice = slice_item(world, e, packet);
+    return slice ? Shown{slice->colors, name_of(world, world.get<scene::Slice>(e).shown.field)} : Shown{};
   }
   CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
   const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
-  const auto* colors = shown_colors(world, e);
+  const auto* points = shown_colors(world, e);
+  if (points == nullptr) return {};
+  const auto colors = rows_of(*points);
   switch (set.color_by->what) {
     case scene::ColorBy::What::field:
       return {colors, name_of(world, set.color_by->field)};
@@ -46,12 +68,12 @@ Anchor anchor_of(scene::PictureCorner corner) {
   return anchors[static_cast<int>(corner)];
 }
 
-void extract_scalar_bars(const scene::Scene& scene, Overlay& overlay) {
+void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, Overlay& overlay) {
   for (const scene::ScalarBar& bar : scene.annotations.scalar_bars) {
-    const Shown shown = shown_by(scene.world, bar.shown);
-    if (shown.colors == nullptr || shown.colors->empty()) continue;
+    Shown shown = shown_by(scene.world, bar.shown, packet);
+    if (shown.colors.empty()) continue;
     ScalarBarItem item;
-    for (const auto& point : *shown.colors) item.colors.push_back({point.value, point.color.r, point.color.g, point.color.b});
+    item.colors = std::move(shown.colors);
     BarScale scale = bar_scale(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format);
     item.ticks = std::move(scale.ticks);
     item.factor = std::move(scale.factor);
@@ -82,7 +104,7 @@ void extract_overlay(const scene::Scene& scene, FramePacket& packet) {
   overlay.font = from.font;
   overlay.scale = from.scale;
   overlay.color = color_of(from.color);
-  extract_scalar_bars(scene, overlay);
+  extract_scalar_bars(scene, packet, overlay);
   extract_status(scene, overlay);
   for (const scene::Label& label : from.labels) {
     LabelItem item;

@@ -55,6 +55,20 @@ TEST(BarTicks, LieWithinTheRangeAtEqualSteps) {
       }
 }
 
+TEST(ExtractOverlay, ASlicesBarSpansTheValuesThatItsFieldHas) {
+  const FramePacket packet =
+      packet_of(R"({"fields": {"p": {"analytic": "plane", "resolution": 9}, "v": {"analytic": "uniform", "resolution": 9}},
+    "slices": [{"field": "v", "axis": "y", "at": 0}, {"field": "p", "axis": "x", "at": 0, "color": [[-1, 0, 0, 1], [1, 1, 0, 0]]}],
+    "scalar_bars": [{"slice": 1, "title": "height"}, {"field": "v"}]})");
+  ASSERT_EQ(packet.overlay.scalar_bars.size(), 2u);
+  const ScalarBarItem& height = packet.overlay.scalar_bars[0];
+  EXPECT_EQ(height.title, "height");
+  EXPECT_EQ(height.colors, (std::vector<std::array<double, 4>>{{-1, 0, 0, 1}, {1, 1, 0, 0}}));
+  // the magnitude of a uniform field is 1 everywhere
+  EXPECT_EQ(packet.overlay.scalar_bars[1].title, "v");
+  EXPECT_NEAR(packet.overlay.scalar_bars[1].colors.front()[0], 1, 1e-6);
+}
+
 TEST(ExtractOverlay, BarsShowTheColoursOfWhatTheyName) {
   const FramePacket packet = packet_of(R"({"fields": {"d": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle"}},
     "volumes": [{"field": "d", "color": [[0, 0, 0, 0], [1, 1, 0, 0.5], [2, 1, 1, 1]]}],
