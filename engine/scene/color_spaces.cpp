@@ -64,8 +64,8 @@ Vec3 rgb_from_hsv(const Vec3& c) {
   return {component(5), component(3), component(1)};
 }
 
-Vec3 hsv_between(const Vec3& a, const Vec3& b, double t) {
-  const double turn = std::remainder(b.x - a.x, 1.0), hue = a.x + t * turn;
+Vec3 hsv_between(const Vec3& a, const Vec3& b, double t, bool wrap) {
+  const double turn = wrap ? std::remainder(b.x - a.x, 1.0) : b.x - a.x, hue = a.x + t * turn;
   return {hue - std::floor(hue), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
 }
 
@@ -83,7 +83,8 @@ Vec3 srgb_from_lab(const Vec3& lab) {
   const double x = kWhiteX * lab_curve_back(fy + lab.y / 500), y = lab_curve_back(fy), z = kWhiteZ * lab_curve_back(fy - lab.z / 200);
   const Vec3 rgb(encoded(3.2406 * x - 1.5372 * y - 0.4986 * z), encoded(-0.9689 * x + 1.8758 * y + 0.0415 * z),
                  encoded(0.0557 * x - 0.2040 * y + 1.0570 * z));
-  return {std::clamp(rgb.x, 0.0, 1.0), std::clamp(rgb.y, 0.0, 1.0), std::clamp(rgb.z, 0.0, 1.0)};
+  const double most = std::max({rgb.x, rgb.y, rgb.z, 1.0});
+  return {std::max(rgb.x, 0.0) / most, std::max(rgb.y, 0.0) / most, std::max(rgb.z, 0.0) / most};
 }
 
 Vec3 msh_from_lab(const Vec3& lab) {
@@ -100,7 +101,8 @@ Vec3 between_colors(ColorSpace space, const Vec3& a, const Vec3& b, double t) {
     case ColorSpace::rgb:
       return a + t * (b - a);
     case ColorSpace::hsv:
-      return rgb_from_hsv(hsv_between(hsv_from_rgb(a), hsv_from_rgb(b), t));
+    case ColorSpace::hsv_wrap:
+      return rgb_from_hsv(hsv_between(hsv_from_rgb(a), hsv_from_rgb(b), t, space == ColorSpace::hsv_wrap));
     case ColorSpace::lab:
       return srgb_from_lab((1 - t) * lab_from_srgb(a) + t * lab_from_srgb(b));
     case ColorSpace::diverging:

@@ -1,17 +1,19 @@
 /// Colours between two colours, each in the space that its author chose. Components are display (sRGB) values, 0 to 1.
 ///   rgb        the components themselves
-///   hsv        hue (the shorter way round), saturation and value
+///   hsv        hue, saturation and value; the hue does not pass red
+///   hsv_wrap   the same, the hue goes the shorter way round
 ///   lab        CIELAB of a D65 white
 ///   diverging  Msh, CIELAB in polar form: M = |Lab|, s = acos(L / M), h = atan2(b, a). Between two saturated colours of
 ///              different hue an unsaturated white, M = max(M1, M2, 88), is put halfway; a hue towards it turns with the length:
 ///              h +- s sqrt(M_white^2 - M^2) / (M sin s)
+/// A colour too bright for the screen is divided by its greatest component, as VTK does.
 /// K. Moreland, "Diverging color maps for scientific visualization", ISVC 2009, section 5. Pure functions, any thread.
 #pragma once
 #include "engine/base/vec.h"
 
 namespace catena::scene {
 
-enum class ColorSpace { rgb, hsv, lab, diverging };
+enum class ColorSpace { rgb, hsv, hsv_wrap, lab, diverging };
 
 /// The colour at t, 0 (a) to 1 (b); components within 0..1.
 Vec3 between_colors(ColorSpace space, const Vec3& a, const Vec3& b, double t);

@@ -1,4 +1,4 @@
-/// ParaView's colour map as it exports it: [{"Name", "ColorSpace", "RGBPoints": [x, r, g, b, ...], "Points": [x, a, middle,
+/// ParaView's colour map as it exports it: [{"Name", "ColorSpace", "HSVWrap", "RGBPoints": [x, r, g, b, ...], "Points": [x, a, middle,
 /// sharpness, ...], ...}]. Other keys say nothing about the colours and are passed over. Between points ParaView works in
 /// ColorSpace (none: RGB); what is not linear in RGB becomes kPieces linear pieces. "Points" are opacities, straight lines only
 /// (middle 0.5, sharpness 0); 1 becomes kMostOpaque, since an opacity per unit length stays below 1.
@@ -31,7 +31,13 @@ Result<std::vector<std::array<double, 4>>> read_rows(const json::Node& node, std
 Result<ColorSpace> read_space(const json::Node& map) {
   CATENA_TRY(const std::string name, json::get_string(map, "ColorSpace", "RGB"));
   if (name == "RGB") return ColorSpace::rgb;
-  if (name == "HSV") return ColorSpace::hsv;
+  if (name == "HSV") {
+    const json::Node* wrap = map.find("HSVWrap");
+    if (wrap == nullptr) return ColorSpace::hsv;
+    if (wrap->kind == json::Kind::boolean) return wrap->boolean ? ColorSpace::hsv_wrap : ColorSpace::hsv;
+    CATENA_TRY(const int on, json::get_integer(map, "HSVWrap", 0, 0, 1));
+    return on == 1 ? ColorSpace::hsv_wrap : ColorSpace::hsv;
+  }
   if (name == "Lab" || name == "CIELAB") return ColorSpace::lab;
   if (name == "Diverging") return ColorSpace::diverging;
   return json::error_at(*map.find("ColorSpace"), "\"ColorSpace\" is " + in_quotes(name) + "; RGB, HSV, Lab or Diverging was expected");

@@ -59,11 +59,12 @@ double rmse(const Picture& a, const Picture& b) {
 
 /// The lattice's pixels of a finished picture, over black.
 Picture on_lattice(const Picture& picture) {
+  const std::uint32_t spacing = probe_spacing(picture.width, picture.height);
   Picture out;
-  out.width = (picture.width + kProbeSpacing - 1) / kProbeSpacing;
-  out.height = (picture.height + kProbeSpacing - 1) / kProbeSpacing;
-  for (std::uint32_t y = 0; y < picture.height; y += kProbeSpacing)
-    for (std::uint32_t x = 0; x < picture.width; x += kProbeSpacing) {
+  out.width = (picture.width + spacing - 1) / spacing;
+  out.height = (picture.height + spacing - 1) / spacing;
+  for (std::uint32_t y = 0; y < picture.height; y += spacing)
+    for (std::uint32_t x = 0; x < picture.width; x += spacing) {
       const std::uint8_t* p = picture.pixel(x, y);
       for (int c = 0; c < 3; ++c) out.rgba.push_back(std::uint8_t(std::lround(p[c] * (p[3] / 255.0))));
       out.rgba.push_back(255);

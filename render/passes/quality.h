@@ -1,5 +1,5 @@
 /// Settings for a stated error or time, from measured residuals. The error of a setting is measured on this very picture: the pixels
-/// of a sparse lattice (every 13th each way, prime to the lattices that are interpolated) against converged rays through them.
+/// of a sparse lattice (every 13th each way, more of small pictures: probe_spacing) against converged rays through them.
 ///   RMSE: 8-bit RGB over the background on black, all pixels, in 1/255; its statistical error is a few per cent
 /// error=E: every ray step whose rays alone stay below E (tried on the lattice: cheap) with every plan of interpolation, in the order
 /// of their expected cost; the first whose finished picture stays below E. time=MS: the ladder of refinement.h from the cheapest on, until

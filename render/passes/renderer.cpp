@@ -285,9 +285,10 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
   CATENA_CHECK(p.prepare(frame));
 
   // all before the raycast, whole; then the rays, into an image of their own
+  const std::uint32_t spacing = probe_spacing(packet.width, packet.height);
   Picture picture;
-  picture.width = (packet.width + kProbeSpacing - 1) / kProbeSpacing;
-  picture.height = (packet.height + kProbeSpacing - 1) / kProbeSpacing;
+  picture.width = (packet.width + spacing - 1) / spacing;
+  picture.height = (packet.height + spacing - 1) / spacing;
   const std::size_t count = std::size_t(picture.width) * picture.height;
   vk::Image target;
   std::vector<Pass*> before;
@@ -305,7 +306,7 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
     info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     CATENA_TRY(target, vk::Image::create(*p.device, info));
     if (frame.has(target::opaque_depth)) commands.use(p.targets.opaque_depth, vk::kFragmentRead);
-    CATENA_CHECK(raycast->record_probe(commands, frame, kProbeSpacing, target));
+    CATENA_CHECK(raycast->record_probe(commands, frame, spacing, target));
   }
   CATENA_CHECK(commands.finish());
   std::vector<float> volume(4 * count);
@@ -320,7 +321,7 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
   // volume over opaque over background over black
   picture.rgba.assign(4 * count, 255);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t pixel = kProbeSpacing * (i / picture.width * packet.width + i % picture.width);
+    const std::size_t pixel = spacing * (i / picture.width * packet.width + i % picture.width);
     for (std::size_t c = 0; c < 3; ++c) {
       float sum = packet.background[c] * packet.background[3];
       if (!opaque.empty()) sum = float_from_half(opaque[4 * pixel + c]) + (1 - float_from_half(opaque[4 * pixel + 3])) * sum;

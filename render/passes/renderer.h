@@ -41,8 +41,14 @@ struct RenderStats {
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
 
-/// Pixels between the rays of Renderer::probe; prime to every lattice's spacing.
-inline constexpr std::uint32_t kProbeSpacing = 13;
+/// Pixels between the rays of Renderer::probe; prime to every lattice's spacing. Errors gather at edges, in few pixels: a small picture
+/// needs a denser lattice for as good a mean.
+constexpr std::uint32_t probe_spacing(std::uint32_t width, std::uint32_t height) {
+  constexpr std::uint64_t kRays = 4000;
+  for (const std::uint32_t spacing : {13u, 7u, 5u, 3u})
+    if (std::uint64_t(width / spacing) * (height / spacing) >= kRays) return spacing;
+  return 1;
+}
 
 /// The nearest opaque object of every pixel, 0: none.
 struct IdPicture {
@@ -73,8 +79,8 @@ class Renderer {
   std::uint32_t longest_side() const;
   /// Whether `RenderSettings::fast` holds for what the packet draws. What it turns out to have no memory for, it holds no longer for.
   bool draws_fast(const FramePacket& packet) const;
-  /// The rays of every kProbeSpacing-th pixel alone, as a small picture over black: what `settings` make of them before anything is
-  /// interpolated. What quality.h measures errors with.
+  /// The rays of every probe_spacing-th pixel each way alone, as a small picture over black: what `settings` make of them before anything
+  /// is interpolated. What quality.h measures errors with.
   Result<Picture> probe(const FramePacket& packet, const RenderSettings& settings);
   /// The opaque depth of the last picture.
   Result<DepthPicture> read_depth();

@@ -155,6 +155,28 @@ TEST_F(ReadTransfer, ParaViewsSpacesBecomeLinearPieces) {
   EXPECT_NEAR(lab[16].color.g, 0.4663, 2e-3) << "half the lightness";
 }
 
+/// The colours of vtkColorTransferFunction (9.1) between two points: out of the screen's range, and round the hues either way.
+TEST_F(ReadTransfer, ParaViewsSpacesAreVtks) {
+  const auto expect_colors = [&](const std::string& keys, const std::array<Vec3, 3>& quarters) {
+    const auto colors = file_of("[{" + keys + "}]").colors;
+    ASSERT_EQ(colors.size(), 33u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Rgb& c = colors[8 * (i + 1)].color;
+      EXPECT_LT(norm(Vec3(c.r, c.g, c.b) - quarters[i]), 0.004) << keys << " at quarter " << i + 1;
+    }
+  };
+  expect_colors("\"ColorSpace\": \"Diverging\", \"RGBPoints\": [0, 0.2, 0.3, 0.9, 1, 0.9, 0.8, 0.1]",
+                {Vec3(0.4887, 0.6734, 1), Vec3(1, 1, 1), Vec3(1, 0.9211, 0.6334)});
+  const std::string pink_to_yellow = "\"ColorSpace\": \"HSV\", \"RGBPoints\": [0, 0.9, 0, 0.45, 1, 0.9, 0.9, 0]";
+  const std::array<Vec3, 3> long_way{Vec3(0.3375, 0, 0.9), Vec3(0, 0.675, 0.9), Vec3(0, 0.9, 0.1125)};
+  const std::array<Vec3, 3> short_way{Vec3(0.9, 0, 0.1125), Vec3(0.9, 0.225, 0), Vec3(0.9, 0.5625, 0)};
+  expect_colors(pink_to_yellow, long_way);
+  expect_colors(pink_to_yellow + ", \"HSVWrap\": 0", long_way);
+  expect_colors(pink_to_yellow + ", \"HSVWrap\": 1", short_way);
+  expect_colors(pink_to_yellow + ", \"HSVWrap\": true", short_way);
+  file_refused("[{\"RGBPoints\": [0, 0, 0, 0],\n\"ColorSpace\": \"HSV\",\n\"HSVWrap\": 2}]", 3, {"HSVWrap", "was expected"});
+}
+
 TEST_F(ReadTransfer, ParaViewsErrors) {
   file_refused("[]", 1, {"0 colour maps", "array of one was expected"});
   file_refused("[{}, {}]", 1, {"2 colour maps"});

@@ -65,6 +65,24 @@ TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
   EXPECT_GT(last_step, 1);
 }
 
+/// A thin shell in a small picture: all error is in a few pixels, which a sparse lattice misses.
+TEST_F(Quality, SmallPicturesOfThinThingsAreMeasuredToo) {
+  FramePacket packet = scene();
+  packet.width = 64;
+  packet.height = 48;
+  packet.background = {0.9f, 0.5f, 0.2f, 1};
+  packet.volumes[0].transfer.extinctions = {{0.60, 0}, {0.65, 0.4}, {0.70, 0}};
+  const Picture converged = draw(packet, reference_settings());
+  for (const double e : {0.5, 1.0}) {
+    const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e});
+    ASSERT_TRUE(choice);
+    const double truth = true_rmse(draw(packet, choice->settings), converged);
+    EXPECT_LT(truth, e) << describe(choice->settings);
+    EXPECT_NEAR(choice->estimated_rmse, truth, 0.1 * e) << describe(choice->settings);
+  }
+  EXPECT_EQ(probe_spacing(1024, 768), 13u);
+}
+
 TEST_F(Quality, ATinyErrorFallsBackToExactRays) {
   const auto choice = choose_quality(*renderer_, scene(true), {QualityGoal::Kind::error, 0.02});
   ASSERT_TRUE(choice);
