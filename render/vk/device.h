@@ -14,6 +14,7 @@
 
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
+#include "render/vk/shader_replacements.h"
 
 namespace catena::render::vk {
 
@@ -57,6 +58,7 @@ class Device {
   const Messages& messages() const { return instance_->messages(); }
   DeviceCounters& counters() { return counters_; }
   const DeviceCounters& counters() const { return counters_; }
+  ShaderReplacements& shaders() { return shaders_; }
   PFN_vkCmdPushDescriptorSetKHR push_descriptors() const { return push_descriptors_; }
 
   /// Submits and returns the timeline value that is reached when the work is done. Optional binary semaphores for a swapchain.
@@ -89,6 +91,7 @@ class Device {
   std::deque<Retired> retired_;
   DeviceInfo info_;
   DeviceCounters counters_;
+  ShaderReplacements shaders_;
   PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;
 };
 
