@@ -66,7 +66,7 @@ TEST(Pacing, AtRestItGoesToEveryPixelAndEnds) {
   EXPECT_TRUE(p.finished());
   p.moving(kFast);
   EXPECT_FALSE(p.finished());
-  EXPECT_EQ(p.best(kFast).settings.step_voxels, all.back().settings.step_voxels);
+  EXPECT_EQ(render::describe(p.best(kFast).settings), render::describe(all.back().settings));
   EXPECT_TRUE(p.finished());
 }
 
