@@ -44,6 +44,9 @@ void add_render(CLI::App& program, Work& chosen) {
   options->colors.add_to(*command);
   command->add_option("--stats", options->stats, "figures, JSON");
   add_annotate_options(*command, options->annotate);
+  command
+      ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
+      ->check(number_between(1, 1e9));
   command->add_flag("--validation", options->validation, "run with the Vulkan validation layers and count their messages");
   command->callback([&chosen, options] { chosen = [options] { return render_pictures(*options); }; });
 }

@@ -9,6 +9,18 @@
 
 namespace catena::app {
 
+namespace {
+
+/// [{"grid": "density", "factor": 2}, ..]
+std::string coarsening_json(const std::vector<render::MirrorCoarsening>& list) {
+  std::string text = "[";
+  for (const render::MirrorCoarsening& one : list)
+    text += fmt::format("{}{{\"grid\": {}, \"factor\": {}}}", text.size() > 1 ? ", " : "", json_string(one.grid), one.factor);
+  return text + "]";
+}
+
+}  // namespace
+
 double FrameStats::median_ms() const {
   std::vector<double> times = frame_ms;
   return quantile(times, 0.5);
@@ -22,11 +34,12 @@ std::string FrameStats::json() const {
       "  \"first_frame_ms\": {:.3f},\n  \"load_ms\": {:.3f},\n  \"mirror_ms\": {:.3f},\n  \"encode_ms\": {:.3f},\n"
       "  \"quality\": {{\"mode\": {}, \"estimated_rmse\": {}}},\n"
       "  \"tiles\": {},\n  \"objects\": {},\n"
-      "  \"cpu_bytes\": {},\n  \"gpu_bytes\": {},\n  \"validation_messages\": {}\n}}\n",
+      "  \"mirror_coarsening\": {},\n"
+      "  \"cpu_bytes\": {},\n  \"gpu_bytes\": {},\n  \"gpu_budget_bytes\": {},\n  \"validation_messages\": {}\n}}\n",
       json_string(device), json_string(driver), frame_ms.size(), median_ms(), quantile(times, 0.99), quantile(times, 1), first_frame_ms,
       load_ms, mirror_ms, encode_ms, json_string(quality_mode),
-      estimated_rmse ? fmt::format("{:.4f}", *estimated_rmse) : std::string("null"), tiles, objects_json(objects), cpu_bytes, gpu_bytes,
-      validation_messages);
+      estimated_rmse ? fmt::format("{:.4f}", *estimated_rmse) : std::string("null"), tiles, objects_json(objects),
+      coarsening_json(mirror_coarsening), cpu_bytes, gpu_bytes, gpu_budget_bytes, validation_messages);
 }
 
 std::string objects_json(const std::vector<render::ObjectName>& objects) {

@@ -7,6 +7,7 @@
 
 #include "engine/scene/scene.h"
 #include "render/frame/frame_packet.h"
+#include "render/passes/coarsening.h"
 
 namespace catena::app {
 
@@ -15,10 +16,11 @@ struct FrameStats {
   std::vector<double> frame_ms;  ///< start of extraction to the fence of the colour image
   double first_frame_ms = 0, load_ms = 0, mirror_ms = 0, encode_ms = 0;
   std::string quality_mode;
-  std::optional<double> estimated_rmse;     ///< 1/255; measured for time= and error= only
-  std::uint32_t tiles = 1;                  ///< that a frame is drawn in
-  std::vector<render::ObjectName> objects;  ///< what the ids of --ids stand for
-  std::uint64_t cpu_bytes = 0, gpu_bytes = 0, validation_messages = 0;
+  std::optional<double> estimated_rmse;                     ///< 1/255; measured for time= and error= only
+  std::uint32_t tiles = 1;                                  ///< that a frame is drawn in
+  std::vector<render::ObjectName> objects;                  ///< what the ids of --ids stand for
+  std::vector<render::MirrorCoarsening> mirror_coarsening;  ///< grids drawn at less than their resolution, by the first frame
+  std::uint64_t cpu_bytes = 0, gpu_bytes = 0, gpu_budget_bytes = 0, validation_messages = 0;
 
   double median_ms() const;
   std::string json() const;

@@ -1,5 +1,5 @@
 /// Private to this room: OpenVDB trees (what files hold) into immutable NanoVDB grids (what is sampled).
-/// One of the few headers that include OpenVDB: only convert.cpp, grid_make.cpp, load_vdb.cpp and write_vdb.cpp include it.
+/// One of the few headers that include OpenVDB: only coarsen.cpp, convert.cpp, grid_make.cpp, load_vdb.cpp and write_vdb.cpp include it.
 #pragma once
 #include <openvdb/openvdb.h>
 

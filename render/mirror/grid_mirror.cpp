@@ -18,6 +18,7 @@ namespace {
 using field::Index3;
 constexpr int kApron = kBrick + 1;
 constexpr std::uint32_t kSlotsAnAxis = 255;
+constexpr std::uint64_t kCellMapBytes = 128;  // a brick, cell_map.h
 
 /// Writes values as texels of the mirror's format. What is not finite becomes the least value (its cells are masked); what lies
 /// outside the range can only be outside the domain, where it must stay finite all the same.
@@ -124,23 +125,50 @@ class Builder {
       : device_(device), grid_(grid), options_(options), encoder_(choose_encoder(grid, options.float32)) {}
 
   Result<GridMirror> build() {
-    const Vec3 lo = grid_.index_box().lo, hi = grid_.index_box().hi;
-    lo_ = {std::int32_t(std::lround(lo.x)), std::int32_t(std::lround(lo.y)), std::int32_t(std::lround(lo.z))};
-    hi_ = {std::int32_t(std::lround(hi.x)), std::int32_t(std::lround(hi.y)), std::int32_t(std::lround(hi.z))};
-    size_ = {hi_.x - lo_.x + 1, hi_.y - lo_.y + 1, hi_.z - lo_.z + 1};
-    if (size_.x < 2 || size_.y < 2 || size_.z < 2 || grid_.stats().active_voxels == 0) return std::move(mirror_);
-    mirror_.drawable = true;
+    if (!plan()) return std::move(mirror_);
     mirror_.offset = encoder_.offset;
     mirror_.scale = encoder_.scale;
-    mirror_.masked = grid_.has_mask() || grid_.stats().nan_count > 0 || !std::isfinite(grid_.background());
-    if (options_.layout != MirrorLayout::dense) plan_atlas();
-    mirror_.atlas = options_.layout == MirrorLayout::atlas || (options_.layout == MirrorLayout::automatic && atlas_pays());
     CATENA_CHECK(mirror_.atlas ? build_atlas() : build_dense());
     for (BrickRange& range : mirror_.ranges) range = encoder_.stored(range);
     return std::move(mirror_);
   }
 
+  std::optional<std::uint64_t> bytes() {
+    if (!plan()) return 0;
+    std::array<std::uint32_t, 3> values{std::uint32_t(size_.x), std::uint32_t(size_.y), std::uint32_t(size_.z)}, mask = values;
+    if (mirror_.atlas) {
+      if (!assign_slots()) return std::nullopt;
+      for (int a = 0; a < 3; ++a) {
+        values[a] = slots_[a] * kApron;
+        mask[a] = slots_[a] * kBrick;
+      }
+    } else {
+      place(lo_);
+    }
+    const auto value_bytes = vk::image_bytes(device_, image_info(value_format(), values[0], values[1], values[2]));
+    const auto mask_bytes = vk::image_bytes(device_, image_info(VK_FORMAT_R8_UINT, mask[0], mask[1], mask[2]));
+    if (!value_bytes || !mask_bytes) return std::nullopt;
+    const std::uint64_t staging = std::uint64_t(kApron) * values[0] * values[1] * encoder_.texel();
+    // a word a brick; for surfaces also the map of cells
+    const std::uint64_t map = mirror_.ranges.size() * (sizeof(std::uint32_t) + (encoder_.float32 ? kCellMapBytes : 0));
+    return *value_bytes + (mirror_.masked ? *mask_bytes : 0) + std::max(staging, map) + map;
+  }
+
  private:
+  /// What the grid is and how it is laid out; false where there is nothing to draw.
+  bool plan() {
+    const Vec3 lo = grid_.index_box().lo, hi = grid_.index_box().hi;
+    lo_ = {std::int32_t(std::lround(lo.x)), std::int32_t(std::lround(lo.y)), std::int32_t(std::lround(lo.z))};
+    hi_ = {std::int32_t(std::lround(hi.x)), std::int32_t(std::lround(hi.y)), std::int32_t(std::lround(hi.z))};
+    size_ = {hi_.x - lo_.x + 1, hi_.y - lo_.y + 1, hi_.z - lo_.z + 1};
+    if (size_.x < 2 || size_.y < 2 || size_.z < 2 || grid_.stats().active_voxels == 0) return false;
+    mirror_.drawable = true;
+    mirror_.masked = grid_.has_mask() || grid_.stats().nan_count > 0 || !std::isfinite(grid_.background());
+    if (options_.layout != MirrorLayout::dense) plan_atlas();
+    mirror_.atlas = options_.layout == MirrorLayout::atlas || (options_.layout == MirrorLayout::automatic && atlas_pays());
+    return true;
+  }
+
   /// The first index of a brick, counted from the leaf that holds the box's corner.
   Index3 leaf(int x, int y, int z) const { return {leaves_lo_.x + kBrick * x, leaves_lo_.y + kBrick * y, leaves_lo_.z + kBrick * z}; }
 
@@ -193,19 +221,25 @@ class Builder {
     return !fits_dense() || (dense > 64.0 * 64 * 64 && atlas < 0.5 * dense);
   }
 
-  Result<vk::Image> create_image(VkFormat format, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  VkFormat value_format() const { return encoder_.float32 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R16_SFLOAT; }
+
+  static vk::ImageInfo image_info(VkFormat format, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     vk::ImageInfo info;
     info.type = VK_IMAGE_TYPE_3D;
     info.format = format;
     info.extent = {x, y, z};
     info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    auto image = vk::Image::create(device_, info);
+    return info;
+  }
+
+  Result<vk::Image> create_image(VkFormat format, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    auto image = vk::Image::create(device_, image_info(format, x, y, z));
     if (!image) return Error{fmt::format("the grid \"{}\" cannot be mirrored: {}", grid_.name(), image.error().message)};
     return image;
   }
 
   Outcome create_images(std::uint32_t x, std::uint32_t y, std::uint32_t z, std::uint32_t mx, std::uint32_t my, std::uint32_t mz) {
-    CATENA_TRY(mirror_.values, create_image(encoder_.float32 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R16_SFLOAT, x, y, z));
+    CATENA_TRY(mirror_.values, create_image(value_format(), x, y, z));
     if (!mirror_.masked) return Done{};
     CATENA_TRY(mirror_.mask, create_image(VK_FORMAT_R8_UINT, mx, my, mz));
     return Done{};
@@ -355,6 +389,20 @@ class Builder {
 
 Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options) {
   return Builder(device, grid, options).build();
+}
+
+std::optional<std::uint64_t> mirror_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options) {
+  return Builder(device, grid, options).bytes();
+}
+
+Result<GridMirror> make_coarse_mirror(vk::Device& device, const field::CoarseGrid& grid, int factor, const MirrorOptions& options) {
+  CATENA_TRY(GridMirror mirror, make_grid_mirror(device, *grid.grid, options));
+  mirror.factor = factor;
+  mirror.coarse = grid.grid;
+  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
+  mirror.domain_lo = grid.domain.lo - origin;
+  mirror.domain_hi = grid.domain.hi - origin;
+  return mirror;
 }
 
 }  // namespace catena::render

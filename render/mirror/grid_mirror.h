@@ -5,13 +5,17 @@
 /// value = offset + scale * texel. R32F: 0 and 1, exact. R16F: 0 and a power of two (texels round as halves do), unless the
 /// values span less than half of their largest magnitude: then the texels span 0..1 from the least value.
 /// A cell that the grid's `valid` mask excludes, or with a corner that is not finite, is 0 in the mask image and drawn by nobody.
+/// A grid that does not fit is mirrored at 1/factor of its resolution: the mirror is then of `coarse`, a grid of its own with its own
+/// transform, and all of the above is about that one; only the part of it within `domain` is drawn.
 /// Min and max are kept a brick of 8^3 cells, on the host, over the corners of the brick's valid cells (least > greatest: none).
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <vector>
 
-#include "engine/field/grid.h"
+#include "engine/field/coarsen.h"
 #include "render/vk/resources.h"
 
 namespace catena::render {
@@ -45,8 +49,19 @@ struct GridMirror {
 
   std::size_t brick_index(int x, int y, int z) const { return (std::size_t(z) * bricks[1] + y) * bricks[0] + x; }
   std::uint64_t bytes() const { return values.bytes() + mask.bytes(); }
+
+  int factor = 1;                                   ///< 2, 4, 8: coarser
+  std::shared_ptr<const field::ScalarGrid> coarse;  ///< what was mirrored then
+  Vec3 domain_lo{0.0}, domain_hi{0.0};              ///< of the whole grid, local; within box_lo..box_hi
+  /// The grid whose voxels these are: `grid`, or the coarse one. Its mapping is the mirror's.
+  const field::ScalarGrid& source(const field::ScalarGrid& grid) const { return coarse ? *coarse : grid; }
 };
 
+/// What make_grid_mirror and the maps of a volume or a surface need, staging included; none where the device cannot hold it at any price.
+std::optional<std::uint64_t> mirror_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
+
 Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
+/// At 1/factor (2, 4, 8) of the resolution.
+Result<GridMirror> make_coarse_mirror(vk::Device& device, const field::CoarseGrid& grid, int factor, const MirrorOptions& options);
 
 }  // namespace catena::render

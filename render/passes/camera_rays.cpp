@@ -69,7 +69,8 @@ shared::FrameData CameraRays::frame() const {
   return f;
 }
 
-shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping& mapping) const {
+shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping& whole) const {
+  const field::Mapping& mapping = mirror.coarse ? mirror.coarse->mapping() : whole;
   const Mat3& inverse = mapping.index_from_world_linear;
   const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
   // one pixel to the right and down, in index space at depth 1 (perspective) or anywhere (orthographic)
@@ -91,6 +92,8 @@ shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping
   }
   g.lo = narrow(mirror.box_lo);
   g.hi = narrow(mirror.box_hi);
+  g.domain_lo = mirror.coarse ? narrow(mirror.domain_lo) : g.lo;
+  g.domain_hi = mirror.coarse ? narrow(mirror.domain_hi) : g.hi;
   const VkExtent3D extent = mirror.values.info().extent;
   g.texel = {1.0f / float(extent.width), 1.0f / float(extent.height), 1.0f / float(extent.depth)};
   g.world_gradient = glm::mat3(glm::transpose(inverse));

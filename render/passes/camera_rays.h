@@ -22,8 +22,9 @@ struct CameraRays {
   static CameraRays make(const FramePacket& packet, const Bounds& bounds);
   double view_depth(const Vec3& world) const { return dot(world - camera.position, forward); }
   shared::FrameData frame() const;
-  /// The ray's part of a grid's data; the caller adds table, level, colour, id and whether it is clipped.
-  shared::GridData grid(const GridMirror& mirror, const field::Mapping& mapping) const;
+  /// The ray's part of a grid's data, `whole` being the mapping of the grid that was mirrored; the caller adds table, level, colour, id and
+  /// whether it is clipped.
+  shared::GridData grid(const GridMirror& mirror, const field::Mapping& whole) const;
   shared::MeshFrameData mesh(const Vec3& origin) const;
   /// The signed distance from a plane along a pixel's ray.
   shared::ClipData plane(const ClipPlane& plane) const;

@@ -99,7 +99,7 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::ui
 }
 
 Outcome IsosurfacePass::Surface::make_cells(vk::Device& device) {
-  cells = make_cell_map(*item.grid, *state.mirror, state.level);
+  cells = make_cell_map(state.mirror->source(*item.grid), *state.mirror, state.level);
   cell_map = {};
   if (!cells.texels.empty()) {
     CATENA_TRY(cell_map, upload_cell_map(device, cells));
@@ -133,7 +133,8 @@ Bounds IsosurfacePass::bounds() const {
 
 Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
-    const VkRect2D area = surface_area(surface.cells, *surface.state.mirror, surface.item.grid->mapping(), frame.rays.camera);
+    const GridMirror& mirror = *surface.state.mirror;
+    const VkRect2D area = surface_area(surface.cells, mirror, mirror.source(*surface.item.grid).mapping(), frame.rays.camera);
     if (area.extent.width == 0 || area.extent.height == 0) continue;
     shared::FrameData data = frame.rays.frame();
     data.grids[0] = surface_data(frame.rays, surface.state, surface.item);

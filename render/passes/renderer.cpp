@@ -70,7 +70,14 @@ struct Renderer::Parts {
   std::uint32_t view_width = 0, view_height = 0;  ///< of one view; its depth and ids
   double reference_depth = 0;
   std::vector<std::string> drawn_passes;
+  std::size_t sharers = 1;  ///< grids that must share what the budget leaves
 
+  /// What a failed frame leaves may be half made: all of it goes.
+  template <class Outcome_>
+  Outcome_ kept_or_dropped(Outcome_ result);
+  template <class Work>
+  auto within_budget(const FramePacket& packet, const Work& work) -> decltype(work());
+  std::uint64_t reserved(const Frame& frame) const;
   std::vector<Pass*> active(std::vector<std::string>* names = nullptr) const;
   vk::Image& shown() { return packed ? pack->picture() : targets.picture; }
   void drop_passes();
@@ -107,13 +114,47 @@ void Renderer::Parts::drop_passes() {
     pass.reset();
   }
   pack.reset();
-  packed = false;
   drawn = 0;
+}
+
+template <class Outcome_>
+Outcome_ Renderer::Parts::kept_or_dropped(Outcome_ result) {
+  if (result) return result;
+  drop_passes();
+  mirrors->clear();
+  targets = Targets{};
+  return result;
+}
+
+/// Once more where the budget refused and older frames, or the first of several grids, held what this one needs.
+template <class Work>
+auto Renderer::Parts::within_budget(const FramePacket& packet, const Work& work) -> decltype(work()) {
+  const std::size_t grids = packet.volumes.size() + packet.isosurfaces.size() + packet.slices.size();
+  if (sharers != grids) sharers = 1;
+  const std::uint64_t refused = device->counters().refused;
+  const bool held = device->counters().bytes > 0;
+  auto result = kept_or_dropped(work());
+  if (result || device->counters().refused == refused || !(held || grids > 1)) return result;
+  sharers = grids;
+  return kept_or_dropped(work());
+}
+
+/// Bytes of the budget that are not for mirrors: the targets, their copy on the way back, layers, and 1 MB of tables and vertices.
+std::uint64_t Renderer::Parts::reserved(const Frame& frame) const {
+  TargetSet needed = target::picture | target::volume;
+  for (const PassEntry* entry : kPasses)
+    if (entry != &kRaycastPass && entry != &kComposePass && entry != &kOverlayPass && entry->wanted(frame)) needed |= target::opaque;
+  constexpr std::uint64_t kLayerBytes = 12 * MAX_LAYERS + 32;  // a pixel; layers.cpp
+  const std::uint64_t pixels = std::uint64_t(frame.packet.width) * frame.packet.height;
+  const std::uint64_t layers = has_layers(frame.packet) ? pixels * kLayerBytes : 0;
+  return layers + targets.bytes_to_come(frame.packet.width, frame.packet.height, needed) +
+         pixels * vk::texel_bytes(targets.picture_format) + 1'000'000;
 }
 
 /// Makes the passes that the packet wants and no others, uploads, and fixes the targets and the rays.
 Outcome Renderer::Parts::prepare(Frame& frame) {
-  mirrors->begin_frame();
+  targets.picture_format = frame.settings.float_picture ? kFloatPictureFormat : kPictureFormat;
+  mirrors->begin_frame(reserved(frame), sharers);
   for (std::size_t i = 0; i < passes.size(); ++i) {
     if (!kPasses[i]->wanted(frame)) {
       if (passes[i]) gone_build_ms += passes[i]->build_ms();
@@ -136,7 +177,6 @@ Outcome Renderer::Parts::prepare(Frame& frame) {
   }
   frame.written = 0;
   frame.rays = CameraRays::make(frame.packet, bounds);
-  targets.picture_format = frame.settings.float_picture ? kFloatPictureFormat : kPictureFormat;
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
@@ -198,14 +238,22 @@ Outcome Renderer::Parts::draw_eyes(const FramePacket& packet, const RenderSettin
 }
 
 Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings) {
+  parts_->drawn = 0;
+  CATENA_CHECK(check(packet, settings, parts_->device->info()));
+  return parts_->within_budget(packet, [&] { return draw_once(packet, settings); });
+}
+
+Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings) {
+  parts_->drawn = 0;
+  CATENA_CHECK(check(packet, settings, parts_->device->info()));
+  return parts_->within_budget(packet, [&] { return probe_once(packet, settings); });
+}
+
+Outcome Renderer::draw_once(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
-  p.drawn = 0;
-  CATENA_CHECK(check(packet, settings, p.device->info()));
   p.packed = !packet.eyes.empty();
   if (!p.packed) p.pack.reset();
-  const Outcome done = p.packed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
-  if (!done) p.drawn = 0;
-  return done;
+  return p.packed ? p.draw_eyes(packet, settings) : p.draw(packet, settings);
 }
 
 Result<Picture> Renderer::read_back() {
@@ -214,7 +262,8 @@ Result<Picture> Renderer::read_back() {
   Picture picture;
   picture.width = p.shown().info().extent.width;
   picture.height = p.shown().info().extent.height;
-  CATENA_TRY(picture.rgba, bytes_of<std::uint8_t>(*p.device, p.shown(), std::size_t(4) * picture.width * picture.height));
+  CATENA_TRY(picture.rgba,
+             p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, p.shown(), std::size_t(4) * picture.width * picture.height)));
   return picture;
 }
 
@@ -224,7 +273,8 @@ Result<FloatPicture> Renderer::read_back_float() {
   FloatPicture picture;
   picture.width = p.targets.picture.info().extent.width;
   picture.height = p.targets.picture.info().extent.height;
-  CATENA_TRY(picture.rgba, bytes_of<float>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height));
+  CATENA_TRY(picture.rgba,
+             p.kept_or_dropped(bytes_of<float>(*p.device, p.targets.picture, std::size_t(4) * picture.width * picture.height)));
   return picture;
 }
 
@@ -236,10 +286,8 @@ bool Renderer::draws_fast(const FramePacket& packet) const {
   return RaycastPass::draws_fast(*parts_->device, packet);
 }
 
-Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings) {
+Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSettings& settings) {
   Parts& p = *parts_;
-  p.drawn = 0;
-  CATENA_CHECK(check(packet, settings, p.device->info()));
   Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
   CATENA_CHECK(p.prepare(frame));
 
@@ -298,7 +346,8 @@ Result<DepthPicture> Renderer::read_depth() {
   picture.height = p.view_height;
   picture.depth.assign(std::size_t(picture.width) * picture.height, std::numeric_limits<float>::infinity());
   if ((p.drawn & target::opaque_depth) == 0) return picture;
-  CATENA_TRY(const std::vector<float> relative, bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size()));
+  CATENA_TRY(const std::vector<float> relative,
+             p.kept_or_dropped(bytes_of<float>(*p.device, p.targets.opaque_depth, picture.depth.size())));
   for (std::size_t i = 0; i < relative.size(); ++i)
     if (relative[i] < NO_DEPTH) picture.depth[i] = float(double(relative[i]) + p.reference_depth);
   return picture;
@@ -312,7 +361,7 @@ Result<IdPicture> Renderer::read_ids() {
   picture.height = p.view_height;
   picture.ids.assign(std::size_t(picture.width) * picture.height, 0);
   if ((p.drawn & target::opaque_id) == 0) return picture;
-  CATENA_TRY(picture.ids, bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size()));
+  CATENA_TRY(picture.ids, p.kept_or_dropped(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size())));
   return picture;
 }
 
@@ -352,6 +401,8 @@ RenderStats Renderer::stats() const {
   stats.upload_bytes = device.counters().upload_bytes;
   stats.pipelines = device.counters().pipelines;
   stats.mirrors = parts_->mirrors->count();
+  stats.mirror_coarsening = parts_->mirrors->coarsenings();
+  stats.gpu_budget = device.info().memory_budget;
   stats.passes = parts_->drawn_passes;
   stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
   for (const Pass* pass : parts_->active()) {

@@ -3,6 +3,9 @@
 /// A pass is created when a packet first wants it and goes when one no longer does; mirrors are kept by (grid version, texel
 /// format) and dropped when a packet no longer names the grid. A packet with eyes is drawn once an eye and packed (pack.h); depth and
 /// ids are the first eye's. Frame thread only.
+/// All device memory keeps within vk::DeviceOptions::memory_budget_bytes; a grid that does not fit is drawn coarser and the stats
+/// say so. A call that fails leaves nothing of its frame behind: after VK_ERROR_OUT_OF_DEVICE_MEMORY a smaller packet can be drawn;
+/// after VK_ERROR_DEVICE_LOST (device().lost()) a new renderer draws the same packets.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,6 +16,7 @@
 
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
+#include "render/passes/coarsening.h"
 #include "render/passes/render_settings.h"
 #include "render/vk/device.h"
 #include "render/vk/picture.h"
@@ -28,10 +32,12 @@ struct RenderStats {
   std::uint64_t gpu_bytes = 0;  ///< held now
   std::uint64_t uploads = 0;    ///< copies to the device so far
   std::uint64_t upload_bytes = 0;
-  std::uint64_t pipelines = 0;            ///< created so far
-  std::vector<std::string> passes;        ///< of the last picture, in order
-  std::uint64_t mirrors = 0;              ///< grids mirrored now
-  double mirror_ms = 0;                   ///< spent on building and uploading mirrors so far
+  std::uint64_t pipelines = 0;                      ///< created so far
+  std::vector<std::string> passes;                  ///< of the last picture, in order
+  std::uint64_t mirrors = 0;                        ///< grids mirrored now
+  std::vector<MirrorCoarsening> mirror_coarsening;  ///< of the grids that do not fit into the memory budget
+  std::uint64_t gpu_budget = 0;                     ///< bytes that may be held
+  double mirror_ms = 0;                             ///< spent on building and uploading mirrors so far
   std::vector<std::string> notes;         ///< what the last picture lacks, or was drawn otherwise than asked, and why, a sentence each
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
@@ -91,6 +97,8 @@ class Renderer {
 
  private:
   Renderer();
+  Outcome draw_once(const FramePacket& packet, const RenderSettings& settings);
+  Result<Picture> probe_once(const FramePacket& packet, const RenderSettings& settings);
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

@@ -6,9 +6,13 @@
 namespace catena::render {
 namespace {
 
-Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
+bool fits(const vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height) {
   const VkExtent3D& have = image.info().extent;
-  if (image && image.info().format == format && have.width == width && have.height == height) return Done{};
+  return image && image.info().format == format && have.width == width && have.height == height;
+}
+
+Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
+  if (fits(image, format, width, height)) return Done{};
   vk::ImageInfo info;
   info.format = format;
   info.extent = {width, height, 1};
@@ -40,6 +44,20 @@ Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t h
     CATENA_CHECK(commands.finish());
   }
   return Done{};
+}
+
+std::uint64_t Targets::bytes_to_come(std::uint32_t width, std::uint32_t height, TargetSet needed) const {
+  std::uint64_t a_pixel = 0;
+  const auto add = [&](TargetSet one, const vk::Image& image, VkFormat format) {
+    if ((needed & one) != 0 && !fits(image, format, width, height)) a_pixel += vk::texel_bytes(format);
+  };
+  add(target::picture, picture, picture_format);
+  add(target::opaque_color, opaque_color, kOpaqueFormat);
+  add(target::opaque_depth, opaque_depth, kDepthValueFormat);
+  add(target::opaque_id, opaque_id, kIdFormat);
+  add(target::depth_buffer, depth_buffer, kDepthBufferFormat);
+  add(target::volume, volume, kVolumeFormat);
+  return a_pixel * width * height;
 }
 
 vk::Image& Targets::image(TargetSet one) {

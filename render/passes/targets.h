@@ -33,6 +33,8 @@ struct Targets {
   vk::Image none;                            ///< one texel, bound where a pass has no input
 
   Outcome ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, TargetSet needed);
+  /// Bytes that ensure() would have to add for these.
+  std::uint64_t bytes_to_come(std::uint32_t width, std::uint32_t height, TargetSet needed) const;
   vk::Image& image(TargetSet one);
   /// Begins rendering into `writes`; what `cleared` names starts empty, the rest keeps what is there.
   void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared);

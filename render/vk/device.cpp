@@ -131,7 +131,29 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   const char* environment = std::getenv("CATENA_DEVICE");
   CATENA_CHECK(self->choose_physical(!options.choose.empty() ? options.choose : environment ? environment : ""));
   CATENA_CHECK(self->create_device());
+  self->info_.memory_budget = options.memory_budget_bytes > 0 ? options.memory_budget_bytes : self->default_budget();
+  self->fail_ = options.fail;
   return self;
+}
+
+std::uint64_t Device::default_budget() const {
+  if (!has_extension(physical_, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)) return info_.memory_bytes / 10 * 8;
+  VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{};
+  budget.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT;
+  VkPhysicalDeviceMemoryProperties2 memory{};
+  memory.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2;
+  memory.pNext = &budget;
+  vkGetPhysicalDeviceMemoryProperties2(physical_, &memory);
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < memory.memoryProperties.memoryHeapCount; ++i)
+    if ((memory.memoryProperties.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) && budget.heapBudget[i] > budget.heapUsage[i])
+      most = std::max<std::uint64_t>(most, budget.heapBudget[i] - budget.heapUsage[i]);
+  return most > 0 ? most / 10 * 9 : info_.memory_bytes / 10 * 8;
+}
+
+Error Device::failed(VkResult result, const std::string& what) {
+  if (result == VK_ERROR_DEVICE_LOST) lost_ = true;
+  return vulkan_error(result, what);
 }
 
 Outcome Device::choose_physical(const std::string& choice) {
@@ -257,7 +279,9 @@ Result<std::uint64_t> Device::submit(VkCommandBuffer commands, VkSemaphore wait_
   info.pCommandBufferInfos = &buffer;
   info.signalSemaphoreInfoCount = signal ? 2 : 1;
   info.pSignalSemaphoreInfos = signals;
-  CATENA_VK(vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE), "submit work to " + info_.name);
+  VkResult result = lost_ ? VK_ERROR_DEVICE_LOST : pretended(DriverCall::submit);
+  if (result == VK_SUCCESS) result = vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE);
+  if (result != VK_SUCCESS) return failed(result, "submit work to " + info_.name);
   ++counters_.submissions;
   return ++submitted_;
 }
@@ -269,7 +293,10 @@ Outcome Device::wait(std::uint64_t value) {
     info.semaphoreCount = 1;
     info.pSemaphores = &timeline_;
     info.pValues = &value;
-    CATENA_VK(vkWaitSemaphores(device_, &info, std::numeric_limits<std::uint64_t>::max()), "wait for " + info_.name);
+    // of a lost device nothing is waited for: the value may never come
+    VkResult result = lost_ ? VK_ERROR_DEVICE_LOST : pretended(DriverCall::wait);
+    if (result == VK_SUCCESS) result = vkWaitSemaphores(device_, &info, std::numeric_limits<std::uint64_t>::max());
+    if (result != VK_SUCCESS) return failed(result, "wait for " + info_.name);
     passed_ = value;
   }
   collect();

@@ -18,27 +18,39 @@
 
 namespace catena::render::vk {
 
+/// The calls that a driver may refuse at any time: what a test can make fail.
+enum class DriverCall { allocate, submit, wait };
+
 struct DeviceOptions {
   bool validation = false;
   std::string choose;      ///< cpu, gpu or a part of a name; empty: CATENA_DEVICE, else the best one
   SurfaceFactory surface;  ///< empty: headless
+  /// Of device memory, all that Catena allocates on this device. 0: nine tenths of what the driver offers now
+  /// (VK_EXT_memory_budget), or eight tenths of the largest heap where it does not say.
+  std::uint64_t memory_budget_bytes = 0;
+  /// Tests only: asked before each call; what it returns instead of VK_SUCCESS is taken for the driver's answer.
+  std::function<VkResult(DriverCall)> fail{};
 };
 
 struct DeviceInfo {
   std::string name, driver;
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
   VkPhysicalDeviceLimits limits{};
-  std::uint64_t memory_bytes = 0;  ///< of the largest device-local heap
+  std::uint64_t memory_bytes = 0;   ///< of the largest device-local heap
+  std::uint64_t memory_budget = 0;  ///< bytes that Catena may hold
   bool is_cpu() const { return type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 };
 
 /// What the device has done so far; tests read it.
 struct DeviceCounters {
   std::uint64_t bytes = 0;    ///< device memory held now
+  std::uint64_t peak = 0;     ///< the most that was ever held
   std::uint64_t uploads = 0;  ///< copies from staging memory
   std::uint64_t upload_bytes = 0;
   std::uint64_t pipelines = 0;  ///< created
   std::uint64_t submissions = 0;
+  std::uint64_t allocations = 0;
+  std::uint64_t refused = 0;  ///< allocations that the budget did not hold
 };
 
 class Device {
@@ -59,6 +71,12 @@ class Device {
   DeviceCounters& counters() { return counters_; }
   const DeviceCounters& counters() const { return counters_; }
   ShaderReplacements& shaders() { return shaders_; }
+  /// Bytes that the budget still holds.
+  std::uint64_t memory_left() const { return counters_.bytes < info_.memory_budget ? info_.memory_budget - counters_.bytes : 0; }
+  /// The driver gave the device up: nothing can be drawn with it any more. A new one can be made from the same packets.
+  bool lost() const { return lost_; }
+  /// What a test pretends that the driver says.
+  VkResult pretended(DriverCall call) const { return fail_ ? fail_(call) : VK_SUCCESS; }
   PFN_vkCmdPushDescriptorSetKHR push_descriptors() const { return push_descriptors_; }
 
   /// Submits and returns the timeline value that is reached when the work is done. Optional binary semaphores for a swapchain.
@@ -73,6 +91,8 @@ class Device {
  private:
   Device() = default;
   Outcome choose_physical(const std::string& choice);
+  std::uint64_t default_budget() const;
+  Error failed(VkResult result, const std::string& what);
   Outcome create_device();
   void collect();
 
@@ -92,6 +112,8 @@ class Device {
   DeviceInfo info_;
   DeviceCounters counters_;
   ShaderReplacements shaders_;
+  std::function<VkResult(DriverCall)> fail_;
+  bool lost_ = false;
   PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;
 };
 

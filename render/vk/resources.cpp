@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "render/vk/check.h"
@@ -9,7 +10,7 @@
 namespace catena::render::vk {
 namespace {
 
-std::string mebibytes(VkDeviceSize bytes) { return fmt::format("{:.1f} MiB", double(bytes) / double(1 << 20)); }
+std::string megabytes(VkDeviceSize bytes) { return fmt::format("{:.1f} MB", 1e-6 * double(bytes)); }
 
 /// The first memory type that is allowed and has all of `required`, one with `preferred` before others.
 std::optional<std::uint32_t> memory_type(const Device& device, std::uint32_t allowed, VkMemoryPropertyFlags required,
@@ -28,15 +29,25 @@ Result<VkDeviceMemory> allocate(Device& device, const VkMemoryRequirements& need
                     : where == Memory::upload ? memory_type(device, needs.memoryTypeBits, host, 0)
                                               : memory_type(device, needs.memoryTypeBits, host, VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
   if (!type) return Error{"the device " + device.info().name + " has no memory for " + what};
+  DeviceCounters& counters = device.counters();
+  if (needs.size > device.memory_left()) {
+    ++counters.refused;
+    return Error{fmt::format("{} needs {} of GPU memory, {} of the budget of {} are left", what, megabytes(needs.size),
+                             megabytes(device.memory_left()), megabytes(device.info().memory_budget))};
+  }
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needs.size;
   info.memoryTypeIndex = *type;
   VkDeviceMemory memory = VK_NULL_HANDLE;
-  CATENA_VK(vkAllocateMemory(device.handle(), &info, nullptr, &memory),
-            fmt::format("allocate {} for {} ({} of {} held)", mebibytes(needs.size), what, mebibytes(device.counters().bytes),
-                        mebibytes(device.info().memory_bytes)));
-  device.counters().bytes += needs.size;
+  VkResult result = device.pretended(DriverCall::allocate);
+  if (result == VK_SUCCESS) result = vkAllocateMemory(device.handle(), &info, nullptr, &memory);
+  if (result != VK_SUCCESS)
+    return vulkan_error(result, fmt::format("allocate {} for {} ({} of {} held)", megabytes(needs.size), what, megabytes(counters.bytes),
+                                            megabytes(device.info().memory_bytes)));
+  counters.bytes += needs.size;
+  counters.peak = std::max(counters.peak, counters.bytes);
+  ++counters.allocations;
   return memory;
 }
 
@@ -51,7 +62,7 @@ Result<Buffer> Buffer::create(Device& device, VkDeviceSize size, VkBufferUsageFl
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = size;
   info.usage = usage;
-  CATENA_VK(vkCreateBuffer(device.handle(), &info, nullptr, &self.buffer_), "create a buffer of " + mebibytes(size));
+  CATENA_VK(vkCreateBuffer(device.handle(), &info, nullptr, &self.buffer_), "create a buffer of " + megabytes(size));
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(device.handle(), self.buffer_, &needs);
   CATENA_TRY(self.memory_, allocate(device, needs, memory, "a buffer"));
@@ -109,6 +120,42 @@ VkImageAspectFlags Image::aspect() const {
   return info_.format == VK_FORMAT_D32_SFLOAT ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
+namespace {
+
+VkImageCreateInfo create_info(const ImageInfo& info) {
+  VkImageCreateInfo create{};
+  create.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  create.imageType = info.type;
+  create.format = info.format;
+  create.extent = info.extent;
+  create.mipLevels = 1;
+  create.arrayLayers = 1;
+  create.samples = VK_SAMPLE_COUNT_1_BIT;
+  create.tiling = VK_IMAGE_TILING_OPTIMAL;
+  create.usage = info.usage;
+  create.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  return create;
+}
+
+}  // namespace
+
+std::optional<VkDeviceSize> image_bytes(const Device& device, const ImageInfo& info) {
+  VkImageFormatProperties limits{};
+  const auto& e = info.extent;
+  if (vkGetPhysicalDeviceImageFormatProperties(device.physical(), info.format, info.type, VK_IMAGE_TILING_OPTIMAL, info.usage, 0,
+                                               &limits) != VK_SUCCESS ||
+      e.width > limits.maxExtent.width || e.height > limits.maxExtent.height || e.depth > limits.maxExtent.depth)
+    return std::nullopt;
+  const VkImageCreateInfo create = create_info(info);
+  VkDeviceImageMemoryRequirements asked{};
+  asked.sType = VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS;
+  asked.pCreateInfo = &create;
+  VkMemoryRequirements2 needs{};
+  needs.sType = VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2;
+  vkGetDeviceImageMemoryRequirements(device.handle(), &asked, &needs);
+  return needs.memoryRequirements.size;
+}
+
 Result<Image> Image::create(Device& device, const ImageInfo& info) {
   // within the device's limits, with a sentence when not
   VkImageFormatProperties limits{};
@@ -122,17 +169,7 @@ Result<Image> Image::create(Device& device, const ImageInfo& info) {
   Image self;
   self.device_ = &device;
   self.info_ = info;
-  VkImageCreateInfo create{};
-  create.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-  create.imageType = info.type;
-  create.format = info.format;
-  create.extent = info.extent;
-  create.mipLevels = 1;
-  create.arrayLayers = 1;
-  create.samples = VK_SAMPLE_COUNT_1_BIT;
-  create.tiling = VK_IMAGE_TILING_OPTIMAL;
-  create.usage = info.usage;
-  create.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  const VkImageCreateInfo create = create_info(info);
   const std::string what = fmt::format("an image of {} x {} x {}", e.width, e.height, e.depth);
   CATENA_VK(vkCreateImage(device.handle(), &create, nullptr, &self.image_), "create " + what);
   VkMemoryRequirements needs{};

@@ -1,4 +1,5 @@
 /// Buffers and images, each with its own memory (they are few). Move-only; destruction is retired to the device's timeline.
+/// What the device's memory budget does not hold is refused with one sentence.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -47,6 +48,9 @@ struct ImageInfo {
 
 /// Bytes of one texel of the formats that Catena uses.
 VkDeviceSize texel_bytes(VkFormat format);
+
+/// What an image takes on this device, with the driver's padding; none where no such image can be made.
+std::optional<VkDeviceSize> image_bytes(const Device& device, const ImageInfo& info);
 
 /// One mip level, one layer, one view. Remembers its layout and last use, so that a barrier needs only the next one.
 class Image {

@@ -7,7 +7,8 @@ namespace catena::render::vk {
 
 Outcome upload_planes(Device& device, Image& image, std::uint32_t granule,
                       const std::function<void(std::uint32_t first, std::uint32_t count, std::byte* out)>& fill) {
-  constexpr VkDeviceSize staging_limit = VkDeviceSize(32) << 20;
+  // staging memory counts in the budget: little is taken of little
+  const VkDeviceSize staging_limit = std::min<VkDeviceSize>(VkDeviceSize(32) << 20, device.memory_left() / 4);
   const VkExtent3D extent = image.info().extent;
   const VkDeviceSize plane = texel_bytes(image.info().format) * extent.width * extent.height;
   const auto granules = std::uint32_t(std::max<VkDeviceSize>(1, staging_limit / (plane * granule)));

@@ -24,11 +24,12 @@ bvec3 forward_of(vec3 d) { return greaterThan(d, vec3(-LEAST_DIRECTION)); }
 // Exact entry and exit of the domain; entry >= exit where the ray misses it.
 vec2 domain_interval(int i, LocalRay ray) {
   const vec3 inverse = safe_inverse(ray.direction);
-  const vec3 a = (frame.grids[i].lo - ray.origin) * inverse, b = (frame.grids[i].hi - ray.origin) * inverse;
+  const vec3 lo = frame.grids[i].domain_lo, hi = frame.grids[i].domain_hi;
+  const vec3 a = (lo - ray.origin) * inverse, b = (hi - ray.origin) * inverse;
   vec3 near = min(a, b), far = max(a, b);
   for (int axis = 0; axis < 3; ++axis)
     if (abs(ray.direction[axis]) < LEAST_DIRECTION) {
-      const bool inside = ray.origin[axis] >= frame.grids[i].lo[axis] && ray.origin[axis] <= frame.grids[i].hi[axis];
+      const bool inside = ray.origin[axis] >= lo[axis] && ray.origin[axis] <= hi[axis];
       near[axis] = inside ? -NO_DEPTH : NO_DEPTH;
       far[axis] = -near[axis];
     }

@@ -27,9 +27,11 @@ void main() {
   const uint corner = in_id >> CORNER_SHIFT & 3u;
   out_edges = corner == 0u ? vec3(1.0) : vec3(corner == 1u, corner == 2u, corner == 3u);
   const bool clipped = (in_id & UNCLIPPED) == 0u;
-  for (int i = 0; i < MAX_CLIPS; ++i)
-    gl_ClipDistance[i] = clipped && uint(i) < frame.clip_count ? dot(frame.clips[i].xyz, in_position) + frame.clips[i].w : 1.0;
-  const vec2 clip = vec2(view.x * frame.scale.x, -view.y * frame.scale.y) + frame.shift * (frame.orthographic != 0u ? 1.0 : view.z);
-  if (frame.orthographic != 0u) gl_Position = vec4(clip, (frame.depth_far - view.z) / (frame.depth_far - frame.depth_near), 1.0);
-  else gl_Position = vec4(clip, frame.depth_near, view.z);
+  // planes beyond clip_count are zero: they keep everything. No branch on uniforms: a CPU driver builds such a shader at every draw
+  const float counts = clipped ? 1.0 : 0.0;
+  for (int i = 0; i < MAX_CLIPS; ++i) gl_ClipDistance[i] = counts * (dot(frame.clips[i].xyz, in_position) + frame.clips[i].w) + (1.0 - counts);
+  const float flat_view = float(frame.orthographic);
+  const vec2 clip = vec2(view.x * frame.scale.x, -view.y * frame.scale.y) + frame.shift * mix(view.z, 1.0, flat_view);
+  const float depth = (frame.depth_far - view.z) / (frame.depth_far - frame.depth_near);
+  gl_Position = vec4(clip, mix(frame.depth_near, depth, flat_view), mix(view.z, 1.0, flat_view));
 }

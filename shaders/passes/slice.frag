@@ -53,7 +53,8 @@ bool value_at(vec3 p, out float value, out vec3 gradient) {
 }
 
 bool is_clipped(vec2 q, float t) {
-  for (uint i = 0u; i < frame.clip_count; ++i) {
+  const uint planes = of_pixel(frame.clip_count, gl_FragCoord.xy);
+  for (uint i = 0u; i < planes; ++i) {
     const float at = frame.clips[i].at + frame.clips[i].at_x * q.x + frame.clips[i].at_y * q.y;
     const float along = frame.clips[i].along + frame.clips[i].along_x * q.x + frame.clips[i].along_y * q.y;
     if (at + t * along < -slice.clip_slack) return true;
@@ -74,7 +75,7 @@ Hit meet(vec2 q) {
   hit.t = hit.seen ? -at / along : NO_DEPTH;
   hit.seen = hit.seen && hit.t >= frame.front && abs(hit.t) < NO_DEPTH;
   hit.p = ray.origin + (hit.seen ? hit.t : 0.0) * ray.direction;
-  const vec3 lo = frame.grids[0].lo, hi = frame.grids[0].hi;
+  const vec3 lo = frame.grids[0].domain_lo, hi = frame.grids[0].domain_hi;
   hit.seen = hit.seen && all(greaterThanEqual(hit.p, lo - FACE_SLACK)) && all(lessThanEqual(hit.p, hi + FACE_SLACK));
   hit.p = clamp(hit.p, lo, hi);
   if (!hit.seen) return hit;

@@ -21,7 +21,8 @@ CATENA_SHARED_BEGIN
 struct GridData {
   vec3 origin, origin_x, origin_y;
   vec3 direction, direction_x, direction_y;
-  vec3 lo, hi;           // the domain, local
+  vec3 lo, hi;           // the box of voxel centres, local
+  vec3 domain_lo, domain_hi;  // what is drawn of it: all, but for grids mirrored at less than their resolution
   vec3 texel;            // 1 / size of the value image
   mat3 world_gradient;   // world = world_gradient * local gradient
   float value_offset, value_scale;

@@ -141,7 +141,7 @@ def main(table, fields, work, names):
         field, opacity, shade, steps, modes = CASES[name]
         raw, begin = f"{fields}/{field}{N}.raw", time.time()
         vtk = subprocess.Popen(["xvfb-run", "-a", sys.executable, __file__, "--vtk", name, raw, work], env=env, stdin=subprocess.PIPE,
-                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+                               stdout=subprocess.PIPE, stderr=open(f"{work}/vtk-errors.txt", "w"), text=True)
         ours_env = dict(env, **({"CATENA_SPIKE": "1"} if name == "spike" else {}))
         jobs = [(k, s, d) for k in ("gpu", "cpu") if only in ("", k) for s in steps for d in (1, 2)]
         modes, theirs, ours = modes.split(), [], []
@@ -151,7 +151,7 @@ def main(table, fields, work, names):
             vtk.stdin.flush()
             answer = vtk.stdout.readline()
             if not answer:
-                sys.exit(f"{name}: VTK gave no picture (kind {kind})")
+                sys.exit(f"{case}: VTK gave no picture by its {kind} mapper, see {work}/vtk-errors.txt")
             theirs.append(json.loads(answer))
             mine = modes[i * len(modes) // len(jobs):(i + 1) * len(modes) // len(jobs)]
             if mine:

@@ -27,6 +27,7 @@ struct RenderOptions {
   std::string camera, view;
   bool fit = false;
   double orbit_deg = 0, elevation_deg = 0, zoom = 1;
+  double gpu_memory_mb = 0;  ///< 0: what the driver offers
   StereoChoice stereo;
   // what is drawn
   AnnotateOptions annotate;

@@ -148,7 +148,10 @@ Outcome render_pictures(const RenderOptions& o) {
   stats.objects = packet.objects;
   shape.legend = objects_json(packet.objects);
 
-  frames.renderer = machine(render::Renderer::create({.validation = o.validation, .choose = {}, .surface = {}}));
+  render::vk::DeviceOptions device;
+  device.validation = o.validation;
+  device.memory_budget_bytes = static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb);
+  frames.renderer = machine(render::Renderer::create(device));
   frames.settings = wanted.settings;
   frames.wants = wanted_bands(o);
   const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
@@ -176,6 +179,8 @@ Outcome render_pictures(const RenderOptions& o) {
     frames.progress = parts > 1 ? &progress : nullptr;
     CATENA_TRY(const double first, frames.draw(0, &outputs));
     stats.first_frame_ms = frames.first_ms;
+    stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
+    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", coarser.words());
     fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, picture.width, picture.height, what_is_drawn(packet),
                stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device);
     std::fflush(words);
@@ -201,6 +206,7 @@ Outcome render_pictures(const RenderOptions& o) {
   stats.driver = gpu.driver;
   stats.mirror_ms = gpu.mirror_ms;
   stats.gpu_bytes = gpu.gpu_bytes;
+  stats.gpu_budget_bytes = gpu.gpu_budget;
   stats.validation_messages = gpu.validation_messages;
   for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", note);
   for (const std::string& text : frames.renderer->validation_texts()) fmt::print(stderr, "validation: {}\n", text);

@@ -5,8 +5,8 @@
 
 #include "shaders/shared/frame.h"
 #include "shaders/shared/layers.h"
-#include "shaders/shared/pack.h"
 #include "shaders/shared/overlay.h"
+#include "shaders/shared/pack.h"
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
@@ -33,6 +33,8 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, direction_y);
       EXPECT_OFFSET(GridData, lo);
       EXPECT_OFFSET(GridData, hi);
+      EXPECT_OFFSET(GridData, domain_lo);
+      EXPECT_OFFSET(GridData, domain_hi);
       EXPECT_OFFSET(GridData, texel);
       EXPECT_OFFSET(GridData, world_gradient);
       EXPECT_OFFSET(GridData, value_offset);

@@ -1,0 +1,214 @@
+#include "engine/field/coarsen.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/assert.h"
+#include "engine/base/parallel_for.h"
+#include "engine/field/convert.h"
+
+namespace catena::field {
+namespace {
+
+constexpr int kLeaf = 8;
+
+/// How a coarse voxel is made from fine ones along one axis: at most factor + 1 of them.
+struct Window {
+  int count = 0;
+  std::array<int, 9> at{};       ///< fine indices
+  std::array<float, 9> odd{};    ///< weights by odd reflection; they sum to 1
+  std::array<float, 9> plain{};  ///< by plain reflection, none negative
+
+  void add(int index, float o, float p) {
+    int i = 0;
+    while (i < count && at[i] != index) ++i;
+    if (i == count) at[count++] = index;
+    odd[i] += o;
+    plain[i] += p;
+  }
+};
+
+class Axis {
+ public:
+  Axis(int lo, int hi, int factor) : lo_(lo), hi_(hi), factor_(factor) {
+    const double middle = 0.5 * (factor - 1);
+    domain_lo = (lo - middle) / factor;
+    domain_hi = (hi - middle) / factor;
+    first = int(std::floor(domain_lo));
+    last = int(std::ceil(domain_hi));
+  }
+  Window window(int c) const {
+    Window w;
+    const float part = 1.0f / float(factor_);
+    for (int i = factor_ * c; i < factor_ * (c + 1); ++i) {
+      if (i < lo_) {
+        const int mirrored = std::min(2 * lo_ - i, hi_);
+        w.add(lo_, 2 * part, 0);
+        w.add(mirrored, -part, part);
+      } else if (i > hi_) {
+        const int mirrored = std::max(2 * hi_ - i, lo_);
+        w.add(hi_, 2 * part, 0);
+        w.add(mirrored, -part, part);
+      } else {
+        w.add(i, part, part);
+      }
+    }
+    return w;
+  }
+  int first, last;  ///< coarse voxels
+  double domain_lo, domain_hi;
+
+ private:
+  int lo_, hi_, factor_;
+};
+
+/// The 8^3 coarse voxels of one leaf, those within the coarse box.
+class Leaf {
+ public:
+  Leaf(const ScalarGrid& grid, const std::array<Axis, 3>& axes, const openvdb::Coord& origin) : grid_(grid) {
+    for (int a = 0; a < 3; ++a) {
+      begin[a] = std::max(axes[a].first - origin[a], 0);
+      end[a] = std::min(axes[a].last - origin[a] + 1, kLeaf);
+      int lo = std::numeric_limits<int>::max(), hi = std::numeric_limits<int>::min();
+      for (int i = begin[a]; i < end[a]; ++i) {
+        windows_[a][i] = axes[a].window(origin[a] + i);
+        const Window& w = windows_[a][i];
+        lo = std::min(lo, *std::min_element(w.at.begin(), w.at.begin() + w.count));
+        hi = std::max(hi, *std::max_element(w.at.begin(), w.at.begin() + w.count));
+      }
+      lo_[a] = lo;
+      size_[a] = hi - lo + 1;
+    }
+  }
+
+  /// The one value of all fine voxels that count here.
+  bool constant(float& value) const {
+    if (grid_.has_mask()) return false;
+    const auto down = [](int v) { return v & ~(kLeaf - 1); };
+    bool some = false;
+    for (int z = down(lo_[2]); z < lo_[2] + size_[2]; z += kLeaf)
+      for (int y = down(lo_[1]); y < lo_[1] + size_[1]; y += kLeaf)
+        for (int x = down(lo_[0]); x < lo_[0] + size_[0]; x += kLeaf) {
+          float here = 0;
+          if (!grid_.constant_block({x, y, z}, here) || !std::isfinite(here) || (some && here != value)) return false;
+          value = here;
+          some = true;
+        }
+    return some;
+  }
+
+  void read() {
+    values_.resize(std::size_t(size_[0]) * size_[1] * size_[2]);
+    grid_.read_block({lo_[0], lo_[1], lo_[2]}, {size_[0], size_[1], size_[2]}, values_);
+    if (grid_.has_mask()) find_counting();
+  }
+
+  float average(int x, int y, int z) const {
+    const Window &wx = windows_[0][x], &wy = windows_[1][y], &wz = windows_[2][z];
+    double odd = 0, plain = 0, weight = 0;
+    bool all = true;
+    for (int k = 0; k < wz.count; ++k)
+      for (int j = 0; j < wy.count; ++j) {
+        const std::size_t row = row_of(wy.at[j] - lo_[1], wz.at[k] - lo_[2]);
+        const double o = double(wy.odd[j]) * wz.odd[k], p = double(wy.plain[j]) * wz.plain[k];
+        for (int i = 0; i < wx.count; ++i) {
+          const std::size_t at = row + std::size_t(wx.at[i] - lo_[0]);
+          if (!counts_.empty() && !counts_[at]) {
+            all = false;
+            continue;
+          }
+          odd += o * wx.odd[i] * values_[at];
+          plain += p * wx.plain[i] * values_[at];
+          weight += p * wx.plain[i];
+        }
+      }
+    if (all) return float(odd);
+    return weight > 0 ? float(plain / weight) : std::numeric_limits<float>::quiet_NaN();
+  }
+
+  std::array<int, 3> begin{}, end{};  ///< of the voxels within the coarse box
+
+ private:
+  std::size_t row_of(int y, int z) const { return (std::size_t(z) * size_[1] + y) * size_[0]; }
+
+  /// A voxel counts if it is finite and a corner of a valid cell.
+  void find_counting() {
+    const Index3 n{size_[0] + 1, size_[1] + 1, size_[2] + 1};
+    std::vector<std::uint8_t> cells(std::size_t(n.x) * n.y * n.z);
+    grid_.read_cell_valid({lo_[0] - 1, lo_[1] - 1, lo_[2] - 1}, n, cells);
+    counts_.assign(values_.size(), 0);
+    for (int z = 0; z < size_[2]; ++z)
+      for (int y = 0; y < size_[1]; ++y)
+        for (int x = 0; x < size_[0]; ++x) {
+          std::uint8_t any = 0;
+          for (int c = 0; c < 8; ++c) any |= cells[(std::size_t(z + (c >> 2)) * n.y + y + (c >> 1 & 1)) * n.x + x + (c & 1)];
+          const std::size_t at = row_of(y, z) + std::size_t(x);
+          counts_[at] = any && std::isfinite(values_[at]);
+        }
+  }
+
+  const ScalarGrid& grid_;
+  std::array<std::array<Window, kLeaf>, 3> windows_{};
+  std::array<int, 3> lo_{}, size_{};
+  std::vector<float> values_;
+  std::vector<std::uint8_t> counts_;  ///< by fine voxel; empty: all
+};
+
+}  // namespace
+
+Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
+  CATENA_ASSERT(factor == 2 || factor == 4 || factor == 8);
+  const Box& box = grid.index_box();
+  const auto axis = [&](int a) { return Axis(int(std::lround(box.lo[a])), int(std::lround(box.hi[a])), factor); };
+  const std::array<Axis, 3> axes{axis(0), axis(1), axis(2)};
+
+  // the leaves: those of one value become tiles, or nothing
+  const float background = grid.background();
+  openvdb::FloatTree tree(background);
+  std::vector<openvdb::Coord> origins;
+  const auto down = [](int v) { return v & ~(kLeaf - 1); };
+  for (int x = down(axes[0].first); x <= axes[0].last; x += kLeaf)
+    for (int y = down(axes[1].first); y <= axes[1].last; y += kLeaf)
+      for (int z = down(axes[2].first); z <= axes[2].last; z += kLeaf) origins.emplace_back(x, y, z);
+  std::vector<std::uint8_t> is_constant(origins.size());
+  std::vector<float> constants(origins.size());
+  parallel_for(origins.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) is_constant[i] = Leaf(grid, axes, origins[i]).constant(constants[i]);
+  });
+  std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (is_constant[i] && constants[i] == background) continue;
+    const Leaf leaf(grid, axes, origins[i]);
+    const bool whole = leaf.begin == std::array{0, 0, 0} && leaf.end == std::array{kLeaf, kLeaf, kLeaf};
+    if (is_constant[i] && whole)
+      tree.addTile(1, origins[i], constants[i], true);
+    else
+      leaves.push_back(tree.touchLeaf(origins[i]));
+  }
+  parallel_for(leaves.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const openvdb::Coord origin = leaves[n]->origin();
+      Leaf leaf(grid, axes, origin);
+      leaf.read();
+      for (int x = leaf.begin[0]; x < leaf.end[0]; ++x)
+        for (int y = leaf.begin[1]; y < leaf.end[1]; ++y)
+          for (int z = leaf.begin[2]; z < leaf.end[2]; ++z)
+            leaves[n]->setValueOn(openvdb::Index(x * 64 + y * 8 + z), leaf.average(x, y, z));
+    }
+  });
+  // the box is of the active voxels: its corners are
+  tree.setActiveState(openvdb::Coord(axes[0].first, axes[1].first, axes[2].first), true);
+  tree.setActiveState(openvdb::Coord(axes[0].last, axes[1].last, axes[2].last), true);
+
+  const Mapping& fine = grid.mapping();
+  const Mapping mapping =
+      Mapping::from_linear(fine.world_from_index_linear * double(factor), fine.world_from_index(Vec3(0.5 * (factor - 1))));
+  CoarseGrid coarse;
+  CATENA_TRY(coarse.grid, scalar_from_tree(grid.name(), mapping, tree, nullptr));
+  coarse.domain = {{axes[0].domain_lo, axes[1].domain_lo, axes[2].domain_lo}, {axes[0].domain_hi, axes[1].domain_hi, axes[2].domain_hi}};
+  return coarse;
+}
+
+}  // namespace catena::field

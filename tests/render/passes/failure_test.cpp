@@ -1,0 +1,142 @@
+// The driver fails at every call of a frame in turn: one sentence, nothing left over, no hang, and the picture comes back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/render/support/failing.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+using vk::DriverCall;
+
+/// A little of everything that takes device memory.
+FramePacket everything() {
+  FramePacket packet = packet_of({45, -50, 40}, {12, 12, 12});
+  packet.width = 64;
+  packet.height = 48;
+  const auto grid = make_grid({24, 24, 24}, [](const Vec3& p) { return norm(p - Vec3(12, 12, 12)) / 21; });
+  packet.volumes = {volume_item(grid, {{0, 0.2}, {1, 0}}, {1, 0.5f, 0.2f})};
+  IsosurfaceItem surface;
+  surface.grid = grid;
+  surface.level = 0.2;
+  packet.isosurfaces = {surface};
+  TubeItem tube;
+  tube.points = {{0, 0, 0}, {24, 20, 24}};
+  tube.radius = 1;
+  tube.color = {0, 1, 0};
+  packet.tubes = {tube};
+  CursorItem cursor;
+  cursor.probe = {20, 4, 12};
+  cursor.size = 1;
+  packet.cursors = {cursor};
+  return packet;
+}
+
+class Failures : public PictureTest {
+ protected:
+  void SetUp() override {
+    PictureTest::SetUp();
+    failing_ = std::make_shared<Failing>();
+    start_over();
+  }
+  void start_over() {
+    if (renderer_) expect_silence();
+    auto renderer = Renderer::create(failing_options(failing_));
+    ASSERT_TRUE(renderer) << renderer.error().message;
+    renderer_ = std::move(*renderer);
+  }
+  void expect_silence() const {
+    for (const std::string& text : renderer_->validation_texts()) ADD_FAILURE() << text;
+  }
+  std::string failed(const FramePacket& packet) {
+    const Outcome drawn = renderer_->draw(packet);
+    EXPECT_FALSE(drawn);
+    const std::string message = drawn ? "" : drawn.error().message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    return message;
+  }
+  int calls_of_a_frame(const FramePacket& packet, DriverCall call) {
+    start_over();
+    failing_->arm(call, VK_SUCCESS, 0);
+    EXPECT_TRUE(renderer_->draw(packet));
+    return failing_->calls;
+  }
+  std::shared_ptr<Failing> failing_;
+};
+
+TEST_F(Failures, OutOfMemoryAtEveryAllocation) {
+  const FramePacket packet = everything();
+  FramePacket smaller = packet;
+  smaller.isosurfaces.clear();
+  smaller.tubes.clear();
+  const int allocations = calls_of_a_frame(packet, DriverCall::allocate);
+  ASSERT_GT(allocations, 12);
+  const Picture all = draw(packet, {}, "all"), few = draw(smaller, {}, "fewer");
+  EXPECT_GT(max_difference(all, few), 50);
+  start_over();
+  for (int n = 1; n <= allocations; ++n) {
+    failing_->arm(DriverCall::allocate, VK_ERROR_OUT_OF_DEVICE_MEMORY, n);
+    const std::string message = failed(packet);
+    ASSERT_NE(message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos) << n << ": " << message;
+    EXPECT_FALSE(renderer_->device().lost());
+    // nothing of the frame is left
+    EXPECT_EQ(renderer_->device().counters().bytes, 0u) << "allocation " << n;
+    EXPECT_EQ(renderer_->device().retired(), 0u) << "allocation " << n;
+    EXPECT_EQ(renderer_->stats().mirrors, 0u);
+    // every fourth time the same renderer goes on, with less and then with all of it
+    if (n % 4 != 1 && n != allocations) continue;
+    EXPECT_EQ(max_difference(draw(smaller), few), 0) << "allocation " << n;
+    EXPECT_EQ(max_difference(draw(packet), all), 0) << "allocation " << n;
+    start_over();
+  }
+}
+
+TEST_F(Failures, OutOfMemoryWhileAPictureIsReadBack) {
+  const FramePacket packet = everything();
+  const Picture all = draw(packet);
+  failing_->arm(DriverCall::allocate, VK_ERROR_OUT_OF_DEVICE_MEMORY, 1);
+  const auto picture = renderer_->read_back();
+  ASSERT_FALSE(picture);
+  EXPECT_NE(picture.error().message.find("VK_ERROR_OUT_OF_DEVICE_MEMORY"), std::string::npos);
+  EXPECT_EQ(renderer_->device().counters().bytes, 0u);
+  EXPECT_EQ(max_difference(draw(packet), all), 0);
+}
+
+TEST_F(Failures, TheSceneSurvivesALostDevice) {
+  const FramePacket packet = everything();
+  const Picture before = draw(packet);
+  for (const DriverCall call : {DriverCall::submit, DriverCall::wait}) {
+    const int calls = calls_of_a_frame(packet, call);
+    ASSERT_GT(calls, 3);
+    // the first, one in the middle, and the frame's own
+    for (const int n : {1, calls / 2, calls}) {
+      start_over();
+      failing_->arm(call, VK_ERROR_DEVICE_LOST, n);
+      const std::string message = failed(packet);
+      ASSERT_NE(message.find("VK_ERROR_DEVICE_LOST"), std::string::npos) << message;
+      EXPECT_TRUE(renderer_->device().lost());
+      // it stays lost, and says so at once
+      EXPECT_NE(failed(packet).find("VK_ERROR_DEVICE_LOST"), std::string::npos);
+      start_over();
+      EXPECT_FALSE(renderer_->device().lost());
+      EXPECT_EQ(max_difference(draw(packet), before), 0) << "call " << n;
+    }
+  }
+}
+
+TEST_F(Failures, ADeviceLostBetweenPicturesIsSaid) {
+  const FramePacket packet = everything();
+  const Picture before = draw(packet);
+  failing_->arm(DriverCall::wait, VK_ERROR_DEVICE_LOST, 1);
+  const auto picture = renderer_->read_back();
+  ASSERT_FALSE(picture);
+  EXPECT_NE(picture.error().message.find("VK_ERROR_DEVICE_LOST"), std::string::npos);
+  start_over();
+  EXPECT_EQ(max_difference(draw(packet), before), 0);
+}
+
+}  // namespace
+}  // namespace catena::test

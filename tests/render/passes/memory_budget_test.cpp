@@ -1,0 +1,186 @@
+// The memory budget: never exceeded; what does not fit is drawn coarser, in its place, and said.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace {
+
+using namespace catena::render;
+
+constexpr std::uint64_t kPixels = 160 * 120, kReserve = 1'000'000 + kPixels * (4 + 16 + 4);
+
+RenderSettings exact() {
+  RenderSettings settings;
+  settings.texels = TexelFormat::r32f;
+  return settings;
+}
+
+class MemoryBudget : public PictureTest {
+ protected:
+  /// `left` bytes beside what the picture itself takes.
+  void limit(std::uint64_t left) {
+    vk::DeviceOptions options;
+    options.validation = true;
+    options.choose = "cpu";
+    options.memory_budget_bytes = kReserve + left;
+    auto renderer = Renderer::create(options);
+    ASSERT_TRUE(renderer) << renderer.error().message;
+    renderer_ = std::move(*renderer);
+  }
+  int factor() const {
+    const auto list = renderer_->stats().mirror_coarsening;
+    return list.empty() ? 1 : list.front().factor;
+  }
+  void expect_within() const { EXPECT_LE(renderer_->device().counters().peak, renderer_->stats().gpu_budget); }
+};
+
+GridPtr linear_grid() {
+  return make_grid({64, 64, 64}, [](const Vec3& p) { return (p.x + 0.5 * p.y + 0.25 * p.z) / 112; });
+}
+
+TEST_F(MemoryBudget, ALinearFieldLooksTheSameAtEveryResolution) {
+  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}}, {1, 0.8f, 0.4f})};
+  const Picture whole = draw(packet, exact(), "whole");
+  EXPECT_EQ(factor(), 1);
+  EXPECT_GT(whole.pixel(80, 60)[3], 100);
+  // 64^3 floats are 1 MB; half the resolution an eighth of it, and so on
+  for (const auto& [left, expected] : {std::pair{1'300'000, 1}, {400'000, 2}, {80'000, 4}, {30'000, 8}}) {
+    limit(std::uint64_t(left));
+    const Picture coarse = draw(packet, exact(), "factor-" + std::to_string(expected));
+    EXPECT_EQ(factor(), expected) << left;
+    EXPECT_LE(max_difference(whole, coarse), 2) << "factor " << expected;
+    expect_within();
+    EXPECT_EQ(renderer_->stats().validation_messages, 0u);
+  }
+}
+
+TEST_F(MemoryBudget, ItIsSaidWhatIsCoarserAndWhy) {
+  limit(400'000);
+  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}})};
+  draw(packet, exact());
+  const auto list = renderer_->stats().mirror_coarsening;
+  ASSERT_EQ(list.size(), 1u);
+  EXPECT_EQ(list[0].grid, "density");
+  EXPECT_EQ(list[0].words(), "density: 64^3 needs 1.3 MB of GPU memory, 0.4 MB are left: drawn at half resolution");
+  packet.volumes.clear();
+  draw(packet, exact());
+  EXPECT_TRUE(renderer_->stats().mirror_coarsening.empty());
+}
+
+TEST_F(MemoryBudget, AnIsosurfaceOfAPlaneStaysInItsPlace) {
+  IsosurfaceItem item;
+  item.grid = linear_grid();
+  item.level = 0.5;
+  item.id = 1;
+  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  packet.isosurfaces = {item};
+  draw(packet, {}, "whole");
+  const auto whole = renderer_->read_depth();
+  ASSERT_TRUE(whole);
+  limit(400'000 + kPixels * 20);
+  draw(packet, {}, "half");
+  EXPECT_EQ(factor(), 2);
+  const auto half = renderer_->read_depth();
+  ASSERT_TRUE(half);
+  int hit = 0, differing = 0;
+  for (std::size_t i = 0; i < whole->depth.size(); ++i) {
+    if (std::isfinite(whole->depth[i]) != std::isfinite(half->depth[i])) {
+      ++differing;
+    } else if (std::isfinite(whole->depth[i])) {
+      ++hit;
+      ASSERT_NEAR(whole->depth[i], half->depth[i], 2e-3) << i;
+    }
+  }
+  EXPECT_GT(hit, 1000);
+  EXPECT_LE(differing, hit / 100);
+  expect_within();
+}
+
+TEST_F(MemoryBudget, ASparseGridIsCoarserInItsAtlas) {
+  const auto ball = [](const Vec3& p) { return std::max(0.0, 1 - norm(p - Vec3(40, 32, 32)) / 14); };
+  FramePacket packet = packet_of({130, -100, 70}, {32, 32, 32});
+  packet.volumes = {volume_item(make_grid({64, 64, 64}, ball), {{0, 0}, {1, 0.2}}, {0.5f, 0.8f, 1})};
+  RenderSettings settings = exact();
+  settings.layout = MirrorLayout::atlas;
+  const Picture whole = draw(packet, settings, "whole");
+  EXPECT_GT(whole.pixel(80, 60)[3], 50);
+  limit(150'000);
+  const Picture half = draw(packet, settings, "half");
+  EXPECT_EQ(factor(), 2);
+  // the averages of a curved field differ a little, its place does not
+  EXPECT_LE(max_difference(whole, half), 10);
+  double moment[2] = {0, 0}, mass[2] = {0, 0};
+  for (std::uint32_t i = 0; i < kPixels; ++i) {
+    mass[0] += whole.rgba[4 * i + 3];
+    mass[1] += half.rgba[4 * i + 3];
+    moment[0] += double(i % 160) * whole.rgba[4 * i + 3];
+    moment[1] += double(i % 160) * half.rgba[4 * i + 3];
+  }
+  EXPECT_NEAR(moment[0] / mass[0], moment[1] / mass[1], 0.05);
+  EXPECT_NEAR(mass[1] / mass[0], 1, 0.02);
+  expect_within();
+}
+
+TEST_F(MemoryBudget, TwoGridsShareWhatIsThere) {
+  limit(500'000);
+  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
+  draw(packet, exact(), "two");
+  EXPECT_EQ(renderer_->stats().mirrors, 2u);
+  EXPECT_EQ(renderer_->stats().mirror_coarsening.size(), 2u);
+  expect_within();
+}
+
+TEST_F(MemoryBudget, WhatFitsAgainIsWholeAgain) {
+  limit(1'500'000);
+  const VolumeItem one = volume_item(linear_grid(), {{0, 0}, {1, 0.03}}), two = volume_item(linear_grid(), {{0, 0}, {1, 0.03}});
+  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  packet.volumes = {one, two};
+  draw(packet, exact());
+  EXPECT_EQ(factor(), 2);
+  packet.volumes = {two};
+  draw(packet, exact());
+  draw(packet, exact());
+  EXPECT_EQ(factor(), 1);
+  expect_within();
+}
+
+TEST_F(MemoryBudget, WhatFitsAtNoResolutionIsOneSentence) {
+  limit(2'000);
+  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.03}})};
+  const Outcome drawn = renderer_->draw(packet, exact());
+  ASSERT_FALSE(drawn);
+  EXPECT_EQ(drawn.error().message.find('\n'), std::string::npos);
+  EXPECT_NE(drawn.error().message.find("density: 64^3 needs 1.3 MB of GPU memory"), std::string::npos) << drawn.error().message;
+  EXPECT_EQ(renderer_->stats().gpu_bytes, 0u);
+  // the same renderer goes on
+  packet.volumes.clear();
+  packet.background = {1, 1, 1, 1};
+  EXPECT_EQ(draw(packet).pixel(80, 60)[0], 255);
+}
+
+TEST_F(MemoryBudget, ALargerPictureKeepsWithinIt) {
+  limit(1'400'000);
+  FramePacket packet = packet_of({110, -90, 70}, {32, 32, 32});
+  packet.volumes = {volume_item(linear_grid(), {{0, 0}, {1, 0.06}})};
+  draw(packet, exact());
+  EXPECT_EQ(factor(), 1);
+  packet.width = 256;
+  packet.height = 192;
+  EXPECT_GT(draw(packet, exact()).pixel(128, 96)[3], 100);
+  // what holds no picture at all is one sentence
+  packet.width = packet.height = 1024;
+  const Outcome drawn = renderer_->draw(packet, exact());
+  ASSERT_FALSE(drawn);
+  EXPECT_NE(drawn.error().message.find("MB"), std::string::npos) << drawn.error().message;
+  expect_within();
+}
+
+}  // namespace
+}  // namespace catena::test
