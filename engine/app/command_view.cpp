@@ -16,7 +16,7 @@ namespace catena::app {
 namespace {
 
 struct Options {
-  std::string source, device = "mouse", size = "1024x768", screenshot, servo_stats, record, firmware;
+  std::string source, device = "mouse", size = "1024x768", quality = "time=50", shaders, screenshot, servo_stats, record, firmware;
   std::vector<std::string> fields;
   int frames = 0;
   double seconds = 0;
@@ -39,6 +39,8 @@ Outcome open_window(const Options& o, int& exit_code) {
     for (const auto& [other, other_path] : outputs)
       if (&path != &other_path && !path.empty() && !other_path.empty() && same_file(path, other_path))
         return Error{path + ": " + option + " and " + other + " name one file: expected two"};
+  CATENA_TRY(options.quality, parse_quality(o.quality));
+  options.shaders = o.shaders;
   options.device = o.device;
   options.seconds = o.seconds;
   options.servo_stats = o.servo_stats;
@@ -64,6 +66,12 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
       ->capture_default_str();
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
+  command
+      ->add_option("--quality", options->quality,
+                   "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest; while something moves "
+                   "it comes within MS or 50 ms")
+      ->capture_default_str();
+  command->add_option("--shaders", options->shaders, "the folder of shaders to draw with, watched: what changes there is compiled at once");
   add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));

@@ -11,6 +11,7 @@
 #include "render/passes/aids.h"
 #include "render/passes/compose.h"
 #include "render/passes/cursor.h"
+#include "render/passes/embedded_shaders.h"
 #include "render/passes/isosurface.h"
 #include "render/passes/layers.h"
 #include "render/passes/mesh.h"
@@ -79,6 +80,7 @@ struct Renderer::Parts {
   std::uint64_t reserved(const Frame& frame) const;
   std::vector<Pass*> active(std::vector<std::string>* names = nullptr) const;
   vk::Image& shown() { return packed ? pack->picture() : targets.picture; }
+  void drop_passes();
   Outcome prepare(Frame& frame);
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
   Outcome draw(const FramePacket& packet, const RenderSettings& settings);
@@ -105,17 +107,22 @@ std::vector<Pass*> Renderer::Parts::active(std::vector<std::string>* names) cons
   return list;
 }
 
-template <class Outcome_>
-Outcome_ Renderer::Parts::kept_or_dropped(Outcome_ result) {
-  if (result) return result;
+/// With their pipelines; the next picture makes them anew.
+void Renderer::Parts::drop_passes() {
   for (auto& pass : passes) {
     if (pass) gone_build_ms += pass->build_ms();
     pass.reset();
   }
-  mirrors->clear();
-  targets = Targets{};
   pack.reset();
   drawn = 0;
+}
+
+template <class Outcome_>
+Outcome_ Renderer::Parts::kept_or_dropped(Outcome_ result) {
+  if (result) return result;
+  drop_passes();
+  mirrors->clear();
+  targets = Targets{};
   return result;
 }
 
@@ -362,6 +369,27 @@ Result<IdPicture> Renderer::read_ids() {
 Result<bool> Renderer::present(vk::Swapchain& swapchain) {
   CATENA_ASSERT(parts_->drawn != 0);
   return swapchain.present(parts_->shown());
+}
+
+Result<bool> Renderer::replace_shader(std::string_view name, std::vector<std::uint32_t> words) {
+  const auto all = embedded_shaders();
+  const auto found = std::ranges::find(all, name, &EmbeddedShader::name);
+  if (found == all.end()) return Error{fmt::format("there is no shader \"{}\"", name)};
+  const auto bound = vk::declared_bindings(found->words);
+  for (const std::uint32_t binding : vk::declared_bindings(words))
+    if (!std::ranges::binary_search(bound, binding))
+      return Error{fmt::format("{}: binding {} is not one that the program binds, expected the bindings of the shader it was built with",
+                               name, binding)};
+  vk::ShaderReplacements& shaders = parts_->device->shaders();
+  if (std::ranges::equal(shaders.of(found->words), words)) return false;
+  shaders.replace(found->words, std::move(words));
+  parts_->drop_passes();
+  return true;
+}
+
+void Renderer::restore_shaders() {
+  parts_->device->shaders().clear();
+  parts_->drop_passes();
 }
 
 RenderStats Renderer::stats() const {

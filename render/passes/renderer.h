@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -88,6 +89,13 @@ class Renderer {
   Result<IdPicture> read_ids();
   /// Shows the last picture in a window (scaled to it). False: the swapchain no longer fits, resize it.
   Result<bool> present(vk::Swapchain& swapchain);
+
+  /// Pictures from now on are drawn with `words` in the place of the embedded shader "compose.frag" (or another of embedded_shaders.h).
+  /// An error where there is no such shader, or where it uses a binding that the program does not bind; nothing has changed then.
+  /// False: these words are in use already.
+  Result<bool> replace_shader(std::string_view name, std::vector<std::uint32_t> words);
+  /// The embedded shaders again.
+  void restore_shaders();
 
   RenderStats stats() const;
   std::vector<std::string> validation_texts() const;

@@ -14,6 +14,7 @@
 
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
+#include "render/vk/shader_replacements.h"
 
 namespace catena::render::vk {
 
@@ -69,6 +70,7 @@ class Device {
   const Messages& messages() const { return instance_->messages(); }
   DeviceCounters& counters() { return counters_; }
   const DeviceCounters& counters() const { return counters_; }
+  ShaderReplacements& shaders() { return shaders_; }
   /// Bytes that the budget still holds.
   std::uint64_t memory_left() const { return counters_.bytes < info_.memory_budget ? info_.memory_budget - counters_.bytes : 0; }
   /// The driver gave the device up: nothing can be drawn with it any more. A new one can be made from the same packets.
@@ -109,6 +111,7 @@ class Device {
   std::deque<Retired> retired_;
   DeviceInfo info_;
   DeviceCounters counters_;
+  ShaderReplacements shaders_;
   std::function<VkResult(DriverCall)> fail_;
   bool lost_ = false;
   PFN_vkCmdPushDescriptorSetKHR push_descriptors_ = nullptr;

@@ -19,6 +19,7 @@ class ShaderModule {
   Outcome load(Spirv words) {
     VkShaderModuleCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    words = device_.shaders().of(words);
     info.codeSize = words.size_bytes();
     info.pCode = words.data();
     CATENA_VK(vkCreateShaderModule(device_.handle(), &info, nullptr, &module_), "load a shader");

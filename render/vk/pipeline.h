@@ -1,4 +1,5 @@
-/// Pipelines from SPIR-V words that were embedded at build time. Descriptors are pushed; shader constants are specialised.
+/// Pipelines from SPIR-V words that were embedded at build time, or from what the device has in their place. Descriptors are pushed; shader
+/// constants are specialised.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -8,8 +9,6 @@
 #include "render/vk/device.h"
 
 namespace catena::render::vk {
-
-using Spirv = std::span<const std::uint32_t>;
 
 /// One binding of a shader: what kind it is.
 enum class Resource { uniform, buffer, sampled, texture, storage_image };  ///< sampled: with a sampler; texture: fetched only

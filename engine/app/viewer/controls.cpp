@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/frame/camera_moves.h"
+
 namespace catena::app {
 
 namespace {
@@ -40,6 +42,15 @@ void move_hand(Controls& controls, const Input& input) {
   controls.hand = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
 }
 
+/// Along an axis, all in the picture; the angle and the projection stay.
+void look_along(Controls& controls, const Input& input) {
+  constexpr std::string_view kAlong[2][3] = {{"+x", "+y", "+z"}, {"-x", "-y", "-z"}};
+  const std::string_view words = kAlong[input.shift ? 1 : 0][*input.axis];
+  auto view = render::axis_view(controls.bounds, input.width / input.height, words, controls.view.fovy_deg);
+  view->orthographic = controls.view.orthographic;
+  controls.view = *view;
+}
+
 }  // namespace
 
 void orbit(render::View& view, double yaw, double pitch) {
@@ -64,6 +75,16 @@ void zoom(render::View& view, double factor) {
     view.height *= factor;
   else
     view.position = view.target + factor * (view.position - view.target);
+}
+
+void toggle_projection(render::View& view) {
+  const double height_at_1 = 2 * std::tan(0.5 * view.fovy_deg * kPi / 180);
+  const Vec3 arm = view.position - view.target;
+  if (view.orthographic)
+    view.position = view.target + view.height / height_at_1 * direction(arm);
+  else
+    view.height = height_at_1 * norm(arm);
+  view.orthographic = !view.orthographic;
 }
 
 Changed apply(Controls& controls, const Input& input) {
@@ -91,10 +112,12 @@ Changed apply(Controls& controls, const Input& input) {
     zoom(controls.view, std::pow(kZoomPerNotch, input.wheel));
     changed.view = true;
   }
-  if (input.reset_view) {
-    controls.view = controls.home;
-    changed.view = true;
-  }
+  const bool fits = !controls.bounds.empty();
+  if (input.axis && fits) look_along(controls, input);
+  if (input.fit && fits) controls.view = render::fitted(controls.view, controls.bounds, input.width / input.height);
+  if (input.toggle_projection) toggle_projection(controls.view);
+  if (input.reset_view) controls.view = controls.home;
+  changed.view = changed.view || (fits && (input.axis || input.fit)) || input.toggle_projection || input.reset_view;
   return changed;
 }
 
@@ -106,7 +129,11 @@ std::string_view key_help() {
          "H                    hand mode: the mouse is the hand, the left button its button 1\n"
          "space                the hand's button 1\n"
          "F                    a haptic device's forces on and off (off at first)\n"
+         "1, 2, 3              look along +x, +y, +z, at all that is drawn; with shift along -x, -y, -z\n"
+         "A, Home              all that is drawn into the picture, from the same direction\n"
+         "O                    orthographic or perspective\n"
          "R                    the first view again\n"
+         "P                    the pulses along streamlines stand or run\n"
          "F2                   the next stereo mode\n"
          "F1, ?                these keys\n"
          "Q, Esc               quit\n";

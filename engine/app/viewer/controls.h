@@ -4,6 +4,7 @@
 ///          wheel for depth; in hand mode the left button (anywhere the space bar) is the device's button 1
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "render/frame/camera.h"
@@ -17,12 +18,15 @@ struct Input {
   bool left = false, middle = false, right = false;  ///< held
   bool shift = false, control = false, space = false;
   bool toggle_hand = false, toggle_forces = false, reset_view = false, next_stereo = false, help = false,
-       quit = false;     ///< pressed in this piece
-  bool damaged = false;  ///< the window system lost the picture
+       quit = false;  ///< pressed in this piece
+  bool fit = false, toggle_projection = false, toggle_pulses = false;
+  std::optional<int> axis;  ///< 0, 1, 2: look along x, y, z; with shift the other way
+  bool damaged = false;     ///< the window system lost the picture
 };
 
 struct Controls {
   render::View view, home;  ///< home: what R goes back to
+  render::Bounds bounds;    ///< of all that is drawn; empty: nothing can be fitted
   Vec3 hand{0.0};           ///< world units
   std::uint32_t buttons = 0;
   bool hand_mode = false;
@@ -40,6 +44,9 @@ Changed apply(Controls& controls, const Input& input);
 void orbit(render::View& view, double yaw, double pitch);
 /// The eye's distance (orthographic: the picture's height) times `factor`.
 void zoom(render::View& view, double factor);
+
+/// Between perspective and orthographic, with the same size of things in the target's plane.
+void toggle_projection(render::View& view);
 
 /// The keys, for the terminal.
 std::string_view key_help();

@@ -15,6 +15,9 @@
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/hand/recording.h"
 #include "engine/app/viewer/controls.h"
+#include "engine/app/viewer/pacing.h"
+#include "engine/app/viewer/pulse_clock.h"
+#include "engine/app/viewer/shader_reload.h"
 #include "engine/app/viewer/window.h"
 #include "engine/base/clock.h"
 #include "engine/scene/systems.h"
@@ -23,6 +26,7 @@
 #include "haptics/servo/servo.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_stereo.h"
+#include "render/passes/quality.h"
 #include "render/passes/renderer.h"
 #include "render/vk/picture.h"
 #include "render/vk/swapchain.h"
@@ -32,7 +36,6 @@ namespace catena::app {
 namespace {
 
 constexpr double kRestS = 0.25;       // without input for so long: the picture may take its time
-constexpr double kSlowMs = 60;        // a full picture above this is halved in both directions while moving
 constexpr double kIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
 constexpr double kMinimisedWaitS = 0.1;
 constexpr double kTitleS = 0.25;
@@ -45,7 +48,7 @@ struct Failure {
 /// One open window on one scene. Members in the order of their making: the servo goes before the device it reads.
 class Session {
  public:
-  explicit Session(ViewOptions options) : options_(std::move(options)) {}
+  explicit Session(ViewOptions options) : options_(std::move(options)), pacing_(options_.quality) {}
 
   std::optional<Failure> open();
   std::optional<Failure> run();
@@ -56,7 +59,10 @@ class Session {
   void say_forces() const;
   Changed take_input(double wait_s);
   bool take_haptics();
-  std::optional<Failure> draw(bool moving);
+  bool run_pulses();
+  bool take_shaders();
+  std::optional<Failure> draw(const NextPicture& next);
+  Outcome draw_packet(const render::FramePacket& packet, const render::RenderSettings& settings);
   void update_title();
   void say_goodbye();
 
@@ -65,6 +71,11 @@ class Session {
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::vk::Swapchain> swapchain_;
   Controls controls_;
+  Pacing pacing_;
+  SceneKind kind_;
+  PulseClock pulses_;
+  bool has_pulses_ = false, pulses_run_ = true;
+  std::optional<ShaderReload> reload_;
   OpenHand hand_;
   haptics::MouseDevice* mouse_ = nullptr;  ///< hand_.device, if that is the mouse: the frame moves it
   Recording recording_;
@@ -75,10 +86,9 @@ class Session {
   exchange::HapticState felt_;
 
   bool quit_ = false;
-  bool fits_ = true;   ///< the swapchain still has the window's size
-  bool stale_ = true;  ///< what the window shows is not the newest picture at full quality
+  bool fits_ = true;  ///< the swapchain still has the window's size
+  bool damaged_ = false;
   int frames_ = 0;
-  double full_ms_ = 0;            ///< what a picture of full size takes, estimated
   std::vector<double> frame_ms_;  ///< of this run, for the goodbye
   std::int64_t last_title_ = 0;
   int frames_in_title_ = 0;
@@ -121,6 +131,9 @@ std::optional<Failure> Session::open_scene() {
   if (!scene.camera.given && packet->volumes.empty() && packet->isosurfaces.empty() && packet->tubes.empty())
     packet->view = render::fit_view(bounds, static_cast<double>(options_.width) / options_.height);
   controls_.view = controls_.home = packet->view;
+  controls_.bounds = bounds;
+  scene.world.each<scene::StreamlineSet>(
+      [&](scene::Entity, const scene::StreamlineSet& set) { has_pulses_ = has_pulses_ || set.pulse > 0; });
   pin_camera();
   return std::nullopt;
 }
@@ -130,6 +143,11 @@ std::optional<Failure> Session::open() {
     auto hand = open_hand(options_.scene, options_.device, {}, options_.firmware);
     if (!hand) return Failure{2, hand.error().message};
     hand_ = std::move(*hand);
+  }
+  if (!options_.shaders.empty()) {
+    auto reload = ShaderReload::open(options_.shaders);
+    if (!reload) return Failure{2, "--shaders " + reload.error().message};
+    reload_ = std::move(*reload);
   }
   auto window = Window::create(options_.width, options_.height, "catena");
   if (!window) return Failure{1, window.error().message};
@@ -179,7 +197,8 @@ Changed Session::take_input(double wait_s) {
     changed.view = changed.view || by_piece.view;
     changed.hand = changed.hand || by_piece.hand;
     quit_ = quit_ || input.quit;
-    stale_ = stale_ || input.damaged;
+    damaged_ = damaged_ || input.damaged;
+    if (input.toggle_pulses) pulses_run_ = !pulses_run_;
     if (input.next_stereo) {
       auto& mode = options_.scene.stereo.mode;
       mode = static_cast<scene::StereoMode>((static_cast<int>(mode) + 1) % scene::kStereoModes);
@@ -214,33 +233,57 @@ bool Session::take_haptics() {
   return changed;
 }
 
-std::optional<Failure> Session::draw(bool moving) {
+/// True where the pulses have moved. With a number of frames asked for they stand: the pictures repeat.
+bool Session::run_pulses() {
+  const bool running = has_pulses_ && pulses_run_ && options_.frames == 0 && window_->looked_at();
+  const auto phase = pulses_.advance(now_ns(), running, options_.scene.phase);
+  if (phase) options_.scene.phase = *phase;
+  return phase.has_value();
+}
+
+bool Session::take_shaders() { return reload_ && reload_->poll(*renderer_, now_ns()); }
+
+/// With the embedded shaders if those of --shaders cannot be drawn with.
+Outcome Session::draw_packet(const render::FramePacket& packet, const render::RenderSettings& settings) {
+  auto drawn = renderer_->draw(packet, settings);
+  if (!drawn && reload_ && reload_->give_up(*renderer_, drawn.error().message)) return renderer_->draw(packet, settings);
+  return drawn;
+}
+
+std::optional<Failure> Session::draw(const NextPicture& next) {
   std::uint32_t width = 0, height = 0;
   window_->framebuffer_size(width, height);
   if (width == 0 || height == 0) return std::nullopt;
   if (!fits_ || swapchain_->extent().width != width || swapchain_->extent().height != height)
     if (auto resized = swapchain_->resize(width, height); !resized) return Failure{1, resized.error().message};
 
-  // while something moves: coarser steps, and half the pixels in both directions if need be
   const scene::Stereo& stereo = options_.scene.stereo;
   const render::Packing packing = render::packing_of(stereo);
-  const std::uint32_t scale = moving && full_ms_ > kSlowMs && !render::is_interlaced(packing) ? 2 : 1;
+  const std::uint32_t scale = render::is_interlaced(packing) ? 1 : next.scale;
   const auto eye = render::view_size(packing, render::views_of(stereo), std::max(1u, width / scale), std::max(1u, height / scale));
-  const std::int64_t start = now_ns();
+  std::int64_t start = now_ns();
   auto packet = render::extract_frame(options_.scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) return Failure{2, packet.error().message};
-  if (auto drawn = renderer_->draw(*packet, moving ? render::draft_settings() : render::balanced_settings()); !drawn)
-    return Failure{1, drawn.error().message};
+  if (pacing_.wants_estimate()) {
+    const auto error = render::estimate_rmse(*renderer_, *packet, next.settings);
+    if (!error) return Failure{1, error.error().message};
+    pacing_.estimated(*error);
+    start = now_ns();
+  }
+  if (auto drawn = draw_packet(*packet, next.settings); !drawn) return Failure{1, drawn.error().message};
   const double ms = ms_since(start);
+  pacing_.drawn(ms);
+  const auto shaded = [](const render::VolumeItem& item) { return item.shade; };
+  kind_ = {!packet->volumes.empty() || !packet->isosurfaces.empty(), renderer_->draws_fast(*packet),
+           std::any_of(packet->volumes.begin(), packet->volumes.end(), shaded)};
   if (frames_ == 0)
     for (const std::string& note : renderer_->stats().notes) fmt::print(stderr, "catena: {}\n", note);
-  // the first picture pays for uploads and pipelines: it says nothing of the next
-  if (moving && frames_ > 0) full_ms_ = frames_ == 1 ? ms * scale * scale : 0.7 * full_ms_ + 0.3 * ms * scale * scale;
   frame_ms_.push_back(ms);
 
   auto shown = renderer_->present(*swapchain_);
   if (!shown) return Failure{1, shown.error().message};
   fits_ = *shown;
+  damaged_ = false;
   ++frames_;
   ++frames_in_title_;
   return std::nullopt;
@@ -259,6 +302,7 @@ void Session::update_title() {
   if (mouse_ == nullptr) title += servo_->forces() ? "  [forces on]" : "  [forces off]";
   if (options_.scene.stereo.mode != scene::StereoMode::mono) title += fmt::format("  [{}]", scene::stereo_word(options_.scene.stereo.mode));
   if (controls_.hand_mode) title += "  [hand]";
+  title += "  [" + pacing_.words() + "]";
   window_->set_title(title);
   last_title_ = now_ns();
   frames_in_title_ = 0;
@@ -273,7 +317,7 @@ void Session::say_goodbye() {
 }
 
 std::optional<Failure> Session::run() {
-  std::int64_t last_input = now_ns();
+  std::int64_t last_move = now_ns();
   const std::int64_t start = now_ns();
   const bool always = options_.frames > 0 || options_.seconds > 0;
   bool busy = true, minimised = false;
@@ -281,23 +325,30 @@ std::optional<Failure> Session::run() {
          (options_.seconds <= 0 || 1e-3 * ms_since(start) < options_.seconds)) {
     const Changed changed = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
     const bool news = take_haptics();
-    if (changed.any() || news) last_input = now_ns();
     std::uint32_t width = 0, height = 0;
     window_->framebuffer_size(width, height);
     minimised = width == 0;
     if (minimised) {
-      stale_ = true;
+      damaged_ = true;
       continue;
     }
-    // a coarse picture at once while something moves, a fine one when it rests
-    const bool last = options_.frames > 0 && frames_ + 1 == options_.frames;
-    const bool moving = !last && 1e-3 * ms_since(last_input) < kRestS;
     const bool resized = !fits_ || width != swapchain_->extent().width || height != swapchain_->extent().height;
-    busy = changed.any() || news || resized || frames_ == 0 || (stale_ && !moving) || always;
-    if (busy) {
-      if (auto failure = draw(moving)) return failure;
-      stale_ = moving;
-    }
+    const bool pulsed = run_pulses(), reloaded = take_shaders();
+    const bool moved = changed.any() || news || resized || pulsed || reloaded || frames_ == 0;
+    if (moved) last_move = now_ns();
+
+    // a picture in time while something moves, better ones when it rests
+    std::optional<NextPicture> next;
+    if (options_.frames > 0 && frames_ + 1 == options_.frames)
+      next = pacing_.best(kind_);
+    else if (moved)
+      next = pacing_.moving(kind_);
+    else if (1e-3 * ms_since(last_move) >= kRestS)
+      next = pacing_.still(kind_);
+    if (!next && (damaged_ || always)) next = pacing_.again();
+    busy = next.has_value();
+    if (next)
+      if (auto failure = draw(*next)) return failure;
     update_title();
   }
   servo_->stop();
@@ -306,8 +357,8 @@ std::optional<Failure> Session::run() {
   if (auto written = write_servo_stats(options_.servo_stats, *servo_, *hand_.device); !written) return Failure{2, written.error().message};
 
   if (!options_.screenshot.empty() && frames_ > 0) {
-    if (stale_)
-      if (auto failure = draw(false)) return failure;
+    if (!pacing_.finished())
+      if (auto failure = draw(pacing_.best(kind_))) return failure;
     auto picture = renderer_->read_back();
     if (!picture) return Failure{1, picture.error().message};
     if (auto written = render::write_png(options_.screenshot, *picture, options_.scene.background.transparent); !written)

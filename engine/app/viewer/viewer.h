@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/render/quality_words.h"
 #include "engine/scene/scene.h"
 #include "haptics/servo/realtime.h"
 
@@ -15,6 +16,8 @@ struct ViewOptions {
   scene::Scene scene;            ///< read already (its errors are the caller's)
   std::string device = "mouse";  ///< what holds the probe: the mouse, or a name of haptics/device/registry.h
   std::uint32_t width = 1024, height = 768;
+  Quality quality;                    ///< of a picture at rest (pacing.h)
+  std::string shaders;                ///< folder of shaders to watch; empty: none
   int frames = 0;                     ///< quit after so many frames; 0: until the window is closed
   double seconds = 0;                 ///< draw all the time and quit after so long; 0: until the window is closed
   std::string screenshot;             ///< .png of the last frame, written at the end; empty: none

@@ -97,6 +97,10 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
     }
     if (key == GLFW_KEY_F) p.current.toggle_forces = !p.current.toggle_forces;
     if (key == GLFW_KEY_R) p.current.reset_view = true;
+    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_3) p.current.axis = key - GLFW_KEY_1;
+    if (key == GLFW_KEY_A || key == GLFW_KEY_HOME) p.current.fit = true;
+    if (key == GLFW_KEY_O) p.current.toggle_projection = true;
+    if (key == GLFW_KEY_P) p.current.toggle_pulses = true;
     if (key == GLFW_KEY_F2) p.current.next_stereo = true;
     if (key == GLFW_KEY_F1) p.current.help = true;
     if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) p.current.quit = true;
@@ -138,6 +142,11 @@ std::vector<Input> Window::poll(double wait_s) {
 }
 
 bool Window::closing() const { return glfwWindowShouldClose(parts_->window) == GLFW_TRUE; }
+
+bool Window::looked_at() const {
+  const auto is = [&](int what) { return glfwGetWindowAttrib(parts_->window, what) == GLFW_TRUE; };
+  return !is(GLFW_ICONIFIED) && (is(GLFW_FOCUSED) || is(GLFW_HOVERED));
+}
 
 void Window::framebuffer_size(std::uint32_t& width, std::uint32_t& height) const {
   int w = 0, h = 0;

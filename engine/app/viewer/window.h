@@ -25,6 +25,8 @@ class Window {
   /// order, cut where a button or modifier changed: a whole drag within one slow picture is still a drag. At least one.
   std::vector<Input> poll(double wait_s);
   bool closing() const;
+  /// It has the keyboard or the pointer: somebody is likely to look at it.
+  bool looked_at() const;
   /// Of the picture, in pixels; 0 while minimised.
   void framebuffer_size(std::uint32_t& width, std::uint32_t& height) const;
   void set_title(const std::string& title);

@@ -83,6 +83,68 @@ TEST(Controls, TheWheelZooms) {
   EXPECT_NEAR(norm(c.view.position), 9, 1e-12);
 }
 
+TEST(Controls, TheNumberKeysLookAlongTheAxesAtAllThatIsDrawn) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool back : {false, true})
+      for (const bool flat : {false, true}) {
+        Controls c = controls();
+        c.bounds.add(Vec3(1.0, 2.0, 3.0));
+        c.bounds.add(Vec3(5.0, 3.0, 9.0));
+        c.view.orthographic = flat;
+        Input i = input(0, 0);
+        i.axis = axis;
+        i.shift = back;
+        EXPECT_TRUE(apply(c, i).view);
+        Vec3 along(0.0);
+        along[axis] = back ? -1 : 1;
+        EXPECT_LE(norm(direction(c.view.target - c.view.position) - along), 1e-12);
+        EXPECT_EQ(c.view.orthographic, flat);
+        const auto camera = render::make_camera(c.view, 320, 240, c.bounds);
+        double most_x = 0, most_y = 0;
+        for (int k = 0; k < 8; ++k) {
+          const auto p = render::project(camera, c.bounds.corner(k));
+          ASSERT_TRUE(p);
+          most_x = std::max(most_x, std::fabs(p->x - 160) / 160);
+          most_y = std::max(most_y, std::fabs(p->y - 120) / 120);
+        }
+        EXPECT_LE(std::max(most_x, most_y), 1);
+        EXPECT_GE(std::max(most_x, most_y), 0.8) << "and it fills the picture";
+      }
+}
+
+TEST(Controls, FitKeepsTheDirectionAndWithoutBoundsNothingHappens) {
+  Controls c = controls();
+  Input i = input(0, 0);
+  i.fit = true;
+  EXPECT_FALSE(apply(c, i).any());
+  i.axis = 1;
+  EXPECT_FALSE(apply(c, i).any());
+  EXPECT_EQ(c.view.position, c.home.position);
+
+  i.axis.reset();
+  c.bounds.add(Vec3(4.0, 0.0, 0.0), 1);
+  EXPECT_TRUE(apply(c, i).view);
+  EXPECT_LE(norm(c.view.target - Vec3(4.0, 0.0, 0.0)), 1e-12);
+  EXPECT_LE(norm(direction(c.view.target - c.view.position) - Vec3(0.0, 1.0, 0.0)), 1e-12);
+}
+
+TEST(Controls, OKeepsTheSizeOfThingsInTheTargetsPlane) {
+  Controls c = controls();
+  Input i = input(0, 0);
+  i.toggle_projection = true;
+  const Vec3 corner(1.5, 0.0, 1.0);
+  const auto place = [&] { return render::project(render::make_camera(c.view, 320, 240, {}), corner); };
+  const auto before = place();
+  EXPECT_TRUE(apply(c, i).view);
+  EXPECT_TRUE(c.view.orthographic);
+  EXPECT_NEAR(place()->x, before->x, 1e-9);
+  EXPECT_NEAR(place()->y, before->y, 1e-9);
+  zoom(c.view, 0.5);
+  apply(c, i);
+  EXPECT_FALSE(c.view.orthographic);
+  EXPECT_NEAR(norm(c.view.position), 5, 1e-9) << "what was zoomed stays zoomed";
+}
+
 TEST(Controls, TheHandFollowsThePointerInThePicturesPlane) {
   for (const int way : {0, 1, 2}) {
     Controls c = controls();

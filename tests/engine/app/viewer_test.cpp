@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
 
 #include "render/vk/picture.h"
@@ -125,6 +126,63 @@ TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
          << "xdotool key q; wait $!\n";
   ASSERT_EQ(on_display(script.str()), 0) << log();
   EXPECT_NE(log().find("arrived"), std::string::npos) << log();
+}
+
+TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
+  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  const std::string shaders = folder_ / "shaders", compose = shaders + "/passes/compose.frag";
+  std::filesystem::copy(std::string(CATENA_SOURCE_DIR) + "/shaders", shaders, std::filesystem::copy_options::recursive);
+  test::write_file(folder_ / "green.frag",
+                   "#version 460\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(0.0, 1.0, 0.0, 1.0); }\n");
+  test::write_file(folder_ / "broken.frag", "#version 460\nvoid main() { nonsense; }\n");
+  const auto wait_for = [&](const std::string& word) {
+    return "for i in $(seq 200); do grep -q '" + word + "' " + (folder_ / "log") + " && break; sleep 0.1; done\n";
+  };
+  std::ostringstream script;
+  script << view() << " --shaders " << shaders << " --screenshot " << (folder_ / "green.png") << " &\n"
+         << "for i in $(seq 200); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done\n"
+         << "xdotool mousemove 160 120; sleep 0.6\n"
+         << "cp " << (folder_ / "green.frag") << " " << compose << "\n"
+         << wait_for("compose.frag: taken from the file") << "cp " << (folder_ / "broken.frag") << " " << compose << "\n"
+         << wait_for("compose.frag:2: ") << "xdotool key q; wait $!\n";
+  ASSERT_EQ(on_display(script.str()), 0) << log();
+  EXPECT_NE(log().find("catena: " + compose + ":2: 'nonsense'"), std::string::npos) << log();
+  const render::Picture green = picture("green.png");
+  ASSERT_FALSE(green.rgba.empty());
+  int others = 0;
+  for (std::size_t i = 0; i < green.rgba.size(); i += 4) others += green.rgba[i] > 2 || green.rgba[i + 1] < 253 || green.rgba[i + 2] > 2;
+  EXPECT_EQ(others, 0);
+}
+
+TEST_F(Viewer, SaysWhatIsWrongWithQualityAndShaders) {
+  for (const auto& [options, text] : {std::pair{" --quality nonsense", "--quality nonsense: expected draft"},
+                                      std::pair{" --shaders /nowhere", "--shaders /nowhere/passes/"}}) {
+    EXPECT_EQ(exit_code("env -u DISPLAY -u WAYLAND_DISPLAY " + view() + options + " > " + (folder_ / "log") + " 2>&1"), 2);
+    EXPECT_NE(log().find(text), std::string::npos) << log();
+    EXPECT_EQ(std::ranges::count(log(), '\n'), 1) << log();
+  }
+}
+
+TEST_F(Viewer, TheTitleSaysTheSettingAndKeysTurnTheView) {
+  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  test::write_file(scene_, R"({
+    "fields": {"f": {"analytic": "sphere"}},
+    "volumes": [{"field": "f"}],
+    "camera": {"position": [3, -6, 3], "target": [0, 0, 0]} })");
+  const auto drive = [&](const std::string& keys, const std::string& png) {
+    std::ostringstream script;
+    script
+        << view() << " --quality time=30 --screenshot " << (folder_ / png) << " &\n"
+        << "for i in $(seq 200); do xdotool search --name '[[].*step .* ms[]]' > /dev/null 2>&1 && echo arrived && break; sleep 0.1; done\n"
+        << "xdotool mousemove 160 120; sleep 0.3; " << keys << "\nsleep 0.5; xdotool key q; wait $!\n";
+    EXPECT_EQ(on_display(script.str()), 0) << log();
+    EXPECT_NE(log().find("arrived"), std::string::npos) << log();
+  };
+  drive(":", "still.png");
+  drive("xdotool key 1", "along_x.png");
+  drive("xdotool key 1; sleep 0.2; xdotool key o", "flat.png");
+  EXPECT_GT(differing(picture("still.png"), picture("along_x.png")), 500);
+  EXPECT_GT(differing(picture("along_x.png"), picture("flat.png")), 50);
 }
 
 TEST_F(Viewer, DrawsForSoManySeconds) {
