@@ -110,7 +110,7 @@ TEST_F(MemoryBudget, ASparseGridIsCoarserInItsAtlas) {
   settings.layout = MirrorLayout::atlas;
   const Picture whole = draw(packet, settings, "whole");
   EXPECT_GT(whole.pixel(76, 60)[0], 50);
-  limit(200'000);
+  limit(300'000);
   const Picture half = draw(packet, settings, "half");
   EXPECT_EQ(factor(), 2);
   // the averages of a curved field differ a little, its place does not
