@@ -151,12 +151,12 @@ TEST(ColorSpaces, LabAndMshOfKnownColours) {
   }
 }
 
-TEST(ColorSpaces, HsvGoesTheShorterWay) {
-  // from red to violet-blue through magenta, not through green
-  const Vec3 middle = between_colors(ColorSpace::hsv, {1, 0, 0}, {0, 0, 1}, 0.5);
-  EXPECT_LT(norm(middle - Vec3(1, 0, 1)), 1e-12);
+TEST(ColorSpaces, HsvGoesTheShorterWayOnlyWhereItWraps) {
+  // from red to blue through magenta, or through green, which does not pass red
+  EXPECT_LT(norm(between_colors(ColorSpace::hsv_wrap, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(1, 0, 1)), 1e-12);
+  EXPECT_LT(norm(between_colors(ColorSpace::hsv, {1, 0, 0}, {0, 0, 1}, 0.5) - Vec3(0, 1, 0)), 1e-12);
   EXPECT_LT(norm(between_colors(ColorSpace::hsv, {1, 0, 0}, {0, 1, 0}, 0.5) - Vec3(1, 1, 0)), 1e-12);
-  for (const ColorSpace space : {ColorSpace::rgb, ColorSpace::hsv, ColorSpace::lab, ColorSpace::diverging})
+  for (const ColorSpace space : {ColorSpace::rgb, ColorSpace::hsv, ColorSpace::hsv_wrap, ColorSpace::lab, ColorSpace::diverging})
     for (const double t : {0.0, 1.0})
       EXPECT_LT(norm(between_colors(space, {0.1, 0.8, 0.3}, {0.9, 0.2, 0.4}, t) - (t == 0 ? Vec3(0.1, 0.8, 0.3) : Vec3(0.9, 0.2, 0.4))),
                 1e-3);
