@@ -64,23 +64,35 @@ LabelItem label(const Vec3& at, const std::string& text, double size_pt, const C
   return item;
 }
 
+Result<Bounds> box_of_axes(scene::Scene& scene, const Bounds& drawn) {
+  CATENA_TRY(const Corners corners, corners_of(scene, scene.axes->field, scene.axes->where, drawn));
+  Bounds box;
+  for (const Vec3& p : corners) box.add(p);
+  return box;
+}
+
 Outcome add_bounding_box(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::BoundingBox& box = *scene.bounding_box;
   CATENA_TRY(const Corners corners, corners_of(scene, box.field, box.where, drawn));
   const double radius = box.radius > 0 ? box.radius : kLineShare * diagonal_of(corners);
   const std::uint32_t id = packet.add_object("bounding box", "");
+  // edges that the axes draw are left to them: two tubes in one place would fight for every pixel
+  std::optional<Bounds> axes;
+  if (scene.axes) {
+    CATENA_TRY(axes, box_of_axes(scene, drawn));
+  }
+  const auto is_axis = [&](const Vec3& p) { return axes && p == axes->lo && corners[7] == axes->hi; };
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t axis = 1; axis < 8; axis *= 2)
-      if ((i & axis) == 0) packet.aids.tubes.push_back(line(corners[i], corners[i | axis], radius, color_of(box.color), id));
+      if ((i & axis) == 0 && !is_axis(corners[i]) && !is_axis(corners[i | axis]))
+        packet.aids.tubes.push_back(line(corners[i], corners[i | axis], radius, color_of(box.color), id));
   return Done{};
 }
 
 /// The edges that meet at the corner of least x, y, z; ticks point away from the box.
 Outcome add_axes(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::Axes& axes = *scene.axes;
-  CATENA_TRY(const Corners corners, corners_of(scene, axes.field, axes.where, drawn));
-  Bounds box;
-  for (const Vec3& p : corners) box.add(p);
+  CATENA_TRY(const Bounds box, box_of_axes(scene, drawn));
   const double radius = axes.radius > 0 ? axes.radius : kLineShare * box.diagonal(), tick = kTickShare * box.diagonal();
   const Color color = color_of(axes.color);
   const std::uint32_t id = packet.add_object("axes", "");

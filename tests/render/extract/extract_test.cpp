@@ -93,6 +93,20 @@ TEST(Extract, FogAndEyesFollowAViewThatMoves) {
   EXPECT_LT(norm(packet.eyes[0].position - far.position), 5);
 }
 
+TEST(Extract, AnEdgeIsTheBoxsOrTheAxesAndNeverBoth) {
+  const auto edges = [](const std::string& aids) {
+    scene::Scene scene = scene_of(R"({"fields": {)" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}], )" + aids + "}");
+    const FramePacket packet = packet_of(scene);
+    int count = 0;
+    for (const TubeItem& tube : packet.aids.tubes) count += norm(tube.points.back() - tube.points.front()) > 3.9;  // ticks are shorter
+    return count;
+  };
+  EXPECT_EQ(edges(R"("bounding_box": true)"), 12);
+  EXPECT_EQ(edges(R"("axes": true)"), 3);
+  EXPECT_EQ(edges(R"("bounding_box": true, "axes": true)"), 12);
+  EXPECT_EQ(edges(R"("bounding_box": {"field": "s"}, "axes": true)"), 12);
+}
+
 TEST(Extract, OpacityBecomesExtinctionAtItsPoints) {
   scene::Scene scene = scene_of("{\"fields\": {" + kSphere +
                                 R"(}, "volumes": [{"field": "s", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0.25]],
