@@ -1,0 +1,85 @@
+/// Pictures that were opened, looked at and kept (tests/golden), with two tolerances: the whole may be off by little on average, single
+/// pixels by much, but few of them. CATENA_GOLDEN_WRITE=1 writes them anew: open them before you commit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "render/vk/picture.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace {
+
+constexpr double kMostRmse = 0.5;   // of 8-bit RGB
+constexpr int kFar = 8;             // a pixel further off than this
+constexpr double kMostFar = 0.002;  // share of such pixels
+
+struct Golden {
+  const char* name;
+  const char* scene;
+};
+
+constexpr Golden kGoldens[] = {
+    {"surface-volume-tube", R"("volumes": [{"field": "s", "color": "viridis", "extinction": [[0.2, 0], [1, 0.7], [1.8, 0]], "shade": true}],
+      "isosurfaces": [{"field": "t", "level": 0.25, "color": [0.9, 0.8, 0.6]}],
+      "streamlines": [{"field": "h", "seeds": [[1, 0, 0.3], [0.6, 0.2, -0.5]], "radius": 0.05}])"},
+    {"slices-clip-fog", R"("slices": [{"field": "t", "axis": "z", "at": 0, "color": "cool-warm", "contours": {"count": 6}},
+      {"field": "s", "point": [0, 0.4, 0], "normal": [0.2, 1, 0.1], "color": "inferno", "opacity": 0.6}],
+      "isosurfaces": [{"field": "s", "level": 1.4, "opacity": 0.4, "color": [0.5, 0.7, 1]}],
+      "clip": [{"plane": {"point": [0, -0.9, 0], "normal": [0, 1, 0.2]}}], "fog": true, "background": [0.2, 0.2, 0.25])"},
+    {"aids-lights-stereo", R"("isosurfaces": [{"field": "t", "level": 0.3, "color": [0.8, 0.3, 0.3]}], "bounding_box": true, "ground": true,
+      "lights": [{"direction": [1, -1, 1]}, {"direction": [-1, 0, 0.5], "color": [0.3, 0.4, 1], "fixed_to": "camera"}],
+      "stereo": {"mode": "anaglyph"})"}};
+
+std::string scene_of(const Golden& golden) {
+  return std::string(R"({"fields": {"s": {"analytic": "sphere", "resolution": 33}, "t": {"analytic": "torus", "resolution": 33},
+      "h": {"analytic": "hill"}}, )") +
+         golden.scene + R"(, "camera": {"position": [3, -7, 4], "target": [0, 0, 0], "fovy_deg": 32}})";
+}
+
+class GoldenPicture : public testing::TestWithParam<Golden> {};
+
+TEST_P(GoldenPicture, IsAsItWasLookedAt) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", scene_of(GetParam()));
+  const auto run = test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "o.png", "--size", "192x144", "--quality",
+                                                      "step=0.5", "--validation", "--stats", folder / "o.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
+  const auto found = render::read_png(folder / "o.png");
+  ASSERT_TRUE(found);
+  const std::string path = std::string(CATENA_SOURCE_DIR) + "/tests/golden/" + GetParam().name + ".png";
+  if (std::getenv("CATENA_GOLDEN_WRITE") != nullptr) {
+    ASSERT_TRUE(render::write_png(path, *found, false));
+  }
+  const auto golden = render::read_png(path);
+  ASSERT_TRUE(golden) << path;
+  ASSERT_EQ(found->rgba.size(), golden->rgba.size());
+  double squares = 0;
+  std::size_t far_pixels = 0;
+  const std::size_t pixels = found->rgba.size() / 4;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    int worst = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const int d = found->rgba[4 * i + c] - golden->rgba[4 * i + c];
+      squares += d * d;
+      worst = std::max(worst, std::abs(d));
+    }
+    far_pixels += worst > kFar;
+  }
+  EXPECT_LE(std::sqrt(squares / (3.0 * double(pixels))), kMostRmse);
+  EXPECT_LE(double(far_pixels) / double(pixels), kMostFar);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenPicture, testing::ValuesIn(kGoldens), [](const auto& golden) {
+  std::string name = golden.param.name;
+  for (char& c : name)
+    if (c == '-') c = '_';
+  return name;
+});
+
+}  // namespace
+}  // namespace catena
