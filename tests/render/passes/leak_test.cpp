@@ -76,7 +76,9 @@ TEST_F(Leaks, AThousandFramesHoldNoMore) {
   const std::uint64_t host_after = resident_bytes();
   RecordProperty("host_growth_bytes", std::to_string(std::int64_t(host_after) - std::int64_t(host_before)));
   std::printf("host growth %.2f MB\n", 1e-6 * (double(host_after) - double(host_before)));
-  EXPECT_LT(host_after, host_before + 8'000'000);
+  if (kResidentCounts) {
+    EXPECT_LT(host_after, host_before + 8'000'000);
+  }
 }
 
 TEST_F(Leaks, WhatComesAndGoesLeavesTheValidationLayerSilent) {
