@@ -7,7 +7,6 @@
 
 namespace catena::test {
 
-/// Resident bytes (Linux).
 /// The address sanitizer keeps what is freed for a while: there what is held says nothing.
 #ifdef __SANITIZE_ADDRESS__
 inline constexpr bool kResidentCounts = false;
@@ -15,6 +14,7 @@ inline constexpr bool kResidentCounts = false;
 inline constexpr bool kResidentCounts = true;
 #endif
 
+/// Resident bytes (Linux).
 inline std::uint64_t resident_bytes() {
   std::ifstream file("/proc/self/statm");
   std::uint64_t all = 0, resident = 0;
