@@ -10,6 +10,7 @@
 #include "render/extract/extract_overlay.h"
 #include "render/extract/extract_stereo.h"
 #include "render/extract/extract_surfaces.h"
+#include "render/extract/scene_parts.h"
 
 namespace catena::render {
 
@@ -17,8 +18,6 @@ namespace {
 
 constexpr double kCursorShare = 0.008;  // fitted glyph radius by the diagonal of what is drawn
 constexpr double kCursorOverTube = 2;
-
-Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
 
 Bounds domain_bounds(const field::Field& field) {
   Bounds bounds;
@@ -30,29 +29,13 @@ Bounds domain_bounds(const field::Field& field) {
   return bounds;
 }
 
-std::string field_name(const scene::Scene& scene, scene::Entity field) {
-  return scene.world.has<scene::Name>(field) ? scene.world.get<scene::Name>(field).value : std::string("?");
-}
-
-template <class T>
-std::vector<scene::Entity> owners_of(const scene::World& world) {
-  std::vector<scene::Entity> owners;
-  world.each<T>([&](scene::Entity e, const T&) { owners.push_back(e); });
-  return owners;
-}
-
-const json::Node& member_or(const json::Node& node, std::string_view key) {
-  const json::Node* member = node.find(key);
-  return member == nullptr ? node : *member;
-}
-
 /// The scalar grid that the eye sees of a field.
 Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene, scene::Entity field, const json::Node& where,
                                                             const char* what) {
   CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, field, where));
   if (!any.scalar)
     return json::error_at(member_or(where, "field"),
-                          "\"" + field_name(scene, field) + "\" is a vector field; expected a scalar field for " + what);
+                          "\"" + name_of(scene, field) + "\" is a vector field; expected a scalar field for " + what);
   CATENA_ASSERT(any.scalar->grid() != nullptr);
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
 }
@@ -80,7 +63,7 @@ Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
     CATENA_TRY(auto color_by, color_source(scene, volume.color_by));
-    const std::uint32_t id = packet.add_object("volume", field_name(scene, volume.field));
+    const std::uint32_t id = packet.add_object("volume", name_of(scene, volume.field));
     packet.volumes.push_back(
         {std::move(grid), std::move(transfer), volume.shade, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
   }
@@ -93,7 +76,7 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
-    const std::uint32_t id = packet.add_object("isosurface", field_name(scene, surface.field));
+    const std::uint32_t id = packet.add_object("isosurface", name_of(scene, surface.field));
     packet.isosurfaces.push_back({std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity), id,
                                   surface.clipped, std::move(color_by)});
   }

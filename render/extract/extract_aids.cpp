@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/ticks.h"
+#include "render/extract/scene_parts.h"
 
 namespace catena::render {
 namespace {
@@ -15,8 +16,6 @@ constexpr double kNumberPt = 10, kNamePt = 13;
 constexpr double kGroundShare = 1.6;  // the ground's edge by the diagonal
 constexpr double kGroundGap = 0.02;   // below what is drawn, by the diagonal
 constexpr int kTilesAcross = 16;
-
-Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
 
 /// Corner i + 2 j + 4 k of a box that may be oblique.
 using Corners = std::array<Vec3, 8>;

@@ -10,6 +10,7 @@
 #include "engine/scene/color_maps.h"
 #include "engine/scene/lines.h"
 #include "render/extract/flatten.h"
+#include "render/extract/scene_parts.h"
 
 namespace catena::render {
 
@@ -38,8 +39,6 @@ struct FlatLines {
 double domain_diagonal(const field::Field& field) {
   return norm(field.mapping().world_from_index_linear * (field.index_box().hi - field.index_box().lo));
 }
-
-Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
 
 /// What a set's colours show, at a place of a line.
 class LineValue {
@@ -189,8 +188,7 @@ Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
       CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
       CATENA_TRY(flat, flat_lines(scene, set, std::move(curves), any.vector));
     }
-    const bool named = scene.world.has<scene::Name>(set.field);
-    const std::uint32_t id = packet.add_object("streamlines", named ? scene.world.get<scene::Name>(set.field).value : "?");
+    const std::uint32_t id = packet.add_object("streamlines", name_of(scene, set.field));
     const auto add = [&](auto& items, auto item) {
       item.id = id;
       item.clipped = set.clipped;

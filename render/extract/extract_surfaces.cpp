@@ -7,29 +7,12 @@
 #include "engine/base/numbers.h"
 #include "engine/scene/color_maps.h"
 #include "render/extract/extract_lines.h"
+#include "render/extract/scene_parts.h"
 
 namespace catena::render {
 namespace {
 
 constexpr double kMostVoxels = 1 << 28;  ///< of a grid of magnitudes
-
-Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
-
-std::string name_of(const scene::Scene& scene, scene::Entity entity) {
-  return scene.world.has<scene::Name>(entity) ? scene.world.get<scene::Name>(entity).value : std::string("?");
-}
-
-template <class T>
-std::vector<scene::Entity> owners_of(const scene::World& world) {
-  std::vector<scene::Entity> owners;
-  world.each<T>([&](scene::Entity e, const T&) { owners.push_back(e); });
-  return owners;
-}
-
-const json::Node& member_or(const json::Node& node, std::string_view key) {
-  const json::Node* member = node.find(key);
-  return member == nullptr ? node : *member;
-}
 
 // ---- meshes ----
 

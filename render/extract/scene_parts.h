@@ -1,0 +1,32 @@
+/// Private to this room: what every part of the extraction asks of the scene.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.h"
+#include "render/frame/frame_packet.h"
+
+namespace catena::render {
+
+inline Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
+
+/// "?" where it has none.
+inline std::string name_of(const scene::Scene& scene, scene::Entity entity) {
+  return scene.world.has<scene::Name>(entity) ? scene.world.get<scene::Name>(entity).value : std::string("?");
+}
+
+/// In order of insertion; a copy, so that components may be added meanwhile.
+template <class T>
+std::vector<scene::Entity> owners_of(const scene::World& world) {
+  std::vector<scene::Entity> owners;
+  world.each<T>([&](scene::Entity e, const T&) { owners.push_back(e); });
+  return owners;
+}
+
+/// Where a message points: the member, or the object that lacks it.
+inline const json::Node& member_or(const json::Node& node, std::string_view key) {
+  const json::Node* member = node.find(key);
+  return member == nullptr ? node : *member;
+}
+
+}  // namespace catena::render
