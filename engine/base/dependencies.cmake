@@ -39,6 +39,13 @@ add_library(catena_nifti INTERFACE)
 target_include_directories(catena_nifti SYSTEM INTERFACE ${NIFTI_INCLUDE_DIR})
 target_link_libraries(catena_nifti INTERFACE ${NIFTI_LIBRARY} ${ZNZ_LIBRARY})
 
+find_path(IMGUI_INCLUDE_DIR imgui.h PATH_SUFFIXES imgui REQUIRED)
+find_library(IMGUI_LIBRARY imgui REQUIRED)
+find_library(STB_LIBRARY stb REQUIRED)
+add_library(imgui::imgui INTERFACE IMPORTED)
+target_include_directories(imgui::imgui SYSTEM INTERFACE ${IMGUI_INCLUDE_DIR})
+target_link_libraries(imgui::imgui INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY} glfw)
+
 # The SpaceMouse's daemon is spoken to through its own library.
 find_path(SPNAV_INCLUDE_DIR spnav.h REQUIRED)
 find_library(SPNAV_LIBRARY spnav REQUIRED)

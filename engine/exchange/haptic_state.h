@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/base/rotation.h"
+#include "engine/exchange/widget_report.h"
 
 namespace catena::exchange {
 
@@ -56,6 +57,8 @@ struct HapticState {
   std::int32_t link_count = 0;
   std::int32_t mode = -1;  ///< the mode of operation; -1: none, all links as listed
   std::array<LinkReport, kMaxLinks> links{};
+  std::int32_t widget_count = 0;
+  std::array<WidgetReport, kMaxWidgets> widgets{};
   Quat orientation{kNoRotation};  ///< of the probe
   Vec3 torque_nm{0.0};            ///< on the hand, world axes
   Vec3 coupling_force_n{0.0};     ///< what the chain asks for, before what the device allows: equal to force_n without a device

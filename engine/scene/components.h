@@ -11,6 +11,7 @@
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
 #include "engine/scene/world.h"
+#include "engine/widget/widget.h"
 
 namespace catena::scene {
 
@@ -226,6 +227,17 @@ struct Mode {
   std::string name;
   std::vector<std::string> links;
   json::Node node;
+};
+
+/// A thing that the hand takes hold of (engine/widget/widget.h); its pose as the last tick left it. Slices, clips, seeds and levels follow
+/// it.
+struct Widget {
+  json::Node where;
+  widget::Spec spec;  ///< as stated; use_widget (scene.h) completes it
+  widget::Report state;
+  Entity field;                    ///< isolevel
+  std::vector<std::string> along;  ///< ruler: names of links
+  Rgb color{1.0f, 0.75f, 0.2f};
 };
 
 /// How the links make one force: the chain, or a baseline of the paper (haptics/chain/baseline.h).
