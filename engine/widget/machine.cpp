@@ -97,7 +97,9 @@ void begin(const Spec& spec, State& state) noexcept {
   state.known = true;
   state.revision = spec.revision;
   state.pose = spec.pose;
-  state.pose.orientation = normalised(spec.pose.orientation);
+  const Quat& q = spec.pose.orientation;
+  const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+  if (!(std::fabs(square - 1) <= 1e-14)) state.pose.orientation = normalised(q);
   if (spec.kind == Kind::isolevel) read_level(spec, state);
 }
 
