@@ -25,4 +25,7 @@ Result<std::vector<flow::CurvePtr>> make_lines(Scene& scene, const Seeds& seeds,
 /// The lines of a streamline set, made once.
 Result<std::vector<flow::CurvePtr>> use_lines(Scene& scene, Entity set);
 
+/// Sets of `fresh` with a field, seeds and tracing that one of `old` has take over its lines (document.h, carry_over).
+void carry_lines(Scene& old, Scene& fresh);
+
 }  // namespace catena::scene
