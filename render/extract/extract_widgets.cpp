@@ -18,9 +18,9 @@ using widget::Mode;
 // lengths by L, the length that a widget's sizes follow
 constexpr double kSphere = 0.12, kBall = 0.012, kLine = 0.0035;
 // by the sphere's radius
-constexpr double kNormalReach = 1.45, kFreeReach = 2.1, kHead = 0.34, kHeldSquare = 0.75;
+constexpr double kNormalReach = 1.45, kFreeReach = 2.1, kHead = 0.34, kHeldSquare = 0.36;
 // by the handle's radius
-constexpr double kGradientReach = 6, kHandleReach = 7, kHandleHead = 2.4, kHandleSquare = 2.6;
+constexpr double kGradientReach = 6, kHandleReach = 7, kHandleHead = 2.4, kHandleSquare = 2.8;
 
 double length_of(const scene::Widget& widget) { return widget.spec.length > 0 ? widget.spec.length : 4; }
 
@@ -45,13 +45,10 @@ bool is_drawable(const scene::Widget& widget) {
 /// A double arrow along every axis that is free, a square across every one that is held.
 void draw_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at, double reach, double square, double head) {
   for (int i = 0; i < 3; ++i) {
-    const Vec3 axis = axis_of(widget, i), u = square * axis_of(widget, (i + 1) % 3), v = square * axis_of(widget, (i + 2) % 3);
-    if (!is_held(widget, i)) {
-      shapes.double_arrow(at, reach * axis, 1.8, head, brighter(axis_color(i), 0.2f));
-      continue;
-    }
-    const Vec3 corners[] = {at + u + v, at - u + v, at - u - v, at + u - v};
-    shapes.loop(corners, 1, axis_color(i));
+    if (is_held(widget, i))
+      shapes.plate(at, square * axis_of(widget, (i + 1) % 3), square * axis_of(widget, (i + 2) % 3), axis_color(i));
+    else
+      shapes.double_arrow(at, reach * axis_of(widget, i), 1.8, head, brighter(axis_color(i), 0.2f));
   }
 }
 
@@ -197,7 +194,7 @@ void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket
     const auto& [a, b] = widget.state.pose.points;
     LabelItem label;
     label.at = 0.5 * a + 0.5 * b;
-    label.text = fmt::format("{:.4g}", norm(b - a));
+    label.text = fmt::format("{:.4g} units", norm(b - a));
     label.anchor = Anchor::bottom_left;
     label.offset_pt = {6.0, -6.0};
     packet.overlay.labels.push_back(std::move(label));

@@ -72,6 +72,13 @@ void WidgetShapes::circle(const Vec3& centre, const Vec3& normal, double radius,
   loop(points, weight, color);
 }
 
+void WidgetShapes::plate(const Vec3& middle, const Vec3& u, const Vec3& v, const Color& color) {
+  auto geometry = std::make_shared<MeshGeometry>();
+  geometry->vertices = {middle + u + v, middle - u + v, middle - u - v, middle + u - v};
+  geometry->triangles = {0, 1, 2, 0, 2, 3};
+  items_->meshes.push_back({std::move(geometry), color, id_, false});
+}
+
 void WidgetShapes::ball(const Vec3& centre, double radius, const Color& color) { add({centre}, ball_radius(centre, radius), color); }
 
 double WidgetShapes::ball_radius(const Vec3& centre, double radius) const { return std::max(radius, kLeastBallPx * pixel_at(centre)); }

@@ -27,6 +27,8 @@ class WidgetShapes {
   /// Through the points and back to the first.
   void loop(std::span<const Vec3> points, double weight, const Color& color);
   void circle(const Vec3& centre, const Vec3& normal, double radius, double weight, const Color& color);
+  /// A filled parallelogram, middle +- u +- v.
+  void plate(const Vec3& middle, const Vec3& u, const Vec3& v, const Color& color);
   void ball(const Vec3& centre, double radius, const Color& color);
   /// A shaft with a cone at its tip, `head` long.
   void arrow(const Vec3& from, const Vec3& tip, double weight, double head, const Color& color);

@@ -179,7 +179,8 @@ struct AidItems {
 struct WidgetItems {
   std::vector<TubeItem> tubes;
   std::vector<ArrowItem> arrows;
-  bool empty() const { return tubes.empty() && arrows.empty(); }
+  std::vector<MeshItem> meshes;
+  bool empty() const { return tubes.empty() && arrows.empty() && meshes.empty(); }
 };
 
 struct FramePacket {

@@ -17,7 +17,8 @@ class WidgetPass final : public Pass {
 
   Outcome prepare(Frame& frame) override {
     const WidgetItems& items = frame.packet.widgets;
-    if (all_same(items.tubes, built_.tubes) && all_same(items.arrows, built_.arrows)) return Done{};
+    if (all_same(items.tubes, built_.tubes) && all_same(items.arrows, built_.arrows) && all_same(items.meshes, built_.meshes))
+      return Done{};
     Shape shape;
     for (const TubeItem& tube : items.tubes) {
       const std::size_t first = shape.vertices.size();
@@ -29,6 +30,7 @@ class WidgetPass final : public Pass {
       add_cone(shape, arrow.base, arrow.tip, arrow.radius, arrow.color);
       mark(shape, first, arrow.id, arrow.clipped);
     }
+    for (const MeshItem& mesh : items.meshes) add_mesh(shape, mesh);
     CATENA_CHECK(triangles_.upload(frame.device, shape));
     built_ = items;
     return Done{};

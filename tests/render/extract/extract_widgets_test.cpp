@@ -157,10 +157,16 @@ TEST(ExtractWidgets, WhatIsFreeIsAnArrowAndWhatIsHeldASquare) {
     const FramePacket packet = packet_of(scene);
     const int squares = (held & 1) + (held >> 1 & 1) + (held >> 2 & 1), free = 3 - squares;
     ASSERT_EQ(packet.widgets.arrows.size(), std::size_t(2 * free)) << held;
-    ASSERT_EQ(packet.widgets.tubes.size(), std::size_t(4 + 2 * free + squares)) << held;
-    std::size_t next = 0;
+    ASSERT_EQ(packet.widgets.tubes.size(), std::size_t(4 + 2 * free)) << held;
+    ASSERT_EQ(packet.widgets.meshes.size(), std::size_t(squares)) << held;
+    std::size_t next = 0, plate = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      if (held >> axis & 1) continue;
+      if (held >> axis & 1) {
+        const MeshItem& mesh = packet.widgets.meshes[plate++];
+        EXPECT_FALSE(mesh.clipped);
+        for (const Vec3& p : mesh.geometry->vertices) EXPECT_NEAR(p[axis], 0, 1e-12);
+        continue;
+      }
       for (const double sign : {1.0, -1.0}) {
         Vec3 along(0.0);
         along[axis] = sign;
@@ -241,7 +247,7 @@ TEST(ExtractWidgets, ARulerSaysItsLength) {
   add_widget(scene, "r", Kind::ruler, {{Vec3(0, 0, 0), Vec3(3, 4, 0)}});
   const FramePacket packet = packet_of(scene);
   ASSERT_EQ(packet.overlay.labels.size(), 1u);
-  EXPECT_EQ(packet.overlay.labels[0].text, "5");
+  EXPECT_EQ(packet.overlay.labels[0].text, "5 units");
   EXPECT_EQ(packet.overlay.labels[0].at, Vec3(1.5, 2, 0));
 }
 
@@ -430,7 +436,7 @@ TEST_F(WidgetPictures, Gallery) {
                         {"level", Kind::isolevel, Mode::hover, 0, 0},
                         {"level_drag", Kind::isolevel, Mode::drag, 0, 0},
                         {"box", Kind::box, Mode::hover, 2, 0},
-                        {"box_drag", Kind::box, Mode::drag, 3, 5},
+                        {"box_drag", Kind::box, Mode::drag, 2, 5},
                         {"ruler", Kind::ruler, Mode::away, -1, 0},
                         {"ruler_drag", Kind::ruler, Mode::drag, 1, 4}};
   for (const bool light : {false, true})
@@ -444,6 +450,7 @@ TEST_F(WidgetPictures, Gallery) {
         pose = {{Vec3(0, 0, 0.2), Vec3(0.0)}, rotation_of({0.15, -0.2, 0.1})};
         scene.clip.push_back({pose.points[0], -1.0 * rotate(pose.orientation, {0, 0, 1})});
       }
+      if (c.kind == Kind::isolevel) pose.points[0] = 1.2 * direction(Vec3(0.9, -0.5, 0.5));
       if (c.kind == Kind::rake) pose = {{Vec3(-1.2, -1.3, -0.6), Vec3(1, -1.3, 0.8)}};
       if (c.kind == Kind::box) pose = {{Vec3(-0.8, -1.4, -0.6), Vec3(1, 0.2, 1.4)}};
       const scene::Entity e = add_widget(scene, "w", c.kind, pose, c.mode, c.handle, c.held);
