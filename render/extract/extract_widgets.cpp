@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/ruler.h"
 #include "render/extract/plane_outline.h"
 #include "render/extract/scene_parts.h"
 #include "render/extract/widget_shapes.h"
@@ -14,6 +15,7 @@ namespace {
 
 using widget::Kind;
 using widget::Mode;
+using How = scene::RulerMeasure::How;
 
 // lengths by L, the length that a widget's sizes follow
 constexpr double kSphere = 0.12, kBall = 0.012, kLine = 0.0035;
@@ -184,17 +186,22 @@ void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& pa
     if (!is_drawable(widget)) return;
     shapes.begin(id_of(packet, name_of(scene, e)), kLine * length_of(widget));
     draw(shapes, widget, drawn);
+    // the way that a ruler measures
+    if (const scene::RulerMeasure* measure = scene::ruler_measure(scene, e); measure && measure->how != How::straight)
+      shapes.tube(measure->points, 2, color_of(widget.color));
   });
 }
 
 void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   set_widgets(scene, drawn, packet);
-  scene.world.each<scene::Widget>([&](scene::Entity, const scene::Widget& widget) {
+  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (widget.spec.kind != Kind::ruler || !is_drawable(widget)) return;
     const auto& [a, b] = widget.state.pose.points;
+    const scene::RulerMeasure* measure = scene::ruler_measure(scene, e);
+    const bool along = measure != nullptr && measure->how != How::straight;
     LabelItem label;
-    label.at = 0.5 * a + 0.5 * b;
-    label.text = fmt::format("{:.4g} units", norm(b - a));
+    label.at = along ? measure->points[measure->points.size() / 2] : 0.5 * a + 0.5 * b;
+    label.text = fmt::format("{:.4g} units", along ? measure->length : norm(b - a));
     label.anchor = Anchor::bottom_left;
     label.offset_pt = {6.0, -6.0};
     packet.overlay.labels.push_back(std::move(label));

@@ -69,5 +69,21 @@ TEST(Followers, OutOfTheDomainTheFrameGoesOn) {
   EXPECT_EQ(frame(scene).tubes.size(), 4u);
 }
 
+TEST(Followers, ARulerShowsTheWayThatItMeasures) {
+  auto scene = scene::parse_scene(R"({"fields": {"v": {"analytic": "circle"}},
+    "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
+    "widgets": [{"name": "u", "type": "ruler", "from": [1, 0, 0], "to": [0, 1, 0], "along": ["curve"]}]})",
+                                  "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const FramePacket packet = frame(*scene);
+  ASSERT_EQ(packet.overlay.labels.size(), 1u);
+  EXPECT_EQ(packet.overlay.labels[0].text, "1.571 units");
+  EXPECT_NEAR(norm(packet.overlay.labels[0].at), 1, 1e-6) << "on the line";
+  std::size_t longest = 0;
+  for (const TubeItem& tube : packet.widgets.tubes)
+    if (tube.points.size() > longest) longest = tube.points.size();
+  EXPECT_GT(longest, 8u) << "the arc beside the straight way";
+}
+
 }  // namespace
 }  // namespace catena::render
