@@ -172,17 +172,4 @@ Result<RulerMeasure> use_ruler(Scene& scene, Entity entity) {
   return made.measure;
 }
 
-Outcome measure_rulers(Scene& scene) {
-  std::vector<Entity> rulers;
-  scene.world.each<Widget>([&](Entity e, const Widget& widget) {
-    if (widget.spec.kind == widget::Kind::ruler) rulers.push_back(e);
-  });
-  for (const Entity e : rulers) CATENA_CHECK(use_ruler(scene, e));
-  return Done{};
-}
-
-const RulerMeasure* ruler_measure(const Scene& scene, Entity ruler) {
-  return scene.world.has<MadeRuler>(ruler) ? &scene.world.get<MadeRuler>(ruler).measure : nullptr;
-}
-
 }  // namespace catena::scene

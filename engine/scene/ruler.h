@@ -18,11 +18,6 @@ struct RulerMeasure {
 /// Of the widget's pose as it is; measured again only when an end, or what it is measured along, has moved.
 Result<RulerMeasure> use_ruler(Scene& scene, Entity ruler);
 
-/// use_ruler of every ruler of the scene.
-Outcome measure_rulers(Scene& scene);
-/// What use_ruler found last; nullptr before that.
-const RulerMeasure* ruler_measure(const Scene& scene, Entity ruler);
-
 /// Between the places of the curve nearest to the ends.
 RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to);
 

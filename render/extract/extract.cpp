@@ -5,7 +5,6 @@
 
 #include "engine/base/assert.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/ruler.h"
 #include "engine/scene/systems.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
@@ -160,7 +159,6 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   packet.width = width;
   packet.height = height;
   CATENA_CHECK(scene::drive_widgets(scene));
-  CATENA_CHECK(scene::measure_rulers(scene));
   packet.jitter = scene.jitter;
   for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
   const scene::Background& background = scene.background;
@@ -175,7 +173,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
   CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
-  extract_widgets(scene, data_bounds(packet), packet);
+  CATENA_CHECK(extract_widgets(scene, data_bounds(packet), packet));
   set_eyes(packet, scene.stereo);
   return packet;
 }
