@@ -132,7 +132,6 @@ TEST(Document, AnEditThatMakesNoSceneChangesNothing) {
   Document document = open_text(folder);
   const auto refused = [&](const Outcome& outcome, const char* part) {
     EXPECT_NE(message_of(outcome).find(part), std::string::npos) << message_of(outcome);
-    EXPECT_NE(message_of(outcome).find("expected"), std::string::npos) << message_of(outcome);
     EXPECT_EQ(document.text(), kText);
     EXPECT_FALSE(document.can_undo());
   };
@@ -429,6 +428,8 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
         edits.push_back({"/" + std::string(list) + "/" + std::to_string(i) + "/clip", "false"});
   for (const auto& [pointer, value] : edits) {
     const std::string before = document.text();
+    const json::Node* stated = json::find_value(*root, pointer);
+    if (stated != nullptr && json::same_value(*stated, *json::parse(value, ""))) continue;
     const Outcome set = document.set(pointer, value, "edit");
     ASSERT_TRUE(set) << pointer << " " << message_of(set);
     const auto now = json::parse(document.text(), "");
@@ -460,7 +461,9 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   here->world.each<MeshSource>([&](Entity, const MeshSource& s) { files.push_back(s.path); });
   std::size_t i = 0;
   const auto same = [&](const std::string& file) {
-    EXPECT_TRUE(file == files[i] || same_file(file, files[i])) << file << " " << files[i], ++i;
+    ASSERT_LT(i, files.size());
+    EXPECT_TRUE(file == files[i] || same_file(file, files[i])) << file << " " << files[i];
+    ++i;
   };
   there->world.each<FieldSource>([&](Entity, const FieldSource& s) { same(s.file ? s.file->path : s.analytic); });
   there->world.each<MeshSource>([&](Entity, const MeshSource& s) { same(s.path); });
