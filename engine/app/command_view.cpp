@@ -16,42 +16,60 @@ namespace catena::app {
 namespace {
 
 struct Options {
-  std::string source, device = "mouse", size = "1024x768", quality = "time=50", shaders, screenshot, servo_stats, record, firmware;
+  std::string source, device = "mouse", size = "1024x768", quality = "time=50", shaders, screenshot, window_screenshot, servo_stats,
+                      frame_stats, record, firmware;
   std::vector<std::string> fields;
   int frames = 0;
   double seconds = 0;
+  bool no_panels = false;
   RealtimeChoice realtime;
   AnnotateOptions annotate;
   StereoChoice stereo;
 };
 
+/// One file twice, or an input: said before anything is opened.
+Outcome check_outputs(const Options& o, const std::vector<std::string>& inputs) {
+  const std::pair<const char*, const std::string&> outputs[] = {{"--screenshot", o.screenshot},
+                                                                {"--window-screenshot", o.window_screenshot},
+                                                                {"--servo-stats", o.servo_stats},
+                                                                {"--frame-stats", o.frame_stats},
+                                                                {"--record", o.record}};
+  for (const auto& [option, path] : outputs) {
+    if (path.empty()) continue;
+    if (&path != &o.record) CATENA_CHECK(check_output(path, inputs));
+    for (const auto& [other, other_path] : outputs)
+      if (&path != &other_path && !other_path.empty() && same_file(path, other_path))
+        return Error{path + ": " + option + " and " + other + " name one file: expected two"};
+  }
+  return Done{};
+}
+
 Outcome open_window(const Options& o, int& exit_code) {
   CATENA_TRY(const Size size, parse_size(o.size));
   ViewOptions options;
-  CATENA_TRY(options.scene, open_scene(o.source, o.fields));
-  CATENA_CHECK(annotate(options.scene, o.annotate));
-  CATENA_CHECK(o.stereo.apply(options.scene.stereo));
-  if (!o.screenshot.empty()) CATENA_CHECK(check_output(o.screenshot, inputs_of(options.scene)));
-  if (!o.servo_stats.empty()) CATENA_CHECK(check_output(o.servo_stats, inputs_of(options.scene)));
-  const std::pair<const char*, const std::string&> outputs[] = {
-      {"--screenshot", o.screenshot}, {"--servo-stats", o.servo_stats}, {"--record", o.record}};
-  for (const auto& [option, path] : outputs)
-    for (const auto& [other, other_path] : outputs)
-      if (&path != &other_path && !path.empty() && !other_path.empty() && same_file(path, other_path))
-        return Error{path + ": " + option + " and " + other + " name one file: expected two"};
+  options.source = o.source;
+  CATENA_TRY(options.overrides, field_overrides(o.fields));
+  options.adjust = [annotations = o.annotate, stereo = o.stereo](scene::Scene& scene) -> Outcome {
+    CATENA_CHECK(annotate(scene, annotations));
+    return stereo.apply(scene.stereo);
+  };
+  {
+    CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
+    CATENA_CHECK(options.adjust(scene));
+    CATENA_CHECK(check_outputs(o, inputs_of(scene)));
+  }
   CATENA_TRY(options.quality, parse_quality(o.quality));
   options.shaders = o.shaders;
-  options.device = o.device;
+  options.hand = {o.device, o.firmware, o.record, o.fields, o.realtime.options()};
   options.seconds = o.seconds;
   options.servo_stats = o.servo_stats;
-  options.record = o.record;
-  options.fields = o.fields;
-  options.firmware = o.firmware;
-  options.realtime = o.realtime.options();
+  options.frame_stats = o.frame_stats;
   options.width = size.width;
   options.height = size.height;
   options.frames = o.frames;
+  options.panels = !o.no_panels;
   options.screenshot = o.screenshot;
+  options.window_screenshot = o.window_screenshot;
   exit_code = view(std::move(options));
   return Done{};
 }
@@ -76,6 +94,9 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
+  command->add_option("--window-screenshot", options->window_screenshot, "the same with the panels over it, .png");
+  command->add_flag("--no-panels", options->no_panels, "begin without the panels (Tab shows them)");
+  command->add_option("--frame-stats", options->frame_stats, "how long the pictures took, histograms, JSON");
   command->add_option("--servo-stats", options->servo_stats, "the servo's ticks, missed deadlines, histograms, JSON");
   command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
   command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");

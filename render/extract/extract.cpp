@@ -5,11 +5,13 @@
 
 #include "engine/base/assert.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/systems.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
 #include "render/extract/extract_stereo.h"
 #include "render/extract/extract_surfaces.h"
+#include "render/extract/extract_widgets.h"
 #include "render/extract/scene_parts.h"
 
 namespace catena::render {
@@ -120,16 +122,22 @@ View view_of(const scene::Scene& scene, const FramePacket& packet) {
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
   packet.view = view;
   set_fog(scene, packet_bounds(packet), packet);
+  set_widgets(scene, data_bounds(packet), packet);
   set_eyes(packet, scene.stereo);
 }
 
-Bounds packet_bounds(const FramePacket& packet) {
+Bounds data_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));
   for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(domain_bounds(*surface.grid));
   for (const SliceItem& slice : packet.slices) bounds.add(domain_bounds(*slice.grid));
   for (const MeshItem& mesh : packet.meshes)
     for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
+  return bounds;
+}
+
+Bounds packet_bounds(const FramePacket& packet) {
+  Bounds bounds = data_bounds(packet);
   for (const TubeItem& tube : packet.tubes)
     for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
   for (const ArrowItem& arrow : packet.arrows) {
@@ -150,6 +158,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   FramePacket packet;
   packet.width = width;
   packet.height = height;
+  CATENA_CHECK(scene::drive_widgets(scene));
   packet.jitter = scene.jitter;
   for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
   const scene::Background& background = scene.background;
@@ -164,6 +173,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
   CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
+  CATENA_CHECK(extract_widgets(scene, data_bounds(packet), packet));
   set_eyes(packet, scene.stereo);
   return packet;
 }

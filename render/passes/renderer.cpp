@@ -21,14 +21,16 @@
 #include "render/passes/slice.h"
 #include "render/passes/streamlines.h"
 #include "render/passes/surface_color.h"
+#include "render/passes/ui.h"
+#include "render/passes/widgets.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass,   &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass, &kSurfaceColorPass,
-                                        &kSlicePass, &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,          &kWidgetPass, &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass,
+                                        &kSurfaceColorPass, &kSlicePass,  &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;
@@ -66,6 +68,7 @@ struct Renderer::Parts {
   double gone_build_ms = 0;  ///< of passes that have gone
   TargetSet drawn = 0;       ///< by the last picture
   std::optional<PackPass> pack;
+  std::optional<UiPass> ui;
   bool packed = false;                            ///< the last picture is made of several views
   std::uint32_t view_width = 0, view_height = 0;  ///< of one view; its depth and ids
   double reference_depth = 0;
@@ -85,6 +88,7 @@ struct Renderer::Parts {
   Outcome record(vk::Commands& commands, Frame& frame, const std::vector<Pass*>& list);
   Outcome draw(const FramePacket& packet, const RenderSettings& settings);
   Outcome draw_eyes(const FramePacket& packet, const RenderSettings& settings);
+  Outcome paint(std::uint32_t width, std::uint32_t height, const UiItems& items);
 };
 
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
@@ -114,6 +118,7 @@ void Renderer::Parts::drop_passes() {
     pass.reset();
   }
   pack.reset();
+  ui.reset();
   drawn = 0;
 }
 
@@ -366,9 +371,47 @@ Result<IdPicture> Renderer::read_ids() {
   return picture;
 }
 
-Result<bool> Renderer::present(vk::Swapchain& swapchain) {
-  CATENA_ASSERT(parts_->drawn != 0);
-  return swapchain.present(parts_->shown());
+/// Where mirrors hold what the window needs, they go: the next picture makes them anew in what is left. The picture stays.
+Outcome Renderer::Parts::paint(std::uint32_t width, std::uint32_t height, const UiItems& items) {
+  CATENA_ASSERT(drawn != 0);
+  if (!ui) ui.emplace(*device);
+  const std::uint64_t refused = device->counters().refused;
+  Outcome painted = ui->paint(shown(), width, height, items);
+  if (!painted && device->counters().refused != refused && mirrors->count() > 0) {
+    for (auto& pass : passes) {
+      if (pass) gone_build_ms += pass->build_ms();
+      pass.reset();
+    }
+    mirrors->clear();
+    CATENA_CHECK(device->wait_idle());
+    painted = ui->paint(shown(), width, height, items);
+  }
+  if (!painted) ui.reset();
+  return painted;
+}
+
+Outcome Renderer::paint_window(std::uint32_t width, std::uint32_t height, const UiItems& ui) { return parts_->paint(width, height, ui); }
+
+Result<bool> Renderer::present(vk::Swapchain& swapchain, const UiItems* ui) {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0);
+  const VkExtent2D extent = swapchain.extent();
+  if (extent.width == 0 || extent.height == 0) return false;
+  if (ui == nullptr) return swapchain.present(p.shown());
+  CATENA_CHECK(p.paint(extent.width, extent.height, *ui));
+  return swapchain.present(p.ui->window());
+}
+
+Result<Picture> Renderer::read_back_window() {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.ui && p.ui->window());
+  vk::Image& window = p.ui->window();
+  Picture picture;
+  picture.width = window.info().extent.width;
+  picture.height = window.info().extent.height;
+  CATENA_TRY(picture.rgba, p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, window, std::size_t(4) * picture.width * picture.height)));
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+  return picture;
 }
 
 Result<bool> Renderer::replace_shader(std::string_view name, std::vector<std::uint32_t> words) {

@@ -1,5 +1,5 @@
 /// The renderer: a frame packet in, a finished colour image out. It holds the list of passes (pass.h), in order:
-///   meshes, streamlines, cursor, isosurfaces, slices -> layers -> raycast -> compose
+///   aids, widgets, meshes, streamlines, cursor, isosurfaces, slices -> layers -> raycast -> compose
 /// A pass is created when a packet first wants it and goes when one no longer does; mirrors are kept by (grid version, texel
 /// format) and dropped when a packet no longer names the grid. A packet with eyes is drawn once an eye and packed (pack.h); depth and
 /// ids are the first eye's. Frame thread only.
@@ -16,6 +16,7 @@
 
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
+#include "render/frame/ui_items.h"
 #include "render/passes/coarsening.h"
 #include "render/passes/render_settings.h"
 #include "render/vk/device.h"
@@ -87,8 +88,13 @@ class Renderer {
   Result<DepthPicture> read_depth();
   /// The ids of the last picture.
   Result<IdPicture> read_ids();
-  /// Shows the last picture in a window (scaled to it). False: the swapchain no longer fits, resize it.
-  Result<bool> present(vk::Swapchain& swapchain);
+  /// Shows the last picture in a window (scaled to it), with the user interface over it at the window's own pixels (ui.h). Again with
+  /// another `ui`: the picture is not drawn again. False: the swapchain no longer fits, resize it; nothing was shown then.
+  Result<bool> present(vk::Swapchain& swapchain, const UiItems* ui = nullptr);
+  /// The same without a window: what present() with this `ui` would show in a window of this size.
+  Outcome paint_window(std::uint32_t width, std::uint32_t height, const UiItems& ui);
+  /// The window's image that paint_window() or present() with a user interface painted last, opaque.
+  Result<Picture> read_back_window();
 
   /// Pictures from now on are drawn with `words` in the place of the embedded shader "compose.frag" (or another of embedded_shaders.h).
   /// An error where there is no such shader, or where it uses a binding that the program does not bind; nothing has changed then.

@@ -98,6 +98,17 @@ void Commands::copy(Image& from, const Buffer& to) {
   barrier(to, kTransferWrite, kHostRead);
 }
 
+void Commands::blit(const Image& from, const Image& to) { blit(from, to.handle(), {to.info().extent.width, to.info().extent.height}); }
+
+void Commands::blit(const Image& from, VkImage to, VkExtent2D extent) {
+  VkImageBlit region{};
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.srcOffsets[1] = {std::int32_t(from.info().extent.width), std::int32_t(from.info().extent.height), 1};
+  region.dstOffsets[1] = {std::int32_t(extent.width), std::int32_t(extent.height), 1};
+  vkCmdBlitImage(buffer_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
+                 VK_FILTER_LINEAR);
+}
+
 void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth) {
   VkExtent3D extent = depth.image ? depth.image->info().extent : colors.front().image->info().extent;
   std::vector<VkRenderingAttachmentInfo> attachments;
@@ -168,11 +179,19 @@ void Commands::draw(std::uint32_t vertices, std::uint32_t instances) { vkCmdDraw
 void Commands::draw_triangle() { vkCmdDraw(buffer_, 3, 1, 0, 0); }
 
 void Commands::draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count) {
+  bind_mesh(vertices, indices, VK_INDEX_TYPE_UINT32);
+  draw_mesh(0, index_count, 0);
+}
+
+void Commands::bind_mesh(const Buffer& vertices, const Buffer& indices, VkIndexType type) {
   const VkBuffer buffer = vertices.handle();
   const VkDeviceSize offset = 0;
   vkCmdBindVertexBuffers(buffer_, 0, 1, &buffer, &offset);
-  vkCmdBindIndexBuffer(buffer_, indices.handle(), 0, VK_INDEX_TYPE_UINT32);
-  vkCmdDrawIndexed(buffer_, index_count, 1, 0, 0, 0);
+  vkCmdBindIndexBuffer(buffer_, indices.handle(), 0, type);
+}
+
+void Commands::draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex) {
+  vkCmdDrawIndexed(buffer_, index_count, 1, first_index, std::int32_t(first_vertex), 0);
 }
 
 void Commands::dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z) { vkCmdDispatch(buffer_, x, y, z); }

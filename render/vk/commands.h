@@ -72,6 +72,9 @@ class Commands {
   void copy(const Buffer& from, VkDeviceSize offset, Image& to, VkOffset3D at, VkExtent3D extent);  ///< an upload; counted
   void copy(const Buffer& from, const Buffer& to, VkDeviceSize size);                               ///< an upload; counted
   void copy(Image& from, const Buffer& to);                                                         ///< a read-back
+  /// All of an image over all of another, scaled (linear); the layouts are TRANSFER_SRC and TRANSFER_DST.
+  void blit(const Image& from, const Image& to);
+  void blit(const Image& from, VkImage to, VkExtent2D extent);
 
   // passes
   void begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth);  ///< moves the targets to their layouts
@@ -81,6 +84,9 @@ class Commands {
   void draw_triangle();                                        ///< one that covers the picture
   void draw(std::uint32_t vertices, std::uint32_t instances);  ///< without buffers
   void draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count);
+  void bind_mesh(const Buffer& vertices, const Buffer& indices, VkIndexType type);
+  /// Of the bound mesh; indices count from `first_vertex` on.
+  void draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex);
   void dispatch(std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
   /// Ends and submits; the value of the timeline when it is done.

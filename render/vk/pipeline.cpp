@@ -68,6 +68,11 @@ VkPipelineColorBlendAttachmentState blend_state(Blend blend) {
     state.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
   }
+  if (blend == Blend::over_straight) {
+    state.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+    state.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+  }
   if (blend == Blend::least) state.colorBlendOp = state.alphaBlendOp = VK_BLEND_OP_MIN;
   return state;
 }

@@ -27,10 +27,11 @@ struct VertexAttribute {
 /// What becomes of a colour target's texel.
 enum class Blend {
   replace,
-  over,     ///< premultiplied colours over what is there
-  keep,     ///< nothing is written
-  collect,  ///< rgb <- rgb + source; alpha <- alpha (1 - source)
-  least,    ///< the lesser of both
+  over,           ///< premultiplied colours over what is there
+  over_straight,  ///< the same for straight alpha
+  keep,           ///< nothing is written
+  collect,        ///< rgb <- rgb + source; alpha <- alpha (1 - source)
+  least,          ///< the lesser of both
 };
 
 struct GraphicsInfo {

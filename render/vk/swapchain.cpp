@@ -53,28 +53,31 @@ Result<std::unique_ptr<Swapchain>> Swapchain::create(Device& device, std::uint32
   if (!device.surface()) return Error{"the device was created without a window"};
   std::unique_ptr<Swapchain> self(new Swapchain(device));
   CATENA_TRY(self->format_, choose_format(device));
-  const VkSemaphoreCreateInfo info = binary_semaphore();
-  CATENA_VK(vkCreateSemaphore(device.handle(), &info, nullptr, &self->acquired_), "create a semaphore");
   CATENA_CHECK(self->resize(width, height));
   return self;
 }
 
-Swapchain::~Swapchain() {
-  destroy();
-  if (acquired_) vkDestroySemaphore(device_->handle(), acquired_, nullptr);
-}
+Swapchain::~Swapchain() { destroy(); }
 
 void Swapchain::destroy() {
   (void)vkDeviceWaitIdle(device_->handle());
   for (VkSemaphore s : finished_) vkDestroySemaphore(device_->handle(), s, nullptr);
   finished_.clear();
   images_.clear();
+  if (acquired_) vkDestroySemaphore(device_->handle(), acquired_, nullptr);
+  acquired_ = VK_NULL_HANDLE;
   if (swapchain_) vkDestroySwapchainKHR(device_->handle(), swapchain_, nullptr);
   swapchain_ = VK_NULL_HANDLE;
 }
 
 Outcome Swapchain::resize(std::uint32_t width, std::uint32_t height) {
   destroy();
+  Outcome made = make(width, height);
+  if (!made) destroy();
+  return made;
+}
+
+Outcome Swapchain::make(std::uint32_t width, std::uint32_t height) {
   VkSurfaceCapabilitiesKHR caps{};
   CATENA_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_->physical(), device_->surface(), &caps), "ask the window's capabilities");
   extent_ = caps.currentExtent;
@@ -85,7 +88,7 @@ Outcome Swapchain::resize(std::uint32_t width, std::uint32_t height) {
   VkSwapchainCreateInfoKHR info{};
   info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
   info.surface = device_->surface();
-  info.minImageCount = caps.minImageCount + 1;
+  info.minImageCount = std::max(2u, caps.minImageCount);
   if (caps.maxImageCount) info.minImageCount = std::min(info.minImageCount, caps.maxImageCount);
   info.imageFormat = format_.format;
   info.imageColorSpace = format_.colorSpace;
@@ -103,9 +106,18 @@ Outcome Swapchain::resize(std::uint32_t width, std::uint32_t height) {
   images_.resize(count);
   CATENA_VK(vkGetSwapchainImagesKHR(device_->handle(), swapchain_, &count, images_.data()), "list the window's images");
   const VkSemaphoreCreateInfo semaphore = binary_semaphore();
+  CATENA_VK(vkCreateSemaphore(device_->handle(), &semaphore, nullptr, &acquired_), "create a semaphore");
   finished_.resize(count);
   for (VkSemaphore& s : finished_) CATENA_VK(vkCreateSemaphore(device_->handle(), &semaphore, nullptr, &s), "create a semaphore");
   return Done{};
+}
+
+/// A suboptimal swapchain of the window's size is used on: made again it would be no better.
+bool Swapchain::has_window_size() const {
+  VkSurfaceCapabilitiesKHR caps{};
+  if (vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_->physical(), device_->surface(), &caps) != VK_SUCCESS) return false;
+  return caps.currentExtent.width == std::numeric_limits<std::uint32_t>::max() ||
+         (caps.currentExtent.width == extent_.width && caps.currentExtent.height == extent_.height);
 }
 
 Result<bool> Swapchain::present(const Image& source) {
@@ -115,19 +127,19 @@ Result<bool> Swapchain::present(const Image& source) {
       vkAcquireNextImageKHR(device_->handle(), swapchain_, std::numeric_limits<std::uint64_t>::max(), acquired_, VK_NULL_HANDLE, &index);
   if (acquired == VK_ERROR_OUT_OF_DATE_KHR) return false;
   if (acquired != VK_SUCCESS && acquired != VK_SUBOPTIMAL_KHR) return vulkan_error(acquired, "take an image of the window");
+  Result<bool> shown = show(source, index, acquired == VK_SUCCESS);
+  if (!shown) destroy();  // an image is taken and its semaphore waited for by nobody
+  return shown;
+}
 
+Result<bool> Swapchain::show(const Image& source, std::uint32_t index, bool optimal) {
   // copy, scaled to the window
   CATENA_TRY(Commands commands, Commands::begin(*device_));
   const VkImage target = images_[index];
   swapchain_barrier(commands.handle(), target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                     VK_ACCESS_2_TRANSFER_WRITE_BIT);
-  VkImageBlit region{};
-  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  region.srcOffsets[1] = {std::int32_t(source.info().extent.width), std::int32_t(source.info().extent.height), 1};
-  region.dstOffsets[1] = {std::int32_t(extent_.width), std::int32_t(extent_.height), 1};
-  vkCmdBlitImage(commands.handle(), source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                 &region, VK_FILTER_LINEAR);
+  commands.blit(source, target, extent_);
   swapchain_barrier(commands.handle(), target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR,
                     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                     VK_ACCESS_2_NONE);
@@ -144,7 +156,7 @@ Result<bool> Swapchain::present(const Image& source) {
   CATENA_CHECK(device_->wait(value));
   if (shown == VK_ERROR_OUT_OF_DATE_KHR) return false;
   if (shown != VK_SUCCESS && shown != VK_SUBOPTIMAL_KHR) return vulkan_error(shown, "show the picture");
-  return shown == VK_SUCCESS;
+  return (optimal && shown == VK_SUCCESS) || has_window_size();
 }
 
 }  // namespace catena::render::vk

@@ -1,4 +1,6 @@
 /// A window's images: UNORM, so that display values stay as they are. present() copies (and scales) a finished picture.
+/// FIFO, with as few images as the window system takes: nothing is drawn that no one sees, and no more frames than needed wait between
+/// the hand and the eye. Frame thread only.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -18,14 +20,19 @@ class Swapchain {
   Swapchain(const Swapchain&) = delete;
   Swapchain& operator=(const Swapchain&) = delete;
 
+  /// After a failure there are no images, and present() says false.
   Outcome resize(std::uint32_t width, std::uint32_t height);
-  /// Copies `source` (in the layout TRANSFER_SRC) to the next image and shows it. False: out of date, call resize.
+  /// Copies `source` (in the layout TRANSFER_SRC) to the next image and shows it with the display's next refresh; waits until it is
+  /// copied. False: out of date, or of another size than the window, call resize.
   Result<bool> present(const Image& source);
   VkExtent2D extent() const { return extent_; }
 
  private:
   explicit Swapchain(Device& device) : device_(&device) {}
   void destroy();
+  Outcome make(std::uint32_t width, std::uint32_t height);
+  Result<bool> show(const Image& source, std::uint32_t index, bool optimal);
+  bool has_window_size() const;
 
   Device* device_;
   VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;

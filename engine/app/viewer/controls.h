@@ -5,15 +5,21 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "render/frame/camera.h"
 
 namespace catena::app {
 
+/// What a key asks of the program as a whole.
+enum class Command { undo, redo, open, save, save_as, quit, screenshot, window_screenshot, full_screen, toggle_panels, turntable, fly };
+
 /// A piece of input under one set of held buttons. Window coordinates (y down); differences since the last piece.
 struct Input {
   double width = 1, height = 1;  ///< of the window
+  double x = 0, y = 0;           ///< of the pointer where the piece begins
   double dx = 0, dy = 0, wheel = 0;
   bool left = false, middle = false, right = false;  ///< held
   bool shift = false, control = false, space = false;
@@ -22,6 +28,8 @@ struct Input {
   bool fit = false, toggle_projection = false, toggle_pulses = false;
   std::optional<int> axis;  ///< 0, 1, 2: look along x, y, z; with shift the other way
   bool damaged = false;     ///< the window system lost the picture
+  std::vector<Command> commands{};
+  std::vector<std::string> dropped{};  ///< files
 };
 
 struct Controls {

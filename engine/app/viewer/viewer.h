@@ -3,29 +3,32 @@
 /// The servo thread runs the haptic program; the frame takes its newest state and never waits for it.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "engine/app/render/quality_words.h"
-#include "engine/scene/scene.h"
-#include "haptics/servo/realtime.h"
+#include "engine/app/viewer/hand_host.h"
+#include "engine/scene/document.h"
 
 namespace catena::app {
 
 struct ViewOptions {
-  scene::Scene scene;            ///< read already (its errors are the caller's)
-  std::string device = "mouse";  ///< what holds the probe: the mouse, or a name of haptics/device/registry.h
+  std::string source;                            ///< a scene or a data file
+  std::vector<scene::FieldOverride> overrides;   ///< --field
+  std::function<Outcome(scene::Scene&)> adjust;  ///< what the command line wants otherwise than the scene, whenever it is read
+  HandHost::Options hand;
   std::uint32_t width = 1024, height = 768;
-  Quality quality;                    ///< of a picture at rest (pacing.h)
-  std::string shaders;                ///< folder of shaders to watch; empty: none
-  int frames = 0;                     ///< quit after so many frames; 0: until the window is closed
-  double seconds = 0;                 ///< draw all the time and quit after so long; 0: until the window is closed
-  std::string screenshot;             ///< .png of the last frame, written at the end; empty: none
-  std::string servo_stats;            ///< .json of the servo, written at the end; empty: none
-  std::string record;                 ///< .catlog of every tick; empty: none
-  std::vector<std::string> fields;    ///< --field options, for the recording
-  std::string firmware;               ///< falcon: before the scene's
-  haptics::RealtimeOptions realtime;  ///< of the servo
+  Quality quality;               ///< of a picture at rest (pacing.h)
+  std::uint64_t gpu_memory = 0;  ///< bytes; 0: what the driver offers
+  std::string shaders;           ///< folder of shaders to watch; empty: none
+  int frames = 0;                ///< quit after so many frames; 0: until the window is closed
+  double seconds = 0;            ///< draw all the time and quit after so long; 0: until the window is closed
+  bool panels = true;
+  std::string screenshot;         ///< .png of the last picture, written at the end; empty: none
+  std::string window_screenshot;  ///< the same with the interface
+  std::string servo_stats;        ///< .json of the servo, written at the end; empty: none
+  std::string frame_stats;        ///< .json of the pictures, written at the end; empty: none
 };
 
 /// Exit code: 0 done, 1 no display or no GPU, 2 the scene cannot be shown or felt, or the device not opened (one line on stderr).

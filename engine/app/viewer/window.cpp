@@ -2,6 +2,7 @@
 
 #define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
 
 #include <utility>
 
@@ -14,6 +15,21 @@ std::string& last_error() {
   return text;
 }
 
+std::optional<Command> command_of(int key, bool control, bool shift) {
+  if (key == GLFW_KEY_F11) return Command::full_screen;
+  if (key == GLFW_KEY_F12) return shift ? Command::window_screenshot : Command::screenshot;
+  if (key == GLFW_KEY_TAB) return Command::toggle_panels;
+  if (key == GLFW_KEY_T && !control) return Command::turntable;
+  if (key == GLFW_KEY_V && !control) return Command::fly;
+  if (!control) return std::nullopt;
+  if (key == GLFW_KEY_Z) return shift ? Command::redo : Command::undo;
+  if (key == GLFW_KEY_Y) return Command::redo;
+  if (key == GLFW_KEY_S) return shift ? Command::save_as : Command::save;
+  if (key == GLFW_KEY_O) return Command::open;
+  if (key == GLFW_KEY_Q) return Command::quit;
+  return std::nullopt;
+}
+
 }  // namespace
 
 struct Window::Parts {
@@ -22,6 +38,8 @@ struct Window::Parts {
   Input current;
   double last_x = 0, last_y = 0;
   bool has_last = false;
+  bool happened = false;
+  bool gui = false, keys_are_text = false;
 
   ~Parts() {
     if (window != nullptr) glfwDestroyWindow(window);
@@ -38,9 +56,12 @@ struct Window::Parts {
     next.shift = current.shift;
     next.control = current.control;
     next.space = current.space;
+    next.x = last_x;
+    next.y = last_y;
     current = next;
   }
   void hold(bool Input::*what, bool held) {
+    happened = true;
     if (current.*what == held) return;
     cut();
     current.*what = held;
@@ -62,6 +83,7 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   glfwSetWindowUserPointer(parts.window, &parts);
   glfwSetCursorPosCallback(parts.window, [](GLFWwindow* w, double x, double y) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    p.happened = true;
     if (p.has_last) {
       p.current.dx += x - p.last_x;
       p.current.dy += y - p.last_y;
@@ -73,24 +95,48 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   // what moves while the pointer is away does not count
   glfwSetCursorEnterCallback(parts.window, [](GLFWwindow* w, int inside) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    p.happened = true;
+    if (p.gui) ImGui_ImplGlfw_CursorEnterCallback(w, inside);
     const bool dragging = p.current.left || p.current.middle || p.current.right;
     if (inside == GLFW_FALSE && !dragging) p.has_last = false;
   });
-  glfwSetMouseButtonCallback(parts.window, [](GLFWwindow* w, int button, int action, int) {
+  glfwSetWindowFocusCallback(parts.window, [](GLFWwindow* w, int focused) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    p.happened = true;
+    if (p.gui) ImGui_ImplGlfw_WindowFocusCallback(w, focused);
+  });
+  glfwSetDropCallback(parts.window, [](GLFWwindow* w, int count, const char** paths) {
+    Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    p.happened = true;
+    p.current.dropped.insert(p.current.dropped.end(), paths, paths + count);
+  });
+  glfwSetMouseButtonCallback(parts.window, [](GLFWwindow* w, int button, int action, int mods) {
+    Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    if (p.gui) ImGui_ImplGlfw_MouseButtonCallback(w, button, action, mods);
     if (button == GLFW_MOUSE_BUTTON_LEFT) p.hold(&Input::left, action == GLFW_PRESS);
     if (button == GLFW_MOUSE_BUTTON_MIDDLE) p.hold(&Input::middle, action == GLFW_PRESS);
     if (button == GLFW_MOUSE_BUTTON_RIGHT) p.hold(&Input::right, action == GLFW_PRESS);
   });
-  glfwSetScrollCallback(parts.window,
-                        [](GLFWwindow* w, double, double y) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->current.wheel += y; });
-  glfwSetKeyCallback(parts.window, [](GLFWwindow* w, int key, int, int action, int) {
+  glfwSetScrollCallback(parts.window, [](GLFWwindow* w, double x, double y) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    p.happened = true;
+    p.current.wheel += y;
+    if (p.gui) ImGui_ImplGlfw_ScrollCallback(w, x, y);
+  });
+  glfwSetKeyCallback(parts.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+    Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    p.happened = true;
+    if (p.gui) ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
     const bool held = action != GLFW_RELEASE;
     if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) p.hold(&Input::shift, held);
     if (key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL) p.hold(&Input::control, held);
     if (key == GLFW_KEY_SPACE) p.hold(&Input::space, held);
-    if (action != GLFW_PRESS) return;
+    if (action != GLFW_PRESS || p.keys_are_text) return;
+    if (const auto command = command_of(key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0)) {
+      p.current.commands.push_back(*command);
+      return;
+    }
+    if ((mods & GLFW_MOD_CONTROL) != 0) return;
     if (key == GLFW_KEY_H) {
       p.cut();
       p.current.toggle_hand = true;
@@ -106,7 +152,10 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
     if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) p.current.quit = true;
   });
   glfwSetCharCallback(parts.window, [](GLFWwindow* w, unsigned int c) {
-    if (c == '?') static_cast<Parts*>(glfwGetWindowUserPointer(w))->current.help = true;
+    Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+    p.happened = true;
+    if (p.gui) ImGui_ImplGlfw_CharCallback(w, c);
+    if (c == '?' && !p.keys_are_text) p.current.help = true;
   });
   glfwSetWindowRefreshCallback(parts.window,
                                [](GLFWwindow* w) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->current.damaged = true; });
@@ -127,6 +176,7 @@ render::vk::SurfaceFactory Window::surface_factory() const {
 }
 
 std::vector<Input> Window::poll(double wait_s) {
+  parts_->happened = false;
   wait_s > 0 ? glfwWaitEventsTimeout(wait_s) : glfwPollEvents();
   Parts& parts = *parts_;
   parts.cut();
@@ -140,6 +190,20 @@ std::vector<Input> Window::poll(double wait_s) {
   }
   return pieces;
 }
+
+bool Window::happened() const { return parts_->happened; }
+
+float Window::content_scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(parts_->window, &x, &y);
+  return x > 0.5f && x < 8 ? x : 1;
+}
+
+void Window::set_gui(bool on) { parts_->gui = on; }
+
+void Window::keys_are_text(bool on) { parts_->keys_are_text = on; }
+
+GLFWwindow* Window::native() const { return parts_->window; }
 
 bool Window::closing() const { return glfwWindowShouldClose(parts_->window) == GLFW_TRUE; }
 

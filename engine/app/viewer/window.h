@@ -10,6 +10,8 @@
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
 
+struct GLFWwindow;
+
 namespace catena::app {
 
 class Window {
@@ -25,11 +27,21 @@ class Window {
   /// order, cut where a button or modifier changed: a whole drag within one slow picture is still a drag. At least one.
   std::vector<Input> poll(double wait_s);
   bool closing() const;
+  /// Anything at all happened in the last poll (a pointer that moved, a key).
+  bool happened() const;
   /// It has the keyboard or the pointer: somebody is likely to look at it.
   bool looked_at() const;
   /// Of the picture, in pixels; 0 while minimised.
   void framebuffer_size(std::uint32_t& width, std::uint32_t& height) const;
   void set_title(const std::string& title);
+
+  /// Pixels by the size that interfaces are designed for.
+  float content_scale() const;
+  /// Events go to the user interface (gui.h) as well.
+  void set_gui(bool on);
+  /// Keys are text for the user interface: none is a command.
+  void keys_are_text(bool on);
+  GLFWwindow* native() const;
 
  private:
   Window() = default;

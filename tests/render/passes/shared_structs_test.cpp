@@ -7,6 +7,7 @@
 #include "shaders/shared/layers.h"
 #include "shaders/shared/overlay.h"
 #include "shaders/shared/pack.h"
+#include "shaders/shared/ui.h"
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
@@ -118,6 +119,12 @@ TEST(SharedStructs, PackAndAnaglyphData) {
   const auto& found = anaglyph["AnaglyphData"];
   EXPECT_EQ(found.at("left"), offsetof(AnaglyphData, left));
   EXPECT_EQ(found.at("right"), offsetof(AnaglyphData, right));
+}
+
+TEST(SharedStructs, UiData) {
+  auto all = struct_offsets(shader_words("ui.vert"));
+  EXPECT_EQ(all["UiData"].at("half_size"), offsetof(UiData, half_size));
+  EXPECT_EQ(all["UiData"].size(), 1u);
 }
 
 TEST(SharedStructs, LayerData) {

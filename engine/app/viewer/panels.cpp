@@ -1,0 +1,65 @@
+#include <imgui.h>
+
+#include "engine/app/viewer/panel.h"
+#include "engine/base/clock.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr float kSideWidth = 320;
+
+constexpr Panel kPanels[] = {
+    {"Times", false, draw_times},
+};
+
+void draw_side(PanelContext& context) {
+  const ImGuiViewport& view = *ImGui::GetMainViewport();
+  ImGui::SetNextWindowPos(view.WorkPos);
+  ImGui::SetNextWindowSize({kSideWidth, view.WorkSize.y - ImGui::GetFrameHeightWithSpacing()});
+  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus;
+  if (ImGui::Begin("##side", nullptr, kFixed)) {
+    ImGui::PushItemWidth(0.55f * kSideWidth);
+    for (const Panel& panel : kPanels) {
+      if (panel.wanted != nullptr && !panel.wanted(context)) continue;
+      ImGui::SetNextItemOpen(panel.open_at_first, ImGuiCond_Once);
+      if (!ImGui::CollapsingHeader(panel.title)) continue;
+      ImGui::PushID(panel.title);
+      panel.draw(context);
+      ImGui::PopID();
+    }
+    ImGui::PopItemWidth();
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
+void ViewState::say(std::string text, bool is_error) {
+  messages.push_back({std::move(text), is_error, now_ns()});
+  while (messages.size() > kMessages) messages.pop_front();
+}
+
+bool PanelContext::edit(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag) {
+  const Outcome done = scene.set(pointer, value, what, drag);
+  if (!done) state.say(done.error().message, true);
+  return static_cast<bool>(done);
+}
+
+bool PanelContext::remove(std::string_view pointer, const std::string& what) {
+  const Outcome done = scene.remove(pointer, what);
+  if (!done) state.say(done.error().message, true);
+  return static_cast<bool>(done);
+}
+
+void draw_interface(PanelContext& context) {
+  draw_menu(context);
+  if (context.state.panels) {
+    draw_side(context);
+    draw_status(context);
+  }
+  draw_dialogs(context);
+}
+
+}  // namespace catena::app

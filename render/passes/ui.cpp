@@ -1,0 +1,149 @@
+#include "render/passes/ui.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#include "render/passes/grid_bindings.h"
+#include "render/vk/upload.h"
+#include "shaders/shared/ui.h"
+
+namespace catena::render {
+namespace {
+
+constexpr std::uint32_t kVertexShader[] = {
+#include "spirv/ui.vert.inc"
+};
+constexpr std::uint32_t kFragmentShader[] = {
+#include "spirv/ui.frag.inc"
+};
+constexpr VkFormat kWindowFormat = VK_FORMAT_R8G8B8A8_UNORM;
+
+/// Host memory with these items; with room for twice as many where it must grow.
+template <class T>
+Outcome write_items(vk::Device& device, vk::Buffer& buffer, const std::vector<T>& items, VkBufferUsageFlags usage) {
+  const std::size_t bytes = std::max<std::size_t>(1, items.size()) * sizeof(T);
+  if (!buffer || buffer.size() < bytes) {
+    CATENA_TRY(buffer, vk::Buffer::create(device, 2 * bytes, usage, vk::Memory::upload));
+  }
+  if (!items.empty()) std::memcpy(buffer.bytes().data(), items.data(), items.size() * sizeof(T));
+  return Done{};
+}
+
+/// The first pixel whose centre lies at or beyond `edge`, at most `count`. Not a number: 0.
+std::uint32_t first_beyond(float edge, std::uint32_t count) {
+  const double first = std::ceil(double(edge) - 0.5);
+  return first > 0 ? std::uint32_t(std::min(first, double(count))) : 0;
+}
+
+VkRect2D clip_of(const UiDraw& draw, const VkExtent3D& window) {
+  const std::uint32_t x0 = first_beyond(draw.clip[0], window.width), x1 = first_beyond(draw.clip[2], window.width);
+  const std::uint32_t y0 = first_beyond(draw.clip[1], window.height), y1 = first_beyond(draw.clip[3], window.height);
+  return {{std::int32_t(x0), std::int32_t(y0)}, {x1 > x0 ? x1 - x0 : 0, y1 > y0 ? y1 - y0 : 0}};
+}
+
+bool indices_lead_inside(const UiItems& items) {
+  return std::ranges::all_of(items.draws, [&](const UiDraw& draw) {
+    if (draw.first_index > items.indices.size() || draw.index_count > items.indices.size() - draw.first_index) return false;
+    const auto first = items.indices.begin() + std::ptrdiff_t(draw.first_index);
+    return std::all_of(first, first + std::ptrdiff_t(draw.index_count),
+                       [&](std::uint16_t index) { return std::size_t(draw.first_vertex) + index < items.vertices.size(); });
+  });
+}
+
+}  // namespace
+
+/// An image of the window's size; what does not depend on the items.
+Outcome UiPass::fit(std::uint32_t width, std::uint32_t height) {
+  const std::uint32_t most = device_->info().limits.maxImageDimension2D;
+  if (width == 0 || height == 0 || width > most || height > most)
+    return Error{fmt::format("a window of {} x {} pixels cannot be painted, expected 1 to {} each way", width, height, most)};
+  const VkExtent3D& have = window_.info().extent;
+  if (!window_ || have.width != width || have.height != height) {
+    vk::ImageInfo info;
+    info.format = kWindowFormat;
+    info.extent = {width, height, 1};
+    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    window_ = vk::Image();  // the old one's memory first
+    CATENA_TRY(window_, vk::Image::create(*device_, info));
+  }
+  return write_uniform(*device_, uniform_, shared::UiData{{0.5f * float(width), 0.5f * float(height)}});
+}
+
+Outcome UiPass::keep(const std::shared_ptr<const UiTexture>& texture) {
+  Texture& kept = textures_[texture];
+  kept.used = paints_;
+  if (kept.image) return Done{};
+  CATENA_ASSERT(texture->width > 0 && texture->height > 0 && texture->rgba.size() == std::size_t(4) * texture->width * texture->height);
+  vk::ImageInfo info;
+  info.format = VK_FORMAT_R8G8B8A8_UNORM;
+  info.extent = {texture->width, texture->height, 1};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(kept.image, vk::Image::create(*device_, info));
+  return vk::upload_planes(*device_, kept.image, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
+    std::memcpy(out, texture->rgba.data(), texture->rgba.size());
+  });
+}
+
+Outcome UiPass::upload(const UiItems& items) {
+  CATENA_ASSERT(indices_lead_inside(items));
+  if (!pipeline_) {
+    vk::GraphicsInfo info;
+    info.vertex = kVertexShader;
+    info.fragment = kFragmentShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::sampled}};
+    info.colors = {kWindowFormat};
+    info.blends = {vk::Blend::over_straight};
+    info.vertex_stride = sizeof(UiVertex);
+    info.attributes = {{0, VK_FORMAT_R32G32_SFLOAT, offsetof(UiVertex, x)},
+                       {1, VK_FORMAT_R32G32_SFLOAT, offsetof(UiVertex, u)},
+                       {2, VK_FORMAT_R8G8B8A8_UNORM, offsetof(UiVertex, rgba)}};
+    CATENA_TRY(pipeline_, vk::Pipeline::create(*device_, info));
+    CATENA_TRY(linear_, vk::Sampler::create(*device_, vk::Filter::linear));
+    white_ = std::make_shared<const UiTexture>(UiTexture{1, 1, {255, 255, 255, 255}});
+  }
+  CATENA_CHECK(write_items(*device_, vertices_, items.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+  CATENA_CHECK(write_items(*device_, indices_, items.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+  for (const UiDraw& draw : items.draws) CATENA_CHECK(keep(draw.texture ? draw.texture : white_));
+  std::erase_if(textures_, [&](const auto& entry) { return entry.second.used + kTextureRest < paints_; });
+  return Done{};
+}
+
+void UiPass::record(vk::Commands& commands, const UiItems& items) {
+  const vk::ColorTarget into{&window_, std::nullopt};
+  commands.begin_pass({&into, 1}, {});
+  const Texture* bound = nullptr;
+  for (const UiDraw& draw : items.draws) {
+    const VkRect2D clip = clip_of(draw, window_.info().extent);
+    if (draw.index_count == 0 || clip.extent.width == 0 || clip.extent.height == 0) continue;
+    const Texture& texture = textures_.at(draw.texture ? draw.texture : white_);
+    if (bound == nullptr) commands.bind_mesh(vertices_, indices_, VK_INDEX_TYPE_UINT16);
+    if (bound != &texture) {
+      const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
+                                      {1, vk::Resource::sampled, nullptr, &texture.image, &linear_}};
+      commands.bind(pipeline_, bindings);
+      bound = &texture;
+    }
+    commands.scissor(clip);
+    commands.draw_mesh(draw.first_index, draw.index_count, draw.first_vertex);
+  }
+  commands.end_pass();
+}
+
+Outcome UiPass::paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items) {
+  ++paints_;
+  CATENA_CHECK(fit(width, height));
+  CATENA_CHECK(upload(items));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device_));
+  commands.use(picture, vk::kTransferRead);
+  commands.use(window_, vk::kTransferWrite);
+  commands.blit(picture, window_);
+  record(commands, items);
+  commands.use(window_, vk::kTransferRead);
+  return commands.finish();
+}
+
+}  // namespace catena::render
