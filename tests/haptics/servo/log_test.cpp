@@ -339,8 +339,8 @@ TEST(Log, FilesThatAreNoneSayWhatWasExpected) {
   EXPECT_NE(message("").find("no recording"), std::string::npos);
   EXPECT_NE(message("{\"chain\": []} and more").find(".catlog file was expected"), std::string::npos);
   std::string other = bytes;
-  for (const char version : {1, 3}) {
-    other[8] = version;
+  for (const int version : {1, 3}) {
+    other[8] = static_cast<char>(version);
     EXPECT_NE(message(other).find("version " + std::to_string(version) + "; this program reads version 2"), std::string::npos);
   }
   other = bytes;
@@ -409,7 +409,7 @@ TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
   const Block ticks = blocks[2];
   ASSERT_EQ(type_of(ticks), BlockType::ticks);
   // the first record: a mask of 6 bytes, then the words whose bit is set
-  const std::size_t mask_at = ticks.payload() + 24;
+  const std::size_t mask_at = ticks.payload() + 28;
   std::size_t word_at = mask_at + 6;
   int found = 0, words = 0;
   for (int k = 0; k < words_of({1, 0}); ++k) {
