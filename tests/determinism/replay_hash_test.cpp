@@ -87,15 +87,6 @@ constexpr const char* kBalance = R"({"fields": {"v": {"analytic": "circle"}, "s"
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})";
 
-// Two of the corners of the path lie on the plane, two near the sphere; the path's buttons grab.
-constexpr const char* kWidgets = R"({"fields": {},
-  "chain": [{"name": "floor", "type": "plane", "point": [0, 0, -0.3], "normal": [0, 1, 4]}],
-  "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0.1, 0], "orientation": [0.8, 0, 0.6, 0], "radius": 0.5,
-               "snap": 0.1, "release": 0.2, "near": 0.1, "step": 0.05},
-              {"name": "box", "type": "box", "lo": [-0.3, -0.6, -0.3], "hi": [0.6, 0.2, 0.3], "near": 0.15},
-              {"name": "rake", "type": "rake", "from": [-0.6, 0.2, -0.1], "to": [0.45, 0.05, 0.1]}],
-  "coupling": {"ramp_s": 0.05, "max_force": 100}})";
-
 const Recorded kRecorded[] = {
     {"circle", kCircle, 0x609d8539e109214d},
     {"circle_online", kCircleOnline, 0x95e0775dbacd31d3},
@@ -109,7 +100,6 @@ const Recorded kRecorded[] = {
     {"mesh", kMesh, 0x38bd92e22a245e8a},
     {"pipe", kPipe, 0xecb1973a8733ff12},
     {"balance", kBalance, 0x696e76f8e1f4a4f7},
-    {"widgets", kWidgets, 0},
     {"grids", kGrids, 0xe74048e48824af15},
     {"grid_online", kGridOnline, 0xde9c593d62a4b946},
 };
