@@ -151,8 +151,11 @@ std::optional<Failure> Session::draw(const NextPicture& next) {
   const auto shaded = [](const render::VolumeItem& item) { return item.shade; };
   kind_ = {!packet->volumes.empty() || !packet->isosurfaces.empty(), screen_->renderer().draws_fast(*packet),
            std::any_of(packet->volumes.begin(), packet->volumes.end(), shaded)};
-  if (times_.count() == 0)
-    for (const std::string& note : screen_->renderer().stats().notes) fmt::print(stderr, "catena: {}\n", note);
+  if (times_.count() == 0) {
+    const render::RenderStats stats = screen_->renderer().stats();
+    for (const std::string& note : stats.notes) fmt::print(stderr, "catena: {}\n", note);
+    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", coarser.words());
+  }
   times_.add(ms, now_ns());
   ++frames_in_title_;
   return std::nullopt;
