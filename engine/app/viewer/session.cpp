@@ -257,10 +257,10 @@ std::optional<Failure> Session::run() {
       next = pacing_.moving(kind_);
     else if (1e-3 * ms_since(last_move) >= kRestS)
       next = pacing_.still(kind_);
+    if (!next && 1e-3 * ms_since(last_move) >= kEstimateS && std::exchange(state_.estimate, false))
+      if (auto failure = estimate()) return failure;
     if (!next && always) next = pacing_.again();
     busy = next.has_value();
-    if (!next && std::exchange(state_.estimate, false) && 1e-3 * ms_since(last_move) >= kEstimateS)
-      if (auto failure = estimate()) return failure;
     if (next)
       if (auto failure = draw(*next)) return failure;
 
