@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/json_edit.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/modes.h"
 
@@ -69,14 +68,14 @@ std::string json_of(const json::Node& node) {
     case json::Kind::boolean:
       return node.boolean ? "true" : "false";
     case json::Kind::number:
-      return json::number_text(node.number);
+      return scene::text_of(node.number);
     case json::Kind::string:
-      return json::quoted(node.string);
+      return scene::text_of(node.string);
     case json::Kind::array:
       for (const json::Node& item : node.items) out += (out.empty() ? "" : ", ") + json_of(item);
       return "[" + out + "]";
     case json::Kind::object:
-      for (const auto& [key, value] : node.members) out += (out.empty() ? "" : ", ") + json::quoted(key) + ": " + json_of(value);
+      for (const auto& [key, value] : node.members) out += (out.empty() ? "" : ", ") + scene::text_of(key) + ": " + json_of(value);
       return "{" + out + "}";
   }
   return out;
@@ -207,7 +206,7 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
                                                      : key.name) +
                    ", which the scene does not have"};
     if (auto node = json::parse(value, "link")) link.members.emplace_back(key.name, std::move(*node));
-    text += ", " + json::quoted(key.name) + ": " + value;
+    text += ", " + scene::text_of(key.name) + ": " + value;
   }
   return "{" + text + "}";
 }

@@ -75,6 +75,12 @@ struct Rig {
   HandHost hand;
 };
 
+HandHost::Options asking_for(const std::string& device) {
+  HandHost::Options options;
+  options.device = device;
+  return options;
+}
+
 TEST(HandHost, LinksThatAnEditDoesNotTouchKeepTheirState) {
   Rig rig;
   rig.start();
@@ -187,13 +193,13 @@ TEST(HandHost, ADeviceSwitchEndsARecordingThatIsWhole) {
 }
 
 TEST(HandHost, WhatIsKnownAndNotPluggedInLeavesTheMouseAndOneSentence) {
-  Rig rig({.device = "falcon:99"});
+  Rig rig(asking_for("falcon:99"));
   rig.start();
   EXPECT_TRUE(rig.hand.is_mouse());
   EXPECT_NE(rig.hand.note().find("the mouse holds the probe"), std::string::npos) << rig.hand.note();
-  Rig unknown({.device = "sextant"});
+  Rig unknown(asking_for("sextant"));
   EXPECT_FALSE(unknown.hand.open_device(unknown.host->scene()));
-  Rig file({.device = "recorded:none.csv"});
+  Rig file(asking_for("recorded:none.csv"));
   EXPECT_FALSE(file.hand.open_device(file.host->scene())) << "a file that is not there is no device that is not plugged in";
 }
 
