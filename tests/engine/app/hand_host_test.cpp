@@ -156,7 +156,7 @@ TEST(HandHost, AnotherDeviceTakesOverAndOneThatCannotLeavesTheOldOne) {
   rig.hand.move_mouse(rig.host->scene(), Vec3(1, 0.5, 0.5), 0);
   ASSERT_TRUE(rig.runs_on(80));
   const double before = rig.host->scene().workspace.metres_per_unit;
-  const Outcome none = rig.hand.switch_device(rig.host->scene(), "falcon:99", rig.bounds);
+  const Outcome none = rig.hand.switch_device(rig.host->scene(), "falcon:7", rig.bounds);
   EXPECT_FALSE(none);
   EXPECT_TRUE(rig.hand.is_mouse());
   ASSERT_TRUE(rig.runs_on(5));
@@ -193,7 +193,7 @@ TEST(HandHost, ADeviceSwitchEndsARecordingThatIsWhole) {
 }
 
 TEST(HandHost, WhatIsKnownAndNotPluggedInLeavesTheMouseAndOneSentence) {
-  Rig rig(asking_for("falcon:99"));
+  Rig rig(asking_for("falcon:7"));
   rig.start();
   EXPECT_TRUE(rig.hand.is_mouse());
   EXPECT_NE(rig.hand.note().find("the mouse holds the probe"), std::string::npos) << rig.hand.note();
