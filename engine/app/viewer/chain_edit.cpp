@@ -181,7 +181,8 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
       return meshes.empty() ? "" : scene::text_of(meshes.front());
     }
     case Kind::other:
-      if (key.name == "points") return "[" + along(0) + ", " + along(0.1) + "]";
+      if (key.name == "points")
+        return scene::text_of(std::vector<Vec3>{probe, probe + Vec3(0.1 * length, 0, 0), probe + Vec3(0.1 * length, 0.1 * length, 0)});
       return {};
   }
   return {};
