@@ -45,6 +45,18 @@ VkRect2D clip_of(const UiDraw& draw, const VkExtent3D& window) {
   return {{std::int32_t(x0), std::int32_t(y0)}, {x1 > x0 ? x1 - x0 : 0, y1 > y0 ? y1 - y0 : 0}};
 }
 
+/// All of the picture over `area` of the window. An area that the window does not hold is cut off.
+void show_picture(vk::Commands& commands, const vk::Image& picture, const vk::Image& window, const std::array<std::uint32_t, 4>& area) {
+  const auto side = [](std::uint32_t v) { return std::int32_t(v); };
+  VkImageBlit region{};
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.srcOffsets[1] = {side(picture.info().extent.width), side(picture.info().extent.height), 1};
+  region.dstOffsets[0] = {side(area[0]), side(area[1]), 0};
+  region.dstOffsets[1] = {side(area[2]), side(area[3]), 1};
+  vkCmdBlitImage(commands.handle(), picture.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window.handle(),
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+}
+
 bool indices_lead_inside(const UiItems& items) {
   return std::ranges::all_of(items.draws, [&](const UiDraw& draw) {
     if (draw.first_index > items.indices.size() || draw.index_count > items.indices.size() - draw.first_index) return false;
@@ -139,8 +151,15 @@ Outcome UiPass::paint(vk::Image& picture, std::uint32_t width, std::uint32_t hei
   CATENA_CHECK(upload(items));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device_));
   commands.use(picture, vk::kTransferRead);
+  if (items.area) {
+    const auto& [x0, y0, x1, y1] = *items.area;
+    CATENA_ASSERT(x0 < x1 && y0 < y1 && x1 <= width && y1 <= height);
+    const vk::ColorTarget cleared{&window_, std::array<float, 4>{0, 0, 0, 1}};
+    commands.begin_pass({&cleared, 1}, {});
+    commands.end_pass();
+  }
   commands.use(window_, vk::kTransferWrite);
-  commands.blit(picture, window_);
+  show_picture(commands, picture, window_, items.area.value_or(std::array<std::uint32_t, 4>{0, 0, width, height}));
   record(commands, items);
   commands.use(window_, vk::kTransferRead);
   return commands.finish();
