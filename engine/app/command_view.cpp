@@ -15,12 +15,14 @@ namespace catena::app {
 
 namespace {
 
+const std::string kQuality = "time=50";
+
 struct Options {
-  std::string source, device = "mouse", size = "1024x768", quality = "time=50", shaders, screenshot, window_screenshot, servo_stats,
-                      frame_stats, record, firmware;
+  std::string source, device, size = "1024x768", quality, shaders, screenshot, window_screenshot, servo_stats, frame_stats, record,
+                              firmware;
   std::vector<std::string> fields;
   int frames = 0;
-  double seconds = 0;
+  double seconds = 0, gpu_memory_mb = 0;
   bool no_panels = false;
   RealtimeChoice realtime;
   AnnotateOptions annotate;
@@ -57,8 +59,11 @@ Outcome open_window(const Options& o, int& exit_code) {
     CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
     CATENA_CHECK(options.adjust(scene));
     CATENA_CHECK(check_outputs(o, inputs_of(scene)));
+    options.quality_stated = !o.quality.empty();
+    const std::string& own = scene.quality.empty() ? kQuality : scene.quality;
+    CATENA_TRY(options.quality, parse_quality(options.quality_stated ? o.quality : own));
   }
-  CATENA_TRY(options.quality, parse_quality(o.quality));
+  options.gpu_memory = static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb);
   options.shaders = o.shaders;
   options.hand = {o.device, o.firmware, o.record, o.fields, o.realtime.options()};
   options.seconds = o.seconds;
@@ -80,15 +85,19 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("view", "an interactive window: orbit, and the mouse as the hand");
   command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
-  command->add_option("--device", options->device, "what holds the probe: mouse, or a haptic device (its forces are off until F)")
-      ->capture_default_str();
+  command->add_option(
+      "--device", options->device,
+      "what holds the probe: mouse, or a haptic device (its forces are off until F). Default: the scene's, or else the mouse, "
+      "which also steps in for what is not plugged in");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
+  command->add_option(
+      "--quality", options->quality,
+      "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest; while something moves "
+      "it comes within MS or 50 ms. Default: the scene's, or else time=50");
   command
-      ->add_option("--quality", options->quality,
-                   "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest; while something moves "
-                   "it comes within MS or 50 ms")
-      ->capture_default_str();
+      ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
+      ->check(number_between(1, 1e9));
   command->add_option("--shaders", options->shaders, "the folder of shaders to draw with, watched: what changes there is compiled at once");
   add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);

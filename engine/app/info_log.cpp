@@ -24,6 +24,7 @@ Outcome describe_log(const std::string& path) {
   double first_s = 0, last_s = 0;
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
     if (event == log::LogEvent::gap) fmt::print("  gap          {}\n", reader.gap().text());
+    if (event == log::LogEvent::state) fmt::print("  begins       after tick {}, with the state of that moment\n", reader.state().tick);
     if (event == log::LogEvent::program) {
       std::string names;
       for (const std::string& name : reader.program().link_names()) names += (names.empty() ? "" : ", ") + name;

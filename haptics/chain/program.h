@@ -15,7 +15,8 @@ namespace catena::haptics {
 /// "on": {"button": n} (n = 1 is bit 0), with "toggle": each press turns it over; or {"force_above": newtons}, until the force
 /// is at most "force_below" (default: the same). Neither: always on. The force is the last tick's.
 struct Switch {
-  int button = 0;  ///< 0: none
+  bool never = false;  ///< off whatever else it says ("enabled": false)
+  int button = 0;      ///< 0: none
   bool toggle = false;
   double force_above_n = 0;  ///< 0: none
   double force_below_n = 0;

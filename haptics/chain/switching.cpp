@@ -5,6 +5,7 @@ namespace catena::haptics {
 namespace {
 
 bool step(const Switch& on, bool was, std::uint32_t before, std::uint32_t now, double force_n) noexcept {
+  if (on.never) return false;
   if (on.button > 0) {
     const std::uint32_t bit = 1u << (on.button - 1);
     if (!on.toggle) return (now & bit) != 0;

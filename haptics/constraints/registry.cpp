@@ -108,6 +108,7 @@ const std::vector<Key>& common_keys() {
        kPositiveSchema},
       {"on", "object", false, "its switch: {button: n, toggle: true} or {force_above: newtons, force_below: newtons}",
        R"("properties": {"button": {"type": "integer", "minimum": 1, "maximum": 32}, "toggle": {"type": "boolean"}, "force_above": {"type": "number", "exclusiveMinimum": 0}, "force_below": {"type": "number", "minimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 2)"},
+      {"enabled", "boolean", false, "false: off, whatever its switch says"},
       {"indicate", "object", false, "how the hand is told that it leaves the feature",
        R"("properties": {"cue": {"enum": ["none", "detent", "vibration"]}, "at": {"type": "number", "exclusiveMinimum": 0}, "from": {"type": "number", "minimum": 0, "maximum": 1}, "amplitude": {"type": "number", "minimum": 0}, "frequency": {"type": "number", "exclusiveMinimum": 0}, "duration": {"type": "number", "exclusiveMinimum": 0}}, "additionalProperties": false)"},
       {"align", "object", false, "turns the tool's axis onto the surface's normal or the curve's tangent; stiffness in N m/rad",

@@ -39,14 +39,14 @@ inline constexpr std::string_view kFreeSchema = R"("enum": ["none", "above", "be
 struct ConstraintType {
   std::string_view type;   ///< the word in the scene file
   std::string_view paper;  ///< equations and sections it comes from
-  std::vector<Key> keys;   ///< its own keys, beside name, type, on, stiffness
+  std::vector<Key> keys;   ///< its own keys, beside common_keys()
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
   bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
 };
 
 const std::vector<ConstraintType>& registry();
 const ConstraintType* find_constraint(std::string_view type);
-/// The keys that every link takes: name, type, stiffness, on, indicate, align, snap, release.
+/// The keys that every link takes: name, type, stiffness, on, enabled, indicate, align, snap, release.
 const std::vector<Key>& common_keys();
 /// The JSON Schema of a chain, printed from the registry and the ready-made modes (modes.h).
 std::string chain_schema();

@@ -125,6 +125,8 @@ const DeviceType* find(const std::string& type) {
 
 std::string device_type_of(const std::string& name) { return name.substr(0, name.find(':')); }
 
+bool is_hardware(const std::string& type) { return type == "falcon" || type == "spacemouse"; }
+
 bool is_device_type(const std::string& type) { return find(type) != nullptr; }
 
 std::string device_types() {

@@ -76,7 +76,8 @@ Result<Align> read_align(const json::Node& link, const Coupling& coupling, const
   return out;
 }
 
-/// What a link was built from: its text, and the versions of its fields and meshes.
+/// What a link was built from: its text but for "enabled" (one that is switched off and on again has not become another), and the versions
+/// of its fields and meshes.
 void add_recipe(const json::Node& node, Fnv1a& recipe) {
   recipe.add(static_cast<int>(node.kind));
   recipe.add(node.boolean);
@@ -125,7 +126,9 @@ Result<json::Node> node_for_baseline(const json::Node& from, Combination combina
 Result<Link> make_link(const json::Node& from, const Coupling& coupling, const BuildContext& context) {
   Link link;
   Fnv1a recipe;
-  add_recipe(from, recipe);
+  json::Node own = from;
+  std::erase_if(own.members, [](const auto& member) { return member.first == "enabled"; });
+  add_recipe(own, recipe);
   if (coupling.combination != Combination::chain) recipe.add(static_cast<int>(coupling.combination));
   BuildContext noting = context;
   noting.field = [&](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
@@ -141,6 +144,8 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
   link.name = from.find("name")->string;
   CATENA_TRY(link.stiffness_n_per_m, get_parameter(from, "stiffness", coupling.stiffness_n_per_m, json::Range::not_negative, noting));
   CATENA_TRY(link.on, read_switch(from));
+  CATENA_TRY(const bool enabled, json::get_boolean(from, "enabled", true));
+  link.on.never = !enabled;
   CATENA_TRY(link.indication, read_indication(from));
   if (coupling.combination == Combination::chain) {
     CATENA_TRY(link.constraint, build_constraint(from, noting));

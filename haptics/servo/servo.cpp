@@ -1,6 +1,7 @@
 #include "haptics/servo/servo.h"
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <optional>
 
@@ -35,7 +36,12 @@ RealtimeOptions realtime_options(const ServoOptions& options) {
 }  // namespace
 
 Servo::Servo(Device& device, std::shared_ptr<const Program> program, const ServoOptions& options)
-    : device_(device), options_(options), forces_(options.forces) {
+    : device_(device),
+      options_(options),
+      forces_(options.forces),
+      wanted_sink_(options.sink),
+      taken_sink_(options.sink),
+      sink_(options.sink) {
   CATENA_ASSERT(program && program->links.size() <= static_cast<std::size_t>(kMaxLinks));
   CATENA_ASSERT(options.rate_hz >= ServoOptions::kMinRateHz && options.rate_hz <= ServoOptions::kMaxRateHz && options.watchdog_s >= 0);
   program_ = program.get();
@@ -53,6 +59,12 @@ void Servo::start() {
   prepared_.wait(false, std::memory_order_acquire);
 }
 
+void Servo::go_on_from(const Servo& other) {
+  CATENA_ASSERT(!thread_.joinable() && !other.thread_.joinable());
+  state_ = other.state_;
+  rebind(*other.program_, *program_, state_, scratch_);
+}
+
 void Servo::stop() {
   stop_.store(true, std::memory_order_release);
   if (thread_.joinable()) thread_.join();
@@ -63,6 +75,16 @@ void Servo::set_program(std::shared_ptr<const Program> program) {
   for (const auto& alive : programs_) CATENA_ASSERT(alive->epoch != program->epoch);
   next_program_.publish(program.get());
   programs_.push_back(std::move(program));
+}
+
+bool Servo::set_sink(TickSink* sink, double patience_s) {
+  wanted_sink_.store(sink, std::memory_order_release);
+  const std::int64_t began = now_ns();
+  while (running() && taken_sink_.load(std::memory_order_acquire) != sink) {
+    if (1e-9 * static_cast<double>(now_ns() - began) > patience_s) return false;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return true;
 }
 
 bool Servo::take(exchange::HapticState& state) {
@@ -100,6 +122,10 @@ ServoReport Servo::report() const {
 }
 
 void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::HapticState& out) noexcept {
+  // before the program: a sink that is taken up knows every program that was handed over before it
+  TickSink* wanted = wanted_sink_.load(std::memory_order_acquire);
+  const bool takes_up = wanted != sink_;
+
   const std::int64_t began = now_ns();
   const DeviceInput input = device_.read();
   const std::int64_t has_read = now_ns();
@@ -108,6 +134,12 @@ void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::Haptic
     const Program* newer = next_program_.front();
     rebind(*program_, *newer, state_, scratch_);
     program_ = newer;
+  }
+  if (takes_up) {
+    sink_ = wanted;
+    taken_sink_.store(wanted, std::memory_order_release);
+    scratch_ = ChainScratch{};
+    if (sink_ != nullptr) sink_->begin(state_);
   }
   // device metres -> world: origin + R p / S; a recorded path is in the world already, and so is its orientation
   const Mat3& to_world = program_->workspace_rotation;
@@ -142,7 +174,7 @@ void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::Haptic
   out.compute_us = microseconds(computed - has_read);
   out.device_us = microseconds(device_ns);
   out.missed_deadlines = counters_.missed_deadlines.load(std::memory_order_relaxed);
-  if (options_.sink != nullptr) options_.sink->put(probe, out);
+  if (sink_ != nullptr) sink_->put(probe, out);
 }
 
 /// A fixed priority is for ticks that fit into their period: a second or so of misses gives it back.

@@ -1,8 +1,8 @@
 /// The haptic thread: a thin shell around the tick. Wakes at absolute deadlines (pace.h), reads the device, takes the newest program
 /// (never waits), runs the tick, writes the force, publishes one HapticState.
 /// Two threads touch a Servo: the frame side calls the public functions, the haptic thread runs the loop; a third one, the watchdog,
-/// looks at a time stamp. They share two triple buffers, flags and counters, all lock-free. The haptic thread never frees: programs
-/// are kept by the frame side until a published epoch shows that a newer one has run.
+/// looks at a time stamp. They share two triple buffers, flags, counters and two pointers, all lock-free. The haptic thread never frees:
+/// programs are kept by the frame side until a published epoch shows that a newer one has run.
 ///
 /// The tick's condition: WATCHDOG no tick had ended for watchdog_s (the device has been stopped; the tick after resumes it);
 /// NO_DEVICE the device is not ready; LATE its time is more than two periods after the last tick's; else NORMAL.
@@ -30,7 +30,7 @@ struct ServoOptions {
   double rate_hz = 1000;          ///< kMinRateHz..kMaxRateHz
   bool paced = true;              ///< false: as fast as it goes (soaks, determinism); never late, no watchdog, normal priority
   std::uint64_t max_ticks = 0;    ///< 0: until stop()
-  TickSink* sink = nullptr;       ///< gets every tick; outlives the servo
+  TickSink* sink = nullptr;       ///< gets every tick; outlives the servo, or is taken away by set_sink
   bool forces = true;             ///< at the start; set_forces() later
   double watchdog_s = 0.05;       ///< at least four periods; 0: none
   RealtimeOptions realtime = {};  ///< of a paced servo
@@ -45,10 +45,16 @@ class Servo {
   Servo& operator=(const Servo&) = delete;
 
   // frame side
-  void start();                                               ///< returns when the thread is prepared, just before its first tick
-  void stop();                                                ///< joins; the device has had a last zero force and is stopped
-  void set_program(std::shared_ptr<const Program> program);   ///< of an epoch of its own: by it the older ones are freed
-  bool take(exchange::HapticState& state);                    ///< true if there was something newer
+  /// Before start(): what the chain remembers comes from a servo that has been stopped (another device takes over). The force begins at
+  /// zero, as it always does. Programs need epochs of their own over both.
+  void go_on_from(const Servo& other);
+  void start();                                              ///< returns when the thread is prepared, just before its first tick
+  void stop();                                               ///< joins; the device has had a last zero force and is stopped
+  void set_program(std::shared_ptr<const Program> program);  ///< of an epoch of its own: by it the older ones are freed
+  bool take(exchange::HapticState& state);                   ///< true if there was something newer
+  /// Another sink from one of the next ticks on, or none. True: the old one is not used any more. The tick takes it up by itself; the
+  /// caller waits for that, a tick or two, and at most `patience_s`: then false, and the old one must live on (until stop(), or a true).
+  bool set_sink(TickSink* sink, double patience_s = 1);
   std::uint64_t state_hash() const { return hash_.value(); }  ///< after stop()
   std::size_t programs_alive() const { return programs_.size(); }
 
@@ -65,16 +71,18 @@ class Servo {
   void relax(bool missed) noexcept;
 
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::uint64_t>::is_always_lock_free &&
-                std::atomic<const Program*>::is_always_lock_free);
+                std::atomic<const Program*>::is_always_lock_free && std::atomic<TickSink*>::is_always_lock_free);
   Device& device_;
   ServoOptions options_;
   exchange::TripleBuffer<const Program*> next_program_;
   exchange::TripleBuffer<exchange::HapticState> published_;
   std::atomic<bool> stop_{false}, running_{false}, prepared_{false}, forces_;
+  std::atomic<TickSink*> wanted_sink_, taken_sink_;
   ServoCounters counters_;
 
   // haptic thread only, once started
   const Program* program_ = nullptr;
+  TickSink* sink_ = nullptr;
   ChainState state_;
   ChainScratch scratch_;
   StateHash hash_;

@@ -2,24 +2,47 @@
 
 #include "engine/app/command.h"
 #include "engine/app/log_scene.h"
+#include "engine/base/clock.h"
 
 namespace catena::app {
 
 Result<Recording> Recording::open(const std::string& path, const scene::Scene& scene, const std::vector<std::string>& field_options,
                                   const OpenHand& hand, const haptics::Program& program) {
+  if (path.empty()) return Recording();
+  if (!is_scene_file(scene.path)) return Error{path + ": only what is felt of a scene file (.json) can be recorded"};
+  CATENA_TRY(const haptics::log::LogHeader header, log_header(scene.path, {}, {}, 0));
+  return open(path, {scene.path, header.scene_text, field_options, inputs_of(scene)}, hand, program);
+}
+
+Result<Recording> Recording::open(const std::string& path, RecordedScene scene, const OpenHand& hand, const haptics::Program& program) {
   Recording recording;
   if (path.empty()) return recording;
-  if (!is_scene_file(scene.path)) return Error{path + ": only what is felt of a scene file (.json) can be recorded"};
-  CATENA_TRY(haptics::log::LogHeader header,
-             log_header(scene.path, field_options, hand.device->capabilities().name, hand.settings.rate_hz));
-  CATENA_TRY(recording.writer_, haptics::log::LogWriter::open(path, std::move(header), inputs_of(scene)));
+  haptics::log::LogHeader header;
+  header.scene_path = std::move(scene.path);
+  header.scene_text = scene.text;
+  header.fields = std::move(scene.fields);
+  header.device = hand.device->capabilities().name;
+  header.catena_version = kCatenaVersion;
+  header.rate_hz = hand.settings.rate_hz;
+  CATENA_TRY(recording.writer_, haptics::log::LogWriter::open(path, std::move(header), scene.inputs));
+  recording.path_ = path;
+  recording.text_ = std::move(scene.text);
+  recording.began_ns_ = now_ns();
   recording.writer_->add_program(program);
   return recording;
 }
 
+void Recording::add_program(const haptics::Program& program, const std::string& text) {
+  if (!writer_) return;
+  writer_->add_program(program, text == text_ ? std::optional<std::string>() : text);
+}
+
+double Recording::seconds() const { return writer_ ? 1e-3 * ms_since(began_ns_) : 0; }
+
 Outcome Recording::finish() {
   if (!writer_) return Done{};
-  return writer_->finish();
+  const auto writer = std::move(writer_);
+  return writer->finish();
 }
 
 }  // namespace catena::app

@@ -1,4 +1,4 @@
-/// "--record FILE": every tick of a session, written beside the servo. Frame side.
+/// "--record FILE", or the window's switch: every tick of a session, written beside the servo. Frame side.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,19 +9,39 @@
 
 namespace catena::app {
 
+/// What a recording says of the scene, beside its programs.
+struct RecordedScene {
+  std::string path;                 ///< relative paths in the text are relative to it
+  std::string text;                 ///< as it is now, saved or not
+  std::vector<std::string> fields;  ///< --field options
+  std::vector<std::string> inputs;  ///< files that it names: not to be overwritten
+};
+
 class Recording {
  public:
-  /// Nothing is recorded where `path` is empty. `program`: that with which the servo begins.
+  /// Nothing is recorded where `path` is empty. `program`: that with which the servo begins. The text is the file's.
   static Result<Recording> open(const std::string& path, const scene::Scene& scene, const std::vector<std::string>& field_options,
                                 const OpenHand& hand, const haptics::Program& program);
-  /// For ServoOptions::sink; nullptr: none.
+  /// `program`: that which the servo runs, or was given last.
+  static Result<Recording> open(const std::string& path, RecordedScene scene, const OpenHand& hand, const haptics::Program& program);
+
+  /// Another program, before the servo gets it. `text`: the scene's, now.
+  void add_program(const haptics::Program& program, const std::string& text);
+
+  /// For ServoOptions::sink or Servo::set_sink; nullptr: none.
   haptics::TickSink* sink() const { return writer_.get(); }
+  bool running() const { return writer_ != nullptr; }
   bool failed() const { return writer_ && writer_->status().failed; }
-  /// After the servo has stopped.
+  haptics::log::LogStatus status() const { return writer_ ? writer_->status() : haptics::log::LogStatus{}; }
+  const std::string& path() const { return path_; }
+  double seconds() const;
+  /// After the servo has stopped or let go of the sink. Nothing is recorded any more.
   Outcome finish();
 
  private:
   std::unique_ptr<haptics::log::LogWriter> writer_;
+  std::string path_, text_;
+  std::int64_t began_ns_ = 0;
 };
 
 }  // namespace catena::app

@@ -43,50 +43,129 @@ Outcome HandHost::load(scene::Scene& scene) {
   return Done{};
 }
 
+Result<OpenHand> HandHost::open(const scene::Scene& scene, const std::string& name) const {
+  if (name != "mouse") return open_hand(scene, name, {}, options_.firmware);
+  OpenHand mouse;
+  mouse.device = std::make_unique<haptics::MouseDevice>(Vec3(0.0));
+  return mouse;
+}
+
 Outcome HandHost::open_device(const scene::Scene& scene) {
-  if (options_.device == "mouse") return Done{};
-  CATENA_TRY(hand_, open_hand(scene, options_.device, {}, options_.firmware));
+  std::string name = options_.device;
+  if (name.empty() && scene.device) {
+    CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, scene.path));
+    // what is simulated would only keep the hand off the probe
+    if (haptics::is_hardware(settings.type)) name = settings.type;
+  }
+  if (name.empty()) name = "mouse";
+  auto opened = open(scene, name);
+  if (!opened) {
+    if (!haptics::is_hardware(haptics::device_type_of(name))) return opened.error();
+    const std::string why = opened.error().message;
+    name = "mouse";
+    opened = open(scene, name);
+    opened->note = why + "; the mouse holds the probe";
+  }
+  hand_ = std::move(*opened);
+  device_name_ = name;
   return Done{};
 }
 
-Outcome HandHost::prepare(scene::Scene& scene, const render::Bounds& bounds) {
-  const bool is_mouse = !hand_.device;
-  if (is_mouse) hand_.device = std::make_unique<haptics::MouseDevice>(Vec3(0.0));
-  CATENA_TRY(program_, program_for(scene, hand_, bounds));
-  first_probe_ = app::first_probe(scene, bounds);
-  if (is_mouse) {
-    auto mouse = std::make_unique<haptics::MouseDevice>(device_from_world(scene.workspace, first_probe_));
-    mouse_ = mouse.get();
-    hand_.device = std::move(mouse);
-  }
+void HandHost::name_links(scene::Scene& scene) {
   link_names_ = names_of(*program_);
   scene.world.get<scene::Cursor>(scene.cursor).names = link_names_;
-  CATENA_TRY(recording_, Recording::open(options_.record, scene, options_.fields, hand_, *program_));
+}
+
+/// A mouse begins at the probe: it has been made where nothing is known of the workspace yet.
+void HandHost::use(OpenHand hand, const scene::Scene& scene, const Vec3& probe) {
+  hand_ = std::move(hand);
+  mouse_ = nullptr;
+  if (device_name_ != "mouse") return;
+  auto mouse = std::make_unique<haptics::MouseDevice>(device_from_world(scene.workspace, probe));
+  mouse_ = mouse.get();
+  hand_.device = std::move(mouse);
+}
+
+void HandHost::make_servo() {
   haptics::ServoOptions servo;
   servo.rate_hz = hand_.settings.rate_hz;
-  servo.forces = is_mouse || hand_.device->capabilities().max_force_n <= 0;
+  servo.forces = is_mouse() || hand_.device->capabilities().max_force_n <= 0;
   servo.realtime = options_.realtime;
-  if (is_mouse) servo.realtime.lock_memory = false;  // nothing pushes: a page fault does no harm
+  if (is_mouse()) servo.realtime.lock_memory = false;  // nothing pushes: a page fault does no harm
   servo.sink = recording_.sink();
   servo_ = std::make_unique<haptics::Servo>(*hand_.device, program_, servo);
+}
+
+Outcome HandHost::prepare(scene::Scene& scene, const render::Bounds& bounds, const RecordedScene& text) {
+  stated_ = scene.workspace;
+  CATENA_TRY(program_, program_for(scene, hand_, bounds));
+  first_probe_ = app::first_probe(scene, bounds);
+  use(std::move(hand_), scene, first_probe_);
+  name_links(scene);
+  CATENA_TRY(recording_, Recording::open(options_.record, text, hand_, *program_));
+  make_servo();
   return Done{};
 }
 
 Outcome HandHost::take_over(scene::Scene& scene, const render::Bounds& bounds) {
+  const scene::Workspace stated = scene.workspace;
   CATENA_TRY(program_, program_for(scene, hand_, bounds));
+  const Outcome recorded = stop_recording();
+  stated_ = stated;
   first_probe_ = app::first_probe(scene, bounds);
-  link_names_ = names_of(*program_);
-  scene.world.get<scene::Cursor>(scene.cursor).names = link_names_;
+  name_links(scene);
   servo_->set_program(program_);
   move_mouse(scene, first_probe_, 0);
-  return Done{};
+  return recorded;
+}
+
+Outcome HandHost::switch_device(scene::Scene& scene, const std::string& name, const render::Bounds& bounds) {
+  CATENA_TRY(OpenHand hand, open(scene, name));
+  const scene::Workspace fitted = scene.workspace;
+  scene.workspace = stated_;
+  auto program = program_for(scene, hand, bounds);
+  if (!program) {
+    scene.workspace = fitted;
+    return program.error();
+  }
+  const Outcome recorded = stop_recording();
+  servo_->stop();
+  crash_guard_.reset();
+  const auto before = std::move(servo_);
+  const std::unique_ptr<haptics::Device> old = std::move(hand_.device);
+  program_ = std::move(*program);
+  device_name_ = name;
+  use(std::move(hand), scene, felt_.tick > 0 ? felt_.probe : first_probe_);
+  name_links(scene);
+  make_servo();
+  servo_->go_on_from(*before);
+  start();
+  return recorded;
+}
+
+Outcome HandHost::record(const std::string& path, RecordedScene scene) {
+  CATENA_CHECK(stop_recording());
+  CATENA_TRY(recording_, Recording::open(path, std::move(scene), hand_, *program_));
+  if (servo_->set_sink(recording_.sink())) return Done{};
+  CATENA_CHECK(stop_recording());
+  return Error{path + ": the servo does not answer; nothing is recorded"};
+}
+
+Outcome HandHost::stop_recording() {
+  if (!recording_.running()) return Done{};
+  // a servo that does not let go is stopped: its recording must not be written to any more
+  if (servo_ && !servo_->set_sink(nullptr)) {
+    servo_->stop();
+    servo_->start();
+  }
+  return recording_.finish();
 }
 
 void HandHost::start() {
   if (!is_mouse()) crash_guard_.emplace(*hand_.device);
   servo_->start();
-  if (is_mouse()) return;
   if (!hand_.note.empty()) fmt::print(stderr, "catena: {}\n", hand_.note);
+  if (is_mouse()) return;
   for (const std::string& note : servo_->report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
   say_forces();
 }
@@ -101,10 +180,15 @@ Outcome HandHost::finish(const std::string& servo_stats) {
   return write_servo_stats(servo_stats, *servo_, *hand_.device);
 }
 
-Outcome HandHost::publish(scene::Scene& scene) {
+Outcome HandHost::check(scene::Scene& scene) const {
+  CATENA_CHECK(haptics::extract_program(scene, hand_.limits));
+  return Done{};
+}
+
+Outcome HandHost::publish(scene::Scene& scene, const std::string& text) {
   CATENA_TRY(program_, haptics::extract_program(scene, hand_.limits));
-  link_names_ = names_of(*program_);
-  scene.world.get<scene::Cursor>(scene.cursor).names = link_names_;
+  name_links(scene);
+  recording_.add_program(*program_, text);
   servo_->set_program(program_);
   return Done{};
 }

@@ -1,5 +1,7 @@
 /// The hand in the window: the device that holds the probe (a haptic one, else the mouse), its servo, its recording, and the program that
 /// the servo runs. The frame never waits for the servo, nor the servo for the frame. Frame thread.
+/// What holds the probe in the window, and the servo that runs its program: the device may be another one, the program newer, a
+/// recording may begin and end, all while the servo runs. Frame thread.
 #pragma once
 #include <memory>
 #include <optional>
@@ -10,13 +12,16 @@
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/hand/recording.h"
 #include "haptics/device/mouse.h"
+#include "haptics/device/registry.h"
 
 namespace catena::app {
 
 class HandHost {
  public:
   struct Options {
-    std::string device = "mouse";       ///< the mouse, or a name of haptics/device/registry.h
+    /// The mouse, or a name of haptics/device/registry.h; empty: that of the scene's "device" if it is a thing on the desk, else the
+    /// mouse. What is known and not plugged in leaves the probe to the mouse, and is said (note()).
+    std::string device;
     std::string firmware;               ///< falcon: before the scene's
     std::string record;                 ///< .catlog of every tick; empty: none
     std::vector<std::string> fields;    ///< --field options, for the recording
@@ -30,17 +35,29 @@ class HandHost {
   static Outcome load(scene::Scene& scene);
   /// Opens the device, before any window: what is wrong with it is said at once.
   Outcome open_device(const scene::Scene& scene);
-  /// Fits the workspace, makes the program and the servo. `bounds`: of what is drawn and felt.
-  Outcome prepare(scene::Scene& scene, const render::Bounds& bounds);
-  /// Another scene, while the servo runs: as prepare, with the device and the servo that there are.
+  /// One line for the person, from opening the device; empty: nothing.
+  const std::string& note() const { return hand_.note; }
+  /// Fits the workspace, makes the program and the servo. `bounds`: of what is drawn and felt; `text`: the scene's, for the recording.
+  Outcome prepare(scene::Scene& scene, const render::Bounds& bounds, const RecordedScene& text);
+  /// Another scene, while the servo runs: as prepare, with the device and the servo that there are. Ends a recording.
   Outcome take_over(scene::Scene& scene, const render::Bounds& bounds);
   void start();
   void stop();
   /// Stops, writes what is asked for.
   Outcome finish(const std::string& servo_stats);
 
-  /// The program of the scene as it is now; the servo goes on with it at its next tick. An error leaves the old one.
-  Outcome publish(scene::Scene& scene);
+  /// Whether the scene's program can be made: its links' keys are read here, not where the scene is.
+  Outcome check(scene::Scene& scene) const;
+  /// The program of the scene as it is now; the servo goes on with it at its next tick. Links that have not changed keep their state. An
+  /// error leaves the old one. `text`: the scene's, for the recording.
+  Outcome publish(scene::Scene& scene, const std::string& text);
+
+  /// Another device from now on, by its name; its forces are off. An error leaves the one that there is. Ends a recording.
+  Outcome switch_device(scene::Scene& scene, const std::string& name, const render::Bounds& bounds);
+
+  /// Every tick from the next one on. An error: nothing is recorded.
+  Outcome record(const std::string& path, RecordedScene scene);
+  Outcome stop_recording();
 
   /// The newest state into the scene's cursor and widgets, if there is one; true where it would change the picture.
   bool take(scene::Scene& scene);
@@ -56,12 +73,20 @@ class HandHost {
   void say_forces() const;
 
   const OpenHand& hand() const { return hand_; }
+  const std::string& device_name() const { return device_name_; }  ///< as it was opened: "mouse", "falcon:1"
   const haptics::Servo& servo() const { return *servo_; }
   const Recording& recording() const { return recording_; }
+  const std::vector<std::string>& fields() const { return options_.fields; }
 
  private:
+  Result<OpenHand> open(const scene::Scene& scene, const std::string& name) const;
+  void use(OpenHand hand, const scene::Scene& scene, const Vec3& probe);
+  void make_servo();
+  void name_links(scene::Scene& scene);
+
   Options options_;
   OpenHand hand_;
+  std::string device_name_ = "mouse";
   haptics::MouseDevice* mouse_ = nullptr;  ///< hand_.device, if that is the mouse: the frame moves it
   Recording recording_;
   std::optional<CrashGuard> crash_guard_;
@@ -70,6 +95,7 @@ class HandHost {
   std::vector<std::string> link_names_;
   exchange::HapticState felt_;
   Vec3 first_probe_{0.0};
+  scene::Workspace stated_;  ///< the scene's, before it was fitted to the device
 };
 
 }  // namespace catena::app

@@ -88,7 +88,7 @@ void Pacing::drawn(double ms) {
 
 void Pacing::estimated(double rmse) {
   rmse_ = rmse;
-  if (rmse <= quality_.goal->value) finished_ = true;
+  if (quality_.goal && quality_.goal->kind == render::QualityGoal::Kind::error && rmse <= quality_.goal->value) finished_ = true;
 }
 
 std::string Pacing::words() const {

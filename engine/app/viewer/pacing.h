@@ -50,6 +50,11 @@ class Pacing {
     return quality_.goal && quality_.goal->kind == render::QualityGoal::Kind::error && kind_.rays && !by_moving_ && !rmse_;
   }
   void estimated(double rmse);
+  /// With any other goal: the picture at rest is the last one, and its error is not known yet.
+  bool may_estimate() const { return finished_ && kind_.rays && !by_moving_ && !rmse_; }
+  const Quality& quality() const { return quality_; }
+  std::optional<double> rmse() const { return rmse_; }  ///< of the picture that is shown, where it was estimated
+  double shown_ms() const { return shown_ms_; }
 
   /// "fast, step 4, every 4th pixel, 32 ms"
   std::string words() const;

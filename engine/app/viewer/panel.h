@@ -35,6 +35,9 @@ struct ViewState {
   std::optional<std::string> screenshot;    ///< .png to write
   bool screenshot_of_window = false;        ///< with the interface
   std::optional<Quality> quality;           ///< of a picture at rest, from now on
+  bool estimate = false;                    ///< the error of the picture at rest is asked for
+  std::optional<std::string> device;        ///< another one to hold the probe
+  std::optional<std::string> record;        ///< .catlog to write from now on; empty: no more
   std::deque<Message> messages;             ///< the newest last, at most kMessages
   static constexpr std::size_t kMessages = 100;
   double pointer_x = 0, pointer_y = 0;  ///< window coordinates
@@ -75,5 +78,9 @@ void draw_menu(PanelContext& context);
 void draw_dialogs(PanelContext& context);
 void draw_status(PanelContext& context);
 void draw_times(PanelContext& context);
+void draw_chain(PanelContext& context);
+void draw_device(PanelContext& context);
+void draw_recording(PanelContext& context);
+void draw_quality(PanelContext& context);
 
 }  // namespace catena::app

@@ -10,7 +10,8 @@ namespace {
 constexpr float kSideWidth = 320;
 
 constexpr Panel kPanels[] = {
-    {"Times", false, draw_times},
+    {"Chain", true, draw_chain},      {"Device", false, draw_device}, {"Recording", false, draw_recording},
+    {"Quality", false, draw_quality}, {"Times", false, draw_times},
 };
 
 void draw_side(PanelContext& context) {

@@ -35,35 +35,51 @@ void SceneHost::keep_what_is_lived(scene::Scene& fresh) const {
   if (!fresh.coupling.ramp_s) fresh.coupling.ramp_s = scene_.coupling.ramp_s;
 }
 
-Outcome SceneHost::read_again() {
-  CATENA_TRY(scene::Scene fresh, read());
-  scene::carry_over(scene_, fresh);
-  keep_what_is_lived(fresh);
-  scene_ = std::move(fresh);
+Outcome SceneHost::change(const std::function<Outcome(scene::Document&)>& edit) {
+  scene::Document edited = document_;
+  CATENA_CHECK(edit(edited));
+  std::swap(document_, edited);
+  // `edited` is what it was from here on
+  auto fresh = read();
+  if (!fresh) {
+    std::swap(document_, edited);
+    return fresh.error();
+  }
+  scene::carry_over(scene_, *fresh);
+  keep_what_is_lived(*fresh);
+  if (check_)
+    if (const Outcome good = check_(*fresh); !good) {
+      scene::carry_over(*fresh, scene_);
+      std::swap(document_, edited);
+      return good;
+    }
+  scene_ = std::move(*fresh);
   changed_ = true;
   return Done{};
 }
 
 Outcome SceneHost::set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag) {
-  CATENA_CHECK(document_.set(pointer, value, what, drag));
-  return read_again();
+  return change([&](scene::Document& document) { return document.set(pointer, value, what, drag); });
 }
 
 Outcome SceneHost::remove(std::string_view pointer, const std::string& what) {
-  CATENA_CHECK(document_.remove(pointer, what));
-  return read_again();
+  return change([&](scene::Document& document) { return document.remove(pointer, what); });
 }
 
 Outcome SceneHost::undo() {
   if (!document_.can_undo()) return Done{};
-  document_.undo();
-  return read_again();
+  return change([](scene::Document& document) -> Outcome {
+    document.undo();
+    return Done{};
+  });
 }
 
 Outcome SceneHost::redo() {
   if (!document_.can_redo()) return Done{};
-  document_.redo();
-  return read_again();
+  return change([](scene::Document& document) -> Outcome {
+    document.redo();
+    return Done{};
+  });
 }
 
 Outcome SceneHost::save(const std::string& path) { return document_.save(path); }

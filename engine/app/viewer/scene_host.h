@@ -21,6 +21,10 @@ class SceneHost {
   const scene::Scene& scene() const { return scene_; }
   const scene::Document& document() const { return document_; }
 
+  /// What a scene must pass beside being read for an edit to count, such as that its program can be made. It may load what the scene names.
+  using Check = std::function<Outcome(scene::Scene&)>;
+  void set_check(Check check) { check_ = std::move(check); }
+
   /// An error leaves all as it was. `what`, `drag`: as Document::set.
   Outcome set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
   Outcome remove(std::string_view pointer, const std::string& what);
@@ -39,12 +43,14 @@ class SceneHost {
   SceneHost(scene::Document document, std::function<Outcome(scene::Scene&)> adjust)
       : document_(std::move(document)), adjust_(std::move(adjust)) {}
   Result<scene::Scene> read() const;
-  Outcome read_again();
+  /// The document as `edit` leaves it and the scene of it, or both as they were.
+  Outcome change(const std::function<Outcome(scene::Document&)>& edit);
   /// What the person did to the scene without editing it.
   void keep_what_is_lived(scene::Scene& fresh) const;
 
   scene::Document document_;
   std::function<Outcome(scene::Scene&)> adjust_;
+  Check check_;
   scene::Scene scene_;
   bool changed_ = false;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/app/command.h"
 #include "engine/app/hand/hand_setup.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
@@ -17,6 +18,7 @@ namespace catena::app {
 namespace {
 
 constexpr double kRestS = 0.25;       // without input for so long: the picture may take its time
+constexpr double kEstimateS = 0.6;    // the same, before its error is looked at
 constexpr double kIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
 constexpr double kMinimisedWaitS = 0.1;
 constexpr double kTitleS = 0.25;
@@ -32,7 +34,7 @@ std::optional<Failure> Session::open_scene() {
   if (!packet) return Failure{2, packet.error().message};
   render::Bounds bounds = render::packet_bounds(*packet);
   bounds.add(loaded_bounds(scene));
-  if (auto prepared = hand_.prepare(scene, bounds); !prepared) return Failure{2, prepared.error().message};
+  if (auto prepared = hand_.prepare(scene, bounds, recorded()); !prepared) return Failure{2, prepared.error().message};
   controls_.hand = hand_.first_probe();
 
   if (!scene.camera.given && packet->volumes.empty() && packet->isosurfaces.empty() && packet->tubes.empty())
@@ -41,7 +43,17 @@ std::optional<Failure> Session::open_scene() {
   controls_.bounds = scene_->bounds = bounds;
   pin_camera();
   measure();
+  check_edits();
   return std::nullopt;
+}
+
+/// An edit counts if the hand can feel what it makes.
+void Session::check_edits() {
+  scene_->set_check([this](scene::Scene& scene) { return hand_.check(scene); });
+}
+
+RecordedScene Session::recorded() const {
+  return {scene_->document().path(), scene_->document().text(), hand_.fields(), inputs_of(scene_->scene())};
 }
 
 /// What the loop has to know of a scene that was read.
@@ -76,6 +88,7 @@ std::optional<Failure> Session::open() {
   // a device that pushes is let go by its own way out, Ctrl-C or not
   if (!hand_.is_mouse()) interrupt_.emplace();
   hand_.start();
+  if (!hand_.note().empty()) state_.say(hand_.note());
   return std::nullopt;
 }
 
@@ -88,7 +101,7 @@ void Session::pin_camera() {
 /// The scene was edited: the hand's program is made again. True: so must the picture be.
 bool Session::take_edits() {
   if (!scene_->take_changed()) return false;
-  if (auto published = hand_.publish(scene_->scene()); !published) state_.say(published.error().message, true);
+  if (auto published = hand_.publish(scene_->scene(), scene_->document().text()); !published) state_.say(published.error().message, true);
   measure();
   return true;
 }
@@ -145,6 +158,25 @@ std::optional<Failure> Session::draw(const NextPicture& next) {
   return std::nullopt;
 }
 
+/// The error of the picture that is at rest, once.
+std::optional<Failure> Session::estimate() {
+  if (!pacing_.may_estimate()) return std::nullopt;
+  std::uint32_t width = 0, height = 0;
+  screen_->size(width, height);
+  scene::Scene& scene = scene_->scene();
+  const render::Packing packing = render::packing_of(scene.stereo);
+  const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(1u, width), std::max(1u, height));
+  auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
+  if (!packet) return std::nullopt;  // said where it was drawn
+  const auto error = render::estimate_rmse(screen_->renderer(), *packet, pacing_.again().settings);
+  if (!error) return Failure{1, error.error().message};
+  pacing_.estimated(*error);
+  // the estimate drew with the renderer's own images
+  if (auto drawn = screen_->draw(*packet, pacing_.again().settings); !drawn) return Failure{1, drawn.error().message};
+  damaged_ = true;
+  return std::nullopt;
+}
+
 /// The interface over the last picture.
 std::optional<Failure> Session::show() {
   const std::int64_t start = now_ns();
@@ -168,7 +200,7 @@ void Session::update_title() {
   for (std::size_t k = 0; k < links; ++k)
     title += fmt::format("  {} {}", hand_.link_names()[k], exchange::status_word(felt.links[k].status));
   if (const std::string text = hand_.hand().device->status_text(); !text.empty()) title += "  " + text;
-  if (hand_.recording().failed()) title += "  the recording has stopped";
+  if (hand_.recording().running()) title += hand_.recording().failed() ? "  the recording has stopped" : "  [recording]";
   if (!hand_.is_mouse()) title += hand_.forces() ? "  [forces on]" : "  [forces off]";
   const scene::StereoMode stereo = scene_->scene().stereo.mode;
   if (stereo != scene::StereoMode::mono) title += fmt::format("  [{}]", scene::stereo_word(stereo));
@@ -217,6 +249,8 @@ std::optional<Failure> Session::run() {
       next = pacing_.still(kind_);
     if (!next && always) next = pacing_.again();
     busy = next.has_value();
+    if (!next && std::exchange(state_.estimate, false) && 1e-3 * ms_since(last_move) >= kEstimateS)
+      if (auto failure = estimate()) return failure;
     if (next)
       if (auto failure = draw(*next)) return failure;
 

@@ -29,6 +29,7 @@ class Session {
   // session.cpp
   std::optional<Failure> open_scene();
   std::optional<Failure> draw(const NextPicture& next);
+  std::optional<Failure> estimate();
   std::optional<Failure> show();
   std::optional<Failure> finish();
   bool run_pulses();
@@ -38,6 +39,8 @@ class Session {
   void pin_camera();
   void update_title();
   void say_goodbye() const;
+  RecordedScene recorded() const;
+  void check_edits();
   PanelContext context() { return {*scene_, hand_, *screen_, controls_, pacing_, times_, state_}; }
 
   // session_input.cpp
@@ -46,6 +49,7 @@ class Session {
   void obey_once(const Input& input, Changed& changed);
   Input routed(Input input);
   void fulfil_wishes();
+  void fulfil_wishes_for_the_hand();
   void replace_scene(const std::string& path);
 
   ViewOptions options_;

@@ -114,6 +114,21 @@ void Session::fulfil_wishes() {
     state_.say(written ? "wrote " + name : written.error().message, !written);
   }
   if (const auto quality = std::exchange(state_.quality, std::nullopt)) pacing_ = Pacing(*quality);
+  fulfil_wishes_for_the_hand();
+}
+
+void Session::fulfil_wishes_for_the_hand() {
+  if (const auto device = std::exchange(state_.device, std::nullopt)) {
+    const Outcome done = hand_.switch_device(scene_->scene(), *device, scene_->bounds);
+    if (done && !hand_.is_mouse() && !interrupt_) interrupt_.emplace();
+    controls_.hand = hand_.felt().tick > 0 ? hand_.felt().probe : hand_.first_probe();
+    state_.say(done ? hand_.hand().device->capabilities().name + " holds the probe" : done.error().message, !done);
+  }
+  if (const auto path = std::exchange(state_.record, std::nullopt)) {
+    const std::string before = hand_.recording().path();
+    const Outcome done = path->empty() ? hand_.stop_recording() : hand_.record(*path, recorded());
+    state_.say(!done ? done.error().message : path->empty() ? "recorded " + before : "recording to " + *path, !done);
+  }
 }
 
 /// Another scene in the same window; one that cannot be opened leaves this one.
@@ -138,6 +153,9 @@ void Session::replace_scene(const std::string& path) {
   controls_.bounds = scene_->bounds = bounds;
   pin_camera();
   measure();
+  check_edits();
+  if (!scene_->scene().quality.empty() && !options_.quality_stated)
+    if (auto quality = parse_quality(scene_->scene().quality)) state_.quality = *quality;
   scene_->touch();
   state_.say("opened " + path);
 }

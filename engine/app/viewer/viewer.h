@@ -20,6 +20,7 @@ struct ViewOptions {
   HandHost::Options hand;
   std::uint32_t width = 1024, height = 768;
   Quality quality;               ///< of a picture at rest (pacing.h)
+  bool quality_stated = false;   ///< a scene's own does not count
   std::uint64_t gpu_memory = 0;  ///< bytes; 0: what the driver offers
   std::string shaders;           ///< folder of shaders to watch; empty: none
   int frames = 0;                ///< quit after so many frames; 0: until the window is closed

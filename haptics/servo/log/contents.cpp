@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
+
+#include "engine/base/hash.h"
 #include "haptics/servo/log/bytes.h"
 
 namespace catena::haptics::log {
@@ -54,6 +57,29 @@ struct GetNumber {
     v = static_cast<Combination>(byte);
   }
 };
+
+/// What must agree for the bytes of a state to mean the same.
+std::uint64_t state_layout() {
+  Fnv1a layout;
+  for (const std::size_t size : {sizeof(ChainState), sizeof(LinkState), sizeof(Fade), sizeof(PassivityState), sizeof(AlignmentState),
+                                 sizeof(SingleProxy), std::size_t{kMaxLinks}})
+    layout.add(static_cast<std::uint64_t>(size));
+  layout.bytes(__VERSION__, sizeof __VERSION__);
+  return layout.value;
+}
+
+bool is_sane(const Order& order) {
+  if (order.count < 0 || order.count > kMaxLinks || order.mode < -1 || order.mode >= kMaxModes) return false;
+  for (int k = 0; k < order.count; ++k)
+    if (const auto link = order.links[static_cast<std::size_t>(k)]; link < 0 || link >= kMaxLinks) return false;
+  return true;
+}
+
+/// What the tick counts with. What the constraints remember for themselves is taken as it is.
+bool is_sane(const ChainState& state) {
+  return is_sane(state.fade.order) && is_sane(state.alignment.fade.order) && is_sane(state.passivity.order) &&
+         state.passivity.next < PassivityState::kPast && is_finite(state.last_probe) && is_finite(state.force_n);
+}
 
 }  // namespace
 
@@ -149,6 +175,29 @@ std::optional<LogProgram> program_from(std::string_view bytes) {
   for (std::uint32_t i = 0; i < modes && good && in.good(); ++i) p.modes.push_back(in.get_string());
   if (!good || !in.finished()) return std::nullopt;
   return p;
+}
+
+std::string to_bytes(const ChainState& state) {
+  ByteWriter out;
+  out.put(state.ticks);
+  out.put(state_layout());
+  out.put_bytes(&state, sizeof state);
+  return std::move(out.bytes());
+}
+
+std::optional<LogState> state_from(std::string_view bytes) {
+  ByteReader in(bytes);
+  LogState out;
+  out.tick = in.get<std::uint64_t>();
+  const bool own = in.get<std::uint64_t>() == state_layout();
+  if (!in.good() || out.tick == 0 || out.tick == ~std::uint64_t{0}) return std::nullopt;
+  if (!own) return out;
+  const char* from = in.take(sizeof(ChainState));
+  if (from == nullptr || !in.finished()) return std::nullopt;
+  out.chain.emplace();
+  std::memcpy(&*out.chain, from, sizeof(ChainState));
+  if (out.chain->ticks != out.tick || !is_sane(*out.chain)) return std::nullopt;
+  return out;
 }
 
 std::string to_bytes(const LogGap& gap) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "haptics/chain/program.h"
+#include "haptics/chain/tick.h"
 
 namespace catena::haptics::log {
 
@@ -52,15 +52,23 @@ struct LogEnd {
   std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;
 };
 
+/// Where a log begins that is not the servo's beginning: what the chain remembers after `tick`.
+struct LogState {
+  std::uint64_t tick = 0;
+  std::optional<ChainState> chain;  ///< none: the program that recorded keeps its state in another way
+};
+
 LogProgram facts_of(const Program& program, std::optional<std::string> scene_text);
 
 std::string to_bytes(const LogHeader& header);
 std::string to_bytes(const LogProgram& program);
+std::string to_bytes(const ChainState& state);
 std::string to_bytes(const LogGap& gap);
 std::string to_bytes(const LogEnd& end);
 /// Nothing where the bytes are none of these.
 std::optional<LogHeader> header_from(std::string_view bytes);
 std::optional<LogProgram> program_from(std::string_view bytes);
+std::optional<LogState> state_from(std::string_view bytes);
 std::optional<LogGap> gap_from(std::string_view bytes);
 std::optional<LogEnd> end_from(std::string_view bytes);
 

@@ -30,6 +30,8 @@
 /// 4 GAP      u64 first tick, u64 count: ticks that are not in the log, for the writer could not keep up
 /// 5 END      u64 ticks in the log, u64 ticks lost, u64 last tick, u64 state_hash (haptics/chain/state_hash.h) of the ticks in the log.
 ///            A log without it was cut off.
+/// 6 STATE    u64 tick, u64 layout, bytes of haptics/chain ChainState: a log that begins while the servo runs has one, before its first
+///            ticks, which are those after `tick`. Only a program that keeps its state in the same way (layout) can run them again.
 ///
 /// A file cut at any byte holds every block that is complete. A block whose hashes do not fit is damaged: where its own 32 bytes
 /// are good its length is, too; else the next block is found by its mark.
@@ -43,7 +45,7 @@ inline constexpr std::uint32_t kVersion = 1;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 inline constexpr std::uint64_t kPreambleBytes = 16;
 
-enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5 };
+enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5, state = 6 };
 
 struct BlockHead {
   std::uint32_t mark = kBlockMark;

@@ -1,5 +1,7 @@
 #include "haptics/servo/log/log_replay.h"
 
+#include <utility>
+
 #include "engine/base/clock.h"
 #include "haptics/chain/rebind.h"
 
@@ -26,6 +28,7 @@ Result<std::shared_ptr<const Program>> with_recorded_recipes(const Program& buil
 Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
   auto state = std::make_unique<ChainState>();
   auto scratch = std::make_unique<ChainScratch>();
+  bool begun = false;
   exchange::HapticState out;
   std::shared_ptr<const Program> program;
   std::vector<std::string> names;
@@ -46,10 +49,16 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         names = log.program().link_names();
         break;
       }
+      case LogEvent::state:
+        if (!log.state().chain)
+          return Error{"the log begins after tick " + std::to_string(log.state().tick) +
+                       ", with a state that another build of Catena has written; expected the build that recorded it"};
+        break;
       case LogEvent::gap:
         result.stopped = log.gap().text();
         break;
       case LogEvent::tick: {
+        if (!std::exchange(begun, true) && log.state().chain) *state = *log.state().chain;
         const std::int64_t start = now_ns();
         tick(*program, log.tick().input, *state, *scratch, out);
         meter.add(static_cast<double>(now_ns() - start), out);

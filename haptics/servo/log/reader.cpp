@@ -82,6 +82,8 @@ std::optional<LogEvent> LogReader::read_block() {
       return read_program();
     case BlockType::ticks:
       return read_ticks();
+    case BlockType::state:
+      return read_state();
     case BlockType::gap:
       return read_gap();
     case BlockType::end:
@@ -158,6 +160,17 @@ LogEvent LogReader::next_record() {
   unpack(words_, links_, tick_);
   tick_.output.tick = ++last_;
   return LogEvent::tick;
+}
+
+std::optional<LogEvent> LogReader::read_state() {
+  auto state = state_from(blocks_.payload());
+  if (!state || last_ != 0) {
+    damage();
+    return std::nullopt;
+  }
+  state_ = std::move(*state);
+  last_ = state_.tick;
+  return LogEvent::state;
 }
 
 std::optional<LogEvent> LogReader::read_gap() {

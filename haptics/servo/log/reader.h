@@ -12,6 +12,7 @@ namespace catena::haptics::log {
 
 enum class LogEvent {
   program,  ///< takes over with the next tick
+  state,    ///< the log begins after tick state().tick
   tick,
   gap,  ///< ticks that are not there
   done
@@ -29,6 +30,7 @@ class LogReader {
   const LogTick& tick() const { return tick_; }
   const Words& words() const { return words_; }  ///< the same tick (record.h)
   const LogGap& gap() const { return gap_; }
+  const LogState& state() const { return state_; }
 
   std::uint64_t last_tick() const { return last_; }
   /// Once done: the end that the writer wrote; none: the log was cut off.
@@ -43,6 +45,7 @@ class LogReader {
   std::optional<LogEvent> read_block();
   std::optional<LogEvent> read_program();
   std::optional<LogEvent> read_ticks();
+  std::optional<LogEvent> read_state();
   std::optional<LogEvent> read_gap();
   std::optional<LogEvent> read_end();
   LogEvent lost_before(std::uint64_t next);
@@ -54,6 +57,7 @@ class LogReader {
   LogTick tick_;
   Words words_{};
   LogGap gap_;
+  LogState state_;
   std::optional<LogEnd> end_;
   bool has_program_ = false, damaged_ = false, finished_ = false, again_ = false;
   std::uint64_t next_sequence_ = 1, last_ = 0;

@@ -49,6 +49,12 @@ void TickBlocks::add(const Tick& tick, std::span<const std::uint64_t> words) {
   if (records_.size() >= kFullBlock) flush();
 }
 
+void TickBlocks::begin_after(const ChainState& state) {
+  CATENA_ASSERT(last_ == 0);
+  file_.write(BlockType::state, to_bytes(state));
+  last_ = last_written_ = state.ticks;
+}
+
 void TickBlocks::flush() {
   if (count_ == 0) return;
   ByteWriter payload;

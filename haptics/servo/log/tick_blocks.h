@@ -21,6 +21,8 @@ class TickBlocks {
   };
   /// `words`: pack() of this tick. Numbers rise; a jump is a gap.
   void add(const Tick& tick, std::span<const std::uint64_t> words);
+  /// The log begins while the servo runs: the state before its first tick. Before any tick.
+  void begin_after(const ChainState& state);
   void flush();                         ///< what is there becomes a block
   void end(std::uint64_t newest_tick);  ///< the last tick that there was, in the log or lost; closes the file
 

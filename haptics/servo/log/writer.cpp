@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -36,7 +37,9 @@ struct LogWriter::Parts {
 
   // haptic thread
   Message message{};
-  std::atomic<std::uint64_t> newest_tick{0}, ring_lost{0};
+  ChainState start;        ///< before the first tick, where that is not the servo's; the first message tells of it
+  bool has_start = false;  ///< until the writer's thread has seen it
+  std::atomic<std::uint64_t> newest_tick{0}, ring_lost{0}, ticks_before{0};
 
   // frame side -> writer's thread
   std::mutex mutex;
@@ -78,6 +81,7 @@ void LogWriter::Parts::drain() {
   Message taken;
   while (ring.available() >= kMessageHead) {
     ring.take({taken.data(), kMessageHead});
+    if (std::exchange(has_start, false)) blocks.begin_after(start);
     const TickBlocks::Tick tick{taken[0], taken[1], static_cast<int>(taken[2])};
     const std::span<std::uint64_t> words(taken.data() + kMessageHead, static_cast<std::size_t>(words_of(tick.links)));
     ring.take(words);
@@ -144,6 +148,15 @@ void LogWriter::add_program(const Program& program, std::optional<std::string> s
   parts_->programs.insert_or_assign(program.epoch, std::move(facts));
 }
 
+void LogWriter::begin(const ChainState& state) noexcept {
+  Parts& p = *parts_;
+  if (state.ticks == 0 || p.newest_tick.load(std::memory_order_relaxed) != 0) return;
+  p.start = state;
+  p.has_start = true;
+  p.ticks_before.store(state.ticks, std::memory_order_relaxed);
+  p.newest_tick.store(state.ticks, std::memory_order_release);
+}
+
 void LogWriter::put(const ProbeSample& input, const exchange::HapticState& output) noexcept {
   Parts& p = *parts_;
   p.message[0] = output.tick;
@@ -161,7 +174,8 @@ LogStatus LogWriter::status() const {
   now.failed = p.failed.load(std::memory_order_acquire);
   now.ticks = p.ticks.load(std::memory_order_relaxed);
   now.bytes = p.bytes.load(std::memory_order_relaxed);
-  now.lost = now.failed ? p.newest_tick.load(std::memory_order_relaxed) - now.ticks : p.ring_lost.load(std::memory_order_relaxed);
+  const auto put = p.newest_tick.load(std::memory_order_relaxed) - p.ticks_before.load(std::memory_order_relaxed);
+  now.lost = now.failed ? put - std::min(put, now.ticks) : p.ring_lost.load(std::memory_order_relaxed);
   return now;
 }
 

@@ -37,16 +37,19 @@ class LogWriter final : public TickSink {
                                                  const LogOptions& options = {});
   ~LogWriter() override;  ///< finishes; call finish() to hear of errors
 
-  /// Frame side, before the servo can run it; the first one is that with which the servo begins. Every set_program needs a program of an
+  /// Frame side, before the servo can run it; the first one is that with which the servo begins, or that it runs when it takes the log
+  /// up (Servo::set_sink). Every set_program needs a program of an
   /// epoch of its own, as extract_program gives it. `scene_text`: that of the moment; none: still the header's.
   void add_program(const Program& program, std::optional<std::string> scene_text = {});
 
-  /// Haptic thread.
+  // haptic thread
+  void begin(const ChainState& state) noexcept override;
   void put(const ProbeSample& input, const exchange::HapticState& output) noexcept override;
 
   /// Frame side, any time.
   LogStatus status() const;
-  /// Frame side, after the servo has stopped: writes the rest and the end. The error is one line: what, and which ticks it costs.
+  /// Frame side, after the servo has stopped or let go of it: writes the rest and the end. The error is one line: what, and which ticks it
+  /// costs.
   Outcome finish();
 
  private:

@@ -1,0 +1,160 @@
+// A recording that begins and ends while the servo runs.
+#include <algorithm>
+
+#include "tests/haptics/servo/log_fixture.h"
+
+namespace catena::test {
+namespace {
+
+// A device that lets the servo run as far as it may.
+class Led final : public Device {
+ public:
+  explicit Led(std::vector<ProbeSample> path) : path_(std::move(path)) {}
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override {
+    while (reads_ >= allowed.load(std::memory_order_acquire)) std::this_thread::yield();
+    const ProbeSample& p = path_[reads_++ % path_.size()];
+    DeviceInput input;
+    input.position_m = p.position;
+    input.orientation = p.orientation;
+    input.buttons = p.buttons;
+    input.forces_on = p.forces_on;
+    input.status = p.condition == Condition::no_device ? DeviceStatus::lost : DeviceStatus::ready;
+    return input;
+  }
+  void write(const DeviceOutput&) noexcept override {}
+
+  std::atomic<std::uint64_t> allowed{0};
+
+ private:
+  std::vector<ProbeSample> path_;
+  DeviceCapabilities capabilities_;
+  std::uint64_t reads_ = 0;
+};
+
+std::uint64_t ticks_of(const Servo& servo) { return servo.report().ticks; }
+
+void run_to(Led& device, const Servo& servo, std::uint64_t ticks) {
+  device.allowed = ticks;
+  while (ticks_of(servo) < ticks) std::this_thread::yield();
+}
+
+/// Attaches, while the servo goes on as far as that takes.
+bool swap(Led& device, Servo& servo, TickSink* sink) {
+  std::atomic<bool> done{false};
+  std::thread leader([&] {
+    while (!done) {
+      device.allowed.fetch_add(1);
+      std::this_thread::yield();
+    }
+  });
+  const bool free = servo.set_sink(sink, 20);
+  done = true;
+  leader.join();
+  return free;
+}
+
+TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
+  const test::TemporaryFolder folder;
+  Led device(test::hostile_path(1000));
+  std::uint64_t epoch = 1;
+  std::shared_ptr<const Program> program = numbered_program(epoch);
+  Servo servo(device, program, {.paced = false});
+  servo.start();
+  for (int round = 0; round < 4; ++round) {
+    run_to(device, servo, ticks_of(servo) + 700 + static_cast<std::uint64_t>(round));
+    const std::string path = folder / "l.catlog";
+    {
+      auto writer = LogWriter::open(path, {}, {}, fast_flush());
+      ASSERT_TRUE(writer) << writer.error().message;
+      (*writer)->add_program(*program);
+      ASSERT_TRUE(swap(device, servo, writer->get()));
+      // programs change while it records
+      for (int k = 0; k < 3; ++k) {
+        run_to(device, servo, ticks_of(servo) + 300);
+        program = numbered_program(++epoch);
+        (*writer)->add_program(*program);
+        servo.set_program(program);
+      }
+      run_to(device, servo, ticks_of(servo) + 300);
+      ASSERT_TRUE(swap(device, servo, nullptr));
+      ASSERT_TRUE((*writer)->finish());
+      EXPECT_EQ((*writer)->status().lost, 0u);
+    }  // the writer is gone, and the servo runs on
+    auto reader = LogReader::open(path);
+    ASSERT_TRUE(reader) << reader.error().message;
+    const auto result = replay_numbered(*reader);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_TRUE(result->exact()) << result->first_differing << " " << result->difference << result->stopped;
+    EXPECT_GE(result->stats.ticks, 1200u);
+    EXPECT_GE(reader->state().tick, 700u);
+    EXPECT_FALSE(reader->damaged()) << reader->ending();
+    ASSERT_TRUE(reader->end());
+  }
+  device.allowed = ~std::uint64_t{0} >> 1;
+  servo.stop();
+}
+
+TEST(SinkSwap, AServoThatStandsStillIsNotWaitedForForEver) {
+  struct Count final : TickSink {
+    void put(const ProbeSample&, const exchange::HapticState&) noexcept override { ++ticks; }
+    std::atomic<int> ticks{0};
+  } first, second;
+  Led device(test::hostile_path(10));
+  Servo servo(device, numbered_program(1), {.paced = false, .sink = &first});
+  servo.start();
+  run_to(device, servo, 5);
+  // held in its device, the servo may have looked already: a first swap can still go through, a second one cannot
+  EXPECT_FALSE(servo.set_sink(&second, 0.01) && servo.set_sink(&first, 0.01));
+  device.allowed = 50;
+  while (ticks_of(servo) < 50) std::this_thread::yield();
+  device.allowed = ~std::uint64_t{0} >> 1;
+  EXPECT_TRUE(servo.set_sink(nullptr, 20));
+  const int seen = first.ticks + second.ticks;
+  EXPECT_GE(seen, 50);
+  servo.stop();
+  EXPECT_EQ(first.ticks + second.ticks, seen);
+  EXPECT_TRUE(servo.set_sink(&first)) << "nothing runs: at once";
+}
+
+TEST(SinkSwap, AStateOfAnotherLayoutIsSaidAndABrokenOneIsDamage) {
+  ChainState state;
+  state.ticks = 12;
+  const std::string good = to_bytes(state);
+  ASSERT_TRUE(state_from(good));
+  EXPECT_EQ(state_from(good)->tick, 12u);
+  EXPECT_TRUE(state_from(good)->chain);
+  std::string other = good;
+  other[9] = static_cast<char>(other[9] ^ 1);  // in the layout
+  ASSERT_TRUE(state_from(other));
+  EXPECT_FALSE(state_from(other)->chain);
+  EXPECT_FALSE(state_from(good.substr(0, good.size() - 1)));
+  state.fade.order.count = 100;
+  EXPECT_FALSE(state_from(to_bytes(state))) << "an order of more links than there can be";
+  state.fade.order.count = 0;
+  state.passivity.next = PassivityState::kPast;
+  EXPECT_FALSE(state_from(to_bytes(state)));
+}
+
+TEST(SinkSwap, AnotherServoGoesOnWithWhatTheChainRemembers) {
+  Led device(test::hostile_path(1000));
+  const auto program = numbered_program(1), next = numbered_program(4);
+  Servo first(device, program, {.paced = false, .max_ticks = 100});
+  device.allowed = 100;
+  first.start();
+  while (first.running()) std::this_thread::yield();
+  first.stop();
+  device.allowed = 101;
+  Servo second(device, next, {.paced = false, .max_ticks = 1});
+  second.go_on_from(first);
+  second.start();
+  while (second.running()) std::this_thread::yield();
+  second.stop();
+  exchange::HapticState seen;
+  ASSERT_TRUE(second.take(seen));
+  EXPECT_EQ(seen.tick, 101u);
+  EXPECT_EQ(seen.program_epoch, 4u);
+}
+
+}  // namespace
+}  // namespace catena::test
