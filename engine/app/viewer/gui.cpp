@@ -105,7 +105,9 @@ bool Gui::holds(double x, double y) const {
   return false;
 }
 
-bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput || ImGui::GetTopMostPopupModal() != nullptr; }
+
+void Gui::hide_pointer() { ImGui::SetMouseCursor(ImGuiMouseCursor_None); }
 
 bool Gui::is_busy() const { return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput; }
 

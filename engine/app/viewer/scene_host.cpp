@@ -66,6 +66,10 @@ Outcome SceneHost::remove(std::string_view pointer, const std::string& what) {
   return change([&](scene::Document& document) { return document.remove(pointer, what); });
 }
 
+Outcome SceneHost::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what) {
+  return change([&](scene::Document& document) { return document.apply(edits, what); });
+}
+
 Outcome SceneHost::undo() {
   if (!document_.can_undo()) return Done{};
   return change([](scene::Document& document) -> Outcome {

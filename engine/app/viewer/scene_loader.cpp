@@ -6,9 +6,17 @@
 
 namespace catena::app {
 
-Result<LoadedScene> load_scene(scene::Document document, std::function<Outcome(scene::Scene&)> adjust, std::uint32_t width,
-                               std::uint32_t height) {
-  CATENA_TRY(SceneHost host, SceneHost::open(std::move(document), std::move(adjust)));
+namespace {
+
+Result<LoadedScene> open_and_load(const std::string& path, std::uint32_t width, std::uint32_t height) {
+  CATENA_TRY(scene::Document document, scene::Document::open(path));
+  CATENA_TRY(SceneHost host, SceneHost::open(std::move(document), {}));
+  return load_scene(std::move(host), width, height);
+}
+
+}  // namespace
+
+Result<LoadedScene> load_scene(SceneHost host, std::uint32_t width, std::uint32_t height) {
   scene::Scene& scene = host.scene();
   // the program loads what is felt, the packet what is drawn
   CATENA_CHECK(HandHost::load(scene));
@@ -26,8 +34,7 @@ void SceneLoader::start(const std::string& path, std::uint32_t width, std::uint3
   path_ = path;
   done_ = false;
   thread_ = std::jthread([this, path, width, height] {
-    auto document = scene::Document::open(path);
-    loaded_ = document ? load_scene(std::move(*document), {}, width, height) : Result<LoadedScene>(document.error());
+    loaded_.emplace(open_and_load(path, width, height));
     done_ = true;
   });
 }

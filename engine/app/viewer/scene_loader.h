@@ -19,8 +19,7 @@ struct LoadedScene {
 };
 
 /// The work itself; any thread, the scene is its own. Errors: one line.
-Result<LoadedScene> load_scene(scene::Document document, std::function<Outcome(scene::Scene&)> adjust, std::uint32_t width,
-                               std::uint32_t height);
+Result<LoadedScene> load_scene(SceneHost host, std::uint32_t width, std::uint32_t height);
 
 class SceneLoader {
  public:
