@@ -66,8 +66,8 @@ Outcome SceneHost::remove(std::string_view pointer, const std::string& what) {
   return change([&](scene::Document& document) { return document.remove(pointer, what); });
 }
 
-Outcome SceneHost::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what) {
-  return change([&](scene::Document& document) { return document.apply(edits, what); });
+Outcome SceneHost::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag) {
+  return change([&](scene::Document& document) { return document.apply(edits, what, drag); });
 }
 
 Outcome SceneHost::undo() {
