@@ -282,6 +282,8 @@ void Session::update_title() {
 void Session::say_goodbye() const {
   const exchange::HapticState& felt = hand_.felt();
   fmt::print("{} frames, {:.1f} ms median, on {}\n", times_.count(), 1e-3 * times_.draw().p50_us, screen_->renderer().stats().device);
+  if (screen_->recoveries() > 0)
+    fmt::print("the graphics device was lost and started again {} time{}\n", screen_->recoveries(), screen_->recoveries() == 1 ? "" : "s");
   fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", felt.probe.x, felt.probe.y, felt.probe.z,
              norm(felt.force_n), felt.tick, felt.missed_deadlines);
 }
