@@ -55,6 +55,7 @@ class Pacing {
   const Quality& quality() const { return quality_; }
   std::optional<double> rmse() const { return rmse_; }  ///< of the picture that is shown, where it was estimated
   double shown_ms() const { return shown_ms_; }
+  double budget_ms() const { return budget_ms_; }  ///< of a picture while something moves
 
   /// "fast, step 4, every 4th pixel, 32 ms"
   std::string words() const;

@@ -115,5 +115,6 @@ void draw_chain(PanelContext& context);
 void draw_device(PanelContext& context);
 void draw_recording(PanelContext& context);
 void draw_quality(PanelContext& context);
+void draw_widgets(PanelContext& context);
 
 }  // namespace catena::app

@@ -9,7 +9,8 @@ namespace {
 
 constexpr Panel kPanels[] = {
     {"Values", true, draw_values},
-    {"Chain", true, draw_chain},      {"Device", false, draw_device}, {"Recording", false, draw_recording},
+    {"Chain", true, draw_chain},      {"Widgets", false, draw_widgets},
+    {"Device", false, draw_device}, {"Recording", false, draw_recording},
     {"Quality", false, draw_quality}, {"Times", false, draw_times},
 };
 

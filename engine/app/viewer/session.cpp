@@ -207,8 +207,11 @@ std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
   const auto shaded = [](const render::VolumeItem& item) { return item.shade; };
   kind_ = {!packet->volumes.empty() || !packet->isosurfaces.empty(), screen_->renderer().draws_fast(*packet),
            std::any_of(packet->volumes.begin(), packet->volumes.end(), shaded)};
-  if (times_.count() == 0)
-    for (const std::string& note : screen_->renderer().stats().notes) fmt::print(stderr, "catena: {}\n", note);
+  if (times_.count() == 0) {
+    const render::RenderStats stats = screen_->renderer().stats();
+    for (const std::string& note : stats.notes) fmt::print(stderr, "catena: {}\n", note);
+    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", coarser.words());
+  }
   shown_ = std::move(*packet);
   picked_stale_ = true;
   if (for_file) return std::nullopt;
@@ -322,10 +325,10 @@ std::optional<Failure> Session::run() {
       next = pacing_.moving(kind_);
     else if (1e-3 * ms_since(last_move) >= kRestS)
       next = pacing_.still(kind_);
+    if (!next && 1e-3 * ms_since(last_move) >= kEstimateS && std::exchange(state_.estimate, false))
+      if (auto failure = estimate()) return failure;
     if (!next && always) next = pacing_.again();
     busy = next.has_value();
-    if (!next && std::exchange(state_.estimate, false) && 1e-3 * ms_since(last_move) >= kEstimateS)
-      if (auto failure = estimate()) return failure;
     if (next)
       if (auto failure = draw(*next)) return failure;
 

@@ -85,7 +85,8 @@ bool is_sane(const Order& order) {
 /// What the tick counts with. What the constraints remember for themselves is taken as it is.
 bool is_sane(const ChainState& state) {
   return is_sane(state.fade.order) && is_sane(state.alignment.fade.order) && is_sane(state.passivity.order) &&
-         state.passivity.next < PassivityState::kPast && is_finite(state.last_probe) && is_finite(state.force_n);
+         state.widgets.engaged >= -1 && state.widgets.engaged < exchange::kMaxWidgets && state.passivity.next < PassivityState::kPast &&
+         is_finite(state.last_probe) && is_finite(state.force_n);
 }
 
 }  // namespace

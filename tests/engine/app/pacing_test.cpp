@@ -151,5 +151,22 @@ TEST(PulseClock, RunsAtHalfATurnASecondAndStandsWhileNobodyLooks) {
   EXPECT_NEAR(*clock.advance(ns(20.2), true, *phase), 0.2, 1e-9);
 }
 
+TEST(Pacing, AnyGoalMayHearTheErrorOfItsPictureAtRest) {
+  for (const char* words : {"time=50", "balanced"}) {
+    Pacing p = pacing(words);
+    settle(p, kFast, 400);
+    EXPECT_FALSE(p.may_estimate()) << "it moves";
+    rest(p, kFast, 400);
+    EXPECT_TRUE(p.may_estimate()) << words;
+    p.estimated(0.4);
+    EXPECT_EQ(p.rmse(), 0.4);
+    EXPECT_FALSE(p.may_estimate()) << "once";
+    EXPECT_NE(p.words().find("error 0.40"), std::string::npos) << p.words();
+    EXPECT_FALSE(p.still(kFast)) << "and nothing is drawn for it";
+    p.drawn(time_of(p.moving(kFast), 400));
+    EXPECT_FALSE(p.rmse());
+  }
+}
+
 }  // namespace
 }  // namespace catena::app

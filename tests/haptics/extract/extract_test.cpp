@@ -321,6 +321,27 @@ TEST(ExtractProgram, TheRecipeIsTheLinksTextAndItsFields) {
   EXPECT_NE(recipes("\"release\": 1"), 0u);
 }
 
+TEST(ExtractProgram, ALinkThatIsNotEnabledIsOffAndStaysTheSameLink) {
+  scene::Scene on = scene_of(point_with("\"stiffness\": 300")), off = scene_of(point_with("\"stiffness\": 300, \"enabled\": false")),
+               stated = scene_of(point_with("\"stiffness\": 300, \"enabled\": true"));
+  const auto a = extract_program(on), b = extract_program(off), c = extract_program(stated);
+  ASSERT_TRUE(a && b && c);
+  EXPECT_FALSE((*a)->links[0].on.never);
+  EXPECT_TRUE((*b)->links[0].on.never);
+  EXPECT_FALSE((*c)->links[0].on.never);
+  EXPECT_EQ((*a)->links[0].recipe, (*b)->links[0].recipe) << "it keeps its state";
+  EXPECT_EQ((*a)->links[0].recipe, (*c)->links[0].recipe);
+  expect_error(point_with("\"enabled\": 1"), 3, {"enabled", "true or false"});
+
+  // all parts of a ready-made mode
+  scene::Scene mode = scene_of(R"({"fields": {"b": {"analytic": "sphere"}, "c": {"analytic": "circle"}}, "chain": [
+    {"name": "s", "type": "anisotropic_friction", "surface": "b", "level": 1, "field": "c", "enabled": false}]})");
+  const auto parts = extract_program(mode);
+  ASSERT_TRUE(parts) << parts.error().message;
+  ASSERT_EQ((*parts)->links.size(), 3u);
+  for (const Link& link : (*parts)->links) EXPECT_TRUE(link.on.never) << link.name;
+}
+
 TEST(ExtractProgram, LinkErrorsNameTheirLine) {
   expect_error("{\"chain\": [\n{\"name\": \"a\", \"type\": \"pont\"}]}", 2, {"\"pont\"", "point", "expected"});
   expect_error(point_with("\"levle\": 3"), 3, {"unknown key \"levle\""});

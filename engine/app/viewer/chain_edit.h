@@ -1,0 +1,56 @@
+/// The chain as the panel shows and edits it: pure logic, no interface. Edits are JSON text for scene::Document. Frame thread.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/scene/document.h"
+#include "haptics/constraints/registry.h"
+
+namespace catena::app {
+
+/// An item of the scene's chain, and its links of the program (a ready-made mode has several).
+struct ChainRow {
+  std::size_t index = 0;
+  std::string name, type;
+  bool enabled = true;
+  json::Node node;
+  std::vector<std::size_t> links;  ///< into HapticState::links; empty: the program does not have it
+
+  std::string pointer() const { return "/chain/" + std::to_string(index); }
+  std::string pointer(std::string_view key) const { return pointer() + "/" + std::string(key); }
+};
+
+std::vector<ChainRow> chain_rows(const scene::Scene& scene, const std::vector<std::string>& link_names);
+
+/// How a key of a link is edited.
+struct LinkKey {
+  enum class Kind { number, vector, choice, boolean, scalar_field, vector_field, mesh, other };
+  std::string name, help;
+  Kind kind = Kind::other;
+  bool required = false, positive = false;
+  std::vector<std::string> words;  ///< of a choice
+};
+/// The keys of a type in the registry's order, with stiffness, snap and release; empty for an unknown type.
+std::vector<LinkKey> keys_of(std::string_view type);
+
+/// All types of links and ready-made modes.
+std::vector<std::string> link_types();
+
+/// A link with sane keys, as JSON text: the first field or mesh of the scene that fits (loaded if need be), places at the probe, a level
+/// that the field has there, lengths as parts of `length` (that of all that is there). An error where the scene has no such field.
+Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length);
+/// What a key that lacks begins with, JSON text; empty: nothing is known to be sane.
+std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Node& link, const Vec3& probe, double length);
+
+/// Two neighbours change places, as one step. The comments within the two links go.
+std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b);
+
+/// A value as JSON text on one line.
+std::string json_of(const json::Node& node);
+
+/// Names of the scene's fields of a kind (those that are not loaded count as either), and of its meshes.
+std::vector<std::string> fields_of(const scene::Scene& scene, bool vectors);
+std::vector<std::string> meshes_of(const scene::Scene& scene);
+
+}  // namespace catena::app

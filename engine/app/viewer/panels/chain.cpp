@@ -1,0 +1,245 @@
+// The links in their order: what each does now, and its keys.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "engine/app/viewer/chain_edit.h"
+#include "engine/app/viewer/panels/edit_items.h"
+#include "engine/scene/write_values.h"
+
+namespace catena::app {
+
+namespace {
+
+using Kind = LinkKey::Kind;
+
+ImVec4 color_of(exchange::Status status, bool active) {
+  using exchange::Status;
+  if (status == Status::ok) return active ? ImVec4(0.5f, 0.9f, 0.5f, 1) : ImVec4(0.6f, 0.6f, 0.6f, 1);
+  if (status == Status::free || status == Status::released) return {0.65f, 0.75f, 0.9f, 1};
+  return {1, 0.7f, 0.35f, 1};
+}
+
+/// What the words of a status mean, for the pointer.
+const char* meaning_of(exchange::Status status) {
+  switch (status) {
+    case exchange::Status::ok:
+      return "it holds";
+    case exchange::Status::free:
+      return "the hand moves freely here, or the link is switched off";
+    case exchange::Status::released:
+      return "it has let go, or has not taken hold yet";
+    case exchange::Status::budget:
+      return "the best place that one tick could find; it goes on in the next";
+    case exchange::Status::critical:
+      return "held at a critical point, or where the field says nothing";
+    case exchange::Status::boundary:
+      return "held at the end of the domain";
+    case exchange::Status::no_surface:
+      return "nothing to hold within reach";
+    case exchange::Status::bad_probe:
+      return "the probe is not finite";
+  }
+  return "";
+}
+
+void draw_live(const exchange::LinkReport& link, const std::string& name, double most_n) {
+  const double share = norm(link.force_n);
+  ImGui::ProgressBar(static_cast<float>(most_n > 0 ? share / most_n : 0), {-1, 0.8f * ImGui::GetFrameHeight()},
+                     fmt::format("{:.2f} N", share).c_str());
+  tip(name + ": its share of the force, of the most that the coupling allows");
+  ImGui::TextDisabled("off by %.2g  gap %.3g  w %.2f", link.residual, link.gap, link.weight);
+  tip("distance of the proxy from the constraint; from the proxy before it (world units); weight");
+  ImGui::TextDisabled("k %.0f N/m  %d evaluations", link.stiffness_n_per_m, static_cast<int>(link.evaluations));
+}
+
+/// The length of everything, for keys that begin as a part of it.
+double length_of(const PanelContext& context) {
+  const render::Bounds& b = context.scene.bounds;
+  const double edge = b.empty() ? 0 : max_abs(b.hi - b.lo);
+  return edge > 0 ? edge : 4;
+}
+
+Vec3 probe_of(const PanelContext& context) {
+  const exchange::HapticState& felt = context.hand.felt();
+  return felt.tick > 0 && is_finite(felt.probe) ? felt.probe : context.hand.first_probe();
+}
+
+void draw_name_choice(PanelContext& context, const ChainRow& row, const LinkKey& key, const std::vector<std::string>& words,
+                      const std::string& now) {
+  std::string chosen = now;
+  if (choose(key.name.c_str(), words, chosen)) context.edit(row.pointer(key.name), scene::text_of(chosen), key.name);
+}
+
+/// One key that the link states.
+void draw_stated(PanelContext& context, const ChainRow& row, const LinkKey& key, const json::Node& value, double length) {
+  const std::string pointer = row.pointer(key.name);
+  const bool number = value.kind == json::Kind::number, word = value.kind == json::Kind::string;
+  const double speed = key.name == "stiffness" ? 2 : key.name == "level" ? 0 : 0.001 * length;
+  if (key.kind == Kind::number && number) {
+    NumberItem item{key.name.c_str(), pointer, value.number, 0, 0, speed};
+    if (key.positive) item.hi = 1e9;
+    edit_number(context, item);
+  } else if (key.kind == Kind::vector && value.items.size() == 3) {
+    if (const auto v = json::as_vec3(value, key.name)) {
+      edit_vector(context, key.name.c_str(), pointer, *v, speed);
+      const bool place = key.name != "normal" && key.name != "direction" && key.name != "size";
+      if (place && ImGui::SmallButton(("to the probe##" + key.name).c_str()))
+        context.edit(pointer, scene::text_of(probe_of(context)), key.name);
+    }
+  } else if (key.kind == Kind::choice && word) {
+    draw_name_choice(context, row, key, key.words, value.string);
+  } else if (key.kind == Kind::boolean && value.kind == json::Kind::boolean) {
+    bool on = value.boolean;
+    if (ImGui::Checkbox(key.name.c_str(), &on)) context.edit(pointer, on ? "true" : "false", key.name);
+  } else if ((key.kind == Kind::scalar_field || key.kind == Kind::vector_field) && word) {
+    draw_name_choice(context, row, key, fields_of(context.scene.scene(), key.kind == Kind::vector_field), value.string);
+  } else if (key.kind == Kind::mesh && word) {
+    draw_name_choice(context, row, key, meshes_of(context.scene.scene()), value.string);
+  } else {
+    ImGui::TextDisabled("%s: in the text", key.name.c_str());
+  }
+}
+
+void draw_keys(PanelContext& context, const ChainRow& row) {
+  const double length = length_of(context);
+  std::vector<LinkKey> absent;
+  for (const LinkKey& key : keys_of(row.type)) {
+    const json::Node* value = row.node.find(key.name);
+    if (value == nullptr) {
+      absent.push_back(key);
+      continue;
+    }
+    draw_stated(context, row, key, *value, length);
+    tip(key.help);
+    if (key.required) continue;
+    ImGui::SameLine();
+    if (ImGui::SmallButton(("x##" + key.name).c_str())) context.remove(row.pointer(key.name), "remove " + key.name);
+    tip("the default again");
+  }
+  if (absent.empty() || !ImGui::BeginCombo("##key", "add a key", ImGuiComboFlags_HeightLarge)) return;
+  for (const LinkKey& key : absent) {
+    if (ImGui::Selectable(key.name.c_str())) {
+      const std::string value = first_value(context.scene.scene(), key, row.node, probe_of(context), length);
+      if (value.empty())
+        context.state.say("\"" + key.name + "\" has no value to begin with here; write it into the scene's text", true);
+      else
+        context.edit(row.pointer(key.name), value, key.name);
+    }
+    tip(key.help);
+  }
+  ImGui::EndCombo();
+}
+
+/// What is to be done to the list, after it was drawn.
+struct Move {
+  std::size_t row;
+  int by;  ///< -1, 1; 0: goes
+};
+
+std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::size_t count, double most_n) {
+  std::optional<Move> move;
+  const exchange::HapticState& felt = context.hand.felt();
+  ImGui::PushID(row.name.c_str());
+  bool enabled = row.enabled;
+  if (ImGui::Checkbox("##on", &enabled)) {
+    if (enabled)
+      context.remove(row.pointer("enabled"), row.name + " on");
+    else
+      context.edit(row.pointer("enabled"), "false", row.name + " off");
+  }
+  tip("off for a try: the others go on as they are");
+  ImGui::SameLine();
+  const bool open = ImGui::TreeNodeEx("##keys", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", row.name.c_str());
+  tip(row.name + ", " + row.type + ": opens its keys");
+  for (const std::size_t link : row.links) {
+    if (link >= static_cast<std::size_t>(felt.link_count)) continue;
+    const exchange::LinkReport& report = felt.links[link];
+    const char* word = row.enabled ? exchange::status_word(report.status) : "off";
+    if (row.links.size() == 1) {
+      ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
+    } else {
+      ImGui::TextDisabled("%s", context.hand.link_names()[link].c_str());
+      ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
+    }
+    ImGui::TextColored(row.enabled ? color_of(report.status, report.active) : ImVec4(0.6f, 0.6f, 0.6f, 1), "%s", word);
+    tip(row.enabled ? meaning_of(report.status) : "switched off by the box before its name");
+    draw_live(report, context.hand.link_names()[link], most_n);
+  }
+  if (open) {
+    if (ImGui::ArrowButton("##up", ImGuiDir_Up) && row.index > 0) move = Move{row.index, -1};
+    tip("earlier in the chain");
+    ImGui::SameLine();
+    if (ImGui::ArrowButton("##down", ImGuiDir_Down) && row.index + 1 < count) move = Move{row.index, 1};
+    tip("later in the chain");
+    ImGui::SameLine();
+    if (ImGui::Button("Remove")) move = Move{row.index, 0};
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", row.type.c_str());
+    draw_keys(context, row);
+    ImGui::TreePop();
+  }
+  ImGui::PopID();
+  ImGui::Separator();
+  return move;
+}
+
+void draw_sum(const PanelContext& context, double most_n) {
+  const exchange::HapticState& felt = context.hand.felt();
+  Vec3 sum(0.0);
+  for (int i = 0; i < felt.link_count; ++i) sum += felt.links[static_cast<std::size_t>(i)].force_n;
+  ImGui::Text("Links %.2f N, hand %.2f N", norm(sum), norm(felt.force_n));
+  tip(fmt::format("the sum of the shares, and what the hand gets after damping, fading and all limits; at most {:g} N", most_n));
+  if (felt.force_state == exchange::ForceState::on) return;
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s", exchange::force_state_word(felt.force_state));
+}
+
+void draw_add(PanelContext& context) {
+  if (!ImGui::BeginCombo("##add", "Add a link", ImGuiComboFlags_HeightLarge)) return;
+  for (const std::string& type : link_types()) {
+    if (!ImGui::Selectable(type.c_str())) continue;
+    const auto link = new_link(context.scene.scene(), type, probe_of(context), length_of(context));
+    if (link)
+      context.edit("/chain/-", *link, "add " + type);
+    else
+      context.state.say(link.error().message, true);
+  }
+  ImGui::EndCombo();
+}
+
+void draw_coupling(PanelContext& context) {
+  const scene::Coupling c = context.scene.scene().coupling;
+  ImGui::TextUnformatted("Coupling");
+  edit_number(context, {"stiffness", "/coupling/stiffness", c.stiffness_n_per_m, 0, 5000, 2, "%.4g N/m"});
+  tip("of links that do not say; a device may allow less");
+  edit_number(context, {"damping", "/coupling/damping", c.damping_ns_per_m, 0, 100, 0.02, "%.3g N s/m"});
+  edit_number(context, {"most force", "/coupling/max_force", c.max_force_n, 0, 40, 0.02, "%.3g N"});
+}
+
+}  // namespace
+
+void draw_chain(PanelContext& context) {
+  const double most_n = context.scene.scene().coupling.max_force_n;
+  const std::vector<ChainRow> rows = chain_rows(context.scene.scene(), context.hand.link_names());
+  draw_sum(context, most_n);
+  ImGui::Separator();
+  std::optional<Move> move;
+  for (const ChainRow& row : rows)
+    if (const auto asked = draw_row(context, row, rows.size(), most_n)) move = asked;
+  draw_add(context);
+  draw_coupling(context);
+  if (!move) return;
+  const ChainRow& row = rows[move->row];
+  if (move->by == 0) {
+    context.remove(row.pointer(), "remove " + row.name);
+    return;
+  }
+  const ChainRow& other = rows[move->row + static_cast<std::size_t>(move->by)];
+  if (const Outcome done = context.scene.apply(swapped(row, other), "move " + row.name); !done)
+    context.state.say(done.error().message, true);
+}
+
+}  // namespace catena::app

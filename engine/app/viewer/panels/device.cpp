@@ -1,0 +1,92 @@
+// What holds the probe, how its servo does, and what else could.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "engine/app/hand/hand_setup.h"
+#include "engine/app/viewer/panels/edit_items.h"
+
+namespace catena::app {
+
+namespace {
+
+void draw_choice(PanelContext& context) {
+  static std::vector<haptics::DeviceInfo> found;  // the bus is looked at when the list opens, not with every picture
+  const std::string& now = context.hand.device_name();
+  if (ImGui::BeginCombo("##device", now.c_str(), ImGuiComboFlags_HeightLarge)) {
+    if (ImGui::IsWindowAppearing()) found = haptics::list_devices();
+    for (const haptics::DeviceInfo& info : found) {
+      if (info.name.find(".csv") != std::string::npos) continue;  // needs a file: --device
+      // the window itself is the mouse's
+      const bool present = info.present || info.name == "mouse";
+      if (ImGui::Selectable(info.name.c_str(), info.name == now, present ? 0 : ImGuiSelectableFlags_Disabled))
+        context.state.device = info.name;
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", info.detail.c_str());
+    }
+    ImGui::EndCombo();
+  }
+  tip("what holds the probe; a click looks at what is plugged in. Its forces are off at first");
+}
+
+void draw_capabilities(const haptics::DeviceCapabilities& c) {
+  ImGui::Text("%s", c.name.c_str());
+  std::string text = fmt::format("{:.3g} cm, {} button{}", 100 * c.workspace_m, c.buttons, c.buttons == 1 ? "" : "s");
+  text += c.max_force_n > 0 ? fmt::format(", {:.3g} N", c.max_force_n) : ", no force";
+  if (c.has_orientation) text += c.max_torque_nm > 0 ? fmt::format(", turns, {:.2g} N m", c.max_torque_nm) : ", turns";
+  ImGui::TextDisabled("%s", text.c_str());
+  tip("edge of the cube that the hand reaches, buttons, the most force");
+}
+
+void draw_buttons(std::uint32_t pressed, int count) {
+  ImGui::TextUnformatted("Buttons");
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float r = 0.32f * ImGui::GetFontSize();
+  for (int b = 0; b < std::min(count, 8); ++b) {
+    ImGui::SameLine();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool on = (pressed >> b & 1u) != 0;
+    list.AddCircleFilled({at.x + r, at.y + 0.5f * ImGui::GetTextLineHeight()}, r,
+                         on ? IM_COL32(120, 230, 120, 255) : IM_COL32(70, 70, 75, 255));
+    ImGui::Dummy({2.5f * r, ImGui::GetTextLineHeight()});
+  }
+}
+
+}  // namespace
+
+void draw_device(PanelContext& context) {
+  HandHost& hand = context.hand;
+  const haptics::DeviceCapabilities& c = hand.hand().device->capabilities();
+  const exchange::HapticState& felt = hand.felt();
+  draw_choice(context);
+  draw_capabilities(c);
+  if (const std::string text = hand.hand().device->status_text(); !text.empty()) ImGui::TextWrapped("%s", text.c_str());
+  if (!hand.note().empty()) ImGui::TextWrapped("%s", hand.note().c_str());
+
+  if (!hand.is_mouse() && c.max_force_n > 0) {
+    bool on = hand.forces();
+    if (ImGui::Checkbox("Forces (F)", &on)) hand.set_forces(on);
+    tip("the device may push; what a force does is felt at once");
+  }
+  const Vec3 at = device_from_world(context.scene.scene().workspace, felt.probe);
+  ImGui::Text("At %.1f %.1f %.1f mm", 1e3 * at.x, 1e3 * at.y, 1e3 * at.z);
+  tip("the probe in the device's own axes");
+  ImGui::Text("Force %.2f N  (%.2f %.2f %.2f)", norm(felt.force_n), felt.force_n.x, felt.force_n.y, felt.force_n.z);
+  tip("on the hand now, world axes");
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s", exchange::force_state_word(felt.force_state));
+  draw_buttons(felt.buttons, c.buttons);
+
+  ImGui::Separator();
+  const haptics::ServoReport servo = hand.servo().report();
+  ImGui::Text("%.0f Hz, %.0f us median", servo.rate_hz, servo.compute.p50_us);
+  tip("ticks a second; what one takes");
+  ImGui::Text("%llu deadlines missed, %llu watchdog trips", static_cast<unsigned long long>(servo.missed_deadlines),
+              static_cast<unsigned long long>(servo.watchdog_trips));
+  if (felt.condition != exchange::Condition::normal)
+    ImGui::TextColored({1, 0.7f, 0.35f, 1}, "%s", exchange::condition_word(felt.condition));
+  const haptics::RealtimeReport& r = servo.realtime;
+  ImGui::TextDisabled("%s priority, memory %s, %s", r.fifo ? "fixed" : "normal", r.locked ? "locked" : "not locked",
+                      r.cpu >= 0 ? fmt::format("core {}", r.cpu).c_str() : "any core");
+  for (const std::string& note : r.notes) ImGui::TextWrapped("%s", note.c_str());
+}
+
+}  // namespace catena::app

@@ -1,0 +1,78 @@
+// How good the picture is, how long it takes, what it holds on the GPU.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+
+#include "engine/app/viewer/panels/edit_items.h"
+
+namespace catena::app {
+
+namespace {
+
+using Goal = render::QualityGoal;
+
+/// What is asked for, as the words of --quality.
+std::string words_of(const Quality& q) {
+  if (q.goal) return fmt::format("{}={:.3g}", q.goal->kind == Goal::Kind::time ? "time" : "error", q.goal->value);
+  for (const char* word : {"draft", "balanced", "reference"})
+    if (const auto named = parse_quality(word); named && render::describe(named->settings) == render::describe(q.settings)) return word;
+  return render::describe(q.settings);
+}
+
+void draw_goal(PanelContext& context) {
+  const Quality& now = context.pacing.quality();
+  const bool time = now.goal && now.goal->kind == Goal::Kind::time, error = now.goal && now.goal->kind == Goal::Kind::error;
+  const auto ask = [&](const std::string& words) {
+    if (auto quality = parse_quality(words)) context.state.quality = *quality;
+  };
+  if (ImGui::RadioButton("time", time)) ask("time=50");
+  tip("the best picture that comes within so many milliseconds, and better ones while nothing moves");
+  ImGui::SameLine();
+  if (ImGui::RadioButton("error", error)) ask("error=1");
+  tip("at rest, until the picture's estimated error is this small (root mean square, 1/255)");
+  const std::string words = words_of(now);
+  for (const char* word : {"draft", "balanced", "reference"}) {
+    if (word[0] != 'd') ImGui::SameLine();
+    if (ImGui::RadioButton(word, words == word)) ask(word);
+  }
+  // a goal takes hold when the slider is let go: each one begins anew
+  static double held = 0;
+  static bool sliding = false;
+  if (!time && !error) return;
+  double value = sliding ? held : now.goal->value;
+  const double lo = time ? 5 : 0.1, hi = time ? 2000 : 20;
+  ImGui::SliderScalar("##goal", ImGuiDataType_Double, &value, &lo, &hi, time ? "%.0f ms" : "%.2f /255",
+                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat);
+  held = value;
+  sliding = ImGui::IsItemActive();
+  if (ImGui::IsItemDeactivatedAfterEdit()) ask(fmt::format("{}={:.3g}", time ? "time" : "error", value));
+}
+
+std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(bytes)); }
+
+void draw_memory(const render::RenderStats& stats) {
+  const double share = stats.gpu_budget > 0 ? static_cast<double>(stats.gpu_bytes) / static_cast<double>(stats.gpu_budget) : 0;
+  const std::string text = megabytes(stats.gpu_bytes) + " of " + megabytes(stats.gpu_budget);
+  ImGui::ProgressBar(static_cast<float>(share), {-1, 0}, text.c_str());
+  tip("memory held on " + stats.device + ", and the most that may be (--gpu-memory)");
+  for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) ImGui::TextWrapped("%s", coarser.words().c_str());
+  for (const std::string& note : stats.notes) ImGui::TextWrapped("%s", note.c_str());
+}
+
+}  // namespace
+
+void draw_quality(PanelContext& context) {
+  draw_goal(context);
+  ImGui::TextWrapped("%s", context.pacing.words().c_str());
+  if (const auto rmse = context.pacing.rmse())
+    ImGui::Text("error now about %.2f / 255", *rmse);
+  else
+    ImGui::TextDisabled("error: once it rests");
+  tip("against converged rays, over all pixels");
+  context.state.estimate = true;
+  ImGui::Separator();
+  draw_memory(context.screen.renderer().stats());
+}
+
+}  // namespace catena::app

@@ -1,0 +1,56 @@
+// Every tick of the session into a file, from a click to the next.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "engine/app/viewer/panels/edit_items.h"
+
+namespace catena::app {
+
+namespace {
+
+/// The first name that is free, beside the scene.
+std::string free_name(const std::string& scene_path) {
+  const std::filesystem::path scene(scene_path);
+  const std::filesystem::path base = scene.parent_path() / scene.stem();
+  std::error_code ignored;
+  for (int n = 1;; ++n) {
+    std::string name = fmt::format("{}-{}.catlog", base.string(), n);
+    if (!std::filesystem::exists(name, ignored)) return name;
+  }
+}
+
+}  // namespace
+
+void draw_recording(PanelContext& context) {
+  const Recording& recording = context.hand.recording();
+  static char name[1024] = "";
+  if (!recording.running()) {
+    if (name[0] == 0) {
+      const std::string proposed = free_name(context.scene.document().path());
+      std::strncpy(name, proposed.c_str(), sizeof name - 1);
+    }
+    ImGui::SetNextItemWidth(-1);
+    const bool enter = ImGui::InputText("##file", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue);
+    tip("the recording, .catlog; one that exists is replaced");
+    if ((ImGui::Button("Record") || enter) && name[0] != 0) context.state.record = name;
+    tip("every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
+    return;
+  }
+  const haptics::log::LogStatus status = recording.status();
+  ImGui::TextWrapped("%s", recording.path().c_str());
+  const int s = static_cast<int>(recording.seconds());
+  ImGui::Text("%d:%02d  %llu ticks, %.1f MB", s / 60, s % 60, static_cast<unsigned long long>(status.ticks),
+              1e-6 * static_cast<double>(status.bytes));
+  if (status.lost > 0) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%llu ticks lost", static_cast<unsigned long long>(status.lost));
+  if (status.failed) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "writing has failed");
+  if (ImGui::Button("Stop")) {
+    context.state.record = "";
+    name[0] = 0;
+  }
+}
+
+}  // namespace catena::app

@@ -1,0 +1,115 @@
+// The things that the hand takes hold of: what each does now, where it is, and new ones.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "engine/app/viewer/new_widget.h"
+#include "engine/app/viewer/panels/edit_items.h"
+#include "engine/scene/widgets.h"
+#include "engine/scene/write_values.h"
+
+namespace catena::app {
+
+namespace {
+
+struct Row {
+  std::string name, pointer;
+  scene::Widget widget;
+};
+
+std::vector<Row> rows_of(const scene::Scene& scene) {
+  std::vector<Row> rows;
+  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+    rows.push_back({scene.world.get<scene::Name>(e).value, fmt::format("/widgets/{}", rows.size()), widget});
+  });
+  return rows;
+}
+
+/// The pose as numbers; an edit states it in the text.
+void draw_pose(PanelContext& context, const Row& row) {
+  const widget::Pose& pose = row.widget.state.pose;
+  const double speed = 0.001 * row.widget.spec.length;
+  const auto place = [&](const char* key, const Vec3& value) { edit_vector(context, key, row.pointer + "/" + key, value, speed); };
+  switch (row.widget.spec.kind) {
+    case widget::Kind::cutting_plane: {
+      place("center", pose.points[0]);
+      const Vec3 normal = scene::normal_of(pose);
+      // two ways to say how it stands: where one is edited the other goes
+      double n[3] = {normal.x, normal.y, normal.z};
+      if (ImGui::InputScalarN("normal", ImGuiDataType_Double, n, 3, nullptr, nullptr, "%.3g", ImGuiInputTextFlags_EnterReturnsTrue)) {
+        const Outcome done = context.scene.apply(
+            {{row.pointer + "/orientation", std::nullopt}, {row.pointer + "/normal", scene::text_of(Vec3(n[0], n[1], n[2]))}},
+            "turn " + row.name);
+        if (!done) context.state.say(done.error().message, true);
+      }
+      tip("Enter takes it");
+      break;
+    }
+    case widget::Kind::seed:
+    case widget::Kind::isolevel:
+      place("position", pose.points[0]);
+      break;
+    case widget::Kind::box:
+      place("lo", pose.points[0]);
+      place("hi", pose.points[1]);
+      break;
+    case widget::Kind::rake:
+    case widget::Kind::ruler:
+      place("from", pose.points[0]);
+      place("to", pose.points[1]);
+      break;
+  }
+}
+
+void reset(PanelContext& context, const Row& row) {
+  // the pose that a new one would have, under the old name
+  const auto fresh = new_widget(context.scene.scene(), scene::kind_word(row.widget.spec.kind), context.scene.bounds);
+  if (!fresh) return;
+  const auto node = json::parse(*fresh, "widget");
+  if (!node) return;
+  std::vector<scene::Document::Edit> edits;
+  if (row.widget.spec.kind == widget::Kind::cutting_plane) edits.push_back({row.pointer + "/orientation", std::nullopt});
+  for (const char* key : {"center", "normal", "position", "from", "to", "lo", "hi"})
+    if (const json::Node* value = node->find(key))
+      if (const auto v = json::as_vec3(*value, key)) edits.push_back({row.pointer + "/" + key, scene::text_of(*v)});
+  if (const Outcome done = context.scene.apply(edits, "reset " + row.name); !done) context.state.say(done.error().message, true);
+}
+
+void draw_row(PanelContext& context, const Row& row) {
+  const widget::Report& state = row.widget.state;
+  ImGui::PushID(row.name.c_str());
+  const bool open = ImGui::TreeNodeEx("##pose", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", row.name.c_str());
+  const char* word = exchange::mode_word(state.mode);
+  ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
+  const bool engaged = state.mode != exchange::WidgetMode::away;
+  ImGui::TextColored(engaged ? ImVec4(1, 0.8f, 0.3f, 1) : ImVec4(0.6f, 0.6f, 0.6f, 1), "%s", word);
+  if (row.widget.spec.kind == widget::Kind::isolevel) ImGui::TextDisabled("level %.5g", state.value);
+  if (open) {
+    ImGui::TextDisabled("%s, button %d", scene::kind_word(row.widget.spec.kind), row.widget.spec.button);
+    draw_pose(context, row);
+    if (ImGui::Button("Reset")) reset(context, row);
+    tip("back to the middle");
+    ImGui::SameLine();
+    if (ImGui::Button("Remove")) context.remove(row.pointer, "remove " + row.name);
+    tip("what follows it must go first, or name another one");
+    ImGui::TreePop();
+  }
+  ImGui::PopID();
+}
+
+}  // namespace
+
+void draw_widgets(PanelContext& context) {
+  for (const Row& row : rows_of(context.scene.scene())) draw_row(context, row);
+  if (!ImGui::BeginCombo("##add", "Add a widget")) return;
+  for (const std::string& type : widget_types()) {
+    if (!ImGui::Selectable(type.c_str())) continue;
+    const auto fresh = new_widget(context.scene.scene(), type, context.scene.bounds);
+    if (fresh)
+      context.edit("/widgets/-", *fresh, "add " + type);
+    else
+      context.state.say(fresh.error().message, true);
+  }
+  ImGui::EndCombo();
+}
+
+}  // namespace catena::app

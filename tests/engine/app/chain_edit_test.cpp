@@ -1,0 +1,156 @@
+// What the chain and widget panels write into the scene's text.
+#include "engine/app/viewer/chain_edit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/app/viewer/new_widget.h"
+#include "engine/app/viewer/scene_host.h"
+#include "haptics/extract/extract.h"
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace {
+
+constexpr const char* kScene = R"({
+  // the flow
+  "fields": {"ball": {"analytic": "sphere"}, "flow": {"analytic": "circle"}},
+  "chain": [{"name": "line", "type": "streamline", "field": "flow", "seed": [1, 0, 0]},
+            {"name": "skin", "type": "anisotropic_friction", "surface": "ball", "level": 1, "field": "flow", "enabled": false}],
+  "isosurfaces": [{"field": "ball", "level": 1}]
+})";
+
+struct Fixture {
+  explicit Fixture(const std::string& text = kScene) {
+    test::write_file(folder / "scene.json", text);
+    auto document = scene::Document::open(folder / "scene.json");
+    EXPECT_TRUE(document) << document.error().message;
+    auto opened = SceneHost::open(std::move(*document), {});
+    EXPECT_TRUE(opened) << opened.error().message;
+    host.emplace(std::move(*opened));
+  }
+  test::TemporaryFolder folder;
+  std::optional<SceneHost> host;
+};
+
+std::vector<std::string> names(const scene::Scene& scene) {
+  std::vector<std::string> out;
+  for (const ChainRow& row : chain_rows(scene, {})) out.push_back(row.name);
+  return out;
+}
+
+TEST(ChainEdit, RowsAreTheScenesItemsWithTheirLinksOfTheProgram) {
+  const Fixture f;
+  const auto rows = chain_rows(f.host->scene(), {"line", "skin_surface", "skin_direction", "skin_friction"});
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].links, (std::vector<std::size_t>{0}));
+  EXPECT_TRUE(rows[0].enabled);
+  EXPECT_EQ(rows[1].links, (std::vector<std::size_t>{1, 2, 3}));
+  EXPECT_FALSE(rows[1].enabled);
+  EXPECT_EQ(rows[1].pointer("level"), "/chain/1/level");
+}
+
+TEST(ChainEdit, EveryTypeOfLinkBeginsWithKeysThatMakeAProgram) {
+  for (const std::string& type : link_types()) {
+    Fixture f(R"({"fields": {"flow": {"analytic": "circle"}, "ball": {"analytic": "sphere"}}})");
+    const auto link = new_link(f.host->scene(), type, Vec3(0.5, 0.25, 0.1), 4);
+    if (type == "mesh") {
+      ASSERT_FALSE(link);
+      EXPECT_EQ(link.error().message, "a mesh needs a mesh, which the scene does not have");
+      continue;
+    }
+    ASSERT_TRUE(link) << type << link.error().message;
+    // twice: the second one gets a name of its own
+    const Outcome added = f.host->set("/chain/-", *link, "add");
+    ASSERT_TRUE(added) << type << ": " << *link << ": " << added.error().message;
+    const auto second = new_link(f.host->scene(), type, Vec3(0.5, 0.25, 0.1), 4);
+    ASSERT_TRUE(second && f.host->set("/chain/-", *second, "add"));
+    const auto program = haptics::extract_program(f.host->scene());
+    ASSERT_TRUE(program) << type << ": " << *link << ": " << program.error().message;
+    EXPECT_EQ(names(f.host->scene()), (std::vector<std::string>{type, type + "_2"}));
+  }
+  Fixture bare(R"({"fields": {"ball": {"analytic": "sphere"}}})");
+  const auto link = new_link(bare.host->scene(), "streamline", Vec3(0.0), 4);
+  ASSERT_FALSE(link);
+  EXPECT_EQ(link.error().message, "a streamline needs a vector field, which the scene does not have");
+}
+
+TEST(ChainEdit, KeysThatAreAddedHaveValuesThatCanBeRead) {
+  for (const std::string& type : link_types()) {
+    if (type == "mesh") continue;
+    Fixture f(R"({"fields": {"flow": {"analytic": "circle"}, "ball": {"analytic": "sphere"}}})");
+    const Vec3 probe(0.5, 0.25, 0.1);
+    ASSERT_TRUE(f.host->set("/chain/-", *new_link(f.host->scene(), type, probe, 4), "add"));
+    f.host->set_check([](scene::Scene& scene) -> Outcome {
+      CATENA_CHECK(haptics::extract_program(scene));
+      return Done{};
+    });
+    for (const LinkKey& key : keys_of(type)) {
+      const json::Node node = chain_rows(f.host->scene(), {})[0].node;
+      // one of the two excludes the other; a level is that of a surface
+      if (node.find(key.name) != nullptr || key.name == "coefficient" || key.name == "method") continue;
+      const std::string value = first_value(f.host->scene(), key, node, probe, 4);
+      if (value.empty()) continue;
+      const Outcome done = f.host->set("/chain/0/" + key.name, value, "add");
+      EXPECT_TRUE(done) << type << " " << key.name << " " << value << ": " << done.error().message;
+    }
+  }
+}
+
+TEST(ChainEdit, NeighboursChangePlacesInOneStepAndTheRestOfTheTextStays) {
+  Fixture f;
+  const std::string before = f.host->document().text();
+  const auto rows = chain_rows(f.host->scene(), {});
+  ASSERT_TRUE(f.host->apply(swapped(rows[0], rows[1]), "move line"));
+  EXPECT_EQ(names(f.host->scene()), (std::vector<std::string>{"skin", "line"}));
+  EXPECT_NE(f.host->document().text().find("// the flow"), std::string::npos);
+  ASSERT_TRUE(f.host->undo());
+  EXPECT_EQ(f.host->document().text(), before);
+  EXPECT_FALSE(f.host->document().can_undo());
+}
+
+TEST(ChainEdit, AnEditThatCannotBeFeltChangesNothing) {
+  Fixture f;
+  ASSERT_TRUE(haptics::extract_program(f.host->scene()));
+  f.host->set_check([](scene::Scene& scene) -> Outcome {
+    CATENA_CHECK(haptics::extract_program(scene));
+    return Done{};
+  });
+  const auto text = f.host->document().text();
+  const auto loaded = f.host->scene().world.get<scene::FieldSource>(scene::find_field(f.host->scene(), "ball")).loaded.get();
+  ASSERT_NE(loaded, nullptr);
+  const Outcome bad = f.host->set("/chain/0/release", "-1", "release");
+  ASSERT_FALSE(bad);
+  EXPECT_NE(bad.error().message.find("release"), std::string::npos) << bad.error().message;
+  EXPECT_EQ(f.host->document().text(), text);
+  EXPECT_FALSE(f.host->document().can_undo());
+  EXPECT_FALSE(f.host->take_changed());
+  EXPECT_EQ(chain_rows(f.host->scene(), {})[0].node.find("release"), nullptr);
+  EXPECT_EQ(f.host->scene().world.get<scene::FieldSource>(scene::find_field(f.host->scene(), "ball")).loaded.get(), loaded)
+      << "what was loaded is still there";
+  EXPECT_TRUE(f.host->set("/chain/0/release", "0.5", "release"));
+  EXPECT_TRUE(f.host->take_changed());
+}
+
+TEST(NewWidget, EveryTypeIsReadAndHasANameOfItsOwn) {
+  Fixture f;
+  render::Bounds bounds;
+  bounds.add(Vec3(-1.0));
+  bounds.add(Vec3(1.0));
+  for (const std::string& type : widget_types())
+    for (int n = 0; n < (type == "seed" ? 2 : 1); ++n) {
+      const auto text = new_widget(f.host->scene(), type, bounds);
+      ASSERT_TRUE(text) << type;
+      const Outcome done = f.host->set("/widgets/-", *text, "add");
+      ASSERT_TRUE(done) << *text << ": " << done.error().message;
+    }
+  int count = 0;
+  f.host->scene().world.each<scene::Widget>([&](scene::Entity, const scene::Widget&) { ++count; });
+  EXPECT_EQ(count, 7);
+  EXPECT_TRUE(scene::find_widget(f.host->scene(), "seed_2"));
+  EXPECT_TRUE(scene::find_widget(f.host->scene(), "cut"));
+}
+
+}  // namespace
+}  // namespace catena::app

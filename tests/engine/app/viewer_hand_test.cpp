@@ -1,0 +1,52 @@
+// What the command line of the window says of the hand and of the picture's quality, on a virtual display.
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace {
+
+bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
+
+class ViewerHand : public testing::Test {
+ protected:
+  /// The exit code of a window of a few frames; its words are in log().
+  int view(const std::string& scene, const std::string& options) {
+    test::write_file(folder_ / "scene.json", scene);
+    test::write_file(folder_ / "script.sh",
+                     std::string(CATENA_PROGRAM) + " view " + (folder_ / "scene.json") + " --size 320x240 " + options);
+    const int status = std::system(
+        ("timeout 120 xvfb-run -a -s '-screen 0 640x480x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string log() const { return test::read_file(folder_ / "log"); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ViewerHand, WhatIsNotPluggedInLeavesTheMouseAndIsSaidInOneSentence) {
+  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  ASSERT_EQ(view(R"({"chain": [{"name": "p", "type": "point", "position": [0, 0, 0]}]})",
+                 "--device falcon:99 --frames 2 --record " + (folder_ / "a.catlog")),
+            0)
+      << log();
+  EXPECT_NE(log().find("the mouse holds the probe"), std::string::npos) << log();
+  EXPECT_NE(log().find("2 frames"), std::string::npos) << log();
+  // and what was recorded runs again
+  const int status =
+      std::system((std::string(CATENA_PROGRAM) + " replay --log " + (folder_ / "a.catlog") + " > " + (folder_ / "log") + " 2>&1").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 0) << log();
+}
+
+TEST_F(ViewerHand, AGridThatDoesNotFitIntoTheMemoryIsSaid) {
+  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  const std::string scene = R"({"fields": {"g": {"analytic": "gaussian", "resolution": 160}}, "volumes": [{"field": "g"}]})";
+  ASSERT_EQ(view(scene, "--frames 1 --gpu-memory 8"), 0) << log();
+  EXPECT_NE(log().find("resolution"), std::string::npos) << log();
+}
+
+}  // namespace
+}  // namespace catena::app
