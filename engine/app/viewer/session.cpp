@@ -120,6 +120,8 @@ std::optional<Failure> Session::open() {
   const auto loaded = load_first(static_cast<std::uint32_t>(state_.area.width), static_cast<std::uint32_t>(state_.area.height));
   if (!loaded) return Failure{2, loaded.error().message};
   if (auto failure = open_screen()) return failure;
+  state_.recent = recent_.shown();
+  if (!options_.source.empty()) remember(options_.source);
   // a device that pushes is let go by its own way out, Ctrl-C or not
   if (!hand_.is_mouse()) interrupt_.emplace();
   hand_.start();

@@ -8,6 +8,7 @@
 #include "engine/app/viewer/gui.h"
 #include "engine/app/viewer/panel.h"
 #include "engine/app/viewer/pulse_clock.h"
+#include "engine/app/viewer/recent_files.h"
 #include "engine/app/viewer/scene_loader.h"
 #include "engine/app/viewer/shader_reload.h"
 #include "engine/app/viewer/viewer.h"
@@ -77,6 +78,7 @@ class Session {
   bool take_loaded();
   void replace_scene(LoadedScene loaded, const std::string& path);
   void add_to_scene(LoadedScene loaded, const std::string& path);
+  void remember(const std::string& path);
   void write_screenshot(const std::string& path);
 
   ViewOptions options_;
@@ -96,6 +98,7 @@ class Session {
   std::optional<Interrupt> interrupt_;
   HandHost hand_;
 
+  RecentFiles recent_;
   SceneLoader loader_;
   bool loading_adds_ = false;  ///< what is being loaded joins the scene
   std::optional<render::FramePacket> shown_;  ///< the last picture's

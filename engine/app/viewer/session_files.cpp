@@ -76,6 +76,7 @@ bool Session::save(const std::string& path) {
   saved_view_ = controls_.view;
   owns_file_ = true;
   state_.untitled = false;
+  remember(scene_->document().path());
   return true;
 }
 
@@ -112,6 +113,7 @@ void Session::replace_scene(LoadedScene loaded, const std::string& path) {
     if (auto quality = parse_quality(scene_->scene().quality)) state_.quality = *quality;
   scene_->touch();
   state_.untitled = false;
+  remember(path);
   state_.say("opened " + path);
 }
 
@@ -132,6 +134,11 @@ void Session::add_to_scene(LoadedScene loaded, const std::string& path) {
   scene_->bounds.add(loaded.bounds);
   controls_.bounds = scene_->bounds;
   state_.say("added " + name_of(path) + " (A brings all into the picture)");
+}
+
+void Session::remember(const std::string& path) {
+  recent_.add(path);
+  state_.recent = recent_.shown();
 }
 
 /// Empty: the next free SCENE-001.png of the folder that the program was started in.
