@@ -23,12 +23,12 @@ std::string text_of(const json::Node& node) {
     case json::Kind::number:
       return json::number_text(node.number);
     case json::Kind::string:
-      return json::quoted(node.string);
+      return json::string_text(node.string);
     case json::Kind::array:
       for (const json::Node& item : node.items) text += (text.empty() ? "" : ", ") + text_of(item);
       return "[" + text + "]";
     case json::Kind::object:
-      for (const auto& [key, member] : node.members) text += (text.empty() ? "" : ", ") + json::quoted(key) + ": " + text_of(member);
+      for (const auto& [key, member] : node.members) text += (text.empty() ? "" : ", ") + json::string_text(key) + ": " + text_of(member);
       return "{" + text + "}";
   }
   return text;

@@ -71,12 +71,12 @@ std::string json_of(const json::Node& node) {
     case json::Kind::number:
       return json::number_text(node.number);
     case json::Kind::string:
-      return json::quoted(node.string);
+      return json::string_text(node.string);
     case json::Kind::array:
       for (const json::Node& item : node.items) out += (out.empty() ? "" : ", ") + json_of(item);
       return "[" + out + "]";
     case json::Kind::object:
-      for (const auto& [key, value] : node.members) out += (out.empty() ? "" : ", ") + json::quoted(key) + ": " + json_of(value);
+      for (const auto& [key, value] : node.members) out += (out.empty() ? "" : ", ") + json::string_text(key) + ": " + json_of(value);
       return "{" + out + "}";
   }
   return out;
@@ -207,7 +207,7 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
                                                      : key.name) +
                    ", which the scene does not have"};
     if (auto node = json::parse(value, "link")) link.members.emplace_back(key.name, std::move(*node));
-    text += ", " + json::quoted(key.name) + ": " + value;
+    text += ", " + json::string_text(key.name) + ": " + value;
   }
   return "{" + text + "}";
 }

@@ -91,7 +91,7 @@ bool draw_list(Browser& browser) {
 bool draw_typed(Browser& browser) {
   if (std::exchange(browser.focus, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(520);
-  constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion;
+  constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_AutoSelectAll;
   const bool entered = ImGui::InputText("##path", browser.typed.data(), browser.typed.size(), kFlags, complete, &browser);
   if (ImGui::IsItemEdited()) browser.asks_overwrite = false;
   return entered;
