@@ -48,6 +48,7 @@ struct Window::Parts {
   bool has_last = false;
   bool happened = false;
   bool gui = false, keys_are_text = false, fly = false;
+  std::vector<std::array<int, 3>> released;  ///< keys that the interface has not been told of: key, scancode, modifiers
   std::array<int, 4> place{};  ///< before full screen: x, y, width, height
 
   ~Parts() {
@@ -135,7 +136,10 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   glfwSetKeyCallback(parts.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
     p.happened = true;
-    if (p.gui) ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
+    if (p.gui && action == GLFW_RELEASE)
+      p.released.push_back({key, scancode, mods});
+    else if (p.gui)
+      ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
     const bool held = action != GLFW_RELEASE;
     if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) p.hold(&Input::shift, held);
     if (key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL) p.hold(&Input::control, held);
@@ -210,6 +214,11 @@ float Window::content_scale() const {
 }
 
 void Window::set_gui(bool on) { parts_->gui = on; }
+
+void Window::tell_releases() {
+  for (const auto& [key, scancode, mods] : std::exchange(parts_->released, {}))
+    ImGui_ImplGlfw_KeyCallback(parts_->window, key, scancode, GLFW_RELEASE, mods);
+}
 
 void Window::keys_are_text(bool on) { parts_->keys_are_text = on; }
 

@@ -50,6 +50,8 @@ class Window {
   float content_scale() const;
   /// Events go to the user interface (gui.h) as well.
   void set_gui(bool on);
+  /// The keys that were let go since the last call: told after a frame, so that a short stroke between two frames is one all the same.
+  void tell_releases();
   /// Keys are text for the user interface: none is a command.
   void keys_are_text(bool on);
   GLFWwindow* native() const;
