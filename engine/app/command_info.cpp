@@ -9,9 +9,11 @@
 #include "engine/app/info_log.h"
 #include "engine/base/numbers.h"
 #include "engine/field/load.h"
+#include "engine/field/units.h"
 #include "engine/mesh/load.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/ruler.h"
+#include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
 #include "haptics/constraints/modes.h"
 #include "haptics/constraints/registry.h"
@@ -47,6 +49,9 @@ Outcome describe_file(const std::string& path) {
     fmt::print("{} ({}{})\n", g.name.empty() ? "(no name)" : g.name, g.type, g.usable ? "" : "; not a field that Catena can show or feel");
     fmt::print("  size         {} {} {} voxels from index {} {} {}\n", g.size.x, g.size.y, g.size.z, g.lowest.x, g.lowest.y, g.lowest.z);
     print_mapping(g.mapping);
+    const field::Units units = field::units_of(path, g.name);
+    if (!units.value.empty()) fmt::print("  unit         {}\n", units.value);
+    if (!units.length.empty()) fmt::print("  lengths in   {}\n", units.length);
     const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
     fmt::print("  world box    {} .. {}\n", text(g.mapping.world_from_index(lowest)),
                text(g.mapping.world_from_index(lowest + Vec3(g.size.x - 1, g.size.y - 1, g.size.z - 1))));
@@ -124,8 +129,10 @@ Outcome describe_scene(const std::string& path) {
                source.file ? source.file->path + (source.file->grid.empty() ? "" : ":" + source.file->grid) : source.analytic,
                to_text(any.get()->length()));
     if (any.scalar) fmt::print(", values {}..{}", to_text(any.scalar->min_value()), to_text(any.scalar->max_value()));
+    if (const std::string unit = scene::unit_of(scene, entity); !unit.empty()) fmt::print(", in {}", unit);
     fmt::print(", {}\n", human_bytes(static_cast<double>(any.get()->bytes())));
   }
+  if (const std::string unit = scene::unit_length(scene); !unit.empty()) fmt::print("lengths in {}\n", unit);
   std::vector<scene::Entity> meshes;
   scene.world.each<scene::MeshSource>([&](scene::Entity e, const scene::MeshSource&) { meshes.push_back(e); });
   for (const scene::Entity e : meshes) {

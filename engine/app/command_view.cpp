@@ -56,8 +56,9 @@ Outcome open_window(const Options& o, int& exit_code) {
     return stereo.apply(scene.stereo);
   };
   {
-    CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields));
-    CATENA_CHECK(options.adjust(scene));
+    if (o.source.empty() && !o.fields.empty()) return Error{"--field: there is no scene whose field it could replace, expected a SOURCE"};
+    CATENA_TRY(scene::Scene scene, o.source.empty() ? Result<scene::Scene>(scene::Scene()) : open_scene(o.source, o.fields));
+    if (!o.source.empty()) CATENA_CHECK(options.adjust(scene));
     CATENA_CHECK(check_outputs(o, inputs_of(scene)));
     options.quality_stated = !o.quality.empty();
     const std::string& own = scene.quality.empty() ? kQuality : scene.quality;
@@ -84,7 +85,7 @@ Outcome open_window(const Options& o, int& exit_code) {
 void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("view", "an interactive window: orbit, and the mouse as the hand");
-  command->add_option("SOURCE", options->source, "a scene (.json) or a data file")->required();
+  command->add_option("SOURCE", options->source, "a scene (.json) or a data file; without it the window says how to begin");
   command->add_option(
       "--device", options->device,
       "what holds the probe: mouse, or a haptic device (its forces are off until F). Default: the scene's, or else the mouse, "

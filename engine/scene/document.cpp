@@ -28,6 +28,15 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
   return document;
 }
 
+Result<Document> Document::make(const std::string& text, const std::string& path) {
+  CATENA_CHECK(parse_scene(text, path));
+  Document document;
+  document.path_ = path;
+  document.saved_ = text;
+  document.versions_.push_back({text, {}, {}});
+  return document;
+}
+
 Result<Scene> Document::read() const {
   CATENA_TRY(Scene scene, parse_scene(text(), path_, overrides_));
   if (const auto loaded = std::exchange(loaded_, nullptr)) adopt_loaded(*loaded, scene);

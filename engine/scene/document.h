@@ -23,6 +23,9 @@ class Document {
   /// only, overrides with scene files only).
   static Result<Document> open(const std::string& path, const std::vector<FieldOverride>& overrides = {}, const NamedColors& colors = {});
 
+  /// A scene that is nowhere yet; `path`: where save() without one would put it.
+  static Result<Document> make(const std::string& text, const std::string& path);
+
   const std::string& text() const { return versions_[now_].text; }
   /// The scene file; of a data file's scene: where save() without a path would put it (FILE.json beside it).
   const std::string& path() const { return path_; }

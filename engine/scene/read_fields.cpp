@@ -4,6 +4,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/units.h"
 
 namespace catena::scene {
 namespace {
@@ -54,10 +55,10 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
   LoadRequest request;
   request.path = resolved_path(scene_path, file);
   if (is_raw(file)) {
-    CATENA_CHECK(json::only_keys(node, {"file", "shape", "spacing", "origin", "type"}));
+    CATENA_CHECK(json::only_keys(node, {"file", "shape", "spacing", "origin", "type", "unit"}));
     CATENA_TRY(request.raw, read_raw_layout(node));
   } else {
-    CATENA_CHECK(json::only_keys(node, {"file", "grid", "valid"}));
+    CATENA_CHECK(json::only_keys(node, {"file", "grid", "valid", "unit"}));
     CATENA_TRY(request.grid, json::get_string(node, "grid", {}));
     if (const json::Node* grid = node.find("grid"); grid != nullptr && request.grid.empty())
       return json::error_at(*grid, "\"grid\" is empty; the name of a grid was expected");
@@ -79,7 +80,7 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
 // ---- fields by formula ----
 
 Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
-  CATENA_CHECK(json::only_keys(node, {"analytic", "scale", "direction", "part", "grid", "resolution", "box"}));
+  CATENA_CHECK(json::only_keys(node, {"analytic", "scale", "direction", "part", "grid", "resolution", "box", "unit"}));
   CATENA_TRY(source.analytic, json::require_string(node, "analytic"));
   const json::Node& name = *node.find("analytic");
   if (!field::is_analytic(source.analytic)) {
@@ -188,6 +189,7 @@ Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<Fiel
       const Entity entity = scene.world.create();
       scene.world.emplace<Name>(entity, {name});
       scene.world.emplace<FieldSource>(entity, std::move(source));
+      CATENA_CHECK(read_unit(scene, entity, node));
     }
   }
   for (const FieldOverride& with : overrides) CATENA_CHECK(apply_override(scene, with));

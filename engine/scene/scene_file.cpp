@@ -1,5 +1,6 @@
 #include "engine/base/text.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/units.h"
 
 namespace catena::scene {
 namespace {
@@ -39,7 +40,8 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
                             {"axes", read_axes},
                             {"ground", read_ground},
                             {"fog", read_fog},
-                            {"lights", read_lights}};
+                            {"lights", read_lights},
+                            {"unit_length", read_unit_length}};
   std::vector<std::string_view> keys{"fields"};
   for (const Part& part : parts) keys.push_back(part.key);
   CATENA_CHECK(json::only_keys(root, keys));

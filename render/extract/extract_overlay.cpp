@@ -1,6 +1,7 @@
 #include "render/extract/extract_overlay.h"
 
 #include "engine/base/assert.h"
+#include "engine/scene/units.h"
 #include "render/extract/bar_ticks.h"
 #include "render/extract/extract_lines.h"
 
@@ -38,14 +39,19 @@ const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, con
   return found < packet.slices.size() ? &packet.slices[found] : nullptr;
 }
 
-Shown shown_by(const scene::World& world, scene::Entity e, const FramePacket& packet) {
+/// "velocity (m/s)"
+std::string with_unit(const std::string& name, const std::string& unit) { return unit.empty() ? name : name + " (" + unit + ")"; }
+
+Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
+  const scene::World& world = scene.world;
+  const auto named = [&](scene::Entity field) { return with_unit(name_of(world, field), scene::unit_of(scene, field)); };
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);
-    return {rows_of(volume.transfer.colors), name_of(world, volume.field)};
+    return {rows_of(volume.transfer.colors), named(volume.field)};
   }
   if (world.has<scene::Slice>(e)) {
     const SliceItem* slice = slice_item(world, e, packet);
-    return slice ? Shown{slice->colors, name_of(world, world.get<scene::Slice>(e).shown.field)} : Shown{};
+    return slice ? Shown{slice->colors, named(world.get<scene::Slice>(e).shown.field)} : Shown{};
   }
   CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
   const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
@@ -54,11 +60,11 @@ Shown shown_by(const scene::World& world, scene::Entity e, const FramePacket& pa
   const auto colors = rows_of(*points);
   switch (set.color_by->what) {
     case scene::ColorBy::What::field:
-      return {colors, name_of(world, set.color_by->field)};
+      return {colors, named(set.color_by->field)};
     case scene::ColorBy::What::speed:
-      return {colors, "|" + name_of(world, set.field) + "|"};
+      return {colors, with_unit("|" + name_of(world, set.field) + "|", scene::unit_of(scene, set.field))};
     case scene::ColorBy::What::arc_length:
-      return {colors, "arc length"};
+      return {colors, with_unit("arc length", scene::unit_length(scene))};
   }
   return {};
 }
@@ -70,7 +76,7 @@ Anchor anchor_of(scene::PictureCorner corner) {
 
 void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, Overlay& overlay) {
   for (const scene::ScalarBar& bar : scene.annotations.scalar_bars) {
-    Shown shown = shown_by(scene.world, bar.shown, packet);
+    Shown shown = shown_by(scene, bar.shown, packet);
     if (shown.colors.empty()) continue;
     ScalarBarItem item;
     item.colors = std::move(shown.colors);

@@ -58,6 +58,17 @@ Result<std::vector<T>> bytes_of(vk::Device& device, vk::Image& image, std::size_
   return values;
 }
 
+/// One texel of 4 bytes.
+void copy_texel(vk::Commands& commands, vk::Image& from, std::uint32_t x, std::uint32_t y, const vk::Buffer& to, VkDeviceSize offset) {
+  commands.use(from, vk::kTransferRead);
+  VkBufferImageCopy region{};
+  region.bufferOffset = offset;
+  region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.imageOffset = {std::int32_t(x), std::int32_t(y), 0};
+  region.imageExtent = {1, 1, 1};
+  vkCmdCopyImageToBuffer(commands.handle(), from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1, &region);
+}
+
 }  // namespace
 
 struct Renderer::Parts {
@@ -370,6 +381,31 @@ Result<IdPicture> Renderer::read_ids() {
   CATENA_TRY(picture.ids, p.kept_or_dropped(bytes_of<std::uint32_t>(*p.device, p.targets.opaque_id, picture.ids.size())));
   return picture;
 }
+
+Result<Picked> Renderer::pick(std::uint32_t x, std::uint32_t y) {
+  Parts& p = *parts_;
+  CATENA_ASSERT(p.drawn != 0 && x < p.view_width && y < p.view_height);
+  Picked picked{0, std::numeric_limits<double>::infinity()};
+  constexpr TargetSet kBoth = target::opaque_depth | target::opaque_id;
+  if ((p.drawn & kBoth) != kBoth) return picked;
+  const auto read = [&]() -> Outcome {
+    CATENA_TRY(const vk::Buffer buffer, vk::Buffer::create(*p.device, 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, vk::Memory::readback));
+    CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
+    copy_texel(commands, p.targets.opaque_depth, x, y, buffer, 0);
+    copy_texel(commands, p.targets.opaque_id, x, y, buffer, 4);
+    commands.barrier(buffer, vk::kTransferWrite, vk::kHostRead);
+    CATENA_CHECK(commands.finish());
+    float relative = 0;
+    std::memcpy(&relative, buffer.bytes().data(), 4);
+    std::memcpy(&picked.id, buffer.bytes().data() + 4, 4);
+    if (relative < NO_DEPTH) picked.depth = double(relative) + p.reference_depth;
+    return Done{};
+  };
+  CATENA_CHECK(p.kept_or_dropped(read()));
+  return picked;
+}
+
+std::array<std::uint32_t, 2> Renderer::view_size() const { return {parts_->view_width, parts_->view_height}; }
 
 /// Where mirrors hold what the window needs, they go: the next picture makes them anew in what is left. The picture stays.
 Outcome Renderer::Parts::paint(std::uint32_t width, std::uint32_t height, const UiItems& items) {

@@ -7,6 +7,7 @@
 /// say so. A call that fails leaves nothing of its frame behind: after VK_ERROR_OUT_OF_DEVICE_MEMORY a smaller packet can be drawn;
 /// after VK_ERROR_DEVICE_LOST (device().lost()) a new renderer draws the same packets.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -64,6 +65,12 @@ struct DepthPicture {
   std::vector<float> depth;
 };
 
+/// What one pixel shows, of the first eye: the id of the nearest opaque object (0: none) and its view depth (infinite: none).
+struct Picked {
+  std::uint32_t id = 0;
+  double depth = 0;
+};
+
 class Renderer {
  public:
   static Result<std::unique_ptr<Renderer>> create(const vk::DeviceOptions& options);
@@ -88,6 +95,10 @@ class Renderer {
   Result<DepthPicture> read_depth();
   /// The ids of the last picture.
   Result<IdPicture> read_ids();
+  /// Depth and id of one pixel of the last picture: two texels come back, not the images. A pixel beyond the picture is a bug.
+  Result<Picked> pick(std::uint32_t x, std::uint32_t y);
+  /// Pixels of one view of the last picture; 0 before the first.
+  std::array<std::uint32_t, 2> view_size() const;
   /// Shows the last picture in a window (scaled to it), with the user interface over it at the window's own pixels (ui.h). Again with
   /// another `ui`: the picture is not drawn again. False: the swapchain no longer fits, resize it; nothing was shown then.
   Result<bool> present(vk::Swapchain& swapchain, const UiItems* ui = nullptr);

@@ -45,6 +45,18 @@ VkRect2D clip_of(const UiDraw& draw, const VkExtent3D& window) {
   return {{std::int32_t(x0), std::int32_t(y0)}, {x1 > x0 ? x1 - x0 : 0, y1 > y0 ? y1 - y0 : 0}};
 }
 
+/// All of the picture over `area` of the window.
+void show_picture(vk::Commands& commands, const vk::Image& picture, const vk::Image& window, const std::array<std::uint32_t, 4>& area) {
+  const auto side = [](std::uint32_t v) { return std::int32_t(v); };
+  VkImageBlit region{};
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.srcOffsets[1] = {side(picture.info().extent.width), side(picture.info().extent.height), 1};
+  region.dstOffsets[0] = {side(area[0]), side(area[1]), 0};
+  region.dstOffsets[1] = {side(area[2]), side(area[3]), 1};
+  vkCmdBlitImage(commands.handle(), picture.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, window.handle(),
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+}
+
 bool indices_lead_inside(const UiItems& items) {
   return std::ranges::all_of(items.draws, [&](const UiDraw& draw) {
     if (draw.first_index > items.indices.size() || draw.index_count > items.indices.size() - draw.first_index) return false;
@@ -139,8 +151,18 @@ Outcome UiPass::paint(vk::Image& picture, std::uint32_t width, std::uint32_t hei
   CATENA_CHECK(upload(items));
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*device_));
   commands.use(picture, vk::kTransferRead);
+  // the window may be smaller by now than when its area was worked out
+  const std::array<std::uint32_t, 4> whole{0, 0, width, height};
+  std::array<std::uint32_t, 4> area = items.area.value_or(whole);
+  area = {area[0], area[1], std::min(area[2], width), std::min(area[3], height)};
+  if (area[0] >= area[2] || area[1] >= area[3]) area = whole;
+  if (area != whole) {
+    const vk::ColorTarget cleared{&window_, std::array<float, 4>{0, 0, 0, 1}};
+    commands.begin_pass({&cleared, 1}, {});
+    commands.end_pass();
+  }
   commands.use(window_, vk::kTransferWrite);
-  commands.blit(picture, window_);
+  show_picture(commands, picture, window_, area);
   record(commands, items);
   commands.use(window_, vk::kTransferRead);
   return commands.finish();

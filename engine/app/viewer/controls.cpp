@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/app/viewer/camera_paths.h"
 #include "render/frame/camera_moves.h"
 
 namespace catena::app {
@@ -39,7 +40,8 @@ void move_hand(Controls& controls, const Input& input) {
   if (!place) place = render::project(camera, controls.view.target);  // the hand was behind the eye: back into the picture
   if (!place) return;
   const double depth = place->z * (1 + kDepthPerNotch * input.wheel);
-  controls.hand = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
+  const Vec3 moved = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
+  controls.hand = controls.hand_mode ? controls.hand + yielding(moved - controls.hand, controls.force_n, controls.max_force_n) : moved;
 }
 
 /// Along an axis, all in the picture; the angle and the projection stay.
@@ -52,6 +54,16 @@ void look_along(Controls& controls, const Input& input) {
 }
 
 }  // namespace
+
+Vec3 yielding(const Vec3& motion, const Vec3& force_n, double max_force_n) {
+  constexpr double kLeast = 0.25;
+  const double force = norm(force_n);
+  if (!(max_force_n > 0) || !(force > 0)) return motion;
+  const Vec3 away = 1 / force * force_n;
+  const double along = dot(motion, away);
+  if (along >= 0) return motion;
+  return motion - (1 - kLeast) * std::min(1.0, force / max_force_n) * along * away;
+}
 
 void orbit(render::View& view, double yaw, double pitch) {
   const Vec3 up = direction(view.up);
@@ -104,11 +116,17 @@ Changed apply(Controls& controls, const Input& input) {
   } else if (hand && (moved || wheeled)) {
     move_hand(controls, input);
     changed.hand = true;
+  } else if (controls.fly && input.left && moved) {
+    const double turn = controls.view.fovy_deg * kPi / 180 / input.height;
+    look(controls.view, -turn * input.dx, turn * input.dy);
+    changed.view = true;
   } else if (input.left && moved) {
     orbit(controls.view, -kTurnPerHeight * input.dx / input.height, kTurnPerHeight * input.dy / input.height);
     changed.view = true;
   }
-  if (!hand && wheeled) {
+  if (controls.fly && wheeled && !hand) {
+    controls.fly_speed = std::clamp(controls.fly_speed * std::pow(1 / kZoomPerNotch, input.wheel), 0.02, 50.0);
+  } else if (!hand && wheeled) {
     zoom(controls.view, std::pow(kZoomPerNotch, input.wheel));
     changed.view = true;
   }
@@ -121,22 +139,42 @@ Changed apply(Controls& controls, const Input& input) {
   return changed;
 }
 
-std::string_view key_help() {
-  return "left drag            orbit\n"
-         "middle, shift+left   pan\n"
-         "wheel                zoom\n"
-         "right drag, control  move the hand in the picture's plane (wheel: depth)\n"
-         "H                    hand mode: the mouse is the hand, the left button its button 1\n"
-         "space                the hand's button 1\n"
-         "F                    a haptic device's forces on and off (off at first)\n"
-         "1, 2, 3              look along +x, +y, +z, at all that is drawn; with shift along -x, -y, -z\n"
-         "A, Home              all that is drawn into the picture, from the same direction\n"
-         "O                    orthographic or perspective\n"
-         "R                    the first view again\n"
-         "P                    the pulses along streamlines stand or run\n"
-         "F2                   the next stereo mode\n"
-         "F1, ?                these keys\n"
-         "Q, Esc               quit\n";
+const std::vector<KeyHelp>& key_list() {
+  static const std::vector<KeyHelp> keys = {
+      {"The eye", "left drag", "orbit"},
+      {"The eye", "middle, shift+left", "pan"},
+      {"The eye", "wheel", "zoom"},
+      {"The eye", "1, 2, 3", "look along +x, +y, +z, at all that is drawn; with shift along -x, -y, -z"},
+      {"The eye", "A, Home", "all that is drawn into the picture, from the same direction"},
+      {"The eye", "O", "orthographic or perspective"},
+      {"The eye", "R", "the first view again"},
+      {"The eye", "T", "turntable, until T or the mouse"},
+      {"The eye", "V", "fly: W S A D or arrows, E up, Q down, shift faster, left drag looks about, wheel: pace; V or Esc ends it"},
+      {"The hand", "right drag, control", "move the hand in the picture's plane (wheel: depth)"},
+      {"The hand", "H", "hand mode: the mouse is the hand, the left button its button 1"},
+      {"The hand", "space", "the hand's button 1"},
+      {"The hand", "F", "a haptic device's forces on and off (off at first)"},
+      {"The hand", "device button 1", "takes hold of widgets, selects; what the scene's \"on\" says"},
+      {"The scene", "Ctrl+O", "open; a file can be dropped on the window as well"},
+      {"The scene", "Ctrl+S, Ctrl+Shift+S", "save (with the view, if it was moved), save as"},
+      {"The scene", "Ctrl+Z, Ctrl+Y", "undo, redo"},
+      {"The scene", "P", "the pulses along streamlines stand or run"},
+      {"The window", "Tab", "panels"},
+      {"The window", "F2", "the next stereo mode"},
+      {"The window", "F11", "full screen"},
+      {"The window", "F12, Shift+F12", "write the picture, the window, as SCENE-001.png"},
+      {"The window", "F1, ?", "these keys"},
+      {"The window", "Q, Ctrl+Q, Esc", "quit"}};
+  return keys;
+}
+
+std::string key_help() {
+  std::string text;
+  for (const KeyHelp& key : key_list()) {
+    const std::string keys = key.keys;
+    text += keys + std::string(keys.size() < 21 ? 21 - keys.size() : 1, ' ') + key.does + "\n";
+  }
+  return text;
 }
 
 }  // namespace catena::app

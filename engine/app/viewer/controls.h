@@ -2,6 +2,8 @@
 ///   orbit: left drag     pan: middle drag, or shift and left drag     zoom: wheel
 ///   hand:  right drag, or control held, or hand mode (H): motion on the plane through the probe parallel to the picture,
 ///          wheel for depth; in hand mode the left button (anywhere the space bar) is the device's button 1
+///   In hand mode the mouse pushes harder the harder it is held back: motion against the force moves the hand less (yielding).
+///   fly (V): left drag looks about, wheel changes the pace; the keys are camera_paths.h's
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,9 +18,10 @@ namespace catena::app {
 /// What a key asks of the program as a whole.
 enum class Command { undo, redo, open, save, save_as, quit, screenshot, window_screenshot, full_screen, toggle_panels, turntable, fly };
 
-/// A piece of input under one set of held buttons. Window coordinates (y down); differences since the last piece.
+/// A piece of input under one set of held buttons. Coordinates of the window, or of the picture's area in it (y down); differences since
+/// the last piece.
 struct Input {
-  double width = 1, height = 1;  ///< of the window
+  double width = 1, height = 1;  ///< of the window, or the area
   double x = 0, y = 0;           ///< of the pointer where the piece begins
   double dx = 0, dy = 0, wheel = 0;
   bool left = false, middle = false, right = false;  ///< held
@@ -27,6 +30,7 @@ struct Input {
        quit = false;  ///< pressed in this piece
   bool fit = false, toggle_projection = false, toggle_pulses = false;
   std::optional<int> axis;  ///< 0, 1, 2: look along x, y, z; with shift the other way
+  bool escape = false;      ///< what is open above all goes, else the program
   bool damaged = false;     ///< the window system lost the picture
   std::vector<Command> commands{};
   std::vector<std::string> dropped{};  ///< files
@@ -38,6 +42,10 @@ struct Controls {
   Vec3 hand{0.0};           ///< world units
   std::uint32_t buttons = 0;
   bool hand_mode = false;
+  Vec3 force_n{0.0};       ///< on the hand, world axes
+  double max_force_n = 0;  ///< 0: the mouse yields to nothing
+  bool fly = false;
+  double fly_speed = 1;  ///< times kFlySizesPerS
 };
 
 /// What an input changed.
@@ -48,6 +56,10 @@ struct Changed {
 
 Changed apply(Controls& controls, const Input& input);
 
+/// What is left of the mouse's motion in hand mode: the part against the force counts less, down to a quarter at the greatest force. Out of
+/// the thing that pushes, and along it, the hand goes with the mouse.
+Vec3 yielding(const Vec3& motion, const Vec3& force_n, double max_force_n);
+
 /// Turns the eye about the target: `yaw` about the view's up, `pitch` (radians, upwards) short of the poles.
 void orbit(render::View& view, double yaw, double pitch);
 /// The eye's distance (orthographic: the picture's height) times `factor`.
@@ -56,7 +68,12 @@ void zoom(render::View& view, double factor);
 /// Between perspective and orthographic, with the same size of things in the target's plane.
 void toggle_projection(render::View& view);
 
-/// The keys, for the terminal.
-std::string_view key_help();
+/// One thing that a key or a button does.
+struct KeyHelp {
+  const char *section, *keys, *does;
+};
+const std::vector<KeyHelp>& key_list();
+/// The same for the terminal.
+std::string key_help();
 
 }  // namespace catena::app

@@ -31,10 +31,11 @@ void choose_style(float scale) {
 }  // namespace
 
 struct Gui::Parts {
+  Window* window;
   std::shared_ptr<const render::UiTexture> font;
 };
 
-Gui::Gui(Window& window) : parts_(std::make_unique<Parts>()) {
+Gui::Gui(Window& window) : parts_(std::make_unique<Parts>(Parts{&window, nullptr})) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -70,6 +71,7 @@ Gui::~Gui() {
 void Gui::begin() {
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
+  parts_->window->tell_releases();
 }
 
 render::UiItems Gui::end() {
@@ -105,7 +107,9 @@ bool Gui::holds(double x, double y) const {
   return false;
 }
 
-bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput; }
+bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput || ImGui::GetTopMostPopupModal() != nullptr; }
+
+void Gui::hide_pointer() { ImGui::SetMouseCursor(ImGuiMouseCursor_None); }
 
 bool Gui::is_busy() const { return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput; }
 

@@ -24,6 +24,8 @@ class Gui {
   bool holds(double x, double y) const;
   /// Keys are text now.
   bool wants_keys() const;
+  /// The pointer is not shown over the window, for this frame.
+  void hide_pointer();
   /// Something of it is being held, typed into, or open above all.
   bool is_busy() const;
 

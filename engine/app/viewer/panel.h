@@ -11,9 +11,11 @@
 #include "engine/app/viewer/controls.h"
 #include "engine/app/viewer/frame_times.h"
 #include "engine/app/viewer/hand_host.h"
+#include "engine/app/viewer/layout.h"
 #include "engine/app/viewer/pacing.h"
 #include "engine/app/viewer/scene_host.h"
 #include "engine/app/viewer/screen.h"
+#include "engine/app/viewer/values.h"
 
 namespace catena::app {
 
@@ -24,13 +26,20 @@ struct Message {
   std::int64_t at_ns = 0;
 };
 
+/// What goes on once it is decided what becomes of unsaved changes.
+struct Leaving {
+  bool quit = false;
+  std::string open;  ///< a path; empty: nothing is opened
+};
+enum class Answer { save, discard, cancel };
+
 /// What the window does that is not the scene; panels write their wishes here, the session fulfils them after the frame.
 struct ViewState {
   bool panels = true;  ///< the side window and the status line
   bool help = false;
   bool turntable = false;
   bool quit = false;
-  std::optional<std::string> open, save;    ///< paths
+  std::optional<std::string> open, save;    ///< paths; save "": where the scene comes from
   bool ask_open = false, ask_save = false;  ///< show the dialogs
   std::optional<std::string> screenshot;    ///< .png to write
   bool screenshot_of_window = false;        ///< with the interface
@@ -38,10 +47,25 @@ struct ViewState {
   bool estimate = false;                    ///< the error of the picture at rest is asked for
   std::optional<std::string> device;        ///< another one to hold the probe
   std::optional<std::string> record;        ///< .catlog to write from now on; empty: no more
+  bool fly = false, full_screen = false;
+  std::optional<Leaving> ask_unsaved;      ///< the question stands
+  std::optional<Answer> answer;            ///< to it
+  std::optional<Leaving> after_save;       ///< what a save that succeeds goes on with
+  std::optional<std::string> ask_dropped;  ///< a data file on an open scene: open it, or add it
+  std::optional<std::string> add;          ///< a data file that shall join the scene
+  std::string loading;                     ///< the path that is being opened; empty: none
+  bool untitled = false;                   ///< nothing is open: the window says how to begin
+  std::vector<std::string> recent;         ///< paths, the newest first
+  Area area;                               ///< of the picture, window coordinates
+  Input moves{};                           ///< of the eye, asked for by the menu
+  PlaceValues pointer, probe, proxy;       ///< for the table of values
+  std::string unit_length;
+  double force_share = 0;     ///< of the greatest force, 0..1
   std::deque<Message> messages;             ///< the newest last, at most kMessages
   static constexpr std::size_t kMessages = 100;
   double pointer_x = 0, pointer_y = 0;  ///< window coordinates
   bool pointer_on_picture = false;      ///< and not on a panel
+  bool pointer_seen = false;            ///< it has moved over the window
   bool pointer_pressed = false;         ///< a button is down
   int next_drag = 0;                    ///< numbers drags: edits of one drag are one step of undo
 
@@ -62,6 +86,10 @@ struct PanelContext {
   bool remove(std::string_view pointer, const std::string& what);
 };
 
+/// What the interface takes of the window where panels are shown (after the first frame's begin).
+inline constexpr float kSideWidth = 320;
+Edges interface_edges();
+
 struct Panel {
   const char* title;
   bool open_at_first;
@@ -78,6 +106,11 @@ void draw_menu(PanelContext& context);
 void draw_dialogs(PanelContext& context);
 void draw_status(PanelContext& context);
 void draw_times(PanelContext& context);
+void draw_values(PanelContext& context);
+void draw_file_dialogs(PanelContext& context);
+void draw_start(PanelContext& context);
+/// The recent files as a list to choose from; false: there are none.
+bool draw_recent(ViewState& state);
 void draw_chain(PanelContext& context);
 void draw_device(PanelContext& context);
 void draw_recording(PanelContext& context);

@@ -7,9 +7,8 @@ namespace catena::app {
 
 namespace {
 
-constexpr float kSideWidth = 320;
-
 constexpr Panel kPanels[] = {
+    {"Values", true, draw_values},
     {"Chain", true, draw_chain},      {"Widgets", false, draw_widgets},
     {"Device", false, draw_device}, {"Recording", false, draw_recording},
     {"Quality", false, draw_quality}, {"Times", false, draw_times},
@@ -55,13 +54,18 @@ bool PanelContext::remove(std::string_view pointer, const std::string& what) {
   return static_cast<bool>(done);
 }
 
+Edges interface_edges() { return {kSideWidth, ImGui::GetFrameHeight(), ImGui::GetFrameHeightWithSpacing()}; }
+
 void draw_interface(PanelContext& context) {
-  draw_menu(context);
-  if (context.state.panels) {
-    draw_side(context);
-    draw_status(context);
-  }
+  const ViewState& state = context.state;
+  // without panels the menu comes down where the pointer looks for it
+  const bool looked_for = state.pointer_y < ImGui::GetFrameHeight() && state.pointer_y >= 0 && !state.pointer_pressed && state.pointer_seen;
+  if (state.panels || looked_for || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) draw_menu(context);
+  if (state.panels) draw_side(context);
+  draw_status(context);
+  draw_start(context);
   draw_dialogs(context);
+  draw_file_dialogs(context);
 }
 
 }  // namespace catena::app

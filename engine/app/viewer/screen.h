@@ -2,6 +2,7 @@
 /// changes its size gets a new swapchain; a minimised one is not drawn to. Frame thread.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,13 @@ class Screen {
   bool is_resized() const;
 
   Outcome draw(const render::FramePacket& packet, const render::RenderSettings& settings);
-  /// The last picture with the user interface over it.
+  /// The last picture with the user interface over it. Where the device is lost on the way it is made again, and the picture is gone:
+  /// has_picture() says so.
   Outcome show(const render::UiItems& ui);
+  /// What the picture shows at a pixel; nothing while there is no picture, or beyond it.
+  std::optional<render::Picked> pick(double x, double y);
+  /// There is a picture to show.
+  bool has_picture() const { return has_picture_; }
   /// The window as it is shown, user interface and all.
   Result<render::Picture> window_picture();
 
@@ -39,13 +45,15 @@ class Screen {
  private:
   Screen(Window& window, Options options) : window_(window), options_(std::move(options)) {}
   Outcome make();
+  Outcome recover();
 
   Window& window_;
   Options options_;
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::vk::Swapchain> swapchain_;
   bool fits_ = true;  ///< the swapchain still has the window's size
-  int recoveries_ = 0;
+  bool has_picture_ = false;
+  int recoveries_ = 0, losses_ = 0;  ///< losses_: while showing, in a row
 };
 
 }  // namespace catena::app

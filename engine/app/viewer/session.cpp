@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "engine/app/command.h"
-#include "engine/app/hand/hand_setup.h"
+#include "engine/app/viewer/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "render/extract/extract.h"
@@ -24,27 +25,53 @@ constexpr double kMinimisedWaitS = 0.1;
 constexpr double kTitleS = 0.25;
 constexpr double kLiveS = 0.1;  // between interfaces that only follow the hand
 
+constexpr const char* kEmptyScene = "{\n  \"fields\": {},\n  \"chain\": []\n}\n";
+
 }  // namespace
 
-std::optional<Failure> Session::open_scene() {
-  scene::Scene& scene = scene_->scene();
-  // the program loads what is felt, the packet what is drawn; the workspace is fitted to both, then the program is final
-  if (auto felt = HandHost::load(scene); !felt) return Failure{2, felt.error().message};
-  auto packet = render::extract_frame(scene, options_.width, options_.height);
-  if (!packet) return Failure{2, packet.error().message};
-  render::Bounds bounds = render::packet_bounds(*packet);
-  bounds.add(loaded_bounds(scene));
-  if (auto prepared = hand_.prepare(scene, bounds, recorded()); !prepared) return Failure{2, prepared.error().message};
+/// The eye's place in a scene that has just become the one that is shown.
+void Session::look_at(const LoadedScene& loaded) {
+  scene_->bounds = loaded.bounds;
   controls_.hand = hand_.first_probe();
-
-  if (!scene.camera.given && packet->volumes.empty() && packet->isosurfaces.empty() && packet->tubes.empty())
-    packet->view = render::fit_view(bounds, static_cast<double>(options_.width) / options_.height);
-  controls_.view = controls_.home = packet->view;
-  controls_.bounds = scene_->bounds = bounds;
+  controls_.view = controls_.home = saved_view_ = loaded.packet.view;
+  controls_.bounds = loaded.bounds;
+  flight_ = {};
+  shown_.reset();
+  picked_stale_ = true;
   pin_camera();
   measure();
   check_edits();
-  return std::nullopt;
+}
+
+/// Loads what the scene draws and feels; the hand takes hold.
+Outcome Session::load_first(std::uint32_t width, std::uint32_t height) {
+  CATENA_TRY(LoadedScene loaded, load_scene(std::move(*scene_), width, height));
+  scene_ = std::move(loaded.host);
+  CATENA_CHECK(hand_.prepare(scene_->scene(), loaded.bounds, recorded()));
+  look_at(loaded);
+  return Done{};
+}
+
+/// The next best thing to a window: what --screenshot asks for, drawn as `catena render` does. Exit code 0.
+std::optional<Failure> Session::draw_without_window(const std::string& why) {
+  const bool picture_only =
+      options_.window_screenshot.empty() && options_.servo_stats.empty() && options_.frame_stats.empty() && options_.hand.record.empty();
+  if (options_.screenshot.empty() || !picture_only) return Failure{1, why};
+  if (auto loaded = load_first(options_.width, options_.height); !loaded) return Failure{2, loaded.error().message};
+  const auto draw = [&]() -> Outcome {
+    scene::Scene& scene = scene_->scene();
+    const auto eye = render::view_size(render::packing_of(scene.stereo), render::views_of(scene.stereo), options_.width, options_.height);
+    CATENA_TRY(const render::FramePacket packet,
+               render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height)));
+    render::vk::DeviceOptions device;
+    device.memory_budget_bytes = options_.gpu_memory;
+    CATENA_TRY(const std::unique_ptr<render::Renderer> renderer, render::Renderer::create(device));
+    CATENA_CHECK(renderer->draw(packet, pacing_.best(kind_).settings));
+    CATENA_TRY(const render::Picture picture, renderer->read_back());
+    return render::write_png(options_.screenshot, picture, scene.background.transparent);
+  }();
+  if (!draw) return Failure{1, draw.error().message};
+  return Failure{0, why.substr(0, why.find(';')) + "; " + options_.screenshot + " was drawn without a window"};
 }
 
 /// An edit counts if the hand can feel what it makes.
@@ -64,11 +91,15 @@ void Session::measure() {
 }
 
 std::optional<Failure> Session::open() {
-  auto document = scene::Document::open(options_.source, options_.overrides);
+  // what is wrong with the scene or the device is said before any window opens
+  auto document = options_.source.empty() ? scene::Document::make(kEmptyScene, (std::filesystem::current_path() / "scene.json").string())
+                                          : scene::Document::open(options_.source, options_.overrides);
   if (!document) return Failure{2, document.error().message};
   auto host = SceneHost::open(std::move(*document), options_.adjust);
   if (!host) return Failure{2, host.error().message};
   scene_ = std::move(*host);
+  state_.untitled = options_.source.empty();
+  owns_file_ = is_scene_name(options_.source);
   if (auto opened = hand_.open_device(scene_->scene()); !opened) return Failure{2, opened.error().message};
   if (!options_.shaders.empty()) {
     auto reload = ShaderReload::open(options_.shaders);
@@ -76,19 +107,34 @@ std::optional<Failure> Session::open() {
     reload_ = std::move(*reload);
   }
   auto window = Window::create(options_.width, options_.height, "catena");
-  if (!window) return Failure{1, window.error().message};
+  if (!window) return draw_without_window(window.error().message);
   window_ = std::move(*window);
-  if (auto failure = open_scene()) return failure;
-
-  auto screen = Screen::open(*window_, {options_.gpu_memory, {}});
-  if (!screen) return Failure{1, screen.error().message};
-  screen_ = std::move(*screen);
   gui_ = std::make_unique<Gui>(*window_);
-  state_.panels = options_.panels;
+  state_.panels = options_.panels && options_.width >= kNarrowWidth;
+  // the picture's size: the panels' edges are known once the interface has begun
+  gui_->begin();
+  const Edges edges = state_.panels ? interface_edges() : Edges{};
+  gui_->end();
+  state_.area = picture_area(options_.width, options_.height, edges);
+
+  const auto loaded = load_first(static_cast<std::uint32_t>(state_.area.width), static_cast<std::uint32_t>(state_.area.height));
+  if (!loaded) return Failure{2, loaded.error().message};
+  if (auto failure = open_screen()) return failure;
+  state_.recent = recent_.shown();
+  if (!options_.source.empty()) remember(options_.source);
   // a device that pushes is let go by its own way out, Ctrl-C or not
   if (!hand_.is_mouse()) interrupt_.emplace();
   hand_.start();
   if (!hand_.note().empty()) state_.say(hand_.note());
+  return std::nullopt;
+}
+
+std::optional<Failure> Session::open_screen() {
+  auto screen = Screen::open(*window_, {options_.gpu_memory, options_.fail});
+  if (!screen) return Failure{1, screen.error().message};
+  screen_ = std::move(*screen);
+  const render::vk::DeviceInfo& device = screen_->renderer().device().info();
+  if (device.is_cpu()) state_.say("no GPU: drawn by the processor (" + device.name + ")");
   return std::nullopt;
 }
 
@@ -122,10 +168,16 @@ bool Session::run_pulses() {
 
 bool Session::take_shaders() { return reload_ && reload_->poll(screen_->renderer(), now_ns()); }
 
-std::optional<Failure> Session::draw(const NextPicture& next) {
+/// Into the picture's part of the window; `for_file`: of the whole window's size, and no picture of the session's.
+std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
   std::uint32_t width = 0, height = 0;
   screen_->size(width, height);
   if (width == 0 || height == 0) return std::nullopt;
+  if (!for_file) {
+    lay_out();
+    width = pixels_[2] - pixels_[0];
+    height = pixels_[3] - pixels_[1];
+  }
 
   scene::Scene& scene = scene_->scene();
   const render::Packing packing = render::packing_of(scene.stereo);
@@ -162,6 +214,9 @@ std::optional<Failure> Session::draw(const NextPicture& next) {
     for (const std::string& note : stats.notes) fmt::print(stderr, "catena: {}\n", note);
     for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", coarser.words());
   }
+  shown_ = std::move(*packet);
+  picked_stale_ = true;
+  if (for_file) return std::nullopt;
   times_.add(ms, now_ns());
   ++frames_in_title_;
   return std::nullopt;
@@ -172,6 +227,9 @@ std::optional<Failure> Session::estimate() {
   if (!pacing_.may_estimate()) return std::nullopt;
   std::uint32_t width = 0, height = 0;
   screen_->size(width, height);
+  if (width == 0 || height == 0) return std::nullopt;
+  width = pixels_[2] - pixels_[0];
+  height = pixels_[3] - pixels_[1];
   scene::Scene& scene = scene_->scene();
   const render::Packing packing = render::packing_of(scene.stereo);
   const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(1u, width), std::max(1u, height));
@@ -189,10 +247,14 @@ std::optional<Failure> Session::estimate() {
 /// The interface over the last picture.
 std::optional<Failure> Session::show() {
   const std::int64_t start = now_ns();
+  update_values();
   gui_->begin();
+  // the glyph is the pointer while the mouse is the hand
+  if (controls_.hand_mode && hand_.is_mouse() && state_.pointer_on_picture) gui_->hide_pointer();
   PanelContext panels = context();
   draw_interface(panels);
-  const render::UiItems items = gui_->end();
+  render::UiItems items = gui_->end();
+  items.area = pixels_;
   window_->keys_are_text(gui_->wants_keys());
   if (auto shown = screen_->show(items); !shown) return Failure{1, shown.error().message};
   times_.add_interface(ms_since(start));
@@ -204,7 +266,9 @@ void Session::update_title() {
   const double since_s = 1e-3 * ms_since(last_title_);
   if (last_title_ != 0 && since_s < kTitleS) return;
   const exchange::HapticState& felt = hand_.felt();
-  std::string title = fmt::format("catena  {:.0f} fps  {:.2f} N", last_title_ == 0 ? 0 : frames_in_title_ / since_s, norm(felt.force_n));
+  const scene::Document& document = scene_->document();
+  const std::string name = state_.untitled ? "untitled" : std::filesystem::path(document.path()).filename().string();
+  std::string title = fmt::format("catena  {}{}  {:.0f} fps  {:.2f} N", name, document.is_modified() ? " \u2022" : "", last_title_ == 0 ? 0 : frames_in_title_ / since_s, norm(felt.force_n));
   const auto links = std::min(static_cast<std::size_t>(felt.link_count), hand_.link_names().size());
   for (std::size_t k = 0; k < links; ++k)
     title += fmt::format("  {} {}", hand_.link_names()[k], exchange::status_word(felt.links[k].status));
@@ -223,6 +287,8 @@ void Session::update_title() {
 void Session::say_goodbye() const {
   const exchange::HapticState& felt = hand_.felt();
   fmt::print("{} frames, {:.1f} ms median, on {}\n", times_.count(), 1e-3 * times_.draw().p50_us, screen_->renderer().stats().device);
+  if (screen_->recoveries() > 0)
+    fmt::print("the graphics device was lost and started again {} time{}\n", screen_->recoveries(), screen_->recoveries() == 1 ? "" : "s");
   fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", felt.probe.x, felt.probe.y, felt.probe.z,
              norm(felt.force_n), felt.tick, felt.missed_deadlines);
 }
@@ -232,21 +298,25 @@ std::optional<Failure> Session::run() {
   const std::int64_t start = now_ns();
   const bool always = options_.frames > 0 || options_.seconds > 0;
   bool busy = true, minimised = false, live = false;
-  while (!state_.quit && (options_.frames == 0 || times_.count() < options_.frames) &&
+  last_move_ns_ = start;
+  while (!leaves_ && (options_.frames == 0 || times_.count() < options_.frames) &&
          (options_.seconds <= 0 || 1e-3 * ms_since(start) < options_.seconds)) {
     const Changed changed = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
-    const bool edited = take_edits(), news = hand_.take(scene_->scene());
-    live = live || news;
+    obey_view();
+    const bool opened = take_loaded(), edited = take_edits(), news = hand_.take(scene_->scene());
+    live = live || news || loader_.is_busy();
     if (news) keep_widgets();
     std::uint32_t width = 0, height = 0;
     screen_->size(width, height);
     minimised = width == 0;
     if (minimised) {
       damaged_ = true;
+      fulfil_wishes();  // it can be closed all the same
       continue;
     }
-    const bool pulsed = run_pulses(), reloaded = take_shaders(), resized = screen_->is_resized();
-    const bool moved = changed.any() || edited || news || resized || pulsed || reloaded || times_.count() == 0;
+    const bool pulsed = run_pulses(), reloaded = take_shaders(), turned = move_camera();
+    const bool resized = screen_->is_resized() || lay_out() || !screen_->has_picture();
+    const bool moved = changed.any() || opened || std::exchange(moved_by_menu_, false) || edited || news || resized || pulsed || reloaded || turned || times_.count() == 0;
     if (moved) last_move = now_ns();
 
     // a picture in time while something moves, better ones when it rests
@@ -266,7 +336,8 @@ std::optional<Failure> Session::run() {
 
     // the interface follows the person at once, the hand at a calmer pace
     const bool due = live && 1e-3 * ms_since(last_show) >= kLiveS;
-    if (next || damaged_ || due || window_->happened() || gui_->is_busy()) {
+    if (next || damaged_ || due || unsettled_ > 0 || window_->happened() || gui_->is_busy()) {
+      unsettled_ = std::max(0, unsettled_ - 1);
       if (auto failure = show()) return failure;
       last_show = now_ns();
       live = false;
@@ -286,19 +357,22 @@ std::optional<Failure> Session::finish() {
     file->write(times_.json());
     if (auto written = file->commit(); !written) return Failure{2, written.error().message};
   }
-  if (!options_.screenshot.empty() && times_.count() > 0) {
-    if (!pacing_.finished())
-      if (auto failure = draw(pacing_.best(kind_))) return failure;
-    auto picture = screen_->renderer().read_back();
-    if (!picture) return Failure{1, picture.error().message};
-    if (auto written = render::write_png(options_.screenshot, *picture, scene_->scene().background.transparent); !written)
-      return Failure{2, written.error().message};
-  }
   if (!options_.window_screenshot.empty() && times_.count() > 0) {
     if (auto failure = show()) return failure;
     auto picture = screen_->window_picture();
     if (!picture) return Failure{1, picture.error().message};
     if (auto written = render::write_png(options_.window_screenshot, *picture, false); !written) return Failure{2, written.error().message};
+  }
+  if (!options_.screenshot.empty() && times_.count() > 0) {
+    std::uint32_t width = 0, height = 0;
+    screen_->size(width, height);
+    const bool whole = pixels_ == std::array<std::uint32_t, 4>{0, 0, width, height};
+    if (!pacing_.finished() || !whole || !screen_->has_picture())
+      if (auto failure = draw(pacing_.best(kind_), !whole)) return failure;
+    auto picture = screen_->renderer().read_back();
+    if (!picture) return Failure{1, picture.error().message};
+    if (auto written = render::write_png(options_.screenshot, *picture, scene_->scene().background.transparent); !written)
+      return Failure{2, written.error().message};
   }
   say_goodbye();
   return std::nullopt;

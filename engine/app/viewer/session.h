@@ -8,6 +8,8 @@
 #include "engine/app/viewer/gui.h"
 #include "engine/app/viewer/panel.h"
 #include "engine/app/viewer/pulse_clock.h"
+#include "engine/app/viewer/recent_files.h"
+#include "engine/app/viewer/scene_loader.h"
 #include "engine/app/viewer/shader_reload.h"
 #include "engine/app/viewer/viewer.h"
 #include "engine/app/viewer/widget_edits.h"
@@ -28,11 +30,14 @@ class Session {
 
  private:
   // session.cpp
-  std::optional<Failure> open_scene();
-  std::optional<Failure> draw(const NextPicture& next);
+  Outcome load_first(std::uint32_t width, std::uint32_t height);
+  void look_at(const LoadedScene& loaded);
+  std::optional<Failure> open_screen();
+  std::optional<Failure> draw(const NextPicture& next, bool for_file = false);
   std::optional<Failure> estimate();
   std::optional<Failure> show();
   std::optional<Failure> finish();
+  std::optional<Failure> draw_without_window(const std::string& why);
   bool run_pulses();
   bool take_edits();
   void keep_widgets();
@@ -45,14 +50,36 @@ class Session {
   void check_edits();
   PanelContext context() { return {*scene_, hand_, *screen_, controls_, pacing_, times_, state_}; }
 
+  // session_view.cpp
+  bool lay_out();
+  double aspect() const { return state_.area.width / state_.area.height; }
+  bool move_camera();
+  void obey_view();
+  void stop_turning(const Input& input);
+  bool is_gliding() const;
+  void update_values();
+
   // session_input.cpp
   Changed take_input(double wait_s);
   void obey(Command command);
   void obey_once(const Input& input, Changed& changed);
   Input routed(Input input);
+  void escape();
   void fulfil_wishes();
   void fulfil_wishes_for_the_hand();
-  void replace_scene(const std::string& path);
+
+  // session_files.cpp
+  void fulfil_wishes_for_files();
+  void leave(const Leaving& leaving);
+  void leave_or_ask(const Leaving& leaving);
+  void drop(const std::string& path);
+  bool save(const std::string& path);
+  void start_loading(const std::string& path, bool adds);
+  bool take_loaded();
+  void replace_scene(LoadedScene loaded, const std::string& path);
+  void add_to_scene(LoadedScene loaded, const std::string& path);
+  void remember(const std::string& path);
+  void write_screenshot(const std::string& path);
 
   ViewOptions options_;
   std::optional<SceneHost> scene_;
@@ -70,6 +97,20 @@ class Session {
   std::optional<ShaderReload> reload_;
   std::optional<Interrupt> interrupt_;
   HandHost hand_;
+
+  RecentFiles recent_;
+  SceneLoader loader_;
+  bool loading_adds_ = false;  ///< what is being loaded joins the scene
+  std::optional<render::FramePacket> shown_;  ///< the last picture's
+  std::array<std::uint32_t, 4> pixels_{};     ///< where the picture lies in the window
+  render::View saved_view_;                   ///< that the scene's text has, or began with
+  Flight flight_;
+  std::int64_t last_move_ns_ = 0;  ///< of the camera by itself
+  bool picked_stale_ = true;       ///< the place under the pointer is to be looked at again
+  bool owns_file_ = true;          ///< the scene was read from, or saved to, the file of its path
+  bool moved_by_menu_ = false;
+  bool leaves_ = false;            ///< the loop ends
+  int unsettled_ = 0;              ///< interfaces to come though nothing happens: they settle their sizes
 
   bool damaged_ = false;
   bool interface_holds_pointer_ = false;  ///< the buttons that are down went down on it

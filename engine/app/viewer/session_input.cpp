@@ -1,15 +1,13 @@
 // What the person does: to the interface, to the eye, to the hand, to the program.
-#include <fmt/format.h>
-
 #include <cstdio>
 
-#include "engine/app/hand/hand_setup.h"
 #include "engine/app/viewer/session.h"
-#include "engine/base/output_file.h"
-#include "render/extract/extract.h"
-#include "render/vk/picture.h"
 
 namespace catena::app {
+
+namespace {
+constexpr int kSettling = 3;
+}
 
 /// What the interface holds is not the scene's: a drag belongs to where it began.
 Input Session::routed(Input input) {
@@ -20,12 +18,31 @@ Input Session::routed(Input input) {
   state_.pointer_pressed = pressed;
   state_.pointer_x = input.x + input.dx;
   state_.pointer_y = input.y + input.dy;
-  state_.pointer_on_picture = !interface_holds_pointer_ && !gui_->holds(state_.pointer_x, state_.pointer_y);
+  if (input.dx != 0 || input.dy != 0) state_.pointer_seen = true;
+  state_.pointer_on_picture = !interface_holds_pointer_ && state_.area.contains(state_.pointer_x, state_.pointer_y) &&
+                              !gui_->holds(state_.pointer_x, state_.pointer_y);
   if (interface_holds_pointer_ || (!pressed && here)) {
     input.dx = input.dy = input.wheel = 0;
     input.left = input.middle = input.right = false;
   }
+  // from now on the picture is all there is
+  input.x -= state_.area.x;
+  input.y -= state_.area.y;
+  input.width = state_.area.width;
+  input.height = state_.area.height;
   return input;
+}
+
+/// What is open above all goes first, the program last.
+void Session::escape() {
+  if (state_.help)
+    state_.help = false;
+  else if (state_.fly)
+    state_.fly = false;
+  else if (state_.turntable)
+    state_.turntable = false;
+  else
+    state_.quit = true;
 }
 
 void Session::obey(Command command) {
@@ -41,7 +58,7 @@ void Session::obey(Command command) {
       state_.ask_open = true;
       return;
     case Command::save:
-      state_.save = scene_->document().path();
+      state_.save.emplace();
       return;
     case Command::save_as:
       state_.ask_save = true;
@@ -55,6 +72,7 @@ void Session::obey(Command command) {
       state_.screenshot_of_window = command == Command::window_screenshot;
       return;
     case Command::full_screen:
+      state_.full_screen = !state_.full_screen;
       return;
     case Command::toggle_panels:
       state_.panels = !state_.panels;
@@ -63,6 +81,7 @@ void Session::obey(Command command) {
       state_.turntable = !state_.turntable;
       return;
     case Command::fly:
+      state_.fly = !state_.fly;
       return;
   }
 }
@@ -79,11 +98,14 @@ void Session::obey_once(const Input& input, Changed& changed) {
   if (input.toggle_forces) hand_.set_forces(!hand_.forces());
   if (input.help) {
     state_.help = !state_.help;
-    std::fputs(std::string(key_help()).c_str(), stdout);
+    std::fputs(key_help().c_str(), stdout);
     std::fflush(stdout);
   }
   for (const Command command : input.commands) obey(command);
-  if (!input.dropped.empty()) state_.open = input.dropped.back();
+  if (input.escape) escape();
+  stop_turning(input);
+  if (input.dropped.size() > 1) state_.say("several files were dropped: the last one counts");
+  if (!input.dropped.empty()) drop(input.dropped.back());
 }
 
 Changed Session::take_input(double wait_s) {
@@ -94,7 +116,19 @@ Changed Session::take_input(double wait_s) {
     changed.hand = changed.hand || by_piece.hand;
     obey_once(piece, changed);
   }
-  state_.quit = state_.quit || window_->closing() || (interrupt_ && interrupt_->asked());
+  if (window_->closing()) {
+    window_->keep_open();
+    state_.quit = true;
+  }
+  leaves_ = leaves_ || (interrupt_ && interrupt_->asked());
+  if (window_->happened()) {
+    picked_stale_ = true;
+    unsettled_ = kSettling;
+  }
+  // what is held back while the mouse is the hand
+  controls_.fly = state_.fly;
+  controls_.force_n = hand_.is_mouse() ? hand_.felt().force_n : Vec3(0.0);
+  controls_.max_force_n = scene_->scene().coupling.max_force_n;
   if (changed.hand) hand_.move_mouse(scene_->scene(), controls_.hand, controls_.buttons);
   if (changed.view) pin_camera();
   return changed;
@@ -102,17 +136,17 @@ Changed Session::take_input(double wait_s) {
 
 /// What panels and keys asked for, after the frame in which they did.
 void Session::fulfil_wishes() {
-  if (const auto path = std::exchange(state_.save, std::nullopt)) {
-    const Outcome saved = scene_->save(*path);
-    state_.say(saved ? "saved " + scene_->document().path() : saved.error().message, !saved);
+  Input moves = std::exchange(state_.moves, Input());
+  if (moves.reset_view || moves.fit || moves.axis || moves.toggle_projection) {
+    moves.width = state_.area.width;
+    moves.height = state_.area.height;
+    stop_turning(moves);
+    if (apply(controls_, moves).view) {
+      pin_camera();
+      moved_by_menu_ = true;
+    }
   }
-  if (const auto path = std::exchange(state_.open, std::nullopt)) replace_scene(*path);
-  if (const auto path = std::exchange(state_.screenshot, std::nullopt)) {
-    auto picture = state_.screenshot_of_window ? screen_->window_picture() : screen_->renderer().read_back();
-    const std::string name = path->empty() ? "catena.png" : *path;
-    Outcome written = picture ? render::write_png(name, *picture, false) : Outcome(picture.error());
-    state_.say(written ? "wrote " + name : written.error().message, !written);
-  }
+  fulfil_wishes_for_files();
   if (const auto quality = std::exchange(state_.quality, std::nullopt)) pacing_ = Pacing(*quality);
   fulfil_wishes_for_the_hand();
 }
@@ -129,35 +163,6 @@ void Session::fulfil_wishes_for_the_hand() {
     const Outcome done = path->empty() ? hand_.stop_recording() : hand_.record(*path, recorded());
     state_.say(!done ? done.error().message : path->empty() ? "recorded " + before : "recording to " + *path, !done);
   }
-}
-
-/// Another scene in the same window; one that cannot be opened leaves this one.
-void Session::replace_scene(const std::string& path) {
-  const auto failed = [&](const Error& error) { state_.say(error.message, true); };
-  auto document = scene::Document::open(path);
-  if (!document) return failed(document.error());
-  auto host = SceneHost::open(std::move(*document), {});
-  if (!host) return failed(host.error());
-  scene::Scene& scene = host->scene();
-  if (auto felt = HandHost::load(scene); !felt) return failed(felt.error());
-  auto packet = render::extract_frame(scene, options_.width, options_.height);
-  if (!packet) return failed(packet.error());
-  render::Bounds bounds = render::packet_bounds(*packet);
-  bounds.add(loaded_bounds(scene));
-  if (auto taken = hand_.take_over(scene, bounds); !taken) return failed(taken.error());
-  scene_ = std::move(*host);
-  controls_.hand = hand_.first_probe();
-  if (!scene_->scene().camera.given && packet->volumes.empty() && packet->isosurfaces.empty() && packet->tubes.empty())
-    packet->view = render::fit_view(bounds, static_cast<double>(options_.width) / options_.height);
-  controls_.view = controls_.home = packet->view;
-  controls_.bounds = scene_->bounds = bounds;
-  pin_camera();
-  measure();
-  check_edits();
-  if (!scene_->scene().quality.empty() && !options_.quality_stated)
-    if (auto quality = parse_quality(scene_->scene().quality)) state_.quality = *quality;
-  scene_->touch();
-  state_.say("opened " + path);
 }
 
 }  // namespace catena::app

@@ -9,12 +9,13 @@
 
 #include "engine/app/render/quality_words.h"
 #include "engine/app/viewer/hand_host.h"
+#include "render/vk/device.h"
 #include "engine/scene/document.h"
 
 namespace catena::app {
 
 struct ViewOptions {
-  std::string source;                            ///< a scene or a data file
+  std::string source;                            ///< a scene or a data file; empty: the window begins with nothing
   std::vector<scene::FieldOverride> overrides;   ///< --field
   std::function<Outcome(scene::Scene&)> adjust;  ///< what the command line wants otherwise than the scene, whenever it is read
   HandHost::Options hand;
@@ -28,6 +29,7 @@ struct ViewOptions {
   bool panels = true;
   std::string screenshot;         ///< .png of the last picture, written at the end; empty: none
   std::string window_screenshot;  ///< the same with the interface
+  std::function<VkResult(render::vk::DriverCall)> fail{};  ///< tests only (vk::DeviceOptions)
   std::string servo_stats;        ///< .json of the servo, written at the end; empty: none
   std::string frame_stats;        ///< .json of the pictures, written at the end; empty: none
 };

@@ -4,6 +4,8 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 namespace catena::app {
@@ -30,6 +32,12 @@ std::optional<Command> command_of(int key, bool control, bool shift) {
   return std::nullopt;
 }
 
+bool is_fly_key(int key) {
+  constexpr int kKeys[] = {GLFW_KEY_W,  GLFW_KEY_A,    GLFW_KEY_S,    GLFW_KEY_D,   GLFW_KEY_E,
+                           GLFW_KEY_Q,  GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_UP, GLFW_KEY_DOWN};
+  return std::ranges::find(kKeys, key) != std::end(kKeys);
+}
+
 }  // namespace
 
 struct Window::Parts {
@@ -39,7 +47,9 @@ struct Window::Parts {
   double last_x = 0, last_y = 0;
   bool has_last = false;
   bool happened = false;
-  bool gui = false, keys_are_text = false;
+  bool gui = false, keys_are_text = false, fly = false;
+  std::vector<std::array<int, 3>> released;  ///< keys that the interface has not been told of: key, scancode, modifiers
+  std::array<int, 4> place{};  ///< before full screen: x, y, width, height
 
   ~Parts() {
     if (window != nullptr) glfwDestroyWindow(window);
@@ -126,7 +136,10 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   glfwSetKeyCallback(parts.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
     p.happened = true;
-    if (p.gui) ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
+    if (p.gui && action == GLFW_RELEASE)
+      p.released.push_back({key, scancode, mods});
+    else if (p.gui)
+      ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
     const bool held = action != GLFW_RELEASE;
     if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) p.hold(&Input::shift, held);
     if (key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL) p.hold(&Input::control, held);
@@ -136,7 +149,7 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
       p.current.commands.push_back(*command);
       return;
     }
-    if ((mods & GLFW_MOD_CONTROL) != 0) return;
+    if ((mods & GLFW_MOD_CONTROL) != 0 || (p.fly && is_fly_key(key))) return;
     if (key == GLFW_KEY_H) {
       p.cut();
       p.current.toggle_hand = true;
@@ -149,7 +162,8 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
     if (key == GLFW_KEY_P) p.current.toggle_pulses = true;
     if (key == GLFW_KEY_F2) p.current.next_stereo = true;
     if (key == GLFW_KEY_F1) p.current.help = true;
-    if (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_Q) p.current.quit = true;
+    if (key == GLFW_KEY_ESCAPE) p.current.escape = true;
+    if (key == GLFW_KEY_Q) p.current.quit = true;
   });
   glfwSetCharCallback(parts.window, [](GLFWwindow* w, unsigned int c) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
@@ -201,6 +215,11 @@ float Window::content_scale() const {
 
 void Window::set_gui(bool on) { parts_->gui = on; }
 
+void Window::tell_releases() {
+  for (const auto& [key, scancode, mods] : std::exchange(parts_->released, {}))
+    ImGui_ImplGlfw_KeyCallback(parts_->window, key, scancode, GLFW_RELEASE, mods);
+}
+
 void Window::keys_are_text(bool on) { parts_->keys_are_text = on; }
 
 GLFWwindow* Window::native() const { return parts_->window; }
@@ -218,6 +237,65 @@ void Window::framebuffer_size(std::uint32_t& width, std::uint32_t& height) const
   const bool minimised = glfwGetWindowAttrib(parts_->window, GLFW_ICONIFIED) == GLFW_TRUE || w <= 0 || h <= 0;
   width = minimised ? 0 : static_cast<std::uint32_t>(w);
   height = minimised ? 0 : static_cast<std::uint32_t>(h);
+}
+
+void Window::keep_open() { glfwSetWindowShouldClose(parts_->window, GLFW_FALSE); }
+
+void Window::size(double& width, double& height) const {
+  int w = 1, h = 1;
+  glfwGetWindowSize(parts_->window, &w, &h);
+  width = std::max(1, w);
+  height = std::max(1, h);
+}
+
+bool Window::is_full_screen() const { return glfwGetWindowMonitor(parts_->window) != nullptr; }
+
+void Window::set_full_screen(bool on) {
+  if (on == is_full_screen()) return;
+  auto& [x, y, width, height] = parts_->place;
+  if (!on) {
+    glfwSetWindowMonitor(parts_->window, nullptr, x, y, width, height, GLFW_DONT_CARE);
+    return;
+  }
+  glfwGetWindowPos(parts_->window, &x, &y);
+  glfwGetWindowSize(parts_->window, &width, &height);
+  // the monitor that most of the window lies on
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  GLFWmonitor* best = nullptr;
+  long most = -1;
+  for (int i = 0; i < count; ++i) {
+    const GLFWvidmode* mode = glfwGetVideoMode(monitors[i]);
+    if (mode == nullptr) continue;
+    int mx = 0, my = 0;
+    glfwGetMonitorPos(monitors[i], &mx, &my);
+    const long w = std::max(0, std::min(x + width, mx + mode->width) - std::max(x, mx));
+    const long h = std::max(0, std::min(y + height, my + mode->height) - std::max(y, my));
+    if (w * h <= most) continue;
+    most = w * h;
+    best = monitors[i];
+  }
+  if (best == nullptr) return;
+  const GLFWvidmode* mode = glfwGetVideoMode(best);
+  glfwSetWindowMonitor(parts_->window, best, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+void Window::set_fly(bool on) { parts_->fly = on; }
+
+FlyKeys Window::held_keys() const {
+  const auto held = [&](int a, int b) {
+    return glfwGetKey(parts_->window, a) == GLFW_PRESS || glfwGetKey(parts_->window, b) == GLFW_PRESS;
+  };
+  if (parts_->keys_are_text || held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL)) return {};
+  FlyKeys keys;
+  keys.forward = held(GLFW_KEY_W, GLFW_KEY_UP);
+  keys.back = held(GLFW_KEY_S, GLFW_KEY_DOWN);
+  keys.left = held(GLFW_KEY_A, GLFW_KEY_LEFT);
+  keys.right = held(GLFW_KEY_D, GLFW_KEY_RIGHT);
+  keys.up = held(GLFW_KEY_E, GLFW_KEY_PAGE_UP);
+  keys.down = held(GLFW_KEY_Q, GLFW_KEY_PAGE_DOWN);
+  keys.fast = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+  return keys;
 }
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(parts_->window, title.c_str()); }

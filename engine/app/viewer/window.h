@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/app/viewer/camera_paths.h"
 #include "engine/app/viewer/controls.h"
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
@@ -27,18 +28,30 @@ class Window {
   /// order, cut where a button or modifier changed: a whole drag within one slow picture is still a drag. At least one.
   std::vector<Input> poll(double wait_s);
   bool closing() const;
+  /// The person was asked and stays.
+  void keep_open();
   /// Anything at all happened in the last poll (a pointer that moved, a key).
   bool happened() const;
   /// It has the keyboard or the pointer: somebody is likely to look at it.
   bool looked_at() const;
   /// Of the picture, in pixels; 0 while minimised.
   void framebuffer_size(std::uint32_t& width, std::uint32_t& height) const;
+  /// Of the window, in window coordinates.
+  void size(double& width, double& height) const;
   void set_title(const std::string& title);
+  void set_full_screen(bool on);
+  bool is_full_screen() const;
+
+  /// Letters and arrows fly (held_keys) and are no commands.
+  void set_fly(bool on);
+  FlyKeys held_keys() const;
 
   /// Pixels by the size that interfaces are designed for.
   float content_scale() const;
   /// Events go to the user interface (gui.h) as well.
   void set_gui(bool on);
+  /// The keys that were let go since the last call: told after a frame, so that a short stroke between two frames is one all the same.
+  void tell_releases();
   /// Keys are text for the user interface: none is a command.
   void keys_are_text(bool on);
   GLFWwindow* native() const;

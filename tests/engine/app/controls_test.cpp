@@ -233,5 +233,44 @@ TEST(HandSetup, TheHandBeginsAtTheFirstSeed) {
   EXPECT_EQ(first_probe(*scene, {}), Vec3(1.0, 0.5, 0.0));
 }
 
+TEST(Controls, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
+  const Vec3 force(0, 0, 4);
+  EXPECT_EQ(yielding({0, 0, -1}, force, 8), Vec3(0, 0, -1 + 0.375)) << "half the greatest force takes half of three quarters";
+  EXPECT_EQ(yielding({0, 0, -1}, 10.0 * force, 8), Vec3(0, 0, -0.25)) << "the hand is never stuck";
+  EXPECT_EQ(yielding({0, 0, 1}, force, 8), Vec3(0, 0, 1));
+  EXPECT_EQ(yielding({2, 1, 0}, force, 8), Vec3(2, 1, 0));
+  EXPECT_EQ(yielding({0, 0, -1}, Vec3(0.0), 8), Vec3(0, 0, -1));
+  // with the button alone, as before, the hand goes with the mouse
+  Controls free = controls(), held = controls();
+  free.force_n = held.force_n = {-8, 0, 0};
+  free.max_force_n = held.max_force_n = 8;
+  held.hand_mode = true;
+  Input i = input(40, 0);
+  i.right = true;
+  apply(free, i);
+  apply(held, i);
+  EXPECT_NEAR(held.hand.x, 0.25 * free.hand.x, 1e-12);
+  EXPECT_GT(free.hand.x, 0);
+}
+
+TEST(Controls, InFlightALeftDragLooksAboutAndTheWheelSetsThePace) {
+  Controls c = controls();
+  c.fly = true;
+  Input i = input(40, 0);
+  i.left = true;
+  EXPECT_TRUE(apply(c, i).view);
+  EXPECT_EQ(c.view.position, c.home.position);
+  EXPECT_GT(c.view.target.x, 0);
+  apply(c, input(0, 0, 2));
+  EXPECT_GT(c.fly_speed, 1);
+  EXPECT_EQ(c.view.position, c.home.position);
+}
+
+TEST(Controls, EveryKeyIsInTheHelp) {
+  const std::string help = key_help();
+  for (const char* word : {"F1", "F2", "F11", "F12", "Tab", "Ctrl+S", "Ctrl+Z", "space", "V ", "T ", "H ", "quit"})
+    EXPECT_NE(help.find(word), std::string::npos) << word;
+}
+
 }  // namespace
 }  // namespace catena::app

@@ -1,18 +1,108 @@
-// What is asked or told above everything else.
+// What is told or asked above everything else.
 #include <imgui.h>
+
+#include <filesystem>
+#include <string_view>
 
 #include "engine/app/viewer/panel.h"
 
 namespace catena::app {
 
-void draw_dialogs(PanelContext& context) {
-  ViewState& state = context.state;
-  if (state.help) {
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-    if (ImGui::Begin("Keys", &state.help, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse))
-      ImGui::TextUnformatted(key_help().data(), key_help().data() + key_help().size());
-    ImGui::End();
+namespace {
+
+void centre_next() { ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f}); }
+
+std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+void draw_help(ViewState& state) {
+  const ImGuiViewport& view = *ImGui::GetMainViewport();
+  centre_next();
+  ImGui::SetNextWindowSizeConstraints({0, 0}, view.WorkSize);
+  if (ImGui::Begin("Keys and buttons", &state.help, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
+    std::string_view section;
+    for (const KeyHelp& key : key_list()) {
+      if (section != key.section) {
+        if (!section.empty()) ImGui::Spacing();
+        section = key.section;
+        ImGui::TextColored({0.6f, 0.8f, 1, 1}, "%s", key.section);
+      }
+      ImGui::TextUnformatted(key.keys);
+      ImGui::SameLine(190);
+      ImGui::TextUnformatted(key.does);
+    }
   }
+  ImGui::End();
+}
+
+/// Begins the modal of that title while `wanted`; true: draw into it, then EndPopup.
+bool begin_question(const char* title, bool wanted) {
+  if (wanted && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  centre_next();
+  return ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
+}
+
+bool button(const char* label, ImGuiKey_ key = ImGuiKey_COUNT) {
+  const bool pressed = ImGui::Button(label, {110, 0});
+  const bool by_key = key != ImGuiKey_COUNT && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);
+  return pressed || by_key;
+}
+
+void draw_unsaved(PanelContext& context) {
+  ViewState& state = context.state;
+  if (!begin_question("Unsaved changes", state.ask_unsaved.has_value())) return;
+  if (!state.ask_unsaved) {
+    ImGui::CloseCurrentPopup();
+    return ImGui::EndPopup();
+  }
+  ImGui::Text("%s has changes that are not saved.", name_of(context.scene.document().path()).c_str());
+  ImGui::Spacing();
+  const auto answer = [&](Answer given) {
+    state.answer = given;
+    ImGui::CloseCurrentPopup();
+  };
+  if (button("Save", ImGuiKey_Enter)) answer(Answer::save);
+  ImGui::SetItemDefaultFocus();
+  ImGui::SameLine();
+  if (button("Discard")) answer(Answer::discard);
+  ImGui::SameLine();
+  if (button("Cancel", ImGuiKey_Escape)) answer(Answer::cancel);
+  ImGui::EndPopup();
+}
+
+void draw_dropped(PanelContext& context) {
+  ViewState& state = context.state;
+  if (!begin_question("A file was dropped", state.ask_dropped.has_value())) return;
+  if (!state.ask_dropped) {
+    ImGui::CloseCurrentPopup();
+    return ImGui::EndPopup();
+  }
+  ImGui::TextUnformatted(name_of(*state.ask_dropped).c_str());
+  ImGui::Spacing();
+  const auto done = [&] {
+    state.ask_dropped.reset();
+    ImGui::CloseCurrentPopup();
+  };
+  if (button("Add to the scene", ImGuiKey_Enter)) {
+    state.add = state.ask_dropped;
+    done();
+  }
+  ImGui::SetItemDefaultFocus();
+  ImGui::SameLine();
+  if (state.ask_dropped && button("Open instead")) {
+    state.open = state.ask_dropped;
+    done();
+  }
+  ImGui::SameLine();
+  if (state.ask_dropped && button("Cancel", ImGuiKey_Escape)) done();
+  ImGui::EndPopup();
+}
+
+}  // namespace
+
+void draw_dialogs(PanelContext& context) {
+  if (context.state.help) draw_help(context.state);
+  draw_unsaved(context);
+  draw_dropped(context);
 }
 
 }  // namespace catena::app

@@ -1,6 +1,8 @@
-// The line at the bottom: the newest message, or what the hand feels.
+// The line at the bottom: the newest message or what is under the pointer, and the force on the hand.
 #include <fmt/format.h>
 #include <imgui.h>
+
+#include <algorithm>
 
 #include "engine/app/viewer/panel.h"
 #include "engine/base/clock.h"
@@ -8,24 +10,82 @@
 namespace catena::app {
 
 namespace {
+
 constexpr double kMessageS = 8;
+
+const Message* newest(const ViewState& state) {
+  if (state.messages.empty()) return nullptr;
+  const Message& m = state.messages.back();
+  return 1e-9 * static_cast<double>(now_ns() - m.at_ns) < kMessageS ? &m : nullptr;
 }
 
+ImVec4 color_of(const Message& m) { return m.is_error ? ImVec4(1, 0.5f, 0.4f, 1) : ImVec4(0.7f, 0.9f, 0.7f, 1); }
+
+/// From calm to red as the force comes near its limit.
+ImVec4 force_color(double share) {
+  const auto s = static_cast<float>(share);
+  return {0.35f + 0.6f * s, 0.75f - 0.5f * s, 0.9f - 0.7f * s, 1};
+}
+
+std::string loading_words(const ViewState& state) {
+  const char* dots[] = {".  ", ".. ", "..."};
+  return "loading " + state.loading + " " + dots[static_cast<std::size_t>(now_ns() / 400'000'000 % 3)];
+}
+
+void draw_force(const PanelContext& context) {
+  const ViewState& state = context.state;
+  ImGui::PushStyleColor(ImGuiCol_PlotHistogram, force_color(state.force_share));
+  const std::string newtons = fmt::format("{:.2f} N", norm(context.hand.felt().force_n));
+  ImGui::ProgressBar(static_cast<float>(state.force_share), {110, ImGui::GetTextLineHeight()}, newtons.c_str());
+  ImGui::PopStyleColor();
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("the force on the hand, of at most %.3g N", context.scene.scene().coupling.max_force_n);
+}
+
+/// Without panels only what must be read is shown.
+void draw_words_alone(const ViewState& state) {
+  const Message* message = newest(state);
+  if (message == nullptr && state.loading.empty()) return;
+  const ImGuiViewport& view = *ImGui::GetMainViewport();
+  ImGui::SetNextWindowPos({view.WorkPos.x, view.WorkPos.y + view.WorkSize.y}, 0, {0, 1});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {view.WorkSize.x, view.WorkSize.y});
+  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoFocusOnAppearing;
+  if (ImGui::Begin("##words", nullptr, kFlags)) {
+    if (!state.loading.empty())
+      ImGui::TextUnformatted(loading_words(state).c_str());
+    else
+      ImGui::TextColored(color_of(*message), "%s", message->text.c_str());
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
 void draw_status(PanelContext& context) {
+  const ViewState& state = context.state;
+  if (!state.panels) return draw_words_alone(state);
   const ImGuiViewport& view = *ImGui::GetMainViewport();
   const float height = ImGui::GetFrameHeightWithSpacing();
   ImGui::SetNextWindowPos({view.WorkPos.x, view.WorkPos.y + view.WorkSize.y - height});
   ImGui::SetNextWindowSize({view.WorkSize.x, height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {8, 3});
   if (ImGui::Begin("##status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
-    const auto& messages = context.state.messages;
-    if (!messages.empty() && 1e-9 * static_cast<double>(now_ns() - messages.back().at_ns) < kMessageS) {
-      const Message& m = messages.back();
-      ImGui::TextColored(m.is_error ? ImVec4(1, 0.5f, 0.4f, 1) : ImVec4(0.7f, 0.9f, 0.7f, 1), "%s", m.text.c_str());
+    draw_force(context);
+    ImGui::SameLine();
+    if (!state.loading.empty()) {
+      ImGui::TextUnformatted(loading_words(state).c_str());
+    } else if (const Message* m = newest(state)) {
+      ImGui::TextColored(color_of(*m), "%s", m->text.c_str());
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", m->text.c_str());
     } else {
-      ImGui::TextUnformatted(fmt::format("{:.2f} N", norm(context.hand.felt().force_n)).c_str());
+      std::string words = line_words(state.pointer, state.unit_length);
+      if (words.empty() && context.controls.hand_mode) words = "hand mode: the mouse is the hand (H)";
+      if (words.empty() && state.fly) words = fmt::format("fly: W S A D E Q, left drag looks about, pace {:.2g} (V)", context.controls.fly_speed);
+      ImGui::TextUnformatted(words.c_str());
     }
   }
   ImGui::End();
+  ImGui::PopStyleVar();
 }
 
 }  // namespace catena::app

@@ -1,0 +1,45 @@
+// A window without a scene says how to begin.
+#include <imgui.h>
+
+#include <filesystem>
+
+#include "engine/app/viewer/panel.h"
+
+namespace catena::app {
+
+bool draw_recent(ViewState& state) {
+  bool any = false;
+  for (const std::string& path : state.recent) {
+    any = true;
+    ImGui::PushID(path.c_str());
+    if (ImGui::Selectable(std::filesystem::path(path).filename().string().c_str())) state.open = path;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", path.c_str());
+    ImGui::PopID();
+  }
+  return any;
+}
+
+void draw_start(PanelContext& context) {
+  ViewState& state = context.state;
+  if (!state.untitled || !state.loading.empty() || context.scene.document().is_modified()) return;
+  const Area& area = state.area;
+  ImGui::SetNextWindowPos({static_cast<float>(area.x + 0.5 * area.width), static_cast<float>(area.y + 0.5 * area.height)}, 0, {0.5f, 0.5f});
+  ImGui::SetNextWindowSizeConstraints({std::min(340.0f, static_cast<float>(area.width)), 0},
+                                      {static_cast<float>(area.width), static_cast<float>(area.height)});
+  constexpr ImGuiWindowFlags kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                                      ImGuiWindowFlags_NoFocusOnAppearing;
+  if (ImGui::Begin("##start", nullptr, kFlags)) {
+    ImGui::TextUnformatted("Drop a file here: a scene, or a .vdb, .nii, .stl or .obj");
+    ImGui::Spacing();
+    if (ImGui::Button("Open...  (Ctrl+O)")) state.ask_open = true;
+    if (!state.recent.empty()) {
+      ImGui::Spacing();
+      ImGui::TextDisabled("Recent");
+      draw_recent(state);
+    }
+  }
+  ImGui::End();
+}
+
+}  // namespace catena::app

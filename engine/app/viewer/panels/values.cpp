@@ -1,0 +1,65 @@
+// What is where: under the pointer, at the probe, at the last proxy.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "engine/app/viewer/panel.h"
+#include "engine/scene/units.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr const char* kNone = "-";
+
+void cell(const std::string& text, const std::string& more = {}) {
+  ImGui::TableNextColumn();
+  ImGui::TextUnformatted(text.empty() ? kNone : text.c_str());
+  if (!more.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", more.c_str());
+}
+
+void draw_coordinate(const char* name, int axis, const std::array<const PlaceValues*, 3>& places, const std::string& unit) {
+  ImGui::TableNextRow();
+  cell(name + (unit.empty() ? "" : " " + unit));
+  for (const PlaceValues* place : places) cell(place->world ? fmt::format("{:.5g}", (*place->world)[axis]) : "");
+}
+
+const FieldValue* find(const PlaceValues& place, const std::string& name) {
+  const auto found = std::ranges::find(place.fields, name, &FieldValue::name);
+  return found == place.fields.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+void draw_values(PanelContext& context) {
+  const ViewState& state = context.state;
+  const std::array<const PlaceValues*, 3> places{&state.pointer, &state.probe, &state.proxy};
+  constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
+  if (!ImGui::BeginTable("##values", 4, kFlags)) return;
+  const float width = 0.2f * kSideWidth;
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+  for (const char* title : {"pointer", "probe", "proxy"}) ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthFixed, width);
+  ImGui::TableHeadersRow();
+  for (int axis = 0; axis < 3; ++axis) draw_coordinate(axis == 0 ? "x" : axis == 1 ? "y" : "z", axis, places, state.unit_length);
+
+  // rows of the longest list: what is loaded is the same everywhere
+  const PlaceValues& most = **std::ranges::max_element(places, {}, [](const PlaceValues* p) { return p->fields.size(); });
+  for (const FieldValue& row : most.fields) {
+    ImGui::TableNextRow();
+    cell(row.name + scene::after_number(row.unit));
+    for (const PlaceValues* place : places) {
+      const FieldValue* value = find(*place, row.name);
+      if (value == nullptr)
+        cell("");
+      else
+        cell(value_words(*value), value->vector ? value_words(*value, true) + scene::after_number(value->unit) : "");
+    }
+  }
+  ImGui::TableNextRow();
+  cell("object");
+  for (const PlaceValues* place : places) cell(place->object, place->object);
+  ImGui::EndTable();
+}
+
+}  // namespace catena::app

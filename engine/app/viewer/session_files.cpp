@@ -1,0 +1,154 @@
+// Opening, adding, saving, leaving. What takes long runs beside the window; what fails leaves all as it was.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "engine/app/viewer/add_file.h"
+#include "engine/app/viewer/file_list.h"
+#include "engine/app/viewer/session.h"
+#include "engine/scene/write_values.h"
+#include "render/vk/picture.h"
+
+namespace catena::app {
+
+namespace {
+
+std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+bool same_view(const render::View& a, const render::View& b) {
+  return a.position == b.position && a.target == b.target && a.up == b.up && a.fovy_deg == b.fovy_deg &&
+         a.orthographic == b.orthographic && (!a.orthographic || a.height == b.height);
+}
+
+}  // namespace
+
+void Session::fulfil_wishes_for_files() {
+  if (const auto path = std::exchange(state_.save, std::nullopt)) {
+    const bool nameless = path->empty() && (state_.untitled || (!owns_file_ && std::filesystem::exists(scene_->document().path())));
+    if (nameless) {
+      state_.ask_save = true;  // with the question about what is there
+      return;
+    }
+    const bool saved = save(*path);
+    if (const auto next = std::exchange(state_.after_save, std::nullopt); next && saved) leave(*next);
+  }
+  if (const auto answer = std::exchange(state_.answer, std::nullopt); answer && state_.ask_unsaved) {
+    const Leaving leaving = *std::exchange(state_.ask_unsaved, std::nullopt);
+    if (*answer == Answer::discard) leave(leaving);
+    if (*answer == Answer::save) {
+      state_.after_save = leaving;
+      state_.save.emplace();
+    }
+  }
+  if (const auto path = std::exchange(state_.open, std::nullopt)) leave_or_ask({false, *path});
+  if (const auto path = std::exchange(state_.add, std::nullopt)) start_loading(*path, true);
+  if (std::exchange(state_.quit, false)) leave_or_ask({true, {}});
+  if (const auto path = std::exchange(state_.screenshot, std::nullopt)) write_screenshot(*path);
+}
+
+void Session::leave(const Leaving& leaving) {
+  if (leaving.quit) leaves_ = true;
+  if (!leaving.open.empty()) start_loading(leaving.open, false);
+}
+
+/// Unsaved changes are asked about first. The view alone is no change.
+void Session::leave_or_ask(const Leaving& leaving) {
+  if (!scene_->document().is_modified()) return leave(leaving);
+  state_.ask_unsaved = leaving;
+}
+
+void Session::drop(const std::string& path) {
+  if (is_scene_name(path) || state_.untitled || !is_openable(path))
+    state_.open = path;
+  else
+    state_.ask_dropped = path;
+}
+
+/// With the view, if the person has moved it.
+bool Session::save(const std::string& path) {
+  if (!same_view(controls_.view, saved_view_)) {
+    const Outcome viewed = scene_->set("/camera", scene::text_of(scene_->scene().camera), "view");
+    if (!viewed) state_.say(viewed.error().message, true);
+  }
+  const Outcome saved = scene_->save(path.empty() ? scene_->document().path() : path);
+  state_.say(saved ? "saved " + scene_->document().path() : saved.error().message, !saved);
+  if (!saved) return false;
+  saved_view_ = controls_.view;
+  owns_file_ = true;
+  state_.untitled = false;
+  remember(scene_->document().path());
+  return true;
+}
+
+void Session::start_loading(const std::string& path, bool adds) {
+  if (loader_.is_busy()) return state_.say("still loading " + name_of(loader_.path()) + "; then again", true);
+  loading_adds_ = adds;
+  state_.loading = path;
+  loader_.start(path, pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
+}
+
+/// True: the picture has to be made again.
+bool Session::take_loaded() {
+  auto loaded = loader_.take();
+  if (!loaded) return false;
+  const std::string path = std::exchange(state_.loading, {});
+  if (!*loaded) {
+    state_.say(loaded->error().message, true);
+    return false;
+  }
+  if (loading_adds_)
+    add_to_scene(std::move(**loaded), path);
+  else
+    replace_scene(std::move(**loaded), path);
+  return true;
+}
+
+/// Another scene in the same window; one that the hand cannot feel leaves this one.
+void Session::replace_scene(LoadedScene loaded, const std::string& path) {
+  if (auto taken = hand_.take_over(loaded.host.scene(), loaded.bounds); !taken) return state_.say(taken.error().message, true);
+  scene_ = std::move(loaded.host);
+  look_at(loaded);
+  owns_file_ = is_scene_name(path);
+  if (!scene_->scene().quality.empty() && !options_.quality_stated)
+    if (auto quality = parse_quality(scene_->scene().quality)) state_.quality = *quality;
+  scene_->touch();
+  state_.untitled = false;
+  remember(path);
+  state_.say("opened " + path);
+}
+
+/// One step of undo; what was loaded goes over.
+void Session::add_to_scene(LoadedScene loaded, const std::string& path) {
+  const scene::Document& document = scene_->document();
+  const auto added = edits_to_add(document.text(), document.path(), loaded.host.document().text(), loaded.host.document().path());
+  if (!added) return state_.say(added.error().message, true);
+  if (const Outcome done = scene_->apply(added->edits, "added " + name_of(path)); !done) return state_.say(done.error().message, true);
+  for (const auto& [theirs, ours] : added->names) {
+    const scene::Entity from = scene::find_field(loaded.host.scene(), theirs), to = scene::find_field(scene_->scene(), ours);
+    if (!from || !to) continue;
+    const auto& source = loaded.host.scene().world.get<scene::FieldSource>(from);
+    auto& target = scene_->scene().world.get<scene::FieldSource>(to);
+    target.loaded = source.loaded;
+    target.drawn = source.drawn;
+  }
+  scene_->bounds.add(loaded.bounds);
+  controls_.bounds = scene_->bounds;
+  state_.say("added " + name_of(path) + " (A brings all into the picture)");
+}
+
+void Session::remember(const std::string& path) {
+  recent_.add(path);
+  state_.recent = recent_.shown();
+}
+
+/// Empty: the next free SCENE-001.png of the folder that the program was started in.
+void Session::write_screenshot(const std::string& path) {
+  std::string name = path;
+  if (name.empty()) name = free_name(std::filesystem::current_path().string(), stem_of_path(scene_->document().path()), ".png");
+  auto picture = state_.screenshot_of_window ? screen_->window_picture() : screen_->renderer().read_back();
+  const bool transparent = !state_.screenshot_of_window && scene_->scene().background.transparent;
+  const Outcome written = picture ? render::write_png(name, *picture, transparent) : Outcome(picture.error());
+  state_.say(written ? "wrote " + name : written.error().message, !written);
+}
+
+}  // namespace catena::app

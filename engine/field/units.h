@@ -1,0 +1,23 @@
+/// What a file says of its numbers: the unit of a grid's values and of the world's lengths, as short words ("m/s", "mm"). Any thread.
+///   NIfTI: xyz_units of the header (m, mm, µm); values: none, the format has no place for them
+///   VDB: text metadata "unit" or "units" of the grid; "unit_length" of the grid or the file. "units" of the file is free text ("HU, mm"): a
+///   part between commas that is a length is taken for lengths, a single word for the values of a file's only field
+#pragma once
+#include <string>
+
+namespace catena::field {
+
+struct Units {
+  std::string value, length;  ///< empty: the file does not say
+};
+
+/// A word that a unit can be: one line of at most 24 bytes without control characters; "none", "unknown" and the like are no unit.
+bool is_unit(const std::string& word);
+
+/// What the free text of a file means.
+Units units_of_text(const std::string& text, bool one_field);
+
+/// Reads the header only, once for each state of the file. A file that cannot be read says nothing.
+Units units_of(const std::string& path, const std::string& grid);
+
+}  // namespace catena::field

@@ -1,0 +1,37 @@
+#include "engine/app/viewer/add_file.h"
+
+#include <gtest/gtest.h>
+
+namespace catena::app {
+namespace {
+
+TEST(AddFile, AFieldAndItsVolumeJoinUnderAFreeName) {
+  const auto added = edits_to_add(R"({"fields": {"density": {"analytic": "sphere"}}, "volumes": [{"field": "density"}]})", "/a/s.json",
+                                  R"({"fields": {"density": {"file": "x.vdb", "grid": "density"}}, "volumes": [{"field": "density", "shade": true}]})",
+                                  "/a/data/x.vdb.json");
+  ASSERT_TRUE(added) << added.error().message;
+  ASSERT_EQ(added->edits.size(), 2u);
+  EXPECT_EQ(added->edits[0].pointer, "/fields/density_2");
+  EXPECT_EQ(*added->edits[0].value, R"({"file": "data/x.vdb", "grid": "density"})");
+  EXPECT_EQ(added->edits[1].pointer, "/volumes/-");
+  EXPECT_EQ(*added->edits[1].value, R"({"field": "density_2", "shade": true})");
+  EXPECT_EQ(added->names, (std::vector<std::pair<std::string, std::string>>{{"density", "density_2"}}));
+}
+
+TEST(AddFile, FilesElsewhereAreNamedWhole) {
+  const auto added = edits_to_add("{}", "/a/s.json", R"({"fields": {"v": {"file": "x.vdb"}}, "streamlines": [{"field": "v"}]})", "/b/x.vdb.json");
+  ASSERT_TRUE(added);
+  EXPECT_EQ(*added->edits[0].value, R"({"file": "/b/x.vdb"})");
+  EXPECT_EQ(added->edits[0].pointer, "/fields/v");
+  EXPECT_EQ(added->edits[1].pointer, "/streamlines/-");
+}
+
+TEST(AddFile, MeshesAreRenamedAlike) {
+  const auto added = edits_to_add(R"({"meshes": [{"name": "mesh", "file": "a.stl"}]})", "/a/s.json",
+                                  R"({"meshes": [{"name": "mesh", "file": "b.stl"}]})", "/a/b.stl.json");
+  ASSERT_TRUE(added);
+  EXPECT_EQ(*added->edits[0].value, R"({"name": "mesh_2", "file": "b.stl"})");
+}
+
+}  // namespace
+}  // namespace catena::app

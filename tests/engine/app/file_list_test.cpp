@@ -1,0 +1,62 @@
+#include "engine/app/viewer/file_list.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace {
+
+class FileList : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_ / "Scenes");
+    std::filesystem::create_directories(folder_ / "data");
+    std::filesystem::create_directories(folder_ / ".hidden");
+    for (const char* name : {"b.json", "A.VDB", "brain.nii.gz", "brain2.nii", "notes.txt", ".secret.json", "mesh.stl"})
+      test::write_file(folder_ / name, "12345");
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(FileList, FoldersComeFirstThenWhatCatenaOpens) {
+  const auto entries = list_folder(folder_.path());
+  ASSERT_TRUE(entries);
+  std::vector<std::string> names;
+  for (const FileEntry& e : *entries) names.push_back(e.name + (e.is_folder ? "/" : ""));
+  EXPECT_EQ(names, (std::vector<std::string>{"data/", "Scenes/", "A.VDB", "b.json", "brain.nii.gz", "brain2.nii", "mesh.stl"}));
+  EXPECT_EQ((*entries)[2].bytes, 5u);
+  EXPECT_EQ(list_folder(folder_.path(), true)->size(), 3u);
+  const auto none = list_folder(folder_ / "nowhere");
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("nowhere"), std::string::npos);
+}
+
+TEST_F(FileList, TypedPathsAreCompletedAsFarAsTheyAgree) {
+  EXPECT_EQ(completed(folder_.path(), "bra"), "brain");
+  EXPECT_EQ(completed(folder_.path(), "brain."), "brain.nii.gz");
+  EXPECT_EQ(completed(folder_.path(), "Sc"), "Scenes/");
+  EXPECT_EQ(completed(folder_.path(), "x"), "x");
+  EXPECT_EQ(completed("/", folder_ / "me"), folder_ / "mesh.stl");
+  EXPECT_EQ(typed_path("/a/b", "../c.json"), "/a/c.json");
+  EXPECT_EQ(typed_path("/a/b", "/c.json"), "/c.json");
+  ASSERT_NE(std::getenv("HOME"), nullptr);
+  EXPECT_EQ(typed_path("/a", "~/c.json"), std::filesystem::path(std::getenv("HOME")) / "c.json");
+}
+
+TEST_F(FileList, PicturesGetTheNextFreeNumber) {
+  EXPECT_EQ(free_name(folder_.path(), "b", ".png"), folder_ / "b-001.png");
+  test::write_file(folder_ / "b-001.png", "");
+  test::write_file(folder_ / "b-003.png", "");
+  EXPECT_EQ(free_name(folder_.path(), "b", ".png"), folder_ / "b-002.png");
+  EXPECT_EQ(stem_of_path("x/brain.nii.gz"), "brain");
+  EXPECT_EQ(stem_of_path("x/A.VDB"), "A");
+  EXPECT_EQ(stem_of_path("flow.v2.json"), "flow.v2");
+  EXPECT_EQ(stem_of_path(""), "catena");
+}
+
+}  // namespace
+}  // namespace catena::app
