@@ -82,13 +82,14 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 Outcome read_volumes(Scene& scene, const json::Node& node) {
   return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
     CATENA_CHECK(json::only_keys(item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity",
-                                        "shade", "clip", "projection", "color_by"}));
+                                        "shade", "clip", "visible", "projection", "color_by"}));
     Volume volume;
     volume.where = item;
     CATENA_TRY(volume.field, read_field_name(scene, item));
     CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
     CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
     CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(volume.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(volume.color_by, read_field_colors(scene, item));
     CATENA_CHECK(read_projection(volume, item));
     scene.world.emplace<Volume>(scene.world.create(), std::move(volume));
@@ -98,11 +99,12 @@ Outcome read_volumes(Scene& scene, const json::Node& node) {
 
 Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
   return each_item(node, "isosurfaces", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip", "color_by"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip", "visible", "color_by"}));
     Isosurface surface;
     surface.where = item;
     CATENA_TRY(surface.field, read_field_name(scene, item));
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(surface.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(surface.color_by, read_field_colors(scene, item));
     CATENA_TRY(surface.level, json::require_number(item, "level"));
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
@@ -115,7 +117,7 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
 Outcome read_meshes(Scene& scene, const json::Node& node) {
   return each_item(node, "meshes", [&](const json::Node& item) -> Outcome {
     CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "color_by", "range", "transfer", "opacity",
-                                        "shading", "edges", "clip"}));
+                                        "shading", "edges", "clip", "visible"}));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     if (!is_name(name))
       return json::error_at(*item.find("name"),
@@ -138,6 +140,7 @@ Outcome read_meshes(Scene& scene, const json::Node& node) {
     surface.smooth = shading == 1;
     CATENA_TRY(surface.edges, json::get_boolean(item, "edges", false));
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(surface.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(const bool drawn, json::get_boolean(item, "drawn", true));
     surface.mesh = scene.world.create();
     scene.world.emplace<Name>(surface.mesh, {name});

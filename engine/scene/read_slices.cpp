@@ -1,4 +1,4 @@
-/// "slices": [{"field", "point" and "normal", or "axis" and "at", the colours of read_transfer.h, "opacity", "lit", "clip",
+/// "slices": [{"field", "point" and "normal", or "axis" and "at", the colours of read_transfer.h, "opacity", "lit", "clip", "visible",
 ///             "contours": {"levels" | "count" | "spacing", "color", "width"}}]
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -80,7 +80,7 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(json::only_keys(
-        item, {"field", "point", "normal", "axis", "at", "color", "range", "transfer", "opacity", "contours", "lit", "clip"}));
+        item, {"field", "point", "normal", "axis", "at", "color", "range", "transfer", "opacity", "contours", "lit", "clip", "visible"}));
     Slice slice;
     slice.where = item;
     CATENA_TRY(slice.shown.field, read_field_name(scene, item));
@@ -91,6 +91,7 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
     CATENA_TRY(slice.opacity, read_opacity(item, slice.opacity));
     CATENA_TRY(slice.lit, json::get_boolean(item, "lit", false));
     CATENA_TRY(slice.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(slice.visible, json::get_boolean(item, "visible", true));
     if (const json::Node* contours = item.find("contours")) {
       CATENA_TRY(slice.contours, read_contours(*contours));
     }

@@ -51,7 +51,7 @@ Outcome read_streamlines(Scene& scene, const json::Node& node) {
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(json::only_keys(item, {"field", "seeds", "radius", "color", "color_by", "range", "transfer", "kind", "min_speed", "length",
-                                        "tolerance", "arrows", "pulse", "clip"}));
+                                        "tolerance", "arrows", "pulse", "clip", "visible"}));
     StreamlineSet set;
     set.where = item;
     CATENA_TRY(set.field, read_field_name(scene, item));
@@ -68,6 +68,7 @@ Outcome read_streamlines(Scene& scene, const json::Node& node) {
     CATENA_TRY(set.tolerance, json::get_number(item, "tolerance", 0, json::Range::positive));
     CATENA_TRY(set.arrows, json::get_number(item, "arrows", 0, json::Range::positive));
     CATENA_TRY(set.clipped, json::get_boolean(item, "clip", true));
+    CATENA_TRY(set.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(set.pulse, json::get_number(item, "pulse", 0, json::Range::positive));
     if (set.tolerance > 1e-2)
       return json::error_at(*item.find("tolerance"),

@@ -77,7 +77,10 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
   }
   if (source.drawn.scalar)
     scene.world.each<Volume>([&](Entity, Volume& volume) {
-      if (volume.field == field) complete_transfer(volume.transfer, *source.drawn.scalar->grid());
+      if (volume.field != field || is_complete(volume.transfer)) return;
+      const field::ScalarGrid& grid = *source.drawn.scalar->grid();
+      if (!source.values) source.values = sorted_values(grid);
+      complete_transfer(volume.transfer, grid, *source.values);
     });
   return source.drawn;
 }

@@ -178,7 +178,9 @@ const ColorTable* shown_colors(const scene::World& world, scene::Entity set) {
 
 Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
   std::vector<scene::Entity> sets;
-  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet&) { sets.push_back(e); });
+  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
+    if (set.visible) sets.push_back(e);
+  });
   for (const scene::Entity e : sets) {
     CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
     if (!scene.world.has<FlatLines>(e)) scene.world.emplace<FlatLines>(e);

@@ -16,7 +16,7 @@ std::optional<Color> color_of(const std::optional<scene::Rgb>& c) {
 
 std::string name_of(const scene::World& world, scene::Entity e) { return world.has<scene::Name>(e) ? world.get<scene::Name>(e).value : ""; }
 
-/// The colours that an entity shows (value, r, g, b), and what it calls them.
+/// The colours that an entity shows (value, r, g, b), and what it calls them. None where it is hidden.
 struct Shown {
   std::vector<std::array<double, 4>> colors;
   std::string name;
@@ -28,10 +28,11 @@ std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunc
   return rows;
 }
 
-/// The packet's slices are in the order of their owners.
+/// The packet's slices are in the order of their owners, without the hidden ones.
 const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, const FramePacket& packet) {
   std::size_t i = 0, found = packet.slices.size();
-  world.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
+  world.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
+    if (!slice.visible) return;
     if (e == wanted) found = i;
     ++i;
   });
@@ -41,6 +42,7 @@ const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, con
 Shown shown_by(const scene::World& world, scene::Entity e, const FramePacket& packet) {
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);
+    if (!volume.visible) return {};
     return {rows_of(volume.transfer.colors), name_of(world, volume.field)};
   }
   if (world.has<scene::Slice>(e)) {
@@ -50,7 +52,7 @@ Shown shown_by(const scene::World& world, scene::Entity e, const FramePacket& pa
   CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
   const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
   const auto* points = shown_colors(world, e);
-  if (points == nullptr) return {};
+  if (points == nullptr || !set.visible) return {};
   const auto colors = rows_of(*points);
   switch (set.color_by->what) {
     case scene::ColorBy::What::field:

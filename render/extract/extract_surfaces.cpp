@@ -95,6 +95,7 @@ bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
 Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
     const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
+    if (!surface.visible) continue;
     CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
     field::AnyField shown;
     if (surface.color_by) {
@@ -137,6 +138,7 @@ Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contour
 
 Outcome extract_slices(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Slice>(scene.world)) {
+    if (!scene.world.get<scene::Slice>(e).visible) continue;
     CATENA_TRY(auto grid, sliced_grid(scene, e));
     const scene::Slice& slice = scene.world.get<scene::Slice>(e);
     if (!cuts(slice, *grid))

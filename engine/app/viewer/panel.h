@@ -11,6 +11,7 @@
 #include "engine/app/viewer/controls.h"
 #include "engine/app/viewer/frame_times.h"
 #include "engine/app/viewer/hand_host.h"
+#include "engine/app/viewer/look_state.h"
 #include "engine/app/viewer/pacing.h"
 #include "engine/app/viewer/scene_host.h"
 #include "engine/app/viewer/screen.h"
@@ -41,6 +42,7 @@ struct ViewState {
   bool pointer_on_picture = false;      ///< and not on a panel
   bool pointer_pressed = false;         ///< a button is down
   int next_drag = 0;                    ///< numbers drags: edits of one drag are one step of undo
+  LookState look;
 
   void say(std::string text, bool is_error = false);
 };
@@ -75,5 +77,12 @@ void draw_menu(PanelContext& context);
 void draw_dialogs(PanelContext& context);
 void draw_status(PanelContext& context);
 void draw_times(PanelContext& context);
+void draw_fields(PanelContext& context);
+void draw_transfer(PanelContext& context);
+void draw_isosurfaces(PanelContext& context);
+void draw_slices(PanelContext& context);
+void draw_lines(PanelContext& context);
+void draw_meshes(PanelContext& context);
+void draw_scene_view(PanelContext& context);
 
 }  // namespace catena::app

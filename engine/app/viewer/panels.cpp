@@ -9,7 +9,19 @@ namespace {
 
 constexpr float kSideWidth = 320;
 
+template <class T>
+bool has_any(const PanelContext& context) {
+  return context.scene.scene().world.count<T>() > 0;
+}
+
 constexpr Panel kPanels[] = {
+    {"Fields", true, draw_fields},
+    {"Volumes", true, draw_transfer, has_any<scene::Volume>},
+    {"Isosurfaces", true, draw_isosurfaces, has_any<scene::Isosurface>},
+    {"Slices", false, draw_slices, has_any<scene::Slice>},
+    {"Lines", false, draw_lines, has_any<scene::StreamlineSet>},
+    {"Meshes", false, draw_meshes, has_any<scene::SurfaceMesh>},
+    {"View", false, draw_scene_view},
     {"Times", false, draw_times},
 };
 
@@ -54,6 +66,7 @@ bool PanelContext::remove(std::string_view pointer, const std::string& what) {
 }
 
 void draw_interface(PanelContext& context) {
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) ++context.state.look.press;
   draw_menu(context);
   if (context.state.panels) {
     draw_side(context);

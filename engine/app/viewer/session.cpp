@@ -48,7 +48,7 @@ std::optional<Failure> Session::open_scene() {
 void Session::measure() {
   has_pulses_ = false;
   scene_->scene().world.each<scene::StreamlineSet>(
-      [&](scene::Entity, const scene::StreamlineSet& set) { has_pulses_ = has_pulses_ || set.pulse > 0; });
+      [&](scene::Entity, const scene::StreamlineSet& set) { has_pulses_ = has_pulses_ || (set.visible && set.pulse > 0); });
 }
 
 std::optional<Failure> Session::open() {
