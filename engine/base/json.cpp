@@ -99,13 +99,16 @@ Error first_error(const std::string& file, const std::string& report) {
 
 class Converter {
  public:
-  Converter(std::string_view text, const std::string& file) : text_(text), lines_(text), file_(std::make_shared<const std::string>(file)) {}
+  Converter(std::string_view text, std::size_t skipped, const std::string& file)
+      : text_(text), skipped_(skipped), lines_(text), file_(std::make_shared<const std::string>(file)) {}
 
   Result<Node> convert(const Json::Value& value, std::string label) const {
     Node node;
     node.file = file_;
     node.label = std::move(label);
     node.line = lines_.at(static_cast<std::size_t>(value.getOffsetStart()));
+    node.begin = skipped_ + static_cast<std::size_t>(value.getOffsetStart());
+    node.end = skipped_ + static_cast<std::size_t>(value.getOffsetLimit());
     switch (value.type()) {
       case Json::nullValue:
         break;
@@ -159,6 +162,7 @@ class Converter {
   }
 
   std::string_view text_;
+  std::size_t skipped_;  ///< the byte order mark before text_
   Lines lines_;
   std::shared_ptr<const std::string> file_;
 };
@@ -173,7 +177,15 @@ const Node* Node::find(std::string_view key) const {
 
 Error error_at(const Node& node, const std::string& what) { return error_on_line(node.file ? *node.file : "", node.line, what); }
 
+bool same_value(const Node& a, const Node& b) {
+  const auto same_member = [](const auto& x, const auto& y) { return x.first == y.first && same_value(x.second, y.second); };
+  return a.kind == b.kind && a.boolean == b.boolean && a.number == b.number && a.string == b.string &&
+         std::equal(a.items.begin(), a.items.end(), b.items.begin(), b.items.end(), same_value) &&
+         std::equal(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(), same_member);
+}
+
 Result<Node> parse(std::string_view text, const std::string& file) {
+  const std::size_t whole = text.size();
   text = without_bom(text);
   const Lines lines(text);
   if (const std::size_t at = too_deep_at(text); at != std::string_view::npos)
@@ -193,7 +205,7 @@ Result<Node> parse(std::string_view text, const std::string& file) {
   try {
     const std::unique_ptr<Json::CharReader> reader(builder.newCharReader());
     if (!reader->parse(text.data(), text.data() + text.size(), &root, &report)) return first_error(file, report);
-    return Converter(text, file).convert(root, {});
+    return Converter(text, whole - text.size(), file).convert(root, {});
   } catch (const std::exception& e) {
     return error_on_line(file, 1, std::string("is not valid JSON: ") + e.what() + "; JSON (comments allowed) was expected");
   }

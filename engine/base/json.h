@@ -19,6 +19,7 @@ enum class Kind { null, boolean, number, string, array, object };
 struct Node {
   Kind kind = Kind::null;
   int line = 0;                             ///< 1-based line of the value
+  std::size_t begin = 0, end = 0;           ///< its bytes in the text, a byte order mark counted; its key and comments are outside
   std::shared_ptr<const std::string> file;  ///< the file's name as the user gave it
   std::string label;                        ///< its key, or "chain[2]" for an item; empty at the top level
   bool boolean = false;
@@ -34,6 +35,9 @@ struct Node {
 /// Parses a whole document. Comments are allowed; duplicate keys, trailing text and depth beyond 64 are errors.
 Result<Node> parse(std::string_view text, const std::string& file);
 Result<Node> read(const std::string& path);
+
+/// The same kinds, values, items and members in the same order, wherever they stand.
+bool same_value(const Node& a, const Node& b);
 
 /// "scene.json:12: WHAT" at the node's place; without the line where it is 0, without the file where there is none.
 Error error_at(const Node& node, const std::string& what);

@@ -10,7 +10,8 @@
 
 namespace catena::exchange {
 
-inline constexpr int kMaxLinks = 8;
+inline constexpr int kMaxSceneLinks = 8;
+inline constexpr int kMaxLinks = kMaxSceneLinks + 4;  ///< and those that the widgets share
 
 /// One word a link and tick; the words of `NAME_status` in the tick CSV.
 enum class Status : std::uint8_t { ok, free, released, budget, critical, boundary, no_surface, bad_probe };

@@ -16,6 +16,7 @@ struct AnalyticParameters {
   double scale = 1;               ///< multiplies values
   Vec3 direction{1.0, 0.0, 0.0};  ///< `uniform`
   std::string part;               ///< `left-ventricle`: density (default), transmural or fibre
+  bool operator==(const AnalyticParameters&) const = default;
 };
 
 std::vector<std::string_view> analytic_names();

@@ -16,6 +16,7 @@ struct RawLayout {
   Vec3 spacing{1.0};
   Vec3 origin{0.0};
   std::string type = "float32";  ///< float32 float64 uint8 int8 uint16 int16 uint32 int32; little-endian, x fastest; "float32x3" a vector
+  bool operator==(const RawLayout&) const = default;
 };
 
 struct LoadRequest {
@@ -24,6 +25,7 @@ struct LoadRequest {
   std::optional<std::string> valid_grid = "valid";  ///< nullopt: no mask ("valid": null); a missing default mask is fine
   bool valid_required = false;                      ///< the user named the mask: it must exist
   std::optional<RawLayout> raw;                     ///< for .raw
+  bool operator==(const LoadRequest&) const = default;
 };
 
 /// Loads one grid (and its mask), nothing else of the file.

@@ -17,6 +17,7 @@ bool is_mesh_file(std::string_view path);  ///< by its ending: .stl, .obj (any c
 struct Placement {
   double scale = 1;
   Vec3 offset{0.0};
+  bool operator==(const Placement&) const = default;
 };
 
 Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement = {});

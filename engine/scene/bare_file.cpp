@@ -1,9 +1,15 @@
-#include <algorithm>
+#include "engine/scene/bare_file.h"
 
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/base/json_edit.h"
+#include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/read_parts.h"
 #include "engine/scene/transfer.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::scene {
 namespace {
@@ -12,6 +18,7 @@ constexpr int kLattice = 5;           // seeds an axis
 constexpr double kSlowShare = 0.05;   // of the fastest seed: not worth a line
 constexpr double kLengthShare = 2.0;  // of L, in each direction
 constexpr double kDrawnTolerance = 1e-7;
+constexpr std::size_t kSeedsPerLine = 4;
 constexpr Rgb kLineColor{0.96f, 0.66f, 0.26f};
 
 /// The grid asked for; else the only one; else the first scalar one, else the first vector one.
@@ -55,78 +62,116 @@ std::vector<Vec3> lattice_seeds(const field::VectorField& field) {
   return seeds;
 }
 
-Result<Scene> scene_for_mesh(const std::string& path) {
-  CATENA_TRY(mesh::MeshPtr mesh, mesh::load_mesh(path));
-  Scene scene;
-  scene.path = path;
-  scene.cursor = scene.world.create();
-  scene.world.emplace<Cursor>(scene.cursor);
-  MeshSource source;
-  source.path = path;
-  source.loaded = std::move(mesh);
-  source.where.file = std::make_shared<const std::string>(path);
-  SurfaceMesh surface;
-  surface.mesh = scene.world.create();
-  surface.where = source.where;
-  scene.world.emplace<Name>(surface.mesh, {"mesh"});
-  scene.world.emplace<MeshSource>(surface.mesh, std::move(source));
-  scene.world.emplace<SurfaceMesh>(scene.world.create(), std::move(surface));
-  return scene;
+/// A name that the scene file allows, as like the grid's as can be.
+std::string field_name(std::string_view grid) {
+  std::string name;
+  for (const char c : grid) {
+    if (c >= 'A' && c <= 'Z')
+      name += static_cast<char>(c - 'A' + 'a');
+    else
+      name += (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? c : '_';
+  }
+  return is_name(name) ? name : is_name("field_" + name) && !name.empty() ? "field_" + name : "field";
+}
+
+/// , "color": MAP, "range": [LO, HI]
+std::string color_members(const NamedColors& colors) {
+  std::string text;
+  if (!colors.map.empty()) text += ", \"color\": " + json::quoted(colors.map);
+  if (colors.range) text += ", \"range\": " + text_of(*colors.range);
+  return text;
+}
+
+/// A map that is named without a range reaches over the values that the opacity follows, not over all.
+std::string volume_text(const std::string& field, const field::ScalarGrid& grid, NamedColors colors) {
+  if (!colors.map.empty() && !colors.range) {
+    TransferFunction transfer;
+    complete_transfer(transfer, grid);
+    const double lo = transfer.colors.front().value, hi = transfer.colors.back().value;
+    if (is_color_range(lo, hi)) colors.range = {lo, hi};
+  }
+  return "  \"volumes\": [{\"field\": " + field + color_members(colors) + ", \"shade\": true}]\n";
+}
+
+std::string streamlines_text(const std::string& field, const field::VectorField& flow, const std::vector<Vec3>& seeds,
+                             const NamedColors& colors) {
+  std::string text = "  \"streamlines\": [\n    {\"field\": " + field;
+  const bool colored = !colors.map.empty() || colors.range;
+  text += colored ? ", \"color_by\": \"speed\"" + color_members(colors) : ", \"color\": " + text_of(kLineColor);
+  text +=
+      ", \"length\": " + text_of(kLengthShare * flow.length()) + ", \"tolerance\": " + text_of(kDrawnTolerance) + ",\n     \"seeds\": [";
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    text += (i == 0 ? "" : i % kSeedsPerLine == 0 ? ",\n               " : ", ") + text_of(seeds[i]);
+  return text + "]}\n  ]\n";
+}
+
+void forget_lines(json::Node& node) {
+  node.line = 0;
+  for (json::Node& item : node.items) forget_lines(item);
+  for (auto& [key, member] : node.members) forget_lines(member);
+}
+
+template <class T>
+void forget_lines(Scene& scene) {
+  scene.world.each<T>([](Entity, T& part) { forget_lines(part.where); });
 }
 
 }  // namespace
 
-Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
-  const bool colored = !colors.map.empty() || colors.range;
+Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
+  BareFile bare;
+  bare.scene_path = path + ".json";
+  const std::string file = json::quoted(std::filesystem::path(path).filename().string());
   if (mesh::is_mesh_file(path)) {
-    if (colored) return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
-    return scene_for_mesh(path);
+    if (!colors.map.empty() || colors.range)
+      return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
+    CATENA_TRY(bare.mesh, mesh::load_mesh(path));
+    bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}]\n}\n";
+    return bare;
   }
   if (path.ends_with(".raw"))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
-  field::LoadRequest request;
-  request.path = path;
-  request.grid = grid;
-  CATENA_TRY(const field::AnyField loaded, load_best(request));
-
-  Scene scene;
-  scene.path = path;
-  scene.cursor = scene.world.create();
-  scene.world.emplace<Cursor>(scene.cursor);
-  const Entity field = scene.world.create();
-  scene.world.emplace<Name>(field, {grid.empty() ? loaded.get()->name() : grid});
-  FieldSource source;
-  source.file = request;
-  source.loaded = source.drawn = loaded;
-  source.where.file = std::make_shared<const std::string>(path);
-  const json::Node where = source.where;
-  scene.world.emplace<FieldSource>(field, std::move(source));
-
-  const Entity drawn = scene.world.create();
-  if (loaded.scalar) {
-    Volume volume;
-    volume.field = field;
-    volume.where = where;
-    volume.shade = true;
-    volume.transfer.named.range = colors.range;
-    complete_transfer(volume.transfer, *loaded.scalar->grid());
-    if (!colors.map.empty())
-      volume.transfer.colors = named_map(colors.map, volume.transfer.colors.front().value, volume.transfer.colors.back().value);
-    scene.world.emplace<Volume>(drawn, std::move(volume));
-    return scene;
+  bare.request.path = path;
+  bare.request.grid = grid;
+  CATENA_TRY(bare.field, load_best(bare.request));
+  const std::string name = json::quoted(field_name(grid.empty() ? bare.field.get()->name() : grid));
+  bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
+  if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::quoted(bare.request.grid);
+  bare.text += "}}";
+  if (bare.field.scalar) {
+    bare.text += ",\n" + volume_text(name, *bare.field.scalar->grid(), colors);
+  } else {
+    const std::vector<Vec3> seeds = lattice_seeds(*bare.field.vector);
+    bare.text += seeds.empty() ? "\n" : ",\n" + streamlines_text(name, *bare.field.vector, seeds, colors);
   }
-  StreamlineSet set;
-  set.field = field;
-  set.where = where;
-  set.seeds.points = lattice_seeds(*loaded.vector);
-  set.color = kLineColor;
-  if (colored) {
-    set.color_by.emplace();
-    set.color_by->named = colors;
-  }
-  set.length = kLengthShare * loaded.vector->length();
-  set.tolerance = kDrawnTolerance;
-  if (!set.seeds.points.empty()) scene.world.emplace<StreamlineSet>(drawn, std::move(set));
+  bare.text += "}\n";
+  return bare;
+}
+
+void adopt_loaded(const BareFile& bare, Scene& scene) {
+  scene.world.each<FieldSource>([&](Entity, FieldSource& source) {
+    if (bare.field.get() != nullptr && source.file && same_file(source.file->path, bare.request.path) &&
+        source.file->grid == bare.request.grid)
+      source.loaded = source.drawn = bare.field;
+  });
+  scene.world.each<MeshSource>([&](Entity, MeshSource& source) {
+    if (bare.mesh && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5)) && source.placement == mesh::Placement{})
+      source.loaded = bare.mesh;
+  });
+}
+
+Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
+  CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors));
+  CATENA_TRY(Scene scene, parse_scene(bare.text, path));
+  adopt_loaded(bare, scene);
+  // the text is nowhere: its lines would say nothing
+  forget_lines<FieldSource>(scene);
+  forget_lines<MeshSource>(scene);
+  forget_lines<SurfaceMesh>(scene);
+  forget_lines<Volume>(scene);
+  forget_lines<StreamlineSet>(scene);
+  if (bare.field.get() != nullptr)
+    CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(grid.empty() ? bare.field.get()->name() : grid)), {}));
   return scene;
 }
 

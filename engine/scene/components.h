@@ -95,6 +95,7 @@ struct Isosurface {
   Entity field;
   json::Node where;
   double level = 0;
+  Entity level_from{};  ///< the isolevel widget whose value the level follows
   Rgb color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
   bool clipped = true;  ///< the clip planes count
@@ -135,6 +136,7 @@ struct Slice {
   SurfaceColors shown;
   json::Node where;
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+  Entity widget{};  ///< the cutting plane that the plane follows
   double opacity = 1;
   bool lit = false;
   bool clipped = true;  ///< the clip planes count
@@ -172,6 +174,8 @@ struct SeedPattern {
 struct Seeds {
   std::vector<Vec3> points;
   std::optional<SeedPattern> pattern;  ///< instead of points
+  Entity widget{};                     ///< the seed or rake that the points follow
+  int count = 1;                       ///< of the points along a rake
 };
 
 /// Tubes that show values along the lines.
@@ -244,6 +248,9 @@ struct Widget {
   Entity field;                    ///< isolevel
   std::vector<std::string> along;  ///< ruler: names of links
   Rgb color{1.0f, 0.75f, 0.2f};
+  bool complete = false;                 ///< use_widget has been here
+  std::optional<widget::Pose> followed;  ///< the pose that its followers have
+  std::optional<double> followed_value;  ///< and the isolevel's value
 };
 
 /// How the links make one force: the chain, or a baseline of the paper (haptics/chain/baseline.h).
@@ -277,6 +284,9 @@ struct Camera {
 /// What is drawn lies on the side of the plane to which the normal points. A clip box is six of them.
 struct ClipPlane {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+  Entity widget{};      ///< the cutting plane or box that it follows
+  int box_face = -1;    ///< of a box: 0..5, -x +x -y +y -z +z
+  bool behind = false;  ///< of a cutting plane: what its normal points away from is kept
 };
 inline constexpr std::size_t kMostClipPlanes = 8;
 

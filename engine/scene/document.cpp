@@ -1,23 +1,118 @@
 #include "engine/scene/document.h"
+
+#include "engine/base/json_edit.h"
+#include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/scene/bare_file.h"
+#include "engine/scene/named_files.h"
+
 namespace catena::scene {
-Result<Document> Document::open(const std::string& path, const std::vector<FieldOverride>& overrides) {
-  Document d; d.path_ = path; d.overrides_ = overrides;
-  std::string text;
-  if (path.ends_with(".json")) { CATENA_TRY(text, read_text(path, "a scene file")); }
-  d.versions_.push_back({text, "", ""});
-  return d;
+
+Result<Document> Document::open(const std::string& path, const std::vector<FieldOverride>& overrides, const NamedColors& colors) {
+  Document document;
+  document.path_ = path;
+  document.overrides_ = overrides;
+  if (path.ends_with(".json")) {
+    if (!colors.map.empty() || colors.range)
+      return Error{one_line(path + ": a scene says its colours; a colour map goes with a data file")};
+    CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)"));
+  } else {
+    if (!overrides.empty()) return Error{one_line(path + ": a field of a data file cannot be replaced; a scene file (.json) was expected")};
+    CATENA_TRY(BareFile bare, describe_bare_file(path, {}, colors));
+    document.path_ = bare.scene_path;
+    document.saved_ = bare.text;
+    document.loaded_ = std::make_shared<const BareFile>(std::move(bare));
+  }
+  document.versions_.push_back({document.saved_, {}, {}});
+  CATENA_CHECK(parse_scene(document.saved_, document.path_, overrides));
+  return document;
 }
+
 Result<Scene> Document::read() const {
-  if (path_.ends_with(".json")) return parse_scene(text(), path_, overrides_);
-  return scene_for_file(path_);
+  CATENA_TRY(Scene scene, parse_scene(text(), path_, overrides_));
+  if (const auto loaded = std::exchange(loaded_, nullptr)) adopt_loaded(*loaded, scene);
+  return scene;
 }
-Outcome Document::set(std::string_view, const std::string&, const std::string&, const std::string&) { return Error{"not yet"}; }
-Outcome Document::remove(std::string_view, const std::string&) { return Error{"not yet"}; }
-const std::string& Document::undo_what() const { return versions_[now_].what; }
-const std::string& Document::redo_what() const { return versions_[now_ + 1].what; }
-void Document::undo() { --now_; }
-void Document::redo() { ++now_; }
-Outcome Document::save(const std::string&) { return Error{"not yet"}; }
-void carry_over(Scene&, Scene&) {}
+
+// ---- edits ----
+
+Outcome Document::set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag) {
+  return apply({{std::string(pointer), value}}, what, drag);
 }
+
+Outcome Document::remove(std::string_view pointer, const std::string& what) {
+  CATENA_TRY(std::string edited, json::remove_value(text(), path_, pointer));
+  return push(std::move(edited), what, {});
+}
+
+Outcome Document::apply(const std::vector<Edit>& edits, const std::string& what, const std::string& drag) {
+  std::string edited = text();
+  for (const Edit& edit : edits) {
+    if (edit.value) {
+      CATENA_TRY(edited, json::set_value(edited, path_, edit.pointer, *edit.value));
+    } else {
+      CATENA_TRY(const json::Node root, json::parse(edited, path_));
+      if (json::find_value(root, edit.pointer) == nullptr) continue;
+      CATENA_TRY(edited, json::remove_value(edited, path_, edit.pointer));
+    }
+  }
+  return push(std::move(edited), what, drag);
+}
+
+Outcome Document::push(std::string edited, const std::string& what, const std::string& drag) {
+  if (edited == text()) return Done{};
+  CATENA_CHECK(parse_scene(edited, path_, overrides_));
+  versions_.resize(now_ + 1);
+  if (now_ > 0 && !drag.empty() && versions_[now_].drag == drag) {
+    versions_[now_].text = std::move(edited);
+  } else {
+    versions_.push_back({std::move(edited), what, drag});
+    ++now_;
+  }
+  // the oldest steps go
+  std::size_t bytes = 0, kept = 0;
+  while (kept <= now_ && kept <= kMostSteps && (kept == 0 || bytes + versions_[now_ - kept].text.size() <= kMostBytes))
+    bytes += versions_[now_ - kept++].text.size();
+  versions_.erase(versions_.begin(), versions_.end() - static_cast<std::ptrdiff_t>(kept));
+  now_ = versions_.size() - 1;
+  return Done{};
+}
+
+namespace {
+const std::string kNothing;
+}
+
+const std::string& Document::undo_what() const { return can_undo() ? versions_[now_].what : kNothing; }
+const std::string& Document::redo_what() const { return can_redo() ? versions_[now_ + 1].what : kNothing; }
+void Document::undo() {
+  if (can_undo()) --now_;
+}
+void Document::redo() {
+  if (can_redo()) ++now_;
+}
+
+// ---- to the disk ----
+
+Outcome Document::save(const std::string& path) {
+  if (!path.ends_with(".json")) return Error{one_line(path + ": a scene is written to a .json file; such a name was expected")};
+  CATENA_TRY(const std::vector<std::string> inputs, files_of(text(), path_, overrides_));
+  CATENA_CHECK(check_output(path, inputs));
+  std::vector<std::string> texts;
+  for (const Version& version : versions_) {
+    CATENA_TRY(std::string moved, moved_text(version.text, path_, path, overrides_));
+    texts.push_back(std::move(moved));
+  }
+  CATENA_CHECK(parse_scene(texts[now_], path));
+
+  CATENA_TRY(OutputFile file, OutputFile::open(path));
+  file.write(texts[now_]);
+  CATENA_CHECK(file.commit());
+  for (std::size_t i = 0; i < versions_.size(); ++i) versions_[i].text = std::move(texts[i]);
+  saved_ = text();
+  path_ = path;
+  overrides_.clear();
+  versions_[now_].drag.clear();
+  return Done{};
+}
+
+}  // namespace catena::scene

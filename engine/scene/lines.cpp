@@ -16,6 +16,7 @@ using Curves = std::vector<flow::CurvePtr>;
 /// What this room keeps beside a StreamlineSet.
 struct MadeLines {
   std::uint64_t field_version = 0;
+  std::vector<Vec3> points;  ///< of a widget: the seeds
   Curves curves;
 };
 
@@ -25,7 +26,8 @@ const json::Node& member_or(const json::Node& node, std::string_view key) {
 }
 
 /// Points through the scene's curves; those that are new, over all cores.
-Result<Curves> exact_lines(Scene& scene, const std::vector<Vec3>& points, const LineRequest& request, const json::Node& where) {
+Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
+  const std::vector<Vec3>& points = seeds.points;
   const auto place = [&](std::size_t i) -> const json::Node& { return i < where.items.size() ? where.items[i] : where; };
   const auto key = [&](const Vec3& p) {
     return Scene::CurveKey{request.flow.field->version(), request.flow.line, request.flow.min_speed, request.length, {p.x, p.y, p.z}};
@@ -41,12 +43,15 @@ Result<Curves> exact_lines(Scene& scene, const std::vector<Vec3>& points, const 
   options.length = request.length;
   const auto traced = flow::trace_each(request.flow, missing, options);
   for (std::size_t n = 0; n < missing.size(); ++n) {
-    if (!traced[n]) return json::error_at(place(at[n]), traced[n].error().message);
-    scene.curves.emplace(key(missing[n]), *traced[n]);
+    if (traced[n])
+      scene.curves.emplace(key(missing[n]), *traced[n]);
+    else if (!seeds.widget)
+      return json::error_at(place(at[n]), traced[n].error().message);
   }
   Curves curves;
   curves.reserve(points.size());
-  for (const Vec3& p : points) curves.push_back(scene.curves.at(key(p)));
+  for (const Vec3& p : points)
+    if (const auto it = scene.curves.find(key(p)); it != scene.curves.end()) curves.push_back(it->second);
   return curves;
 }
 
@@ -90,8 +95,9 @@ std::vector<Vec3> default_start(const field::Field& field) {
 }  // namespace
 
 Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
-  const double tolerance = request.tolerance > 0 ? request.tolerance : seeds.pattern ? kPatternTolerance : 0;
-  if (!seeds.pattern && tolerance <= kExact) return exact_lines(scene, seeds.points, request, where);
+  const bool many = seeds.pattern || (seeds.widget && scene.world.get<Widget>(seeds.widget).spec.kind == widget::Kind::rake);
+  const double tolerance = request.tolerance > 0 ? request.tolerance : many ? kPatternTolerance : 0;
+  if (!many && tolerance <= kExact) return exact_lines(scene, seeds, request, where);
   flow::BatchOptions batch;
   batch.length = request.length;
   batch.tolerance = std::max(tolerance, kExact);
@@ -123,10 +129,10 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& r
   for (std::size_t i = 0; i < traced.size(); ++i) {
     if (traced[i])
       curves.push_back(*traced[i]);
-    else if (!seeds.pattern)
+    else if (!seeds.pattern && !seeds.widget)
       return json::error_at(i < where.items.size() ? where.items[i] : where, traced[i].error().message);
   }
-  if (curves.empty())
+  if (curves.empty() && !seeds.widget)
     return json::error_at(
         place, "none of the " + std::to_string(places.size()) + " seeds starts a line; the first: " + traced.front().error().message);
   return curves;
@@ -140,11 +146,17 @@ Result<Curves> use_lines(Scene& scene, Entity entity) {
                                                              " is a scalar field; expected a vector field for streamlines");
   if (!scene.world.has<MadeLines>(entity)) scene.world.emplace<MadeLines>(entity);
   MadeLines& made = scene.world.get<MadeLines>(entity);
-  if (made.field_version == any.vector->version()) return made.curves;
+  const bool same_seeds = !set.seeds.widget || made.points == set.seeds.points;
+  if (made.field_version == any.vector->version() && same_seeds) return made.curves;
   const LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
   CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, member_or(set.where, "seeds")));
-  made = {any.vector->version(), std::move(curves)};
+  made = {any.vector->version(), set.seeds.widget ? set.seeds.points : std::vector<Vec3>{}, std::move(curves)};
+  if (set.seeds.widget) drop_unused_curves(scene);
   return made.curves;
+}
+
+void drop_unused_curves(Scene& scene) {
+  std::erase_if(scene.curves, [](const auto& entry) { return entry.second.use_count() == 1; });
 }
 
 }  // namespace catena::scene

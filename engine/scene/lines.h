@@ -1,5 +1,6 @@
 /// The lines of a set of seeds: points, or a pattern (line, plane, sphere, isosurface, evenly spaced).
 ///   points     the exact tracer, through the scene's own curves: a line that a link of the chain feels is the same object
+///   widget     a seed as a point, a rake as a pattern
 ///   patterns   the batch tracer (engine/flow/batch.h); places of a pattern that start nothing are left out
 ///   tolerance  of one step, times L, chooses otherwise: up to 1e-9 the exact tracer, above it the batch tracer
 /// Frame thread.
@@ -19,10 +20,13 @@ struct LineRequest {
 };
 
 /// Every line of the seeds. Points that start nothing are errors at their place in the file; a pattern of which no place
-/// starts a line is one, too.
+/// starts a line is one, too. Not those of a widget, which the hand may carry anywhere: what starts nothing is left out.
 Result<std::vector<flow::CurvePtr>> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where);
 
-/// The lines of a streamline set, made once.
+/// The lines of a streamline set; made once, and again when a widget has moved their seeds.
 Result<std::vector<flow::CurvePtr>> use_lines(Scene& scene, Entity set);
+
+/// Drops the curves that nothing but the scene holds any more (no line that is drawn, no link of a program).
+void drop_unused_curves(Scene& scene);
 
 }  // namespace catena::scene

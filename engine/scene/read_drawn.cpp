@@ -106,7 +106,12 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
     CATENA_TRY(surface.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(surface.color_by, read_field_colors(scene, item));
-    CATENA_TRY(surface.level, json::require_number(item, "level"));
+    if (const json::Node* level = item.find("level"); level != nullptr && level->kind == json::Kind::object) {
+      CATENA_CHECK(json::only_keys(*level, {"widget"}));
+      CATENA_TRY(surface.level_from, read_widget_name(scene, *level, {widget::Kind::isolevel}, "an isolevel"));
+    } else {
+      CATENA_TRY(surface.level, json::require_number(item, "level"));
+    }
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
     CATENA_TRY(surface.opacity, read_opacity(item, surface.opacity));
     scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));

@@ -5,7 +5,7 @@
 namespace catena::scene {
 namespace {
 
-constexpr std::size_t kMostLinks = exchange::kMaxLinks;
+constexpr std::size_t kMostLinks = exchange::kMaxSceneLinks;
 
 }  // namespace
 

@@ -31,6 +31,12 @@ Result<std::optional<FieldColors>> read_field_colors(const Scene& scene, const j
 /// "projection" of a volume, and whether it goes with what else the volume states.
 Outcome read_projection(Volume& volume, const json::Node& object);
 
+/// "widgets": the things that the hand takes hold of.
+Outcome read_widgets(Scene& scene, const json::Node& node);
+/// The widget that member "widget" of `object` names, one of `kinds`; `wanted` says them in words ("a cutting plane or a box").
+Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<widget::Kind> kinds,
+                                std::string_view wanted);
+
 Outcome read_chain(Scene& scene, const json::Node& node);
 Outcome read_modes(Scene& scene, const json::Node& node);
 Outcome read_coupling(Scene& scene, const json::Node& node);

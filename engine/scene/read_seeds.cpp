@@ -2,6 +2,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/widgets.h"
 
 namespace catena::scene {
 namespace {
@@ -81,6 +82,21 @@ Outcome read_evenly_spaced(const Scene&, const json::Node& node, SeedPattern& ou
   return Done{};
 }
 
+/// {"widget": NAME}: of a rake with "count".
+Result<Seeds> read_followed(const Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::only_keys(node, {"widget", "count"}));
+  Seeds seeds;
+  CATENA_TRY(seeds.widget, read_widget_name(scene, node, {widget::Kind::seed, widget::Kind::rake}, "a seed or a rake"));
+  const widget::Spec& spec = scene.world.get<Widget>(seeds.widget).spec;
+  if (spec.kind == widget::Kind::rake) {
+    CATENA_TRY(seeds.count, read_count(node));
+  } else if (const json::Node* count = node.find("count")) {
+    return json::error_at(*count, "\"count\" is given with a seed, which is one place; it belongs to a rake");
+  }
+  seeds.points = seeds_of(spec.kind, spec.pose, seeds.count);
+  return seeds;
+}
+
 }  // namespace
 
 Result<Seeds> read_seeds(const Scene& scene, const json::Node& node) {
@@ -91,6 +107,7 @@ Result<Seeds> read_seeds(const Scene& scene, const json::Node& node) {
     CATENA_TRY(seeds.points, read_points(node, "seeds"));
     return seeds;
   }
+  if (node.find("widget") != nullptr) return read_followed(scene, node);
   struct Reader {
     std::string_view key;
     SeedPattern::Kind kind;

@@ -1,23 +1,38 @@
-/// "slices": [{"field", "point" and "normal", or "axis" and "at", the colours of read_transfer.h, "opacity", "lit", "clip", "visible",
+/// "slices": [{"field", "point" and "normal", or "axis" and "at", or "widget", the colours of read_transfer.h, "opacity", "lit", "clip",
+/// "visible",
 ///             "contours": {"levels" | "count" | "spacing", "color", "width"}}]
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
+#include "engine/scene/widgets.h"
 
 namespace catena::scene {
 namespace {
 
 constexpr double kWidest = 100;  // pixels
 
-Outcome read_plane(const json::Node& item, Slice& slice) {
+/// The plane of a widget.
+Outcome read_followed(const Scene& scene, const json::Node& item, Slice& slice) {
+  for (const char* key : {"point", "normal", "axis", "at"})
+    if (const json::Node* node = item.find(key))
+      return json::error_at(*node, in_quotes(key) + " is given beside \"widget\", whose plane the slice follows; one of them was expected");
+  CATENA_TRY(slice.widget, read_widget_name(scene, item, {widget::Kind::cutting_plane}, "a cutting plane"));
+  const widget::Pose& pose = scene.world.get<Widget>(slice.widget).spec.pose;
+  slice.point = pose.points[0];
+  slice.normal = normal_of(pose);
+  return Done{};
+}
+
+Outcome read_plane(const Scene& scene, const json::Node& item, Slice& slice) {
+  if (item.find("widget") != nullptr) return read_followed(scene, item, slice);
   const json::Node *axis = item.find("axis"), *at = item.find("at"), *point = item.find("point"), *normal = item.find("normal");
   if ((axis || at) && (point || normal))
     return json::error_at(
         point ? *point : *normal,
         "a slice has both an axis and a point or normal; \"axis\" with \"at\", or \"point\" with \"normal\", was expected");
   if (!axis && !at && !point && !normal)
-    return json::error_at(item, "a slice has no plane; \"axis\" with \"at\", or \"point\" with \"normal\", was expected");
+    return json::error_at(item, "a slice has no plane; \"axis\" with \"at\", or \"point\" with \"normal\", or \"widget\", was expected");
   if (axis || at) {
     if (!axis) return json::error_at(*at, "\"at\" is given without \"axis\"; \"x\", \"y\" or \"z\" was expected beside it");
     CATENA_TRY(const int which, json::get_choice(item, "axis", 0, {"x", "y", "z"}));
@@ -79,12 +94,12 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"slices\" is no array; an array of objects was expected");
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(
-        item, {"field", "point", "normal", "axis", "at", "color", "range", "transfer", "opacity", "contours", "lit", "clip", "visible"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "point", "normal", "axis", "at", "widget", "color", "range", "transfer", "opacity",
+                                        "contours", "lit", "clip", "visible"}));
     Slice slice;
     slice.where = item;
     CATENA_TRY(slice.shown.field, read_field_name(scene, item));
-    CATENA_CHECK(read_plane(item, slice));
+    CATENA_CHECK(read_plane(scene, item, slice));
     CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
     slice.shown.colors = std::move(scale.colors);
     slice.shown.named = std::move(scale.named);

@@ -35,7 +35,8 @@ struct Scene {
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts
 
-  /// Curves already traced, keyed by field version, flow and seed: tubes and links share the object.
+  /// Curves already traced, keyed by field version, flow and seed: tubes and links share the object. Those that nothing holds any more are
+  /// dropped as seeds move (lines.h), so that hours of it do not fill the memory.
   struct CurveKey {
     std::uint64_t field_version;
     bool line;
@@ -71,8 +72,15 @@ Entity find_mesh(const Scene& scene, std::string_view name);
 /// Loads on first use: the hand's and the eye's mesh are one object.
 Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh);
 Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where);
-/// The one curve of (field, flow, seed, length).
+/// The one curve of (field, flow, seed, length), while something holds it.
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);
+
+/// The widget of that name.
+Entity find_widget(const Scene& scene, std::string_view name);
+/// The widget as the tick takes it: sizes that the scene does not state follow L, the longest edge of the domain boxes of the fields and
+/// meshes that the scene draws or the widget names (without any: of those that its links name; else 4). An isolevel's field is loaded and
+/// its value set. `along` is left to the maker of the program, which knows the links. Completed once.
+Result<widget::Spec> use_widget(Scene& scene, Entity widget);
 
 /// Checks that a level can be drawn and felt: it lies within the field's values.
 Outcome check_level(const field::ScalarField& field, double level, const json::Node& where);

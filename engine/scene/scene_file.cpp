@@ -11,6 +11,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
     Outcome (*read)(Scene&, const json::Node&);
   };
   constexpr Part parts[] = {{"chain", read_chain},
+                            {"widgets", read_widgets},
                             {"modes", read_modes},
                             {"coupling", read_coupling},
                             {"workspace", read_workspace},
@@ -42,7 +43,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
   std::vector<std::string_view> keys{"fields"};
   for (const Part& part : parts) keys.push_back(part.key);
   CATENA_CHECK(json::only_keys(root, keys));
-  // fields first: the other parts name them; scalar bars name what is drawn
+  // fields first: the other parts name them; widgets name links; what follows a widget names it; scalar bars name what is drawn
   CATENA_CHECK(read_fields(scene, root, overrides));
   for (const Part& part : parts)
     if (const json::Node* node = root.find(part.key)) CATENA_CHECK(part.read(scene, *node));

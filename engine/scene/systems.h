@@ -9,4 +9,19 @@ namespace catena::scene {
 /// is not finite leaves the cursor where it was.
 void update_cursor(Scene& scene, const exchange::HapticState& state);
 
+/// Takes over the reports of the tick: pose, value, mode, handle and planes of each widget. Reports about another list of widgets, of
+/// another revision than the pose that was set last, or not finite, are ignored. Whether a pose or value changed.
+bool update_widgets(Scene& scene, const exchange::HapticState& state);
+
+/// What changed since the last drive_widgets.
+struct WidgetChanges {
+  bool slices = false, clip = false, seeds = false, levels = false;
+  bool links = false;  ///< a link of the chain names a widget that moved: the program must be made and published again
+  bool any() const { return slices || clip || seeds || levels || links; }
+};
+
+/// Slices, clip planes, seeds and isosurfaces that name a widget follow its pose; a level stays within the values of the field that it is
+/// drawn of. Completes the widgets (use_widget); those that have not moved cost nothing. extract_frame calls it, too.
+Result<WidgetChanges> drive_widgets(Scene& scene);
+
 }  // namespace catena::scene

@@ -2,11 +2,14 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/lines.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/transfer.h"
 
 namespace catena::scene {
 namespace {
+
+constexpr std::size_t kManyCurves = 64;  ///< from here on those that nothing holds are looked for
 
 /// A field without a single value helps nobody.
 Outcome check_grid(const field::AnyField& any) {
@@ -120,6 +123,7 @@ Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec
   options.length = length;
   auto curve = flow::trace(flow, seed, options);
   if (!curve) return json::error_at(where, curve.error().message);
+  if (scene.curves.size() >= kManyCurves) drop_unused_curves(scene);
   scene.curves.emplace(key, *curve);
   return *curve;
 }

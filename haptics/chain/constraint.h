@@ -11,6 +11,7 @@
 #include "engine/base/assert.h"
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/field.h"
+#include "engine/widget/state.h"
 
 namespace catena::haptics {
 
@@ -35,6 +36,7 @@ struct LinkState {
   bool released = false;                             ///< let go; re-arms by the constraint's own rule
   bool on = false;                                   ///< its switch
   double weight = 1;                                 ///< w_i
+  widget::Shape shape{};                             ///< a widget's link: what it is on in this tick (widgets.h)
   alignas(16) std::array<std::byte, 1024> memory{};  ///< the constraint's own, zero at start; see memory_of
   alignas(16) std::array<std::byte, 128> outer{};    ///< of a constraint that wraps another one, zero at start
 

@@ -5,7 +5,7 @@ namespace catena::haptics {
 namespace {
 
 /// The force step that a change of the order makes. Links before the first change keep their probe, so theirs are not counted;
-/// neither is a link that has just been switched on.
+/// neither is a link that has just been switched on, or put on another shape.
 Vec3 step_of(const Fade& fade, const Order& order, const std::array<Vec3, kMaxLinks>& shares) noexcept {
   Vec3 step(0.0);
   if (fade.replaced) {
@@ -14,13 +14,14 @@ Vec3 step_of(const Fade& fade, const Order& order, const std::array<Vec3, kMaxLi
   }
   int same = 0;
   while (same < order.count && same < fade.order.count &&
-         order.links[static_cast<std::size_t>(same)] == fade.order.links[static_cast<std::size_t>(same)])
+         order.links[static_cast<std::size_t>(same)] == fade.order.links[static_cast<std::size_t>(same)] &&
+         order.takes[static_cast<std::size_t>(same)] == fade.order.takes[static_cast<std::size_t>(same)])
     ++same;
   for (int k = same; k < fade.order.count; ++k)
     step += fade.shares[static_cast<std::size_t>(fade.order.links[static_cast<std::size_t>(k)])];
   for (int k = same; k < order.count; ++k) {
     const auto link = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
-    if (fade.order.contains(link)) step -= shares[link];
+    if (fade.order.contains(link, order.takes[static_cast<std::size_t>(k)])) step -= shares[link];
   }
   return step;
 }

@@ -79,13 +79,18 @@ struct Coupling {
 
 struct Program {
   std::uint64_t epoch = 0;
-  std::vector<Link> links;  ///< at most kMaxLinks
+  std::vector<Link> links;            ///< at most kMaxLinks
+  int first_widget_link = -1;         ///< the widgets' links x, y, z, sphere: the last four of `links`; -1: no widgets
+  std::vector<widget::Spec> widgets;  ///< at most kMaxWidgets
+  std::vector<std::string> widget_names;
   std::vector<Mode> modes;  ///< at most kMaxModes; the first whose switch is on orders the chain; none: all links as listed
   Coupling coupling;
   Limits limits;                 ///< what the device allows; all off without one
   double metres_per_unit = 1;    ///< S: metres of hand a world unit
   Vec3 workspace_origin{0.0};    ///< world position of the device's origin
   Mat3 workspace_rotation{1.0};  ///< world from device axes
+
+  std::size_t scene_links() const { return first_widget_link < 0 ? links.size() : static_cast<std::size_t>(first_widget_link); }
 };
 
 inline constexpr int kMaxModes = 8;

@@ -39,6 +39,7 @@ void rebind(const Program& from, const Program& to, ChainState& state, ChainScra
       state.passivity.sent_n[i] = old.passivity.sent_n[k];
     }
   }
+  rebind_widgets(from, to, state.widgets);
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxModes); ++i) {
     state.switches.mode_on[i] = false;
     if (i >= to.modes.size()) continue;

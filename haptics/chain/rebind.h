@@ -1,5 +1,5 @@
 /// A new program takes over: links of the same name and the same recipe (or constraint object) keep their state, all others start anew
-/// in the next tick. Haptic thread: no allocation.
+/// in the next tick. Widgets: widgets.h. Haptic thread: no allocation.
 #pragma once
 #include "haptics/chain/tick.h"
 

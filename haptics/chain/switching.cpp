@@ -17,7 +17,7 @@ bool step(const Switch& on, bool was, std::uint32_t before, std::uint32_t now, d
 }  // namespace
 
 Order step_switches(const Program& program, std::uint32_t buttons, double last_force_n, SwitchState& state) noexcept {
-  for (std::size_t i = 0; i < program.links.size(); ++i)
+  for (std::size_t i = 0; i < program.scene_links(); ++i)
     state.link_on[i] = step(program.links[i].on, state.link_on[i], state.buttons, buttons, last_force_n);
   Order order;
   for (std::size_t m = 0; m < program.modes.size(); ++m) {
@@ -27,10 +27,10 @@ Order step_switches(const Program& program, std::uint32_t buttons, double last_f
   state.buttons = buttons;
 
   const auto add = [&](std::size_t link) {
-    if (state.link_on[link]) order.links[static_cast<std::size_t>(order.count++)] = static_cast<std::int8_t>(link);
+    if (state.link_on[link]) order.add(link);
   };
   if (order.mode < 0) {
-    for (std::size_t i = 0; i < program.links.size(); ++i) add(i);
+    for (std::size_t i = 0; i < program.scene_links(); ++i) add(i);
   } else {
     for (const int i : program.modes[static_cast<std::size_t>(order.mode)].links) add(static_cast<std::size_t>(i));
   }

@@ -15,12 +15,22 @@ struct SwitchState {
 /// The links that run, in order; the others pass their probe through.
 struct Order {
   std::array<std::int8_t, kMaxLinks> links{};
+  std::array<std::uint8_t, kMaxLinks> takes{};  ///< of a widget's link: counts the shapes that it was put on; another one is another link
   std::int8_t count = 0;
   std::int8_t mode = -1;
   bool operator==(const Order&) const = default;
+  void add(std::size_t link, std::uint8_t take = 0) noexcept {
+    takes[static_cast<std::size_t>(count)] = take;
+    links[static_cast<std::size_t>(count++)] = static_cast<std::int8_t>(link);
+  }
   bool contains(std::size_t link) const noexcept {
     for (int k = 0; k < count; ++k)
       if (links[static_cast<std::size_t>(k)] == static_cast<int>(link)) return true;
+    return false;
+  }
+  bool contains(std::size_t link, std::uint8_t take) const noexcept {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+      if (links[k] == static_cast<int>(link) && takes[k] == take) return true;
     return false;
   }
 };

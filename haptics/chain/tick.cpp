@@ -53,6 +53,10 @@ void pass_through(const Program& program, const Order& order, const Vec3& probe,
   }
 }
 
+Vec3 last_proxy(const Order& order, const Vec3& probe, const ChainState& state) noexcept {
+  return order.count > 0 ? state.links[static_cast<std::size_t>(order.links[static_cast<std::size_t>(order.count - 1)])].proxy : probe;
+}
+
 // A baseline's tick: one proxy for all links. Returns K S (p - x).
 Coupled one_proxy(const Program& program, const Order& order, const Vec3& probe, double dt, ChainState& state,
                   ChainScratch& scratch) noexcept {
@@ -141,6 +145,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
     to.status = link.status;
     to.active = link.active();
   }
+  report_widgets(program, state.widgets, out);
 }
 
 void hold_all(const Program& program, double t_s, ChainState& state, exchange::HapticState& out) noexcept {
@@ -155,6 +160,7 @@ void hold_all(const Program& program, double t_s, ChainState& state, exchange::H
   // no pose, no force: whatever the clock says
   guard(program.limits, {Vec3(0.0), Vec3(0.0), Condition::no_device, false, 0}, state.guard);
   suspend(state.passivity);
+  lose_probe(state.widgets);
   if (std::isfinite(t_s)) state.clock_t_s = t_s;
   ++state.ticks;
   report(program, state, out);
@@ -175,13 +181,17 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   const double dt = state.has_probe ? std::fmax(0.0, probe.t_s - state.last_t_s) : 0;
   const double ramp_step = program.coupling.ramp_s > 0 ? dt / program.coupling.ramp_s : 1;
   const double s = program.metres_per_unit;
-  const Order order = step_switches(program, probe.buttons, norm(state.force_n), state.switches);
+  Order order = step_switches(program, probe.buttons, norm(state.force_n), state.switches);
+  if (!program.widgets.empty())
+    order = engage_widgets(program, {probe.position, probe.buttons}, order, state.switches, state.links, state.widgets);
 
   for (std::size_t i = 0; i < program.links.size(); ++i)
     if (!order.contains(i)) switch_off(state.links[i]);
 
   const Coupled coupled = is_single(program) ? one_proxy(program, order, probe.position, dt, state, scratch)
                                              : chain(program, order, probe.position, dt, ramp_step, state, scratch);
+
+  if (!program.widgets.empty()) move_widgets(program, last_proxy(order, probe.position, state), state.widgets);
 
   // what the links tell of the hand, and what fades out after a change of the order
   Vec3 force = coupled.force_n, cues(0.0);

@@ -5,6 +5,7 @@
 ///   torque: of links that align the tool (alignment.h), if any
 /// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
 /// then the guard (guard.h): what the device's limits and the tick's condition leave of it, and the ledger (passivity.h).
+/// Widgets (widgets.h) add their links to the chain, or run alone while one is grabbed, and follow the last proxy.
 /// No k_i, and no K of a baseline's force, is above the device's cap (limits.h).
 /// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE. A clock that goes back stands still for a tick.
 #pragma once
@@ -14,6 +15,7 @@
 #include "haptics/chain/guard.h"
 #include "haptics/chain/indication.h"
 #include "haptics/chain/passivity.h"
+#include "haptics/chain/widgets.h"
 
 namespace catena::haptics {
 
@@ -32,6 +34,7 @@ struct ChainState {
   SwitchState switches;
   Fade fade;
   AlignmentState alignment;
+  WidgetsState widgets;
   SingleProxy single;  ///< baselines
   Vec3 last_probe{0.0};
   double last_t_s = 0;   ///< of the last tick with a probe

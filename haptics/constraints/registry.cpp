@@ -122,7 +122,7 @@ std::string chain_schema() {
   return fmt::format(
       "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"chain\",\n  \"type\": \"array\",\n"
       "  \"maxItems\": {},\n  \"items\": {{ \"oneOf\": [\n{}\n  ] }}\n}}\n",
-      kMaxLinks, links);
+      exchange::kMaxSceneLinks, links);
 }
 
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {

@@ -5,6 +5,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/systems.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
@@ -152,6 +153,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   FramePacket packet;
   packet.width = width;
   packet.height = height;
+  CATENA_CHECK(scene::drive_widgets(scene));
   packet.jitter = scene.jitter;
   for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
   const scene::Background& background = scene.background;

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "engine/scene/ruler.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/systems.h"
 #include "haptics/extract/extract.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/support.h"
@@ -47,6 +49,20 @@ const std::string kHand = R"({ "fields": {"s": {"analytic": "sphere"}, "v": {"an
   "modes": [{"name": "one", "links": ["skin", "path"], "on": {"button": 1}}, {"name": "two", "links": [], "on": {"force_above": 2}}],
   "coupling": {"ramp_s": 0.02, "rotational_stiffness": 0.3, "rotational_damping": 0.001} })";
 
+/// Every widget, and all that follows one.
+const std::string kWidgets = R"({ "fields": {"s": {"analytic": "sphere", "resolution": 4, "box": [-1, 1]}, "v": {"analytic": "circle"}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}, {"name": "skin", "type": "isosurface", "field": "s", "level": 0.5}],
+  "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0.1], "normal": [0, 1, 1], "radius": 0.3, "snap": 0.05, "release": 0.1,
+               "near": 0.04, "step": 0.03, "turning": "axis", "touch": true, "button": 2, "color": [1, 0, 0]},
+              {"name": "other", "type": "cutting_plane", "center": [0, 0, 0], "orientation": [0.6, 0.8, 0, 0]},
+              {"name": "s", "type": "seed", "position": [1, 0, 0]}, {"name": "r", "type": "rake", "from": [0.5, 0, 0], "to": [1, 0, 0], "step": 0.1},
+              {"name": "l", "type": "isolevel", "field": "s", "position": [0.5, 0, 0]}, {"name": "b", "type": "box", "lo": [-1, -1, -1], "hi": [1, 1, 1]},
+              {"name": "u", "type": "ruler", "from": [1, 0, 0], "to": [0, 1, 0], "along": ["curve", "skin"]}],
+  "slices": [{"field": "s", "widget": "cut", "contours": {"count": 3}}],
+  "clip": [{"widget": "other", "side": "behind"}, {"widget": "b"}],
+  "streamlines": [{"field": "v", "seeds": {"widget": "s"}}, {"field": "v", "seeds": {"widget": "r", "count": 4}}],
+  "isosurfaces": [{"field": "s", "level": {"widget": "l"}}] })";
+
 /// A value, or one line that starts with the file's name.
 bool check(const std::string& text, bool extract) {
   auto scene = scene::parse_scene(text, "scene.json");
@@ -65,7 +81,7 @@ bool check(const std::string& text, bool extract) {
 }
 
 TEST(SceneFuzz, TheSeedsAreValid) {
-  for (const std::string& seed : {kScene, kHand}) {
+  for (const std::string& seed : {kScene, kHand, kWidgets}) {
     auto scene = scene::parse_scene(seed, "scene.json");
     ASSERT_TRUE(scene) << scene.error().message;
     const auto program = haptics::extract_program(*scene);
@@ -96,6 +112,39 @@ TEST(SceneFuzz, Mutations) {
 TEST(SceneFuzz, MutatedChainsAreExtracted) {
   test::Random random{2};
   for (int i = 0; i < kMutations / 10 && !HasFailure(); ++i) check(test::mutate(i % 2 ? kHand : kScene, random), true);
+}
+
+/// Completed, driven and measured as well: all of it is a value or one line.
+bool drive(const std::string& text) {
+  auto scene = scene::parse_scene(text, "scene.json");
+  if (!scene) return check(text, false);
+  std::string message;
+  if (const auto changes = scene::drive_widgets(*scene); !changes) message = changes.error().message;
+  std::vector<scene::Entity> rulers;
+  scene->world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& w) {
+    if (w.spec.kind == widget::Kind::ruler) rulers.push_back(e);
+  });
+  if (message.empty())
+    for (const scene::Entity e : rulers)
+      if (const auto measured = scene::use_ruler(*scene, e); !measured) message = measured.error().message;
+  if (message.empty()) return true;
+  EXPECT_TRUE(message.starts_with("scene.json:")) << message << "\nfor\n" << text;
+  EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message;
+  EXPECT_LT(message.size(), 1000u) << message;
+  return false;
+}
+
+TEST(SceneFuzz, EveryTruncationOfWidgets) {
+  for (std::size_t n = 0; n < kWidgets.size(); ++n) EXPECT_FALSE(check(kWidgets.substr(0, n), false)) << n;
+}
+
+TEST(SceneFuzz, MutatedWidgetsAreDriven) {
+  ASSERT_TRUE(drive(kWidgets));
+  test::Random random{3};
+  int driven = 0;
+  for (int i = 0; i < kMutations / 10 && !HasFailure(); ++i) driven += drive(test::mutate(kWidgets, random)) ? 1 : 0;
+  EXPECT_GT(driven, 0);
+  EXPECT_LT(driven, kMutations / 10);
 }
 
 TEST(SceneFuzz, DeepAndLongTexts) {

@@ -22,7 +22,7 @@ TEST(SceneClip, PlanesAndBoxesBecomePlanes) {
 
 TEST(SceneClip, WrongClipsNameTheirLine) {
   for (const auto& [text, expected] : {std::pair{R"({"plane": 1})", "an array of objects was expected"},
-                                       {R"([{}])", "one of \"plane\" and \"box\" was expected"},
+                                       {R"([{}])", "one of \"plane\", \"box\" and \"widget\" was expected"},
                                        {R"([{"plane": {"point": [0,0,0], "normal": [0,0,0]}}])", "a vector other than [0, 0, 0]"},
                                        {R"([{"box": {"lo": [0,0,0], "hi": [1,0,1]}}])", "a box was expected"},
                                        {R"([{"box": {"lo": [0,0,0], "hi": [1,1,1], "in": 1}}])", "in"}}) {

@@ -1,0 +1,21 @@
+/// A data file as a scene: the text that scene_for_file and Document read, and what had to be loaded to write it. Inside this room only.
+#pragma once
+#include <string>
+
+#include "engine/scene/scene.h"
+
+namespace catena::scene {
+
+struct BareFile {
+  std::string text;        ///< a scene file; it names the data file without its folder
+  std::string scene_path;  ///< where that scene file would be: FILE.json beside it
+  field::LoadRequest request;
+  field::AnyField field;  ///< either this
+  mesh::MeshPtr mesh;     ///< or this
+};
+
+Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors);
+/// Gives the scene that was read from the text what is loaded already.
+void adopt_loaded(const BareFile& bare, Scene& scene);
+
+}  // namespace catena::scene

@@ -1,0 +1,116 @@
+#include "engine/scene/named_files.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/base/json_edit.h"
+#include "engine/base/output_file.h"
+#include "engine/scene/read_parts.h"
+
+namespace catena::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_string(const json::Node& object, std::string_view key, std::vector<const json::Node*>& names) {
+  const json::Node* node = object.find(key);
+  if (node != nullptr && node->kind == json::Kind::string && !node->string.empty()) names.push_back(node);
+}
+
+/// "transfer" at any depth.
+void add_transfers(const json::Node& node, std::vector<const json::Node*>& names) {
+  add_string(node, "transfer", names);
+  for (const json::Node& item : node.items) add_transfers(item, names);
+  for (const auto& [key, member] : node.members) add_transfers(member, names);
+}
+
+/// The values that name files, in the text's order.
+std::vector<const json::Node*> file_names(const json::Node& root) {
+  std::vector<const json::Node*> names;
+  if (const json::Node* fields = root.find("fields"))
+    for (const auto& [name, field] : fields->members) add_string(field, "file", names);
+  if (const json::Node* meshes = root.find("meshes"))
+    for (const json::Node& mesh : meshes->items) add_string(mesh, "file", names);
+  if (const json::Node* device = root.find("device")) add_string(*device, "firmware", names);
+  for (const char* key : {"volumes", "isosurfaces", "meshes", "slices", "streamlines"})
+    if (const json::Node* part = root.find(key)) add_transfers(*part, names);
+  std::sort(names.begin(), names.end(), [](const json::Node* a, const json::Node* b) { return a->begin < b->begin; });
+  return names;
+}
+
+fs::path folder_of(const std::string& path) {
+  std::error_code code;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(path, code).parent_path(), code);
+  return code ? fs::path(path).parent_path() : folder;
+}
+
+/// The file as a scene in that folder names it. Links on the way are followed, the file itself keeps its name: its ending counts.
+std::string name_from(const std::string& file, const fs::path& folder) {
+  const std::string name = (folder_of(file).lexically_relative(folder) / fs::path(file).filename()).lexically_normal().string();
+  return same_file((folder / name).string(), file) ? name : fs::absolute(file).lexically_normal().string();
+}
+
+bool is_raw(const std::string& file) { return file.ends_with(".raw"); }
+
+/// The text with an override in it: what apply_override makes of the field, said by the field.
+Result<std::string> with_override(std::string text, const std::string& path, const FieldOverride& with) {
+  const std::string name = fs::path(with.file).is_absolute() ? with.file : name_from(with.file, folder_of(path));
+  CATENA_TRY(const json::Node root, json::parse(text, path));
+  const std::string pointer = "/fields/" + json::pointer_step(with.name);
+  const json::Node* field = json::find_value(root, pointer);
+  const json::Node* file = field == nullptr ? nullptr : field->find("file");
+  const bool raw = file != nullptr && is_raw(file->string);
+  if (file == nullptr || (raw && !is_raw(name))) {
+    const std::string grid = with.grid.empty() ? "" : ", \"grid\": " + json::quoted(with.grid);
+    return json::set_value(text, path, pointer, "{\"file\": " + json::quoted(name) + grid + "}");
+  }
+  CATENA_TRY(text, json::set_value(text, path, pointer + "/file", json::quoted(name)));
+  if (raw) return text;
+
+  // the grid and the mask of the file before are wishes: without them the file's own
+  const json::Node *grid = field->find("grid"), *valid = field->find("valid");
+  const bool wish = grid != nullptr && with.grid.empty(), mask = valid != nullptr && valid->kind == json::Kind::string;
+  const auto grids = wish || mask ? field::describe(with.file) : Result<std::vector<field::GridInfo>>(Error{});
+  const auto lacks = [&](const json::Node& node) {
+    return grids && std::none_of(grids->begin(), grids->end(), [&](const field::GridInfo& info) { return info.name == node.string; });
+  };
+  if (!with.grid.empty()) {
+    CATENA_TRY(text, json::set_value(text, path, pointer + "/grid", json::quoted(with.grid)));
+  } else if (wish && lacks(*grid)) {
+    CATENA_TRY(text, json::remove_value(text, path, pointer + "/grid"));
+  }
+  if (mask && lacks(*valid)) {
+    CATENA_TRY(text, json::set_value(text, path, pointer + "/valid", "null"));
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> files_of(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {
+  CATENA_TRY(const json::Node root, json::parse(text, path));
+  std::vector<std::string> files;
+  for (const json::Node* name : file_names(root)) files.push_back(resolved_path(path, name->string));
+  for (const FieldOverride& with : overrides) files.push_back(with.file);
+  return files;
+}
+
+Result<std::string> moved_text(std::string_view text, const std::string& from, const std::string& to,
+                               const std::vector<FieldOverride>& overrides) {
+  std::string moved(text);
+  const fs::path folder = folder_of(to);
+  if (folder_of(from) != folder) {
+    CATENA_TRY(const json::Node root, json::parse(text, from));
+    const std::vector<const json::Node*> names = file_names(root);
+    // from the end, so that the places before keep theirs
+    for (auto it = names.rbegin(); it != names.rend(); ++it)
+      if (fs::path((*it)->string).is_relative())
+        moved.replace((*it)->begin, (*it)->end - (*it)->begin, json::quoted(name_from(resolved_path(from, (*it)->string), folder)));
+  }
+  for (const FieldOverride& with : overrides) {
+    CATENA_TRY(moved, with_override(std::move(moved), to, with));
+  }
+  return moved;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,175 @@
+#include "engine/scene/ruler.h"
+
+#include <algorithm>
+
+#include "engine/base/shorten_path.h"
+#include "engine/base/text.h"
+#include "engine/flow/level_path.h"
+#include "engine/flow/nearest.h"
+#include "engine/mesh/mesh_path.h"
+
+namespace catena::scene {
+namespace {
+
+using How = RulerMeasure::How;
+constexpr std::size_t kMostPoints = 4096;
+
+/// What a ruler is measured along: at most one is set.
+struct Track {
+  flow::CurvePtr curve;
+  field::ScalarFieldPtr surface;
+  double level = 0;
+  mesh::MeshPtr mesh;
+  std::string note;
+  bool is_same(const Track& other) const {
+    return curve == other.curve && surface == other.surface && level == other.level && mesh == other.mesh && note == other.note;
+  }
+};
+
+/// What this room keeps beside a ruler.
+struct MadeRuler {
+  widget::Pose pose;
+  Track track;
+  RulerMeasure measure;
+};
+
+/// The widget that a link's key names instead of a value; none: it does not.
+Entity named_widget(const Scene& scene, const json::Node* value) {
+  const json::Node* name = value == nullptr ? nullptr : value->find("widget");
+  return name == nullptr || name->kind != json::Kind::string ? Entity{} : find_widget(scene, name->string);
+}
+
+Result<Track> curve_track(Scene& scene, const Link& link) {
+  Track track;
+  const json::Node* seed_node = link.node.find("seed");
+  if (seed_node == nullptr) {
+    track.note = "the streamline of link " + in_quotes(link.name) + " has no seed: it is not one line";
+    return track;
+  }
+  CATENA_TRY(const std::string name, json::require_string(link.node, "field"));
+  CATENA_TRY(const field::AnyField any, use_field(scene, name, *link.node.find("field")));
+  if (!any.vector) return json::error_at(*link.node.find("field"), "a streamline needs a vector field");
+  flow::Flow flow{any.vector.get()};
+  CATENA_TRY(const int kind, json::get_choice(link.node, "kind", 0, {"vector", "line"}));
+  flow.line = kind == 1;
+  CATENA_TRY(flow.min_speed, json::get_number(link.node, "min_speed", 0, json::Range::not_negative));
+  Vec3 seed;
+  if (const Entity widget = named_widget(scene, seed_node)) {
+    seed = scene.world.get<Widget>(widget).state.pose.points[0];
+  } else {
+    CATENA_TRY(seed, json::as_vec3(*seed_node, "seed"));
+  }
+  auto curve = use_curve(scene, flow, seed, *seed_node);
+  if (curve)
+    track.curve = *curve;
+  else
+    track.note = curve.error().message;
+  return track;
+}
+
+Result<Track> surface_track(Scene& scene, const Link& link, const char* field_key) {
+  CATENA_TRY(const std::string name, json::require_string(link.node, field_key));
+  CATENA_TRY(const field::AnyField any, use_field(scene, name, *link.node.find(field_key)));
+  if (!any.scalar) return json::error_at(*link.node.find(field_key), "an isosurface needs a scalar field");
+  Track track;
+  track.surface = any.scalar;
+  if (const Entity widget = named_widget(scene, link.node.find("level"))) {
+    CATENA_CHECK(use_widget(scene, widget));
+    track.level = std::clamp(scene.world.get<Widget>(widget).state.value, any.scalar->min_value(), any.scalar->max_value());
+  } else {
+    CATENA_TRY(track.level, json::require_number(link.node, "level"));
+  }
+  return track;
+}
+
+/// A link of the chain by its name, or by that of a part of a ready-made mode (NAME_...).
+Link link_of(const Scene& scene, const std::string& name) {
+  Link found;
+  scene.world.each<Link>([&](Entity, const Link& link) {
+    if (link.name == name || (found.name.empty() && name.starts_with(link.name + "_"))) found = link;
+  });
+  return found;
+}
+
+Result<Track> track_of(Scene& scene, const Widget& ruler) {
+  std::vector<Link> links;
+  for (const std::string& name : ruler.along) links.push_back(link_of(scene, name));
+  for (const Link& link : links)
+    if (link.type == "streamline") return curve_track(scene, link);
+  for (const Link& link : links) {
+    if (link.type == "isosurface") return surface_track(scene, link, "field");
+    if (link.type == "anisotropic_friction") return surface_track(scene, link, "surface");
+    if (link.type != "mesh") continue;
+    Track track;
+    CATENA_TRY(const std::string name, json::require_string(link.node, "mesh"));
+    CATENA_TRY(track.mesh, use_mesh(scene, name, *link.node.find("mesh")));
+    return track;
+  }
+  Track none;
+  if (!links.empty()) none.note = "no link that it goes along is a streamline, an isosurface or a mesh";
+  return none;
+}
+
+RulerMeasure straight(const Vec3& from, const Vec3& to, std::string note) {
+  return {How::straight, {from, to}, norm(to - from), std::move(note)};
+}
+
+RulerMeasure measure(const Track& track, const Vec3& from, const Vec3& to) {
+  if (track.curve) return measure_along(track.curve, from, to);
+  if (!track.surface && !track.mesh) return straight(from, to, track.note);
+  RulerMeasure out;
+  out.how = track.mesh ? How::mesh : How::isosurface;
+  out.points = track.mesh ? mesh::path_on_mesh(*track.mesh, from, to) : flow::path_on_level(*track.surface, track.level, from, to);
+  if (out.points.empty()) return straight(from, to, "no way along the surface joins the ends");
+  out.length = length_of(out.points);
+  return out;
+}
+
+}  // namespace
+
+RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to) {
+  const flow::NearestOnCurve nearest(curve);
+  double a = nearest.at(from).s, b = nearest.at(to).s;
+  const bool turned = a > b;
+  if (turned) std::swap(a, b);
+  // round a closed line the other way, past its first knot
+  const double whole = curve->period();
+  const bool wrapped = curve->closed() && b - a > 0.5 * whole;
+  if (wrapped) {
+    a += whole;
+    std::swap(a, b);
+  }
+  RulerMeasure out;
+  out.how = How::streamline;
+  out.length = b - a;
+  std::vector<double> places{a};
+  const std::vector<flow::Knot>& knots = curve->knots();
+  for (const double lap : {0.0, whole}) {
+    if (lap > 0 && !curve->closed()) break;
+    const auto by_s = [&](double s, const flow::Knot& knot) { return s < knot.s + lap; };
+    for (auto k = std::upper_bound(knots.begin(), knots.end(), places.back(), by_s); k != knots.end() && k->s + lap < b; ++k)
+      places.push_back(k->s + lap);
+  }
+  places.push_back(b);
+  const std::size_t stride = 1 + places.size() / kMostPoints;
+  for (std::size_t i = 0; i + 1 < places.size(); i += stride) out.points.push_back(curve->position(places[i]));
+  out.points.push_back(curve->position(b));
+  // from the first end to the second
+  if (turned != wrapped) std::reverse(out.points.begin(), out.points.end());
+  return out;
+}
+
+Result<RulerMeasure> use_ruler(Scene& scene, Entity entity) {
+  CATENA_ASSERT(scene.world.get<Widget>(entity).spec.kind == widget::Kind::ruler);
+  CATENA_TRY(Track track, track_of(scene, scene.world.get<Widget>(entity)));
+  const widget::Pose& pose = scene.world.get<Widget>(entity).state.pose;
+  if (!scene.world.has<MadeRuler>(entity)) scene.world.emplace<MadeRuler>(entity);
+  MadeRuler& made = scene.world.get<MadeRuler>(entity);
+  if (made.measure.points.empty() || made.pose != pose || !made.track.is_same(track)) {
+    RulerMeasure measured = measure(track, pose.points[0], pose.points[1]);
+    made = {pose, std::move(track), std::move(measured)};
+  }
+  return made.measure;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,24 @@
+/// What a ruler measures: the straight way between its ends, or the way along what its "along" names.
+///   streamline   arc length on the link's curve, between its places nearest to the ends; on a closed line the shorter way round
+///   isosurface   a shortest path on the level set (engine/flow/level_path.h)
+///   mesh         a shortest path on the mesh (engine/mesh/mesh_path.h)
+/// Of several links the first streamline counts, or else the first surface. World units. Frame thread, off the tick.
+#pragma once
+#include "engine/scene/scene.h"
+
+namespace catena::scene {
+
+struct RulerMeasure {
+  enum class How { straight, streamline, isosurface, mesh } how = How::straight;
+  std::vector<Vec3> points;  ///< at least two: to draw
+  double length = 0;
+  std::string note;  ///< why it is straight where "along" names something else; else empty
+};
+
+/// Of the widget's pose as it is; measured again only when an end, or what it is measured along, has moved.
+Result<RulerMeasure> use_ruler(Scene& scene, Entity ruler);
+
+/// Between the places of the curve nearest to the ends.
+RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to);
+
+}  // namespace catena::scene

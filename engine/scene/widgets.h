@@ -1,0 +1,27 @@
+/// Widgets on the scene's side: their poses as set from a panel or taken over from the tick, and what follows them: slices, clip planes,
+/// seeds, levels, and links of the chain. World units. Frame thread.
+#pragma once
+#include "engine/scene/scene.h"
+
+namespace catena::scene {
+
+/// "cutting_plane", "seed", ...: the word of the scene file.
+const char* kind_word(widget::Kind kind);
+
+/// Unit length; bit for bit as it was where it is unit to rounding.
+Quat unit_orientation(const Quat& q);
+
+/// The planes, places and numbers that follow from a pose.
+Vec3 normal_of(const widget::Pose& pose);                            ///< a cutting plane's
+ClipPlane clip_of(const widget::Pose& pose, const ClipPlane& like);  ///< of the widget, face and side of `like`
+std::vector<Vec3> seeds_of(widget::Kind kind, const widget::Pose& pose, int count);
+
+/// Sets the pose from outside (a panel, undo): the hand's pose gives way to it, reports of an older revision are ignored from now on. The
+/// orientation is made unit. Only the members that the kind reads count. An error, and nothing changes, where a number is not finite, or
+/// a box has no inside.
+Outcome set_widget_pose(Scene& scene, Entity widget, const widget::Pose& pose);
+
+/// Whether a link names the widget ("seed": {"widget": NAME}, "level": {"widget": NAME}): it is felt where the widget is.
+bool is_felt(const Scene& scene, Entity widget);
+
+}  // namespace catena::scene

@@ -1,0 +1,38 @@
+/// Values as the scene file writes them, on one line: JSON text for Document::set. Numbers read back exactly; colour components, which
+/// are floats, in the fewest digits that give the same float. Everything must be finite.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/base/rotation.h"
+#include "engine/scene/components.h"
+
+namespace catena::scene {
+
+std::string text_of(double value);
+std::string text_of(bool value);
+std::string text_of(std::string_view value);  ///< in quotes
+inline std::string text_of(const char* value) { return text_of(std::string_view(value)); }
+std::string text_of(const Vec3& v);                                                ///< [x, y, z]
+std::string text_of(const Quat& q);                                                ///< [w, x, y, z]
+std::string text_of(const Rgb& c);                                                 ///< [r, g, b]
+std::string text_of(const std::array<double, 2>& range);                           ///< [lo, hi]
+std::string text_of(const std::vector<Vec3>& points);                              ///< [[x, y, z], ...]
+std::string text_of(const std::vector<double>& values);                            ///< [a, b, ...]
+std::string text_of(const std::vector<TransferFunction::ColorPoint>& table);       ///< "color": [[value, r, g, b], ...]
+std::string text_of(const std::vector<TransferFunction::OpacityPoint>& table);     ///< "opacity": [[value, alpha], ...]
+std::string text_of(const std::vector<TransferFunction::ExtinctionPoint>& table);  ///< "extinction": [[value, sigma], ...]
+std::string text_of(const std::vector<TransferFunction::GradientPoint>& table);    ///< "gradient_opacity": [[gradient, factor], ...]
+std::string text_of(const Camera& camera);
+std::string text_of(const ClipPlane& plane);  ///< an item of "clip": {"plane": {"point", "normal"}}
+std::string text_of(const Background& background);
+std::string text_of(const Light& light);
+
+/// The keys that state a widget's pose, with their values; no value: the key goes, as another says it.
+using Members = std::vector<std::pair<std::string, std::optional<std::string>>>;
+Members pose_members(widget::Kind kind, const widget::Pose& pose);
+
+}  // namespace catena::scene

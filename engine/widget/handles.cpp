@@ -1,0 +1,127 @@
+#include "engine/widget/handles.h"
+
+#include "engine/widget/geometry.h"
+#include "engine/widget/grip.h"
+
+namespace catena::widget {
+
+namespace {
+
+constexpr int kFaces = 6, kMiddle = 2;
+
+bool is_pair(Kind kind) noexcept { return kind == Kind::rake || kind == Kind::ruler; }
+bool moves_whole(Kind kind, int handle) noexcept { return (is_pair(kind) && handle == kMiddle) || (kind == Kind::box && handle >= kFaces); }
+
+bool goes_along(const Spec& spec, const State& state) noexcept {
+  return spec.kind == Kind::ruler && !spec.along.empty() && state.handle < kMiddle;
+}
+
+// The face moves, as far as the opposite one lets it.
+void move_face(const Spec& spec, State& state, double by) noexcept {
+  const int axis = state.handle / 2;
+  const Pose& from = state.start;
+  const double lo = from.points[0][axis], hi = from.points[1][axis], least = std::fmin(spec.step, hi - lo);
+  if (state.handle % 2 == 0)
+    state.pose.points[0][axis] = std::fmin(lo + by, hi - least);
+  else
+    state.pose.points[1][axis] = std::fmax(hi + by, lo + least);
+}
+
+}  // namespace
+
+int handle_count(Kind kind) noexcept {
+  switch (kind) {
+    case Kind::cutting_plane:
+      return 0;
+    case Kind::seed:
+    case Kind::isolevel:
+      return 1;
+    case Kind::rake:
+    case Kind::ruler:
+      return 3;
+    case Kind::box:
+      return kFaces + 1;
+  }
+  return 0;
+}
+
+Vec3 handle_position(Kind kind, const Pose& pose, int handle) noexcept {
+  const Vec3 &a = pose.points[0], &b = pose.points[1];
+  if (is_pair(kind) && handle < kMiddle) return pose.points[static_cast<std::size_t>(handle)];
+  if (!is_pair(kind) && kind != Kind::box) return a;
+  Vec3 at = a * 0.5 + b * 0.5;
+  if (kind == Kind::box && handle < kFaces) at[handle / 2] = pose.points[static_cast<std::size_t>(handle % 2)][handle / 2];
+  return at;
+}
+
+Reach reach_of_handles(const Spec& spec, const State& state, const Vec3& probe) noexcept {
+  Reach out;
+  for (int h = 0; h < handle_count(spec.kind); ++h) {
+    const double distance = norm(probe - handle_position(spec.kind, state.pose, h));
+    if (!(distance <= spec.near)) continue;
+    const bool has = state.mode != Mode::away && state.handle == h;
+    if (out.handle < 0 || has || distance < out.distance) {
+      out.handle = static_cast<std::int8_t>(h);
+      out.distance = distance;
+    }
+    if (has) break;
+  }
+  return out;
+}
+
+Grip grip_of(const Spec& spec, const State& state, const Vec3& probe) noexcept {
+  Grip out{probe, state.pose.orientation, 0, 0};
+  if (spec.kind == Kind::box) {
+    out.frame = kNoRotation;
+    if (state.handle < kFaces) {
+      out.loose = static_cast<std::uint8_t>(1u << (state.handle / 2));
+      out.fixed = static_cast<std::uint8_t>(7u & ~out.loose);
+    }
+  } else if (spec.kind == Kind::isolevel && spec.field) {
+    field::Cursor cursor;
+    const Vec3 n = direction(spec.field->sample(state.pose.points[0], cursor).gradient);
+    if (max_abs(n) > 0) {
+      out.frame = shortest_arc(Vec3(0, 0, 1), n);
+      out.fixed = 3;
+      out.loose = 4;
+    }
+  }
+  return out;
+}
+
+Plan plan_of_handles(const Spec& spec, State& state, const Vec3& probe) noexcept {
+  Plan out;
+  if (state.mode == Mode::hover) {
+    out.add(kSphereSlot, {Shape::Kind::point, handle_position(spec.kind, state.pose, state.handle), Vec3(0.0), 0});
+  } else if (state.mode == Mode::drag) {
+    out.alone = true;
+    if (goes_along(spec, state))
+      out.along = true;
+    else
+      add_planes(spec, state, probe, out);
+  }
+  return out;
+}
+
+void finish_handles(const Spec& spec, State& state, const Vec3& proxy) noexcept {
+  if (goes_along(spec, state)) {
+    state.pose.points[static_cast<std::size_t>(state.handle)] = proxy;
+    return;
+  }
+  const Vec3 by = displacement(spec, state, proxy);
+  if (spec.kind == Kind::box && state.handle < kFaces) return move_face(spec, state, by[state.handle / 2]);
+  const bool whole = moves_whole(spec.kind, state.handle);
+  for (int k = 0; k < 2; ++k) {
+    const auto p = static_cast<std::size_t>(k);
+    if (whole || k == (is_pair(spec.kind) ? state.handle : 0)) state.pose.points[p] = moved(state.start.points[p], state.grip.frame, by);
+  }
+}
+
+void read_level(const Spec& spec, State& state) noexcept {
+  if (!spec.field) return;
+  field::Cursor cursor;
+  const field::ScalarSample sample = spec.field->sample(state.pose.points[0], cursor);
+  if (sample.inside && std::isfinite(sample.value)) state.value = sample.value;
+}
+
+}  // namespace catena::widget

@@ -1,0 +1,40 @@
+/// Widgets in the tick (paper, section 6.2; engine/widget/machine.h): before the chain they say which of their links run, after it they
+/// follow its last proxy. The links x, y, z and sphere are shared by all widgets; what each of them is on stands in LinkState::shape.
+///   explore, rotate, hover   the scene's links, then the widget's
+///   translate, turn, drag    the widget's alone
+/// No force jump: a link that is put on another shape starts anew, its weight from 0, and what it gave before fades (fade.h).
+/// A tick without a probe holds everything; machine.h says how a grab goes on afterwards. Haptic thread: no allocation, lock, throw.
+#pragma once
+#include "engine/widget/machine.h"
+#include "haptics/chain/switching.h"
+
+namespace catena::haptics {
+
+struct WidgetsState {
+  std::array<widget::State, widget::kMaxWidgets> widgets{};
+  std::array<std::uint8_t, widget::kSlots> takes{};  ///< counts the shapes of a link
+  Vec3 probe{0.0};                                   ///< of the last tick that had one
+  std::uint32_t buttons = 0;
+  std::int8_t engaged = -1;
+  bool started = false;  ///< there was a probe
+  bool gone = false;     ///< the last tick had none
+};
+
+struct WidgetsInput {
+  Vec3 probe{0.0};
+  std::uint32_t buttons = 0;
+};
+
+/// The order of this tick: `scene`'s links and the widgets'. Puts shapes on links.
+Order engage_widgets(const Program& program, const WidgetsInput& input, const Order& scene, const SwitchState& switches,
+                     std::array<LinkState, kMaxLinks>& links, WidgetsState& state) noexcept;
+/// After the chain, whose last proxy this is.
+void move_widgets(const Program& program, const Vec3& last_proxy, WidgetsState& state) noexcept;
+void lose_probe(WidgetsState& state) noexcept;
+void report_widgets(const Program& program, const WidgetsState& state, exchange::HapticState& out) noexcept;
+
+/// Another program takes over: a widget of the same name and kind keeps what the hand has made of it, unless its pose was set since
+/// (a higher Spec::revision); the others begin as their Spec says.
+void rebind_widgets(const Program& from, const Program& to, WidgetsState& state) noexcept;
+
+}  // namespace catena::haptics

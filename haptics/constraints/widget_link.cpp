@@ -1,0 +1,60 @@
+#include "haptics/constraints/widget_link.h"
+
+#include "haptics/constraints/plane_surface.h"
+#include "haptics/constraints/sphere_surface.h"
+
+namespace catena::haptics {
+namespace {
+
+using widget::Shape;
+
+bool usable(const Shape& shape) noexcept {
+  return shape.kind != Shape::Kind::none && is_finite(shape.origin) && is_finite(shape.normal) && std::isfinite(shape.radius);
+}
+
+Hold closest(const Shape& shape, const Vec3& probe, LinkState& state) noexcept {
+  const SideMemory none{};
+  NoMemory nothing;
+  switch (shape.kind) {
+    case Shape::Kind::plane:
+      return PlaneSurface({shape.origin, shape.normal}, nothing, none).place(probe);
+    case Shape::Kind::sphere:
+      return SphereSurface({shape.origin, shape.radius, false}, memory_of<SphereSurface::Memory>(state), none).place(probe);
+    case Shape::Kind::point:
+      return {true, shape.origin, 0, Status::ok};
+    case Shape::Kind::none:
+      break;
+  }
+  return {};
+}
+
+class WidgetLink final : public Constraint {
+ public:
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override { advance(probe, state, scratch); }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+    const Hold hold = usable(state.shape) ? closest(state.shape, probe, state) : Hold{};
+    const bool holds = hold.found && is_finite(hold.proxy);
+    state.proxy = holds ? hold.proxy : probe;
+    state.residual = holds ? hold.residual : 0;
+    state.status = holds ? Status::ok : Status::free;
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const Constraint> widget_constraint() { return std::make_shared<WidgetLink>(); }
+
+void add_widget_links(Program& program) {
+  program.first_widget_link = static_cast<int>(program.links.size());
+  const std::shared_ptr<const Constraint> constraint = widget_constraint();
+  for (const char* name : widget::kLinkNames) {
+    Link link;
+    link.name = name;
+    link.constraint = constraint;
+    link.stiffness_n_per_m = program.coupling.stiffness_n_per_m;
+    link.recipe = 1;
+    program.links.push_back(std::move(link));
+  }
+}
+
+}  // namespace catena::haptics

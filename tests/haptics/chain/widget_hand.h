@@ -1,0 +1,77 @@
+/// A hand that drives widgets through the tick.
+#pragma once
+#include <gtest/gtest.h>
+
+#include "haptics/chain/rebind.h"
+#include "haptics/constraints/widget_link.h"
+
+namespace catena::test {
+
+inline widget::Spec widget_spec(widget::Kind kind, const Vec3& a = Vec3(0.0), const Vec3& b = Vec3(0.0)) {
+  widget::Spec spec;
+  spec.kind = kind;
+  spec.pose.points = {a, b};
+  const bool plane = kind == widget::Kind::cutting_plane;
+  spec.radius = plane ? 0.48 : 0.048;
+  spec.snap = 0.08;
+  spec.release = 0.2;
+  spec.near = plane ? 0.08 : 0.12;
+  spec.step = 0.08;
+  return spec;
+}
+
+inline haptics::Program widget_program(std::vector<widget::Spec> specs, std::vector<haptics::Link> links = {}, double ramp_s = 0) {
+  haptics::Program program;
+  program.links = std::move(links);
+  program.coupling.ramp_s = ramp_s;
+  program.coupling.max_force_n = 1e9;
+  for (std::size_t i = 0; i < specs.size(); ++i) program.widget_names.push_back("w" + std::to_string(i));
+  program.widgets = std::move(specs);
+  haptics::add_widget_links(program);
+  return program;
+}
+
+struct WidgetHand {
+  haptics::Program program;
+  haptics::ChainState state;
+  haptics::ChainScratch scratch;
+  exchange::HapticState out;
+  Vec3 at{0.0};
+  double t = 0;
+
+  explicit WidgetHand(haptics::Program p) : program(std::move(p)) {}
+  explicit WidgetHand(std::vector<widget::Spec> specs) : WidgetHand(widget_program(std::move(specs))) {}
+
+  const exchange::WidgetReport& step(const Vec3& probe, std::uint32_t buttons = 0, double dt = 1e-3) {
+    at = probe;
+    haptics::tick(program, {t += dt, probe, buttons}, state, scratch, out);
+    return out.widgets[0];
+  }
+  /// In `n` steps from where the hand is.
+  const exchange::WidgetReport& go(const Vec3& to, std::uint32_t buttons = 0, int n = 50) {
+    const Vec3 from = at;
+    for (int k = 1; k <= n; ++k) step(k == n ? to : from + (to - from) * (static_cast<double>(k) / n), buttons);
+    return out.widgets[0];
+  }
+  const exchange::WidgetReport& report(std::size_t i = 0) const { return out.widgets[i]; }
+  const Vec3& place(std::size_t i = 0) const { return out.widgets[i].pose.points[0]; }
+  std::string mode(std::size_t i = 0) const { return exchange::mode_word(out.widgets[i].mode); }
+  /// Names of the links that run, in order.
+  std::string order() const {
+    std::string names;
+    for (int k = 0; k < state.fade.order.count; ++k)
+      names += (k > 0 ? " " : "") + program.links[static_cast<std::size_t>(state.fade.order.links[static_cast<std::size_t>(k)])].name;
+    return names;
+  }
+  void replace(const haptics::Program& next) {
+    haptics::rebind(program, next, state, scratch);
+    program = next;
+  }
+};
+
+/// The turned frame of most tests, and its axes.
+inline const Quat kTilted = normalised(Quat(0.8, 0.3, -0.4, 0.35));
+
+inline double off(const Vec3& a, const Vec3& b) { return norm(a - b); }
+
+}  // namespace catena::test
