@@ -59,6 +59,7 @@ struct PanelContext {
   /// An edit whose error becomes a message. True: done.
   bool edit(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
   bool remove(std::string_view pointer, const std::string& what);
+  bool apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag = {});
 };
 
 struct Panel {

@@ -65,6 +65,12 @@ bool PanelContext::remove(std::string_view pointer, const std::string& what) {
   return static_cast<bool>(done);
 }
 
+bool PanelContext::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag) {
+  const Outcome done = scene.apply(edits, what, drag);
+  if (!done) state.say(done.error().message, true);
+  return static_cast<bool>(done);
+}
+
 void draw_interface(PanelContext& context) {
   if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) ++context.state.look.press;
   draw_menu(context);

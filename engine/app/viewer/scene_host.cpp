@@ -54,6 +54,11 @@ Outcome SceneHost::remove(std::string_view pointer, const std::string& what) {
   return read_again();
 }
 
+Outcome SceneHost::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag) {
+  CATENA_CHECK(document_.apply(edits, what, drag));
+  return read_again();
+}
+
 Outcome SceneHost::undo() {
   if (!document_.can_undo()) return Done{};
   document_.undo();

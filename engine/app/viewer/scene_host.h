@@ -24,6 +24,7 @@ class SceneHost {
   /// An error leaves all as it was. `what`, `drag`: as Document::set.
   Outcome set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
   Outcome remove(std::string_view pointer, const std::string& what);
+  Outcome apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag = {});
   Outcome undo();
   Outcome redo();
   Outcome save(const std::string& path);

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/app/viewer/edit/edit_text.h"
 #include "engine/app/viewer/edit/field_values.h"
+#include "engine/app/viewer/edit/pointers.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::app {
 
@@ -65,15 +66,16 @@ std::string new_item(const std::string& name, const field::AnyField& field, Show
     case ShowAs::volume:
       return start + "\"shade\": true}";
     case ShowAs::isosurface:
-      return start + "\"level\": " + json_of(default_level(*field.scalar, sorted)) + ", \"opacity\": 1}";
+      return start + "\"level\": " + scene::text_of(default_level(*field.scalar, sorted)) + ", \"opacity\": 1}";
     case ShowAs::slice:
-      return start + "\"axis\": \"z\", \"at\": " + json_of(rounded(domain.middle.z)) + ", \"color\": \"viridis\"}";
+      return start + "\"axis\": \"z\", \"at\": " + scene::text_of(rounded(domain.middle.z)) + ", \"color\": \"viridis\"}";
     case ShowAs::streamlines:
       break;
   }
   const Vec3 middle{rounded(domain.middle.x), rounded(domain.middle.y), rounded(domain.middle.z)};
-  return start + "\"seeds\": {\"sphere\": {\"center\": " + json_of(middle) + ", \"radius\": " + json_of(rounded(kBall * domain.shortest)) +
-         ", \"count\": " + std::to_string(kSeeds) + ", \"inside\": true}}, \"color_by\": \"speed\", \"color\": \"viridis\"}";
+  return start + "\"seeds\": {\"sphere\": {\"center\": " + scene::text_of(middle) +
+         ", \"radius\": " + scene::text_of(rounded(kBall * domain.shortest)) + ", \"count\": " + std::to_string(kSeeds) +
+         ", \"inside\": true}}, \"color_by\": \"speed\", \"color\": \"viridis\"}";
 }
 
 }  // namespace catena::app

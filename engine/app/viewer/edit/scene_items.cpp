@@ -1,6 +1,7 @@
 #include "engine/app/viewer/edit/scene_items.h"
 
-#include "engine/app/viewer/edit/edit_text.h"
+#include "engine/app/viewer/edit/pointers.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::app {
 

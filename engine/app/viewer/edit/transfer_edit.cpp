@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/viewer/edit/pointers.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::app {
 
@@ -11,33 +13,29 @@ namespace {
 
 constexpr double kThickest = 0.6;
 
-/// The colours as keys of a volume.
-std::vector<std::pair<std::string, std::string>> color_keys(const TransferEdit& edit) {
-  if (edit.map.empty()) return {{"color", json_of(edit.colors)}};
-  std::vector<std::pair<std::string, std::string>> keys{{"color", "\"" + edit.map + "\""}};
-  if (edit.has_range) keys.push_back({"range", json_of(std::array<double, 2>{edit.colors.front().value, edit.colors.back().value})});
-  return keys;
+bool is_stated(const scene::Volume& volume) {
+  return volume.where.find("transfer") == nullptr && volume.where.find("color") != nullptr && volume.where.find("opacity") != nullptr;
 }
 
-std::string gradient_text(const scene::TransferFunction& transfer) {
-  std::string text = "[";
-  for (const auto& g : transfer.gradient_factors)
-    text += (text.size() > 1 ? ", [" : "[") + json_of(g.gradient) + ", " + json_of(g.factor) + "]";
-  return text + "]";
+void add_colors(const std::string& at, const TransferEdit& edit, TextEdits& edits) {
+  edits.push_back({at + "/color", edit.map.empty() ? scene::text_of(edit.colors) : scene::text_of(std::string_view(edit.map))});
+  // a range beside a table is an error of the scene's
+  std::optional<std::string> range;
+  if (!edit.map.empty() && edit.has_range)
+    range = scene::text_of(std::array<double, 2>{edit.colors.front().value, edit.colors.back().value});
+  edits.push_back({at + "/range", range});
 }
 
-/// The whole volume with stated points.
-Write whole(const scene::Volume& volume, const TransferEdit& edit) {
-  auto keys = color_keys(edit);
-  keys.push_back({"opacity", json_of(edit.opacities)});
-  keys.push_back({"opacity_unit", json_of(edit.unit)});
-  if (!volume.transfer.gradient_factors.empty()) keys.push_back({"gradient_opacity", gradient_text(volume.transfer)});
-  return {pointer_of(volume.where), json_with(volume.where, {"transfer", "extinction", "range"}, keys)};
-}
-
-/// The text has keys of its own for what is edited, and nothing that contradicts them.
-bool has_points(const scene::Volume& volume, const TransferEdit& edit) {
-  return edit.stated && volume.where.find("transfer") == nullptr && volume.where.find("color") != nullptr;
+/// All that the transfer function is, and nothing else that says it.
+TextEdits all_of(const scene::Volume& volume, const TransferEdit& edit) {
+  const std::string at = pointer_of(volume.where);
+  TextEdits edits{{at + "/transfer", std::nullopt}, {at + "/extinction", std::nullopt}};
+  add_colors(at, edit, edits);
+  edits.push_back({at + "/opacity", scene::text_of(edit.opacities)});
+  edits.push_back({at + "/opacity_unit", scene::text_of(edit.unit)});
+  if (const auto& factors = volume.transfer.gradient_factors; !factors.empty() && volume.where.find("gradient_opacity") == nullptr)
+    edits.push_back({at + "/gradient_opacity", scene::text_of(factors)});
+  return edits;
 }
 
 }  // namespace
@@ -52,7 +50,6 @@ std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double sm
   if (!transfer.opacities.empty()) {
     edit.opacities = transfer.opacities;
     edit.unit = transfer.opacity_unit > 0 ? transfer.opacity_unit : smallest_edge;
-    edit.stated = volume.where.find("opacity") != nullptr;
     return edit;
   }
   double thickest = 0;
@@ -63,42 +60,39 @@ std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double sm
   return edit;
 }
 
-std::vector<Write> opacity_writes(const scene::Volume& volume, const TransferEdit& edit) {
-  if (!has_points(volume, edit)) return {whole(volume, edit)};
-  return {{pointer_of(volume.where) + "/opacity", json_of(edit.opacities)}};
+TextEdits opacity_edits(const scene::Volume& volume, const TransferEdit& edit) {
+  if (!is_stated(volume)) return all_of(volume, edit);
+  return {{pointer_of(volume.where) + "/opacity", scene::text_of(edit.opacities)}};
 }
 
-std::vector<Write> unit_writes(const scene::Volume& volume, const TransferEdit& edit) {
-  if (!has_points(volume, edit)) return {whole(volume, edit)};
-  return {{pointer_of(volume.where) + "/opacity_unit", json_of(edit.unit)}};
+TextEdits unit_edits(const scene::Volume& volume, const TransferEdit& edit) {
+  if (!is_stated(volume)) return all_of(volume, edit);
+  return {{pointer_of(volume.where) + "/opacity_unit", scene::text_of(edit.unit)}};
 }
 
-std::vector<Write> color_writes(const scene::Volume& volume, const TransferEdit& edit) {
-  TransferEdit stated = edit;
-  stated.map.clear();
-  stated.has_range = false;
-  // a range beside a table is an error of the scene's: both go together
-  if (!has_points(volume, edit) || volume.where.find("range") != nullptr) return {whole(volume, stated)};
-  return {{pointer_of(volume.where) + "/color", json_of(edit.colors)}};
+TextEdits color_edits(const scene::Volume& volume, TransferEdit edit) {
+  edit.map.clear();
+  if (!is_stated(volume)) return all_of(volume, edit);
+  TextEdits edits;
+  add_colors(pointer_of(volume.where), edit, edits);
+  return edits;
 }
 
-std::vector<Write> map_writes(const scene::Volume& volume, const TransferEdit& edit, const std::string& map) {
-  TransferEdit named = edit;
-  named.map = map;
+TextEdits map_edits(const scene::Volume& volume, TransferEdit edit, const std::string& map) {
   const bool rises = scene::is_color_range(edit.colors.front().value, edit.colors.back().value);
-  named.has_range = rises && (edit.has_range || edit.map.empty());
-  if (!has_points(volume, edit)) return {whole(volume, named)};
-  const std::string at = pointer_of(volume.where);
-  std::vector<Write> writes;
-  for (const auto& [key, value] : color_keys(named)) writes.push_back({at + "/" + key, value});
-  return writes;
+  edit.has_range = rises && (edit.has_range || edit.map.empty());
+  edit.map = map;
+  if (!is_stated(volume)) return all_of(volume, edit);
+  TextEdits edits;
+  add_colors(pointer_of(volume.where), edit, edits);
+  return edits;
 }
 
-std::vector<Write> range_writes(const scene::Volume& volume, TransferEdit edit, double lo, double hi) {
+TextEdits range_edits(const scene::Volume& volume, TransferEdit edit, double lo, double hi) {
   if (!lay_over(edit.colors, edit.opacities, lo, hi)) return {};
   edit.has_range = !edit.map.empty();
   if (edit.has_range && !scene::is_color_range(edit.colors.front().value, edit.colors.back().value)) return {};
-  return {whole(volume, edit)};
+  return all_of(volume, edit);
 }
 
 }  // namespace catena::app

@@ -28,8 +28,8 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
     tip("a link of the chain holds the hand on this surface: its level goes along");
   }
   if (!moved) return;
-  std::vector<Write> writes{{pointer_of(surface.where) + "/level", json_of(level)}};
-  for (const std::string& pointer : felt) writes.push_back({pointer, json_of(level)});
+  TextEdits writes{{pointer_of(surface.where) + "/level", scene::text_of(level)}};
+  for (const std::string& pointer : felt) writes.push_back({pointer, scene::text_of(level)});
   edits.drag(writes, "isolevel");
 }
 

@@ -3,6 +3,7 @@
 
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/color_maps.h"
 
 namespace catena::app {
 
@@ -20,16 +21,17 @@ void choose_what(Edits& edits, const scene::Scene& scene, const scene::Streamlin
   for (const std::string& choice : choices) {
     if (!ImGui::Selectable(choice.c_str(), choice == now) || choice == now) continue;
     const std::string pointer = pointer_of(set.where);
-    if (choice == "one colour")
-      edits.set(pointer, json_with(set.where, {"color_by", "range", "transfer"}, {{"color", json_of(set.color)}}), "colours");
-    else
-      // values of another kind lie elsewhere: a stated range or table goes
-      edits.set(
-          pointer,
-          json_with(set.where, {"range", "transfer"},
-                    {{"color_by", "\"" + choice + "\""},
-                     {"color", "\"" + (set.color_by && !set.color_by->named.map.empty() ? set.color_by->named.map : "viridis") + "\""}}),
-          "colours");
+    // values of another kind lie elsewhere: a stated range or table goes
+    TextEdits change{{pointer + "/range", std::nullopt}, {pointer + "/transfer", std::nullopt}};
+    if (choice == "one colour") {
+      change.push_back({pointer + "/color_by", std::nullopt});
+      change.push_back({pointer + "/color", scene::text_of(set.color)});
+    } else {
+      change.push_back({pointer + "/color_by", scene::text_of(choice)});
+      const bool named = set.color_by && !set.color_by->named.map.empty();
+      change.push_back({pointer + "/color", scene::text_of(named ? set.color_by->named.map : std::string(scene::kDefaultLineMap))});
+    }
+    edits.set(change, "colours");
   }
   ImGui::EndCombo();
 }
@@ -56,7 +58,7 @@ void draw_lines(PanelContext& context) {
                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_Logarithmic)) {
       const double to = rounded_in(radius, 0, most);
       if (to > 0)
-        edits.drag(pointer + "/radius", json_of(to), "radius");
+        edits.drag(pointer + "/radius", scene::text_of(to), "radius");
       else if (set.where.find("radius") != nullptr)
         edits.remove(pointer + "/radius", "radius");
     }

@@ -27,14 +27,15 @@ void Edits::set(std::string pointer, std::string value, std::string what) {
 }
 
 void Edits::drag(std::string pointer, std::string value, std::string what) {
-  drag(std::vector<Write>{{std::move(pointer), std::move(value)}}, what);
+  drag(TextEdits{{std::move(pointer), std::move(value)}}, what);
 }
 
-void Edits::drag(const std::vector<Write>& writes, const std::string& what) {
-  later([=](PanelContext& context) {
-    for (const Write& write : writes)
-      if (!context.edit(write.pointer, write.value, what, key_of(context, what))) return;
-  });
+void Edits::set(const TextEdits& edits, const std::string& what) {
+  later([=](PanelContext& context) { context.apply(edits, what); });
+}
+
+void Edits::drag(const TextEdits& edits, const std::string& what) {
+  later([=](PanelContext& context) { context.apply(edits, what, key_of(context, what)); });
 }
 
 void Edits::remove(std::string pointer, std::string what) {
@@ -54,7 +55,7 @@ bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::
     ImGui::TextDisabled("%s: save the scene first", name.c_str());
   } else {
     bool seen = visible;
-    if (ImGui::Checkbox("##seen", &seen)) edits.set(pointer + "/visible", json_of(seen), seen ? "show " + word : "hide " + word);
+    if (ImGui::Checkbox("##seen", &seen)) edits.set(pointer + "/visible", scene::text_of(seen), seen ? "show " + word : "hide " + word);
     tip(visible ? "seen" : "hidden");
     ImGui::SameLine();
     if (!visible) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
@@ -74,19 +75,19 @@ void end_item() {
 }
 
 void edit_boolean(Edits& edits, const char* label, bool value, const std::string& pointer) {
-  if (ImGui::Checkbox(label, &value)) edits.set(pointer, json_of(value), label);
+  if (ImGui::Checkbox(label, &value)) edits.set(pointer, scene::text_of(value), label);
 }
 
 void edit_share(Edits& edits, const char* label, double value, const std::string& pointer) {
   auto share = static_cast<float>(value);
   if (ImGui::SliderFloat(label, &share, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp))
-    edits.drag(pointer, json_of(rounded_in(share, 0, 1, 1000)), label);
+    edits.drag(pointer, scene::text_of(rounded_in(share, 0, 1, 1000)), label);
 }
 
 void edit_color(Edits& edits, const char* label, const scene::Rgb& color, const std::string& pointer) {
   float rgb[3] = {color.r, color.g, color.b};
   if (ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_NoInputs))
-    edits.drag(pointer, json_of(scene::Rgb{rgb[0], rgb[1], rgb[2]}), label[0] == '#' ? "colour" : label);
+    edits.drag(pointer, scene::text_of(scene::Rgb{rgb[0], rgb[1], rgb[2]}), label[0] == '#' ? "colour" : label);
 }
 
 bool typed_number(const char* label, double& value, const char* hint) {
@@ -133,12 +134,9 @@ void edit_color_scale(Edits& edits, const json::Node& item, const std::vector<sc
   const bool file = item.find("transfer") != nullptr;
   ImGui::PushID("scale");
   if (const auto map = choose_map(table.empty() && named.map.empty() ? std::string(fallback) : named.map, file ? "of a file" : "a table")) {
-    if (file)
-      edits.set(pointer,
-                json_with(item, {"transfer", "range"}, {{"color", json_of(json::Node{.kind = json::Kind::string, .string = *map})}}),
-                "colours");
-    else
-      edits.set(pointer + "/color", "\"" + *map + "\"", "colours");
+    TextEdits change{{pointer + "/color", scene::text_of(*map)}};
+    if (file) change.insert(change.begin(), {{pointer + "/transfer", std::nullopt}, {pointer + "/range", std::nullopt}});
+    edits.set(change, "colours");
   }
   if (table.empty() && !file) {
     bool own = named.range.has_value();
@@ -149,7 +147,7 @@ void edit_color_scale(Edits& edits, const json::Node& item, const std::vector<sc
       ImGui::SameLine();
       ImGui::SetNextItemWidth(0.45f * ImGui::GetContentRegionAvail().x);
       typed = typed_number("range", range[1], "value at the last colour") || typed;
-      if (typed) edits.set(pointer + "/range", json_of(range), "range");
+      if (typed) edits.set(pointer + "/range", scene::text_of(range), "range");
       ImGui::SameLine();
       if (ImGui::Checkbox("##own", &own)) edits.remove(pointer + "/range", "range");
       tip("off: the range of the values");

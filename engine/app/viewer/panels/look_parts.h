@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/viewer/edit/edit_text.h"
+#include "engine/app/viewer/edit/pointers.h"
 #include "engine/app/viewer/edit/transfer_edit.h"
 #include "engine/app/viewer/panel.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::app {
 
@@ -25,7 +26,8 @@ class Edits {
   void set(std::string pointer, std::string value, std::string what);
   /// All that one press of the pointer (or one text being typed) does is one step of undo.
   void drag(std::string pointer, std::string value, std::string what);
-  void drag(const std::vector<Write>& writes, const std::string& what);
+  void set(const TextEdits& edits, const std::string& what);
+  void drag(const TextEdits& edits, const std::string& what);
   void remove(std::string pointer, std::string what);
   void later(std::function<void(PanelContext&)> action) { actions_.push_back(std::move(action)); }
 

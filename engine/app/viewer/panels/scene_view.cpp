@@ -7,6 +7,14 @@ namespace catena::app {
 
 namespace {
 
+/// The object that stands at a top-level key.
+std::optional<std::string> stated_object(const PanelContext& context, const std::string& key) {
+  const auto root = json::parse(context.scene.document().text(), "scene");
+  const json::Node* node = root ? root->find(key) : nullptr;
+  if (node == nullptr || node->kind != json::Kind::object) return std::nullopt;
+  return node_text(*node);
+}
+
 /// A top-level key that is true, false or an object. What stood there comes back when it is switched on again.
 void edit_aid(PanelContext& context, Edits& edits, const char* label, const std::string& key, bool on, const char* hint) {
   const std::string pointer = "/" + key;
@@ -18,8 +26,7 @@ void edit_aid(PanelContext& context, Edits& edits, const char* label, const std:
     edits.set(pointer, kept.contains(key) ? kept[key] : "true", label);
     return;
   }
-  if (const auto root = json::parse(context.scene.document().text(), "scene"))
-    if (const json::Node* node = root->find(key); node != nullptr && node->kind == json::Kind::object) kept[key] = json_of(*node);
+  if (const auto stated = stated_object(context, key)) kept[key] = *stated;
   edits.set(pointer, "false", label);
 }
 
@@ -27,7 +34,7 @@ void draw_title(Edits& edits, const std::string& title) {
   char text[200] = {};
   std::strncpy(text, title.c_str(), sizeof text - 1);
   if (ImGui::InputText("title", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue))
-    edits.set("/title", json_of(json::Node{.kind = json::Kind::string, .string = text}), "title");
+    edits.set("/title", scene::text_of(text), "title");
   tip("over the picture; Enter");
 }
 
@@ -73,12 +80,10 @@ void draw_scene_view(PanelContext& context) {
   ImGui::SameLine();
   edit_aid(context, edits, "fog", "fog", scene.fog.has_value(), "far things turn to the background");
   if (scene.fog) {
-    const auto root = json::parse(context.scene.document().text(), "scene");
-    const json::Node* fog = root ? root->find("fog") : nullptr;
     auto most = static_cast<float>(scene.fog->most);
     if (ImGui::SliderFloat("fog at the far end", &most, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
-      const std::string value = json_of(rounded_in(most, 0, 1, 1000));
-      if (fog != nullptr && fog->kind == json::Kind::object)
+      const std::string value = scene::text_of(rounded_in(most, 0, 1, 1000));
+      if (stated_object(context, "fog"))
         edits.drag("/fog/most", value, "fog");
       else
         edits.drag("/fog", "{\"most\": " + value + "}", "fog");

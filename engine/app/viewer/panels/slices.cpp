@@ -37,14 +37,17 @@ void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& fie
   ImGui::SetNextItemWidth(90);
   if (ImGui::Combo("##axis", &which, "x\0y\0z\0free\0")) {
     const Vec3 middle = 0.5 * (box.lo + box.hi);
+    const auto edit = [&](const char* key, std::optional<std::string> value) {
+      return scene::Document::Edit{pointer + "/" + key, std::move(value)};
+    };
     if (which == 3)
-      edits.set(pointer, json_with(slice.where, {"axis", "at"}, {{"point", json_of(slice.point)}, {"normal", json_of(slice.normal)}}),
+      edits.set({edit("axis", std::nullopt), edit("at", std::nullopt), edit("point", scene::text_of(slice.point)),
+                 edit("normal", scene::text_of(slice.normal))},
                 "slice");
     else
-      edits.set(pointer,
-                json_with(slice.where, {"point", "normal"},
-                          {{"axis", "\"" + std::string(1, "xyz"[which]) + "\""},
-                           {"at", json_of(free ? slice.point[which] : rounded_in(middle[which], box.lo[which], box.hi[which]))}}),
+      edits.set({edit("point", std::nullopt), edit("normal", std::nullopt), edit("axis", scene::text_of(std::string(1, "xyz"[which]))),
+                 edit("at", scene::text_of(free ? std::clamp(slice.point[which], box.lo[which], box.hi[which])
+                                                : rounded_in(middle[which], box.lo[which], box.hi[which])))},
                 "slice");
     return;
   }
@@ -56,7 +59,7 @@ void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& fie
     ImGui::SetNextItemWidth(-FLT_MIN);
     if (ImGui::SliderScalar("##at", ImGuiDataType_Double, &at, &lo, &hi, "%.5g",
                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat))
-      edits.drag(pointer + "/at", json_of(std::clamp(rounded_in(at, lo, hi), lo, hi)), "slice");
+      edits.drag(pointer + "/at", scene::text_of(std::clamp(rounded_in(at, lo, hi), lo, hi)), "slice");
     return;
   }
   double point[3] = {slice.point.x, slice.point.y, slice.point.z}, normal[3] = {slice.normal.x, slice.normal.y, slice.normal.z};
@@ -64,12 +67,12 @@ void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& fie
   if (ImGui::DragScalarN("point", ImGuiDataType_Double, point, 3, step, nullptr, nullptr, "%.4g", ImGuiSliderFlags_NoRoundToFormat)) {
     Vec3 to;
     for (int k = 0; k < 3; ++k) to[k] = rounded_in(point[k], 0, field.length(), 20000);
-    edits.drag(pointer + "/point", json_of(to), "slice");
+    edits.drag(pointer + "/point", scene::text_of(to), "slice");
   }
   if (ImGui::DragScalarN("normal", ImGuiDataType_Double, normal, 3, 0.005f, nullptr, nullptr, "%.3f", ImGuiSliderFlags_NoRoundToFormat)) {
     Vec3 to;
     for (int k = 0; k < 3; ++k) to[k] = rounded_in(normal[k], 0, 1, 1000);
-    if (max_abs(to) > 0) edits.drag(pointer + "/normal", json_of(to), "slice");
+    if (max_abs(to) > 0) edits.drag(pointer + "/normal", scene::text_of(to), "slice");
   }
 }
 
@@ -95,7 +98,7 @@ void draw_contours(Edits& edits, const scene::Slice& slice) {
   } else if (slice.contours->spacing > 0) {
     double spacing = slice.contours->spacing;
     if (typed_number("##spacing", spacing, "from line to line, field units; Enter") && spacing > 0)
-      edits.drag(pointer + "/spacing", json_of(spacing), "contours");
+      edits.drag(pointer + "/spacing", scene::text_of(spacing), "contours");
   } else {
     ImGui::TextDisabled("%zu stated levels", slice.contours->levels.size());
   }

@@ -94,7 +94,7 @@ void draw_bar(const Editor& editor, bool handles) {
 /// What the drag makes of the points as they were at its start.
 template <class Points, class Move>
 void dragged(Editor& editor, Points TransferEdit::*points, Select selected, const PlotFrame& frame, Move&& move,
-             std::vector<Write> (*writes)(const scene::Volume&, const TransferEdit&), const char* what) {
+             TextEdits (*writes)(const scene::Volume&, const TransferEdit&), const char* what) {
   LookState& look = editor.context.state.look;
   if (!editor.state.before || !(editor.state.*selected) || *(editor.state.*selected) >= ((*editor.state.before).*points).size()) return;
   const ImGuiIO& io = ImGui::GetIO();
@@ -112,8 +112,8 @@ void dragged(Editor& editor, Points TransferEdit::*points, Select selected, cons
 /// A press: takes the handle there, or makes one.
 template <class Points>
 void pressed(Editor& editor, Points TransferEdit::*points, Select selected, std::optional<std::size_t> there,
-             const std::function<std::optional<std::size_t>(Points&)>& add,
-             std::vector<Write> (*writes)(const scene::Volume&, const TransferEdit&), const char* what) {
+             const std::function<std::optional<std::size_t>(Points&)>& add, TextEdits (*writes)(const scene::Volume&, const TransferEdit&),
+             const char* what) {
   editor.state.before = editor.edit;
   editor.state.*selected = there;
   if (there) return;
@@ -123,7 +123,7 @@ void pressed(Editor& editor, Points TransferEdit::*points, Select selected, std:
 
 template <class Points>
 void remove_at(Editor& editor, Points TransferEdit::*points, Select selected, std::optional<std::size_t> there,
-               std::vector<Write> (*writes)(const scene::Volume&, const TransferEdit&), const char* what) {
+               TextEdits (*writes)(const scene::Volume&, const TransferEdit&), const char* what) {
   TransferEdit now = editor.edit;
   if (!there || !remove_point(now.*points, *there)) return;
   (editor.state.*selected).reset();
@@ -148,7 +148,7 @@ void move_opacities(Editor& editor) {
           return add_point(points, plot, rounded_in(plot.value_at(io.MousePos.x), plot.lo, plot.hi),
                            rounded_alpha(plot.alpha_at(io.MousePos.y)));
         },
-        opacity_writes, "opacity");
+        opacity_edits, "opacity");
     look.at_x = there ? plot.x_of(editor.edit.opacities[*there].value) : io.MousePos.x;
     look.at_y = there ? plot.y_of(editor.edit.opacities[*there].alpha) : io.MousePos.y;
   } else if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
@@ -157,10 +157,10 @@ void move_opacities(Editor& editor) {
         [&](OpacityPoints& points, std::size_t i, double value) {
           move_point(points, plot, i, value, rounded_alpha(plot.alpha_at(look.at_y)));
         },
-        opacity_writes, "opacity");
+        opacity_edits, "opacity");
   }
   if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right))
-    remove_at(editor, &TransferEdit::opacities, &LookState::Transfer::opacity, there, opacity_writes, "opacity");
+    remove_at(editor, &TransferEdit::opacities, &LookState::Transfer::opacity, there, opacity_edits, "opacity");
   if (!ImGui::IsItemHovered() || ImGui::IsItemActive()) return;
   if (there)
     ImGui::SetTooltip("%.6g: %.3g", editor.edit.opacities[*there].value, editor.edit.opacities[*there].alpha);
@@ -177,16 +177,16 @@ void move_colors(Editor& editor) {
   if (ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     pressed<ColorPoints>(
         editor, &TransferEdit::colors, &LookState::Transfer::color, there,
-        [&](ColorPoints& points) { return add_point(points, bar, rounded_in(bar.value_at(io.MousePos.x), bar.lo, bar.hi)); }, color_writes,
+        [&](ColorPoints& points) { return add_point(points, bar, rounded_in(bar.value_at(io.MousePos.x), bar.lo, bar.hi)); }, color_edits,
         "colours");
     look.at_x = there ? bar.x_of(editor.edit.colors[*there].value) : io.MousePos.x;
   } else if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     dragged(
         editor, &TransferEdit::colors, &LookState::Transfer::color, bar,
-        [&](ColorPoints& points, std::size_t i, double value) { move_point(points, bar, i, value); }, color_writes, "colours");
+        [&](ColorPoints& points, std::size_t i, double value) { move_point(points, bar, i, value); }, color_edits, "colours");
   }
   if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right))
-    remove_at(editor, &TransferEdit::colors, &LookState::Transfer::color, there, color_writes, "colours");
+    remove_at(editor, &TransferEdit::colors, &LookState::Transfer::color, there, color_edits, "colours");
   if (!ImGui::IsItemActive()) tip("click: new colour, drag: move, right click: remove");
 }
 
@@ -205,7 +205,7 @@ void draw_selected(Editor& editor) {
     if (typed) {
       TransferEdit now = editor.edit;
       move_point(now.opacities, editor.plot, *opacity, point.value, point.alpha);
-      editor.edits.drag(opacity_writes(editor.volume, now), "opacity");
+      editor.edits.drag(opacity_edits(editor.volume, now), "opacity");
     }
   }
   if (editor.edit.map.empty() && color && *color < editor.edit.colors.size()) {
@@ -219,16 +219,16 @@ void draw_selected(Editor& editor) {
       TransferEdit now = editor.edit;
       move_point(now.colors, editor.bar, *color, point.value);
       now.colors[*color].color = {rgb[0], rgb[1], rgb[2]};
-      editor.edits.drag(color_writes(editor.volume, now), "colours");
+      editor.edits.drag(color_edits(editor.volume, now), "colours");
     }
   }
 }
 
 void draw_choices(Editor& editor) {
-  if (const auto map = choose_map(editor.edit.map, "points")) editor.edits.drag(map_writes(editor.volume, editor.edit, *map), "colours");
+  if (const auto map = choose_map(editor.edit.map, "points")) editor.edits.drag(map_edits(editor.volume, editor.edit, *map), "colours");
   if (!editor.edit.map.empty()) {
     ImGui::SameLine();
-    if (ImGui::SmallButton("points")) editor.edits.drag(color_writes(editor.volume, editor.edit), "colours");
+    if (ImGui::SmallButton("points")) editor.edits.drag(color_edits(editor.volume, editor.edit), "colours");
     tip("makes the map's colours points that can be moved");
   }
   auto reach = *reach_of(editor.edit.colors, editor.edit.opacities);
@@ -238,7 +238,7 @@ void draw_choices(Editor& editor) {
   ImGui::SetNextItemWidth(90);
   typed = typed_number("range", reach[1], "the greatest value with a point; moving it moves all; Enter") || typed;
   if (typed) {
-    const auto writes = range_writes(editor.volume, editor.edit, reach[0], reach[1]);
+    const auto writes = range_edits(editor.volume, editor.edit, reach[0], reach[1]);
     if (writes.empty())
       editor.context.state.say("the points cannot lie in this range; two rising numbers were expected", true);
     else
@@ -254,7 +254,7 @@ void draw_choices(Editor& editor) {
   if (ImGui::DragFloat("unit", &unit, speed, 1e-30f, 1e30f, "%.4g", ImGuiSliderFlags_AlwaysClamp) && unit > 0) {
     TransferEdit now = editor.edit;
     now.unit = rounded_in(unit, 0, unit, 500);
-    editor.edits.drag(unit_writes(editor.volume, now), "opacity unit");
+    editor.edits.drag(unit_edits(editor.volume, now), "opacity unit");
   }
   tip("the opacities hold for a way of this length through the volume, world units; longer: thinner");
   ImGui::SameLine();
