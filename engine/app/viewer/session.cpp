@@ -93,6 +93,12 @@ bool Session::take_edits() {
   return true;
 }
 
+/// What the hand has moved and let go of is written into the scene.
+void Session::keep_widgets() {
+  for (const WidgetEdits::Ended& ended : widget_edits_.take(scene_->scene()))
+    if (auto kept = scene_->apply(ended.edits, ended.what); !kept) state_.say(kept.error().message, true);
+}
+
 /// True where the pulses have moved. With a number of frames asked for they stand: the pictures repeat.
 bool Session::run_pulses() {
   const bool running = has_pulses_ && pulses_run_ && options_.frames == 0 && window_->looked_at();
@@ -196,6 +202,7 @@ std::optional<Failure> Session::run() {
     const Changed changed = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
     const bool edited = take_edits(), news = hand_.take(scene_->scene());
     live = live || news;
+    if (news) keep_widgets();
     std::uint32_t width = 0, height = 0;
     screen_->size(width, height);
     minimised = width == 0;

@@ -10,6 +10,7 @@
 #include "engine/app/viewer/pulse_clock.h"
 #include "engine/app/viewer/shader_reload.h"
 #include "engine/app/viewer/viewer.h"
+#include "engine/app/viewer/widget_edits.h"
 
 namespace catena::app {
 
@@ -33,6 +34,7 @@ class Session {
   std::optional<Failure> finish();
   bool run_pulses();
   bool take_edits();
+  void keep_widgets();
   bool take_shaders();
   void measure();
   void pin_camera();
@@ -58,6 +60,7 @@ class Session {
   FrameTimes times_;
   ViewState state_;
   SceneKind kind_;
+  WidgetEdits widget_edits_;
   PulseClock pulses_;
   bool has_pulses_ = false, pulses_run_ = true;
   std::optional<ShaderReload> reload_;
