@@ -11,6 +11,8 @@
 #include "engine/field/load.h"
 #include "engine/mesh/load.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/ruler.h"
+#include "engine/scene/widgets.h"
 #include "haptics/constraints/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
@@ -77,6 +79,40 @@ Outcome describe_mesh(const std::string& path) {
   return Done{};
 }
 
+/// Pose and sizes; what a ruler reads.
+Outcome describe_widgets(scene::Scene& scene) {
+  std::vector<scene::Entity> widgets;
+  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget&) { widgets.push_back(e); });
+  for (const scene::Entity e : widgets) {
+    CATENA_TRY(const widget::Spec spec, scene::use_widget(scene, e));
+    fmt::print("widget {}: {} at {}", scene.world.get<scene::Name>(e).value, scene::kind_word(spec.kind), text(spec.pose.points[0]));
+    switch (spec.kind) {
+      case widget::Kind::cutting_plane:
+        fmt::print(", normal {}, sphere {}, snap {}, release {}", text(scene::normal_of(spec.pose)), to_text(spec.radius),
+                   to_text(spec.snap), to_text(spec.release));
+        break;
+      case widget::Kind::isolevel:
+        fmt::print(", level {}", to_text(scene.world.get<scene::Widget>(e).state.value));
+        break;
+      case widget::Kind::rake:
+      case widget::Kind::box:
+        fmt::print(" .. {}", text(spec.pose.points[1]));
+        break;
+      case widget::Kind::ruler: {
+        CATENA_TRY(const scene::RulerMeasure measure, scene::use_ruler(scene, e));
+        constexpr const char* ways[] = {"straight", "along a streamline", "along an isosurface", "along a mesh"};
+        fmt::print(" .. {}, {} {}{}", text(spec.pose.points[1]), to_text(measure.length), ways[static_cast<int>(measure.how)],
+                   measure.note.empty() ? "" : " (" + measure.note + ")");
+        break;
+      }
+      case widget::Kind::seed:
+        break;
+    }
+    fmt::print(", button {}\n", spec.button);
+  }
+  return Done{};
+}
+
 Outcome describe_scene(const std::string& path) {
   CATENA_TRY(scene::Scene scene, open_scene(path));
   std::vector<std::pair<scene::Entity, json::Node>> fields;
@@ -103,6 +139,7 @@ Outcome describe_scene(const std::string& path) {
     const haptics::ReadyMode* mode = haptics::find_ready_mode(link.type);
     fmt::print("link {}: {} ({})\n", link.name, link.type, type ? type->paper : mode ? mode->paper : "");
   });
+  CATENA_CHECK(describe_widgets(scene));
   fmt::print("coupling: {} N/m, {} N s/m, at most {} N\n", to_text(program->coupling.stiffness_n_per_m),
              to_text(program->coupling.damping_ns_per_m), to_text(program->coupling.max_force_n));
   fmt::print("drawn: {} volumes, {} isosurfaces, {} meshes, {} streamline sets\n", scene.world.count<scene::Volume>(),

@@ -1,4 +1,4 @@
-/// catena replay SCENE --probe PATH.csv -o TICKS.csv [--details LINKS.csv] [--stats FILE.json]
+/// catena replay SCENE --probe PATH.csv -o TICKS.csv [--details LINKS.csv] [--widgets W.csv] [--stats FILE.json]
 /// catena replay [SCENE] --log FILE.catlog [-o TICKS.csv] ...: what was recorded, again, compared to the bit (replay_log.h)
 #include <fmt/core.h>
 
@@ -11,6 +11,7 @@
 #include "engine/app/probe_samples.h"
 #include "engine/app/replay_log.h"
 #include "engine/app/tick_csv.h"
+#include "engine/app/widget_csv.h"
 #include "engine/base/csv_paths.h"
 #include "engine/base/output_file.h"
 #include "haptics/device/registry.h"
@@ -75,13 +76,19 @@ Outcome replay_scene(const ReplayOptions& options) {
   const LinkColumns columns(link_names(*program));
   const std::vector<std::string> modes = mode_names(*program);
   ticks.write(tick_header(columns, turns));
-  std::optional<OutputFile> details, json;
+  std::optional<OutputFile> details, widgets, json;
   if (!options.details.empty()) {
     CATENA_TRY(OutputFile file, OutputFile::open(options.details));
     details.emplace(std::move(file));
     details->write(details_header(columns) + "\n");
   }
+  if (!options.widgets.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.widgets));
+    widgets.emplace(std::move(file));
+    widgets->write(widget_header(*program));
+  }
   Felt felt;
+  WidgetUse use;
   Progress progress("replay", static_cast<double>(path.size()));
   std::string line;
   const haptics::ReplayStats stats = haptics::replay(*program, path, [&](const exchange::HapticState& state) {
@@ -94,21 +101,29 @@ Outcome replay_scene(const ReplayOptions& options) {
       line += '\n';
       details->write(line);
     }
+    if (widgets) {
+      line.clear();
+      append_widgets(line, *program, state);
+      widgets->write(line);
+    }
     felt.add(state);
+    use.add(state);
     if (state.tick % 1024 == 0) progress.at(static_cast<double>(state.tick));
     return true;
   });
 
   std::vector<OutputFile*> files{&ticks};
   if (details) files.push_back(&*details);
+  if (widgets) files.push_back(&*widgets);
   if (!options.stats.empty()) {
     CATENA_TRY(OutputFile file, OutputFile::open(options.stats));
     json.emplace(std::move(file));
-    json->write(replay_stats_json(stats));
+    json->write(replay_stats_json(stats, use.json(*program)));
     files.push_back(&*json);
   }
   CATENA_CHECK(commit_all(files));
   felt.print(*program, stats);
+  fmt::print("{}", use.text(*program));
   return Done{};
 }
 
@@ -122,6 +137,8 @@ void add_replay(CLI::App& program, Work& chosen) {
   command->add_option("--log", options->log, "a recording (.catlog): runs it again and compares every bit");
   command->add_option("-o,--output", options->output, "ticks, CSV");
   command->add_option("--details", options->details, "what every link tells beside: gap, leaving, share, energy; CSV");
+  command->add_option("--widgets", options->widgets,
+                      "modes and poses of the widgets, CSV: t, NAME_mode, NAME_handle, NAME_held, NAME_x,y,z ..");
   command->add_option("--stats", options->stats, "figures, JSON");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback(

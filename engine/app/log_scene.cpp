@@ -83,6 +83,16 @@ Result<std::shared_ptr<const haptics::Program>> LogScene::build(const log::LogPr
   if (!from_file_ || !coupling.ramp_s) coupling.ramp_s = program.coupling.ramp_s;
   if (!from_file_ || !scene_->workspace.given)
     scene_->workspace = {program.metres_per_unit, program.workspace_origin, program.workspace_rotation, scene_->workspace.given};
+  // links that follow a widget were made where it was then
+  for (const log::LogProgram::Widget& from : program.widgets) {
+    const scene::Entity found = scene::find_widget(*scene_, from.name);
+    if (!found) continue;
+    CATENA_CHECK(scene::use_widget(*scene_, found));
+    scene::Widget& widget = scene_->world.get<scene::Widget>(found);
+    widget.spec.revision = widget.state.revision = from.revision;
+    widget.state.pose = from.pose;
+    widget.state.value = from.value;
+  }
   return haptics::extract_program(*scene_, program.limits);
 }
 

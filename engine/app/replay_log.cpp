@@ -6,6 +6,7 @@
 
 #include "engine/app/log_scene.h"
 #include "engine/app/tick_csv.h"
+#include "engine/app/widget_csv.h"
 #include "engine/base/output_file.h"
 #include "haptics/servo/log/log_replay.h"
 
@@ -15,7 +16,7 @@ namespace log = haptics::log;
 
 Outcome check_replay_outputs(const ReplayOptions& options, const std::vector<std::string>& inputs) {
   const std::pair<const char*, const std::string&> outputs[] = {
-      {"-o", options.output}, {"--details", options.details}, {"--stats", options.stats}};
+      {"-o", options.output}, {"--details", options.details}, {"--widgets", options.widgets}, {"--stats", options.stats}};
   for (std::size_t i = 0; i < std::size(outputs); ++i) {
     const auto& [option, path] = outputs[i];
     if (path.empty()) continue;
@@ -27,11 +28,12 @@ Outcome check_replay_outputs(const ReplayOptions& options, const std::vector<std
   return Done{};
 }
 
-std::string replay_stats_json(const haptics::ReplayStats& s) {
+std::string replay_stats_json(const haptics::ReplayStats& s, const std::string& more) {
   return fmt::format(
       "{{\n  \"ticks\": {},\n  \"tick_ns\": {{\"p50\": {:.0f}, \"p99\": {:.0f}, \"p999\": {:.0f}, \"max\": {:.0f}}},\n"
-      "  \"evaluations\": {{\"p50\": {}, \"max\": {}}},\n  \"state_hash\": \"{:016x}\"\n}}\n",
-      s.ticks, s.tick_ns_p50, s.tick_ns_p99, s.tick_ns_p999, s.tick_ns_max, s.evaluations_p50, s.evaluations_max, s.state_hash);
+      "  \"evaluations\": {{\"p50\": {}, \"max\": {}}},\n  \"state_hash\": \"{:016x}\"{}\n}}\n",
+      s.ticks, s.tick_ns_p50, s.tick_ns_p99, s.tick_ns_p999, s.tick_ns_max, s.evaluations_p50, s.evaluations_max, s.state_hash,
+      more.empty() ? more : ",\n  " + more);
 }
 
 namespace {
@@ -60,7 +62,7 @@ Outcome replay_log_file(const ReplayOptions& options) {
   CATENA_TRY(std::vector<std::string> inputs, scene.inputs());
   inputs.push_back(options.log);
   CATENA_CHECK(check_replay_outputs(options, inputs));
-  std::optional<OutputFile> ticks, details, json;
+  std::optional<OutputFile> ticks, details, widgets, json;
   const auto open = [](std::optional<OutputFile>& file, const std::string& path, const std::string& header) -> Outcome {
     if (path.empty()) return Done{};
     CATENA_TRY(OutputFile opened, OutputFile::open(path));
@@ -73,14 +75,26 @@ Outcome replay_log_file(const ReplayOptions& options) {
 
   log::LogReplayHooks hooks;
   std::string line;
-  hooks.build = [&](const log::LogProgram& program) {
+  std::shared_ptr<const haptics::Program> running;
+  WidgetUse use;
+  hooks.build = [&](const log::LogProgram& program) -> Result<std::shared_ptr<const haptics::Program>> {
     columns.bind(program.link_names());
-    return scene.build(program);
+    CATENA_TRY(std::shared_ptr<const haptics::Program> built, scene.build(program));
+    if (!running) {
+      CATENA_CHECK(open(widgets, options.widgets, widget_header(*built)));
+    } else if (widgets && widget_header(*running) != widget_header(*built)) {
+      return Error{options.widgets + ": the recording goes on with other widgets; expected one set of columns"};
+    }
+    running = built;
+    return built;
   };
   hooks.on_tick = [&](const log::LogProgram& program, const exchange::HapticState& state) {
     line.clear();
     append_tick(line, columns, state);
     if (ticks) ticks->write(line);
+    use.add(state);
+    line.clear();
+    if (widgets) append_widgets(line, *running, state), widgets->write(line);
     if (!details) return;
     line.clear();
     append_details(line, columns, program.modes, program.metres_per_unit, state);
@@ -88,9 +102,9 @@ Outcome replay_log_file(const ReplayOptions& options) {
   };
   CATENA_TRY(const log::LogReplay result, log::replay_log(reader, hooks));
 
-  CATENA_CHECK(open(json, options.stats, replay_stats_json(result.stats)));
+  CATENA_CHECK(open(json, options.stats, replay_stats_json(result.stats, running ? use.json(*running) : std::string())));
   std::vector<OutputFile*> files;
-  for (auto* file : {&ticks, &details, &json})
+  for (auto* file : {&ticks, &details, &widgets, &json})
     if (*file) files.push_back(&**file);
   CATENA_CHECK(commit_all(files));
   return verdict(options, reader, result);

@@ -10,7 +10,7 @@
 namespace catena::app {
 
 struct ReplayOptions {
-  std::string scene, probe, log, output, details, stats;
+  std::string scene, probe, log, output, details, widgets, stats;
   std::vector<std::string> fields;
 };
 
@@ -18,6 +18,7 @@ Outcome replay_log_file(const ReplayOptions& options);
 
 /// No output names an input, and no two name one file.
 Outcome check_replay_outputs(const ReplayOptions& options, const std::vector<std::string>& inputs);
-std::string replay_stats_json(const haptics::ReplayStats& stats);
+/// `more`: members behind the others ("\"widgets\": {..}"), or none.
+std::string replay_stats_json(const haptics::ReplayStats& stats, const std::string& more = {});
 
 }  // namespace catena::app

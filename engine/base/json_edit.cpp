@@ -3,196 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/json_layout.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 
 namespace catena::json {
 namespace {
-
-constexpr std::size_t kNone = std::string_view::npos;
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-bool all_space(std::string_view text) { return text.find_first_not_of(" \t\r\n") == kNone; }
-
-// ---- places in the text ----
-
-/// The end of the comment that begins here; kNone where none does.
-std::size_t comment_end(std::string_view text, std::size_t at) {
-  if (text.substr(at, 2) == "//") return std::min(text.find_first_of("\r\n", at), text.size());
-  if (text.substr(at, 2) != "/*") return kNone;
-  const std::size_t end = text.find("*/", at + 2);
-  return end == kNone ? text.size() : end + 2;
-}
-
-/// The next token: past blanks, line ends and comments.
-std::size_t next_token(std::string_view text, std::size_t at) {
-  while (at < text.size()) {
-    const std::size_t end = comment_end(text, at);
-    if (end == kNone && !is_blank(text[at]) && !is_line_end(text[at])) break;
-    at = end == kNone ? at + 1 : end;
-  }
-  return at;
-}
-
-/// Past the comments that follow on the same line.
-std::size_t past_line_comments(std::string_view text, std::size_t at) {
-  std::size_t after = at;
-  while (at < text.size()) {
-    const std::size_t end = comment_end(text, at);
-    if (end == kNone && !is_blank(text[at])) break;
-    at = end == kNone ? at + 1 : after = end;
-  }
-  return after;
-}
-
-std::size_t line_begin(std::string_view text, std::size_t at) {
-  while (at > 0 && !is_line_end(text[at - 1])) --at;
-  return at;
-}
-std::size_t past_blanks(std::string_view text, std::size_t at) {
-  while (at < text.size() && is_blank(text[at])) ++at;
-  return at;
-}
-std::size_t past_line_end(std::string_view text, std::size_t at) {
-  if (text.substr(at, 2) == "\r\n") return at + 2;
-  return at < text.size() && is_line_end(text[at]) ? at + 1 : at;
-}
-
-/// Only blanks stand before it on its line, which is not the first.
-bool starts_line(std::string_view text, std::size_t at) {
-  const std::size_t begin = line_begin(text, at);
-  return begin > 0 && past_blanks(text, begin) >= at;
-}
-std::string_view indentation(std::string_view text, std::size_t at) {
-  const std::size_t begin = line_begin(text, at);
-  return text.substr(begin, past_blanks(text, begin) - begin);
-}
-/// How lines end in this text.
-std::string_view line_end_of(std::string_view text) {
-  const std::size_t at = text.find_first_of("\r\n");
-  return at == kNone ? "\n" : text.substr(at, past_line_end(text, at) - at);
-}
-
-struct Item {
-  std::size_t begin;    ///< of the key, or of the value
-  std::size_t key_end;  ///< of a member's key
-  std::size_t value, end;
-  std::size_t comma;  ///< after it; kNone: the last
-};
-
-std::vector<Item> items_of(std::string_view text, const Node& container) {
-  std::vector<Item> items;
-  std::size_t at = container.begin + 1;
-  const auto add = [&](const Node& value, bool member) {
-    Item item{next_token(text, at), 0, value.begin, value.end, kNone};
-    item.key_end = item.begin + 1;
-    while (member && text[item.key_end] != '"') item.key_end += text[item.key_end] == '\\' ? 2 : 1;
-    at = next_token(text, value.end);
-    if (text[at] == ',') item.comma = at++;
-    ++item.key_end;
-    items.push_back(item);
-  };
-  for (const Node& value : container.items) add(value, false);
-  for (const auto& [key, value] : container.members) add(value, true);
-  return items;
-}
-
-// ---- putting in ----
-
-/// One more step of indentation, as the outermost items have it.
-std::string_view indentation_step(std::string_view text, const Node& root) {
-  for (const Item& item : items_of(text, root))
-    if (starts_line(text, item.begin) && !indentation(text, item.begin).empty()) return indentation(text, item.begin);
-  return "  ";
-}
-
-std::string into_empty(std::string_view text, const Node& root, const Node& container, const std::string& item) {
-  std::string out(text);
-  const std::size_t first = container.begin + 1, close = container.end - 1;
-  const std::string_view inside = text.substr(first, close - first);
-  const std::size_t last = inside.find_last_not_of(" \t\r\n");
-  const std::size_t at = last == kNone ? first : first + last + 1;  // after its comments
-  if (inside.find_first_of("\r\n") == kNone) {
-    if (last == kNone) return out.insert(first, std::string(inside) + item);
-    return out.insert(at, " " + item);
-  }
-  return out.insert(
-      at, std::string(line_end_of(text)) + std::string(indentation(text, close)) + std::string(indentation_step(text, root)) + item);
-}
-
-/// Text between the key and the value of a new member, as its neighbour has it.
-std::string colon_like(std::string_view text, const Item& neighbour) {
-  const std::string_view between = text.substr(neighbour.key_end, neighbour.value - neighbour.key_end);
-  return between.find_first_not_of(": \t") == kNone ? std::string(between) : ": ";
-}
-
-/// A new last item; `key` in quotes, or empty in an array.
-std::string appended(std::string_view text, const Node& root, const Node& container, const std::string& key, const std::string& value) {
-  const std::vector<Item> items = items_of(text, container);
-  if (items.empty()) return into_empty(text, root, container, key.empty() ? value : key + ": " + value);
-  const Item& last = items.back();
-  const std::string item = key.empty() ? value : key + colon_like(text, last) + value;
-  std::string out(text);
-  if (starts_line(text, last.begin)) {
-    const std::string_view indent = text.substr(line_begin(text, last.begin), last.begin - line_begin(text, last.begin));
-    out.insert(past_line_comments(text, last.end), std::string(line_end_of(text)) + std::string(indent) + item);
-    return out.insert(last.end, ",");
-  }
-  std::string gap = " ";
-  if (items.size() > 1) {
-    const std::size_t after = items[items.size() - 2].comma + 1;
-    const std::string_view between = text.substr(after, last.begin - after);
-    if (between.find_first_not_of(" \t") == kNone) gap = between;
-  }
-  return out.insert(last.end, "," + gap + item);
-}
-
-// ---- taking out ----
-
-struct Cut {
-  std::size_t begin, end;
-};
-
-/// The cut with the blanks that it would leave behind; a line that would be blank goes as a whole.
-Cut tidy(std::string_view text, Cut cut) {
-  const bool starts = starts_line(text, cut.begin);
-  const std::size_t after = past_blanks(text, cut.end);
-  const bool ends = after == text.size() || is_line_end(text[after]);
-  if (starts && ends) return {line_begin(text, cut.begin), past_line_end(text, after)};
-  if (!ends) return {cut.begin, after};
-  while (cut.begin > 0 && is_blank(text[cut.begin - 1])) --cut.begin;
-  return cut;
-}
-
-std::string without_item(std::string_view text, const Node& container, std::size_t index) {
-  const std::vector<Item> items = items_of(text, container);
-  const Item& item = items[index];
-  std::string out(text);
-  const auto cut = [&](Cut c) { out.erase(c.begin, c.end - c.begin); };
-  const auto space = [&](std::size_t begin, std::size_t end) { return all_space(text.substr(begin, end - begin)); };
-  if (items.size() == 1) {
-    const std::size_t first = container.begin + 1, close = container.end - 1;
-    const bool comments = !space(first, item.begin) || !space(item.end, close);
-    cut(comments && container.kind == Kind::object ? tidy(text, {item.begin, item.end}) : Cut{first, close});
-  } else if (item.comma == kNone) {
-    const std::size_t comma = items[index - 1].comma;
-    if (space(comma + 1, item.begin)) {
-      cut({comma, item.end});
-    } else {
-      cut(tidy(text, {item.begin, item.end}));
-      cut({comma, comma + 1});
-    }
-  } else if (!space(item.end, item.comma)) {
-    cut({item.comma, item.comma + 1});
-    cut(tidy(text, {item.begin, item.end}));
-  } else if (index == 0 && !starts_line(text, item.begin) && space(item.comma + 1, items[1].begin)) {
-    cut({item.begin, items[1].begin});
-  } else {
-    cut(tidy(text, {item.begin, item.comma + 1}));
-  }
-  return out;
-}
 
 // ---- pointers ----
 
@@ -286,9 +102,9 @@ Result<std::string> set_value(std::string_view text, const std::string& file, st
   }
   for (std::size_t i = w.steps.size() - 1; i > w.taken; --i) {
     const std::string& step = w.steps[i];
-    put = step == "-" || step == "0" ? "[" + put + "]" : "{" + quoted(step) + ": " + put + "}";
+    put = step == "-" || step == "0" ? "[" + put + "]" : "{" + string_text(step) + ": " + put + "}";
   }
-  const std::string key = w.at->kind == Kind::object ? quoted(w.steps[w.taken]) : "";
+  const std::string key = w.at->kind == Kind::object ? string_text(w.steps[w.taken]) : "";
   return checked(appended(text, root, *w.at, key, put), file);
 }
 
@@ -300,10 +116,7 @@ Result<std::string> insert_item(std::string_view text, const std::string& file, 
   if (array == nullptr || array->kind != Kind::array)
     return error_at(root, in_quotes(pointer) + " is no item of an array; a place in one was expected");
   if (!w.arrived()) return checked(appended(text, root, *array, "", put), file);
-  const std::size_t begin = w.at->begin;
-  std::string gap = " ";
-  if (starts_line(text, begin)) gap = std::string(line_end_of(text)) + std::string(indentation(text, begin));
-  return checked(std::string(text).insert(begin, put + "," + gap), file);
+  return checked(inserted(text, w.at->begin, put), file);
 }
 
 Result<std::string> remove_value(std::string_view text, const std::string& file, std::string_view pointer) {
@@ -325,7 +138,7 @@ std::string pointer_step(std::string_view key) {
   return out;
 }
 
-std::string quoted(std::string_view text) {
+std::string string_text(std::string_view text) {
   constexpr char digits[] = "0123456789abcdef";
   std::string out = "\"";
   for (const char c : text) {

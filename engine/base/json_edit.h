@@ -26,7 +26,7 @@ const Node* find_value(const Node& root, std::string_view pointer);
 /// One step of a pointer: a key with "~" and "/" escaped.
 std::string pointer_step(std::string_view key);
 /// `text` as a JSON string in quotes that reads back byte for byte.
-std::string quoted(std::string_view text);
+std::string string_text(std::string_view text);
 /// A finite number, the shortest text that reads back to the same double.
 std::string number_text(double value);
 

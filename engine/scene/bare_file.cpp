@@ -77,7 +77,7 @@ std::string field_name(std::string_view grid) {
 /// , "color": MAP, "range": [LO, HI]
 std::string color_members(const NamedColors& colors) {
   std::string text;
-  if (!colors.map.empty()) text += ", \"color\": " + json::quoted(colors.map);
+  if (!colors.map.empty()) text += ", \"color\": " + json::string_text(colors.map);
   if (colors.range) text += ", \"range\": " + text_of(*colors.range);
   return text;
 }
@@ -121,7 +121,7 @@ void forget_lines(Scene& scene) {
 Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
   BareFile bare;
   bare.scene_path = path + ".json";
-  const std::string file = json::quoted(std::filesystem::path(path).filename().string());
+  const std::string file = json::string_text(std::filesystem::path(path).filename().string());
   if (mesh::is_mesh_file(path)) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
@@ -134,9 +134,9 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   bare.request.path = path;
   bare.request.grid = grid;
   CATENA_TRY(bare.field, load_best(bare.request));
-  const std::string name = json::quoted(field_name(grid.empty() ? bare.field.get()->name() : grid));
+  const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
-  if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::quoted(bare.request.grid);
+  if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
   bare.text += "}}";
   if (bare.field.scalar) {
     bare.text += ",\n" + volume_text(name, *bare.field.scalar->grid(), colors);

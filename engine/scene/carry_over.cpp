@@ -1,6 +1,168 @@
+#include <algorithm>
+
+#include "engine/base/output_file.h"
 #include "engine/scene/document.h"
+#include "engine/scene/lines.h"
 
 namespace catena::scene {
-// carried: see below
-void carry_over(Scene&, Scene&) {}
+namespace {
+
+// ---- sources ----
+
+bool same_request(const field::LoadRequest& a, const field::LoadRequest& b) {
+  field::LoadRequest renamed = a;
+  renamed.path = b.path;
+  return renamed == b && (a.path == b.path || same_file(a.path, b.path));
+}
+
+bool same_source(const FieldSource& a, const FieldSource& b) {
+  if (a.file.has_value() != b.file.has_value()) return false;
+  if (a.file) return a.grid_is_a_wish == b.grid_is_a_wish && same_request(*a.file, *b.file);
+  return a.analytic == b.analytic && a.parameters == b.parameters;
+}
+
+bool same_drawing(const FieldSource& a, const FieldSource& b) { return a.file || (a.resolution == b.resolution && a.box == b.box); }
+
+bool same_mesh(const MeshSource& a, const MeshSource& b) {
+  return a.placement == b.placement && (a.path == b.path || same_file(a.path, b.path));
+}
+
+void carry_fields(Scene& old, Scene& fresh) {
+  fresh.world.each<FieldSource>([&](Entity, FieldSource& source) {
+    old.world.each<FieldSource>([&](Entity, const FieldSource& before) {
+      if (before.loaded.get() == nullptr || !same_source(before, source)) return;
+      if (source.loaded.get() == nullptr) source.loaded = before.loaded;
+      if (source.drawn.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
+        source.drawn = before.drawn;
+    });
+  });
+}
+
+void carry_meshes(Scene& old, Scene& fresh) {
+  fresh.world.each<MeshSource>([&](Entity, MeshSource& source) {
+    old.world.each<MeshSource>([&](Entity, const MeshSource& before) {
+      if (!source.loaded && before.loaded && same_mesh(before, source)) source.loaded = before.loaded;
+    });
+  });
+}
+
+// ---- automatic colours and opacities: functions of the drawn grid and of what is stated besides ----
+
+bool same_named(const NamedColors& a, const NamedColors& b) { return a.map == b.map && a.range == b.range; }
+
+bool states(const json::Node& where, const char* key) { return where.find(key) != nullptr; }
+bool states_colors(const json::Node& where) {
+  const json::Node* color = where.find("color");
+  return color != nullptr && color->kind != json::Kind::string;
+}
+
+void carry_transfers(const Scene& old, Scene& fresh) {
+  fresh.world.each<Volume>([&](Entity, Volume& volume) {
+    const void* grid = fresh.world.get<FieldSource>(volume.field).drawn.get();
+    TransferFunction& transfer = volume.transfer;
+    old.world.each<Volume>([&](Entity, const Volume& before) {
+      const TransferFunction& made = before.transfer;
+      if (grid == nullptr || old.world.get<FieldSource>(before.field).drawn.get() != grid || !made.file.empty() || !transfer.file.empty())
+        return;
+      if (transfer.colors.empty() && !states_colors(before.where) && same_named(made.named, transfer.named)) transfer.colors = made.colors;
+      if (transfer.opacities.empty() && transfer.extinctions.empty() && !states(before.where, "opacity") &&
+          !states(before.where, "extinction") && made.named.range == transfer.named.range)
+        transfer.extinctions = made.extinctions;
+    });
+  });
+}
+
+// ---- what the rooms keep beside the things ----
+
+bool names_a_file(const json::Node& node) {
+  for (const json::Node& item : node.items)
+    if (names_a_file(item)) return true;
+  for (const auto& [key, member] : node.members)
+    if (key == "transfer" || names_a_file(member)) return true;
+  return false;
+}
+
+/// Every field and mesh of the fresh scene is that of the same name before: a description that is the same means the same.
+bool same_sources(const Scene& old, const Scene& fresh) {
+  bool same = true;
+  fresh.world.each<FieldSource>([&](Entity e, const FieldSource& source) {
+    const Entity before = find_field(old, fresh.world.get<Name>(e).value);
+    same = same && before && same_source(old.world.get<FieldSource>(before), source) &&
+           same_drawing(old.world.get<FieldSource>(before), source);
+  });
+  fresh.world.each<MeshSource>([&](Entity e, const MeshSource& source) {
+    const Entity before = find_mesh(old, fresh.world.get<Name>(e).value);
+    same = same && before && same_mesh(old.world.get<MeshSource>(before), source);
+  });
+  return same;
+}
+
+template <class T>
+void carry_made(Scene& old, Scene& fresh) {
+  std::vector<Entity> left;
+  old.world.each<T>([&](Entity e, const T&) { left.push_back(e); });
+  fresh.world.each<T>([&](Entity e, const T& part) {
+    const auto same = [&](Entity before) { return before && json::same_value(old.world.get<T>(before).where, part.where); };
+    const auto it = names_a_file(part.where) ? left.end() : std::find_if(left.begin(), left.end(), same);
+    if (it == left.end()) return;
+    fresh.world.take_missing(e, old.world, *it);
+    *it = Entity{};
+  });
+}
+
+// ---- widgets ----
+
+bool same_place(const json::Node& a, const json::Node& b) {
+  for (const char* key : {"type", "center", "normal", "orientation", "position", "from", "to", "lo", "hi", "field"}) {
+    const json::Node *x = a.find(key), *y = b.find(key);
+    if ((x == nullptr) != (y == nullptr) || (x != nullptr && !json::same_value(*x, *y))) return false;
+  }
+  return true;
+}
+
+void carry_widgets(const Scene& old, Scene& fresh) {
+  fresh.world.each<Widget>([&](Entity e, Widget& widget) {
+    old.world.each<Widget>([&](Entity f, const Widget& before) {
+      if (before.spec.kind != widget.spec.kind || old.world.get<Name>(f).value != fresh.world.get<Name>(e).value) return;
+      if (same_place(before.where, widget.where)) {
+        widget.spec.pose = before.spec.pose;
+      } else if (!(widget.spec.pose == before.state.pose)) {
+        // set elsewhere than the hand has it
+        widget.spec.revision = before.spec.revision + 1;
+        widget.state = {};
+        widget.state.pose = widget.spec.pose;
+        widget.state.revision = widget.spec.revision;
+        return;
+      }
+      widget.spec.revision = before.spec.revision;
+      widget.state = before.state;
+    });
+  });
+}
+
+}  // namespace
+
+void carry_over(Scene& old, Scene& fresh) {
+  carry_fields(old, fresh);
+  carry_meshes(old, fresh);
+  carry_transfers(old, fresh);
+  // before the lines, which hold their curves
+  for (auto& [key, curve] : old.curves)
+    if (curve.use_count() > 1) fresh.curves.emplace(key, curve);
+  if (same_sources(old, fresh)) {
+    carry_made<StreamlineSet>(old, fresh);
+    carry_made<Slice>(old, fresh);
+    carry_made<SurfaceMesh>(old, fresh);
+    carry_made<Volume>(old, fresh);
+    carry_made<Isosurface>(old, fresh);
+  }
+  carry_lines(old, fresh);
+  carry_widgets(old, fresh);
+  fresh.phase = old.phase;
+  Cursor& cursor = fresh.world.get<Cursor>(fresh.cursor);
+  const double size = cursor.size;
+  cursor = std::move(old.world.get<Cursor>(old.cursor));
+  cursor.size = size;
+}
+
 }  // namespace catena::scene

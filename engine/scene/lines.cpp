@@ -16,7 +16,7 @@ using Curves = std::vector<flow::CurvePtr>;
 /// What this room keeps beside a StreamlineSet.
 struct MadeLines {
   std::uint64_t field_version = 0;
-  std::vector<Vec3> points;  ///< of a widget: the seeds
+  std::vector<Vec3> points;  ///< the seeds, which a widget may move
   Curves curves;
 };
 
@@ -146,17 +146,55 @@ Result<Curves> use_lines(Scene& scene, Entity entity) {
                                                              " is a scalar field; expected a vector field for streamlines");
   if (!scene.world.has<MadeLines>(entity)) scene.world.emplace<MadeLines>(entity);
   MadeLines& made = scene.world.get<MadeLines>(entity);
-  const bool same_seeds = !set.seeds.widget || made.points == set.seeds.points;
-  if (made.field_version == any.vector->version() && same_seeds) return made.curves;
+  if (made.field_version == any.vector->version() && made.points == set.seeds.points) return made.curves;
   const LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
   CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, member_or(set.where, "seeds")));
-  made = {any.vector->version(), set.seeds.widget ? set.seeds.points : std::vector<Vec3>{}, std::move(curves)};
+  made = {any.vector->version(), set.seeds.points, std::move(curves)};
   if (set.seeds.widget) drop_unused_curves(scene);
   return made.curves;
 }
 
 void drop_unused_curves(Scene& scene) {
   std::erase_if(scene.curves, [](const auto& entry) { return entry.second.use_count() == 1; });
+}
+
+namespace {
+
+std::uint64_t loaded_version(const Scene& scene, Entity field) {
+  const field::Field* loaded = field ? scene.world.get<FieldSource>(field).loaded.get() : nullptr;
+  return loaded == nullptr ? 0 : loaded->version();
+}
+
+bool same_seeds(const Scene& a_scene, const Seeds& a, const Scene& b_scene, const Seeds& b) {
+  if (a.points != b.points || a.pattern.has_value() != b.pattern.has_value()) return false;
+  if (!a.pattern) return true;
+  const bool same = a.pattern->kind == b.pattern->kind && json::same_value(a.pattern->where, b.pattern->where);
+  return same && (!a.pattern->field || (loaded_version(a_scene, a.pattern->field) != 0 &&
+                                        loaded_version(a_scene, a.pattern->field) == loaded_version(b_scene, b.pattern->field)));
+}
+
+bool same_lines(const Scene& a_scene, const StreamlineSet& a, const Scene& b_scene, const StreamlineSet& b) {
+  return a.line == b.line && a.min_speed == b.min_speed && a.length == b.length && a.tolerance == b.tolerance &&
+         loaded_version(a_scene, a.field) == loaded_version(b_scene, b.field) && same_seeds(a_scene, a.seeds, b_scene, b.seeds);
+}
+
+}  // namespace
+
+void carry_lines(Scene& old, Scene& fresh) {
+  std::vector<Entity> sets;
+  fresh.world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) {
+    if (!fresh.world.has<MadeLines>(e)) sets.push_back(e);
+  });
+  for (const Entity e : sets) {
+    Entity found;
+    old.world.each<MadeLines>([&](Entity before, const MadeLines& made) {
+      const StreamlineSet& set = old.world.get<StreamlineSet>(before);
+      if (made.field_version == loaded_version(fresh, fresh.world.get<StreamlineSet>(e).field) &&
+          same_lines(old, set, fresh, fresh.world.get<StreamlineSet>(e)))
+        found = before;
+    });
+    if (found) fresh.world.emplace<MadeLines>(e, old.world.get<MadeLines>(found));
+  }
 }
 
 }  // namespace catena::scene

@@ -28,5 +28,7 @@ Result<std::vector<flow::CurvePtr>> use_lines(Scene& scene, Entity set);
 
 /// Drops the curves that nothing but the scene holds any more (no line that is drawn, no link of a program).
 void drop_unused_curves(Scene& scene);
+/// Sets of `fresh` with a field, seeds and tracing that one of `old` has take over its lines (document.h, carry_over).
+void carry_lines(Scene& old, Scene& fresh);
 
 }  // namespace catena::scene

@@ -61,10 +61,10 @@ Result<std::string> with_override(std::string text, const std::string& path, con
   const json::Node* file = field == nullptr ? nullptr : field->find("file");
   const bool raw = file != nullptr && is_raw(file->string);
   if (file == nullptr || (raw && !is_raw(name))) {
-    const std::string grid = with.grid.empty() ? "" : ", \"grid\": " + json::quoted(with.grid);
-    return json::set_value(text, path, pointer, "{\"file\": " + json::quoted(name) + grid + "}");
+    const std::string grid = with.grid.empty() ? "" : ", \"grid\": " + json::string_text(with.grid);
+    return json::set_value(text, path, pointer, "{\"file\": " + json::string_text(name) + grid + "}");
   }
-  CATENA_TRY(text, json::set_value(text, path, pointer + "/file", json::quoted(name)));
+  CATENA_TRY(text, json::set_value(text, path, pointer + "/file", json::string_text(name)));
   if (raw) return text;
 
   // the grid and the mask of the file before are wishes: without them the file's own
@@ -75,7 +75,7 @@ Result<std::string> with_override(std::string text, const std::string& path, con
     return grids && std::none_of(grids->begin(), grids->end(), [&](const field::GridInfo& info) { return info.name == node.string; });
   };
   if (!with.grid.empty()) {
-    CATENA_TRY(text, json::set_value(text, path, pointer + "/grid", json::quoted(with.grid)));
+    CATENA_TRY(text, json::set_value(text, path, pointer + "/grid", json::string_text(with.grid)));
   } else if (wish && lacks(*grid)) {
     CATENA_TRY(text, json::remove_value(text, path, pointer + "/grid"));
   }
@@ -105,7 +105,7 @@ Result<std::string> moved_text(std::string_view text, const std::string& from, c
     // from the end, so that the places before keep theirs
     for (auto it = names.rbegin(); it != names.rend(); ++it)
       if (fs::path((*it)->string).is_relative())
-        moved.replace((*it)->begin, (*it)->end - (*it)->begin, json::quoted(name_from(resolved_path(from, (*it)->string), folder)));
+        moved.replace((*it)->begin, (*it)->end - (*it)->begin, json::string_text(name_from(resolved_path(from, (*it)->string), folder)));
   }
   for (const FieldOverride& with : overrides) {
     CATENA_TRY(moved, with_override(std::move(moved), to, with));

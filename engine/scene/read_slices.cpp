@@ -32,7 +32,7 @@ Outcome read_plane(const Scene& scene, const json::Node& item, Slice& slice) {
         point ? *point : *normal,
         "a slice has both an axis and a point or normal; \"axis\" with \"at\", or \"point\" with \"normal\", was expected");
   if (!axis && !at && !point && !normal)
-    return json::error_at(item, "a slice has no plane; \"axis\" with \"at\", or \"point\" with \"normal\", or \"widget\", was expected");
+    return json::error_at(item, "a slice has no plane; \"widget\", \"axis\" with \"at\", or \"point\" with \"normal\", was expected");
   if (axis || at) {
     if (!axis) return json::error_at(*at, "\"at\" is given without \"axis\"; \"x\", \"y\" or \"z\" was expected beside it");
     CATENA_TRY(const int which, json::get_choice(item, "axis", 0, {"x", "y", "z"}));

@@ -86,6 +86,14 @@ class World {
   void remove(Entity e) {
     pool<T>().remove(e);
   }
+  /// Moves over what `there` has in another world and `here` has none of in this one.
+  void take_missing(Entity here, World& other, Entity there) {
+    for (auto& [type, slot] : other.pools_) {
+      auto& mine = pools_[type];
+      if (!mine) mine = slot->empty();
+      mine->take(here, *slot, there);
+    }
+  }
   template <class T>
   std::size_t count() const {
     const auto* p = find_pool<T>();
@@ -105,9 +113,18 @@ class World {
  private:
   struct Slot {
     virtual ~Slot() = default;
+    virtual std::unique_ptr<Slot> empty() const = 0;
+    virtual void take(Entity here, Slot& other, Entity there) = 0;  ///< `other` is of the same type
   };
   template <class T>
   struct Typed final : Slot {
+    std::unique_ptr<Slot> empty() const override { return std::make_unique<Typed>(); }
+    void take(Entity here, Slot& other, Entity there) override {
+      Pool<T>& from = static_cast<Typed&>(other).pool;
+      if (!from.contains(there) || pool.contains(here)) return;
+      pool.emplace(here, std::move(from.get(there)));
+      from.remove(there);
+    }
     Pool<T> pool;
   };
   template <class T>

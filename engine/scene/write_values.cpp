@@ -28,7 +28,7 @@ std::string row(double a, double b) { return text_of(std::array<double, 2>{a, b}
 
 std::string text_of(double value) { return json::number_text(value); }
 std::string text_of(bool value) { return value ? "true" : "false"; }
-std::string text_of(std::string_view value) { return json::quoted(value); }
+std::string text_of(std::string_view value) { return json::string_text(value); }
 std::string text_of(const Vec3& v) { return "[" + text_of(v.x) + ", " + text_of(v.y) + ", " + text_of(v.z) + "]"; }
 std::string text_of(const Quat& q) { return "[" + text_of(q.w) + ", " + text_of(q.x) + ", " + text_of(q.y) + ", " + text_of(q.z) + "]"; }
 std::string text_of(const Rgb& c) { return "[" + component(c.r) + ", " + component(c.g) + ", " + component(c.b) + "]"; }

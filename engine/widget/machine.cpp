@@ -97,6 +97,7 @@ void begin(const Spec& spec, State& state) noexcept {
   state.known = true;
   state.revision = spec.revision;
   state.pose = spec.pose;
+  state.value = spec.value;
   const Quat& q = spec.pose.orientation;
   const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   if (!(std::fabs(square - 1) <= 1e-14)) state.pose.orientation = normalised(q);

@@ -30,6 +30,7 @@ enum class Turning : std::uint8_t { any, free, axis };
 struct Spec {
   Kind kind = Kind::cutting_plane;
   Pose pose;                   ///< at the start, or as set since
+  double value = 0;            ///< isolevel: at the start, where the field says nothing at the handle
   std::uint32_t revision = 0;  ///< counts the poses that were set from outside (a panel, undo): a higher one replaces the hand's
   double length = 4;           ///< L, which the sizes that are not stated follow
   double radius = 0;           ///< of the sphere; of a handle's ball

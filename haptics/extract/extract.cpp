@@ -6,6 +6,7 @@
 
 #include "haptics/constraints/modes.h"
 #include "haptics/extract/make_link.h"
+#include "haptics/extract/widgets.h"
 
 namespace catena::haptics {
 namespace {
@@ -16,12 +17,14 @@ std::atomic<std::uint64_t> newest_epoch{0};
 using LinksOf = std::vector<std::pair<std::string, std::vector<int>>>;
 
 /// Adds the link, or the links of a ready-made mode.
-Outcome add_links(const scene::Link& from, const BuildContext& context, Program& program, LinksOf& links_of) {
-  CATENA_TRY(const std::vector<json::Node> nodes, expand_link(from.node));
+Outcome add_links(scene::Scene& scene, const scene::Link& from, const BuildContext& context, Program& program, LinksOf& links_of) {
+  CATENA_TRY(const json::Node item, with_widget_values(scene, from.node));
+  CATENA_TRY(const std::vector<json::Node> nodes, expand_link(item));
   std::vector<int> indices;
   for (const json::Node& node : nodes) {
-    if (program.links.size() >= static_cast<std::size_t>(kMaxLinks))
-      return json::error_at(from.node, "the chain is too long; at most " + std::to_string(kMaxLinks) + " links were expected");
+    if (program.links.size() >= static_cast<std::size_t>(exchange::kMaxSceneLinks))
+      return json::error_at(from.node,
+                            "the chain is too long; at most " + std::to_string(exchange::kMaxSceneLinks) + " links were expected");
     CATENA_TRY(Link link, make_link(node, program.coupling, context));
     for (const Link& other : program.links)
       if (other.name == link.name)
@@ -89,7 +92,7 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, cons
   std::vector<scene::Link> links;
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) { links.push_back(link); });
   LinksOf links_of;
-  for (const scene::Link& from : links) CATENA_CHECK(add_links(from, context, *program, links_of));
+  for (const scene::Link& from : links) CATENA_CHECK(add_links(scene, from, context, *program, links_of));
   std::vector<scene::Mode> modes;
   scene.world.each<scene::Mode>([&](scene::Entity, const scene::Mode& mode) { modes.push_back(mode); });
   for (const scene::Mode& from : modes) {
@@ -98,6 +101,12 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, cons
     CATENA_TRY(Mode mode, make_mode(from, links_of));
     program->modes.push_back(std::move(mode));
   }
+  const auto named = [&](const std::string& name) -> const std::vector<int>* {
+    for (const auto& [known, indices] : links_of)
+      if (known == name) return &indices;
+    return nullptr;
+  };
+  CATENA_CHECK(add_widgets(scene, named, *program));
   program->epoch = ++newest_epoch;
   return std::shared_ptr<const Program>(std::move(program));
 }

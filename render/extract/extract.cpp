@@ -11,6 +11,7 @@
 #include "render/extract/extract_overlay.h"
 #include "render/extract/extract_stereo.h"
 #include "render/extract/extract_surfaces.h"
+#include "render/extract/extract_widgets.h"
 #include "render/extract/scene_parts.h"
 
 namespace catena::render {
@@ -123,16 +124,22 @@ View view_of(const scene::Scene& scene, const FramePacket& packet) {
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
   packet.view = view;
   set_fog(scene, packet_bounds(packet), packet);
+  set_widgets(scene, data_bounds(packet), packet);
   set_eyes(packet, scene.stereo);
 }
 
-Bounds packet_bounds(const FramePacket& packet) {
+Bounds data_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));
   for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(domain_bounds(*surface.grid));
   for (const SliceItem& slice : packet.slices) bounds.add(domain_bounds(*slice.grid));
   for (const MeshItem& mesh : packet.meshes)
     for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
+  return bounds;
+}
+
+Bounds packet_bounds(const FramePacket& packet) {
+  Bounds bounds = data_bounds(packet);
   for (const TubeItem& tube : packet.tubes)
     for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
   for (const ArrowItem& arrow : packet.arrows) {
@@ -168,6 +175,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
   CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
+  extract_widgets(scene, data_bounds(packet), packet);
   set_eyes(packet, scene.stereo);
   return packet;
 }

@@ -1,6 +1,6 @@
-/// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, the visible cursor, background and
-/// camera become one frame packet; the ECS is not read after it. Loads (once) only the fields that something drawn names, and takes every
-/// streamline from `use_curve`: the drawn tube and the felt link are the same object. Frame thread.
+/// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, the visible cursor, widgets,
+/// background and camera become one frame packet; the ECS is not read after it. Loads (once) only the fields that something drawn names,
+/// and takes every streamline from `use_curve`: the drawn tube and the felt link are the same object. Frame thread.
 #pragma once
 #include <cstdint>
 
@@ -18,7 +18,10 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
 /// Another view of the packet of this scene; what follows from the view, the eyes and the fog's range, is made anew.
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
 
-/// The world box of all that the packet draws: the domains of grids, tubes, cursors. Also what near and far enclose.
+/// The world box of the data that the packet draws, which nothing that the hand moves changes: domains of grids, meshes. Empty without.
+Bounds data_bounds(const FramePacket& packet);
+
+/// The world box of all that the packet draws: of the data, tubes, cursors; not of aids and widgets.
 Bounds packet_bounds(const FramePacket& packet);
 
 /// Field values to colour and extinction; the scene has filled in what the file leaves out.

@@ -141,7 +141,8 @@ Outcome extract_slices(scene::Scene& scene, FramePacket& packet) {
     if (!scene.world.get<scene::Slice>(e).visible) continue;
     CATENA_TRY(auto grid, sliced_grid(scene, e));
     const scene::Slice& slice = scene.world.get<scene::Slice>(e);
-    if (!cuts(slice, *grid))
+    // the hand may carry a widget's plane out of the domain: there nothing is seen
+    if (!slice.widget && !cuts(slice, *grid))
       return json::error_at(slice.where, "the slice's plane does not meet the domain of \"" + name_of(scene, slice.shown.field) +
                                              "\"; a plane that cuts it was expected");
     SliceItem item;

@@ -175,6 +175,14 @@ struct AidItems {
   bool empty() const { return tubes.empty() && meshes.empty(); }
 };
 
+/// What the hand takes hold of (paper, Figure 6). A tube of a single point is a ball. The camera is not fitted to them.
+struct WidgetItems {
+  std::vector<TubeItem> tubes;
+  std::vector<ArrowItem> arrows;
+  std::vector<MeshItem> meshes;
+  bool empty() const { return tubes.empty() && arrows.empty() && meshes.empty(); }
+};
+
 struct FramePacket {
   View view;
   std::vector<View> eyes{};  ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
@@ -194,6 +202,7 @@ struct FramePacket {
   std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
   std::optional<FogItem> fog;
   AidItems aids;
+  WidgetItems widgets;
   std::optional<bool> jitter;  ///< of rays; overrides RenderSettings::jitter
   std::vector<ObjectName> objects;
 

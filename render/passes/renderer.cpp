@@ -22,14 +22,15 @@
 #include "render/passes/streamlines.h"
 #include "render/passes/surface_color.h"
 #include "render/passes/ui.h"
+#include "render/passes/widgets.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass,   &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass, &kSurfaceColorPass,
-                                        &kSlicePass, &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,          &kWidgetPass, &kMeshPass,   &kStreamlinePass, &kCursorPass,  &kIsosurfacePass,
+                                        &kSurfaceColorPass, &kSlicePass,  &kLayersPass, &kRaycastPass,    &kComposePass, &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;

@@ -30,6 +30,13 @@ void each_number(P& p, const F& each) {
     for (int r = 0; r < 3; ++r) each(p.workspace_rotation[c][r]);
 }
 
+template <class W, class F>
+void each_pose_number(W& w, const F& each) {
+  for (auto& point : w.pose.points)
+    for (int a = 0; a < 3; ++a) each(point[a]);
+  for (auto* v : {&w.pose.orientation.w, &w.pose.orientation.x, &w.pose.orientation.y, &w.pose.orientation.z, &w.value}) each(*v);
+}
+
 struct PutNumber {
   ByteWriter& out;
   void operator()(const double& v) const { out.put(v); }
@@ -63,6 +70,12 @@ std::vector<std::string> LogProgram::link_names() const {
   return names;
 }
 
+std::vector<std::string> LogProgram::widget_names() const {
+  std::vector<std::string> names;
+  for (const Widget& widget : widgets) names.push_back(widget.name);
+  return names;
+}
+
 std::string LogGap::text() const {
   const std::string which =
       ticks == 1 ? fmt::format("tick {} is", first_tick) : fmt::format("ticks {} to {} are", first_tick, first_tick + ticks - 1);
@@ -80,6 +93,10 @@ LogProgram facts_of(const Program& program, std::optional<std::string> scene_tex
   out.workspace_rotation = program.workspace_rotation;
   for (const haptics::Link& link : program.links) out.links.push_back({link.name, link.recipe});
   for (const Mode& mode : program.modes) out.modes.push_back(mode.name);
+  for (std::size_t i = 0; i < program.widgets.size(); ++i) {
+    const widget::Spec& spec = program.widgets[i];
+    out.widgets.push_back({program.widget_names[i], spec.revision, spec.pose, spec.value});
+  }
   return out;
 }
 
@@ -124,6 +141,12 @@ std::string to_bytes(const LogProgram& p) {
   }
   out.put(static_cast<std::uint32_t>(p.modes.size()));
   for (const std::string& mode : p.modes) out.put_string(mode);
+  out.put(static_cast<std::uint32_t>(p.widgets.size()));
+  for (const LogProgram::Widget& w : p.widgets) {
+    out.put_string(w.name);
+    out.put(w.revision);
+    each_pose_number(w, PutNumber{out});
+  }
   return std::move(out.bytes());
 }
 
@@ -147,6 +170,15 @@ std::optional<LogProgram> program_from(std::string_view bytes) {
   const auto modes = in.get<std::uint32_t>();
   good = good && modes <= kMaxModes;
   for (std::uint32_t i = 0; i < modes && good && in.good(); ++i) p.modes.push_back(in.get_string());
+  const auto widgets = in.get<std::uint32_t>();
+  good = good && widgets <= exchange::kMaxWidgets;
+  for (std::uint32_t i = 0; i < widgets && good && in.good(); ++i) {
+    LogProgram::Widget w;
+    w.name = in.get_string();
+    w.revision = in.get<std::uint32_t>();
+    each_pose_number(w, GetNumber{in, good});
+    p.widgets.push_back(std::move(w));
+  }
   if (!good || !in.finished()) return std::nullopt;
   return p;
 }

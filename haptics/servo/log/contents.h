@@ -35,9 +35,17 @@ struct LogProgram {
   Vec3 workspace_origin{0.0};
   Mat3 workspace_rotation{1.0};
   std::vector<Link> links;
+  struct Widget {
+    std::string name;
+    std::uint32_t revision = 0;
+    widget::Pose pose;  ///< when the program was made
+    double value = 0;
+  };
   std::vector<std::string> modes;
+  std::vector<Widget> widgets;
 
   std::vector<std::string> link_names() const;
+  std::vector<std::string> widget_names() const;
 };
 
 /// Ticks that the log does not hold.

@@ -1,4 +1,4 @@
-/// The recording's format, version 1. A reader needs this header alone.
+/// The recording's format, version 2. A reader needs this header alone.
 ///
 /// All numbers are in the byte order of the machine that wrote them (the mark says which); doubles are IEEE 754 bytes, exact.
 ///   string = u32 length, bytes      vec3 = 3 f64      hash = FNV-1a-64 (engine/base/hash.h)
@@ -21,12 +21,14 @@
 ///            coupling: f64 stiffness N/m, damping N s/m, max force N, ramp s, rotational stiffness N m/rad, rotational damping
 ///                    N m s/rad; u8 combination                                   (haptics/chain/program.h)
 ///            f64 metres per unit, vec3 origin, 9 f64 world from device axes, column by column,
-///            u32 n, n times {string link name, u64 recipe}, u32 n, n strings: names of modes
+///            u32 n, n times {string link name, u64 recipe}, u32 n, n strings: names of modes,
+///            u32 n, n times {string widget name, u32 revision, its pose when the program was made: 2 vec3, orientation as 4 f64 w x y z,
+///                    f64 value}                                                  (engine/widget/widget.h)
 ///            A link keeps its state over a change where name and recipe (not 0) are the same in both programs.
-/// 3 TICKS    u64 epoch, u64 first tick, u32 count, u32 links, then `count` records of ticks first, first + 1 ..
-///            A record is kTickWords + links * kLinkWords words of 8 bytes (record.h lists them). It is stored as a mask, one bit a word
-///            (word k: bit k % 8 of byte k / 8; (words + 7) / 8 bytes), then the words whose bit is 1. A word whose bit is 0 is the same
-///            as in the record before it in this block; before the block's first record all words are 0.
+/// 3 TICKS    u64 epoch, u64 first tick, u32 count, u32 links, u32 widgets, then `count` records of ticks first, first + 1 ..
+///            A record is kTickWords + links * kLinkWords + widgets * kWidgetWords words of 8 bytes (record.h lists them). It is stored as
+///            a mask, one bit a word (word k: bit k % 8 of byte k / 8; (words + 7) / 8 bytes), then the words whose bit is 1. A word whose
+///            bit is 0 is the same as in the record before it in this block; before the block's first record all words are 0.
 /// 4 GAP      u64 first tick, u64 count: ticks that are not in the log, for the writer could not keep up
 /// 5 END      u64 ticks in the log, u64 ticks lost, u64 last tick, u64 state_hash (haptics/chain/state_hash.h) of the ticks in the log.
 ///            A log without it was cut off.
@@ -39,7 +41,7 @@
 namespace catena::haptics::log {
 
 inline constexpr unsigned char kMagic[8] = {0x89, 'C', 'A', 'T', 'L', 'O', 'G', '\n'};
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 inline constexpr std::uint64_t kPreambleBytes = 16;
 
@@ -62,5 +64,6 @@ inline constexpr std::uint64_t kMostPayload = std::uint64_t{64} << 20;  ///< of 
 
 inline constexpr int kTickWords = 24;
 inline constexpr int kLinkWords = 20;
+inline constexpr int kWidgetWords = 12;
 
 }  // namespace catena::haptics::log

@@ -10,14 +10,22 @@ namespace {
 // The program that was built, if it has the links that the log names.
 Result<std::shared_ptr<const Program>> with_recorded_recipes(const Program& built, const LogProgram& recorded) {
   Program program = built;
-  bool same = program.links.size() == recorded.links.size() && program.modes.size() == recorded.modes.size();
+  bool same = program.widgets.size() == recorded.widgets.size() && program.links.size() == recorded.links.size() &&
+              program.modes.size() == recorded.modes.size();
   for (std::size_t i = 0; same && i < program.links.size(); ++i) {
     same = program.links[i].name == recorded.links[i].name;
     program.links[i].recipe = recorded.links[i].recipe;
   }
+  for (std::size_t i = 0; same && i < program.widgets.size(); ++i) {
+    const LogProgram::Widget& widget = recorded.widgets[i];
+    same = program.widget_names[i] == widget.name;
+    program.widgets[i].revision = widget.revision;
+    program.widgets[i].pose = widget.pose;
+    program.widgets[i].value = widget.value;
+  }
   if (!same)
     return Error{"tick " + std::to_string(recorded.first_tick) +
-                 ": the scene has other links than the recording; expected the scene that was recorded"};
+                 ": the scene has other links or widgets than the recording; expected the scene that was recorded"};
   return std::shared_ptr<const Program>(std::make_shared<Program>(std::move(program)));
 }
 
@@ -28,7 +36,7 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
   auto scratch = std::make_unique<ChainScratch>();
   exchange::HapticState out;
   std::shared_ptr<const Program> program;
-  std::vector<std::string> names;
+  std::vector<std::string> names, widgets;
   Words words{};
   ReplayMeter meter;
   LogReplay result;
@@ -44,6 +52,7 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         if (program) rebind(*program, *next, *state, *scratch);
         program = std::move(next);
         names = log.program().link_names();
+        widgets = log.program().widget_names();
         break;
       }
       case LogEvent::gap:
@@ -54,7 +63,7 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         tick(*program, log.tick().input, *state, *scratch, out);
         meter.add(static_cast<double>(now_ns() - start), out);
         pack(log.tick().input, out, words.data());
-        std::string difference = first_difference(log.words(), words, names);
+        std::string difference = first_difference(log.words(), words, names, widgets);
         if (difference.empty() && out.tick != log.tick().output.tick) difference = "the tick's number";
         if (!difference.empty() && result.differing++ == 0) {
           result.first_differing = log.tick().output.tick;

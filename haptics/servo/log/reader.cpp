@@ -108,18 +108,19 @@ std::optional<LogEvent> LogReader::read_program() {
 std::optional<LogEvent> LogReader::read_ticks() {
   ByteReader in(blocks_.payload());
   const auto epoch = in.get<std::uint64_t>(), first = in.get<std::uint64_t>();
-  const auto count = in.get<std::uint32_t>(), links = in.get<std::uint32_t>();
-  const bool sane = in.good() && count > 0 && links <= kMaxLinks && first > last_ && count <= blocks_.payload().size() &&
-                    first <= ~std::uint64_t{0} - count;
-  constexpr std::size_t kHead = 24;
+  const auto count = in.get<std::uint32_t>(), links = in.get<std::uint32_t>(), widgets = in.get<std::uint32_t>();
+  const bool sane = in.good() && count > 0 && links <= kMaxLinks && widgets <= exchange::kMaxWidgets && first > last_ &&
+                    count <= blocks_.payload().size() && first <= ~std::uint64_t{0} - count;
+  constexpr std::size_t kHead = 28;
+  const Shape shape{static_cast<int>(links & 0xff), static_cast<int>(widgets & 0xff)};
   // all of it is looked at before any of it is told
   Words words{};
   LogTick tick;
   bool good = sane;
   std::string_view rest = sane ? blocks_.payload().substr(kHead) : std::string_view();
   for (std::uint32_t i = 0; i < count && good; ++i) {
-    const std::size_t used = unsqueeze(rest, words_of(static_cast<int>(links)), words);
-    good = used > 0 && unpack(words, static_cast<int>(links), tick);
+    const std::size_t used = unsqueeze(rest, words_of(shape), words);
+    good = used > 0 && unpack(words, shape, tick);
     rest.remove_prefix(used);
   }
   if (!good || !rest.empty()) {
@@ -130,7 +131,7 @@ std::optional<LogEvent> LogReader::read_ticks() {
     again_ = true;
     return lost_before(first);
   }
-  if (!has_program_ || program_.epoch != epoch || program_.links.size() != links) {
+  if (!has_program_ || program_.epoch != epoch || program_.links.size() != links || program_.widgets.size() != widgets) {
     // its block is damaged, or nobody told the writer
     if (has_program_ || program_.known) damage();
     program_ = {};
@@ -138,13 +139,14 @@ std::optional<LogEvent> LogReader::read_ticks() {
     program_.first_tick = first;
     program_.known = false;
     for (std::uint32_t i = 0; i < links; ++i) program_.links.push_back({fmt::format("link_{}", i + 1), 0});
+    for (std::uint32_t i = 0; i < widgets; ++i) program_.widgets.push_back({fmt::format("widget_{}", i + 1), 0, {}, 0});
     has_program_ = true;
     again_ = true;
     return LogEvent::program;
   }
   records_ = blocks_.payload().substr(kHead);
   left_ = count;
-  links_ = static_cast<int>(links);
+  shape_ = shape;
   words_.fill(0);
   tick_ = {};
   tick_.output.program_epoch = epoch;
@@ -152,10 +154,10 @@ std::optional<LogEvent> LogReader::read_ticks() {
 }
 
 LogEvent LogReader::next_record() {
-  const std::size_t used = unsqueeze(records_, words_of(links_), words_);
+  const std::size_t used = unsqueeze(records_, words_of(shape_), words_);
   records_.remove_prefix(used);
   --left_;
-  unpack(words_, links_, tick_);
+  unpack(words_, shape_, tick_);
   tick_.output.tick = ++last_;
   return LogEvent::tick;
 }

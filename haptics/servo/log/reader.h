@@ -61,7 +61,7 @@ class LogReader {
   // the block of ticks that is being read
   std::string_view records_;
   std::uint32_t left_ = 0;
-  int links_ = 0;
+  Shape shape_;
 };
 
 }  // namespace catena::haptics::log

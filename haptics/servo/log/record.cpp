@@ -10,13 +10,15 @@ namespace catena::haptics::log {
 
 using exchange::HapticState;
 using exchange::LinkReport;
+using exchange::WidgetReport;
 
 // What a tick takes and gives has grown: give it words in record.h and raise kVersion.
-static_assert(sizeof(ProbeSample) == 80 && sizeof(LinkReport) == 160 && sizeof(HapticState) == 2920);
+static_assert(sizeof(ProbeSample) == 80 && sizeof(LinkReport) == 160 && sizeof(exchange::WidgetReport) == 96 &&
+              sizeof(HapticState) == 2920);
 
 namespace {
 
-constexpr int kPackedWord = 8, kPackedLinkWord = 19, kMissedWord = 21;
+constexpr int kPackedWord = 8, kPackedLinkWord = 19, kPackedWidgetWord = 11, kMissedWord = 21;
 
 std::uint64_t bits(double v) noexcept { return std::bit_cast<std::uint64_t>(v); }
 double number(std::uint64_t word) noexcept { return std::bit_cast<double>(word); }
@@ -90,6 +92,28 @@ bool unpack_link(const std::uint64_t* words, LinkReport& link) noexcept {
          byte_of(packed, 6) <= 1 && byte_of(packed, 7) == 0;
 }
 
+void pack_widget(const WidgetReport& widget, std::uint64_t* words) noexcept {
+  Put put{words};
+  for (const Vec3& point : widget.pose.points) put(point);
+  put(widget.pose.orientation);
+  put(widget.value);
+  *put.at = from_parts(widget.revision, widget.mode, widget.handle, widget.held);
+}
+
+bool unpack_widget(const std::uint64_t* words, WidgetReport& widget) noexcept {
+  Take take{words};
+  for (Vec3& point : widget.pose.points) take(point);
+  take(widget.pose.orientation);
+  take(widget.value);
+  const std::uint64_t packed = *take.at;
+  widget.revision = static_cast<std::uint32_t>(packed);
+  widget.mode = static_cast<exchange::WidgetMode>(byte_of(packed, 4));
+  widget.handle = static_cast<std::int8_t>(byte_of(packed, 5));
+  widget.held = byte_of(packed, 6);
+  return byte_of(packed, 4) <= static_cast<std::uint8_t>(exchange::WidgetMode::drag) && widget.handle >= -1 && widget.handle <= 6 &&
+         widget.held <= 7 && byte_of(packed, 7) == 0;
+}
+
 }  // namespace
 
 int pack(const ProbeSample& input, const HapticState& output, std::uint64_t* words) noexcept {
@@ -108,10 +132,12 @@ int pack(const ProbeSample& input, const HapticState& output, std::uint64_t* wor
   *put.at++ = two_floats(output.period_us, output.compute_us);
   *put.at++ = two_floats(output.device_us, 0);
   for (int i = 0; i < output.link_count; ++i) pack_link(output.links[static_cast<std::size_t>(i)], words + kTickWords + kLinkWords * i);
-  return words_of(output.link_count);
+  std::uint64_t* const widgets = words + kTickWords + kLinkWords * output.link_count;
+  for (int i = 0; i < output.widget_count; ++i) pack_widget(output.widgets[static_cast<std::size_t>(i)], widgets + kWidgetWords * i);
+  return words_of(shape_of(output));
 }
 
-bool unpack(const Words& words, int links, LogTick& tick) noexcept {
+bool unpack(const Words& words, const Shape& shape, LogTick& tick) noexcept {
   ProbeSample& input = tick.input;
   HapticState& output = tick.output;
   Take take{words.data()};
@@ -138,11 +164,15 @@ bool unpack(const Words& words, int links, LogTick& tick) noexcept {
   output.orientation = input.orientation;
   output.buttons = input.buttons;
   output.condition = input.condition;
-  output.link_count = links;
+  output.link_count = shape.links;
+  output.widget_count = shape.widgets;
   bool good = byte_of(packed, 4) <= static_cast<std::uint8_t>(Condition::watchdog) && byte_of(packed, 5) <= 1 &&
               byte_of(packed, 6) <= static_cast<std::uint8_t>(ForceState::stopped) && output.mode >= -1 && output.mode < kMaxModes;
-  for (int i = 0; i < links; ++i)
+  for (int i = 0; i < shape.links; ++i)
     good = unpack_link(words.data() + kTickWords + kLinkWords * i, output.links[static_cast<std::size_t>(i)]) && good;
+  const std::uint64_t* const widgets = words.data() + kTickWords + kLinkWords * shape.links;
+  for (int i = 0; i < shape.widgets; ++i)
+    good = unpack_widget(widgets + kWidgetWords * i, output.widgets[static_cast<std::size_t>(i)]) && good;
   return good;
 }
 
@@ -193,6 +223,8 @@ constexpr std::string_view kLinkNames[kLinkWords] = {"x",
                                                      "leaving",
                                                      ""};
 
+constexpr std::string_view kWidgetNames[kWidgetWords] = {"x", "y", "z", "x2", "y2", "z2", "qw", "qx", "qy", "qz", "value", ""};
+
 std::string said(const std::string& what, const std::string& recorded, const std::string& replayed) {
   return what + " recorded " + recorded + ", replayed " + replayed;
 }
@@ -214,9 +246,21 @@ std::string packed_link_difference(const std::string& link, std::uint64_t a, std
   return said(link + "_evaluations", evaluations(a), evaluations(b));
 }
 
+std::string packed_widget_difference(const std::string& widget, std::uint64_t a, std::uint64_t b) {
+  const auto mode = [](std::uint64_t w) -> std::string { return exchange::mode_word(static_cast<exchange::WidgetMode>(byte_of(w, 4))); };
+  const auto revision = [](std::uint64_t w) { return std::to_string(static_cast<std::uint32_t>(w)); };
+  if (byte_of(a, 4) != byte_of(b, 4)) return said(widget + "_mode", mode(a), mode(b));
+  if (static_cast<std::uint32_t>(a) != static_cast<std::uint32_t>(b)) return said(widget + "_revision", revision(a), revision(b));
+  if (byte_of(a, 5) != byte_of(b, 5))
+    return said(widget + "_handle", std::to_string(static_cast<std::int8_t>(byte_of(a, 5))),
+                std::to_string(static_cast<std::int8_t>(byte_of(b, 5))));
+  return said(widget + "_held", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
+}
+
 }  // namespace
 
-std::string first_difference(const Words& recorded, const Words& replayed, const std::vector<std::string>& link_names) {
+std::string first_difference(const Words& recorded, const Words& replayed, const std::vector<std::string>& link_names,
+                             const std::vector<std::string>& widget_names) {
   const auto numbers = [&](const std::string& what, std::size_t k) {
     return said(what, to_text(number(recorded[k])), to_text(number(replayed[k])));
   };
@@ -230,6 +274,13 @@ std::string first_difference(const Words& recorded, const Words& replayed, const
       if (recorded[k] == replayed[k]) continue;
       if (w == kPackedLinkWord) return packed_link_difference(link_names[i], recorded[k], replayed[k]);
       return numbers(link_names[i] + "_" + std::string(kLinkNames[w]), k);
+    }
+  for (std::size_t i = 0; i < widget_names.size(); ++i)
+    for (std::size_t w = 0; w < kWidgetWords; ++w) {
+      const std::size_t k = kTickWords + kLinkWords * link_names.size() + kWidgetWords * i + w;
+      if (recorded[k] == replayed[k]) continue;
+      if (w == kPackedWidgetWord) return packed_widget_difference(widget_names[i], recorded[k], replayed[k]);
+      return numbers(widget_names[i] + "_" + std::string(kWidgetNames[w]), k);
     }
   return {};
 }

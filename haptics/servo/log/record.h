@@ -9,7 +9,10 @@
 ///   0-2    proxy          3-5  force share     6 residual   7 weight   8 stiffness   9 gap
 ///   10-13  orientation w x y z                 14-16 torque share      17 booked_j   18 leaving
 ///   19     bytes: i32 evaluations, u8 status, u8 active, u8 left, u8 0
-/// Names and units: engine/exchange/haptic_state.h, haptics/chain/tick.h. Timings are single precision; all else is exact.
+/// and for every widget, behind the links, 12 words:
+///   0-2    points[0]      3-5  points[1]       6-9   orientation w x y z                  10  value
+///   11     bytes: u32 revision, u8 mode, i8 handle, u8 held, u8 0
+/// Names and units: engine/exchange/haptic_state.h, widget_report.h, haptics/chain/tick.h. Timings are single precision; all else is exact.
 /// `pack` runs on the haptic thread: no allocation, lock or throw.
 #pragma once
 #include <array>
@@ -22,10 +25,17 @@
 
 namespace catena::haptics::log {
 
-inline constexpr int kMostWords = kTickWords + kLinkWords * kMaxLinks;
+inline constexpr int kMostWords = kTickWords + kLinkWords * kMaxLinks + kWidgetWords * exchange::kMaxWidgets;
 using Words = std::array<std::uint64_t, kMostWords>;
 
-inline constexpr int words_of(int links) { return kTickWords + kLinkWords * links; }
+/// What a record holds beside the tick's own.
+struct Shape {
+  int links = 0, widgets = 0;
+  bool operator==(const Shape&) const = default;
+  bool legal() const { return links >= 0 && links <= kMaxLinks && widgets >= 0 && widgets <= exchange::kMaxWidgets; }
+};
+inline constexpr int words_of(const Shape& shape) { return kTickWords + kLinkWords * shape.links + kWidgetWords * shape.widgets; }
+inline Shape shape_of(const exchange::HapticState& state) { return {state.link_count, state.widget_count}; }
 
 struct LogTick {
   ProbeSample input;
@@ -37,11 +47,12 @@ int pack(const ProbeSample& input, const exchange::HapticState& output, std::uin
 
 /// False where a word is none that a tick can write (a status without a name, say); `tick` is then half filled.
 /// The caller sets output.tick and program_epoch: they stand in the block.
-bool unpack(const Words& words, int links, LogTick& tick) noexcept;
+bool unpack(const Words& words, const Shape& shape, LogTick& tick) noexcept;
 
-/// Where two records of the same number of links differ in what the tick did (timings do not count): "force_x recorded 1, replayed 2".
+/// Where two records of the same shape differ in what the tick did (timings do not count): "force_x recorded 1, replayed 2".
 /// Empty where they are equal to the bit.
-std::string first_difference(const Words& recorded, const Words& replayed, const std::vector<std::string>& link_names);
+std::string first_difference(const Words& recorded, const Words& replayed, const std::vector<std::string>& link_names,
+                             const std::vector<std::string>& widget_names = {});
 
 /// A record as the block stores it: mask and changed words against `before`, which becomes `words`.
 void squeeze(std::span<const std::uint64_t> words, Words& before, std::string& out);

@@ -37,13 +37,13 @@ void TickBlocks::begin(const Tick& tick) {
 }
 
 void TickBlocks::add(const Tick& tick, std::span<const std::uint64_t> words) {
-  CATENA_ASSERT(tick.number > last_ && tick.links >= 0 && tick.links <= kMaxLinks);  // one log, one run of the servo
+  CATENA_ASSERT(tick.number > last_ && tick.shape.legal());  // one log, one run of the servo
   if (tick.number != last_ + 1) add_gap(tick.number);
-  if (count_ > 0 && tick.links != first_.links) flush();
+  if (count_ > 0 && !(tick.shape == first_.shape)) flush();
   begin(tick);
   last_ = tick.number;
   squeeze(words, before_, records_);
-  unpack(before_, tick.links, unpacked_);  // before_ is this record now
+  unpack(before_, tick.shape, unpacked_);  // before_ is this record now
   hash_.add(unpacked_.output);
   ++count_;
   if (records_.size() >= kFullBlock) flush();
@@ -55,7 +55,8 @@ void TickBlocks::flush() {
   payload.put(first_.epoch);
   payload.put(first_.number);
   payload.put(count_);
-  payload.put(static_cast<std::uint32_t>(first_.links));
+  payload.put(static_cast<std::uint32_t>(first_.shape.links));
+  payload.put(static_cast<std::uint32_t>(first_.shape.widgets));
   payload.put_bytes(records_.data(), records_.size());
   if (file_.write(BlockType::ticks, payload.bytes())) {
     ticks_ += count_;

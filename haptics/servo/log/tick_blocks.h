@@ -17,7 +17,7 @@ class TickBlocks {
 
   struct Tick {
     std::uint64_t number = 0, epoch = 0;
-    int links = 0;
+    Shape shape;
   };
   /// `words`: pack() of this tick. Numbers rise; a jump is a gap.
   void add(const Tick& tick, std::span<const std::uint64_t> words);

@@ -78,8 +78,8 @@ void LogWriter::Parts::drain() {
   Message taken;
   while (ring.available() >= kMessageHead) {
     ring.take({taken.data(), kMessageHead});
-    const TickBlocks::Tick tick{taken[0], taken[1], static_cast<int>(taken[2])};
-    const std::span<std::uint64_t> words(taken.data() + kMessageHead, static_cast<std::size_t>(words_of(tick.links)));
+    const TickBlocks::Tick tick{taken[0], taken[1], {static_cast<int>(taken[2] & 0xff), static_cast<int>(taken[2] >> 8)}};
+    const std::span<std::uint64_t> words(taken.data() + kMessageHead, static_cast<std::size_t>(words_of(tick.shape)));
     ring.take(words);
     if (!blocks.file().failed()) blocks.add(tick, words);
   }
@@ -148,7 +148,7 @@ void LogWriter::put(const ProbeSample& input, const exchange::HapticState& outpu
   Parts& p = *parts_;
   p.message[0] = output.tick;
   p.message[1] = output.program_epoch;
-  p.message[2] = static_cast<std::uint64_t>(output.link_count);
+  p.message[2] = static_cast<std::uint64_t>(output.link_count) | static_cast<std::uint64_t>(output.widget_count) << 8;
   const int count = pack(input, output, p.message.data() + kMessageHead);
   if (!p.ring.put({p.message.data(), kMessageHead + static_cast<std::size_t>(count)}))
     p.ring_lost.store(p.ring_lost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);

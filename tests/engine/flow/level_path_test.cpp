@@ -20,19 +20,20 @@ constexpr double kPi = std::numbers::pi;
 field::ScalarFieldPtr formula(const char* name) { return field::make_analytic(name, {})->scalar; }
 field::ScalarFieldPtr sampled(const char* name, int resolution) { return field::sample_on_grid(*formula(name), resolution, -2, 2); }
 
-/// Shortest ways on a torus, independently of any surface: Dijkstra over its two angles, with steps in many directions.
+/// Shortest ways on a torus, independently of any surface: Dijkstra over its two angles, with steps in so many directions that
+/// the way is at most 0.1 % too long (a tube of 0.4).
 class Torus {
  public:
   explicit Torus(double tube) : tube_(tube) {}
-  static constexpr int kNodes = 240, kReach = 5;
-  static double angle(int i) { return 2 * kPi * i / kNodes; }
+  static constexpr int kAround = 240, kAcross = 96, kReach = 10;
+  static constexpr double kStepAround = 2 * kPi / kAround, kStepAcross = 2 * kPi / kAcross;
   Vec3 place(int around, int across) const {
-    const double r = 1 + tube_ * std::cos(angle(across));
-    return {r * std::cos(angle(around)), r * std::sin(angle(around)), tube_ * std::sin(angle(across))};
+    const double r = 1 + tube_ * std::cos(across * kStepAcross);
+    return {r * std::cos(around * kStepAround), r * std::sin(around * kStepAround), tube_ * std::sin(across * kStepAcross)};
   }
   double distance(std::array<int, 2> from, std::array<int, 2> to) const {
-    std::vector<double> best(kNodes * kNodes, std::numeric_limits<double>::infinity());
-    const auto index = [](int u, int v) { return static_cast<std::size_t>(u * kNodes + v); };
+    std::vector<double> best(kAround * kAcross, std::numeric_limits<double>::infinity());
+    const auto index = [](int u, int v) { return static_cast<std::size_t>(u * kAcross + v); };
     using Entry = std::pair<double, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     best[index(from[0], from[1])] = 0;
@@ -42,16 +43,16 @@ class Torus {
       queue.pop();
       if (length > best[at]) continue;
       if (at == index(to[0], to[1])) return length;
-      const int u = static_cast<int>(at) / kNodes, v = static_cast<int>(at) % kNodes;
+      const int u = static_cast<int>(at) / kAcross, v = static_cast<int>(at) % kAcross;
       for (int du = -kReach; du <= kReach; ++du)
         for (int dv = -kReach; dv <= kReach; ++dv) {
           if (std::gcd(du, dv) != 1) continue;
-          const double step = 2 * kPi / kNodes, r = 1 + tube_ * std::cos(angle(v) + 0.5 * dv * step);
-          const double longer = length + step * std::sqrt(r * r * du * du + tube_ * tube_ * dv * dv);
-          double& known = best[index((u + du + kNodes) % kNodes, (v + dv + kNodes) % kNodes)];
+          const double r = 1 + tube_ * std::cos((v + 0.5 * dv) * kStepAcross);
+          const double longer = length + std::hypot(r * du * kStepAround, tube_ * dv * kStepAcross);
+          double& known = best[index((u + du + kAround) % kAround, (v + dv + kAcross) % kAcross)];
           if (longer >= known) continue;
           known = longer;
-          queue.push({longer, index((u + du + kNodes) % kNodes, (v + dv + kNodes) % kNodes)});
+          queue.push({longer, index((u + du + kAround) % kAround, (v + dv + kAcross) % kAcross)});
         }
     }
     return 0;
@@ -65,12 +66,12 @@ TEST(LevelPath, OnATorusAsTheReferenceHasIt) {
   const Torus torus(0.4);
   const field::ScalarFieldPtr by_formula = formula("torus"), by_grid = sampled("torus", 129);
   // across the tube, round the hole inside and outside, mixed
-  const std::array<std::array<std::array<int, 2>, 2>, 6> pairs{{{{{0, 0}, {0, 100}}},
-                                                                {{{0, 120}, {90, 120}}},
+  const std::array<std::array<std::array<int, 2>, 2>, 6> pairs{{{{{0, 0}, {0, 40}}},
+                                                                {{{0, 48}, {90, 48}}},
                                                                 {{{0, 0}, {50, 0}}},
-                                                                {{{0, 0}, {110, 20}}},
-                                                                {{{10, 40}, {80, 150}}},
-                                                                {{{0, 0}, {60, 120}}}}};
+                                                                {{{0, 0}, {110, 8}}},
+                                                                {{{10, 16}, {80, 60}}},
+                                                                {{{0, 0}, {60, 48}}}}};
   for (const auto& [from, to] : pairs) {
     const double expected = torus.distance(from, to);
     for (const field::ScalarFieldPtr& field : {by_formula, by_grid}) {

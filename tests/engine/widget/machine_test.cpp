@@ -15,8 +15,13 @@ struct Row {
 
 std::string word(const Facts& f) {
   std::string out;
-  for (const auto& [is, name] : {std::pair{f.handle, "handle "}, {f.sphere, "sphere "}, {f.plane, "plane "}, {f.pressed, "pressed "},
-                                 {f.down, "down "}, {f.touch, "touch "}, {f.gripped, "gripped "}})
+  for (const auto& [is, name] : {std::pair{f.handle, "handle "},
+                                 {f.sphere, "sphere "},
+                                 {f.plane, "plane "},
+                                 {f.pressed, "pressed "},
+                                 {f.down, "down "},
+                                 {f.touch, "touch "},
+                                 {f.gripped, "gripped "}})
     if (is) out += name;
   return out;
 }

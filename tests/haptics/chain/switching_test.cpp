@@ -92,7 +92,8 @@ TEST(Switching, AModeByForceAndAModeByToggle) {
 
 TEST(Switching, EightLinksAndEightModes) {
   Program program;
-  for (int i = 0; i < kMaxLinks; ++i) program.links.push_back(hold_plane(std::string(1, static_cast<char>('a' + i)), {0, 1, i + 1.0}, 0));
+  for (int i = 0; i < exchange::kMaxSceneLinks; ++i)
+    program.links.push_back(hold_plane(std::string(1, static_cast<char>('a' + i)), {0, 1, i + 1.0}, 0));
   for (int m = 0; m < kMaxModes; ++m) program.modes.push_back({"m" + std::to_string(m), {7 - m, m}, {.button = m + 1}});
   program.modes[4].links = {7, 6, 5, 4, 3, 2, 1, 0};
   SwitchState state;

@@ -7,8 +7,8 @@ namespace catena::haptics {
 namespace {
 
 using test::off;
-using test::WidgetHand;
 using test::widget_spec;
+using test::WidgetHand;
 using widget::Kind;
 using widget::Spec;
 using widget::Turning;
@@ -46,6 +46,7 @@ TEST(WidgetPlane, ModesAndTheirChainsInOrder) {
   EXPECT_EQ(hand.order(), "widget_y widget_z");
   hand.step({1.2, 0.3, -0.3}, 1);
   EXPECT_EQ(hand.order(), "");
+  hand.step({1.2, 0, 0.05}, 1);
   hand.step({1.2, 0, 0.05}, 0);
   EXPECT_EQ(hand.mode(), "explore");
   hand.step({0.12 + 0.48 * 0.8, 0, 0.48 * 0.6}, 0);

@@ -1,0 +1,204 @@
+#include "render/extract/extract_widgets.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/extract/plane_outline.h"
+#include "render/extract/scene_parts.h"
+#include "render/extract/widget_shapes.h"
+
+namespace catena::render {
+namespace {
+
+using widget::Kind;
+using widget::Mode;
+
+// lengths by L, the length that a widget's sizes follow
+constexpr double kSphere = 0.12, kBall = 0.012, kLine = 0.0035;
+// by the sphere's radius
+constexpr double kNormalReach = 1.45, kFreeReach = 2.1, kHead = 0.34, kHeldSquare = 0.36;
+// by the handle's radius
+constexpr double kGradientReach = 6, kHandleReach = 7, kHandleHead = 2.4, kHandleSquare = 2.8;
+
+double length_of(const scene::Widget& widget) { return widget.spec.length > 0 ? widget.spec.length : 4; }
+
+double radius_of(const scene::Widget& widget) {
+  if (widget.spec.radius > 0) return widget.spec.radius;
+  return (widget.spec.kind == Kind::cutting_plane ? kSphere : kBall) * length_of(widget);
+}
+
+bool is_held(const scene::Widget& widget, int axis) { return (widget.state.held >> axis & 1) != 0; }
+
+Vec3 axis_of(const scene::Widget& widget, int axis) {
+  Vec3 e(0.0);
+  e[axis] = 1;
+  return rotate(widget.state.pose.orientation, e);
+}
+
+bool is_drawable(const scene::Widget& widget) {
+  const widget::Pose& pose = widget.state.pose;
+  return is_finite(pose.points[0]) && is_finite(pose.points[1]) && is_finite(pose.orientation) && std::isfinite(radius_of(widget));
+}
+
+/// A double arrow along every axis that is free, a square across every one that is held.
+void draw_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at, double reach, double square, double head) {
+  for (int i = 0; i < 3; ++i) {
+    if (is_held(widget, i))
+      shapes.plate(at, square * axis_of(widget, (i + 1) % 3), square * axis_of(widget, (i + 2) % 3), axis_color(i));
+    else
+      shapes.double_arrow(at, reach * axis_of(widget, i), 1.8, head, brighter(axis_color(i), 0.2f));
+  }
+}
+
+void draw_border(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn) {
+  const Vec3 &centre = widget.state.pose.points[0], normal = axis_of(widget, 2);
+  std::vector<Vec3> border = plane_outline(centre, normal, drawn);
+  if (border.empty()) {
+    const Vec3 u = 0.5 * length_of(widget) * axis_of(widget, 0), v = 0.5 * length_of(widget) * axis_of(widget, 1);
+    border = {centre + u + v, centre - u + v, centre - u - v, centre + u - v};
+  }
+  const bool explored = widget.state.mode == Mode::explore, moved = widget.state.mode == Mode::translate;
+  const Color color = color_of(widget.color);
+  shapes.loop(border, explored ? 2.2 : moved ? 1.6 : 1, explored ? brighter(color, 0.6f) : color);
+}
+
+void draw_cutting_plane(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn) {
+  const Vec3& centre = widget.state.pose.points[0];
+  const double radius = radius_of(widget);
+  const Mode mode = widget.state.mode;
+  const bool turns = mode == Mode::turn, rotates = turns || mode == Mode::rotate, moves = mode == Mode::translate;
+  draw_border(shapes, widget, drawn);
+  for (int i = 0; i < 3; ++i) {
+    const bool active = rotates && is_held(widget, i);
+    const Color muted = mixed(axis_color(i), {0.5f, 0.5f, 0.5f}, rotates ? 0 : moves ? 0.7f : 0.2f);
+    const Color color = active ? brighter(axis_color(i), turns ? 0.9f : 0.6f) : muted;
+    const double weight = active ? 3.2 : turns ? 2.2 : rotates ? 1.8 : 1;
+    shapes.circle(centre, axis_of(widget, i), radius, weight, color);
+  }
+  if (moves)
+    draw_axes(shapes, widget, centre, kFreeReach * radius, kHeldSquare * radius, kHead * radius);
+  else
+    shapes.arrow(centre, centre + kNormalReach * radius * axis_of(widget, 2), 1.5, kHead * radius, color_of(widget.color));
+}
+
+/// A ball of a widget, by what the hand does with it.
+void draw_handle(WidgetShapes& shapes, const scene::Widget& widget, int handle, const Vec3& at, double radius) {
+  const bool mine = widget.state.handle == handle || widget.spec.kind == Kind::seed || widget.spec.kind == Kind::isolevel;
+  const bool hovered = mine && widget.state.mode == Mode::hover, dragged = mine && widget.state.mode == Mode::drag;
+  const Color color = brighter(color_of(widget.color), dragged ? 0.7f : hovered ? 0.4f : 0);
+  shapes.ball(at, (dragged ? 1.5 : hovered ? 1.4 : 1) * shapes.ball_radius(at, radius), color);
+}
+
+bool is_dragged(const scene::Widget& widget) { return widget.state.mode == Mode::drag; }
+
+void draw_handle_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at) {
+  const double r = shapes.ball_radius(at, radius_of(widget));
+  draw_axes(shapes, widget, at, kHandleReach * r, kHandleSquare * r, kHandleHead * r);
+}
+
+void draw_seed(WidgetShapes& shapes, const scene::Widget& widget) {
+  const Vec3& at = widget.state.pose.points[0];
+  const double radius = shapes.ball_radius(at, radius_of(widget));
+  draw_handle(shapes, widget, 0, at, radius);
+  if (is_dragged(widget)) return draw_handle_axes(shapes, widget, at);
+  const bool hovered = widget.state.mode == Mode::hover;
+  shapes.circle(at, shapes.towards_eye(at), (hovered ? 2.6 : 2.1) * radius, 0.8, color_of(widget.color));
+}
+
+/// A rake's line of seeds, a ruler's length.
+void draw_line(WidgetShapes& shapes, const scene::Widget& widget) {
+  const auto& [a, b] = widget.state.pose.points;
+  const Vec3 middle = 0.5 * a + 0.5 * b;
+  const double radius = radius_of(widget);
+  shapes.tube({a, b}, 1.2, color_of(widget.color));
+  draw_handle(shapes, widget, 0, a, radius);
+  draw_handle(shapes, widget, 1, b, radius);
+  draw_handle(shapes, widget, 2, middle, 0.8 * radius);
+  if (is_dragged(widget)) draw_handle_axes(shapes, widget, widget.state.handle == 0 ? a : widget.state.handle == 1 ? b : middle);
+}
+
+void draw_isolevel(WidgetShapes& shapes, const scene::Widget& widget) {
+  const Vec3& at = widget.state.pose.points[0];
+  const double radius = shapes.ball_radius(at, radius_of(widget));
+  draw_handle(shapes, widget, 0, at, radius);
+  if (!widget.spec.field) return;
+  field::Cursor cursor;
+  const Vec3 along = direction(widget.spec.field->sample(at, cursor).gradient);
+  if (max_abs(along) == 0) return;
+  const Color color = color_of(widget.color);
+  shapes.arrow(at, at + kGradientReach * radius * along, 1, kHandleHead * radius, color);
+  if (is_dragged(widget)) shapes.arrow(at, at - kGradientReach * radius * along, 1, kHandleHead * radius, color);
+}
+
+void draw_box(WidgetShapes& shapes, const scene::Widget& widget) {
+  Bounds box;
+  for (const Vec3& p : widget.state.pose.points) box.add(p);
+  const Color color = color_of(widget.color);
+  const double radius = radius_of(widget);
+  for (int i = 0; i < 8; ++i)
+    for (int axis = 1; axis < 8; axis *= 2)
+      if ((i & axis) == 0) shapes.tube({box.corner(i), box.corner(i | axis)}, 1, color);
+  for (int face = 0; face < 6; ++face) {
+    Vec3 at = box.centre(), out(0.0);
+    at[face / 2] = face % 2 ? box.hi[face / 2] : box.lo[face / 2];
+    out[face / 2] = kHandleReach * shapes.ball_radius(at, radius);
+    draw_handle(shapes, widget, face, at, radius);
+    if (is_dragged(widget) && widget.state.handle == face)
+      shapes.double_arrow(at, out, 1.5, kHandleHead / kHandleReach * norm(out), brighter(axis_color(face / 2), 0.15f));
+  }
+  draw_handle(shapes, widget, 6, box.centre(), 1.2 * radius);
+  if (is_dragged(widget) && widget.state.handle == 6) draw_handle_axes(shapes, widget, box.centre());
+}
+
+void draw(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn) {
+  switch (widget.spec.kind) {
+    case Kind::cutting_plane:
+      return draw_cutting_plane(shapes, widget, drawn);
+    case Kind::seed:
+      return draw_seed(shapes, widget);
+    case Kind::isolevel:
+      return draw_isolevel(shapes, widget);
+    case Kind::box:
+      return draw_box(shapes, widget);
+    case Kind::rake:
+    case Kind::ruler:
+      return draw_line(shapes, widget);
+  }
+}
+
+/// The widgets of a packet keep their ids when they are made anew.
+std::uint32_t id_of(FramePacket& packet, const std::string& name) {
+  for (const ObjectName& object : packet.objects)
+    if (object.kind == "widget" && object.name == name) return object.id;
+  return packet.add_object("widget", name);
+}
+
+}  // namespace
+
+void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  packet.widgets = {};
+  WidgetShapes shapes(packet);
+  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+    if (!is_drawable(widget)) return;
+    shapes.begin(id_of(packet, name_of(scene, e)), kLine * length_of(widget));
+    draw(shapes, widget, drawn);
+  });
+}
+
+void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  set_widgets(scene, drawn, packet);
+  scene.world.each<scene::Widget>([&](scene::Entity, const scene::Widget& widget) {
+    if (widget.spec.kind != Kind::ruler || !is_drawable(widget)) return;
+    const auto& [a, b] = widget.state.pose.points;
+    LabelItem label;
+    label.at = 0.5 * a + 0.5 * b;
+    label.text = fmt::format("{:.4g} units", norm(b - a));
+    label.anchor = Anchor::bottom_left;
+    label.offset_pt = {6.0, -6.0};
+    packet.overlay.labels.push_back(std::move(label));
+  });
+}
+
+}  // namespace catena::render

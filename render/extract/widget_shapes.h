@@ -1,0 +1,53 @@
+/// Private to this room: the parts that widgets are drawn with, none too thin for the view. Frame thread.
+#pragma once
+#include <span>
+
+#include "render/frame/camera.h"
+#include "render/frame/frame_packet.h"
+
+namespace catena::render {
+
+Color mixed(const Color& a, const Color& b, float share_of_b);
+/// Brighter and a little towards white; 0: as it is.
+Color brighter(const Color& color, float share);
+/// Red, green, blue: the colour of axis 0, 1, 2.
+Color axis_color(int axis);
+
+class WidgetShapes {
+ public:
+  /// Appends to the packet's widgets, for the packet's view.
+  explicit WidgetShapes(FramePacket& packet);
+  /// What is drawn from now on belongs to it. Its lines have this radius, or the least that is seen from the eye, times their weight.
+  void begin(std::uint32_t id, double line) {
+    id_ = id;
+    line_ = line;
+  }
+
+  void tube(std::vector<Vec3> points, double weight, const Color& color);
+  /// Through the points and back to the first.
+  void loop(std::span<const Vec3> points, double weight, const Color& color);
+  void circle(const Vec3& centre, const Vec3& normal, double radius, double weight, const Color& color);
+  /// A filled parallelogram, middle +- u +- v.
+  void plate(const Vec3& middle, const Vec3& u, const Vec3& v, const Color& color);
+  void ball(const Vec3& centre, double radius, const Color& color);
+  /// A shaft with a cone at its tip, `head` long.
+  void arrow(const Vec3& from, const Vec3& tip, double weight, double head, const Color& color);
+  void double_arrow(const Vec3& middle, const Vec3& half, double weight, double head, const Color& color);
+
+  /// Or the least that a ball there may have.
+  double ball_radius(const Vec3& centre, double radius) const;
+  /// Unit.
+  Vec3 towards_eye(const Vec3& p) const;
+
+ private:
+  void add(std::vector<Vec3> points, double radius, const Color& color);
+  /// World units of a pixel at a place; 0 behind the eye.
+  double pixel_at(const Vec3& p) const;
+
+  WidgetItems* items_;
+  Camera camera_;
+  std::uint32_t id_ = 0;
+  double line_ = 0;
+};
+
+}  // namespace catena::render

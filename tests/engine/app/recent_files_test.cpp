@@ -1,0 +1,125 @@
+#include "engine/app/viewer/recent_files.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(RecentFiles, TheNewestIsFirstAndEachIsThereOnce) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.json", "b.vdb", "c\"\xc3\xa9.json"}) test::write_file(folder / name, "");
+  RecentFiles recent(folder / "state/catena/recent.json");
+  EXPECT_TRUE(recent.shown().empty());
+  recent.add(folder / "a.json");
+  recent.add(folder / "b.vdb");
+  recent.add(folder / "c\"\xc3\xa9.json");
+  recent.add(folder / "./a.json");
+  const Names expected{folder / "a.json", folder / "c\"\xc3\xa9.json", folder / "b.vdb"};
+  EXPECT_EQ(recent.shown(), expected);
+  EXPECT_EQ(RecentFiles(recent.path()).shown(), expected);
+}
+
+TEST(RecentFiles, RelativeNamesAreKeptWhole) {
+  const test::TemporaryFolder folder;
+  RecentFiles recent(folder / "recent.json");
+  recent.add("no-such-file.json");
+  EXPECT_NE(test::read_file(folder / "recent.json").find((std::filesystem::current_path() / "no-such-file.json").string()),
+            std::string::npos);
+}
+
+TEST(RecentFiles, MissingFilesAreNotShownButComeBack) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "a.json", "");
+  RecentFiles recent(folder / "recent.json");
+  recent.add(folder / "a.json");
+  recent.add(folder / "gone.json");
+  EXPECT_EQ(recent.shown(), Names{folder / "a.json"});
+  test::write_file(folder / "gone.json", "");
+  EXPECT_EQ(recent.shown().size(), 2u);
+}
+
+TEST(RecentFiles, TenAtMost) {
+  const test::TemporaryFolder folder;
+  RecentFiles recent(folder / "recent.json");
+  for (int i = 0; i < 15; ++i) {
+    const std::string name = folder / (std::to_string(i) + ".json");
+    test::write_file(name, "");
+    recent.add(name);
+  }
+  ASSERT_EQ(recent.shown().size(), kMostRecentFiles);
+  EXPECT_EQ(recent.shown().front(), folder / "14.json");
+  EXPECT_EQ(recent.shown().back(), folder / "5.json");
+}
+
+TEST(RecentFiles, TwoProgramsAddToOneList) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.json", "b.json"}) test::write_file(folder / name, "");
+  RecentFiles one(folder / "recent.json"), other(folder / "recent.json");
+  one.add(folder / "a.json");
+  other.add(folder / "b.json");
+  EXPECT_EQ(RecentFiles(folder / "recent.json").shown(), (Names{folder / "b.json", folder / "a.json"}));
+}
+
+TEST(RecentFiles, GarbageIsAnEmptyList) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "a.json", "");
+  for (const char* garbage : {"", "{", "[]", "{\"files\": 3}", "{\"files\": [1, null, {}]}", "\xff\xfe", "{\"files\": {\"a\": 1}}"}) {
+    test::write_file(folder / "recent.json", garbage);
+    EXPECT_TRUE(RecentFiles(folder / "recent.json").shown().empty()) << garbage;
+  }
+  RecentFiles recent(folder / "recent.json");
+  recent.add(folder / "a.json");
+  EXPECT_EQ(RecentFiles(folder / "recent.json").shown(), Names{folder / "a.json"});
+  EXPECT_TRUE(RecentFiles(folder.path()).shown().empty());
+}
+
+TEST(RecentFiles, APlaceThatCannotBeWrittenIsNoError) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "a.json", "");
+  for (const std::string& path :
+       {std::string(), std::string("/proc/none/recent.json"), folder / "a.json/catena/recent.json", folder.path()}) {
+    RecentFiles recent(path);
+    recent.add(folder / "a.json");
+    EXPECT_EQ(recent.shown(), Names{folder / "a.json"}) << path;
+  }
+  EXPECT_EQ(test::read_file(folder / "a.json"), "");
+}
+
+/// Environment variables for as long as it lives.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    value == nullptr ? unsetenv(name) : setenv(name, value, 1);
+  }
+  ~Environment() { before_.empty() ? unsetenv(name_) : setenv(name_, before_.c_str(), 1); }
+
+ private:
+  const char* name_;
+  std::string before_;
+};
+
+TEST(RecentFiles, LieInTheStateFolderOfTheUser) {
+  {
+    const Environment state("XDG_STATE_HOME", "/state"), home("HOME", "/home/me");
+    EXPECT_EQ(RecentFiles().path(), "/state/catena/recent.json");
+  }
+  for (const char* none : {"", "relative", static_cast<const char*>(nullptr)}) {
+    const Environment state("XDG_STATE_HOME", none), home("HOME", "/home/me");
+    EXPECT_EQ(RecentFiles().path(), "/home/me/.local/state/catena/recent.json");
+  }
+  const Environment state("XDG_STATE_HOME", nullptr), home("HOME", nullptr);
+  EXPECT_EQ(RecentFiles().path(), "");
+}
+
+}  // namespace
+}  // namespace catena::app

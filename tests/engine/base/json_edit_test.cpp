@@ -1,0 +1,379 @@
+#include "engine/base/json_edit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <random>
+
+namespace catena::json {
+namespace {
+
+std::string set(std::string_view text, std::string_view pointer, std::string_view value) {
+  const auto edited = set_value(text, "f.json", pointer, value);
+  return edited ? *edited : edited.error().message;
+}
+std::string insert(std::string_view text, std::string_view pointer, std::string_view value) {
+  const auto edited = insert_item(text, "f.json", pointer, value);
+  return edited ? *edited : edited.error().message;
+}
+std::string removed(std::string_view text, std::string_view pointer) {
+  const auto edited = remove_value(text, "f.json", pointer);
+  return edited ? *edited : edited.error().message;
+}
+
+// ---- offsets ----
+
+TEST(JsonOffsets, AreTheValuesBytes) {
+  const std::string text =
+      "\xEF\xBB\xBF// caf\xc3\xa9 /* \r\n{ /* \"no\" */ \"k\xc3\xa9y\": \"\xe2\x82\xac\\\"x\" , // {\r\n\"a\":[1e-3 /* ] */ ,-2, {} , "
+      "true],\"n\"  :null}";
+  const auto root = parse(text, "f");
+  ASSERT_TRUE(root) << root.error().message;
+  const auto bytes = [&](const Node& node) { return text.substr(node.begin, node.end - node.begin); };
+  EXPECT_EQ(root->end, text.size());
+  EXPECT_EQ(text[root->begin], '{');
+  EXPECT_EQ(bytes(root->members[0].second), "\"\xe2\x82\xac\\\"x\"");
+  const Node& array = root->members[1].second;
+  EXPECT_EQ(bytes(array), "[1e-3 /* ] */ ,-2, {} , true]");
+  EXPECT_EQ(bytes(array.items[0]), "1e-3");
+  EXPECT_EQ(bytes(array.items[1]), "-2");
+  EXPECT_EQ(bytes(array.items[2]), "{}");
+  EXPECT_EQ(bytes(array.items[3]), "true");
+  EXPECT_EQ(bytes(root->members[2].second), "null");
+}
+
+// ---- replacing ----
+
+TEST(JsonSet, ReplacesTheValueOnly) {
+  EXPECT_EQ(set("{\"a\": 1, // one\n \"b\" : [ 1,2 ,3 ]}", "/b/1", "[4]"), "{\"a\": 1, // one\n \"b\" : [ 1,[4] ,3 ]}");
+  EXPECT_EQ(set("\xEF\xBB\xBF{\"a\":\r\n  /* was */ \"x\" /* is */ }", "/a", "null"), "\xEF\xBB\xBF{\"a\":\r\n  /* was */ null /* is */ }");
+  EXPECT_EQ(set("// c\n[1] // d", "", "{}"), "// c\n{} // d");
+  EXPECT_EQ(set("{\"a/b\": {\"m~n\": 1}, \"\": 2}", "/a~1b/m~0n", "3"), "{\"a/b\": {\"m~n\": 3}, \"\": 2}");
+  EXPECT_EQ(set("{\"\": 2}", "/", "3"), "{\"\": 3}");
+  EXPECT_EQ(set("{\"0\": 2}", "/0", "3"), "{\"0\": 3}");
+  EXPECT_EQ(set("{\"a\\u0062\\\"\": 2}", "/ab\"", "3"), "{\"a\\u0062\\\"\": 3}");
+}
+
+TEST(JsonSet, LeavesTheCommentsAroundANewValueAway) {
+  EXPECT_EQ(set("[1, 2]", "/0", " /* a */ 7 // b"), "[7, 2]");
+  EXPECT_EQ(set("[1, 2]", "/0", "\xEF\xBB\xBF[8 /* kept */]\n"), "[[8 /* kept */], 2]");
+}
+
+// ---- adding ----
+
+TEST(JsonSet, AddsAsTheLayoutIs) {
+  EXPECT_EQ(set("{\"a\": 1}", "/b", "2"), "{\"a\": 1, \"b\": 2}");
+  EXPECT_EQ(set("{\"a\":1,\"b\":2}", "/c", "3"), "{\"a\":1,\"b\":2,\"c\":3}");
+  EXPECT_EQ(set("{ \"a\" : 1 }", "/b", "2"), "{ \"a\" : 1, \"b\" : 2 }");
+  EXPECT_EQ(set("{\n  \"a\": 1\n}\n", "/b", "2"), "{\n  \"a\": 1,\n  \"b\": 2\n}\n");
+  EXPECT_EQ(set("{\r\n\t\"a\": 1\r\n}", "/b", "2"), "{\r\n\t\"a\": 1,\r\n\t\"b\": 2\r\n}");
+  EXPECT_EQ(set("{\r  \"a\": 1\r}", "/b", "2"), "{\r  \"a\": 1,\r  \"b\": 2\r}");
+  EXPECT_EQ(set("{\"a\": 1,\n \"b\": 2}", "/c", "3"), "{\"a\": 1,\n \"b\": 2,\n \"c\": 3}");
+  EXPECT_EQ(set("{\n  \"a\": [\n    1\n  ] }", "/b", "2"), "{\n  \"a\": [\n    1\n  ],\n  \"b\": 2 }");
+  EXPECT_EQ(set("{\n \"a\" :\n  1\n}", "/b", "2"), "{\n \"a\" :\n  1,\n \"b\": 2\n}");
+  EXPECT_EQ(set("[1,\n 2, 3]", "/-", "4"), "[1,\n 2, 3, 4]");
+  EXPECT_EQ(set("[1,2]", "/2", "3"), "[1,2,3]");
+  EXPECT_EQ(set("[[1], [2]]", "/1/-", "3"), "[[1], [2, 3]]");
+}
+
+TEST(JsonSet, AddsAfterTheCommentsOfTheLastLine) {
+  EXPECT_EQ(set("{\n  \"a\": 1 // one\n  // end\n}", "/b", "2"), "{\n  \"a\": 1, // one\n  \"b\": 2\n  // end\n}");
+  EXPECT_EQ(set("{\n  \"a\": 1 /* one */ // eins\n}", "/b", "2"), "{\n  \"a\": 1, /* one */ // eins\n  \"b\": 2\n}");
+  EXPECT_EQ(set("[1 // one\n]", "/-", "2"), "[1, 2 // one\n]");
+  EXPECT_EQ(set("[\n 1 /* a\n b */\n]", "/-", "2"), "[\n 1, /* a\n b */\n 2\n]");
+}
+
+TEST(JsonSet, AddsToEmptyOnes) {
+  EXPECT_EQ(set("{}", "/a", "1"), "{\"a\": 1}");
+  EXPECT_EQ(set("{ }", "/a", "1"), "{ \"a\": 1 }");
+  EXPECT_EQ(set("[]", "/-", "1"), "[1]");
+  EXPECT_EQ(set("[]", "/0", "1"), "[1]");
+  EXPECT_EQ(set("{ /* none */ }", "/a", "1"), "{ /* none */ \"a\": 1 }");
+  EXPECT_EQ(set("{ // none\n}", "/a", "1"), "{ // none\n  \"a\": 1\n}");
+  EXPECT_EQ(set("{\r\n}", "/a", "1"), "{\r\n  \"a\": 1\r\n}");
+  EXPECT_EQ(set("{\n   \"w\": [\n   ]\n}", "/w/-", "1"), "{\n   \"w\": [\n      1\n   ]\n}");
+}
+
+TEST(JsonSet, MakesTheParentsThatLack) {
+  EXPECT_EQ(set("{\n  \"a\": 1\n}", "/camera/position", "[1, 2, 3]"), "{\n  \"a\": 1,\n  \"camera\": {\"position\": [1, 2, 3]}\n}");
+  EXPECT_EQ(set("{}", "/widgets/-", "{\"name\": \"w\"}"), "{\"widgets\": [{\"name\": \"w\"}]}");
+  EXPECT_EQ(set("{}", "/a~1b/0/c\"d", "1"), "{\"a/b\": [{\"c\\\"d\": 1}]}");
+  EXPECT_EQ(set("[[]]", "/0/-/x/-/-", "true"), "[[{\"x\": [[true]]}]]");
+}
+
+TEST(JsonInsert, PutsAnItemBeforeAnother) {
+  EXPECT_EQ(insert("[1, 2]", "/0", "0"), "[0, 1, 2]");
+  EXPECT_EQ(insert("[1, 2]", "/1", "0"), "[1, 0, 2]");
+  EXPECT_EQ(insert("[1, 2]", "/2", "3"), "[1, 2, 3]");
+  EXPECT_EQ(insert("[]", "/-", "3"), "[3]");
+  EXPECT_EQ(insert("{\"a\": [\r\n    1, // one\r\n    2\r\n]}", "/a/1", "0"), "{\"a\": [\r\n    1, // one\r\n    0,\r\n    2\r\n]}");
+  EXPECT_NE(insert("{\"a\": 1}", "/a", "0").find("f.json:1: \"/a\" is no item of an array"), std::string::npos);
+  EXPECT_NE(insert("{\"a\": 1}", "/b", "0").find("is no item of an array"), std::string::npos);
+}
+
+// ---- removing ----
+
+TEST(JsonRemove, TakesTheCommaAlong) {
+  EXPECT_EQ(removed("[1, 2, 3]", "/0"), "[2, 3]");
+  EXPECT_EQ(removed("[1, 2, 3]", "/1"), "[1, 3]");
+  EXPECT_EQ(removed("[1, 2, 3]", "/2"), "[1, 2]");
+  EXPECT_EQ(removed("[ 1 , 2 ]", "/0"), "[ 2 ]");
+  EXPECT_EQ(removed("[ 1 , 2 ]", "/1"), "[ 1  ]");
+  EXPECT_EQ(removed("{\"a\":1,\"b\":2}", "/a"), "{\"b\":2}");
+  EXPECT_EQ(removed("{\"a\":1,\"b\":2}", "/b"), "{\"a\":1}");
+  EXPECT_EQ(removed("{\"a\": {\"b\": 1}}", "/a/b"), "{\"a\": {}}");
+  EXPECT_EQ(removed("[ [ 1 ] ]", "/0/0"), "[ [] ]");
+  EXPECT_EQ(removed("{\n  \"a\": 1\n}", "/a"), "{}");
+}
+
+TEST(JsonRemove, TakesTheLineAlong) {
+  const std::string text = "{\n  \"a\": 1,\n  \"b\": [\n    2\n  ],\n  \"c\": 3\n}\n";
+  EXPECT_EQ(removed(text, "/a"), "{\n  \"b\": [\n    2\n  ],\n  \"c\": 3\n}\n");
+  EXPECT_EQ(removed(text, "/b"), "{\n  \"a\": 1,\n  \"c\": 3\n}\n");
+  EXPECT_EQ(removed(text, "/c"), "{\n  \"a\": 1,\n  \"b\": [\n    2\n  ]\n}\n");
+  EXPECT_EQ(removed("[\r\n  1,\r\n  2\r\n]", "/0"), "[\r\n  2\r\n]");
+  EXPECT_EQ(removed("[1, 2,\n 3]", "/1"), "[1,\n 3]");
+  EXPECT_EQ(removed("[\n 1, 2,\n 3]", "/0"), "[\n 2,\n 3]");
+  EXPECT_EQ(removed("{\"a\": 1,\n \"b\": 2}", "/a"), "{\"b\": 2}");
+}
+
+TEST(JsonRemove, LeavesTheCommentsAboutIt) {
+  const std::string text = "{\n  // first\n  \"a\": 1, // one\n  \"b\": 2 /* two */, // zwei\n  \"c\": 3 // three\n}";
+  EXPECT_EQ(removed(text, "/a"), "{\n  // first\n  // one\n  \"b\": 2 /* two */, // zwei\n  \"c\": 3 // three\n}");
+  EXPECT_EQ(removed(text, "/b"), "{\n  // first\n  \"a\": 1, // one\n  /* two */ // zwei\n  \"c\": 3 // three\n}");
+  EXPECT_EQ(removed(text, "/c"), "{\n  // first\n  \"a\": 1, // one\n  \"b\": 2 /* two */ // zwei\n  // three\n}");
+  EXPECT_EQ(removed("{ // none\n  \"a\": 1\n}", "/a"), "{ // none\n}");
+  EXPECT_EQ(removed("[/* x */ 1 /* y */]", "/0"), "[]");
+  EXPECT_EQ(removed("[1 // one\n, 2]", "/1"), "[1 // one\n]");
+  EXPECT_EQ(removed("[1 // one\n, 2]", "/0"), "[// one\n 2]");
+}
+
+// ---- errors ----
+
+TEST(JsonEdit, ErrorsSayThePlaceAndWhatWasExpected) {
+  const std::string text = "{\n \"a\": [1],\n \"b\": 2}";
+  const auto refused = [&](const std::string& message, const char* start, const char* part) {
+    EXPECT_TRUE(message.starts_with(start)) << message;
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_NE(message.find("expected"), std::string::npos) << message;
+  };
+  refused(set(text, "/b/c", "1"), "f.json:3: ", "holds nothing");
+  refused(set(text, "/a/2", "1"), "f.json:2: ", "\"2\" is no item");
+  refused(set(text, "/a/01", "1"), "f.json:2: ", "\"01\" is no item");
+  refused(set(text, "/a/x", "1"), "f.json:2: ", "\"x\" is no item");
+  refused(set(text, "/a/99999999999999999999", "1"), "f.json:2: ", "is no item");
+  refused(set(text, "b", "1"), "f.json:1: ", "is no place");
+  refused(set(text, "/b~2", "1"), "f.json:1: ", "is no place");
+  refused(set(text, "/b~", "1"), "f.json:1: ", "is no place");
+  for (const char* bad : {"", "1 2", "{", "nan", "1, \"c\": 2", "// 1", "1]"}) refused(set(text, "/b", bad), "f.json:1: ", "is not JSON");
+  refused(set("{", "/b", "1"), "f.json:1: ", "is not valid JSON");
+  refused(removed(text, "/c"), "f.json:1: ", "is not there");
+  refused(removed(text, "/a/-"), "f.json:2: ", "is not there");
+  refused(removed(text, ""), "f.json:1: ", "is not there");
+  refused(set("[" + std::string(62, '[') + std::string(62, ']') + "]", "/-", "[[" + std::string(62, '[') + std::string(62, ']') + "]]"),
+          "f.json:1: ", "nests too deep");
+}
+
+TEST(JsonText, ReadsBackExactly) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    const double value = std::bit_cast<double>(random());
+    if (!std::isfinite(value)) continue;
+    const auto read = parse(number_text(value), "f");
+    ASSERT_TRUE(read) << number_text(value);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(read->number), std::bit_cast<std::uint64_t>(value)) << number_text(value);
+  }
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(3), "3");
+  std::string all;
+  for (int c = 1; c < 256; ++c) all += static_cast<char>(c);
+  const auto read = parse(string_text(all), "f");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->string, all);
+}
+
+// ---- any edit of any layout does to the text what it does to the tree ----
+
+using Random = std::mt19937_64;
+std::size_t below(Random& random, std::size_t n) { return static_cast<std::size_t>(random() % n); }
+
+Node random_tree(Random& random, int depth) {
+  Node node;
+  const std::size_t kind = below(random, depth > 0 ? 6 : 4);
+  node.kind = std::array{Kind::null, Kind::boolean, Kind::number, Kind::string, Kind::array, Kind::object}[kind];
+  if (node.kind == Kind::boolean) node.boolean = below(random, 2) != 0;
+  if (node.kind == Kind::number) node.number = static_cast<double>(below(random, 2000)) / 8 - 100;
+  if (node.kind == Kind::string) node.string = std::array{"", "a", "// no", "\"]},", "\xe2\x82\xac/*"}[below(random, 5)];
+  const std::size_t children = below(random, 4);
+  for (std::size_t i = 0; node.kind == Kind::array && i < children; ++i) node.items.push_back(random_tree(random, depth - 1));
+  for (std::size_t i = 0; node.kind == Kind::object && i < children; ++i)
+    node.members.emplace_back(std::array{"a", "b/c", "~", "\"", ""}[below(random, 5)] + std::to_string(i), random_tree(random, depth - 1));
+  return node;
+}
+
+/// Blanks, line ends and comments. jsoncpp takes none before a colon, and none in an empty array.
+std::string random_space(Random& random, bool comments, const std::string& line_end) {
+  std::string out;
+  for (std::size_t i = below(random, 3); i > 0; --i) {
+    switch (below(random, comments ? 7 : 4)) {
+      case 0:
+        out += line_end + "  ";
+        break;
+      case 1:
+        out += line_end;
+        break;
+      case 4:
+        out += "// , ] \" #" + std::to_string(random() % 1000000) + line_end;
+        break;
+      case 5:
+        out += "/* } #" + std::to_string(random() % 1000000) + " */";
+        break;
+      case 6:
+        out += "/* #" + std::to_string(random() % 1000000) + line_end + " ** */ ";
+        break;
+      default:
+        out += " ";
+    }
+  }
+  return out;
+}
+
+std::string random_text(const Node& node, Random& random, const std::string& line_end) {
+  const auto space = [&](bool comments = true) { return random_space(random, comments, line_end); };
+  std::string out;
+  switch (node.kind) {
+    case Kind::null:
+      return "null";
+    case Kind::boolean:
+      return node.boolean ? "true" : "false";
+    case Kind::number:
+      return number_text(node.number);
+    case Kind::string:
+      return string_text(node.string);
+    case Kind::array:
+      if (node.items.empty()) return "[" + space(false) + "]";
+      for (const Node& item : node.items) out += (out.empty() ? "[" : ",") + space() + random_text(item, random, line_end) + space();
+      return out + "]";
+    case Kind::object:
+      if (node.members.empty()) return "{" + space() + "}";
+      for (const auto& [key, member] : node.members)
+        out += (out.empty() ? "{" : ",") + space() + string_text(key) + space(false) + ":" + space() +
+               random_text(member, random, line_end) + space();
+      return out + "}";
+  }
+  return out;
+}
+
+/// Pointers to every value but the root.
+void all_places(const Node& node, std::string pointer, std::vector<std::string>& places) {
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    places.push_back(pointer + "/" + std::to_string(i));
+    all_places(node.items[i], places.back(), places);
+  }
+  for (const auto& [key, member] : node.members) {
+    places.push_back(pointer + "/" + pointer_step(key));
+    all_places(member, places.back(), places);
+  }
+}
+
+Node* found(Node& root, const std::string& pointer) { return const_cast<Node*>(find_value(root, pointer)); }
+
+void erase(Node& root, const std::string& pointer) {
+  Node& parent = *found(root, pointer.substr(0, pointer.rfind('/')));
+  Node* child = found(root, pointer);
+  std::erase_if(parent.members, [&](const auto& m) { return &m.second == child; });
+  if (!parent.items.empty()) parent.items.erase(parent.items.begin() + (child - parent.items.data()));
+}
+
+/// What is left without blanks, line ends and commas.
+std::string bare(std::string_view text) {
+  std::string out;
+  for (const char c : text)
+    if (std::string_view(" \t\r\n,").find(c) == std::string_view::npos) out += c;
+  return out;
+}
+
+class AnyLayout : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(JsonEdit, AnyLayout, testing::Values("\n", "\r\n", "\r"));
+
+TEST_P(AnyLayout, EditsOfTheTextAreEditsOfTheTree) {
+  Random random(11);
+  int sets = 0, adds = 0, removals = 0;
+  for (int round = 0; round < 3000 && !HasFailure(); ++round) {
+    Node tree;
+    while (tree.items.empty() && tree.members.empty()) tree = random_tree(random, 4);
+    const std::string bom = below(random, 4) == 0 ? "\xEF\xBB\xBF" : "";
+    const std::string text =
+        bom + random_space(random, true, GetParam()) + random_text(tree, random, GetParam()) + random_space(random, true, GetParam());
+    ASSERT_TRUE(parse(text, "f")) << parse(text, "f").error().message << "\n" << text;
+    ASSERT_TRUE(same_value(*parse(text, "f"), tree)) << text;
+    std::vector<std::string> places;
+    all_places(tree, "", places);
+    const Node value = random_tree(random, 2);
+    const std::string put = random_text(value, random, GetParam());
+    const std::string place = places[below(random, places.size())];
+    Result<std::string> edited = Error{};
+    const auto before = *parse(text, "f");
+    switch (below(random, 3)) {
+      case 0: {
+        const Node& at = *find_value(before, place);
+        edited = set_value(text, "f", place, put);
+        ASSERT_TRUE(edited) << edited.error().message << "\n" << text;
+        EXPECT_EQ(*edited, text.substr(0, at.begin) + put + text.substr(at.end));
+        *found(tree, place) = value;
+        ++sets;
+        break;
+      }
+      case 1: {
+        const Node& at = *find_value(before, place);
+        if (at.kind != Kind::array && at.kind != Kind::object) continue;
+        edited = set_value(text, "f", place + (at.kind == Kind::array ? "/-" : "/new~1key"), put);
+        ASSERT_TRUE(edited) << edited.error().message << "\n" << text;
+        if (at.kind == Kind::array)
+          found(tree, place)->items.push_back(value);
+        else
+          found(tree, place)->members.emplace_back("new/key", value);
+        // the text with something put in, in the container
+        EXPECT_EQ(edited->substr(0, at.begin), text.substr(0, at.begin));
+        EXPECT_TRUE(edited->ends_with(text.substr(at.end - 1)));
+        const std::size_t there = edited->find(put, at.begin);
+        ASSERT_NE(there, std::string::npos);
+        ++adds;
+        break;
+      }
+      default: {
+        const Node& at = *find_value(before, place);
+        const Node& parent = *find_value(before, place.substr(0, place.rfind('/')));
+        edited = remove_value(text, "f", place);
+        ASSERT_TRUE(edited) << edited.error().message << "\n" << text;
+        erase(tree, place);
+        EXPECT_EQ(edited->substr(0, parent.begin), text.substr(0, parent.begin));
+        EXPECT_TRUE(edited->ends_with(text.substr(parent.end)));
+        if (parent.items.size() != 1) {
+          // only the member itself has gone, and blanks and commas
+          const std::string left = bare(*edited), tail = bare(text.substr(at.end)), head = bare(text.substr(0, at.begin));
+          ASSERT_TRUE(left.ends_with(tail)) << text << "\n---\n" << *edited;
+          const std::string kept = left.substr(0, left.size() - tail.size());
+          ASSERT_TRUE(head.starts_with(kept)) << text << "\n---\n" << *edited;
+          const auto key = [&](const auto& m) { return &m.second == &at; };
+          const auto member = std::find_if(parent.members.begin(), parent.members.end(), key);
+          const std::string gone = member == parent.members.end() ? "" : bare(string_text(member->first)) + ":";
+          EXPECT_TRUE(gone.empty() ? kept == head : head.substr(kept.size()).starts_with(gone)) << text << "\n---\n" << *edited;
+        }
+        ++removals;
+      }
+    }
+    const auto after = parse(*edited, "f");
+    ASSERT_TRUE(after) << after.error().message << "\n" << *edited;
+    EXPECT_TRUE(same_value(*after, tree)) << place << "\n" << text << "\n---\n" << *edited;
+  }
+  EXPECT_GT(sets, 300);
+  EXPECT_GT(adds, 100);
+  EXPECT_GT(removals, 300);
+}
+
+}  // namespace
+}  // namespace catena::json

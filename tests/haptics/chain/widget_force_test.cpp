@@ -1,0 +1,223 @@
+// No switch, reorder or change of shape makes a force jump; what a tick costs in memory; that it repeats; hostile input.
+#include <random>
+
+#include "engine/base/allocation_guard.h"
+#include "haptics/chain/state_hash.h"
+#include "tests/haptics/chain/order_links.h"
+#include "tests/haptics/chain/widget_hand.h"
+
+namespace catena::haptics {
+namespace {
+
+using test::widget_program;
+using test::widget_spec;
+using test::WidgetHand;
+using widget::Kind;
+using widget::Spec;
+using widget::Turning;
+
+struct Step {
+  Vec3 to;
+  std::uint32_t buttons;
+};
+
+// Through every transition of a cutting plane: pressing and letting go where the springs are stretched.
+std::vector<Step> plane_script() {
+  const double a = 0.48 * 0.6, b = 0.48 * 0.8;
+  return {{{1, 0, 0.5}, 0},         {{1, 0, 0.07}, 0},        {{1, 0, 0.19}, 0},      {{1, 0, 0.3}, 0},        // explore, away
+          {{1, 0, 0.07}, 0},        {{1, 0, 0.15}, 0},        {{1, 0, 0.15}, 1},      {{1.07, 0.07, 0.1}, 1},  // translate
+          {{1.5, 0.07, 0.1}, 1},    {{1.5, 0.6, -0.4}, 1},    {{1.07, 0.07, 0.1}, 1}, {{1.07, 0.07, 0.1}, 0},  // explore
+          {{0, a, b}, 0},           {{0.05, a, b + 0.05}, 0},                                                  // rotate
+          {{0.05, a, b + 0.05}, 1}, {{0.07, b, a}, 1},        {{0.2, b, a}, 1},       {{-0.3, -b, a}, 1},      // turn, freely
+          {{-0.3, -b, a}, 0},       {{-0.2, -b, a}, 0},       {{-0.2, 0, 0.03}, 0},   {{2, 2, 2}, 0}};
+}
+
+std::vector<Step> handles_script() {
+  return {{{1, 0, 0.5}, 0},     {{1, 0, 0.1}, 0},  {{1, 0.06, 0.1}, 1}, {{1.07, 0.1, 0.05}, 1}, {{1.7, 0.1, 0.9}, 1},
+          {{1.7, 0.1, 0.9}, 0}, {{1, 0, 0.9}, 0},  {{0, 1, 0.1}, 0},    {{0, 1, 0.1}, 1},       {{0.6, 1, 0.5}, 1},
+          {{0.6, 1, 0.5}, 0},   {{-1, 0, 0.1}, 0}, {{-1, 0, 0.1}, 1},   {{-1.7, 0.5, 0.1}, 1},  {{-1.7, 0.5, 0.1}, 0}};
+}
+
+// A step of the hand moves the force by K S |dx| for every link's spring, a ramp by its part of what it has to bring and to take away.
+struct Jumps {
+  double most = 0, bound = 0;
+  int changes = 0;
+};
+
+void drive(WidgetHand& hand, const std::vector<Step>& script, double speed, double dt, Jumps& out) {
+  constexpr double k = 500, longest = 0.5, links = 6;
+  const double ramp_step = dt / hand.program.coupling.ramp_s, move = speed * dt;
+  // gaps up to `longest`, of each link at most; a fade and a rise each change by ramp_step of that, and springs of a chain by twice the
+  // move of the hand before them
+  out.bound = links * k * (4 * move + 2 * longest * ramp_step);
+  Vec3 before = hand.out.force_n;
+  Order order = hand.state.fade.order;
+  for (const Step& step : script) {
+    const Vec3 from = hand.at;
+    const int n = std::max(1, static_cast<int>(std::ceil(norm(step.to - from) / move)));
+    for (int i = 1; i <= n + 60; ++i) {  // and rests, until nothing fades
+      hand.step(i >= n ? step.to : from + (step.to - from) * (static_cast<double>(i) / n), step.buttons, dt);
+      out.most = std::max(out.most, norm(hand.out.force_n - before));
+      before = hand.out.force_n;
+      out.changes += order == hand.state.fade.order ? 0 : 1;
+      order = hand.state.fade.order;
+    }
+  }
+}
+
+std::vector<Link> scene_links() { return {test::hold_plane("a", {0.2, 1, 0}, 0.1, 300), test::hold_plane("b", {1, 0, 0.3}, -0.2, 400)}; }
+
+TEST(WidgetForce, NoTransitionOfACuttingPlaneMakesTheForceJump) {
+  for (const Turning turning : {Turning::any, Turning::free, Turning::axis})
+    for (const bool touch : {false, true})
+      for (const bool with_links : {false, true}) {
+        double bounds[2], most[2];
+        int n = 0;
+        for (const double dt : {1e-3, 2.5e-4}) {
+          Spec spec = widget_spec(Kind::cutting_plane);
+          spec.turning = turning;
+          spec.touch = touch;
+          WidgetHand hand(widget_program({spec}, with_links ? scene_links() : std::vector<Link>{}, 0.05));
+          hand.step({1, 0, 0.5});
+          Jumps jumps;
+          drive(hand, plane_script(), 2, dt, jumps);
+          EXPECT_GT(jumps.changes, 12);
+          EXPECT_LE(jumps.most, jumps.bound) << dt;
+          EXPECT_GT(jumps.most, 0);
+          bounds[n] = jumps.bound, most[n] = jumps.most;
+          ++n;
+        }
+        // the largest step goes with the tick: nothing in it is a jump
+        EXPECT_LT(most[1], 0.35 * most[0]);
+        EXPECT_LT(bounds[1], bounds[0]);
+      }
+}
+
+TEST(WidgetForce, WithoutTheFadeItJumps) {
+  WidgetHand hand(widget_program({widget_spec(Kind::cutting_plane)}, scene_links(), 0));
+  hand.step({1, 0, 0.5});
+  hand.program.coupling.ramp_s = 1e-9;
+  Jumps jumps;
+  drive(hand, plane_script(), 2, 1e-3, jumps);
+  EXPECT_GT(jumps.most, 20);
+}
+
+TEST(WidgetForce, NoTransitionOfHandlesMakesTheForceJump) {
+  std::vector<Spec> specs{widget_spec(Kind::seed, {1, 0, 0}), widget_spec(Kind::rake, {0, 1, 0}, {0, 1, 1}),
+                          widget_spec(Kind::box, {-1, -0.5, -0.4}, {-0.5, 0.5, 0.6})};
+  double most[2];
+  int n = 0;
+  for (const double dt : {1e-3, 2.5e-4}) {
+    WidgetHand hand(widget_program(specs, scene_links(), 0.05));
+    hand.step({1, 0, 0.5});
+    Jumps jumps;
+    drive(hand, handles_script(), 2, dt, jumps);
+    EXPECT_GT(jumps.changes, 9);
+    EXPECT_LE(jumps.most, jumps.bound) << dt;
+    most[n++] = jumps.most;
+  }
+  EXPECT_LT(most[1], 0.35 * most[0]);
+}
+
+// explore's plane z goes through the centre, translate's through the probe: one link, another shape
+TEST(WidgetForce, ALinkOnAnotherShapeStartsAnewAndItsOldForceFades) {
+  WidgetHand hand(widget_program({widget_spec(Kind::cutting_plane)}, {}, 0.1));
+  hand.step({1, 0, 0.5});
+  hand.step({1, 0, 0.05});
+  for (int k = 0; k < 150; ++k) hand.step({1, 0, 0.1});
+  EXPECT_NEAR(hand.out.force_n.z, -50, 1e-9);
+  hand.step({1, 0, 0.1}, 1);
+  EXPECT_EQ(hand.order(), "widget_x widget_y widget_z");
+  EXPECT_NEAR(hand.out.force_n.z, -49.5, 1e-9);
+  EXPECT_NEAR(hand.out.links[2].weight, 0.01, 1e-12);
+  for (int k = 2; k <= 100; ++k) {
+    hand.step({1, 0, 0.1}, 1);
+    ASSERT_NEAR(hand.out.force_n.z, -50 + 0.5 * k, 1e-9);
+  }
+  hand.step({1, 0, 0.1}, 1);
+  EXPECT_NEAR(norm(hand.out.force_n), 0, 1e-9);
+}
+
+TEST(WidgetForce, WhileOneIsGrabbedTheScenesLinksAreOff) {
+  WidgetHand hand(widget_program({widget_spec(Kind::cutting_plane)}, scene_links()));
+  hand.step({1, 0, 0});
+  EXPECT_EQ(hand.order(), "a b widget_z");
+  hand.step({1, 0, 0}, 1);
+  EXPECT_EQ(hand.order(), "widget_x widget_y widget_z");
+  EXPECT_FALSE(hand.out.links[0].active);
+  EXPECT_EQ(hand.out.links[0].proxy, Vec3(1, 0, 0));
+  hand.step({1, 0, 0}, 0);
+  EXPECT_EQ(hand.order(), "a b widget_z");
+}
+
+Program everything(double ramp_s) {
+  Spec free = widget_spec(Kind::cutting_plane, {-0.4, 0.2, 0.1});
+  free.turning = Turning::free;
+  free.touch = true;
+  free.button = 2;
+  free.pose.orientation = test::kTilted;
+  return widget_program({widget_spec(Kind::cutting_plane, {0.2, 0, 0}), free, widget_spec(Kind::seed, {0.5, 0.5, 0.5}),
+                         widget_spec(Kind::rake, {-1, 0, 0}, {-0.5, 0.5, 0.5}), widget_spec(Kind::box, {-0.5, -0.5, -0.5}, {0.5, 0.4, 0.3}),
+                         widget_spec(Kind::ruler, {0, -0.5, 0}, {0.4, -0.5, 0.6})},
+                        scene_links(), ramp_s);
+}
+
+// 1e5 ticks of any button and any probe, places far away and none at all among them.
+std::uint64_t hostile(std::uint64_t seed, int ticks) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> anywhere(-1.2, 1.2), unit(0, 1);
+  WidgetHand hand(everything(0.02));
+  Vec3 at(0.0);
+  std::uint32_t buttons = 0;
+  StateHash hash;
+  int grabbed = 0;
+  for (int k = 0; k < ticks; ++k) {
+    const double chance = unit(random);
+    if (chance < 0.02) at = {anywhere(random), anywhere(random), anywhere(random)};
+    if (chance < 0.1) buttons = static_cast<std::uint32_t>(random());
+    at += Vec3(anywhere(random), anywhere(random), anywhere(random)) * (chance < 0.9 ? 0.01 : 0.2);
+    if (norm(at) > 2) at *= 0.3;
+    Vec3 probe = at;
+    if (chance > 0.998) probe = at * 1e300;
+    if (chance > 0.997 && chance < 0.998) probe.y = NAN;
+    hand.step(probe, buttons);
+    hash.add(hand.out);
+    EXPECT_TRUE(is_finite(hand.out.force_n)) << k;
+    int engaged = 0;
+    for (std::size_t i = 0; i < hand.program.widgets.size(); ++i) {
+      const exchange::WidgetReport& w = hand.out.widgets[i];
+      EXPECT_TRUE(is_finite(w.pose.points[0]) && is_finite(w.pose.points[1])) << k;
+      const Quat& q = w.pose.orientation;
+      EXPECT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, 1e-14) << k;
+      engaged += w.mode != exchange::WidgetMode::away;
+      grabbed += widget::is_grabbed(w.mode);
+    }
+    EXPECT_LE(engaged, 1) << k;
+    const exchange::WidgetPose& box = hand.out.widgets[4].pose;
+    for (int a = 0; a < 3; ++a) EXPECT_LE(box.points[0][a], box.points[1][a]) << k;
+    if (testing::Test::HasFailure()) return 0;
+  }
+  EXPECT_GT(grabbed, ticks / 20);
+  return hash.value();
+}
+
+TEST(WidgetForce, HostileTicksStayFiniteUnitAndInOrderAndRepeat) {
+  const std::uint64_t first = hostile(7, 100000);
+  EXPECT_EQ(first, hostile(7, 100000));
+  EXPECT_NE(first, hostile(8, 1000));
+}
+
+TEST(WidgetForce, ATickAllocatesNothing) {
+  WidgetHand hand(everything(0.02));
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  const AllocationGuard guard;
+  for (int k = 0; k < 5000; ++k) {
+    if (k % 50 == 0) hand.at = {anywhere(random), anywhere(random), anywhere(random)};
+    hand.step(hand.at + Vec3(anywhere(random), anywhere(random), anywhere(random)) * 0.02, static_cast<std::uint32_t>(random() & 3));
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
+}  // namespace
+}  // namespace catena::haptics
