@@ -34,6 +34,7 @@ void carry_fields(Scene& old, Scene& fresh) {
       if (source.loaded.get() == nullptr) source.loaded = before.loaded;
       if (source.drawn.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
         source.drawn = before.drawn;
+      if (source.drawn.get() != nullptr && source.drawn.get() == before.drawn.get() && !source.values) source.values = before.values;
     });
   });
 }
