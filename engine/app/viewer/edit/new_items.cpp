@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/app/viewer/edit/field_values.h"
+#include "engine/app/viewer/edit/plot_frame.h"
 #include "engine/app/viewer/edit/pointers.h"
 #include "engine/scene/write_values.h"
 

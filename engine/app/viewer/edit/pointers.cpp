@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/base/json_edit.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::app {
 
@@ -23,16 +23,16 @@ std::string node_text(const json::Node& node) {
     case json::Kind::boolean:
       return node.boolean ? "true" : "false";
     case json::Kind::number:
-      return json::number_text(node.number);
+      return scene::text_of(node.number);
     case json::Kind::string:
-      return json::quoted(node.string);
+      return scene::text_of(node.string);
     case json::Kind::array:
       text = "[";
       for (const json::Node& item : node.items) next(), text += node_text(item);
       return text + "]";
     case json::Kind::object:
       text = "{";
-      for (const auto& [key, member] : node.members) next(), text += json::quoted(key) + ": " + node_text(member);
+      for (const auto& [key, member] : node.members) next(), text += scene::text_of(key) + ": " + node_text(member);
       return text + "}";
   }
   return text;

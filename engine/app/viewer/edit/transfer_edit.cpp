@@ -60,7 +60,7 @@ std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double sm
   return edit;
 }
 
-TextEdits opacity_edits(const scene::Volume& volume, const TransferEdit& edit) {
+TextEdits opacity_edits(const scene::Volume& volume, TransferEdit edit) {
   if (!is_stated(volume)) return all_of(volume, edit);
   return {{pointer_of(volume.where) + "/opacity", scene::text_of(edit.opacities)}};
 }

@@ -24,7 +24,7 @@ using TextEdits = std::vector<scene::Document::Edit>;
 std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double smallest_edge);
 
 /// What makes the text's volume look like the edit.
-TextEdits opacity_edits(const scene::Volume& volume, const TransferEdit& edit);
+TextEdits opacity_edits(const scene::Volume& volume, TransferEdit edit);
 TextEdits unit_edits(const scene::Volume& volume, const TransferEdit& edit);
 /// Stated points; a name is given up.
 TextEdits color_edits(const scene::Volume& volume, TransferEdit edit);

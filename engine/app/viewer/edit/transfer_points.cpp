@@ -55,7 +55,7 @@ std::optional<std::size_t> insert(Points& points, const PlotFrame& frame, typena
 }
 
 template <class Points>
-bool erase(Points& points, std::size_t index) {
+bool take_out(Points& points, std::size_t index) {
   CATENA_ASSERT(index < points.size());
   if (points.size() < 2) return false;
   points.erase(points.begin() + static_cast<std::ptrdiff_t>(index));
@@ -118,8 +118,8 @@ void move_point(ColorPoints& points, const PlotFrame& frame, std::size_t index, 
   if (const auto place = place_of(points, frame, index, value)) points[index].value = *place;
 }
 
-bool remove_point(OpacityPoints& points, std::size_t index) { return erase(points, index); }
-bool remove_point(ColorPoints& points, std::size_t index) { return erase(points, index); }
+bool remove_point(OpacityPoints& points, std::size_t index) { return take_out(points, index); }
+bool remove_point(ColorPoints& points, std::size_t index) { return take_out(points, index); }
 
 double alpha_at(const OpacityPoints& points, double value) {
   if (points.empty()) return 0;

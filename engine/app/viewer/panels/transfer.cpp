@@ -14,6 +14,7 @@ namespace {
 constexpr float kPlotHeight = 120, kBarHeight = 16, kHandle = 4.5f, kReach = 9, kOff = 36;  // pixels
 constexpr double kFine = 0.1, kAlphaSteps = 1000;
 
+using Writer = TextEdits (*)(const scene::Volume&, TransferEdit);
 using Select = std::optional<std::size_t> LookState::Transfer::*;
 
 struct Editor {
@@ -93,8 +94,8 @@ void draw_bar(const Editor& editor, bool handles) {
 
 /// What the drag makes of the points as they were at its start.
 template <class Points, class Move>
-void dragged(Editor& editor, Points TransferEdit::*points, Select selected, const PlotFrame& frame, Move&& move,
-             TextEdits (*writes)(const scene::Volume&, const TransferEdit&), const char* what) {
+void dragged(Editor& editor, Points TransferEdit::*points, Select selected, const PlotFrame& frame, Move&& move, Writer writes,
+             const char* what) {
   LookState& look = editor.context.state.look;
   if (!editor.state.before || !(editor.state.*selected) || *(editor.state.*selected) >= ((*editor.state.before).*points).size()) return;
   const ImGuiIO& io = ImGui::GetIO();
@@ -112,8 +113,7 @@ void dragged(Editor& editor, Points TransferEdit::*points, Select selected, cons
 /// A press: takes the handle there, or makes one.
 template <class Points>
 void pressed(Editor& editor, Points TransferEdit::*points, Select selected, std::optional<std::size_t> there,
-             const std::function<std::optional<std::size_t>(Points&)>& add, TextEdits (*writes)(const scene::Volume&, const TransferEdit&),
-             const char* what) {
+             const std::function<std::optional<std::size_t>(Points&)>& add, Writer writes, const char* what) {
   editor.state.before = editor.edit;
   editor.state.*selected = there;
   if (there) return;
@@ -122,8 +122,8 @@ void pressed(Editor& editor, Points TransferEdit::*points, Select selected, std:
 }
 
 template <class Points>
-void remove_at(Editor& editor, Points TransferEdit::*points, Select selected, std::optional<std::size_t> there,
-               TextEdits (*writes)(const scene::Volume&, const TransferEdit&), const char* what) {
+void remove_at(Editor& editor, Points TransferEdit::*points, Select selected, std::optional<std::size_t> there, Writer writes,
+               const char* what) {
   TransferEdit now = editor.edit;
   if (!there || !remove_point(now.*points, *there)) return;
   (editor.state.*selected).reset();
