@@ -51,6 +51,17 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
   if (field.bytes() > 0) row("memory", bytes_text(field.bytes()));
 }
 
+/// Its place is kept while the values are being sorted.
+void draw_histogram(const SortedValues& values) {
+  const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
+  ImGui::Dummy(size);
+  tip("how often values occur, logarithmic");
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
+  if (!values || values->empty()) return;
+  const auto range = plot_range(values->front(), values->back());
+  draw_bars({at.x, at.y, at.x + size.x, at.y + size.y, range[0], range[1]}, values, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+}
+
 /// Loads it if need be, then adds the item.
 void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
   scene::Scene& scene = context.scene.scene();
@@ -107,14 +118,7 @@ void draw_fields(PanelContext& context) {
               later.state.say(loaded.error().message, true);
           });
       } else {
-        if (const SortedValues values = look.values.of(scene, e); values && !values->empty()) {
-          const auto range = plot_range(values->front(), values->back());
-          const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
-          ImGui::Dummy(size);
-          ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
-          draw_bars({at.x, at.y, at.x + size.x, at.y + size.y, range[0], range[1]}, values, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
-          tip("how often values occur, logarithmic");
-        }
+        if (shown.get()->is_grid()) draw_histogram(look.values.of(scene, e));
         draw_buttons(edits, e, shown);
       }
       ImGui::TreePop();
