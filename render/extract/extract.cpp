@@ -175,7 +175,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
   CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
-  extract_widgets(scene, data_bounds(packet), packet);
+  CATENA_CHECK(extract_widgets(scene, data_bounds(packet), packet));
   set_eyes(packet, scene.stereo);
   return packet;
 }

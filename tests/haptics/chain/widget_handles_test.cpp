@@ -87,7 +87,7 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOther) {
       probe[axis] = at[axis] + by;
       const auto& points = hand.step(probe, 1).pose.points;
       for (int a = 0; a < 3; ++a)
-        if (a != axis) EXPECT_TRUE(points[0][a] == lo[a] && points[1][a] == hi[a]);
+        EXPECT_TRUE(a == axis || (points[0][a] == lo[a] && points[1][a] == hi[a]));
       const int side = face % 2;
       EXPECT_EQ(points[static_cast<std::size_t>(1 - side)][axis], side == 0 ? hi[axis] : lo[axis]);
       return points[static_cast<std::size_t>(side)][axis];

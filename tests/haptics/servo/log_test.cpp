@@ -339,8 +339,8 @@ TEST(Log, FilesThatAreNoneSayWhatWasExpected) {
   EXPECT_NE(message("").find("no recording"), std::string::npos);
   EXPECT_NE(message("{\"chain\": []} and more").find(".catlog file was expected"), std::string::npos);
   std::string other = bytes;
-  for (const char version : {1, 3}) {
-    other[8] = version;
+  for (const int version : {1, 3}) {
+    other[8] = static_cast<char>(version);
     EXPECT_NE(message(other).find("version " + std::to_string(version) + "; this program reads version 2"), std::string::npos);
   }
   other = bytes;
