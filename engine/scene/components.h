@@ -28,9 +28,8 @@ struct FieldSource {
   field::AnalyticParameters parameters;
   int resolution = 128;  ///< analytic fields are drawn from a sampled grid: nodes an axis
   std::array<double, 2> box{-2, 2};
-  field::AnyField loaded;                            ///< exact (the hand's)
-  field::AnyField drawn;                             ///< a grid (the eye's); the same object for files
-  std::shared_ptr<const std::vector<float>> values;  ///< of `drawn`, scalar: sorted, sampled (transfer.h); once a transfer asked
+  field::AnyField loaded;  ///< exact (the hand's)
+  field::AnyField drawn;   ///< a grid (the eye's); the same object for files
 };
 
 struct Rgb {
@@ -86,7 +85,6 @@ struct Volume {
   TransferFunction transfer;
   bool shade = false;
   bool clipped = true;  ///< the clip planes count
-  bool visible = true;
   Projection projection = Projection::composite;
   std::optional<FieldColors> color_by{};  ///< composite only
 };
@@ -99,7 +97,6 @@ struct Isosurface {
   Rgb color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
   bool clipped = true;  ///< the clip planes count
-  bool visible = true;
   std::optional<FieldColors> color_by{};
 };
 
@@ -124,7 +121,6 @@ struct SurfaceMesh {
   json::Node where;
   Rgb color{0.8f, 0.8f, 0.9f};
   bool clipped = true;  ///< the clip planes count
-  bool visible = true;
   double opacity = 1;
   bool smooth = false;  ///< "shading": the felt mesh is flat
   bool edges = false;
@@ -140,7 +136,6 @@ struct Slice {
   double opacity = 1;
   bool lit = false;
   bool clipped = true;  ///< the clip planes count
-  bool visible = true;
   struct Contours {
     json::Node where;
     std::vector<double> levels;  ///< rising; or
@@ -201,7 +196,6 @@ struct StreamlineSet {
   double arrows = 0;     ///< arrowheads every so far along a line, world units; 0: none
   double pulse = 0;      ///< bands of this length run along the lines as the scene's phase goes from 0 to 1; 0: none
   bool clipped = true;   ///< the clip planes count
-  bool visible = true;
 };
 
 /// A short piece of the streamline through the cursor, with an arrowhead: what the flow does here.

@@ -2,6 +2,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
 
@@ -89,11 +90,11 @@ Outcome read_volumes(Scene& scene, const json::Node& node) {
     CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
     CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
     CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(volume.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(volume.color_by, read_field_colors(scene, item));
     CATENA_CHECK(read_projection(volume, item));
-    scene.world.emplace<Volume>(scene.world.create(), std::move(volume));
-    return Done{};
+    const Entity e = scene.world.create();
+    scene.world.emplace<Volume>(e, std::move(volume));
+    return read_visible(scene, e, item);
   });
 }
 
@@ -104,7 +105,6 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
     surface.where = item;
     CATENA_TRY(surface.field, read_field_name(scene, item));
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(surface.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(surface.color_by, read_field_colors(scene, item));
     if (const json::Node* level = item.find("level"); level != nullptr && level->kind == json::Kind::object) {
       CATENA_CHECK(json::only_keys(*level, {"widget"}));
@@ -114,8 +114,9 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
     }
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
     CATENA_TRY(surface.opacity, read_opacity(item, surface.opacity));
-    scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));
-    return Done{};
+    const Entity e = scene.world.create();
+    scene.world.emplace<Isosurface>(e, std::move(surface));
+    return read_visible(scene, e, item);
   });
 }
 
@@ -145,13 +146,13 @@ Outcome read_meshes(Scene& scene, const json::Node& node) {
     surface.smooth = shading == 1;
     CATENA_TRY(surface.edges, json::get_boolean(item, "edges", false));
     CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(surface.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(const bool drawn, json::get_boolean(item, "drawn", true));
     surface.mesh = scene.world.create();
     scene.world.emplace<Name>(surface.mesh, {name});
     scene.world.emplace<MeshSource>(surface.mesh, std::move(source));
-    if (drawn) scene.world.emplace<SurfaceMesh>(scene.world.create(), std::move(surface));
-    return Done{};
+    const Entity e = scene.world.create();
+    if (drawn) scene.world.emplace<SurfaceMesh>(e, std::move(surface));
+    return read_visible(scene, e, item);
   });
 }
 

@@ -3,6 +3,7 @@
 ///             "contours": {"levels" | "count" | "spacing", "color", "width"}}]
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
 #include "engine/scene/widgets.h"
@@ -106,11 +107,12 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
     CATENA_TRY(slice.opacity, read_opacity(item, slice.opacity));
     CATENA_TRY(slice.lit, json::get_boolean(item, "lit", false));
     CATENA_TRY(slice.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(slice.visible, json::get_boolean(item, "visible", true));
     if (const json::Node* contours = item.find("contours")) {
       CATENA_TRY(slice.contours, read_contours(*contours));
     }
-    scene.world.emplace<Slice>(scene.world.create(), std::move(slice));
+    const Entity e = scene.world.create();
+    scene.world.emplace<Slice>(e, std::move(slice));
+    CATENA_CHECK(read_visible(scene, e, item));
   }
   return Done{};
 }

@@ -1,5 +1,6 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
@@ -68,12 +69,13 @@ Outcome read_streamlines(Scene& scene, const json::Node& node) {
     CATENA_TRY(set.tolerance, json::get_number(item, "tolerance", 0, json::Range::positive));
     CATENA_TRY(set.arrows, json::get_number(item, "arrows", 0, json::Range::positive));
     CATENA_TRY(set.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(set.visible, json::get_boolean(item, "visible", true));
     CATENA_TRY(set.pulse, json::get_number(item, "pulse", 0, json::Range::positive));
     if (set.tolerance > 1e-2)
       return json::error_at(*item.find("tolerance"),
                             "\"tolerance\" is " + to_text(set.tolerance) + " of the domain's length; at most 0.01 was expected");
-    scene.world.emplace<StreamlineSet>(scene.world.create(), std::move(set));
+    const Entity e = scene.world.create();
+    scene.world.emplace<StreamlineSet>(e, std::move(set));
+    CATENA_CHECK(read_visible(scene, e, item));
   }
   return Done{};
 }

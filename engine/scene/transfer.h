@@ -21,6 +21,12 @@ std::vector<float> sample_magnitudes(const field::VectorGrid& grid, std::size_t 
 /// sample_values in rising order, as many as complete_transfer looks at.
 std::shared_ptr<const std::vector<float>> sorted_values(const field::ScalarGrid& grid);
 
+/// Beside a FieldSource once a transfer function has asked: the sorted_values of its drawn grid.
+struct ValueSample {
+  const void* grid = nullptr;
+  std::shared_ptr<const std::vector<float>> sorted;
+};
+
 /// Fills what is missing: colours if there are none, extinctions if there are neither extinctions nor opacities. A stated range
 /// replaces that of the percentiles; a map named without one reaches over all values.
 bool is_complete(const TransferFunction& transfer);

@@ -82,8 +82,10 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
     scene.world.each<Volume>([&](Entity, Volume& volume) {
       if (volume.field != field || is_complete(volume.transfer)) return;
       const field::ScalarGrid& grid = *source.drawn.scalar->grid();
-      if (!source.values) source.values = sorted_values(grid);
-      complete_transfer(volume.transfer, grid, *source.values);
+      if (!scene.world.has<ValueSample>(field)) scene.world.emplace<ValueSample>(field);
+      ValueSample& sample = scene.world.get<ValueSample>(field);
+      if (sample.grid != &grid) sample = {&grid, sorted_values(grid)};
+      complete_transfer(volume.transfer, grid, *sample.sorted);
     });
   return source.drawn;
 }

@@ -1,6 +1,7 @@
 #include "render/extract/extract_overlay.h"
 
 #include "engine/base/assert.h"
+#include "engine/scene/hidden.h"
 #include "render/extract/bar_ticks.h"
 #include "render/extract/extract_lines.h"
 
@@ -31,8 +32,8 @@ std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunc
 /// The packet's slices are in the order of their owners, without the hidden ones.
 const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, const FramePacket& packet) {
   std::size_t i = 0, found = packet.slices.size();
-  world.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
-    if (!slice.visible) return;
+  world.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
+    if (is_hidden(world, e)) return;
     if (e == wanted) found = i;
     ++i;
   });
@@ -40,9 +41,9 @@ const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, con
 }
 
 Shown shown_by(const scene::World& world, scene::Entity e, const FramePacket& packet) {
+  if (is_hidden(world, e)) return {};
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);
-    if (!volume.visible) return {};
     return {rows_of(volume.transfer.colors), name_of(world, volume.field)};
   }
   if (world.has<scene::Slice>(e)) {
@@ -52,7 +53,7 @@ Shown shown_by(const scene::World& world, scene::Entity e, const FramePacket& pa
   CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
   const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
   const auto* points = shown_colors(world, e);
-  if (points == nullptr || !set.visible) return {};
+  if (points == nullptr) return {};
   const auto colors = rows_of(*points);
   switch (set.color_by->what) {
     case scene::ColorBy::What::field:

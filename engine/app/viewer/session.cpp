@@ -7,6 +7,7 @@
 #include "engine/app/hand/hand_setup.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
+#include "engine/scene/hidden.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_stereo.h"
 #include "render/passes/quality.h"
@@ -47,8 +48,9 @@ std::optional<Failure> Session::open_scene() {
 /// What the loop has to know of a scene that was read.
 void Session::measure() {
   has_pulses_ = false;
-  scene_->scene().world.each<scene::StreamlineSet>(
-      [&](scene::Entity, const scene::StreamlineSet& set) { has_pulses_ = has_pulses_ || (set.visible && set.pulse > 0); });
+  scene_->scene().world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
+    has_pulses_ = has_pulses_ || (set.pulse > 0 && !is_hidden(scene_->scene().world, e));
+  });
 }
 
 std::optional<Failure> Session::open() {

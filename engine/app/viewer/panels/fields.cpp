@@ -67,7 +67,7 @@ void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
   scene::Scene& scene = context.scene.scene();
   const auto drawn = scene::use_drawn_field(scene, entity, scene.world.get<scene::FieldSource>(entity).where);
   if (!drawn) return context.state.say(drawn.error().message, true);
-  const auto& values = scene.world.get<scene::FieldSource>(entity).values;
+  const SortedValues values = context.state.look.values.of(scene, entity);
   const std::string item = new_item(name_of(scene, entity), *drawn, as, values ? *values : std::vector<float>());
   context.edit(pointer_of_new(as), item, std::string("new ") + word_of(as));
 }

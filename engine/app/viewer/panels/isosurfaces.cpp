@@ -1,6 +1,7 @@
 // Isosurfaces: the level on the field's histogram, colour, opacity. The hand's surface follows the one that is seen.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/hidden.h"
 
 namespace catena::app {
 
@@ -38,8 +39,8 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
 void draw_isosurfaces(PanelContext& context) {
   Edits edits(context);
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
-    if (!begin_item(edits, surface.where, surface.visible, "isosurface", name_of(scene, surface.field))) return;
+  scene.world.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
+    if (!begin_item(edits, surface.where, !is_hidden(scene.world, e), "isosurface", name_of(scene, surface.field))) return;
     const std::string pointer = pointer_of(surface.where);
     draw_level(context, edits, surface);
     edit_share(edits, "opacity", surface.opacity, pointer + "/opacity");

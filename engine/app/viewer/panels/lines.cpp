@@ -4,6 +4,7 @@
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
 
 namespace catena::app {
 
@@ -41,8 +42,8 @@ void choose_what(Edits& edits, const scene::Scene& scene, const scene::Streamlin
 void draw_lines(PanelContext& context) {
   Edits edits(context);
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::StreamlineSet>([&](scene::Entity, const scene::StreamlineSet& set) {
-    if (!begin_item(edits, set.where, set.visible, "streamlines", name_of(scene, set.field))) return;
+  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
+    if (!begin_item(edits, set.where, !is_hidden(scene.world, e), "streamlines", name_of(scene, set.field))) return;
     const std::string pointer = pointer_of(set.where);
     choose_what(edits, scene, set);
     if (set.color_by)

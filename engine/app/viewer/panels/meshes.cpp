@@ -1,14 +1,15 @@
 // Meshes: colour, opacity, edges.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/hidden.h"
 
 namespace catena::app {
 
 void draw_meshes(PanelContext& context) {
   Edits edits(context);
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::SurfaceMesh>([&](scene::Entity, const scene::SurfaceMesh& surface) {
-    if (!begin_item(edits, surface.where, surface.visible, "mesh", name_of(scene, surface.mesh))) return;
+  scene.world.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
+    if (!begin_item(edits, surface.where, !is_hidden(scene.world, e), "mesh", name_of(scene, surface.mesh))) return;
     const std::string pointer = pointer_of(surface.where);
     edit_share(edits, "opacity", surface.opacity, pointer + "/opacity");
     if (surface.color_by)

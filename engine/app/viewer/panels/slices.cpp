@@ -4,6 +4,7 @@
 
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/hidden.h"
 
 namespace catena::app {
 
@@ -109,8 +110,8 @@ void draw_contours(Edits& edits, const scene::Slice& slice) {
 void draw_slices(PanelContext& context) {
   Edits edits(context);
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::Slice>([&](scene::Entity, const scene::Slice& slice) {
-    if (!begin_item(edits, slice.where, slice.visible, "slice", name_of(scene, slice.shown.field))) return;
+  scene.world.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
+    if (!begin_item(edits, slice.where, !is_hidden(scene.world, e), "slice", name_of(scene, slice.shown.field))) return;
     const scene::FieldSource& source = scene.world.get<scene::FieldSource>(slice.shown.field);
     const field::Field* field = source.drawn.get() != nullptr ? source.drawn.get() : source.loaded.get();
     if (field != nullptr) draw_plane(edits, slice, *field);

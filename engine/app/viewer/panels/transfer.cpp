@@ -6,6 +6,7 @@
 
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/hidden.h"
 
 namespace catena::app {
 
@@ -316,8 +317,8 @@ void draw_transfer(PanelContext& context) {
   LookState::Transfer& state = context.state.look.transfer;
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) state.before.reset();
   const scene::Scene& scene = context.scene.scene();
-  scene.world.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) {
-    if (!begin_item(edits, volume.where, volume.visible, "volume", name_of(scene, volume.field))) return;
+  scene.world.each<scene::Volume>([&](scene::Entity e, const scene::Volume& volume) {
+    if (!begin_item(edits, volume.where, !is_hidden(scene.world, e), "volume", name_of(scene, volume.field))) return;
     draw_editor(context, edits, volume);
     end_item();
   });
