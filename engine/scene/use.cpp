@@ -84,7 +84,7 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
       const field::ScalarGrid& grid = *source.drawn.scalar->grid();
       if (!scene.world.has<ValueSample>(field)) scene.world.emplace<ValueSample>(field);
       ValueSample& sample = scene.world.get<ValueSample>(field);
-      if (sample.grid != &grid) sample = {&grid, sorted_values(grid)};
+      if (sample.grid != source.drawn.get()) sample = {source.drawn.get(), sorted_values(grid)};
       complete_transfer(volume.transfer, grid, *sample.sorted);
     });
   return source.drawn;
