@@ -45,8 +45,9 @@ TEST(PlotFrame, AnyRangeBecomesOneThatCanBePlotted) {
                                                                      {1, 1 + 1e-15}}) {
     const auto range = plot_range(lo, hi);
     EXPECT_TRUE(std::isfinite(range[1] - range[0]) && range[0] < range[1]) << lo << " " << hi << ": " << range[0] << " " << range[1];
-    if (std::isfinite(lo) && std::isfinite(hi) && std::fabs(lo) < 1e300)
+    if (std::isfinite(lo) && std::isfinite(hi) && std::fabs(lo) < 1e300) {
       EXPECT_TRUE(range[0] <= std::max(lo, hi) && range[1] >= std::min(lo, hi));
+    }
   }
   EXPECT_EQ(plot_range(-1, 2), (std::array<double, 2>{-1, 2}));
 }

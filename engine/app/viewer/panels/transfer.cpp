@@ -55,7 +55,7 @@ void draw_curve(const Editor& editor) {
     list->AddText({lo.x + 3, y - ImGui::GetTextLineHeight()}, ImGui::GetColorU32(ImGuiCol_Text, 0.4f), fmt::format("{}", alpha).c_str());
   }
   // the area under the curve in the colours that it is drawn with
-  constexpr float kStep = 2;
+  constexpr float kStep = 1;
   ImVec2 last;
   for (float x = lo.x; x <= hi.x; x += kStep) {
     const double value = plot.value_at(x);
@@ -193,36 +193,40 @@ void move_colors(Editor& editor) {
 
 // ---- what is typed and chosen ----
 
-/// The selected points in numbers, and the colour's picker.
-void draw_selected(Editor& editor) {
-  auto& [volume, opacity, color, before, frame, whole] = editor.state;
-  if (opacity && *opacity < editor.edit.opacities.size()) {
-    auto point = editor.edit.opacities[*opacity];
-    ImGui::SetNextItemWidth(90);
-    bool typed = typed_number("##value", point.value, "value of the selected point; Enter");
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(90);
-    typed = typed_number("opacity", point.alpha, "opacity of the selected point per unit of length, below 1; Enter") || typed;
-    if (typed) {
-      TransferEdit now = editor.edit;
-      move_point(now.opacities, editor.plot, *opacity, point.value, point.alpha);
-      editor.edits.drag(opacity_edits(editor.volume, now), "opacity");
-    }
-  }
-  if (editor.edit.map.empty() && color && *color < editor.edit.colors.size()) {
-    auto point = editor.edit.colors[*color];
-    ImGui::SetNextItemWidth(90);
-    bool changed = typed_number("##color value", point.value, "value of the selected colour; Enter");
-    ImGui::SameLine();
-    float rgb[3] = {point.color.r, point.color.g, point.color.b};
-    changed = ImGui::ColorEdit3("colour", rgb, ImGuiColorEditFlags_NoInputs) || changed;
-    if (changed) {
-      TransferEdit now = editor.edit;
-      move_point(now.colors, editor.bar, *color, point.value);
-      now.colors[*color].color = {rgb[0], rgb[1], rgb[2]};
-      editor.edits.drag(color_edits(editor.volume, now), "colours");
-    }
-  }
+/// The selected point in numbers. The line is there without one too: nothing moves when one is taken.
+void draw_opacity_line(Editor& editor, bool mine) {
+  const auto selected = editor.state.opacity;
+  const bool has = mine && selected && *selected < editor.edit.opacities.size();
+  auto point = has ? editor.edit.opacities[*selected] : scene::TransferFunction::OpacityPoint{0, 0};
+  ImGui::BeginDisabled(!has);
+  ImGui::SetNextItemWidth(90);
+  bool typed = typed_number("##value", point.value, "value of the selected point; Enter");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(90);
+  typed = typed_number("opacity", point.alpha, "opacity of the selected point per unit of length, below 1; Enter") || typed;
+  ImGui::EndDisabled();
+  if (!typed || !has) return;
+  TransferEdit now = editor.edit;
+  move_point(now.opacities, editor.plot, *selected, point.value, point.alpha);
+  editor.edits.drag(opacity_edits(editor.volume, now), "opacity");
+}
+
+void draw_color_line(Editor& editor, bool mine) {
+  const auto selected = editor.state.color;
+  const bool has = mine && editor.edit.map.empty() && selected && *selected < editor.edit.colors.size();
+  auto point = has ? editor.edit.colors[*selected] : scene::TransferFunction::ColorPoint{0, {0.3f, 0.3f, 0.3f}};
+  ImGui::BeginDisabled(!has);
+  ImGui::SetNextItemWidth(90);
+  bool changed = typed_number("##color value", point.value, "value of the selected colour; Enter");
+  ImGui::SameLine();
+  float rgb[3] = {point.color.r, point.color.g, point.color.b};
+  changed = ImGui::ColorEdit3("colour", rgb, ImGuiColorEditFlags_NoInputs) || changed;
+  ImGui::EndDisabled();
+  if (!changed || !has) return;
+  TransferEdit now = editor.edit;
+  move_point(now.colors, editor.bar, *selected, point.value);
+  now.colors[*selected].color = {rgb[0], rgb[1], rgb[2]};
+  editor.edits.drag(color_edits(editor.volume, now), "colours");
 }
 
 void draw_choices(Editor& editor) {
@@ -306,7 +310,8 @@ void draw_editor(PanelContext& context, Edits& edits, const scene::Volume& volum
   const std::string hi = fmt::format("{:.5g}", editor.plot.hi);
   ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(hi.c_str()).x - kHandle);
   ImGui::TextDisabled("%s", hi.c_str());
-  if (mine) draw_selected(editor);
+  draw_opacity_line(editor, mine);
+  draw_color_line(editor, mine);
   draw_choices(editor);
 }
 
