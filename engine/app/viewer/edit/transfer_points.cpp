@@ -51,7 +51,9 @@ std::optional<std::size_t> insert(Points& points, const PlotFrame& frame, typena
   const std::optional<double> value = between(below, above, frame, point.value);
   if (!value) return std::nullopt;
   point.value = *value;
-  return static_cast<std::size_t>(points.insert(next, point) - points.begin());
+  const auto index = next - points.begin();
+  points.insert(next, point);
+  return static_cast<std::size_t>(index);
 }
 
 template <class Points>
