@@ -30,7 +30,7 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
   const auto row = [](const char* name, const std::string& text) {
     if (text.empty()) return;
     ImGui::TextDisabled("%s", name);
-    ImGui::SameLine(62);
+    ImGui::SameLine(110);
     ImGui::TextUnformatted(text.c_str());
   };
   if (source.file) {

@@ -199,10 +199,10 @@ void draw_opacity_line(Editor& editor, bool mine) {
   const bool has = mine && selected && *selected < editor.edit.opacities.size();
   auto point = has ? editor.edit.opacities[*selected] : scene::TransferFunction::OpacityPoint{0, 0};
   ImGui::BeginDisabled(!has);
-  ImGui::SetNextItemWidth(90);
+  ImGui::SetNextItemWidth(78);
   bool typed = typed_number("##value", point.value, "value of the selected point; Enter");
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(90);
+  ImGui::SetNextItemWidth(78);
   typed = typed_number("opacity", point.alpha, "opacity of the selected point per unit of length, below 1; Enter") || typed;
   ImGui::EndDisabled();
   if (!typed || !has) return;
@@ -216,7 +216,7 @@ void draw_color_line(Editor& editor, bool mine) {
   const bool has = mine && editor.edit.map.empty() && selected && *selected < editor.edit.colors.size();
   auto point = has ? editor.edit.colors[*selected] : scene::TransferFunction::ColorPoint{0, {0.3f, 0.3f, 0.3f}};
   ImGui::BeginDisabled(!has);
-  ImGui::SetNextItemWidth(90);
+  ImGui::SetNextItemWidth(78);
   bool changed = typed_number("##color value", point.value, "value of the selected colour; Enter");
   ImGui::SameLine();
   float rgb[3] = {point.color.r, point.color.g, point.color.b};
@@ -237,10 +237,10 @@ void draw_choices(Editor& editor) {
     tip("makes the map's colours points that can be moved");
   }
   auto reach = *reach_of(editor.edit.colors, editor.edit.opacities);
-  ImGui::SetNextItemWidth(90);
+  ImGui::SetNextItemWidth(78);
   bool typed = typed_number("##from", reach[0], "the least value with a point; moving it moves all; Enter");
   ImGui::SameLine();
-  ImGui::SetNextItemWidth(90);
+  ImGui::SetNextItemWidth(78);
   typed = typed_number("range", reach[1], "the greatest value with a point; moving it moves all; Enter") || typed;
   if (typed) {
     const auto writes = range_edits(editor.volume, editor.edit, reach[0], reach[1]);
@@ -254,7 +254,7 @@ void draw_choices(Editor& editor) {
   tip("plot all values of the field, not only those with points and the frequent ones");
 
   auto unit = static_cast<float>(editor.edit.unit);
-  ImGui::SetNextItemWidth(90);
+  ImGui::SetNextItemWidth(78);
   const float speed = 0.01f * unit;
   if (ImGui::DragFloat("unit", &unit, speed, 1e-30f, 1e30f, "%.4g", ImGuiSliderFlags_AlwaysClamp) && unit > 0) {
     TransferEdit now = editor.edit;
