@@ -88,6 +88,12 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
   return Done{};
 }
 
+/// |F| by the largest force; 0 where there is none.
+double strain_of(const scene::Scene& scene, const scene::Cursor& cursor) {
+  const double most = scene.coupling.max_force_n;
+  return most > 0 && is_finite(cursor.force_n) ? std::clamp(norm(cursor.force_n) / most, 0.0, 1.0) : 0;
+}
+
 void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   Bounds drawn = packet_bounds(packet);
   if (drawn.empty()) {
@@ -107,6 +113,7 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
     if (!cursor.visible || !is_finite(cursor.probe)) return;
     CursorItem item{
         cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving, packet.add_object("cursor", "")};
+    if (cursor.pseudo_haptic) item.strain = strain_of(scene, cursor);
     item.active.resize(item.proxies.size(), true);
     item.leaving.resize(item.proxies.size(), 0.0);
     if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);

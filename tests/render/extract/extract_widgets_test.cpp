@@ -137,6 +137,7 @@ TEST(ExtractWidgets, WithoutDataThePlaneIsASquareOfEdgeL) {
   scene::Scene scene = scene_of();
   const scene::Entity e = add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(1, 2, 3), Vec3(0.0)}});
   scene.world.get<scene::Widget>(e).spec.length = 6;
+  scene.world.get<scene::Widget>(e).complete = true;  // or use_widget says 4
   const FramePacket packet = packet_of(scene);
   const TubeItem& border = packet.widgets.tubes[0];
   ASSERT_EQ(border.points.size(), 5u);
