@@ -5,6 +5,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/systems.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
@@ -62,6 +63,7 @@ Projection projection_of(scene::Volume::Projection projection) {
 Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Volume>(scene.world)) {
     const scene::Volume& volume = scene.world.get<scene::Volume>(e);
+    if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
     CATENA_TRY(auto color_by, color_source(scene, volume.color_by));
@@ -75,6 +77,7 @@ Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
 Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Isosurface>(scene.world)) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
+    if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
