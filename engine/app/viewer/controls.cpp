@@ -39,7 +39,10 @@ void move_hand(Controls& controls, const Input& input) {
   auto place = render::project(camera, controls.hand);
   if (!place) place = render::project(camera, controls.view.target);  // the hand was behind the eye: back into the picture
   if (!place) return;
-  const double depth = place->z * (1 + kDepthPerNotch * input.wheel);
+  double depth = place->z;
+  const auto held = controls.held && controls.hand_mode ? render::project(camera, *controls.held) : std::nullopt;
+  if (held) depth += std::min(1.0, std::hypot(input.dx, input.dy) / Controls::kDepthPixels) * (held->z - depth);
+  depth *= 1 + kDepthPerNotch * input.wheel;
   const Vec3 moved = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
   controls.hand = controls.hand_mode ? controls.hand + yielding(moved - controls.hand, controls.force_n, controls.max_force_n) : moved;
 }

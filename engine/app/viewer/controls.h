@@ -44,6 +44,10 @@ struct Controls {
   bool hand_mode = false;
   Vec3 force_n{0.0};       ///< on the hand, world axes
   double max_force_n = 0;  ///< 0: the mouse yields to nothing
+  /// Where the chain holds the hand. A mouse says nothing of depth: as it moves over the picture the hand's depth goes over to the
+  /// held place's, by the share (pixels moved) / kDepthPixels, so that it follows what it touches; the wheel alone presses in.
+  std::optional<Vec3> held{};
+  static constexpr double kDepthPixels = 60;
   bool fly = false;
   double fly_speed = 1;  ///< times kFlySizesPerS
 };

@@ -108,6 +108,16 @@ void Session::obey_once(const Input& input, Changed& changed) {
   if (!input.dropped.empty()) drop(input.dropped.back());
 }
 
+/// The last proxy that something holds away from the hand.
+static std::optional<Vec3> held_place(const exchange::HapticState& felt) {
+  std::optional<Vec3> place;
+  for (int i = 0; i < felt.link_count; ++i) {
+    const exchange::LinkReport& link = felt.links[static_cast<std::size_t>(i)];
+    if (link.active && link.gap > 0) place = link.proxy;
+  }
+  return place;
+}
+
 Changed Session::take_input(double wait_s) {
   Changed changed;
   for (const Input& piece : window_->poll(wait_s)) {
@@ -129,6 +139,7 @@ Changed Session::take_input(double wait_s) {
   controls_.fly = state_.fly;
   controls_.force_n = hand_.is_mouse() ? hand_.felt().force_n : Vec3(0.0);
   controls_.max_force_n = scene_->scene().coupling.max_force_n;
+  controls_.held = hand_.is_mouse() ? held_place(hand_.felt()) : std::nullopt;
   if (changed.hand) hand_.move_mouse(scene_->scene(), controls_.hand, controls_.buttons);
   if (changed.view) pin_camera();
   return changed;

@@ -233,6 +233,29 @@ TEST(HandSetup, TheHandBeginsAtTheFirstSeed) {
   EXPECT_EQ(first_probe(*scene, {}), Vec3(1.0, 0.5, 0.0));
 }
 
+TEST(Controls, TheHandsDepthFollowsWhatHoldsIt) {
+  Controls c = controls();
+  c.hand_mode = true;
+  c.hand = {0, 1, 0};
+  c.held = Vec3(0, 3, 0);  // two units deeper
+  Input still = input(0, 0, 1);
+  const double before = c.hand.y;
+  apply(c, still);
+  EXPECT_LT(std::fabs(c.hand.y - before), 0.2) << "the wheel alone presses";
+  c.hand = {0, 1, 0};
+  Input sideways = input(Controls::kDepthPixels / 2, 0);
+  apply(c, sideways);
+  EXPECT_NEAR(c.hand.y, 2, 1e-9) << "half the way";
+  sideways.dx = 10 * Controls::kDepthPixels;
+  apply(c, sideways);
+  EXPECT_NEAR(c.hand.y, 3, 1e-9) << "all of it, and no further";
+  c.hand_mode = false;
+  c.hand = {0, 1, 0};
+  sideways.control = true;
+  apply(c, sideways);
+  EXPECT_NEAR(c.hand.y, 1, 1e-9) << "only in hand mode";
+}
+
 TEST(Controls, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
   const Vec3 force(0, 0, 4);
   EXPECT_EQ(yielding({0, 0, -1}, force, 8), Vec3(0, 0, -1 + 0.375)) << "half the greatest force takes half of three quarters";
