@@ -3,6 +3,7 @@
 #include "engine/base/output_file.h"
 #include "engine/scene/document.h"
 #include "engine/scene/lines.h"
+#include "engine/scene/transfer.h"
 
 namespace catena::scene {
 namespace {
@@ -28,12 +29,16 @@ bool same_mesh(const MeshSource& a, const MeshSource& b) {
 }
 
 void carry_fields(Scene& old, Scene& fresh) {
-  fresh.world.each<FieldSource>([&](Entity, FieldSource& source) {
-    old.world.each<FieldSource>([&](Entity, const FieldSource& before) {
+  fresh.world.each<FieldSource>([&](Entity e, FieldSource& source) {
+    old.world.each<FieldSource>([&](Entity f, const FieldSource& before) {
       if (before.loaded.get() == nullptr || !same_source(before, source)) return;
       if (source.loaded.get() == nullptr) source.loaded = before.loaded;
       if (source.drawn.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
         source.drawn = before.drawn;
+      // of whose values someone asked before
+      if (source.drawn.get() != nullptr && source.drawn.get() == before.drawn.get() && old.world.has<ValueSample>(f) &&
+          !fresh.world.has<ValueSample>(e))
+        fresh.world.emplace<ValueSample>(e, old.world.get<ValueSample>(f));
     });
   });
 }

@@ -218,6 +218,7 @@ struct Cursor {
   Vec3 force_n{0.0};
   double size = 0;  ///< glyph radius, world units; 0: fitted
   bool visible = false;
+  bool pseudo_haptic = false;  ///< nothing pushes the hand: lag and colour show the force
 };
 
 /// One link of the chain; its own keys are read by the constraint that it names.

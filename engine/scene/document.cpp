@@ -14,7 +14,7 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
   document.overrides_ = overrides;
   if (path.ends_with(".json")) {
     if (!colors.map.empty() || colors.range)
-      return Error{one_line(path + ": a scene says its colours; a colour map goes with a data file")};
+      return Error{one_line(path + ": a scene says its colours; a data file was expected beside a colour map")};
     CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)"));
   } else {
     if (!overrides.empty()) return Error{one_line(path + ": a field of a data file cannot be replaced; a scene file (.json) was expected")};

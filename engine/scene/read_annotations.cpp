@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kMostPoints = 576;
 
-/// What has colours that a bar can show.
+/// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
   return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by);
 }

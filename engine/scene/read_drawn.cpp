@@ -2,6 +2,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
 
@@ -82,7 +83,7 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
 Outcome read_volumes(Scene& scene, const json::Node& node) {
   return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
     CATENA_CHECK(json::only_keys(item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity",
-                                        "shade", "clip", "projection", "color_by"}));
+                                        "shade", "clip", "visible", "projection", "color_by"}));
     Volume volume;
     volume.where = item;
     CATENA_TRY(volume.field, read_field_name(scene, item));
@@ -91,14 +92,15 @@ Outcome read_volumes(Scene& scene, const json::Node& node) {
     CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
     CATENA_TRY(volume.color_by, read_field_colors(scene, item));
     CATENA_CHECK(read_projection(volume, item));
-    scene.world.emplace<Volume>(scene.world.create(), std::move(volume));
-    return Done{};
+    const Entity e = scene.world.create();
+    scene.world.emplace<Volume>(e, std::move(volume));
+    return read_visible(scene, e, item);
   });
 }
 
 Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
   return each_item(node, "isosurfaces", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip", "color_by"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip", "visible", "color_by"}));
     Isosurface surface;
     surface.where = item;
     CATENA_TRY(surface.field, read_field_name(scene, item));
@@ -112,15 +114,16 @@ Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
     }
     CATENA_TRY(surface.color, get_color(item, "color", surface.color));
     CATENA_TRY(surface.opacity, read_opacity(item, surface.opacity));
-    scene.world.emplace<Isosurface>(scene.world.create(), std::move(surface));
-    return Done{};
+    const Entity e = scene.world.create();
+    scene.world.emplace<Isosurface>(e, std::move(surface));
+    return read_visible(scene, e, item);
   });
 }
 
 Outcome read_meshes(Scene& scene, const json::Node& node) {
   return each_item(node, "meshes", [&](const json::Node& item) -> Outcome {
     CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "color_by", "range", "transfer", "opacity",
-                                        "shading", "edges", "clip"}));
+                                        "shading", "edges", "clip", "visible"}));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     if (!is_name(name))
       return json::error_at(*item.find("name"),
@@ -147,8 +150,9 @@ Outcome read_meshes(Scene& scene, const json::Node& node) {
     surface.mesh = scene.world.create();
     scene.world.emplace<Name>(surface.mesh, {name});
     scene.world.emplace<MeshSource>(surface.mesh, std::move(source));
-    if (drawn) scene.world.emplace<SurfaceMesh>(scene.world.create(), std::move(surface));
-    return Done{};
+    const Entity e = scene.world.create();
+    if (drawn) scene.world.emplace<SurfaceMesh>(e, std::move(surface));
+    return read_visible(scene, e, item);
   });
 }
 

@@ -1,7 +1,9 @@
 /// "slices": [{"field", "point" and "normal", or "axis" and "at", or "widget", the colours of read_transfer.h, "opacity", "lit", "clip",
+/// "visible",
 ///             "contours": {"levels" | "count" | "spacing", "color", "width"}}]
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
 #include "engine/scene/widgets.h"
@@ -93,8 +95,8 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"slices\" is no array; an array of objects was expected");
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(
-        item, {"field", "point", "normal", "axis", "at", "widget", "color", "range", "transfer", "opacity", "contours", "lit", "clip"}));
+    CATENA_CHECK(json::only_keys(item, {"field", "point", "normal", "axis", "at", "widget", "color", "range", "transfer", "opacity",
+                                        "contours", "lit", "clip", "visible"}));
     Slice slice;
     slice.where = item;
     CATENA_TRY(slice.shown.field, read_field_name(scene, item));
@@ -108,7 +110,9 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
     if (const json::Node* contours = item.find("contours")) {
       CATENA_TRY(slice.contours, read_contours(*contours));
     }
-    scene.world.emplace<Slice>(scene.world.create(), std::move(slice));
+    const Entity e = scene.world.create();
+    scene.world.emplace<Slice>(e, std::move(slice));
+    CATENA_CHECK(read_visible(scene, e, item));
   }
   return Done{};
 }

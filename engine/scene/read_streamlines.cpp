@@ -1,5 +1,6 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
@@ -51,7 +52,7 @@ Outcome read_streamlines(Scene& scene, const json::Node& node) {
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(json::only_keys(item, {"field", "seeds", "radius", "color", "color_by", "range", "transfer", "kind", "min_speed", "length",
-                                        "tolerance", "arrows", "pulse", "clip"}));
+                                        "tolerance", "arrows", "pulse", "clip", "visible"}));
     StreamlineSet set;
     set.where = item;
     CATENA_TRY(set.field, read_field_name(scene, item));
@@ -72,7 +73,9 @@ Outcome read_streamlines(Scene& scene, const json::Node& node) {
     if (set.tolerance > 1e-2)
       return json::error_at(*item.find("tolerance"),
                             "\"tolerance\" is " + to_text(set.tolerance) + " of the domain's length; at most 0.01 was expected");
-    scene.world.emplace<StreamlineSet>(scene.world.create(), std::move(set));
+    const Entity e = scene.world.create();
+    scene.world.emplace<StreamlineSet>(e, std::move(set));
+    CATENA_CHECK(read_visible(scene, e, item));
   }
   return Done{};
 }

@@ -22,8 +22,7 @@ struct Range {
 
 using Given = std::optional<std::array<double, 2>>;
 
-Range range_of(std::vector<float> values, bool masked, const Given& given) {
-  std::sort(values.begin(), values.end());
+Range range_of(const std::vector<float>& values, bool masked, const Given& given) {
   const auto percentile = [&](double share) { return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))]; };
   Range range{percentile(0.005), percentile(0.998), 0};
   if (!(range.lo < range.hi)) range = {values.front(), values.back(), 0};
@@ -51,39 +50,72 @@ double weight(const Range& range, double value) {
   return x * x * (3 - 2 * x);
 }
 
-}  // namespace
-
-std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most) {
-  const field::Box& box = grid.index_box();
+/// Calls take(origin, extent) for blocks of 8^3 voxels spread over the box, at most about `most` voxels in all.
+template <class Take>
+void each_block(const field::Box& box, std::size_t most, Take&& take) {
   const field::Index3 lo{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
   const field::Index3 size{static_cast<int>(box.hi.x - box.lo.x) + 1, static_cast<int>(box.hi.y - box.lo.y) + 1,
                            static_cast<int>(box.hi.z - box.lo.z) + 1};
   const double voxels = static_cast<double>(size.x) * size.y * size.z;
   const int every = std::max(1, static_cast<int>(std::ceil(std::cbrt(voxels / static_cast<double>(most)))));
 
-  std::vector<float> values, block;
-  std::vector<std::uint8_t> valid;
   for (int z = 0; z < size.z; z += 8 * every)
     for (int y = 0; y < size.y; y += 8 * every)
       for (int x = 0; x < size.x; x += 8 * every) {
         const field::Index3 origin{lo.x + x, lo.y + y, lo.z + z};
         const field::Index3 extent{std::min(8, size.x - x), std::min(8, size.y - y), std::min(8, size.z - z)};
-        const auto count = static_cast<std::size_t>(extent.x * extent.y * extent.z);
-        block.resize(count);
-        valid.assign(count, 1);
-        grid.read_block(origin, extent, block);
-        if (grid.has_mask()) grid.read_cell_valid(origin, extent, valid);
-        for (std::size_t i = 0; i < count; ++i)
-          if (valid[i] != 0 && std::isfinite(block[i])) values.push_back(block[i]);
+        take(origin, extent, static_cast<std::size_t>(extent.x * extent.y * extent.z));
       }
+}
+
+}  // namespace
+
+std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most) {
+  std::vector<float> values, block;
+  std::vector<std::uint8_t> valid;
+  each_block(grid.index_box(), most, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+    block.resize(count);
+    valid.assign(count, 1);
+    grid.read_block(origin, extent, block);
+    if (grid.has_mask()) grid.read_cell_valid(origin, extent, valid);
+    for (std::size_t i = 0; i < count; ++i)
+      if (valid[i] != 0 && std::isfinite(block[i])) values.push_back(block[i]);
+  });
   return values;
 }
 
+std::vector<float> sample_magnitudes(const field::VectorGrid& grid, std::size_t most) {
+  std::vector<float> values, block;
+  each_block(grid.index_box(), most, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+    block.resize(3 * count);
+    grid.read_block(origin, extent, block);
+    for (std::size_t i = 0; i < 3 * count; i += 3) {
+      const float length = std::hypot(block[i], block[i + 1], block[i + 2]);
+      if (std::isfinite(length)) values.push_back(length);
+    }
+  });
+  return values;
+}
+
+std::shared_ptr<const std::vector<float>> sorted_values(const field::ScalarGrid& grid) {
+  auto values = std::make_shared<std::vector<float>>(sample_values(grid, kMostSamples));
+  std::sort(values->begin(), values->end());
+  return values;
+}
+
+bool is_complete(const TransferFunction& transfer) {
+  return !transfer.colors.empty() && !(transfer.extinctions.empty() && transfer.opacities.empty());
+}
+
 void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid) {
+  if (!is_complete(transfer)) complete_transfer(transfer, grid, *sorted_values(grid));
+}
+
+void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid, const std::vector<float>& sorted) {
+  if (is_complete(transfer)) return;
   const bool opaque = transfer.extinctions.empty() && transfer.opacities.empty();
-  if (!transfer.colors.empty() && !opaque) return;
-  std::vector<float> values = sample_values(grid, kMostSamples);
-  if (values.empty()) values.push_back(0);
+  const std::vector<float> none{0};
+  const std::vector<float>& values = sorted.empty() ? none : sorted;
   const Range range = range_of(values, grid.has_mask(), transfer.named.range);
   const bool flat = !(range.lo < range.hi);
 

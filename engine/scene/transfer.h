@@ -4,6 +4,7 @@
 ///   away; else the lowest value. w(s) = smoothstep of |s - b| from a 6 % margin to the far end of the range;
 ///   sigma(s) = k w(s), k such that a ray across the domain meets an optical depth of 2.5 on average.
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "engine/field/grid.h"
@@ -14,8 +15,23 @@ namespace catena::scene {
 /// At most about `most` finite values of valid cells' voxels, spread over the grid in blocks of 8^3.
 std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most);
 
+/// The same of the magnitudes of a vector grid, valid or not.
+std::vector<float> sample_magnitudes(const field::VectorGrid& grid, std::size_t most);
+
+/// sample_values in rising order, as many as complete_transfer looks at.
+std::shared_ptr<const std::vector<float>> sorted_values(const field::ScalarGrid& grid);
+
+/// Beside a FieldSource once a transfer function has asked: the sorted_values of its drawn grid.
+struct ValueSample {
+  const void* grid = nullptr;
+  std::shared_ptr<const std::vector<float>> sorted;
+};
+
 /// Fills what is missing: colours if there are none, extinctions if there are neither extinctions nor opacities. A stated range
 /// replaces that of the percentiles; a map named without one reaches over all values.
+bool is_complete(const TransferFunction& transfer);
 void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid);
+/// With the sorted_values of the grid that were made before.
+void complete_transfer(TransferFunction& transfer, const field::ScalarGrid& grid, const std::vector<float>& sorted);
 
 }  // namespace catena::scene

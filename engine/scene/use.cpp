@@ -80,7 +80,12 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
   }
   if (source.drawn.scalar)
     scene.world.each<Volume>([&](Entity, Volume& volume) {
-      if (volume.field == field) complete_transfer(volume.transfer, *source.drawn.scalar->grid());
+      if (volume.field != field || is_complete(volume.transfer)) return;
+      const field::ScalarGrid& grid = *source.drawn.scalar->grid();
+      if (!scene.world.has<ValueSample>(field)) scene.world.emplace<ValueSample>(field);
+      ValueSample& sample = scene.world.get<ValueSample>(field);
+      if (sample.grid != source.drawn.get()) sample = {source.drawn.get(), sorted_values(grid)};
+      complete_transfer(volume.transfer, grid, *sample.sorted);
     });
   return source.drawn;
 }

@@ -5,6 +5,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/systems.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
@@ -62,6 +63,7 @@ Projection projection_of(scene::Volume::Projection projection) {
 Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Volume>(scene.world)) {
     const scene::Volume& volume = scene.world.get<scene::Volume>(e);
+    if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
     CATENA_TRY(auto color_by, color_source(scene, volume.color_by));
@@ -75,6 +77,7 @@ Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
 Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Isosurface>(scene.world)) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
+    if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
@@ -83,6 +86,12 @@ Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
                                   surface.clipped, std::move(color_by)});
   }
   return Done{};
+}
+
+/// |F| by the largest force; 0 where there is none.
+double strain_of(const scene::Scene& scene, const scene::Cursor& cursor) {
+  const double most = scene.coupling.max_force_n;
+  return most > 0 && is_finite(cursor.force_n) ? std::clamp(norm(cursor.force_n) / most, 0.0, 1.0) : 0;
 }
 
 void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
@@ -104,6 +113,7 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
     if (!cursor.visible || !is_finite(cursor.probe)) return;
     CursorItem item{
         cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving, packet.add_object("cursor", "")};
+    if (cursor.pseudo_haptic) item.strain = strain_of(scene, cursor);
     item.active.resize(item.proxies.size(), true);
     item.leaving.resize(item.proxies.size(), 0.0);
     if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
@@ -173,7 +183,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
   CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
-  extract_widgets(scene, data_bounds(packet), packet);
+  CATENA_CHECK(extract_widgets(scene, data_bounds(packet), packet));
   set_eyes(packet, scene.stereo);
   return packet;
 }

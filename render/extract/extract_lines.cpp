@@ -8,6 +8,7 @@
 #include "engine/base/assert.h"
 #include "engine/base/numbers.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/lines.h"
 #include "render/extract/flatten.h"
 #include "render/extract/scene_parts.h"
@@ -178,7 +179,9 @@ const ColorTable* shown_colors(const scene::World& world, scene::Entity set) {
 
 Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
   std::vector<scene::Entity> sets;
-  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet&) { sets.push_back(e); });
+  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet&) {
+    if (!is_hidden(scene.world, e)) sets.push_back(e);
+  });
   for (const scene::Entity e : sets) {
     CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
     if (!scene.world.has<FlatLines>(e)) scene.world.emplace<FlatLines>(e);

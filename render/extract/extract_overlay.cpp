@@ -1,6 +1,7 @@
 #include "render/extract/extract_overlay.h"
 
 #include "engine/base/assert.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/units.h"
 #include "render/extract/bar_ticks.h"
 #include "render/extract/extract_lines.h"
@@ -17,7 +18,7 @@ std::optional<Color> color_of(const std::optional<scene::Rgb>& c) {
 
 std::string name_of(const scene::World& world, scene::Entity e) { return world.has<scene::Name>(e) ? world.get<scene::Name>(e).value : ""; }
 
-/// The colours that an entity shows (value, r, g, b), and what it calls them.
+/// The colours that an entity shows (value, r, g, b), and what it calls them. None where it is hidden.
 struct Shown {
   std::vector<std::array<double, 4>> colors;
   std::string name;
@@ -29,10 +30,11 @@ std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunc
   return rows;
 }
 
-/// The packet's slices are in the order of their owners.
+/// The packet's slices are in the order of their owners, without the hidden ones.
 const SliceItem* slice_item(const scene::World& world, scene::Entity wanted, const FramePacket& packet) {
   std::size_t i = 0, found = packet.slices.size();
   world.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
+    if (is_hidden(world, e)) return;
     if (e == wanted) found = i;
     ++i;
   });
@@ -44,6 +46,7 @@ std::string with_unit(const std::string& name, const std::string& unit) { return
 
 Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
   const scene::World& world = scene.world;
+  if (is_hidden(world, e)) return {};
   const auto named = [&](scene::Entity field) { return with_unit(name_of(world, field), scene::unit_of(scene, field)); };
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);

@@ -6,6 +6,7 @@
 #include "engine/base/assert.h"
 #include "engine/base/numbers.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/scene_parts.h"
 
@@ -95,6 +96,7 @@ bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
 Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
     const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
+    if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
     field::AnyField shown;
     if (surface.color_by) {
@@ -137,6 +139,7 @@ Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contour
 
 Outcome extract_slices(scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Slice>(scene.world)) {
+    if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, sliced_grid(scene, e));
     const scene::Slice& slice = scene.world.get<scene::Slice>(e);
     // the hand may carry a widget's plane out of the domain: there nothing is seen

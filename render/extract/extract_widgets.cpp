@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/ruler.h"
 #include "render/extract/plane_outline.h"
 #include "render/extract/scene_parts.h"
 #include "render/extract/widget_shapes.h"
@@ -21,6 +22,11 @@ constexpr double kSphere = 0.12, kBall = 0.012, kLine = 0.0035;
 constexpr double kNormalReach = 1.45, kFreeReach = 2.1, kHead = 0.34, kHeldSquare = 0.36;
 // by the handle's radius
 constexpr double kGradientReach = 6, kHandleReach = 7, kHandleHead = 2.4, kHandleSquare = 2.8;
+
+/// Beside its widget: what a ruler measured when the packet was made.
+struct DrawnRuler {
+  scene::RulerMeasure measure;
+};
 
 double length_of(const scene::Widget& widget) { return widget.spec.length > 0 ? widget.spec.length : 4; }
 
@@ -107,12 +113,15 @@ void draw_seed(WidgetShapes& shapes, const scene::Widget& widget) {
   shapes.circle(at, shapes.towards_eye(at), (hovered ? 2.6 : 2.1) * radius, 0.8, color_of(widget.color));
 }
 
-/// A rake's line of seeds, a ruler's length.
-void draw_line(WidgetShapes& shapes, const scene::Widget& widget) {
+/// A rake's line of seeds, and a ruler with the way that it measures.
+void draw_line(WidgetShapes& shapes, const scene::Widget& widget, const DrawnRuler* ruler) {
   const auto& [a, b] = widget.state.pose.points;
   const Vec3 middle = 0.5 * a + 0.5 * b;
   const double radius = radius_of(widget);
-  shapes.tube({a, b}, 1.2, color_of(widget.color));
+  const bool bent = ruler != nullptr && ruler->measure.how != scene::RulerMeasure::How::straight;
+  const Color color = color_of(widget.color);
+  shapes.tube({a, b}, bent ? 0.8 : 1.2, bent ? mixed(color, {0.5f, 0.5f, 0.5f}, 0.6f) : color);
+  if (bent) shapes.tube(ruler->measure.points, 1.6, color);
   draw_handle(shapes, widget, 0, a, radius);
   draw_handle(shapes, widget, 1, b, radius);
   draw_handle(shapes, widget, 2, middle, 0.8 * radius);
@@ -152,7 +161,7 @@ void draw_box(WidgetShapes& shapes, const scene::Widget& widget) {
   if (is_dragged(widget) && widget.state.handle == 6) draw_handle_axes(shapes, widget, box.centre());
 }
 
-void draw(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn) {
+void draw(WidgetShapes& shapes, const scene::Widget& widget, const DrawnRuler* ruler, const Bounds& drawn) {
   switch (widget.spec.kind) {
     case Kind::cutting_plane:
       return draw_cutting_plane(shapes, widget, drawn);
@@ -164,8 +173,21 @@ void draw(WidgetShapes& shapes, const scene::Widget& widget, const Bounds& drawn
       return draw_box(shapes, widget);
     case Kind::rake:
     case Kind::ruler:
-      return draw_line(shapes, widget);
+      return draw_line(shapes, widget, ruler);
   }
+}
+
+/// Of a polyline, by arc length.
+Vec3 halfway(const std::vector<Vec3>& points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += norm(points[i] - points[i - 1]);
+  double left = 0.5 * length;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double step = norm(points[i] - points[i - 1]);
+    if (step > 0 && left <= step) return points[i - 1] + (left / step) * (points[i] - points[i - 1]);
+    left -= step;
+  }
+  return points.empty() ? Vec3(0.0) : points.back();
 }
 
 /// The widgets of a packet keep their ids when they are made anew.
@@ -183,22 +205,25 @@ void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& pa
   scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (!is_drawable(widget)) return;
     shapes.begin(id_of(packet, name_of(scene, e)), kLine * length_of(widget));
-    draw(shapes, widget, drawn);
+    draw(shapes, widget, scene.world.has<DrawnRuler>(e) ? &scene.world.get<DrawnRuler>(e) : nullptr, drawn);
   });
 }
 
-void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
-  set_widgets(scene, drawn, packet);
-  scene.world.each<scene::Widget>([&](scene::Entity, const scene::Widget& widget) {
-    if (widget.spec.kind != Kind::ruler || !is_drawable(widget)) return;
-    const auto& [a, b] = widget.state.pose.points;
+Outcome extract_widgets(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::Widget>(scene.world)) {
+    if (scene.world.get<scene::Widget>(e).spec.kind != Kind::ruler || !is_drawable(scene.world.get<scene::Widget>(e))) continue;
+    CATENA_TRY(scene::RulerMeasure measure, scene::use_ruler(scene, e));
     LabelItem label;
-    label.at = 0.5 * a + 0.5 * b;
-    label.text = fmt::format("{:.4g} units", norm(b - a));
+    label.at = halfway(measure.points);
+    label.text = fmt::format("{:.4g} units{}", measure.length, measure.note.empty() ? "" : " (straight)");
     label.anchor = Anchor::bottom_left;
     label.offset_pt = {6.0, -6.0};
     packet.overlay.labels.push_back(std::move(label));
-  });
+    if (!scene.world.has<DrawnRuler>(e)) scene.world.emplace<DrawnRuler>(e);
+    scene.world.get<DrawnRuler>(e).measure = std::move(measure);
+  }
+  set_widgets(scene, drawn, packet);
+  return Done{};
 }
 
 }  // namespace catena::render

@@ -5,7 +5,8 @@
 ///                    translate   a double arrow along every axis that is free, a square across every axis that is held
 ///                    rotate      the circles are thick; turn: the more so. The circle that is held is bright
 ///   seed           a ball in a ring that faces the eye
-///   rake, ruler    a tube with balls at its ends and its middle; the ruler's length is written beside it
+///   rake, ruler    a tube with balls at its ends and its middle; the ruler's length is written beside it, and the way that it measures
+///                  along a curve or a surface is drawn beside its straight line
 ///   isolevel       a ball, and an arrow along the field's gradient
 ///   box            twelve edges, a ball on every face and one in the middle
 /// A handle that is hovered over is larger and brighter, one that is dragged brighter still; the axes along which it is free show as
@@ -18,8 +19,9 @@
 
 namespace catena::render {
 
-/// After the view is known. `drawn` is the box of the data, which outlines a cutting plane.
-void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+/// After the view is known, and after scene::drive_widgets. `drawn` is the box of the data, which outlines a cutting plane. Rulers are
+/// measured (engine/scene/ruler.h).
+Outcome extract_widgets(scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 /// What of it follows the view, made anew.
 void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 

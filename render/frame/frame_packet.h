@@ -166,6 +166,9 @@ struct CursorItem {
   double size = 0;              ///< radius of the probe's ball, world units
   std::vector<double> leaving;  ///< by link: 0 on its feature .. 1 where the hand has left it; empty: all 0
   std::uint32_t id = 0;
+  /// Where nothing can push back (a mouse), the picture does: the cursor is the last proxy, the probe a small ball on a tether whose
+  /// colour and width say the force, 0..1 of the largest. None: as it is.
+  std::optional<double> strain{};
 };
 
 /// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.

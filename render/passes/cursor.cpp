@@ -9,7 +9,7 @@ constexpr int kIndicatorSides = 12;
 
 bool same(const CursorItem& a, const CursorItem& b) {
   return a.probe == b.probe && a.proxies == b.proxies && a.active == b.active && a.force_n == b.force_n && a.size == b.size &&
-         a.leaving == b.leaving && a.id == b.id;
+         a.leaving == b.leaving && a.id == b.id && a.strain == b.strain;
 }
 bool same(const IndicatorItem& a, const IndicatorItem& b) { return render::same(a.tube, b.tube) && render::same(a.arrow, b.arrow); }
 

@@ -282,10 +282,43 @@ void add_rings(Shape& shape, const Vec3& centre, double radius, double thickness
     add_tube(shape, ring, 8);
   }
 }
+/// Calm blue, amber, red.
+Color strain_color(double strain) {
+  const auto share = static_cast<float>(std::clamp(strain, 0.0, 1.0));
+  const Color calm{0.35f, 0.72f, 1.0f}, amber{1.0f, 0.75f, 0.2f}, red{1.0f, 0.15f, 0.1f};
+  const bool low = share < 0.5f;
+  const Color &a = low ? calm : amber, &b = low ? amber : red;
+  const float t = low ? 2 * share : 2 * share - 1;
+  return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)};
+}
+
+/// The hand as a mouse feels it: it is where the chain holds it, and lags behind the probe.
+void add_pseudo_haptic(Shape& shape, const CursorItem& cursor) {
+  Vec3 held = cursor.probe, before = cursor.probe;
+  const Color color = strain_color(*cursor.strain);
+  const double tether = (0.12 + 0.3 * std::clamp(*cursor.strain, 0.0, 1.0)) * cursor.size;
+  for (std::size_t i = 0; i < cursor.proxies.size(); ++i) {
+    if (!is_finite(cursor.proxies[i])) continue;
+    const bool active = i < cursor.active.size() && cursor.active[i];
+    const double leaving = i < cursor.leaving.size() ? cursor.leaving[i] : 0;
+    if (!active && leaving >= 1) add_rings(shape, cursor.proxies[i], cursor.size * 1.5, 0.12 * cursor.size, leaving_color(1));
+    if (!active) continue;
+    held = cursor.proxies[i];
+    add_cylinder(shape, before, held, tether, color);
+    if (held != before) add_ball(shape, held, 0.5 * cursor.size, link_color(i, true));
+    before = held;
+  }
+  const Color calm{0.95f, 0.95f, 0.95f};
+  const auto t = static_cast<float>(std::clamp(*cursor.strain, 0.0, 1.0));
+  add_ball(shape, held, cursor.size, {calm.r + t * (color.r - calm.r), calm.g + t * (color.g - calm.g), calm.b + t * (color.b - calm.b)});
+  if (held != cursor.probe) add_ball(shape, cursor.probe, 0.45 * cursor.size, {0.6f, 0.62f, 0.66f});
+}
+
 }  // namespace
 
 void add_cursor(Shape& shape, const CursorItem& cursor) {
   if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
+  if (cursor.strain) return add_pseudo_haptic(shape, cursor);
   const Color white{0.95f, 0.95f, 0.95f}, lime{0.60f, 0.95f, 0.25f};
   add_ball(shape, cursor.probe, cursor.size, white);
 

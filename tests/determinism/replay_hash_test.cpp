@@ -2,6 +2,8 @@
 /// The scenes use + - * / sqrt only (sampled grids, circle, sphere); a change of behaviour changes them, and must say so.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "engine/base/numbers.h"
 #include "haptics/device/recorded_path.h"
 #include "haptics/extract/extract.h"
@@ -19,17 +21,19 @@ struct Recorded {
   const char* name;
   const char* scene;
   std::uint64_t hash;
+  bool presses = false;
 };
 
 // A path without libm: a polygon with rational corners, a still stretch, a jump.
-std::vector<ProbeSample> probe_path() {
+/// `presses`: the button goes down and up again and again, rather than once for good.
+std::vector<ProbeSample> probe_path(bool presses) {
   const Vec3 corners[] = {{0.6, 0.1, 0.0}, {0.1, 0.7, 0.2}, {-0.6, 0.2, -0.1}, {-0.2, -0.5, 0.3}, {0.5, -0.4, -0.2}, {0.45, 0.05, 0.1}};
   std::vector<ProbeSample> path;
   for (int k = 0; k < 3000; ++k) {
     const int segment = k / 500;
     const double f = segment == 3 ? 0.5 : (k % 500) / 500.0;
     const Vec3 a = corners[segment], b = corners[(segment + 1) % 6];
-    path.push_back({k / 1000.0, a + (b - a) * f, k > 1500 ? 1u : 0u});
+    path.push_back({k / 1000.0, a + (b - a) * f, (presses ? k / 150 % 2 == 1 : k > 1500) ? 1u : 0u});
   }
   return path;
 }
@@ -87,6 +91,17 @@ constexpr const char* kBalance = R"({"fields": {"v": {"analytic": "circle"}, "s"
   "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [0.5, 0, 0.1], "stiffness": 50},
             {"name": "surface", "type": "isosurface", "field": "s", "level": 0.55}], "coupling": {"method": "balance"}})";
 
+// Two of the corners of the path lie on the plane, two near the sphere; the path's buttons grab.
+constexpr const char* kWidgets = R"({"fields": {},
+  "chain": [{"name": "floor", "type": "plane", "point": [0, 0, -0.3], "normal": [0, 1, 4]}],
+  "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0.1, 0], "orientation": [0.8, 0, 0.6, 0], "radius": 0.45,
+               "snap": 0.1, "release": 0.2, "near": 0.04, "step": 0.05},
+              {"name": "box", "type": "box", "lo": [-0.3, -0.6, -0.3], "hi": [0.6, 0.2, 0.3], "near": 0.15},
+              {"name": "rake", "type": "rake", "from": [-0.6, 0.2, -0.1], "to": [0.45, 0.05, 0.1]},
+              {"name": "level", "type": "cutting_plane", "center": [0, 0, 0.1], "normal": [0, 0, 1], "radius": 0.05, "snap": 0.05,
+               "release": 0.1, "near": 0.02, "step": 0.03}],
+  "coupling": {"ramp_s": 0.05, "max_force": 100}})";
+
 const Recorded kRecorded[] = {
     {"circle", kCircle, 0x609d8539e109214d},
     {"circle_online", kCircleOnline, 0x95e0775dbacd31d3},
@@ -100,6 +115,7 @@ const Recorded kRecorded[] = {
     {"mesh", kMesh, 0x38bd92e22a245e8a},
     {"pipe", kPipe, 0xecb1973a8733ff12},
     {"balance", kBalance, 0x696e76f8e1f4a4f7},
+    {"widgets", kWidgets, 0x44758deae15a5dcd, true},
     {"grids", kGrids, 0xe74048e48824af15},
     {"grid_online", kGridOnline, 0xde9c593d62a4b946},
 };
@@ -129,10 +145,27 @@ void PrintTo(const Recorded& recorded, std::ostream* out) { *out << recorded.nam
 
 class Hash : public testing::TestWithParam<Recorded> {};
 
+// A hash of widgets that nobody took hold of would say little.
+TEST(WidgetPath, TakesHoldAndMoves) {
+  const test::TemporaryFolder folder;
+  const auto program = program_of({"widgets", kWidgets, 0}, folder);
+  std::set<exchange::WidgetMode> plane, others;
+  replay(*program, probe_path(true), [&](const exchange::HapticState& state) {
+    plane.insert(state.widgets[0].mode);
+    plane.insert(state.widgets[3].mode);
+    others.insert(state.widgets[1].mode);
+    others.insert(state.widgets[2].mode);
+    return true;
+  });
+  using Mode = exchange::WidgetMode;
+  EXPECT_EQ(plane, (std::set{Mode::away, Mode::explore, Mode::translate, Mode::rotate, Mode::turn}));
+  EXPECT_EQ(others, (std::set{Mode::away, Mode::hover, Mode::drag}));
+}
+
 TEST_P(Hash, IsTheCommittedOneWithAndWithoutTheThread) {
   const test::TemporaryFolder folder;
   const auto program = program_of(GetParam(), folder);
-  const std::vector<ProbeSample> path = probe_path();
+  const std::vector<ProbeSample> path = probe_path(GetParam().presses);
   const ReplayStats stats = replay(*program, path, [](const exchange::HapticState&) { return true; });
   EXPECT_EQ(stats.state_hash, GetParam().hash) << fmt_hash(stats.state_hash);
 
@@ -151,7 +184,7 @@ TEST_P(Hash, IsTheProgramsToo) {
   const auto program = program_of(GetParam(), folder);
   test::write_file(folder / "scene.json", GetParam().scene);
   std::string csv = "t,x,y,z,buttons\n";
-  for (const ProbeSample& p : probe_path())
+  for (const ProbeSample& p : probe_path(GetParam().presses))
     csv += to_text(p.t_s) + "," + to_text(p.position.x) + "," + to_text(p.position.y) + "," + to_text(p.position.z) + "," +
            std::to_string(p.buttons) + "\n";
   test::write_file(folder / "p.csv", csv);

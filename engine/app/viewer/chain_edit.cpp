@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/json_edit.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/modes.h"
 
@@ -31,7 +30,7 @@ LinkKey key_of(const haptics::Key& key, std::string_view type) {
   out.positive = key.schema.find("inimum\": 0") != std::string_view::npos;
   if (key.type == "number" || key.type == "parameter") out.kind = Kind::number;
   if (key.type == "boolean") out.kind = Kind::boolean;
-  if (key.type == "array" && key.schema.find("\"maxItems\": 3") != std::string_view::npos) out.kind = Kind::vector;
+  if (key.type == "array" && key.schema.starts_with("\"items\": {\"type\": \"number\"")) out.kind = Kind::vector;
   if (key.type != "string") return out;
   out.words = words_of(key.schema);
   if (!out.words.empty()) out.kind = Kind::choice;
@@ -69,14 +68,14 @@ std::string json_of(const json::Node& node) {
     case json::Kind::boolean:
       return node.boolean ? "true" : "false";
     case json::Kind::number:
-      return json::number_text(node.number);
+      return scene::text_of(node.number);
     case json::Kind::string:
-      return json::string_text(node.string);
+      return scene::text_of(node.string);
     case json::Kind::array:
       for (const json::Node& item : node.items) out += (out.empty() ? "" : ", ") + json_of(item);
       return "[" + out + "]";
     case json::Kind::object:
-      for (const auto& [key, value] : node.members) out += (out.empty() ? "" : ", ") + json::string_text(key) + ": " + json_of(value);
+      for (const auto& [key, value] : node.members) out += (out.empty() ? "" : ", ") + scene::text_of(key) + ": " + json_of(value);
       return "{" + out + "}";
   }
   return out;
@@ -152,6 +151,10 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
         return {};
       }
       if (key.name == "radius") return scene::text_of(0.1 * length);
+      if (key.name == "search") {
+        const json::Node* radius = link.find("radius");
+        return scene::text_of(std::max(0.1 * length, radius != nullptr ? 2 * radius->number : 0));
+      }
       if (key.name == "stiffness") return scene::text_of(scene.coupling.stiffness_n_per_m);
       if (key.name == "time") return "0.05";
       if (key.name == "coefficient") return "2";
@@ -178,7 +181,8 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
       return meshes.empty() ? "" : scene::text_of(meshes.front());
     }
     case Kind::other:
-      if (key.name == "points") return "[" + along(0) + ", " + along(0.1) + "]";
+      if (key.name == "points")
+        return scene::text_of(std::vector<Vec3>{probe, probe + Vec3(0.1 * length, 0, 0), probe + Vec3(0.1 * length, 0.1 * length, 0)});
       return {};
   }
   return {};
@@ -207,9 +211,25 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
                                                      : key.name) +
                    ", which the scene does not have"};
     if (auto node = json::parse(value, "link")) link.members.emplace_back(key.name, std::move(*node));
-    text += ", " + json::string_text(key.name) + ": " + value;
+    text += ", " + scene::text_of(key.name) + ": " + value;
   }
   return "{" + text + "}";
+}
+
+std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const Vec3& probe,
+                                             double length) {
+  const std::string value = first_value(scene, key, row.node, probe, length);
+  if (value.empty()) return {};
+  std::vector<scene::Document::Edit> edits{{row.pointer(key.name), value}};
+  // a surface is one at a level
+  if (key.name != "surface" || row.node.find("level") != nullptr) return edits;
+  json::Node link = row.node;
+  if (auto surface = json::parse(value, "surface")) link.members.emplace_back("surface", std::move(*surface));
+  for (const LinkKey& other : keys_of(row.type))
+    if (other.name == "level")
+      if (const std::string level = first_value(scene, other, link, probe, length); !level.empty())
+        edits.push_back({row.pointer("level"), level});
+  return edits;
 }
 
 std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b) {

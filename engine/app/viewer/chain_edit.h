@@ -43,6 +43,10 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
 /// What a key that lacks begins with, JSON text; empty: nothing is known to be sane.
 std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Node& link, const Vec3& probe, double length);
 
+/// A key that the link lacks, with what it needs beside it; empty: nothing is known to be sane.
+std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const Vec3& probe,
+                                             double length);
+
 /// Two neighbours change places, as one step. The comments within the two links go.
 std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b);
 

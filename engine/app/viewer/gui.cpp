@@ -102,7 +102,7 @@ bool Gui::holds(double x, double y) const {
   const ImVec2 at(static_cast<float>(x), static_cast<float>(y));
   if (ImGui::GetTopMostPopupModal() != nullptr) return true;
   for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
-    if (window->WasActive && !window->Hidden && (window->Flags & ImGuiWindowFlags_NoInputs) == 0 && window->Rect().Contains(at))
+    if (window->WasActive && !window->Hidden && (window->Flags & ImGuiWindowFlags_NoMouseInputs) == 0 && window->Rect().Contains(at))
       return true;
   return false;
 }

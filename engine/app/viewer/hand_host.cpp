@@ -199,6 +199,7 @@ bool HandHost::take(scene::Scene& scene) {
   // a state of an older program speaks of other links
   if (felt_.program_epoch != program_->epoch) return false;
   scene::update_cursor(scene, felt_);
+  scene.world.get<scene::Cursor>(scene.cursor).pseudo_haptic = hand_.device->capabilities().max_force_n <= 0;
   scene::update_widgets(scene, felt_);
   return looks_different(before, felt_);
 }

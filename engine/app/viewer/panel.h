@@ -12,6 +12,7 @@
 #include "engine/app/viewer/frame_times.h"
 #include "engine/app/viewer/hand_host.h"
 #include "engine/app/viewer/layout.h"
+#include "engine/app/viewer/look_state.h"
 #include "engine/app/viewer/pacing.h"
 #include "engine/app/viewer/scene_host.h"
 #include "engine/app/viewer/screen.h"
@@ -60,14 +61,15 @@ struct ViewState {
   Input moves{};                           ///< of the eye, asked for by the menu
   PlaceValues pointer, probe, proxy;       ///< for the table of values
   std::string unit_length;
-  double force_share = 0;     ///< of the greatest force, 0..1
-  std::deque<Message> messages;             ///< the newest last, at most kMessages
+  double force_share = 0;        ///< of the greatest force, 0..1
+  std::deque<Message> messages;  ///< the newest last, at most kMessages
   static constexpr std::size_t kMessages = 100;
   double pointer_x = 0, pointer_y = 0;  ///< window coordinates
   bool pointer_on_picture = false;      ///< and not on a panel
   bool pointer_seen = false;            ///< it has moved over the window
   bool pointer_pressed = false;         ///< a button is down
   int next_drag = 0;                    ///< numbers drags: edits of one drag are one step of undo
+  LookState look;
 
   void say(std::string text, bool is_error = false);
 };
@@ -84,6 +86,7 @@ struct PanelContext {
   /// An edit whose error becomes a message. True: done.
   bool edit(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
   bool remove(std::string_view pointer, const std::string& what);
+  bool apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag = {});
 };
 
 /// What the interface takes of the window where panels are shown (after the first frame's begin).
@@ -116,5 +119,12 @@ void draw_device(PanelContext& context);
 void draw_recording(PanelContext& context);
 void draw_quality(PanelContext& context);
 void draw_widgets(PanelContext& context);
+void draw_fields(PanelContext& context);
+void draw_transfer(PanelContext& context);
+void draw_isosurfaces(PanelContext& context);
+void draw_slices(PanelContext& context);
+void draw_lines(PanelContext& context);
+void draw_meshes(PanelContext& context);
+void draw_scene_view(PanelContext& context);
 
 }  // namespace catena::app

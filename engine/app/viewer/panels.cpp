@@ -7,11 +7,26 @@ namespace catena::app {
 
 namespace {
 
+template <class T>
+bool has_any(const PanelContext& context) {
+  return context.scene.scene().world.count<T>() > 0;
+}
+
 constexpr Panel kPanels[] = {
-    {"Values", true, draw_values},
-    {"Chain", true, draw_chain},      {"Widgets", false, draw_widgets},
-    {"Device", false, draw_device}, {"Recording", false, draw_recording},
-    {"Quality", false, draw_quality}, {"Times", false, draw_times},
+    {"Values", false, draw_values},
+    {"Fields", true, draw_fields},
+    {"Volumes", true, draw_transfer, has_any<scene::Volume>},
+    {"Isosurfaces", true, draw_isosurfaces, has_any<scene::Isosurface>},
+    {"Slices", false, draw_slices, has_any<scene::Slice>},
+    {"Lines", false, draw_lines, has_any<scene::StreamlineSet>},
+    {"Meshes", false, draw_meshes, has_any<scene::SurfaceMesh>},
+    {"Widgets", false, draw_widgets},
+    {"Chain", false, draw_chain},
+    {"Device", false, draw_device},
+    {"Recording", false, draw_recording},
+    {"View", false, draw_scene_view},
+    {"Quality", false, draw_quality},
+    {"Times", false, draw_times},
 };
 
 void draw_side(PanelContext& context) {
@@ -54,10 +69,17 @@ bool PanelContext::remove(std::string_view pointer, const std::string& what) {
   return static_cast<bool>(done);
 }
 
+bool PanelContext::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag) {
+  const Outcome done = scene.apply(edits, what, drag);
+  if (!done) state.say(done.error().message, true);
+  return static_cast<bool>(done);
+}
+
 Edges interface_edges() { return {kSideWidth, ImGui::GetFrameHeight(), ImGui::GetFrameHeightWithSpacing()}; }
 
 void draw_interface(PanelContext& context) {
   const ViewState& state = context.state;
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) ++context.state.look.press;
   // without panels the menu comes down where the pointer looks for it
   const bool looked_for = state.pointer_y < ImGui::GetFrameHeight() && state.pointer_y >= 0 && !state.pointer_pressed && state.pointer_seen;
   if (state.panels || looked_for || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) draw_menu(context);

@@ -9,6 +9,7 @@
 #include "engine/app/viewer/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
+#include "engine/scene/hidden.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_stereo.h"
 #include "render/passes/quality.h"
@@ -86,8 +87,9 @@ RecordedScene Session::recorded() const {
 /// What the loop has to know of a scene that was read.
 void Session::measure() {
   has_pulses_ = false;
-  scene_->scene().world.each<scene::StreamlineSet>(
-      [&](scene::Entity, const scene::StreamlineSet& set) { has_pulses_ = has_pulses_ || set.pulse > 0; });
+  scene_->scene().world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
+    has_pulses_ = has_pulses_ || (set.pulse > 0 && !is_hidden(scene_->scene().world, e));
+  });
 }
 
 std::optional<Failure> Session::open() {

@@ -87,12 +87,13 @@ TEST(ChainEdit, KeysThatAreAddedHaveValuesThatCanBeRead) {
       return Done{};
     });
     for (const LinkKey& key : keys_of(type)) {
-      const json::Node node = chain_rows(f.host->scene(), {})[0].node;
-      // one of the two excludes the other; a level is that of a surface
-      if (node.find(key.name) != nullptr || key.name == "coefficient" || key.name == "method") continue;
-      const std::string value = first_value(f.host->scene(), key, node, probe, 4);
-      if (value.empty()) continue;
-      const Outcome done = f.host->set("/chain/0/" + key.name, value, "add");
+      const ChainRow row = chain_rows(f.host->scene(), {})[0];
+      // one of the two excludes the other
+      if (row.node.find(key.name) != nullptr || key.name == "coefficient" || key.name == "method") continue;
+      const auto edits = added_key(f.host->scene(), row, key, probe, 4);
+      if (edits.empty()) continue;
+      const std::string value = *edits[0].value;
+      const Outcome done = f.host->apply(edits, "add");
       EXPECT_TRUE(done) << type << " " << key.name << " " << value << ": " << done.error().message;
     }
   }

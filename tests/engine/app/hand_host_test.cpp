@@ -75,6 +75,12 @@ struct Rig {
   HandHost hand;
 };
 
+HandHost::Options asking_for(const std::string& device) {
+  HandHost::Options options;
+  options.device = device;
+  return options;
+}
+
 TEST(HandHost, LinksThatAnEditDoesNotTouchKeepTheirState) {
   Rig rig;
   rig.start();
@@ -150,7 +156,7 @@ TEST(HandHost, AnotherDeviceTakesOverAndOneThatCannotLeavesTheOldOne) {
   rig.hand.move_mouse(rig.host->scene(), Vec3(1, 0.5, 0.5), 0);
   ASSERT_TRUE(rig.runs_on(80));
   const double before = rig.host->scene().workspace.metres_per_unit;
-  const Outcome none = rig.hand.switch_device(rig.host->scene(), "falcon:99", rig.bounds);
+  const Outcome none = rig.hand.switch_device(rig.host->scene(), "falcon:7", rig.bounds);
   EXPECT_FALSE(none);
   EXPECT_TRUE(rig.hand.is_mouse());
   ASSERT_TRUE(rig.runs_on(5));
@@ -187,13 +193,13 @@ TEST(HandHost, ADeviceSwitchEndsARecordingThatIsWhole) {
 }
 
 TEST(HandHost, WhatIsKnownAndNotPluggedInLeavesTheMouseAndOneSentence) {
-  Rig rig({.device = "falcon:99"});
+  Rig rig(asking_for("falcon:7"));
   rig.start();
   EXPECT_TRUE(rig.hand.is_mouse());
   EXPECT_NE(rig.hand.note().find("the mouse holds the probe"), std::string::npos) << rig.hand.note();
-  Rig unknown({.device = "sextant"});
+  Rig unknown(asking_for("sextant"));
   EXPECT_FALSE(unknown.hand.open_device(unknown.host->scene()));
-  Rig file({.device = "recorded:none.csv"});
+  Rig file(asking_for("recorded:none.csv"));
   EXPECT_FALSE(file.hand.open_device(file.host->scene())) << "a file that is not there is no device that is not plugged in";
 }
 

@@ -30,7 +30,7 @@ class ViewerHand : public testing::Test {
 TEST_F(ViewerHand, WhatIsNotPluggedInLeavesTheMouseAndIsSaidInOneSentence) {
   if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
   ASSERT_EQ(view(R"({"chain": [{"name": "p", "type": "point", "position": [0, 0, 0]}]})",
-                 "--device falcon:99 --frames 2 --record " + (folder_ / "a.catlog")),
+                 "--device falcon:7 --frames 2 --record " + (folder_ / "a.catlog")),
             0)
       << log();
   EXPECT_NE(log().find("the mouse holds the probe"), std::string::npos) << log();

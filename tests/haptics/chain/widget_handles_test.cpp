@@ -86,8 +86,7 @@ TEST(WidgetHandles, EveryFaceOfABoxMovesAlongItsNormalAndStopsBeforeTheOther) {
       Vec3 probe = at + Vec3(0.3, -0.2, 0.25);  // aside: the planes hold, however far
       probe[axis] = at[axis] + by;
       const auto& points = hand.step(probe, 1).pose.points;
-      for (int a = 0; a < 3; ++a)
-        EXPECT_TRUE(a == axis || (points[0][a] == lo[a] && points[1][a] == hi[a]));
+      for (int a = 0; a < 3; ++a) EXPECT_TRUE(a == axis || (points[0][a] == lo[a] && points[1][a] == hi[a]));
       const int side = face % 2;
       EXPECT_EQ(points[static_cast<std::size_t>(1 - side)][axis], side == 0 ? hi[axis] : lo[axis]);
       return points[static_cast<std::size_t>(side)][axis];
@@ -244,9 +243,9 @@ TEST(WidgetGrab, ATurnGoesOnWithoutAJump) {
     Spec spec = widget_spec(Kind::cutting_plane);
     spec.turning = turning;
     WidgetHand hand({spec});
-    hand.step({0.48, 0, 0});
-    hand.step({0.48, 0, 0}, 1);
-    hand.step({0.4, 0.2, 0}, 1);
+    hand.step({0.4, 0.26, 0});
+    hand.step({0.4, 0.26, 0}, 1);
+    hand.step({0.3, 0.4, 0}, 1);
     const Quat before = hand.report().pose.orientation;
     EXPECT_GT(off(rotate(before, {1, 0, 0}), {1, 0, 0}), 0.1);
     hand.step({NAN, 0, 0}, 1);

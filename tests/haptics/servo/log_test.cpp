@@ -409,7 +409,7 @@ TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
   const Block ticks = blocks[2];
   ASSERT_EQ(type_of(ticks), BlockType::ticks);
   // the first record: a mask of 6 bytes, then the words whose bit is set
-  const std::size_t mask_at = ticks.payload() + 24;
+  const std::size_t mask_at = ticks.payload() + 28;
   std::size_t word_at = mask_at + 6;
   int found = 0, words = 0;
   for (int k = 0; k < words_of({1, 0}); ++k) {

@@ -33,6 +33,7 @@ scene::Entity add_widget(scene::Scene& scene, const std::string& name, Kind kind
   w.state.mode = mode;
   w.state.handle = std::int8_t(handle);
   w.state.held = std::uint8_t(held);
+  w.complete = true;
   const scene::Entity e = scene.world.create();
   scene.world.emplace(e, scene::Name{name});
   scene.world.emplace(e, std::move(w));
@@ -136,6 +137,7 @@ TEST(ExtractWidgets, WithoutDataThePlaneIsASquareOfEdgeL) {
   scene::Scene scene = scene_of();
   const scene::Entity e = add_widget(scene, "cut", Kind::cutting_plane, {{Vec3(1, 2, 3), Vec3(0.0)}});
   scene.world.get<scene::Widget>(e).spec.length = 6;
+  scene.world.get<scene::Widget>(e).complete = true;  // or use_widget says 4
   const FramePacket packet = packet_of(scene);
   const TubeItem& border = packet.widgets.tubes[0];
   ASSERT_EQ(border.points.size(), 5u);
@@ -249,6 +251,30 @@ TEST(ExtractWidgets, ARulerSaysItsLength) {
   ASSERT_EQ(packet.overlay.labels.size(), 1u);
   EXPECT_EQ(packet.overlay.labels[0].text, "5 units");
   EXPECT_EQ(packet.overlay.labels[0].at, Vec3(1.5, 2, 0));
+}
+
+TEST(ExtractWidgets, ARulerAlongACurveIsDrawnAlongIt) {
+  auto scene = scene::parse_scene(R"({"fields": {"v": {"analytic": "circle"}},
+    "chain": [{"name": "curve", "type": "streamline", "field": "v", "seed": [1, 0, 0]}],
+    "widgets": [{"name": "r", "type": "ruler", "from": [1, 0, 0], "to": [0, 1, 0], "along": ["curve"]}]})",
+                                  "test.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  FramePacket packet = packet_of(*scene);
+  const auto longest = [&] {
+    return *std::max_element(packet.widgets.tubes.begin(), packet.widgets.tubes.end(),
+                             [](const auto& a, const auto& b) { return a.points.size() < b.points.size(); });
+  };
+  ASSERT_GT(longest().points.size(), 5u);
+  for (const Vec3& p : longest().points) EXPECT_NEAR(norm(p), 1, 1e-3);
+  ASSERT_EQ(packet.overlay.labels.size(), 1u);
+  EXPECT_EQ(packet.overlay.labels[0].text, "1.571 units");
+  EXPECT_NEAR(norm(packet.overlay.labels[0].at - Vec3(std::sqrt(0.5), std::sqrt(0.5), 0)), 0, 1e-2) << "halfway";
+  // another view keeps it
+  const std::size_t before = packet.widgets.tubes.size();
+  set_view(*scene, {{0, -3, 9}, {0, 0, 0}, {0, 0, 1}, 30}, packet);
+  EXPECT_EQ(packet.widgets.tubes.size(), before);
+  EXPECT_GT(longest().points.size(), 5u);
+  EXPECT_EQ(packet.overlay.labels.size(), 1u);
 }
 
 TEST(ExtractWidgets, NothingIsThinnerThanAPixelFromFarAway) {

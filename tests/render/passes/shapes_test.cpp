@@ -234,6 +234,41 @@ TEST(Shapes, ALinkThatTheHandIsLeavingIsSeen) {
   EXPECT_GT(leaving_color(1).r - leaving_color(1).g, 0.5f);
 }
 
+TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
+  CursorItem item = cursor();
+  item.active = {true, true};
+  const auto reddest_far_from = [](const Shape& shape, const Vec3& probe) {
+    float most = -1;
+    for (const MeshVertex& v : shape.vertices) {
+      const bool of_a_link = v.color.r == link_color(0, true).r || v.color.r == link_color(1, true).r;
+      if (!of_a_link && norm(v.position - probe) > 0.3) most = std::max(most, v.color.r - v.color.b);
+    }
+    return most;
+  };
+  Shape calm, half, most;
+  item.strain = 0;
+  add_cursor(calm, item);
+  item.strain = 0.5;
+  add_cursor(half, item);
+  item.strain = 1;
+  add_cursor(most, item);
+  // the cursor is where the last link holds it, the probe is the small ball of the two
+  double at_proxy = 0, at_probe = 0;
+  for (const MeshVertex& v : calm.vertices) {
+    const double from_proxy = norm(v.position - Vec3(1.0, 2.0, 0.0)), from_probe = norm(v.position);
+    if (from_proxy < 0.101) at_proxy = std::max(at_proxy, from_proxy);
+    if (from_probe < 0.09) at_probe = std::max(at_probe, from_probe);
+    EXPECT_LE(v.position.z, 0.101) << "no arrow";
+  }
+  EXPECT_NEAR(at_proxy, 0.1, 1e-6);
+  EXPECT_NEAR(at_probe, 0.045, 1e-3);
+  expect_closed(most);
+  expect_outward(most);
+  EXPECT_LT(reddest_far_from(calm, item.probe), 0.5f);
+  EXPECT_GT(reddest_far_from(half, item.probe), 0.6f);
+  EXPECT_GT(reddest_far_from(most, item.probe), 0.85f);
+}
+
 TEST(Shapes, ArrowLengthFollowsTheForceWithinLimits) {
   EXPECT_EQ(cursor_arrow_length(0, 1), 0);
   EXPECT_EQ(cursor_arrow_length(std::nan(""), 1), 0);

@@ -122,11 +122,11 @@ void draw_keys(PanelContext& context, const ChainRow& row) {
   if (absent.empty() || !ImGui::BeginCombo("##key", "add a key", ImGuiComboFlags_HeightLarge)) return;
   for (const LinkKey& key : absent) {
     if (ImGui::Selectable(key.name.c_str())) {
-      const std::string value = first_value(context.scene.scene(), key, row.node, probe_of(context), length);
-      if (value.empty())
+      const auto edits = added_key(context.scene.scene(), row, key, probe_of(context), length);
+      if (edits.empty())
         context.state.say("\"" + key.name + "\" has no value to begin with here; write it into the scene's text", true);
-      else
-        context.edit(row.pointer(key.name), value, key.name);
+      else if (const Outcome done = context.scene.apply(edits, key.name); !done)
+        context.state.say(done.error().message, true);
     }
     tip(key.help);
   }

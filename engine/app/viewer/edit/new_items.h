@@ -1,0 +1,23 @@
+/// What "show this field as .." adds to the scene: an item with defaults that show something. JSON text; pure, any thread.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/field/field.h"
+
+namespace catena::app {
+
+enum class ShowAs { volume, isosurface, slice, streamlines };
+
+/// Where it goes: "/volumes/-" and so on.
+std::string pointer_of_new(ShowAs as);
+/// "volume" and so on, for the menu of undo.
+const char* word_of(ShowAs as);
+/// A scalar field as all but streamlines, a vector field as a slice (its magnitude) and streamlines.
+bool can_show(const field::AnyField& field, ShowAs as);
+
+/// The isosurface lies half way between the 2nd and the 98th percentile of `sorted` (or of the field's range), the slice across z through
+/// the middle of the domain, the seeds in a ball around it.
+std::string new_item(const std::string& name, const field::AnyField& field, ShowAs as, const std::vector<float>& sorted);
+
+}  // namespace catena::app

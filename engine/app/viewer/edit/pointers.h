@@ -1,0 +1,15 @@
+/// Where things stand in the scene's text (RFC 6901), and their text. Pure, any thread.
+#pragma once
+#include <string>
+
+#include "engine/base/json.h"
+
+namespace catena::app {
+
+/// "/volumes/2" for the item that was read from there (its label is "volumes[2]"); empty where it is no item of a list.
+std::string pointer_of(const json::Node& item);
+
+/// The node as JSON on one line, without its comments.
+std::string node_text(const json::Node& node);
+
+}  // namespace catena::app

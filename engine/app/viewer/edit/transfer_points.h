@@ -1,0 +1,45 @@
+/// What a hand does to the points of a transfer function: find, add, move, remove. Values rise strictly after every step, whatever is
+/// asked: a point stays between its neighbours, the outermost within the plot. Pure, any thread.
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "engine/app/viewer/edit/plot_frame.h"
+#include "engine/scene/components.h"
+
+namespace catena::app {
+
+using OpacityPoints = std::vector<scene::TransferFunction::OpacityPoint>;
+using ColorPoints = std::vector<scene::TransferFunction::ColorPoint>;
+
+inline constexpr double kMostAlpha = 0.9999;  ///< alpha < 1: a wall would have no sigma
+
+/// The nearest handle within `reach` pixels; of those at one place the last.
+std::optional<std::size_t> point_at(const OpacityPoints& points, const PlotFrame& frame, double x, double y, double reach);
+/// Colours by x alone.
+std::optional<std::size_t> point_at(const ColorPoints& points, const PlotFrame& frame, double x, double reach);
+
+/// The index of the new point; none where there is no room between its neighbours, or the value is no number.
+std::optional<std::size_t> add_point(OpacityPoints& points, const PlotFrame& frame, double value, double alpha);
+/// It has the colour that was shown there.
+std::optional<std::size_t> add_point(ColorPoints& points, const PlotFrame& frame, double value);
+
+/// As near to the place as the neighbours allow. A point beyond the plot stays beyond it until it is moved.
+void move_point(OpacityPoints& points, const PlotFrame& frame, std::size_t index, double value, double alpha);
+void move_point(ColorPoints& points, const PlotFrame& frame, std::size_t index, double value);
+
+/// False: the last one stays.
+bool remove_point(OpacityPoints& points, std::size_t index);
+bool remove_point(ColorPoints& points, std::size_t index);
+
+/// What is drawn at a value: sigma linear between the points, constant beyond them. Of no points 0, or grey.
+double alpha_at(const OpacityPoints& points, double value);
+scene::Rgb color_at(const ColorPoints& points, double value);
+
+/// Lays the points anew, from where they reach to lo..hi. False (and nothing is changed) where they would fall together.
+bool lay_over(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi);
+/// From the least to the greatest value of both; none of no points.
+std::optional<std::array<double, 2>> reach_of(const ColorPoints& colors, const OpacityPoints& opacities);
+
+}  // namespace catena::app

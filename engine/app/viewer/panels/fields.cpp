@@ -1,0 +1,130 @@
+// Fields: what each is, how its values are spread, and buttons that show it.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "engine/app/viewer/edit/new_items.h"
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/app/viewer/panels/look_parts.h"
+
+namespace catena::app {
+
+namespace {
+
+std::string bytes_text(std::size_t bytes) {
+  const double mib = static_cast<double>(bytes) / (1 << 20);
+  return mib >= 1024 ? fmt::format("{:.1f} GiB", mib / 1024)
+         : mib >= 1  ? fmt::format("{:.0f} MiB", mib)
+                     : fmt::format("{} kB", bytes / 1000);
+}
+
+std::string range_text(const field::AnyField& field) {
+  if (field.scalar) return fmt::format("{:.5g} .. {:.5g}", field.scalar->min_value(), field.scalar->max_value());
+  if (const field::VectorGrid* grid = field.vector->grid())
+    return fmt::format("|v| {:.5g} .. {:.5g}", grid->stats().min, grid->stats().max);
+  return {};
+}
+
+void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) {
+  const auto row = [](const char* name, const std::string& text) {
+    if (text.empty()) return;
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine(110);
+    ImGui::TextUnformatted(text.c_str());
+  };
+  if (source.file) {
+    row("file", std::filesystem::path(source.file->path).filename().string());
+    tip(source.file->path.c_str());
+  } else {
+    row("formula", source.analytic);
+  }
+  if (shown.get() == nullptr) return;
+  const field::Field& field = *shown.get();
+  if (field.is_grid()) {
+    const Vec3 size = field.index_box().hi - field.index_box().lo + 1.0;
+    row("voxels", fmt::format("{:.0f} x {:.0f} x {:.0f}", size.x, size.y, size.z));
+    const Mat3& axes = field.mapping().world_from_index_linear;
+    row("spacing", fmt::format("{:.4g}, {:.4g}, {:.4g}", norm(axes[0]), norm(axes[1]), norm(axes[2])));
+  }
+  row("range", range_text(shown));
+  if (field.bytes() > 0) row("memory", bytes_text(field.bytes()));
+}
+
+/// Its place is kept while the values are being sorted.
+void draw_histogram(const SortedValues& values) {
+  const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
+  ImGui::Dummy(size);
+  tip("how often values occur, logarithmic");
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
+  if (!values || values->empty()) return;
+  const auto range = plot_range(values->front(), values->back());
+  draw_bars({at.x, at.y, at.x + size.x, at.y + size.y, range[0], range[1]}, values, ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+}
+
+/// Loads it if need be, then adds the item.
+void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
+  scene::Scene& scene = context.scene.scene();
+  const auto drawn = scene::use_drawn_field(scene, entity, scene.world.get<scene::FieldSource>(entity).where);
+  if (!drawn) return context.state.say(drawn.error().message, true);
+  const SortedValues values = context.state.look.values.of(scene, entity);
+  const std::string item = new_item(name_of(scene, entity), *drawn, as, values ? *values : std::vector<float>());
+  context.edit(pointer_of_new(as), item, std::string("new ") + word_of(as));
+}
+
+void draw_buttons(Edits& edits, scene::Entity entity, const field::AnyField& shown) {
+  bool first = true;
+  for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines}) {
+    if (!can_show(shown, as)) continue;
+    if (!first) ImGui::SameLine();
+    first = false;
+    if (ImGui::SmallButton(fmt::format("+ {}", word_of(as)).c_str()))
+      edits.later([entity, as](PanelContext& later) { show_as(later, entity, as); });
+    tip(fmt::format("show the field as {}{}",
+                    as == ShowAs::streamlines  ? ""
+                    : as == ShowAs::isosurface ? "an "
+                                               : "a ",
+                    word_of(as))
+            .c_str());
+  }
+}
+
+}  // namespace
+
+void draw_fields(PanelContext& context) {
+  Edits edits(context);
+  scene::Scene& scene = context.scene.scene();
+  LookState& look = context.state.look;
+  look.values.tidy(scene);
+  std::vector<scene::Entity> fields;
+  scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource&) { fields.push_back(e); });
+  if (fields.empty()) ImGui::TextDisabled("the scene has none");
+  for (const scene::Entity e : fields) {
+    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(e);
+    const field::AnyField& shown = source.drawn.get() != nullptr ? source.drawn : source.loaded;
+    const std::string name = name_of(scene, e);
+    const char* kind = shown.scalar ? "scalar" : shown.vector ? "vector" : "not loaded";
+    ImGui::PushID(name.c_str());
+    const bool open = ImGui::TreeNodeEx("##field", fields.size() == 1 ? ImGuiTreeNodeFlags_DefaultOpen : 0, "%s", name.c_str());
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", kind);
+    if (open) {
+      draw_facts(source, shown);
+      if (shown.get() == nullptr) {
+        if (ImGui::SmallButton("load"))
+          edits.later([e](PanelContext& later) {
+            scene::Scene& s = later.scene.scene();
+            if (auto loaded = scene::use_drawn_field(s, e, s.world.get<scene::FieldSource>(e).where); !loaded)
+              later.state.say(loaded.error().message, true);
+          });
+      } else {
+        if (shown.get()->is_grid()) draw_histogram(look.values.of(scene, e));
+        draw_buttons(edits, e, shown);
+      }
+      ImGui::TreePop();
+    }
+    ImGui::PopID();
+  }
+}
+
+}  // namespace catena::app

@@ -1,0 +1,55 @@
+// Isosurfaces: the level on the field's histogram, colour, opacity. The hand's surface follows the one that is seen.
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/hidden.h"
+
+namespace catena::app {
+
+namespace {
+
+void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& surface) {
+  const json::Node* stated = surface.where.find("level");
+  if (stated == nullptr || stated->kind != json::Kind::number) {
+    ImGui::TextDisabled("level %.6g, follows a widget", surface.level);
+    return;
+  }
+  scene::Scene& scene = context.scene.scene();
+  const scene::FieldSource& source = scene.world.get<scene::FieldSource>(surface.field);
+  const field::AnyField& field = source.drawn.get() != nullptr ? source.drawn : source.loaded;
+  double level = surface.level;
+  bool moved = false;
+  if (field.scalar)
+    moved = histogram_slider(context, "##level", context.state.look.values.of(scene, surface.field), field.scalar->min_value(),
+                             field.scalar->max_value(), surface.color, level);
+  moved = typed_number("level", level, "the field's value on the surface; Enter") || moved;
+  const std::vector<std::string> felt = felt_levels(scene, surface);
+  if (!felt.empty()) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("felt");
+    tip("a link of the chain holds the hand on this surface: its level goes along");
+  }
+  if (!moved) return;
+  TextEdits writes{{pointer_of(surface.where) + "/level", scene::text_of(level)}};
+  for (const std::string& pointer : felt) writes.push_back({pointer, scene::text_of(level)});
+  edits.drag(writes, "isolevel");
+}
+
+}  // namespace
+
+void draw_isosurfaces(PanelContext& context) {
+  Edits edits(context);
+  const scene::Scene& scene = context.scene.scene();
+  scene.world.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
+    if (!begin_item(edits, surface.where, !is_hidden(scene.world, e), "isosurface", name_of(scene, surface.field))) return;
+    const std::string pointer = pointer_of(surface.where);
+    draw_level(context, edits, surface);
+    edit_share(edits, "opacity", surface.opacity, pointer + "/opacity");
+    if (surface.color_by)
+      ImGui::TextDisabled("coloured by %s", name_of(scene, surface.color_by->field).c_str());
+    else
+      edit_color(edits, "colour", surface.color, pointer + "/color");
+    end_item();
+  });
+}
+
+}  // namespace catena::app

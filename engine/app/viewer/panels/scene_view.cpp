@@ -1,0 +1,99 @@
+// What stands around the things: background, help for the eye, stereo, projection, title.
+#include <cstring>
+
+#include "engine/app/viewer/panels/look_parts.h"
+
+namespace catena::app {
+
+namespace {
+
+/// The object that stands at a top-level key.
+std::optional<std::string> stated_object(const PanelContext& context, const std::string& key) {
+  const auto root = json::parse(context.scene.document().text(), "scene");
+  const json::Node* node = root ? root->find(key) : nullptr;
+  if (node == nullptr || node->kind != json::Kind::object) return std::nullopt;
+  return node_text(*node);
+}
+
+/// A top-level key that is true, false or an object. What stood there comes back when it is switched on again.
+void edit_aid(PanelContext& context, Edits& edits, const char* label, const std::string& key, bool on, const char* hint) {
+  const std::string pointer = "/" + key;
+  const bool clicked = ImGui::Checkbox(label, &on);
+  tip(hint);
+  if (!clicked) return;
+  auto& kept = context.state.look.switched_off;
+  if (on) {
+    edits.set(pointer, kept.contains(key) ? kept[key] : "true", label);
+    return;
+  }
+  if (const auto stated = stated_object(context, key)) kept[key] = *stated;
+  edits.set(pointer, "false", label);
+}
+
+void draw_title(Edits& edits, const std::string& title) {
+  char text[200] = {};
+  std::strncpy(text, title.c_str(), sizeof text - 1);
+  if (ImGui::InputText("title", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue))
+    edits.set("/title", scene::text_of(text), "title");
+  tip("over the picture; Enter");
+}
+
+/// The projection is the eye's, as key O has it.
+void choose_projection(PanelContext& context) {
+  render::View& view = context.controls.view;
+  int projection = view.orthographic ? 1 : 0;
+  if (!ImGui::Combo("projection", &projection, "perspective\0orthographic\0") || (projection == 1) == view.orthographic) return;
+  toggle_projection(view);
+  scene::Camera& camera = context.scene.scene().camera;
+  camera = {view.position, view.target, view.up, view.fovy_deg, view.orthographic, view.height, true};
+  context.scene.touch();
+}
+
+void choose_stereo(PanelContext& context) {
+  scene::StereoMode& mode = context.scene.scene().stereo.mode;
+  if (!ImGui::BeginCombo("stereo", std::string(scene::stereo_word(mode)).c_str())) return;
+  for (int i = 0; i < scene::kStereoModes; ++i) {
+    const auto one = static_cast<scene::StereoMode>(i);
+    if (!ImGui::Selectable(std::string(scene::stereo_word(one)).c_str(), one == mode)) continue;
+    mode = one;
+    context.scene.touch();
+  }
+  ImGui::EndCombo();
+}
+
+}  // namespace
+
+void draw_scene_view(PanelContext& context) {
+  Edits edits(context);
+  const scene::Scene& scene = context.scene.scene();
+  if (scene.background.transparent)
+    ImGui::TextDisabled("transparent background");
+  else
+    edit_color(edits, "background", scene.background.color, "/background");
+  edit_aid(context, edits, "bounding box", "bounding_box", scene.bounding_box.has_value(), "the edges of what is drawn");
+  ImGui::SameLine();
+  edit_aid(context, edits, "axes", "axes", scene.axes.has_value(), "three edges with ticks and numbers");
+  edit_aid(context, edits, "ground", "ground", scene.ground.has_value(), "a checkerboard below");
+  ImGui::SameLine();
+  edit_aid(context, edits, "marker", "orientation_marker", scene.annotations.orientation_marker.has_value(),
+           "three arrows in the corner: which way x, y, z point");
+  ImGui::SameLine();
+  edit_aid(context, edits, "fog", "fog", scene.fog.has_value(), "far things turn to the background");
+  if (scene.fog) {
+    auto most = static_cast<float>(scene.fog->most);
+    if (ImGui::SliderFloat("fog at the far end", &most, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp)) {
+      const std::string value = scene::text_of(rounded_in(most, 0, 1, 1000));
+      if (stated_object(context, "fog"))
+        edits.drag("/fog/most", value, "fog");
+      else
+        edits.drag("/fog", "{\"most\": " + value + "}", "fog");
+    }
+  }
+  choose_projection(context);
+  tip("key O");
+  choose_stereo(context);
+  tip("key F2: the next");
+  draw_title(edits, scene.annotations.title);
+}
+
+}  // namespace catena::app

@@ -1,0 +1,125 @@
+// Slices: where the plane lies, its colours, opacity, contours.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/hidden.h"
+
+namespace catena::app {
+
+namespace {
+
+struct WorldBox {
+  Vec3 lo{HUGE_VAL}, hi{-HUGE_VAL};
+};
+
+WorldBox box_of(const field::Field& field) {
+  const field::Box& box = field.index_box();
+  WorldBox world;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner{(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z};
+    const Vec3 p = field.mapping().world_from_index(corner);
+    for (int k = 0; k < 3; ++k) world.lo[k] = std::min(world.lo[k], p[k]), world.hi[k] = std::max(world.hi[k], p[k]);
+  }
+  return world;
+}
+
+void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& field) {
+  const std::string pointer = pointer_of(slice.where);
+  if (slice.where.find("widget") != nullptr) {
+    ImGui::TextDisabled("the plane follows a widget");
+    return;
+  }
+  const WorldBox box = box_of(field);
+  const json::Node* axis = slice.where.find("axis");
+  const bool free = axis == nullptr;
+  int which = free ? 3 : axis->string == "x" ? 0 : axis->string == "y" ? 1 : 2;
+  ImGui::SetNextItemWidth(90);
+  if (ImGui::Combo("##axis", &which, "x\0y\0z\0free\0")) {
+    const Vec3 middle = 0.5 * (box.lo + box.hi);
+    const auto edit = [&](const char* key, std::optional<std::string> value) {
+      return scene::Document::Edit{pointer + "/" + key, std::move(value)};
+    };
+    if (which == 3)
+      edits.set({edit("axis", std::nullopt), edit("at", std::nullopt), edit("point", scene::text_of(slice.point)),
+                 edit("normal", scene::text_of(slice.normal))},
+                "slice");
+    else
+      edits.set({edit("point", std::nullopt), edit("normal", std::nullopt), edit("axis", scene::text_of(std::string(1, "xyz"[which]))),
+                 edit("at", scene::text_of(free ? std::clamp(slice.point[which], box.lo[which], box.hi[which])
+                                                : rounded_in(middle[which], box.lo[which], box.hi[which])))},
+                "slice");
+    return;
+  }
+  tip("the axis across which the slice lies");
+  if (!free) {
+    ImGui::SameLine();
+    const double lo = box.lo[which], hi = box.hi[which];
+    double at = slice.point[which];
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    if (ImGui::SliderScalar("##at", ImGuiDataType_Double, &at, &lo, &hi, "%.5g",
+                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat))
+      edits.drag(pointer + "/at", scene::text_of(std::clamp(rounded_in(at, lo, hi), lo, hi)), "slice");
+    return;
+  }
+  double point[3] = {slice.point.x, slice.point.y, slice.point.z}, normal[3] = {slice.normal.x, slice.normal.y, slice.normal.z};
+  const auto step = static_cast<float>(field.length() / 500);
+  if (ImGui::DragScalarN("point", ImGuiDataType_Double, point, 3, step, nullptr, nullptr, "%.4g", ImGuiSliderFlags_NoRoundToFormat)) {
+    Vec3 to;
+    for (int k = 0; k < 3; ++k) to[k] = rounded_in(point[k], 0, field.length(), 20000);
+    edits.drag(pointer + "/point", scene::text_of(to), "slice");
+  }
+  if (ImGui::DragScalarN("normal", ImGuiDataType_Double, normal, 3, 0.005f, nullptr, nullptr, "%.3f", ImGuiSliderFlags_NoRoundToFormat)) {
+    Vec3 to;
+    for (int k = 0; k < 3; ++k) to[k] = rounded_in(normal[k], 0, 1, 1000);
+    if (max_abs(to) > 0) edits.drag(pointer + "/normal", scene::text_of(to), "slice");
+  }
+}
+
+void draw_contours(Edits& edits, const scene::Slice& slice) {
+  const std::string pointer = pointer_of(slice.where) + "/contours";
+  bool on = slice.contours.has_value();
+  if (ImGui::Checkbox("contours", &on)) {
+    if (on)
+      edits.set(pointer, "{\"count\": 8}", "contours");
+    else
+      edits.remove(pointer, "contours");
+    return;
+  }
+  if (!slice.contours) return;
+  ImGui::SameLine();
+  edit_color(edits, "##contour colour", slice.contours->color, pointer + "/color");
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(-FLT_MIN);
+  if (slice.contours->count > 0) {
+    int count = slice.contours->count;
+    if (ImGui::SliderInt("##count", &count, 1, 40, "%d lines", ImGuiSliderFlags_AlwaysClamp))
+      edits.drag(pointer + "/count", std::to_string(count), "contours");
+  } else if (slice.contours->spacing > 0) {
+    double spacing = slice.contours->spacing;
+    if (typed_number("##spacing", spacing, "from line to line, field units; Enter") && spacing > 0)
+      edits.drag(pointer + "/spacing", scene::text_of(spacing), "contours");
+  } else {
+    ImGui::TextDisabled("%zu stated levels", slice.contours->levels.size());
+  }
+}
+
+}  // namespace
+
+void draw_slices(PanelContext& context) {
+  Edits edits(context);
+  const scene::Scene& scene = context.scene.scene();
+  scene.world.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
+    if (!begin_item(edits, slice.where, !is_hidden(scene.world, e), "slice", name_of(scene, slice.shown.field))) return;
+    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(slice.shown.field);
+    const field::Field* field = source.drawn.get() != nullptr ? source.drawn.get() : source.loaded.get();
+    if (field != nullptr) draw_plane(edits, slice, *field);
+    edit_color_scale(edits, slice.where, slice.shown.colors, slice.shown.named, "viridis");
+    edit_share(edits, "opacity", slice.opacity, pointer_of(slice.where) + "/opacity");
+    draw_contours(edits, slice);
+    end_item();
+  });
+}
+
+}  // namespace catena::app

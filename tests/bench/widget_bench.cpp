@@ -1,0 +1,38 @@
+/// What a cutting plane adds to the tick of a streamline and an isosurface on 256^3 grids: in no mode, on the plane, turned.
+#include "haptics/constraints/widget_link.h"
+#include "tests/bench/chain_bench.h"
+
+namespace {
+
+using namespace catena;
+using namespace catena::bench;
+
+Program program_with(int planes, const Vec3& centre) {
+  Program program;
+  program.links = {make_link(R"({"name": "curve", "type": "streamline", "field": "hill", "seed": [0.5, 0, 0]})"),
+                   make_link(R"({"name": "surface", "type": "isosurface", "field": "torus", "level": 0.5})")};
+  for (int i = 0; i < planes; ++i) {
+    widget::Spec plane;
+    plane.radius = 0.2;
+    plane.snap = 0.5;
+    plane.release = 1;
+    plane.near = 0.05;
+    plane.step = 0.08;
+    plane.pose.points[0] = centre + Vec3(0.0, 0.0, 5.0 * i);
+    program.widgets.push_back(plane);
+    program.widget_names.push_back("cut" + std::to_string(i));
+  }
+  if (planes > 0) add_widget_links(program);
+  return program;
+}
+
+void TickWithoutWidgets(benchmark::State& state) { run_chain(state, program_with(0, Vec3(0.0))); }
+void TickCuttingPlaneAway(benchmark::State& state) { run_chain(state, program_with(1, Vec3(0.0, 0.0, 50.0))); }
+void TickCuttingPlaneExplored(benchmark::State& state) { run_chain(state, program_with(1, Vec3(-3.0, 0.0, 0.0))); }
+void TickEightCuttingPlanes(benchmark::State& state) { run_chain(state, program_with(8, Vec3(-3.0, 0.0, 0.0))); }
+BENCHMARK(TickWithoutWidgets)->Unit(benchmark::kMillisecond);
+BENCHMARK(TickCuttingPlaneAway)->Unit(benchmark::kMillisecond);
+BENCHMARK(TickCuttingPlaneExplored)->Unit(benchmark::kMillisecond);
+BENCHMARK(TickEightCuttingPlanes)->Unit(benchmark::kMillisecond);
+
+}  // namespace

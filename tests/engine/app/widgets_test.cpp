@@ -1,0 +1,90 @@
+/// `catena replay --widgets`: a cutting plane held by a scripted hand, against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/base/numbers.h"
+#include "engine/base/vec.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace {
+
+using namespace catena;
+
+constexpr const char* kScene = R"({"fields": {"d": {"analytic": "gaussian"}},
+  "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1], "radius": 0.5,
+               "snap": 0.1, "release": 0.2, "near": 0.05, "step": 0.1}],
+  "slices": [{"field": "d", "widget": "cut"}]})";
+
+class Widgets : public testing::Test {
+ protected:
+  test::Table replay(const std::string& path_csv) {
+    test::write_file(folder_ / "s.json", kScene);
+    test::write_file(folder_ / "p.csv", "t,x,y,z,buttons\n" + path_csv);
+    const auto run = test::run_program(CATENA_PROGRAM, {"replay", folder_ / "s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv",
+                                                        "--widgets", folder_ / "w.csv"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return test::Table::read(folder_ / "w.csv");
+  }
+  static std::string row(int k, const Vec3& p, int buttons) {
+    return to_text(1e-3 * k) + "," + to_text(p.x) + "," + to_text(p.y) + "," + to_text(p.z) + "," + std::to_string(buttons) + "\n";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Widgets, ADragAlongXWithATremblingHandLeavesYAndZ) {
+  std::string path;
+  for (int k = 0; k < 200; ++k) path += row(k, {1.0, 0.5, 0.0}, 0);
+  for (int k = 200; k <= 1200; ++k)
+    path += row(k, {1 + 6e-4 * (k - 200), 0.5 + 0.08 * std::sin(0.1 * (k - 200)), 0.09 * std::sin(0.07 * (k - 200))}, 1);
+  for (int k = 1201; k < 1300; ++k) path += row(k, {1.6, 0.5, 0.0}, 0);
+  const test::Table table = replay(path);
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    EXPECT_EQ(table.number(k, "cut_y"), 0);
+    EXPECT_EQ(table.number(k, "cut_z"), 0);
+    EXPECT_EQ(table.number(k, "cut_nz"), 1);
+  }
+  EXPECT_EQ(table.word(100, "cut_mode"), "explore");
+  EXPECT_EQ(table.word(700, "cut_mode"), "translate");
+  EXPECT_EQ(table.word(1290, "cut_mode"), "explore");
+  // the plane across x lets go at `step`: from there on the widget goes as far as the hand
+  EXPECT_EQ(table.number(360, "cut_x"), 0);
+  EXPECT_NEAR(table.number(1200, "cut_x"), 0.6 - 0.1, 1e-12);
+  EXPECT_NEAR(table.number(table.rows() - 1, "cut_x"), 0.5, 1e-12);
+}
+
+TEST_F(Widgets, ATurnAboutAnAxisKeepsTheAxis) {
+  // on the great circle across the widget's y, away from where it crosses the others: from x towards z by 100 degrees
+  const double angle = 100 * M_PI / 180, start = 40 * M_PI / 180;
+  std::string path;
+  for (int k = 0; k < 200; ++k) path += row(k, {0.5 * std::cos(start), 0.0, 0.5 * std::sin(start)}, 0);
+  for (int k = 200; k <= 1200; ++k) {
+    const double a = start + angle * (k - 200) / 1000;
+    path += row(k, {0.55 * std::cos(a), 0.03 * std::sin(0.05 * k), 0.55 * std::sin(a)}, 1);
+  }
+  const test::Table table = replay(path);
+  const std::size_t last = table.rows() - 1;
+  ASSERT_EQ(table.word(last, "cut_mode"), "turn");
+  EXPECT_EQ(table.number(last, "cut_held"), 2) << "the plane across y";
+  for (std::size_t k = 0; k <= last; ++k) EXPECT_NEAR(table.number(k, "cut_ny"), 0, 1e-12);
+  // x goes to z, so z goes to -x
+  EXPECT_NEAR(table.number(last, "cut_nx"), -std::sin(angle), 1e-12);
+  EXPECT_NEAR(table.number(last, "cut_nz"), std::cos(angle), 1e-12);
+  EXPECT_EQ(table.number(last, "cut_x"), 0);
+  EXPECT_EQ(table.number(last, "cut_z"), 0);
+}
+
+TEST_F(Widgets, ANameTakenByAWidgetsLinkIsRefusedInOneLine) {
+  test::write_file(folder_ / "bad.json", R"({"fields": {}, "chain": [{"name": "widget_x", "type": "point", "position": [0, 0, 0]}],
+    "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}]})");
+  test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
+  const auto run =
+      test::run_program(CATENA_PROGRAM, {"replay", folder_ / "bad.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("bad.json:2:"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("widget_x"), std::string::npos) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+}
+
+}  // namespace

@@ -1,0 +1,73 @@
+// "visible": false hides what is drawn and nothing else.
+#include <gtest/gtest.h>
+
+#include "render/extract/extract.h"
+#include "tests/support/support.h"
+
+namespace catena::render {
+namespace {
+
+std::string scene_text(const std::string& visible) {
+  std::string text = R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle"}},
+    "volumes": [{"field": "s"VISIBLE}, {"field": "s"}],
+    "isosurfaces": [{"field": "s", "level": 1VISIBLE}],
+    "slices": [{"field": "s", "axis": "z", "at": 0VISIBLE}, {"field": "v", "axis": "x", "at": 0.5}],
+    "streamlines": [{"field": "v", "seeds": [[1, 0, 0]], "color_by": "speed"VISIBLE}],
+    "meshes": [{"name": "m", "file": "m.obj"VISIBLE}],
+    "scalar_bars": [{"volume": 0}, {"slice": 0}, {"slice": 1}, {"streamlines": 0}]})";
+  for (std::size_t at; (at = text.find("VISIBLE")) != std::string::npos;) text.replace(at, 7, visible);
+  return text;
+}
+
+class Visible : public testing::Test {
+ protected:
+  FramePacket packet(const std::string& visible) {
+    test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    scene_ = scene::parse_scene(scene_text(visible), folder_ / "s.json");
+    EXPECT_TRUE(scene_) << scene_.error().message;
+    auto packet = extract_frame(*scene_, 32, 32);
+    EXPECT_TRUE(packet) << packet.error().message;
+    return packet ? std::move(*packet) : FramePacket{};
+  }
+  test::TemporaryFolder folder_;
+  Result<scene::Scene> scene_ = Error{""};
+};
+
+TEST_F(Visible, TrueIsAsIfItWereNotSaid) {
+  for (const char* visible : {"", ", \"visible\": true"}) {
+    const FramePacket all = packet(visible);
+    EXPECT_EQ(all.volumes.size(), 2u);
+    EXPECT_EQ(all.isosurfaces.size(), 1u);
+    EXPECT_EQ(all.slices.size(), 2u);
+    EXPECT_EQ(all.tubes.size(), 1u);
+    EXPECT_EQ(all.meshes.size(), 1u);
+    EXPECT_EQ(all.overlay.scalar_bars.size(), 4u);
+  }
+}
+
+TEST_F(Visible, FalseHidesTheThingAndItsScalarBar) {
+  const FramePacket some = packet(", \"visible\": false");
+  EXPECT_EQ(some.volumes.size(), 1u);
+  EXPECT_TRUE(some.isosurfaces.empty());
+  ASSERT_EQ(some.slices.size(), 1u);
+  EXPECT_TRUE(some.tubes.empty());
+  EXPECT_TRUE(some.meshes.empty());
+  // that of the slice that is seen, in its own colours
+  ASSERT_EQ(some.overlay.scalar_bars.size(), 1u);
+  EXPECT_EQ(some.overlay.scalar_bars[0].colors, some.slices[0].colors);
+  EXPECT_EQ(scene_->world.count<scene::Volume>(), 2u) << "it is still of the scene";
+}
+
+TEST_F(Visible, OnlyTruthValues) {
+  for (const char* list : {R"("volumes": [{"field": "s")", R"("isosurfaces": [{"field": "s", "level": 1)",
+                           R"("slices": [{"field": "s", "axis": "z", "at": 0)"}) {
+    const auto scene =
+        scene::parse_scene(R"({"fields": {"s": {"analytic": "sphere"}}, )" + std::string(list) + ",\n\"visible\": 0}]}", "s.json");
+    ASSERT_FALSE(scene) << list;
+    EXPECT_EQ(scene.error().message.find("s.json:2: "), 0u) << scene.error().message;
+    EXPECT_NE(scene.error().message.find("visible"), std::string::npos) << scene.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace catena::render
