@@ -23,6 +23,7 @@ inline constexpr double kNarrowWidth = 640;
 Area picture_area(double width, double height, const Edges& edges);
 
 /// x0, y0, x1, y1 of the area in pixels of a frame of `frame_width` by `frame_height`; at least one pixel, within the frame.
-std::array<std::uint32_t, 4> pixels_of(const Area& area, double width, double height, std::uint32_t frame_width, std::uint32_t frame_height);
+std::array<std::uint32_t, 4> pixels_of(const Area& area, double width, double height, std::uint32_t frame_width,
+                                       std::uint32_t frame_height);
 
 }  // namespace catena::app

@@ -27,7 +27,8 @@ double extinction_at(const render::TransferTable& table, double value);
 /// Along the ray from the eye to `farthest` (world units, may be infinite).
 std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double farthest);
 
-/// In the picture's place `x, y`, in pixels of the packet. `depth`, `id`: of the nearest opaque thing there (Renderer::pick); infinite: none.
+/// In the picture's place `x, y`, in pixels of the packet. `depth`, `id`: of the nearest opaque thing there (Renderer::pick); infinite:
+/// none.
 std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, double y, double depth, std::uint32_t id);
 
 /// "isosurface density"; empty for 0 and for ids of no object.

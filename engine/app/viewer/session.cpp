@@ -270,7 +270,8 @@ void Session::update_title() {
   const exchange::HapticState& felt = hand_.felt();
   const scene::Document& document = scene_->document();
   const std::string name = state_.untitled ? "untitled" : std::filesystem::path(document.path()).filename().string();
-  std::string title = fmt::format("catena  {}{}  {:.0f} fps  {:.2f} N", name, document.is_modified() ? " \u2022" : "", last_title_ == 0 ? 0 : frames_in_title_ / since_s, norm(felt.force_n));
+  std::string title = fmt::format("catena  {}{}  {:.0f} fps  {:.2f} N", name, document.is_modified() ? " \u2022" : "",
+                                  last_title_ == 0 ? 0 : frames_in_title_ / since_s, norm(felt.force_n));
   const auto links = std::min(static_cast<std::size_t>(felt.link_count), hand_.link_names().size());
   for (std::size_t k = 0; k < links; ++k)
     title += fmt::format("  {} {}", hand_.link_names()[k], exchange::status_word(felt.links[k].status));
@@ -318,7 +319,8 @@ std::optional<Failure> Session::run() {
     }
     const bool pulsed = run_pulses(), reloaded = take_shaders(), turned = move_camera();
     const bool resized = screen_->is_resized() || lay_out() || !screen_->has_picture();
-    const bool moved = changed.any() || opened || std::exchange(moved_by_menu_, false) || edited || news || resized || pulsed || reloaded || turned || times_.count() == 0;
+    const bool moved = changed.any() || opened || std::exchange(moved_by_menu_, false) || edited || news || resized || pulsed || reloaded ||
+                       turned || times_.count() == 0;
     if (moved) last_move = now_ns();
 
     // a picture in time while something moves, better ones when it rests

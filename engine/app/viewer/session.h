@@ -100,7 +100,7 @@ class Session {
 
   RecentFiles recent_;
   SceneLoader loader_;
-  bool loading_adds_ = false;  ///< what is being loaded joins the scene
+  bool loading_adds_ = false;                 ///< what is being loaded joins the scene
   std::optional<render::FramePacket> shown_;  ///< the last picture's
   std::array<std::uint32_t, 4> pixels_{};     ///< where the picture lies in the window
   render::View saved_view_;                   ///< that the scene's text has, or began with
@@ -109,8 +109,8 @@ class Session {
   bool picked_stale_ = true;       ///< the place under the pointer is to be looked at again
   bool owns_file_ = true;          ///< the scene was read from, or saved to, the file of its path
   bool moved_by_menu_ = false;
-  bool leaves_ = false;            ///< the loop ends
-  int unsettled_ = 0;              ///< interfaces to come though nothing happens: they settle their sizes
+  bool leaves_ = false;  ///< the loop ends
+  int unsettled_ = 0;    ///< interfaces to come though nothing happens: they settle their sizes
 
   bool damaged_ = false;
   bool interface_holds_pointer_ = false;  ///< the buttons that are down went down on it

@@ -16,8 +16,8 @@ namespace {
 std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 bool same_view(const render::View& a, const render::View& b) {
-  return a.position == b.position && a.target == b.target && a.up == b.up && a.fovy_deg == b.fovy_deg &&
-         a.orthographic == b.orthographic && (!a.orthographic || a.height == b.height);
+  return a.position == b.position && a.target == b.target && a.up == b.up && a.fovy_deg == b.fovy_deg && a.orthographic == b.orthographic &&
+         (!a.orthographic || a.height == b.height);
 }
 
 }  // namespace

@@ -93,8 +93,7 @@ void Session::update_values() {
   state_.pointer = {};
   const auto texel = screen_->pick(x, y);
   if (!texel) return;
-  if (const auto place = pick(*shown_, x, y, texel->depth, texel->id))
-    state_.pointer = at(place->world, object_words(*shown_, place->id));
+  if (const auto place = pick(*shown_, x, y, texel->depth, texel->id)) state_.pointer = at(place->world, object_words(*shown_, place->id));
 }
 
 }  // namespace catena::app

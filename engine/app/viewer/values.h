@@ -10,8 +10,8 @@ namespace catena::app {
 
 struct FieldValue {
   std::string name, unit;
-  bool inside = false;       ///< within the domain and the mask; outside there is no value
-  double value = 0;          ///< of a vector: its length
+  bool inside = false;  ///< within the domain and the mask; outside there is no value
+  double value = 0;     ///< of a vector: its length
   std::optional<Vec3> vector{};
 };
 

@@ -9,8 +9,8 @@
 
 #include "engine/app/render/quality_words.h"
 #include "engine/app/viewer/hand_host.h"
-#include "render/vk/device.h"
 #include "engine/scene/document.h"
+#include "render/vk/device.h"
 
 namespace catena::app {
 
@@ -27,11 +27,11 @@ struct ViewOptions {
   int frames = 0;                ///< quit after so many frames; 0: until the window is closed
   double seconds = 0;            ///< draw all the time and quit after so long; 0: until the window is closed
   bool panels = true;
-  std::string screenshot;         ///< .png of the last picture, written at the end; empty: none
-  std::string window_screenshot;  ///< the same with the interface
+  std::string screenshot;                                  ///< .png of the last picture, written at the end; empty: none
+  std::string window_screenshot;                           ///< the same with the interface
   std::function<VkResult(render::vk::DriverCall)> fail{};  ///< tests only (vk::DeviceOptions)
-  std::string servo_stats;        ///< .json of the servo, written at the end; empty: none
-  std::string frame_stats;        ///< .json of the pictures, written at the end; empty: none
+  std::string servo_stats;                                 ///< .json of the servo, written at the end; empty: none
+  std::string frame_stats;                                 ///< .json of the pictures, written at the end; empty: none
 };
 
 /// Exit code: 0 done, 1 no display or no GPU, 2 the scene cannot be shown or felt, or the device not opened (one line on stderr).

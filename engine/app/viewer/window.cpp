@@ -33,8 +33,8 @@ std::optional<Command> command_of(int key, bool control, bool shift) {
 }
 
 bool is_fly_key(int key) {
-  constexpr int kKeys[] = {GLFW_KEY_W,  GLFW_KEY_A,    GLFW_KEY_S,    GLFW_KEY_D,   GLFW_KEY_E,
-                           GLFW_KEY_Q,  GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_UP, GLFW_KEY_DOWN};
+  constexpr int kKeys[] = {GLFW_KEY_W, GLFW_KEY_A,    GLFW_KEY_S,     GLFW_KEY_D,  GLFW_KEY_E,
+                           GLFW_KEY_Q, GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_UP, GLFW_KEY_DOWN};
   return std::ranges::find(kKeys, key) != std::end(kKeys);
 }
 
@@ -49,7 +49,7 @@ struct Window::Parts {
   bool happened = false;
   bool gui = false, keys_are_text = false, fly = false;
   std::vector<std::array<int, 3>> released;  ///< keys that the interface has not been told of: key, scancode, modifiers
-  std::array<int, 4> place{};  ///< before full screen: x, y, width, height
+  std::array<int, 4> place{};                ///< before full screen: x, y, width, height
 
   ~Parts() {
     if (window != nullptr) glfwDestroyWindow(window);
