@@ -1,7 +1,7 @@
 /// What a file says of its numbers: the unit of a grid's values and of the world's lengths, as short words ("m/s", "mm"). Any thread.
 ///   NIfTI: xyz_units of the header (m, mm, µm); values: none, the format has no place for them
-///   VDB: text metadata "unit" or "units" of the grid; "unit_length" of the grid or the file. "units" of the file is free text ("HU, mm"): a
-///   part between commas that is a length is taken for lengths, a single word for the values of a file's only field
+///   VDB: text metadata "unit" or "units" of the grid; "unit_length" of the grid or the file. "units" of the file is free text ("HU, mm"):
+///   a part between commas that is a length is taken for lengths, a single word for the values of a file's only field
 #pragma once
 #include <string>
 

@@ -31,7 +31,8 @@ struct UiItems {
   std::vector<UiVertex> vertices;
   std::vector<std::uint16_t> indices;  ///< three a triangle, from first_vertex on
   std::vector<UiDraw> draws;           ///< in order
-  /// Where the window shows the picture (x0, y0, x1, y1, pixels), black beside it; none, or what of it the window holds is empty: everywhere.
+  /// Where the window shows the picture (x0, y0, x1, y1, pixels), black beside it; none, or what of it the window holds is empty:
+  /// everywhere.
   std::optional<std::array<std::uint32_t, 4>> area{};
 };
 

@@ -1,4 +1,5 @@
-/// A window's image: the finished picture, scaled to the window or the items' area of it (linear), with the user interface over it at the window's own pixels.
+/// A window's image: the finished picture, scaled to the window or the items' area of it (linear), with the user interface over it at the
+/// window's own pixels.
 ///   shown.rgb = a rgb + (1 - a) below.rgb, a and rgb of the triangle: vertex colour x texture, straight alpha, display values
 /// A pixel is drawn where its centre lies within the triangle and within the draw's clip rectangle; draws are blended in order. The
 /// picture itself stays as it is, so that the next paint needs no new one. Not one of the packet's passes: the renderer paints with it

@@ -121,7 +121,7 @@ Changed apply(Controls& controls, const Input& input) {
     changed.hand = true;
   } else if (controls.fly && input.left && moved) {
     const double turn = controls.view.fovy_deg * kPi / 180 / input.height;
-    look(controls.view, -turn * input.dx, turn * input.dy);
+    look(controls.view, turn * input.dx, -turn * input.dy);
     changed.view = true;
   } else if (input.left && moved) {
     orbit(controls.view, -kTurnPerHeight * input.dx / input.height, kTurnPerHeight * input.dy / input.height);

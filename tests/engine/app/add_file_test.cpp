@@ -6,9 +6,10 @@ namespace catena::app {
 namespace {
 
 TEST(AddFile, AFieldAndItsVolumeJoinUnderAFreeName) {
-  const auto added = edits_to_add(R"({"fields": {"density": {"analytic": "sphere"}}, "volumes": [{"field": "density"}]})", "/a/s.json",
-                                  R"({"fields": {"density": {"file": "x.vdb", "grid": "density"}}, "volumes": [{"field": "density", "shade": true}]})",
-                                  "/a/data/x.vdb.json");
+  const auto added =
+      edits_to_add(R"({"fields": {"density": {"analytic": "sphere"}}, "volumes": [{"field": "density"}]})", "/a/s.json",
+                   R"({"fields": {"density": {"file": "x.vdb", "grid": "density"}}, "volumes": [{"field": "density", "shade": true}]})",
+                   "/a/data/x.vdb.json");
   ASSERT_TRUE(added) << added.error().message;
   ASSERT_EQ(added->edits.size(), 2u);
   EXPECT_EQ(added->edits[0].pointer, "/fields/density_2");
@@ -19,7 +20,8 @@ TEST(AddFile, AFieldAndItsVolumeJoinUnderAFreeName) {
 }
 
 TEST(AddFile, FilesElsewhereAreNamedWhole) {
-  const auto added = edits_to_add("{}", "/a/s.json", R"({"fields": {"v": {"file": "x.vdb"}}, "streamlines": [{"field": "v"}]})", "/b/x.vdb.json");
+  const auto added =
+      edits_to_add("{}", "/a/s.json", R"({"fields": {"v": {"file": "x.vdb"}}, "streamlines": [{"field": "v"}]})", "/b/x.vdb.json");
   ASSERT_TRUE(added);
   EXPECT_EQ(*added->edits[0].value, R"({"file": "/b/x.vdb"})");
   EXPECT_EQ(added->edits[0].pointer, "/fields/v");

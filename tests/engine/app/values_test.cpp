@@ -9,7 +9,8 @@ namespace {
 
 TEST(Values, EveryLoadedFieldHasItsValueAndUnitAtAPlace) {
   auto scene = scene::parse_scene(R"({"unit_length": "mm", "fields": {
-    "v": {"analytic": "circle", "unit": "m/s"}, "d": {"analytic": "sphere"}, "unused": {"analytic": "plane"}}})", "s.json");
+    "v": {"analytic": "circle", "unit": "m/s"}, "d": {"analytic": "sphere"}, "unused": {"analytic": "plane"}}})",
+                                  "s.json");
   ASSERT_TRUE(scene);
   const Vec3 at(0.6, -0.8, 0.5);
   EXPECT_TRUE(values_at(*scene, at).empty()) << "nothing is loaded for it";

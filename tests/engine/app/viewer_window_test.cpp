@@ -40,7 +40,8 @@ class ViewerWindow : public testing::Test {
   int drive(const std::string& options, const std::string& script, const std::string& environment = "") {
     std::ostringstream all;
     all << "cd " << folder_.path() << "\nexport HOME=" << folder_.path() << " XDG_STATE_HOME=" << (folder_ / "state") << "\n"
-        << "titled() { for i in $(seq 300); do xdotool search --name \"$1\" > /dev/null 2>&1 && echo \"titled $1\" && return; sleep 0.1; done; "
+        << "titled() { for i in $(seq 300); do xdotool search --name \"$1\" > /dev/null 2>&1 && echo \"titled $1\" && return; sleep 0.1; "
+           "done; "
            "echo \"never titled $1\"; }\n"
         << "written() { for i in $(seq 300); do [ -s \"$1\" ] && return; sleep 0.1; done; echo \"never written $1\"; }\n"
         << "keys() { for k in \"$@\"; do xdotool key $k; sleep 0.25; done; }\n"
@@ -48,9 +49,8 @@ class ViewerWindow : public testing::Test {
         << "xdotool mousemove 600 300; sleep 0.3\n"
         << script << "\nwait $V\n";
     test::write_file(folder_ / "script.sh", all.str());
-    const int status = std::system(("timeout 90 xvfb-run -a -s '-screen 0 1000x700x24' sh " + (folder_ / "script.sh") + " > " +
-                                    (folder_ / "log") + " 2>&1")
-                                       .c_str());
+    const int status = std::system(
+        ("timeout 90 xvfb-run -a -s '-screen 0 1000x700x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
@@ -160,7 +160,8 @@ TEST(ViewerLost, DISABLED_InAWindow) {
 TEST_F(ViewerWindow, ADeviceThatIsLostIsStartedAgain) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command = "CATENA_TEST_SCENE=" + scene_ + " timeout 90 xvfb-run -a -s '-screen 0 640x480x24' " + self +
-                              " --gtest_also_run_disabled_tests --gtest_filter=ViewerLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
+                              " --gtest_also_run_disabled_tests --gtest_filter=ViewerLost.DISABLED_InAWindow > " + (folder_ / "log") +
+                              " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << log();
   EXPECT_NE(log().find("60 frames"), std::string::npos) << log();
   EXPECT_NE(log().find("lost and started again 4 times"), std::string::npos) << log();

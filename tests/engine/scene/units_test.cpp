@@ -7,7 +7,8 @@ namespace {
 
 TEST(SceneUnits, FieldsAndLengthsHaveTheWordsThatTheSceneStates) {
   const auto scene = parse_scene(R"({"unit_length": "mm",
-    "fields": {"v": {"analytic": "circle", "unit": "m/s"}, "d": {"analytic": "sphere"}}})", "s.json");
+    "fields": {"v": {"analytic": "circle", "unit": "m/s"}, "d": {"analytic": "sphere"}}})",
+                                 "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_EQ(unit_length(*scene), "mm");
   EXPECT_EQ(unit_of(*scene, find_field(*scene, "v")), "m/s");

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 struct Browser {
   std::string folder;
   std::vector<FileEntry> entries;
-  std::string problem;               ///< why the folder cannot be listed
+  std::string problem;  ///< why the folder cannot be listed
   std::array<char, 4096> typed{};
   bool scenes_only = false, focus = false, asks_overwrite = false;
 
@@ -91,7 +91,8 @@ bool draw_list(Browser& browser) {
 bool draw_typed(Browser& browser) {
   if (std::exchange(browser.focus, false)) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(520);
-  constexpr ImGuiInputTextFlags kFlags = ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_AutoSelectAll;
+  constexpr ImGuiInputTextFlags kFlags =
+      ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_AutoSelectAll;
   const bool entered = ImGui::InputText("##path", browser.typed.data(), browser.typed.size(), kFlags, complete, &browser);
   if (ImGui::IsItemEdited()) browser.asks_overwrite = false;
   return entered;

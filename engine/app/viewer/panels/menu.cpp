@@ -51,7 +51,8 @@ void draw_view_menu(PanelContext& context) {
   if (ImGui::MenuItem("First view", "R")) state.moves.reset_view = true;
   if (ImGui::MenuItem("Everything", "A")) state.moves.fit = true;
   if (ImGui::BeginMenu("Along")) {
-    constexpr const char *kAxes[2][3] = {{"+x", "+y", "+z"}, {"-x", "-y", "-z"}}, *kKeys[2][3] = {{"1", "2", "3"}, {"Shift+1", "Shift+2", "Shift+3"}};
+    constexpr const char *kAxes[2][3] = {{"+x", "+y", "+z"}, {"-x", "-y", "-z"}},
+                         *kKeys[2][3] = {{"1", "2", "3"}, {"Shift+1", "Shift+2", "Shift+3"}};
     for (int side = 0; side < 2; ++side)
       for (int axis = 0; axis < 3; ++axis)
         if (ImGui::MenuItem(kAxes[side][axis], kKeys[side][axis])) {
