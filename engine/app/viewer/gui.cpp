@@ -8,6 +8,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "render/text/font.h"
 
@@ -33,6 +34,7 @@ void choose_style(float scale) {
 struct Gui::Parts {
   Window* window;
   std::shared_ptr<const render::UiTexture> font;
+  float wheel = 0;  ///< turned in frames of catch_up
 };
 
 Gui::Gui(Window& window) : parts_(std::make_unique<Parts>(Parts{&window, nullptr})) {
@@ -68,8 +70,34 @@ Gui::~Gui() {
   ImGui::DestroyContext();
 }
 
+void Gui::catch_up(const std::vector<Input>& pieces, const std::function<void()>& make_panels) {
+  if (pieces.size() < 2) return;
+  const auto frame = [&](const Input& piece, double x, double y) {
+    ImGui_ImplGlfw_NewFrame();
+    ImGuiIO& io = ImGui::GetIO();
+    io.DeltaTime = std::max(io.DeltaTime, 1e-6f);
+    io.MousePos = {static_cast<float>(x), static_cast<float>(y)};
+    io.MouseDown[0] = piece.left;
+    io.MouseDown[1] = piece.right;
+    io.MouseDown[2] = piece.middle;
+    parts_->wheel += std::exchange(io.MouseWheel, 0.0f);
+    ImGui::NewFrame();
+    make_panels();
+    ImGui::EndFrame();
+  };
+  const auto differ = [](const Input& a, const Input& b) { return a.left != b.left || a.right != b.right || a.middle != b.middle; };
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const Input& piece = pieces[k];
+    if (k > 0 && differ(piece, pieces[k - 1])) frame(piece, piece.x, piece.y);
+    // where a drag ends before its button goes up
+    const bool moved = piece.dx != 0 || piece.dy != 0;
+    if (moved && k + 1 < pieces.size() && differ(piece, pieces[k + 1])) frame(piece, piece.x + piece.dx, piece.y + piece.dy);
+  }
+}
+
 void Gui::begin() {
   ImGui_ImplGlfw_NewFrame();
+  ImGui::GetIO().MouseWheel += std::exchange(parts_->wheel, 0.0f);
   ImGui::NewFrame();
   parts_->window->tell_releases();
 }

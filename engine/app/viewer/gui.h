@@ -1,6 +1,8 @@
 /// Dear ImGui on the window: events in, triangles out. Nothing else in the house but the panels includes it. Frame thread; one at a time.
 #pragma once
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "engine/app/viewer/window.h"
 #include "engine/base/result.h"
@@ -19,6 +21,9 @@ class Gui {
   /// Between the two the panels are made.
   void begin();
   render::UiItems end();
+  /// What the pointer did since the last frame, piece by piece, however long that frame took: `make_panels` is called for every press and
+  /// release in between, with the pointer where it was then. Before begin().
+  void catch_up(const std::vector<Input>& pieces, const std::function<void()>& make_panels);
 
   /// Something of the interface lay at this place of the window in the last frame (window coordinates).
   bool holds(double x, double y) const;

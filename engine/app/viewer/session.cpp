@@ -250,6 +250,11 @@ std::optional<Failure> Session::estimate() {
 std::optional<Failure> Session::show() {
   const std::int64_t start = now_ns();
   update_values();
+  gui_->catch_up(pieces_, [this] {
+    PanelContext panels = context();
+    draw_interface(panels);
+  });
+  pieces_.clear();
   gui_->begin();
   // the glyph is the pointer while the mouse is the hand
   if (controls_.hand_mode && hand_.is_mouse() && state_.pointer_on_picture) gui_->hide_pointer();

@@ -121,6 +121,7 @@ static std::optional<Vec3> held_place(const exchange::HapticState& felt) {
 Changed Session::take_input(double wait_s) {
   Changed changed;
   for (const Input& piece : window_->poll(wait_s)) {
+    if (window_->happened() && pieces_.size() < kMostPieces) pieces_.push_back(piece);
     const Changed by_piece = apply(controls_, routed(piece));
     changed.view = changed.view || by_piece.view;
     changed.hand = changed.hand || by_piece.hand;
