@@ -105,6 +105,22 @@ std::string streamlines_text(const std::string& field, const field::VectorField&
   return text + "]}\n  ]\n";
 }
 
+/// The file's other grids, to be shown when somebody asks for them; nothing loads them before.
+std::string other_fields(const field::LoadRequest& shown, const std::string& file, const std::string& taken) {
+  const auto grids = field::describe(shown.path);
+  if (!grids || shown.grid.empty()) return {};
+  std::vector<std::string> names{taken};
+  std::string text;
+  for (const field::GridInfo& grid : *grids) {
+    const std::string name = json::string_text(field_name(grid.name));
+    if (!grid.usable || grid.stats.active_voxels == 0 || grid.name.empty() || grid.name == shown.grid) continue;
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    names.push_back(name);
+    text += ",\n             " + name + ": {\"file\": " + file + ", \"grid\": " + json::string_text(grid.name) + "}";
+  }
+  return text;
+}
+
 void forget_lines(json::Node& node) {
   node.line = 0;
   for (json::Node& item : node.items) forget_lines(item);
@@ -137,7 +153,9 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
-  bare.text += "}}";
+  bare.text += "}";
+  if (grid.empty()) bare.text += other_fields(bare.request, file, name);
+  bare.text += "}";
   if (bare.field.scalar) {
     bare.text += ",\n" + volume_text(name, *bare.field.scalar->grid(), colors);
   } else {

@@ -1,5 +1,4 @@
 // What the person does: to the interface, to the eye, to the hand, to the program.
-#include <cstdio>
 
 #include "engine/app/viewer/session.h"
 
@@ -96,11 +95,7 @@ void Session::obey_once(const Input& input, Changed& changed) {
     changed.view = true;
   }
   if (input.toggle_forces) hand_.set_forces(!hand_.forces());
-  if (input.help) {
-    state_.help = !state_.help;
-    std::fputs(key_help().c_str(), stdout);
-    std::fflush(stdout);
-  }
+  if (input.help) state_.help = !state_.help;
   for (const Command command : input.commands) obey(command);
   if (input.escape) escape();
   stop_turning(input);
