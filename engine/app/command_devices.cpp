@@ -15,7 +15,7 @@
 namespace catena::app {
 namespace {
 
-struct Options {
+struct DevicesOptions {
   bool json = false, forces = false;
   std::string name, firmware;
   double seconds = 2;
@@ -77,7 +77,7 @@ void print_check(const haptics::Device& device, const std::string& name, const D
                norm(push.moved_m) < 1e-5 ? " (not at all: is it powered?)" : "");
 }
 
-Outcome test(const Options& options) {
+Outcome test(const DevicesOptions& options) {
   if (!haptics::is_device_type(haptics::device_type_of(options.name)))
     return Error{"there is no device " + in_quotes(options.name) + "; one of " + haptics::device_types() + " was expected"};
   if (!(options.seconds > 0 && options.seconds <= 600))
@@ -110,7 +110,7 @@ Outcome test(const Options& options) {
 }  // namespace
 
 void add_devices(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DevicesOptions>();
   CLI::App* devices = program.add_subcommand("devices", "list the haptic devices, or test one");
   devices->add_flag("--json", options->json, "the list as JSON");
   CLI::App* command = devices->add_subcommand("test", "a safe self-test: reads poses; pushes only with --forces");

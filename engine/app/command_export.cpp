@@ -17,7 +17,7 @@ namespace {
 
 namespace log = haptics::log;
 
-struct Options {
+struct ExportOptions {
   std::string log, output, details;
 };
 
@@ -70,7 +70,7 @@ void append_recorded(std::string& line, const LinkColumns& columns, const log::L
   line += '\n';
 }
 
-Outcome export_log(const Options& options) {
+Outcome export_log(const ExportOptions& options) {
   CATENA_TRY(log::LogReader reader, log::LogReader::open(options.log));
   CATENA_CHECK(check_output(options.output, {options.log}));
   if (!options.details.empty()) {
@@ -113,7 +113,7 @@ Outcome export_log(const Options& options) {
 }  // namespace
 
 void add_export(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   CLI::App* command = program.add_subcommand("export", "a recording (.catlog) as CSV");
   command->add_option("FILE", options->log, "a recording (.catlog)")->required();
   command->add_option("-o,--output", options->output, "ticks, CSV: the columns of replay")->required();

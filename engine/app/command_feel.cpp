@@ -26,7 +26,7 @@ namespace catena::app {
 
 namespace {
 
-struct Options {
+struct FeelOptions {
   std::string scene, device, firmware, forces = "off", stats, record;
   std::vector<std::string> fields;
   double seconds = 0;
@@ -84,7 +84,7 @@ class StatusLine {
 };
 
 /// Until the time is over or somebody asks to end.
-void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const Options& options,
+void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const FeelOptions& options,
           const Interrupt& interrupt, StatusLine& line) {
   constexpr double kStep = 0.02, kLine = 1;
   const std::int64_t start = now_ns();
@@ -109,7 +109,7 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
   }
 }
 
-Outcome feel(const Options& options) {
+Outcome feel(const FeelOptions& options) {
   if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to feel"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
   if (!options.stats.empty()) CATENA_CHECK(check_output(options.stats, inputs_of(scene)));
@@ -148,7 +148,7 @@ Outcome feel(const Options& options) {
 }  // namespace
 
 void add_feel(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FeelOptions>();
   CLI::App* command = program.add_subcommand("feel", "feel a scene with a haptic device, without a window");
   command->add_option("SCENE", options->scene, "the scene file (.json)")->required();
   command->add_option("--device", options->device, "NAME or NAME:DETAIL; default: the scene's \"device\", or else simulated");

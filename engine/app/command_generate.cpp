@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kMaxResolution = 1024;
 
-struct Options {
+struct GenerateOptions {
   std::string name, output;
   int resolution = 0;
   std::array<double, 2> box{-2, 2};
@@ -28,7 +28,7 @@ struct Options {
   bool direction_given = false;
 };
 
-Outcome check(const Options& o) {
+Outcome check(const GenerateOptions& o) {
   if (!field::is_analytic(o.name)) {
     const auto names = field::analytic_names();
     return Error{"no analytic field " + in_quotes(o.name) + suggestion(o.name, names) + "; known: " + joined(names)};
@@ -46,7 +46,7 @@ Outcome check(const Options& o) {
   return check_output(o.output, {});
 }
 
-Outcome generate(const Options& o) {
+Outcome generate(const GenerateOptions& o) {
   CATENA_CHECK(check(o));
   std::vector<field::WriteItem> items;
   const auto parts = field::analytic_parts(o.name);
@@ -71,7 +71,7 @@ Outcome generate(const Options& o) {
 }  // namespace
 
 void add_generate(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<GenerateOptions>();
   CLI::App* command = program.add_subcommand("generate", "sample an analytic field on a grid");
   command->add_option("NAME", options->name, "the field: " + joined(field::analytic_names()))->required();
   command->add_option("-o,--output", options->output, "the grid, .vdb")->required();

@@ -13,14 +13,14 @@ namespace catena::app {
 
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::string input, output, grid, name;
   std::vector<int> shape;
   std::vector<double> spacing{1, 1, 1}, origin{0, 0, 0};
   std::string type = "float32";
 };
 
-Outcome import_file(const Options& o) {
+Outcome import_file(const ImportOptions& o) {
   CATENA_CHECK(check_output(o.output, {o.input}));
   if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
   if (!o.input.ends_with(".raw") && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
@@ -48,7 +48,7 @@ Outcome import_file(const Options& o) {
 }  // namespace
 
 void add_import(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ImportOptions>();
   CLI::App* command = program.add_subcommand("import", "convert a data file to .vdb");
   command->add_option("IN", options->input, ".nii, .nii.gz, .raw or .vdb")->required();
   command->add_option("-o,--output", options->output, "the grid, .vdb")->required();

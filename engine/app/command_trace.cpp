@@ -21,7 +21,7 @@ namespace catena::app {
 
 namespace {
 
-struct Options {
+struct TraceOptions {
   std::string source, field, seeds, output, kind = "vector", stats;
   int repeat = 1;
   double length = 0, min_speed = 0, tolerance = 0, step = 0;
@@ -34,7 +34,7 @@ std::int64_t process_cpu_ns() {
 }
 
 /// The scene, or one made of the grids of a data file that the options name.
-Result<scene::Scene> scene_of(const Options& options) {
+Result<scene::Scene> scene_of(const TraceOptions& options) {
   if (is_scene_file(options.source)) return open_scene(options.source);
   scene::Scene scene;
   scene.path = options.source;
@@ -53,7 +53,7 @@ scene::Entity add_grid(scene::Scene& scene, const std::string& grid) {
   return entity;
 }
 
-Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const Options& options) {
+Result<field::VectorFieldPtr> vector_field(scene::Scene& scene, const TraceOptions& options) {
   field::AnyField any;
   if (is_scene_file(options.source)) {
     const scene::Entity entity = scene::find_field(scene, options.field);
@@ -92,7 +92,7 @@ struct Timing {
 };
 
 /// Seeds of a table, over all cores.
-Result<Curves> trace_table(const Options& options, const flow::Flow& flow, Timing& timing) {
+Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, Timing& timing) {
   CATENA_TRY(const std::vector<Vec3> seeds, read_seeds(options.seeds));
   flow::TraceOptions exact;
   exact.length = options.length;
@@ -130,7 +130,7 @@ Result<json::Node> pattern_of(const std::string& seeds) {
   return seeds.starts_with("{") ? json::parse(seeds, "--seeds") : json::read(seeds);
 }
 
-Result<Curves> trace_pattern(const Options& options, const json::Node& node, const flow::Flow& flow, scene::Scene& scene) {
+Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node, const flow::Flow& flow, scene::Scene& scene) {
   // a data file's other grids are found by name
   if (const json::Node* surface = node.find("isosurface"); surface != nullptr && !is_scene_file(options.source))
     if (const json::Node* name = surface->find("field"); name != nullptr && name->kind == json::Kind::string) add_grid(scene, name->string);
@@ -138,7 +138,7 @@ Result<Curves> trace_pattern(const Options& options, const json::Node& node, con
   return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step}, node);
 }
 
-Outcome trace_lines(const Options& options) {
+Outcome trace_lines(const TraceOptions& options) {
   for (const auto& [name, value] :
        {std::pair{"--length", options.length}, {"--min-speed", options.min_speed}, {"--tolerance", options.tolerance}})
     if (!std::isfinite(value)) return Error{fmt::format("{}: expected a finite number", name)};
@@ -196,7 +196,7 @@ Outcome trace_lines(const Options& options) {
 }  // namespace
 
 void add_trace(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TraceOptions>();
   CLI::App* command = program.add_subcommand("trace", "streamlines through seeds, as arc-length curves");
   command->add_option("SOURCE", options->source, "a scene file (.json) or a data file")->required();
   command->add_option("--field", options->field, "a field of the scene, or a grid of the file")->required();

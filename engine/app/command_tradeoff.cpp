@@ -11,11 +11,11 @@ namespace catena::app {
 
 namespace {
 
-struct Options {
+struct TradeoffOptions {
   std::string figure, output;
 };
 
-Outcome tradeoff(const Options& options) {
+Outcome tradeoff(const TradeoffOptions& options) {
   if (options.figure.empty())
     return Error{
         "tradeoff: expected --figure 2 (drift of the methods from a streamline) or --figure 3 (a penetrable surface and a curve: "
@@ -32,7 +32,7 @@ Outcome tradeoff(const Options& options) {
 }  // namespace
 
 void add_tradeoff(CLI::App& program, Work& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TradeoffOptions>();
   CLI::App* command = program.add_subcommand("tradeoff", "the figures of the paper, and of the device's stability, as tables and plots");
   command
       ->add_option("--figure", options->figure,

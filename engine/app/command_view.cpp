@@ -17,7 +17,7 @@ namespace {
 
 const std::string kQuality = "time=50";
 
-struct Options {
+struct ViewArguments {
   std::string source, device, size = "1024x768", quality, shaders, screenshot, window_screenshot, servo_stats, frame_stats, record,
                               firmware;
   std::vector<std::string> fields;
@@ -30,7 +30,7 @@ struct Options {
 };
 
 /// One file twice, or an input: said before anything is opened.
-Outcome check_outputs(const Options& o, const std::vector<std::string>& inputs) {
+Outcome check_outputs(const ViewArguments& o, const std::vector<std::string>& inputs) {
   const std::pair<const char*, const std::string&> outputs[] = {{"--screenshot", o.screenshot},
                                                                 {"--window-screenshot", o.window_screenshot},
                                                                 {"--servo-stats", o.servo_stats},
@@ -46,7 +46,7 @@ Outcome check_outputs(const Options& o, const std::vector<std::string>& inputs) 
   return Done{};
 }
 
-Outcome open_window(const Options& o, int& exit_code) {
+Outcome open_window(const ViewArguments& o, int& exit_code) {
   CATENA_TRY(const Size size, parse_size(o.size));
   ViewOptions options;
   options.source = o.source;
@@ -83,7 +83,7 @@ Outcome open_window(const Options& o, int& exit_code) {
 }  // namespace
 
 void add_view(CLI::App& program, Work& chosen, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ViewArguments>();
   CLI::App* command = program.add_subcommand("view", "an interactive window: orbit, and the mouse as the hand");
   command->add_option("SOURCE", options->source, "a scene (.json) or a data file; without it the window says how to begin");
   command->add_option(

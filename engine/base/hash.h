@@ -20,4 +20,10 @@ struct Fnv1a {
   }
 };
 
+inline std::uint64_t hash_of(const void* data, std::size_t size) {
+  Fnv1a hash;
+  hash.bytes(data, size);
+  return hash.value;
+}
+
 }  // namespace catena

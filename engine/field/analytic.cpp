@@ -7,14 +7,14 @@
 namespace catena::field {
 namespace {
 
-constexpr std::string_view ventricle = "left-ventricle", uniform = "uniform";
-constexpr Box box{Vec3(-2.0), Vec3(2.0)};
+constexpr std::string_view kVentricle = "left-ventricle", kUniform = "uniform";
+constexpr Box kBox{Vec3(-2.0), Vec3(2.0)};
 
 /// Everywhere inside, except where the point or the value is not finite.
 class ScalarByFormula final : public ScalarField {
  public:
   ScalarByFormula(const ScalarFormula& formula, double scale) : formula_(formula), scale_(scale) {
-    set_domain(std::string(formula.name), Mapping{}, box);
+    set_domain(std::string(formula.name), Mapping{}, kBox);
   }
   ScalarSample sample(const Vec3& world, Cursor&) const noexcept override {
     if (!is_finite(world)) return {};
@@ -35,7 +35,7 @@ class ScalarByFormula final : public ScalarField {
 /// The common part of vector formulas: scale, side of a line field, finite results.
 class VectorByFormula : public VectorField {
  public:
-  VectorByFormula(std::string_view name, double scale) : scale_(scale) { set_domain(std::string(name), Mapping{}, box); }
+  VectorByFormula(std::string_view name, double scale) : scale_(scale) { set_domain(std::string(name), Mapping{}, kBox); }
   VectorSample sample(const Vec3& world, Cursor&, const Vec3* line_reference) const noexcept final {
     VectorSample s;
     if (!is_finite(world) || !evaluate(world, s.value)) return {};
@@ -65,7 +65,7 @@ class NamedVector final : public VectorByFormula {
 
 class Uniform final : public VectorByFormula {
  public:
-  Uniform(const Vec3& unit, double scale) : VectorByFormula(uniform, scale), unit_(unit) {}
+  Uniform(const Vec3& unit, double scale) : VectorByFormula(kUniform, scale), unit_(unit) {}
 
  private:
   bool evaluate(const Vec3&, Vec3& value) const noexcept override {
@@ -99,9 +99,9 @@ Result<AnyField> make_ventricle(const AnalyticParameters& parameters) {
 std::vector<std::string_view> analytic_names() {
   std::vector<std::string_view> names;
   for (const auto& f : vector_formulas()) names.push_back(f.name);
-  names.push_back(uniform);
+  names.push_back(kUniform);
   for (const auto& f : scalar_formulas()) names.push_back(f.name);
-  names.push_back(ventricle);
+  names.push_back(kVentricle);
   return names;
 }
 
@@ -111,7 +111,7 @@ bool is_analytic(std::string_view name) {
 }
 
 std::vector<std::string_view> analytic_parts(std::string_view name) {
-  if (name == ventricle) return {"density", "transmural", "fibre"};
+  if (name == kVentricle) return {"density", "transmural", "fibre"};
   return {name};
 }
 
@@ -119,9 +119,9 @@ Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& 
   // the parameters
   if (!std::isfinite(parameters.scale) || parameters.scale == 0)
     return Error{fmt::format("field \"{}\": scale is {}, expected a finite number that is not zero", name, parameters.scale)};
-  if (name == ventricle) return make_ventricle(parameters);
+  if (name == kVentricle) return make_ventricle(parameters);
   if (!parameters.part.empty()) return Error{fmt::format("field \"{}\" has no parts, got \"{}\"", name, parameters.part)};
-  if (name == uniform) {
+  if (name == kUniform) {
     const Vec3 unit = direction(parameters.direction);
     if (unit == Vec3(0.0) || !is_finite(parameters.direction))
       return Error{"field \"uniform\": the direction must be a finite vector that is not zero"};

@@ -12,7 +12,7 @@
 namespace catena::field {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
 double sphere(const Vec3& p, Vec3& g) {
@@ -71,12 +71,12 @@ double marschner_lobb(const Vec3& p, Vec3& g) {
   return half * (1 - std::sin(pi * p.z / 2) + a * (1 + std::cos(phase)));
 }
 
-constexpr ScalarFormula formulas[] = {
-    {"sphere", sphere, 0, inf},
-    {"plane", plane, -inf, inf},
-    {"torus", torus, 0, inf},
+constexpr ScalarFormula kScalarFormulas[] = {
+    {"sphere", sphere, 0, kInfinity},
+    {"plane", plane, -kInfinity, kInfinity},
+    {"torus", torus, 0, kInfinity},
     {"constant", constant, 1, 1},
-    {"linear", linear, -inf, inf},
+    {"linear", linear, -kInfinity, kInfinity},
     {"gaussian", gaussian, std::numeric_limits<double>::min(), 1},  // 0 is not attained
     {"marschner-lobb", marschner_lobb, 0, 1},
     {"tanh", plateau, -1 + 0x1p-53, 1 - 0x1p-53},  // nor are -1 and 1
@@ -84,6 +84,6 @@ constexpr ScalarFormula formulas[] = {
 
 }  // namespace
 
-std::span<const ScalarFormula> scalar_formulas() { return formulas; }
+std::span<const ScalarFormula> scalar_formulas() { return kScalarFormulas; }
 
 }  // namespace catena::field

@@ -42,13 +42,13 @@ Vec3 abc(const Vec3& p) {
   return {a * std::sin(p.z) + c * std::cos(p.y), b * std::sin(p.x) + a * std::cos(p.z), c * std::sin(p.y) + b * std::cos(p.x)};
 }
 
-constexpr VectorFormula formulas[] = {
+constexpr VectorFormula kVectorFormulas[] = {
     {"circle", circle},         {"saddle", saddle}, {"node", node}, {"rankine", rankine},
     {"lamb-oseen", lamb_oseen}, {"hill", hill},     {"abc", abc},   {"helix", helix},
 };
 
 }  // namespace
 
-std::span<const VectorFormula> vector_formulas() { return formulas; }
+std::span<const VectorFormula> vector_formulas() { return kVectorFormulas; }
 
 }  // namespace catena::field

@@ -140,13 +140,13 @@ GridStats finished(GridStats s) {
 
 /// Bit at ijk: the voxels ijk + (0 or 1, 0 or 1, 0 or 1) are all valid and in the box; `step` 0 along an axis of one layer.
 openvdb::MaskTree erode(const openvdb::MaskTree& valid, const openvdb::CoordBBox& box, const Index3& step) {
-  using Leaf = openvdb::MaskTree::LeafNodeType;
+  using MaskLeaf = openvdb::MaskTree::LeafNodeType;
   const openvdb::MaskTree voxels = leaves_within(valid, box);
-  std::vector<const Leaf*> sources;
+  std::vector<const MaskLeaf*> sources;
   voxels.getNodes(sources);
   openvdb::MaskTree cells(false);
-  std::vector<Leaf*> targets;
-  for (const Leaf* source : sources) targets.push_back(cells.touchLeaf(source->origin()));
+  std::vector<MaskLeaf*> targets;
+  for (const MaskLeaf* source : sources) targets.push_back(cells.touchLeaf(source->origin()));
   parallel_for(sources.size(), 64, [&](std::size_t begin, std::size_t end) {
     openvdb::tree::ValueAccessor<const openvdb::MaskTree> neighbours(voxels);
     for (std::size_t n = begin; n < end; ++n) {

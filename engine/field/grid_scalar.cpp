@@ -5,13 +5,13 @@ namespace catena::field {
 namespace {
 
 using ScalarWalk = Walk<float, double>;
-constexpr auto to_corner = [](float v) -> double { return v; };
-constexpr auto finite_corner = [](double v) { return std::isfinite(v); };
+constexpr auto scalar_corner = [](float v) -> double { return v; };
+constexpr auto finite_scalar_corner = [](double v) { return std::isfinite(v); };
 
 ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const Index3& base, Cursor& cursor) {
   ScalarWalk& walk = walk_of<ScalarWalk>(cursor, &grid, grid.version(), storage);
   if (!walk.filled || !(walk.base == base)) [[unlikely]]
-    fetch(walk, storage, base, to_corner, finite_corner);
+    fetch(walk, storage, base, scalar_corner, finite_scalar_corner);
   return walk;
 }
 

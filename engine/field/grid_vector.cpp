@@ -5,13 +5,13 @@ namespace catena::field {
 namespace {
 
 using VectorWalk = Walk<nanovdb::Vec3f, Vec3>;
-constexpr auto to_corner = [](const nanovdb::Vec3f& v) { return Vec3(v[0], v[1], v[2]); };
-constexpr auto finite_corner = [](const Vec3& v) { return is_finite(v); };
+constexpr auto vector_corner = [](const nanovdb::Vec3f& v) { return Vec3(v[0], v[1], v[2]); };
+constexpr auto finite_vector_corner = [](const Vec3& v) { return is_finite(v); };
 
 VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const Index3& base, Cursor& cursor) {
   VectorWalk& walk = walk_of<VectorWalk>(cursor, &grid, grid.version(), storage);
   if (!walk.filled || !(walk.base == base)) [[unlikely]]
-    fetch(walk, storage, base, to_corner, finite_corner);
+    fetch(walk, storage, base, vector_corner, finite_vector_corner);
   return walk;
 }
 

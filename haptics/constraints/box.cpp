@@ -171,7 +171,7 @@ Mat3 orthonormal(const Mat3& m) {
   return Mat3(x, direction(cross(z, x)), z);
 }
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_box(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 center, json::require_vec3(link, "center"));
   CATENA_TRY(const Vec3 size, json::require_vec3(link, "size"));
   if (!(size.x > 0 && size.y > 0 && size.z > 0))
@@ -196,7 +196,7 @@ ConstraintType box_constraint() {
            {"size", "array", true, "its three edges, world units", kSizeSchema},
            {"rotation", "rotation", false, "world from box: three rows of three numbers, nine numbers, or {axis, angle_deg}"},
            {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema}},
-          build,
+          build_box,
           true};
 }
 

@@ -17,7 +17,7 @@ class Drag final : public ContactDrag {
   Parameter threshold_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_drag(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(Parameter threshold, require_parameter(link, "threshold", json::Range::not_negative, context));
   CATENA_TRY(ContactSpec contact, read_contact(link, SurfaceKey::optional_with_level, context));
   return std::shared_ptr<const Constraint>(std::make_shared<Drag>(std::move(threshold), std::move(contact)));
@@ -31,7 +31,7 @@ ConstraintType drag_constraint() {
           {{"threshold", "parameter", true, "the proxy stays within this distance of the probe, world units", kNotNegativeSchema},
            kSurfaceKey,
            kLevelKey},
-          build};
+          build_drag};
 }
 
 }  // namespace catena::haptics

@@ -16,10 +16,10 @@ constexpr double kCorner = 0.5, kCornerError = 1e-6;               // a sharp tu
 constexpr double kShort = 1e-3;                                    // of L: so short that the surface may have a crease
 constexpr double kStraight = 1e-14;                                // of L: an error that needs no midpoint
 constexpr double kThreshold = 0.005;                               // of L: default
-constexpr int kTrials = 32, kRounds = 8;
+constexpr int kTrials = 32, kSlipRounds = 8;
 constexpr int kForStep = 40;  // fetches that a step and a slide may need
 
-struct Spec {
+struct FrictionSpec {
   field::VectorFieldPtr field;
   bool line = false;
   double largest = 0;  ///< X
@@ -34,7 +34,7 @@ struct Heading {
   bool known() const { return t.factor > 0; }
 };
 
-struct Memory {
+struct FrictionMemory {
   ContactMemory contact;
   Heading heading;  ///< at the proxy
   Vec3 side;        ///< the last direction: line fields are turned to it
@@ -45,13 +45,13 @@ struct Memory {
 };
 
 /// One tick of one link.
-class Tick {
+class FrictionTick {
  public:
-  Tick(const Spec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
+  FrictionTick(const FrictionSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
       : spec_(spec),
         state_(state),
         scratch_(scratch),
-        memory_(memory_of<Memory>(state)),
+        memory_(memory_of<FrictionMemory>(state)),
         contact_(spec.contact, probe, memory_.contact, state, scratch),
         length_(spec.contact.length) {}
 
@@ -74,7 +74,7 @@ class Tick {
   /// Along the streamline, across it, until neither moves.
   bool slip(double tau, bool& complete) noexcept {
     bool sliding = false;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kSlipRounds; ++round) {
       const bool moved = follow(tau, complete);
       if (round > 0 && !moved) return true;
       const double gap = norm(contact_.gap());
@@ -222,10 +222,10 @@ class Tick {
     return {safe_direction(v.value, spec_.largest, at.n), Status::ok};
   }
 
-  const Spec& spec_;
+  const FrictionSpec& spec_;
   LinkState& state_;
   LinkScratch& scratch_;
-  Memory& memory_;
+  FrictionMemory& memory_;
   Contact contact_;
   double length_;
   /// The last step of this tick: where from, and dd/ds. A short step goes on with that.
@@ -239,22 +239,22 @@ class Tick {
 
 class Friction final : public Constraint {
  public:
-  explicit Friction(Spec spec) : spec_(std::move(spec)) {}
+  explicit Friction(FrictionSpec spec) : spec_(std::move(spec)) {}
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    memory_of<Memory>(state) = Memory{};
+    memory_of<FrictionMemory>(state) = FrictionMemory{};
     state.proxy = probe;
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Tick(spec_, probe, state, scratch).run();
+    FrictionTick(spec_, probe, state, scratch).run();
   }
   double domain_length() const noexcept override { return spec_.contact.length; }
 
  private:
-  Spec spec_;
+  FrictionSpec spec_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
-  Spec spec;
+Result<std::shared_ptr<const Constraint>> build_friction(const json::Node& link, const BuildContext& context) {
+  FrictionSpec spec;
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "friction", context));
   spec.field = field;
   spec.largest = field::largest_magnitude(*field);
@@ -276,7 +276,7 @@ ConstraintType friction_constraint() {
            {"threshold", "parameter", false, "the proxy slips across at this distance, world units; default 0.005 L", kNotNegativeSchema},
            kSurfaceKey,
            kLevelKey},
-          build};
+          build_friction};
 }
 
 }  // namespace catena::haptics

@@ -46,7 +46,7 @@ class GradientForce final : public Constraint {
   double largest_;  ///< X
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "a gradient force", context));
   CATENA_TRY(const Parameter displacement, require_parameter(link, "displacement", json::Range::not_negative, context));
   CATENA_CHECK(json::require_string(link, "towards"));
@@ -62,7 +62,7 @@ ConstraintType gradient_force_constraint() {
           {{"field", "string", true, "a scalar field of the scene"},
            {"displacement", "parameter", true, "the largest distance of the proxy from the probe, world units", kNotNegativeSchema},
            {"towards", "string", true, "which way the hand is drawn", R"("enum": ["high", "low"])"}},
-          build};
+          build_gradient_force};
 }
 
 }  // namespace catena::haptics

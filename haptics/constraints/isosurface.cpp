@@ -19,7 +19,7 @@ constexpr int kForLevel = 12;        // fetches kept for the way back to the lev
 constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
 
 /// What the link remembers: the rules' part, the point held, the curvature learned.
-struct Memory {
+struct IsosurfaceMemory {
   SideMemory side;
   LevelPoint at;        // formulas: the point held
   Curvature curvature;  // formulas
@@ -29,7 +29,8 @@ struct Memory {
 
 class LevelSurface final : public Surface {
  public:
-  LevelSurface(const LevelField& field, const PieceFrames& frames, Memory& memory) : field_(field), frames_(frames), memory_(memory) {}
+  LevelSurface(const LevelField& field, const PieceFrames& frames, IsosurfaceMemory& memory)
+      : field_(field), frames_(frames), memory_(memory) {}
 
   SideValue side(const Vec3& at) noexcept override {
     here_ = field_.at(at);
@@ -73,7 +74,7 @@ class LevelSurface final : public Surface {
   Hold near_by(const Vec3& probe, double limit) noexcept override {
     const Reached reached = reach_along_gradient(field_, look(probe), Vec3(0.0), 1.25 * limit);
     if (!reached.found) return {};
-    const Memory before = memory_;
+    const IsosurfaceMemory before = memory_;
     Hold hold = settle(reached.at, probe, Curvature{});
     if (hold.found && norm(hold.proxy - probe) <= limit) return hold;
     memory_ = before;
@@ -211,7 +212,7 @@ class LevelSurface final : public Surface {
 
   LevelField field_;
   const PieceFrames& frames_;
-  Memory& memory_;
+  IsosurfaceMemory& memory_;
   LevelPoint here_;
   Vec3 asked_{0.0};
   bool have_here_ = false;
@@ -223,14 +224,14 @@ class Isosurface final : public Constraint {
       : field_(std::move(field)), level_(level), rules_(rules), frames_(field_->mapping()) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Memory& memory = memory_of<Memory>(state);
-    memory = Memory{};
+    IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    memory = IsosurfaceMemory{};
     const SideRules rules = rules_.at(probe, state, scratch);
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), frames_, memory);
     start_on(surface, rules, probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Memory& memory = memory_of<Memory>(state);
+    IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
     const SideRules rules = rules_.now(state, scratch);
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), frames_, memory);
     advance_on(surface, rules, probe, memory.side, state);
@@ -255,7 +256,7 @@ class Isosurface final : public Constraint {
   PieceFrames frames_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_isosurface(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "an isosurface", context));
   CATENA_TRY(const double level, require_level(link, "field", *field));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
@@ -270,7 +271,7 @@ ConstraintType isosurface_constraint() {
           {{"field", "string", true, "a scalar field of the scene"},
            {"level", "number", true, "the field's value on the surface"},
            {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema}},
-          build,
+          build_isosurface,
           true};
 }
 

@@ -8,7 +8,7 @@ constexpr double kConverged = 1e-10;  // of L: within a piece
 constexpr double kStill = 1e-13;      // of L: a shorter move is none
 constexpr double kAccepted = 1e-6;    // of L: what may remain where no piece moves any more
 constexpr double kFaceSlack = 1e-12;  // voxels: closer to a face than this is on it
-constexpr int kRounds = 600;
+constexpr int kWalkRounds = 600;
 
 bool is_flat(const field::Box& box, int a) { return !(box.hi[a] > box.lo[a]); }
 
@@ -216,7 +216,7 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
   std::uint64_t exhausted = 0;
   double remaining = 0;
 
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kWalkRounds; ++round) {
     // every piece that meets the point: the steepest feasible descent
     const Corner corner(grid.index_box(), at);
     const unsigned own = corner.upper();

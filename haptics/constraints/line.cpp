@@ -17,7 +17,7 @@ struct LineShape {
   double length() const noexcept { return kSceneLength; }
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_line(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 point, json::require_vec3(link, "point"));
   CATENA_TRY(const Vec3 given, json::require_vec3(link, "direction"));
   const Vec3 axis = direction(given);
@@ -34,7 +34,7 @@ ConstraintType line_constraint() {
           "section 3",
           {{"point", "array", true, "a point of the line, world units", kVec3Schema},
            {"direction", "array", true, "its direction, any length but zero", kVec3Schema}},
-          build,
+          build_line,
           true};
 }
 

@@ -222,7 +222,7 @@ class OneSidedMesh final : public Constraint {
   SideSpec rules_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_mesh(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const std::string name, json::require_string(link, "mesh"));
   CATENA_TRY(mesh::MeshPtr mesh, context.mesh(*link.find("mesh"), name));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
@@ -237,7 +237,7 @@ ConstraintType mesh_constraint() {
           "section 3; god-object",
           {{"mesh", "string", true, "name of a triangle mesh of the scene"},
            {"free", "string", false, "the side where the hand moves freely: above is where the normals point to, outside", kFreeSchema}},
-          build,
+          build_mesh,
           true};
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLeast = 0.001, kMost = 0.01;  // of L: defaults
 
-struct Spec {
+struct ModulatedFrictionSpec {
   field::VectorFieldPtr field;
   bool line = false, printed = false;
   double largest_speed = 0, largest_slope = 0;  ///< X of v and of grad s
@@ -20,7 +20,7 @@ struct Spec {
   ContactSpec contact;
 };
 
-struct Memory {
+struct ModulatedFrictionMemory {
   ContactMemory contact;
   Vec3 side;     ///< line fields are turned to it
   double angle;  ///< u at the proxy
@@ -28,14 +28,14 @@ struct Memory {
 
 class ModulatedFriction final : public Constraint {
  public:
-  explicit ModulatedFriction(Spec spec) : spec_(std::move(spec)) {}
+  explicit ModulatedFriction(ModulatedFrictionSpec spec) : spec_(std::move(spec)) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
-    memory_of<Memory>(state) = Memory{};
+    memory_of<ModulatedFrictionMemory>(state) = ModulatedFrictionMemory{};
     state.proxy = probe;
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Memory& memory = memory_of<Memory>(state);
+    ModulatedFrictionMemory& memory = memory_of<ModulatedFrictionMemory>(state);
     Contact contact(spec_.contact, probe, memory.contact, state, scratch);
     if (!contact.begin()) return;
     const Vec3 before = contact.proxy();
@@ -54,7 +54,7 @@ class ModulatedFriction final : public Constraint {
 
  private:
   /// u of Eqs. 8-9.
-  double angle(const LevelPoint& at, Memory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
+  double angle(const LevelPoint& at, ModulatedFrictionMemory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
     if (state.evaluations + 2 >= kEvaluationCap) return memory.angle;
     field::Cursor& cursor = scratch.cursors[1];
     if (spec_.line && !(max_abs(memory.side) > 0)) {
@@ -71,11 +71,11 @@ class ModulatedFriction final : public Constraint {
     return std::min(std::max(spec_.line ? std::fabs(u) : u, -1.0), 1.0);
   }
 
-  Spec spec_;
+  ModulatedFrictionSpec spec_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
-  Spec spec;
+Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::Node& link, const BuildContext& context) {
+  ModulatedFrictionSpec spec;
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "modulated_friction", context));
   spec.field = field;
   CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
@@ -104,7 +104,7 @@ ConstraintType modulated_friction_constraint() {
        {"tau_min", "parameter", false, "the threshold where the field is tangential, world units; default 0.001 L", kNotNegativeSchema},
        {"tau_max", "parameter", false, "the threshold where the field is normal, world units; default 0.01 L", kNotNegativeSchema},
        {"law", "string", false, "safe: harder the more normal the field; printed: Eq. 7 to the letter", R"("enum": ["safe", "printed"])"}},
-      build};
+      build_modulated_friction};
 }
 
 }  // namespace catena::haptics

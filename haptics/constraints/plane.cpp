@@ -5,7 +5,7 @@
 namespace catena::haptics {
 namespace {
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_plane(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 point, json::require_vec3(link, "point"));
   CATENA_TRY(const Vec3 given, json::require_vec3(link, "normal"));
   const Vec3 normal = direction(given);
@@ -22,7 +22,7 @@ ConstraintType plane_constraint() {
           {{"point", "array", true, "a point of the plane, world units", kVec3Schema},
            {"normal", "array", true, "its normal, any length but zero", kVec3Schema},
            {"free", "string", false, "the side where the hand moves freely: above is where the normal points to", kFreeSchema}},
-          build,
+          build_plane,
           true};
 }
 

@@ -12,7 +12,7 @@ struct PointShape {
   double length() const noexcept { return kSceneLength; }
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_point(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 position, json::require_vec3(link, "position"));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
   return make_closed_form<Feature<PointShape>>({position}, rules);
@@ -21,7 +21,7 @@ Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const Bu
 }  // namespace
 
 ConstraintType point_constraint() {
-  return {"point", "section 3", {{"position", "array", true, "the point, world units", kVec3Schema}}, build, true};
+  return {"point", "section 3", {{"position", "array", true, "the point, world units", kVec3Schema}}, build_point, true};
 }
 
 }  // namespace catena::haptics

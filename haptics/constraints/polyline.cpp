@@ -122,7 +122,7 @@ std::vector<Vec3> merged(const std::vector<std::vector<double>>& rows, bool clos
   return points;
 }
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_polyline(const json::Node& link, const BuildContext& context) {
   const json::Node* node = link.find("points");
   if (node == nullptr) return json::error_at(link, "key \"points\" is missing; an array of at least two points [x, y, z] was expected");
   CATENA_TRY(const auto rows, json::as_rows(*node, "points", 3));
@@ -156,7 +156,7 @@ ConstraintType polyline_constraint() {
           "section 3",
           {{"points", "array", true, "its corners in order, world units", kPointsSchema},
            {"closed", "boolean", false, "the last point joins the first; default false"}},
-          build,
+          build_polyline,
           true};
 }
 

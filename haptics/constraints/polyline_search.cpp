@@ -12,9 +12,9 @@ constexpr double kFar = 16;       // half extents
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// What is compared: rises with the distance from the probe to q.
-class Key {
+class HeapKey {
  public:
-  Key(const Vec3& probe, const Vec3& center, double radius) : probe_(probe), center_(center), scale_(1 / radius) {
+  HeapKey(const Vec3& probe, const Vec3& center, double radius) : probe_(probe), center_(center), scale_(1 / radius) {
     const Vec3 away = probe - center;
     const double m = max_abs(away);
     far_ = m > kFar * radius;
@@ -64,7 +64,7 @@ PolylineSearch::PolylineSearch(const std::vector<Straight>& pieces) {
 }
 
 void PolylineSearch::search(const std::vector<Straight>& pieces, const Vec3& probe, int most_visits, SearchState& state) const noexcept {
-  const Key key(probe, center_, radius_);
+  const HeapKey key(probe, center_, radius_);
   const auto of_box = [&](std::uint32_t node) {
     const Box& box = nodes_[node];
     if (box.empty()) return kInfinite;

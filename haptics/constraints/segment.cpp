@@ -22,7 +22,7 @@ struct SegmentShape {
   double length() const noexcept { return std::max(kSceneLength, piece.length); }
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_segment(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 from, json::require_vec3(link, "from"));
   CATENA_TRY(const Vec3 to, json::require_vec3(link, "to"));
   const Straight piece(from, to);
@@ -39,7 +39,7 @@ ConstraintType segment_constraint() {
           "section 3",
           {{"from", "array", true, "its first end, world units", kVec3Schema},
            {"to", "array", true, "its other end, world units", kVec3Schema}},
-          build,
+          build_segment,
           true};
 }
 

@@ -5,7 +5,7 @@
 namespace catena::haptics {
 namespace {
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_sphere(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const Vec3 center, json::require_vec3(link, "center"));
   CATENA_TRY(const double radius, json::require_number(link, "radius", json::Range::positive));
   CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
@@ -20,7 +20,7 @@ ConstraintType sphere_constraint() {
           {{"center", "array", true, "world units", kVec3Schema},
            {"radius", "number", true, "world units", kPositiveSchema},
            {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema}},
-          build,
+          build_sphere,
           true};
 }
 

@@ -30,7 +30,7 @@ Outcome check_seed(const json::Node& where, const OnlineSpec& spec, const std::s
   }
 }
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const std::string name, json::require_string(link, "field"));
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a streamline", context));
 
@@ -79,7 +79,7 @@ ConstraintType streamline_constraint() {
            {"tolerance", "number", false, "of the embedded error of one online step, times the domain length", kToleranceSchema},
            {"kind", "string", false, "line: v and -v are the same, as for fibres", kKindSchema},
            {"min_speed", "number", false, "speeds up to this count as zero", kNotNegativeSchema}},
-          build};
+          build_streamline};
 }
 
 }  // namespace catena::haptics

@@ -17,9 +17,9 @@ constexpr int kSearches = 2;  ///< for a zero, a tick
 constexpr int kHalvings = 4;  ///< on the way to a wall, before the rest is tried as a whole
 
 /// One tick of one link.
-class Tick {
+class OnlineTick {
  public:
-  Tick(const OnlineSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
+  OnlineTick(const OnlineSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
       : spec_(spec),
         tableau_(flow::tableau_of(spec.method)),
         flow_{spec.field.get(), spec.line, spec.min_speed},
@@ -257,14 +257,14 @@ class OnlineStreamline final : public Constraint {
  public:
   explicit OnlineStreamline(const OnlineSpec& spec) : spec_(spec) {}
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Tick(spec_, probe, state, scratch).begin(spec_.seed.value_or(probe));
+    OnlineTick(spec_, probe, state, scratch).begin(spec_.seed.value_or(probe));
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Tick(spec_, probe, state, scratch).run();
+    OnlineTick(spec_, probe, state, scratch).run();
   }
   /// With a seed it stays on that line, moving along it; without one it takes hold where the hand is.
   void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
-    Tick tick(spec_, probe, state, scratch);
+    OnlineTick tick(spec_, probe, state, scratch);
     const bool fresh = memory_of<OnlineMemory>(state).trust == 0;
     if (fresh || !spec_.seed) tick.begin(spec_.seed.value_or(probe));
     if (spec_.seed) tick.run();
@@ -275,7 +275,7 @@ class OnlineStreamline final : public Constraint {
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     if (same_bits(at, state.proxy)) return here(at, state, scratch, out);
     LinkState foot = state;
-    Tick(spec_, at, foot, scratch).run();
+    OnlineTick(spec_, at, foot, scratch).run();
     state.evaluations = foot.evaluations;
     out = line_or_point(foot);
     return memory_of<OnlineMemory>(foot).mode != Mode::seeking;

@@ -8,8 +8,8 @@ namespace catena::haptics {
 namespace {
 
 // lengths, times L
-constexpr double kTouch = 1e-6, kOnLevel = 1e-12, kAccepted = 1e-9, kGap = 1e-13, kNear = 0.02;
-constexpr int kRounds = 12, kPatient = 5, kNewton = 8;
+constexpr double kTouch = 1e-6, kOnLevel = 1e-12, kAccepted = 1e-9, kGapSlack = 1e-13, kNearLevel = 0.02;
+constexpr int kSlideRounds = 12, kPatient = 5, kNewton = 8;
 constexpr int kForLevel = 12;      // fetches kept for the way back to the level
 constexpr double kLevelled = 0.1;  // e.t / |e|: below, sliding does not shorten the gap
 
@@ -134,7 +134,7 @@ bool Contact::relevel(LevelPoint& a) noexcept {
     a = b;
   }
   if (std::fabs(a.distance) <= std::max(kAccepted * length(), a.round_off)) return true;
-  const Reached reached = reach_along_gradient(*field_, a, a.n, kNear * length(), kForLevel);
+  const Reached reached = reach_along_gradient(*field_, a, a.n, kNearLevel * length(), kForLevel);
   if (!reached.found || !usable(reached.at)) return false;
   a = reached.at;
   return true;
@@ -148,7 +148,7 @@ bool Contact::slide_to(double distance) noexcept {
     memory_.here = look(is_finite(e0) ? probe_ - direction(e0) * distance : probe_, false);
     return memory_.here.valid;
   }
-  const double slack = std::max(kGap * length(), 1e-15 * max_abs(probe_));
+  const double slack = std::max(kGapSlack * length(), 1e-15 * max_abs(probe_));
   if (distance <= slack) {
     memory_.here = at_probe_;
     return std::fabs(at_probe_.distance) <= kAccepted * length() || relevel(memory_.here);
@@ -158,7 +158,7 @@ bool Contact::slide_to(double distance) noexcept {
   const bool near = usable(memory_.here) && norm(e0) - distance <= 0.5 * distance;
   LevelPoint a = memory_.here;
   if (!near) fetch(*field_, probe_ - direction(e0) * distance, a);
-  for (int i = 0; i < kRounds && usable(a) && !spent(kForLevel); ++i) {
+  for (int i = 0; i < kSlideRounds && usable(a) && !spent(kForLevel); ++i) {
     const Vec3 e = probe_ - a.p;
     const double gap = norm(e), across = dot(e, a.n);
     if (this->on_level(a) && std::fabs(gap - distance) <= slack) {

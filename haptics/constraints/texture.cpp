@@ -28,7 +28,7 @@ class Texture final : public ContactDrag {
   double amplitude_, wavelength_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_texture(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(Parameter threshold, require_parameter(link, "threshold", json::Range::not_negative, context));
   CATENA_TRY(const double amplitude, json::get_number(link, "amplitude", 0.5, json::Range::not_negative));
   if (amplitude > 1)
@@ -48,7 +48,7 @@ ConstraintType texture_constraint() {
            {"wavelength", "number", true, "of the modulation, world units", kPositiveSchema},
            kSurfaceKey,
            kLevelKey},
-          build};
+          build_texture};
 }
 
 }  // namespace catena::haptics

@@ -44,7 +44,7 @@ class Viscosity final : public Constraint {
   bool is_time_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_viscosity(const json::Node& link, const BuildContext& context) {
   const bool time = link.find("time") != nullptr, coefficient = link.find("coefficient") != nullptr;
   if (time == coefficient)
     return json::error_at(link, std::string("a viscosity has ") + (time ? "both" : "neither") +
@@ -60,7 +60,7 @@ ConstraintType viscosity_constraint() {
           "a volume mode beside the paper's",
           {{"time", "parameter", false, "relaxation time, s: the force is stiffness x time x velocity", kNotNegativeSchema},
            {"coefficient", "parameter", false, "instead of time: N s/m", kNotNegativeSchema}},
-          build};
+          build_viscosity};
 }
 
 }  // namespace catena::haptics

@@ -40,7 +40,7 @@ constexpr double kLearn = 1e-6;  // of L: shortest step to learn from
 
 double frobenius(const Mat3& m) { return std::sqrt(dot(m[0], m[0]) + dot(m[1], m[1]) + dot(m[2], m[2])); }
 
-struct Spec {
+struct VortexCoreSpec {
   field::VectorFieldPtr field;
   double radius = 0, search = 0;
 };
@@ -48,7 +48,7 @@ struct Spec {
 /// One search of one tick.
 class Search {
  public:
-  Search(const Spec& spec, const Vec3& probe, LinkState& state, field::Cursor& cursor)
+  Search(const VortexCoreSpec& spec, const Vec3& probe, LinkState& state, field::Cursor& cursor)
       : spec_(spec), probe_(probe), state_(state), cursor_(cursor), length_(spec.field->length()) {}
 
   bool found = false;
@@ -158,7 +158,7 @@ class Search {
     return way;
   }
 
-  const Spec& spec_;
+  const VortexCoreSpec& spec_;
   Vec3 probe_;
   LinkState& state_;
   field::Cursor& cursor_;
@@ -170,7 +170,7 @@ class Search {
 
 class VortexCore final : public Constraint {
  public:
-  explicit VortexCore(const Spec& spec) : spec_(spec) {}
+  explicit VortexCore(const VortexCoreSpec& spec) : spec_(spec) {}
 
   /// The first tick finds the core.
   void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
@@ -239,12 +239,12 @@ class VortexCore final : public Constraint {
     return search.found && norm(across(search, probe)) <= spec_.search && norm(probe - search.core) <= 2 * spec_.search;
   }
 
-  Spec spec_;
+  VortexCoreSpec spec_;
 };
 
-Result<std::shared_ptr<const Constraint>> build(const json::Node& link, const BuildContext& context) {
+Result<std::shared_ptr<const Constraint>> build_vortex_core(const json::Node& link, const BuildContext& context) {
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "a vortex core", context));
-  Spec spec;
+  VortexCoreSpec spec;
   spec.field = field;
   CATENA_TRY(spec.radius, json::get_number(link, "radius", 0, json::Range::not_negative));
   CATENA_TRY(spec.search, json::get_number(link, "search", std::fmax(0.1 * field->length(), 2 * spec.radius), json::Range::positive));
@@ -263,7 +263,7 @@ ConstraintType vortex_core_constraint() {
            {"radius", "number", false, "of the tube where the hand moves freely, world units; default 0: on the core", kNotNegativeSchema},
            {"search", "number", false, "longest distance of the core from the probe, world units; default: 0.1 of the domain",
             kPositiveSchema}},
-          build};
+          build_vortex_core};
 }
 
 }  // namespace catena::haptics

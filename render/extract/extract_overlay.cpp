@@ -11,12 +11,10 @@ namespace {
 
 constexpr double kTitleSizePt = 17, kTitleTopPt = 12;
 
-std::optional<Color> color_of(const std::optional<scene::Rgb>& c) {
+std::optional<Color> optional_color(const std::optional<scene::Rgb>& c) {
   if (!c) return std::nullopt;
   return Color{c->r, c->g, c->b};
 }
-
-std::string name_of(const scene::World& world, scene::Entity e) { return world.has<scene::Name>(e) ? world.get<scene::Name>(e).value : ""; }
 
 /// The colours that an entity shows (value, r, g, b), and what it calls them. None where it is hidden.
 struct Shown {
@@ -47,7 +45,7 @@ std::string with_unit(const std::string& name, const std::string& unit) { return
 Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& packet) {
   const scene::World& world = scene.world;
   if (is_hidden(world, e)) return {};
-  const auto named = [&](scene::Entity field) { return with_unit(name_of(world, field), scene::unit_of(scene, field)); };
+  const auto named = [&](scene::Entity field) { return with_unit(name_of(scene, field), scene::unit_of(scene, field)); };
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);
     return {rows_of(volume.transfer.colors), named(volume.field)};
@@ -65,7 +63,7 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
     case scene::ColorBy::What::field:
       return {colors, named(set.color_by->field)};
     case scene::ColorBy::What::speed:
-      return {colors, with_unit("|" + name_of(world, set.field) + "|", scene::unit_of(scene, set.field))};
+      return {colors, with_unit("|" + name_of(scene, set.field) + "|", scene::unit_of(scene, set.field))};
     case scene::ColorBy::What::arc_length:
       return {colors, with_unit("arc length", scene::unit_length(scene))};
   }
@@ -112,14 +110,14 @@ void extract_overlay(const scene::Scene& scene, FramePacket& packet) {
   Overlay& overlay = packet.overlay;
   overlay.font = from.font;
   overlay.scale = from.scale;
-  overlay.color = color_of(from.color);
+  overlay.color = optional_color(from.color);
   extract_scalar_bars(scene, packet, overlay);
   extract_status(scene, overlay);
   for (const scene::Label& label : from.labels) {
     LabelItem item;
     item.at = label.at;
     item.text = label.text;
-    item.color = color_of(label.color);
+    item.color = optional_color(label.color);
     item.size_pt = label.size_pt;
     item.dot = label.dot;
     item.behind_hidden = label.hidden_behind;

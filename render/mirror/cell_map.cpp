@@ -13,7 +13,7 @@
 namespace catena::render {
 namespace {
 
-constexpr int kApron = kBrick + 1, kCellBrick = 4, kBlocks = kBrick / 2;
+constexpr int kCellBrick = 4, kBlocks = kBrick / 2;
 constexpr std::size_t kVoxels = std::size_t(kApron) * kApron * kApron;
 
 /// Where the corners of a brick of 8^3 cells lie, nine bits a row of voxels; `slack` widens the level.
@@ -44,9 +44,9 @@ struct Rows {
   }
 };
 
-class Builder {
+class CellMapBuilder {
  public:
-  Builder(const field::ScalarGrid& grid, const GridMirror& mirror, float level) : grid_(grid), mirror_(mirror), level_(level) {
+  CellMapBuilder(const field::ScalarGrid& grid, const GridMirror& mirror, float level) : grid_(grid), mirror_(mirror), level_(level) {
     halves_ = mirror.values.info().format == VK_FORMAT_R16_SFLOAT;
     if (halves_ && mirror.offset != 0) slack_ = 1e-6f * (std::fabs(mirror.offset) + std::fabs(mirror.scale));
   }
@@ -160,7 +160,7 @@ CellMap make_cell_map(const field::ScalarGrid& grid, const GridMirror& mirror, f
   if (count > most_texels) return map;
   map.texels.assign(count, 0);
   map.lo = map.hi = Vec3(0.0);
-  Builder(grid, mirror, level).build(map);
+  CellMapBuilder(grid, mirror, level).build(map);
   finish(map, mirror);
   return map;
 }

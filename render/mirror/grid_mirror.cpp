@@ -16,7 +16,6 @@ namespace catena::render {
 namespace {
 
 using field::Index3;
-constexpr int kApron = kBrick + 1;
 constexpr std::uint32_t kSlotsAnAxis = 255;
 constexpr std::uint64_t kCellMapBytes = 128;  // a brick, cell_map.h
 
@@ -119,9 +118,9 @@ struct Block {
   }
 };
 
-class Builder {
+class MirrorBuilder {
  public:
-  Builder(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options)
+  MirrorBuilder(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options)
       : device_(device), grid_(grid), options_(options), encoder_(choose_encoder(grid, options.float32)) {}
 
   Result<GridMirror> build() {
@@ -388,11 +387,11 @@ class Builder {
 }  // namespace
 
 Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options) {
-  return Builder(device, grid, options).build();
+  return MirrorBuilder(device, grid, options).build();
 }
 
 std::optional<std::uint64_t> mirror_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options) {
-  return Builder(device, grid, options).bytes();
+  return MirrorBuilder(device, grid, options).bytes();
 }
 
 Result<GridMirror> make_coarse_mirror(vk::Device& device, const field::CoarseGrid& grid, int factor, const MirrorOptions& options) {

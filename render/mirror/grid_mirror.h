@@ -21,6 +21,7 @@
 namespace catena::render {
 
 inline constexpr int kBrick = 8;
+inline constexpr int kApron = kBrick + 1;  ///< a brick as it is stored: with one layer of its neighbours
 
 enum class MirrorLayout { automatic, dense, atlas };
 

@@ -8,10 +8,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kComposeVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kComposeFragmentShader[] = {
 #include "spirv/compose.frag.inc"
 };
 
@@ -40,8 +40,8 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   vk::Pipeline& pipeline = pipelines_[{targets.picture_format, (opaque ? 1u : 0u) | (volume ? 2u : 0u)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kFragmentShader;
+    info.vertex = kComposeVertexShader;
+    info.fragment = kComposeFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
     info.constants = {opaque, volume};
     info.colors = {targets.picture_format};

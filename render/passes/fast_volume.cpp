@@ -14,22 +14,22 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kFastVolumeVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kFastVolumeFragmentShader[] = {
 #include "spirv/volume_fast.frag.inc"
 };
-constexpr std::uint32_t kTilesShader[] = {
+constexpr std::uint32_t kFastVolumeTilesShader[] = {
 #include "spirv/marked_tiles.vert.inc"
 };
-constexpr std::uint32_t kInterpolateShader[] = {
+constexpr std::uint32_t kFastVolumeInterpolateShader[] = {
 #include "spirv/interpolate.comp.inc"
 };
-constexpr std::uint32_t kOpaqueShader[] = {
+constexpr std::uint32_t kFastVolumeOpaqueShader[] = {
 #include "spirv/opaque_tiles.frag.inc"
 };
-constexpr std::uint32_t kMarkShader[] = {
+constexpr std::uint32_t kFastVolumeMarkShader[] = {
 #include "spirv/volume_blocks.frag.inc"
 };
 
@@ -131,8 +131,8 @@ Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint3
   vk::Pipeline& pipeline = pipelines_[{constants, tiles}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = tiles ? vk::Spirv(kTilesShader) : vk::Spirv(kVertexShader);
-    info.fragment = kFragmentShader;
+    info.vertex = tiles ? vk::Spirv(kFastVolumeTilesShader) : vk::Spirv(kFastVolumeVertexShader);
+    info.fragment = kFastVolumeFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture},
                   {3, vk::Resource::texture}, {4, vk::Resource::texture}, {5, vk::Resource::texture},
                   {6, vk::Resource::texture}, {7, vk::Resource::texture}, {8, vk::Resource::sampled}};
@@ -148,8 +148,8 @@ Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint3
 Outcome FastVolumePass::mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth) {
   if (!tile_pipeline_) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kOpaqueShader;
+    info.vertex = kFastVolumeVertexShader;
+    info.fragment = kFastVolumeOpaqueShader;
     info.slots = {{0, vk::Resource::texture}};
     info.colors = {VK_FORMAT_R8_UINT};
     CATENA_TRY(tile_pipeline_, vk::Pipeline::create(*device_, info));
@@ -171,8 +171,8 @@ Outcome FastVolumePass::mark(vk::Commands& commands, Level& level, vk::Image& co
   vk::Pipeline& pipe = mark_pipelines_[opaque];
   if (!pipe) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kMarkShader;
+    info.vertex = kFastVolumeVertexShader;
+    info.fragment = kFastVolumeMarkShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
     info.constants = {opaque};
     info.colors = {VK_FORMAT_R8_UINT};
@@ -239,7 +239,7 @@ Outcome FastVolumePass::draw(vk::Commands& commands, Level& level, const Draw& d
 Outcome FastVolumePass::interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area) {
   if (!interpolate_pipeline_) {
     vk::ComputeInfo info;
-    info.shader = kInterpolateShader;
+    info.shader = kFastVolumeInterpolateShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::storage_image}};
     CATENA_TRY(interpolate_pipeline_, vk::Pipeline::create(*device_, info));
   }

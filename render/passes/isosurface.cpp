@@ -10,10 +10,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kIsosurfaceVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kIsosurfaceFragmentShader[] = {
 #include "spirv/isosurface.frag.inc"
 };
 
@@ -86,8 +86,8 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::ui
   vk::Pipeline& pipeline = pipelines_[{flags, has_cells}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kFragmentShader;
+    info.vertex = kIsosurfaceVertexShader;
+    info.fragment = kIsosurfaceFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
     info.constants = {flags, has_cells ? 1u : 0u};

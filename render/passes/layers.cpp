@@ -10,13 +10,13 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kScreenShader[] = {
+constexpr std::uint32_t kLayersScreenShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kMeshShader[] = {
+constexpr std::uint32_t kLayersMeshShader[] = {
 #include "spirv/layer_mesh.frag.inc"
 };
-constexpr std::uint32_t kRestShader[] = {
+constexpr std::uint32_t kLayersRestShader[] = {
 #include "spirv/layer_rest.frag.inc"
 };
 
@@ -128,7 +128,7 @@ Result<const vk::Pipeline*> LayersPass::mesh_pipeline(vk::Device& device, std::u
   if (!pipeline) {
     vk::GraphicsInfo info;
     set_triangle_stage(info);
-    info.fragment = kMeshShader;
+    info.fragment = kLayersMeshShader;
     info.constants = {0};
     set_peel_stage(info, mode, has_opaque);
     CATENA_TRY(pipeline, vk::Pipeline::create(device, info));
@@ -167,8 +167,8 @@ Outcome LayersPass::draw_rest(vk::Commands& commands, Frame& frame, const Peel& 
   commands.end_pass();
   if (!rest_pipeline_) {
     vk::GraphicsInfo info;
-    info.vertex = kScreenShader;
-    info.fragment = kRestShader;
+    info.vertex = kLayersScreenShader;
+    info.fragment = kLayersRestShader;
     info.slots = {{0, vk::Resource::texture}};
     info.colors = {kOpaqueFormat};
     CATENA_TRY(rest_pipeline_, vk::Pipeline::create(frame.device, info));

@@ -10,7 +10,7 @@ bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opac
 
 namespace {
 
-bool is_opaque(const MeshItem& item) { return item.opacity >= 1; }
+bool is_opaque_mesh(const MeshItem& item) { return item.opacity >= 1; }
 
 class MeshPass final : public Pass {
  public:
@@ -22,7 +22,7 @@ class MeshPass final : public Pass {
 
   Outcome prepare(Frame& frame) override {
     std::vector<MeshItem> items;
-    std::copy_if(frame.packet.meshes.begin(), frame.packet.meshes.end(), std::back_inserter(items), is_opaque);
+    std::copy_if(frame.packet.meshes.begin(), frame.packet.meshes.end(), std::back_inserter(items), is_opaque_mesh);
     if (all_same(items, built_)) return Done{};
     Shape shape;
     for (const MeshItem& mesh : items) add_mesh(shape, mesh);
@@ -42,8 +42,8 @@ class MeshPass final : public Pass {
 
 }  // namespace
 
-const PassEntry kMeshPass{"meshes",
-                          [](const Frame& frame) { return std::any_of(frame.packet.meshes.begin(), frame.packet.meshes.end(), is_opaque); },
-                          MeshPass::create};
+const PassEntry kMeshPass{
+    "meshes", [](const Frame& frame) { return std::any_of(frame.packet.meshes.begin(), frame.packet.meshes.end(), is_opaque_mesh); },
+    MeshPass::create};
 
 }  // namespace catena::render

@@ -10,16 +10,16 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kOverlayVertexShader[] = {
 #include "spirv/overlay.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kOverlayFragmentShader[] = {
 #include "spirv/overlay.frag.inc"
 };
-constexpr std::uint32_t kBlendShader[] = {
+constexpr std::uint32_t kOverlayBlendShader[] = {
 #include "spirv/overlay_blend.comp.inc"
 };
-constexpr std::uint32_t kBlendFloatShader[] = {
+constexpr std::uint32_t kOverlayBlendFloatShader[] = {
 #include "spirv/overlay_blend_float.comp.inc"
 };
 constexpr VkFormat kAtlasFormat = VK_FORMAT_R8_UNORM;
@@ -64,8 +64,8 @@ class OverlayPass final : public Pass {
 Result<std::unique_ptr<Pass>> OverlayPass::create(vk::Device& device) {
   std::unique_ptr<OverlayPass> self(new OverlayPass);
   vk::GraphicsInfo draw;
-  draw.vertex = kVertexShader;
-  draw.fragment = kFragmentShader;
+  draw.vertex = kOverlayVertexShader;
+  draw.fragment = kOverlayFragmentShader;
   draw.slots = {{0, vk::Resource::uniform},
                 {1, vk::Resource::buffer},
                 {2, vk::Resource::buffer},
@@ -160,8 +160,8 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
   const VkFormat format = targets.picture.info().format;
   if (!blend_ || format != blend_format_) {
     vk::ComputeInfo blend;
-    blend.shader = vk::Spirv(kBlendShader);
-    if (format == VK_FORMAT_R32G32B32A32_SFLOAT) blend.shader = vk::Spirv(kBlendFloatShader);
+    blend.shader = vk::Spirv(kOverlayBlendShader);
+    if (format == VK_FORMAT_R32G32B32A32_SFLOAT) blend.shader = vk::Spirv(kOverlayBlendFloatShader);
     blend.slots = {{0, vk::Resource::texture}, {1, vk::Resource::storage_image}};
     CATENA_TRY(blend_, vk::Pipeline::create(frame.device, blend));
     blend_format_ = format;

@@ -7,13 +7,13 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kPackVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kPackShader[] = {
+constexpr std::uint32_t kPackPackShader[] = {
 #include "spirv/pack.frag.inc"
 };
-constexpr std::uint32_t kAnaglyphShader[] = {
+constexpr std::uint32_t kPackAnaglyphShader[] = {
 #include "spirv/anaglyph.frag.inc"
 };
 
@@ -100,14 +100,14 @@ Result<const vk::Pipeline*> PackPass::pipeline(std::uint32_t pattern) {
   vk::Pipeline& pipeline = pipelines_[{packed_.info().format, pattern}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
+    info.vertex = kPackVertexShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
     info.colors = {packed_.info().format};
     if (pattern == kAnaglyph) {
-      info.fragment = kAnaglyphShader;
+      info.fragment = kPackAnaglyphShader;
       info.slots.push_back({2, vk::Resource::texture});
     } else {
-      info.fragment = kPackShader;
+      info.fragment = kPackPackShader;
       info.constants = {pattern};
     }
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));

@@ -8,28 +8,28 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kProjectionVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kProjectionFragmentShader[] = {
 #include "spirv/projection.frag.inc"
 };
-constexpr int kCodes = 254;
+constexpr int kBoundCodes = 254;
 
 /// Of -value for a minimum.
 BrickRange signed_range(const BrickRange& r, Projection projection) {
   return projection == Projection::minimum ? BrickRange{-r.greatest, -r.least} : r;
 }
 
-/// 0: no valid cell; 1 + n: no signed value is above the least one plus n / kCodes of their range.
+/// 0: no valid cell; 1 + n: no signed value is above the least one plus n / kBoundCodes of their range.
 std::vector<std::uint8_t> bounds_of_bricks(const GridMirror& mirror, const BrickRange& all, Projection projection) {
   std::vector<std::uint8_t> codes(mirror.ranges.size());
-  const double per_value = all.greatest > all.least ? kCodes / (double(all.greatest) - all.least) : 0;
+  const double per_value = all.greatest > all.least ? kBoundCodes / (double(all.greatest) - all.least) : 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const BrickRange& r = mirror.ranges[i];
     if (r.empty()) continue;
     const double n = std::ceil((double(signed_range(r, projection).greatest) - all.least) * per_value);
-    codes[i] = std::uint8_t(1 + std::clamp(n, 0.0, double(kCodes)));
+    codes[i] = std::uint8_t(1 + std::clamp(n, 0.0, double(kBoundCodes)));
   }
   return codes;
 }
@@ -72,7 +72,7 @@ Outcome ProjectionPass::record(vk::Commands& commands, const CameraRays& rays, c
   grid.clipped = item_.clipped;
   set_table(grid, lut_, 0);
   grid.factor_lo = bounds_.least;
-  grid.factor_per_gradient = (bounds_.greatest - bounds_.least) / kCodes;
+  grid.factor_per_gradient = (bounds_.greatest - bounds_.least) / kBoundCodes;
   CATENA_CHECK(write_uniform(*device_, uniform_, data));
 
   const BoundGrid bound{mirror_, &map_, false, false};
@@ -80,8 +80,8 @@ Outcome ProjectionPass::record(vk::Commands& commands, const CameraRays& rays, c
   vk::Pipeline& pipeline = pipelines_[{bound.flags(), scene.opaque_depth != nullptr, kind}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kFragmentShader;
+    info.vertex = kProjectionVertexShader;
+    info.fragment = kProjectionFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
     info.constants = {bound.flags(), scene.opaque_depth != nullptr, kind};

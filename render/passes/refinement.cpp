@@ -11,14 +11,14 @@ namespace {
 constexpr double kFirstGuessMs = 400;  // a unit of cost at a megapixel on two CPU cores
 constexpr double kUpBelow = 0.85;      // of the budget: a better rung is taken only with some room, or it would come and go
 
-RenderSettings fast(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false) {
+RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false) {
   RenderSettings s;
   s.fast = FastSettings{step_voxels, spacing, half, full};
   s.fast->smooth_gradients = smooth;
   return s;
 }
 
-RenderSettings exact(double step_voxels) {
+RenderSettings exact_rung(double step_voxels) {
   RenderSettings s;
   s.step_voxels = step_voxels;
   if (step_voxels < 1) s.termination = 1e-3;
@@ -51,14 +51,15 @@ std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
   std::vector<RenderSettings> all;
   if (kind.fast) {
     const bool smooth = kind.shaded;
-    all = {fast(8, 4, -1, -1),  fast(6, 4, -1, -1),        fast(5, 4, -1, -1),         fast(4, 4, -1, -1), fast(4, 4, 1, -1),
-           fast(3, 4, 0.7, -1), fast(2, 4, 0.5, -1),       fast(2, 2, 0, -1),          fast(2, 2, 0, 0.7), fast(1.5, 2, 0, 0.4),
-           fast(1.5, 1, 0, -1), fast(1, 1, 0, -1, smooth), fast(0.5, 1, 0, -1, smooth)};
-    if (smooth) all.push_back(fast(2, 2, 0, -1, true));
+    all = {fast_rung(8, 4, -1, -1),         fast_rung(6, 4, -1, -1),   fast_rung(5, 4, -1, -1),  fast_rung(4, 4, -1, -1),
+           fast_rung(4, 4, 1, -1),          fast_rung(3, 4, 0.7, -1),  fast_rung(2, 4, 0.5, -1), fast_rung(2, 2, 0, -1),
+           fast_rung(2, 2, 0, 0.7),         fast_rung(1.5, 2, 0, 0.4), fast_rung(1.5, 1, 0, -1), fast_rung(1, 1, 0, -1, smooth),
+           fast_rung(0.5, 1, 0, -1, smooth)};
+    if (smooth) all.push_back(fast_rung(2, 2, 0, -1, true));
   } else {
-    for (const double step : {4.0, 2.0, 1.0}) all.push_back(exact(step));
+    for (const double step : {4.0, 2.0, 1.0}) all.push_back(exact_rung(step));
   }
-  for (const double step : {0.5, 0.25}) all.push_back(exact(step));
+  for (const double step : {0.5, 0.25}) all.push_back(exact_rung(step));
   std::stable_sort(all.begin(), all.end(), [&](const RenderSettings& a, const RenderSettings& b) {
     return relative_cost(a, kind.shaded) < relative_cost(b, kind.shaded);
   });

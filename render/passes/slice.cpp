@@ -8,10 +8,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kSliceVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kSliceFragmentShader[] = {
 #include "spirv/slice.frag.inc"
 };
 constexpr std::uint32_t kSlice = 1, kColors = 2, kLevels = 4;
@@ -63,8 +63,8 @@ Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint
   vk::Pipeline& pipeline = pipelines_[{flags, mode, has_opaque}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kFragmentShader;
+    info.vertex = kSliceVertexShader;
+    info.fragment = kSliceFragmentShader;
     info.slots = {
         {0, vk::Resource::uniform}, {kSlice, vk::Resource::uniform}, {kColors, vk::Resource::buffer}, {kLevels, vk::Resource::buffer}};
     add_grid_slots(info.slots, 1);

@@ -10,10 +10,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kSurfaceColorVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kSurfaceColorFragmentShader[] = {
 #include "spirv/surface_color.frag.inc"
 };
 constexpr std::uint32_t kIds = 27;
@@ -50,8 +50,8 @@ Result<const vk::Pipeline*> SurfaceColorPass::pipeline(vk::Device& device, std::
   vk::Pipeline& pipeline = pipelines_[flags];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kFragmentShader;
+    info.vertex = kSurfaceColorVertexShader;
+    info.fragment = kSurfaceColorFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}, {kIds, vk::Resource::texture}};
     add_grid_slots(info.slots, 2);
     info.constants = {flags};

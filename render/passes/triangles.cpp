@@ -10,10 +10,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kTrianglesVertexShader[] = {
 #include "spirv/mesh.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kTrianglesFragmentShader[] = {
 #include "spirv/mesh.frag.inc"
 };
 
@@ -46,7 +46,7 @@ Result<vk::Binding> Triangles::frame_binding(vk::Device& device, const CameraRay
 }
 
 void set_triangle_stage(vk::GraphicsInfo& info) {
-  info.vertex = kVertexShader;
+  info.vertex = kTrianglesVertexShader;
   info.slots.push_back({0, vk::Resource::uniform});
   info.vertex_stride = sizeof(Vertex);
   info.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
@@ -60,7 +60,7 @@ Result<TriangleDrawer> TriangleDrawer::create(vk::Device& device) {
   self.device_ = &device;
   vk::GraphicsInfo info;
   set_triangle_stage(info);
-  info.fragment = kFragmentShader;
+  info.fragment = kTrianglesFragmentShader;
   info.colors = opaque_formats();
   info.depth = true;
   CATENA_TRY(self.pipeline_, vk::Pipeline::create(device, info));

@@ -14,10 +14,10 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kUiVertexShader[] = {
 #include "spirv/ui.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kUiFragmentShader[] = {
 #include "spirv/ui.frag.inc"
 };
 constexpr VkFormat kWindowFormat = VK_FORMAT_R8G8B8A8_UNORM;
@@ -104,8 +104,8 @@ Outcome UiPass::upload(const UiItems& items) {
   CATENA_ASSERT(indices_lead_inside(items));
   if (!pipeline_) {
     vk::GraphicsInfo info;
-    info.vertex = kVertexShader;
-    info.fragment = kFragmentShader;
+    info.vertex = kUiVertexShader;
+    info.fragment = kUiFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::sampled}};
     info.colors = {kWindowFormat};
     info.blends = {vk::Blend::over_straight};

@@ -6,7 +6,7 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kShader[] = {
+constexpr std::uint32_t kUpsampleShader[] = {
 #include "spirv/upsample.comp.inc"
 };
 constexpr std::uint32_t kGroupX = 16, kGroupY = 4;  // as in the shaders
@@ -32,7 +32,7 @@ Outcome UpsamplePass::record(vk::Commands& commands, vk::Image& half_lattice, Ta
   vk::Pipeline& pipeline = pipelines_[opaque];
   if (!pipeline) {
     vk::ComputeInfo info;
-    info.shader = kShader;
+    info.shader = kUpsampleShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}, {3, vk::Resource::storage_image}};
     info.constants = {opaque};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));

@@ -8,20 +8,20 @@
 namespace catena::render {
 namespace {
 
-constexpr std::uint32_t kVertexShader[] = {
+constexpr std::uint32_t kVolumeVertexShader[] = {
 #include "spirv/screen.vert.inc"
 };
-constexpr std::uint32_t kFragmentShader[] = {
+constexpr std::uint32_t kVolumeFragmentShader[] = {
 #include "spirv/volume.frag.inc"
 };
-constexpr std::uint32_t kBlendShader[] = {
+constexpr std::uint32_t kVolumeBlendShader[] = {
 #include "spirv/blend.frag.inc"
 };
 
-constexpr std::uint32_t kBlendLayersShader[] = {
+constexpr std::uint32_t kVolumeBlendLayersShader[] = {
 #include "spirv/blend_layers.frag.inc"
 };
-constexpr std::uint32_t kLayersShader[] = {
+constexpr std::uint32_t kVolumeLayersShader[] = {
 #include "spirv/layers.frag.inc"
 };
 constexpr std::uint32_t kLayers = 27;  // bindings of their colours; those of their depths follow
@@ -49,7 +49,7 @@ Result<const vk::Pipeline*> VolumePass::pipeline(const Kind& kind) {
   vk::Pipeline& pipeline = pipelines_[kind];
   if (pipeline) return &pipeline;
   vk::GraphicsInfo info;
-  info.vertex = kVertexShader;
+  info.vertex = kVolumeVertexShader;
   info.slots = {{0, vk::Resource::uniform}, {2, vk::Resource::texture}};
   if (!kind.layers_alone()) info.slots.push_back({1, vk::Resource::buffer});
   add_grid_slots(info.slots, kind.grid_slots());
@@ -57,10 +57,12 @@ Result<const vk::Pipeline*> VolumePass::pipeline(const Kind& kind) {
     for (std::uint32_t i = 0; i < 2 * MAX_LAYERS; ++i) info.slots.push_back({kLayers + i, vk::Resource::texture});
   info.colors = {kVolumeFormat};
   if (kind.layers_alone()) {
-    info.fragment = kLayersShader;
+    info.fragment = kVolumeLayersShader;
     info.constants = {kind.opaque, kind.layers};
   } else {
-    info.fragment = kind.single() ? vk::Spirv(kFragmentShader) : kind.layers > 0 ? vk::Spirv(kBlendLayersShader) : vk::Spirv(kBlendShader);
+    info.fragment = kind.single()     ? vk::Spirv(kVolumeFragmentShader)
+                    : kind.layers > 0 ? vk::Spirv(kVolumeBlendLayersShader)
+                                      : vk::Spirv(kVolumeBlendShader);
     info.constants = {kind.flags, kind.opaque,      kind.volumes, kind.surfaces, kind.layers,
                       kind.modes, kind.color_grids, kind.jitter,  kind.colors,   kind.fog};
   }

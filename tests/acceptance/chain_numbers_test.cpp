@@ -6,16 +6,16 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::acceptance {
-namespace {
+namespace chain_numbers_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
 using flow::Method;
 using haptics::same_bits;
-using haptics::test::build;
-using haptics::test::Fields;
-using haptics::test::Random;
-using haptics::test::Rig;
+using haptics::tests::build;
+using haptics::tests::Fields;
+using haptics::tests::Random;
+using haptics::tests::Rig;
 
 constexpr double kL = 4, kLimit = 0.05;
 
@@ -146,7 +146,7 @@ TEST(Number9, CurvedLineIntoAPlane) {
     const Vec3 e1(1, 0, 0), e2(0, std::cos(a), std::sin(a)), axis = cross(e1, e2);
     Fields fields;
     fields.named["v"].vector = lambda_field([=](const Vec3& p) { return dot(p, e1) * e2 - dot(p, e2) * e1; });
-    fields.named["z"].scalar = haptics::test::analytic("plane");
+    fields.named["z"].scalar = haptics::tests::analytic("plane");
     const auto on = [&](double s) { return 0.8 * (std::cos(s / 0.8) * e1 + std::sin(s / 0.8) * e2); };
     const auto off = [&](const Vec3& p) {
       const double u = dot(p, e1), v = dot(p, e2), w = dot(p, axis);
@@ -213,8 +213,8 @@ TEST(Number11, TheSameSurfaceProxiesAtAnyScaleOfTheField) {
        {std::pair{"sphere", 1.0}, std::pair{"torus", 0.4}, std::pair{"gaussian", 0.5}, std::pair{"tanh", 0.3}}) {
     double worst = 0;
     for (const double scale : kScales) {
-      Rig one(haptics::test::isosurface(haptics::test::analytic(name), level));
-      Rig other(haptics::test::isosurface(haptics::test::analytic(name, scale), scale * level));
+      Rig one(haptics::tests::isosurface(haptics::tests::analytic(name), level));
+      Rig other(haptics::tests::isosurface(haptics::tests::analytic(name, scale), scale * level));
       Random random(12);
       Vec3 probe(0.9, 0.2, 0.1);
       for (int i = 0; i < 400; ++i) {
@@ -293,5 +293,5 @@ TEST(Number11, BackwardEqualsTheReversedFieldBitForBit) {
   EXPECT_GT(runs, 30000);
 }
 
-}  // namespace
+}  // namespace chain_numbers_test
 }  // namespace catena::acceptance

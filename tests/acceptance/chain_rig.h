@@ -25,7 +25,7 @@ inline std::shared_ptr<const Program> program_of(const std::string& scene_text) 
   return *program;
 }
 
-inline std::shared_ptr<const Program> program_of(const std::vector<haptics::test::ConstraintPtr>& constraints) {
+inline std::shared_ptr<const Program> program_of(const std::vector<haptics::tests::ConstraintPtr>& constraints) {
   auto program = std::make_shared<Program>();
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     haptics::Link link;

@@ -6,7 +6,7 @@
 #include "tests/support/closed_loop.h"
 
 namespace catena::acceptance {
-namespace {
+namespace coupling_safety_test {
 
 using haptics::HandParameters;
 using test::ClosedLoop;
@@ -177,5 +177,5 @@ TEST(CouplingSafety, TheSameBitsAgain) {
   EXPECT_EQ(a.least_energy_j, b.least_energy_j);
 }
 
-}  // namespace
+}  // namespace coupling_safety_test
 }  // namespace catena::acceptance

@@ -6,13 +6,13 @@
 #include "tests/haptics/constraints/examples.h"
 
 namespace catena::acceptance {
-namespace {
+namespace endurance_test {
 
-using haptics::test::all_examples;
-using haptics::test::ConstraintPtr;
-using haptics::test::Example;
-using haptics::test::Fields;
-using haptics::test::Random;
+using haptics::tests::all_examples;
+using haptics::tests::ConstraintPtr;
+using haptics::tests::Example;
+using haptics::tests::Fields;
+using haptics::tests::Random;
 
 #ifdef CATENA_SANITIZED
 constexpr int kHostileTicks = 100000, kQuietTicks = 100000;
@@ -37,7 +37,7 @@ const Fields& ridden_fields() {
              : v < 0.08 ? 3e38f
                         : 0.0f;
     };
-    for (const auto& [name, any] : haptics::test::fields().named) {
+    for (const auto& [name, any] : haptics::tests::fields().named) {
       std::vector<float> values;
       field::Cursor cursor;
       for (int z = 0; z < 21; ++z)
@@ -61,7 +61,7 @@ const Fields& ridden_fields() {
 
 /// The table's analytic vector fields at the ends of the doubles; scalar fields as they are.
 Fields scaled_fields(double scale) {
-  Fields made = haptics::test::fields();
+  Fields made = haptics::tests::fields();
   for (auto& [name, any] : made.named) {
     if (!any.vector || !field::is_analytic(name)) continue;
     field::AnalyticParameters parameters;
@@ -76,21 +76,21 @@ const std::vector<ConstraintPtr>& constraints() {
   static const std::vector<ConstraintPtr> all = [] {
     std::vector<ConstraintPtr> made;
     const Fields tiny = scaled_fields(1e-300), huge = scaled_fields(1e300);
-    for (const Fields* fields : {&haptics::test::fields(), &ridden_fields(), &tiny, &huge})
+    for (const Fields* fields : {&haptics::tests::fields(), &ridden_fields(), &tiny, &huge})
       for (const Example& example : all_examples()) {
         const bool names_field = example.body.find("\"field\"") != std::string::npos;
-        if (fields != &haptics::test::fields() && !names_field) continue;
-        auto constraint = haptics::test::try_build(text_of(example), *fields);
+        if (fields != &haptics::tests::fields() && !names_field) continue;
+        auto constraint = haptics::tests::try_build(text_of(example), *fields);
         if (constraint) made.push_back(*constraint);
         // on good fields every example builds
-        if (fields == &haptics::test::fields()) {
+        if (fields == &haptics::tests::fields()) {
           EXPECT_TRUE(constraint) << text_of(example);
         }
       }
     for (const char* name : {"sphere", "torus", "gaussian", "tanh"})
       for (const double scale : {1e-300, 1e-30, 1e30, 1e300})
         for (const char* more : {"", R"(, "free": "above")", R"(, "free": "below", "release": 0.2)"})
-          made.push_back(haptics::test::isosurface(haptics::test::analytic(name, scale), 0.4 * scale, more));
+          made.push_back(haptics::tests::isosurface(haptics::tests::analytic(name, scale), 0.4 * scale, more));
     return made;
   }();
   return all;
@@ -200,5 +200,5 @@ TEST(EnduranceQuiet, NoAllocationInAMillionTicksOfAChain) {
   attained("BUDGET among them", budget);
 }
 
-}  // namespace
+}  // namespace endurance_test
 }  // namespace catena::acceptance

@@ -7,7 +7,7 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::acceptance {
-namespace {
+namespace flow_numbers_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
@@ -134,11 +134,11 @@ void expect_grid_floor(int nodes, double floor) {
   for (int i = 0; i <= 3200; ++i) selected = std::max(selected, hill_distance((*curve)->position(1e-3 * i), 0.5L));
 
   // a hand that follows on line, ahead of the proxy on the line's own course
-  haptics::test::Fields fields;
+  haptics::tests::Fields fields;
   fields.named["v"].vector = grid;
-  ChainRig chain(program_of({haptics::test::build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0],
+  ChainRig chain(program_of({haptics::tests::build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.5, 0, 0],
                                                       "follow": "online"})",
-                                                  fields)}));
+                                                   fields)}));
   double online = 0;
   for (int i = 0; i <= 1600; ++i) {
     chain.to((*curve)->position(2e-3 * i));
@@ -156,5 +156,5 @@ TEST(Number4, GridFloorOfHillsVortex64) { expect_grid_floor(64, 2.8e-4); }
 TEST(Number4, GridFloorOfHillsVortex128) { expect_grid_floor(128, 7.1e-5); }
 TEST(Number4, GridFloorOfHillsVortex256) { expect_grid_floor(256, 1.8e-5); }
 
-}  // namespace
+}  // namespace flow_numbers_test
 }  // namespace catena::acceptance

@@ -55,7 +55,7 @@ class HostileHand {
   }
 
  private:
-  haptics::test::Random random_;
+  haptics::tests::Random random_;
   Vec3 at_{0.3, 0.2, 0.1}, velocity_{0.0};
   int mood_ = 0, left_ = 0;
   std::uint32_t buttons_ = 0;

@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::acceptance {
-namespace {
+namespace real_data_test {
 
 #ifdef CATENA_SANITIZED
 constexpr int kTicks = 6000;
@@ -269,5 +269,5 @@ TEST(RealDataMinute, VentricleFibres) {
   explore(data);
 }
 
-}  // namespace
+}  // namespace real_data_test
 }  // namespace catena::acceptance

@@ -6,16 +6,16 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::acceptance {
-namespace {
+namespace streamline_numbers_test {
 
 using catena::test::analytic_vector;
 using catena::test::lambda_field;
 using flow::Method;
 using haptics::kEvaluationCap;
 using haptics::same_bits;
-using haptics::test::Random;
-using haptics::test::Rig;
-using haptics::test::Spread;
+using haptics::tests::Random;
+using haptics::tests::Rig;
+using haptics::tests::Spread;
 
 Rig online(field::VectorFieldPtr field, const Vec3& seed, Method method = Method::rkf34, double tolerance = 1e-9) {
   haptics::OnlineSpec spec;
@@ -324,5 +324,5 @@ TEST(Number10, CurvedManifoldsAreReachedWhenDragged) {
   EXPECT_LE(back, 1e-6);
 }
 
-}  // namespace
+}  // namespace streamline_numbers_test
 }  // namespace catena::acceptance

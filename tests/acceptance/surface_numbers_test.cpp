@@ -4,16 +4,16 @@
 #include "tests/haptics/constraints/rig.h"
 
 namespace catena::acceptance {
-namespace {
+namespace surface_numbers_test {
 
 using haptics::kEvaluationCap;
 using haptics::same_bits;
 using haptics::Status;
-using haptics::test::analytic;
-using haptics::test::isosurface;
-using haptics::test::Random;
-using haptics::test::Rig;
-using haptics::test::Spread;
+using haptics::tests::analytic;
+using haptics::tests::isosurface;
+using haptics::tests::Random;
+using haptics::tests::Rig;
+using haptics::tests::Spread;
 
 struct Slope {
   Real value;
@@ -130,7 +130,7 @@ TEST(Number8, FormulasReachTheLocalClosestPointWithinATick) {
 
 TEST(Number8, AStillProbeLeavesTheProxyStill) {
   for (const bool grid : {false, true}) {
-    const field::ScalarFieldPtr f = grid ? field::ScalarFieldPtr(haptics::test::sampled("sphere", 41, 3)) : analytic("sphere");
+    const field::ScalarFieldPtr f = grid ? field::ScalarFieldPtr(haptics::tests::sampled("sphere", 41, 3)) : analytic("sphere");
     for (const double d : {0.1, 0.3, 0.7, 0.999, 1.001, 1.9, 2.1, 2.5, 4.0, 7.0, 12.0, 20.0}) {
       Rig rig(isosurface(f, 1));
       rig.tick({0.3, -0.9, 0.6});
@@ -304,5 +304,5 @@ TEST(Number8, SampledTorusReachesTheLocalClosestPoint) {
 }
 TEST(Number8, SampledGaussianReachesTheLocalClosestPoint) { expect_on_samples(kFormulas[2], 48); }
 
-}  // namespace
+}  // namespace surface_numbers_test
 }  // namespace catena::acceptance

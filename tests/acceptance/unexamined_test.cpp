@@ -9,14 +9,14 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::acceptance {
-namespace {
+namespace unexamined_test {
 
 using catena::test::lambda_field;
 using flow::Method;
 using haptics::same_bits;
-using haptics::test::isosurface;
-using haptics::test::Random;
-using haptics::test::Rig;
+using haptics::tests::isosurface;
+using haptics::tests::Random;
+using haptics::tests::Rig;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -55,8 +55,8 @@ field::ScalarFieldPtr sheet(Kind kind) {
       return std::fabs(p.z);
     });
   // 0.04 a voxel, nodes at z = 0: the sheet is a quarter of a voxel on each side
-  return haptics::test::grid_of(field::Mapping::from_linear(Mat3(0.04), Vec3(-2.0)), {101, 101, 101},
-                                [](const Vec3& p) { return std::fabs(p.z); });
+  return haptics::tests::grid_of(field::Mapping::from_linear(Mat3(0.04), Vec3(-2.0)), {101, 101, 101},
+                                 [](const Vec3& p) { return std::fabs(p.z); });
 }
 
 class ThinSheet : public testing::TestWithParam<std::tuple<Kind, double>> {
@@ -171,7 +171,7 @@ TEST(Tangential, GrazingASphere) {
       for (const double miss : {0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6, 1e-4, -1e-4, 3e-3, -3e-3})
         for (const double step : {2e-4, 2e-3, 3e-2}) {
           const field::ScalarFieldPtr f =
-              grid ? field::ScalarFieldPtr(haptics::test::sampled("sphere", 65)) : haptics::test::analytic("sphere");
+              grid ? field::ScalarFieldPtr(haptics::tests::sampled("sphere", 65)) : haptics::tests::analytic("sphere");
           Rig rig(isosurface(f, 1, below ? R"(, "free": "below")" : R"(, "free": "above")"));
           field::Cursor cursor;
           int changes = 0;
@@ -201,7 +201,7 @@ TEST(Tangential, GrazingASphere) {
 
 TEST(Tangential, AlongTheSurfaceItself) {
   // every probe is on the level but for round-off: free or held, the proxy is the probe as closely as the projector stops
-  const auto f = haptics::test::analytic("sphere");
+  const auto f = haptics::tests::analytic("sphere");
   for (const char* side : {"", R"(, "free": "above")", R"(, "free": "below")"}) {
     Rig rig(isosurface(f, 1, side));
     double worst = 0;
@@ -219,7 +219,7 @@ TEST(Tangential, AlongTheSurfaceItself) {
 
 TEST(Tangential, ReleaseIsNotReachedByGrazing) {
   // deeper than nothing, shallower than the release: it never lets go
-  Rig rig(isosurface(haptics::test::analytic("sphere"), 1, R"(, "free": "above", "release": 0.01)"));
+  Rig rig(isosurface(haptics::tests::analytic("sphere"), 1, R"(, "free": "above", "release": 0.01)"));
   for (double x = -0.5; x <= 0.5; x += 2e-4) {
     rig.tick({x, 0, 0.995});
     ASSERT_NE(rig.state.status, Status::released) << x;
@@ -263,11 +263,11 @@ TEST(LeavingTheGrid, AStreamlineHoldsOnTheWallAndComesBack) {
   const auto grid = slanted_grid();
   for (const char* follow : {"selected", "online"})
     for (const double step : {1e-3, 0.02, 0.7, 5.0}) {
-      haptics::test::Fields fields;
+      haptics::tests::Fields fields;
       fields.named["v"].vector = grid;
       const std::string text =
           std::string(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.1, 0.2, 0.3], "follow": ")") + follow + "\"}";
-      Rig rig(haptics::test::build(text, fields));
+      Rig rig(haptics::tests::build(text, fields));
       const Vec3 home(0.3, 0.25, 0.3);
       for (int k = 0; k < 3; ++k) rig.tick(home);
       const Vec3 before = rig.state.proxy;
@@ -291,8 +291,8 @@ TEST(LeavingTheGrid, AStreamlineHoldsOnTheWallAndComesBack) {
 
 TEST(LeavingTheGrid, AnIsosurfaceEndsAtTheWallAndGoesOnBehindIt) {
   // z = 0.1 x within |x| <= 2. Right: beyond the wall the proxy keeps to the domain and still slides along it; nothing jumps
-  const auto grid = haptics::test::grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17},
-                                           [](const Vec3& p) { return p.z - 0.1 * p.x; });
+  const auto grid = haptics::tests::grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17},
+                                            [](const Vec3& p) { return p.z - 0.1 * p.x; });
   for (const char* side : {"", R"(, "free": "above")", R"(, "free": "below")"})
     for (const double step : {1e-3, 0.05, 0.6}) {
       Rig rig(isosurface(grid, 0, side));
@@ -336,9 +336,9 @@ TEST(NanOnTheWay, AStreamlineEndsBeforeItAndComesBack) {
     const double wall = formula ? 0.55 : 0.5;
     for (const char* more : {"", R"(, "follow": "online")", R"(, "method": "dp54")", R"(, "method": "euler")", R"(, "kind": "line")"})
       for (const double step : {1e-3, 0.03, 0.9}) {
-        haptics::test::Fields fields;
+        haptics::tests::Fields fields;
         fields.named["v"].vector = f;
-        Rig rig(haptics::test::build(
+        Rig rig(haptics::tests::build(
             std::string(R"({"name": "a", "type": "streamline", "field": "v", "seed": [-0.5, 0.1, 0.2])") + more + "}", fields));
         rig.tick({0.2, 0.1, 0.25});
         rig.tick({0.2, 0.1, 0.25});
@@ -361,7 +361,7 @@ TEST(NanOnTheWay, AStreamlineEndsBeforeItAndComesBack) {
 
 TEST(NanOnTheWay, AnIsosurfaceHasAWallThere) {
   const auto value = [](const Vec3& p) { return p.x > 0.4 && p.x < 0.9 ? kNan : p.z - 0.1 * p.x; };
-  const auto grid = haptics::test::grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, value);
+  const auto grid = haptics::tests::grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, value);
   for (const char* side : {"", R"(, "free": "above")", R"(, "free": "below")"})
     for (const double step : {1e-3, 0.04}) {
       Rig rig(isosurface(grid, 0, side));
@@ -390,7 +390,7 @@ TEST(NanOnTheWay, AnIsosurfaceHasAWallThere) {
 TEST(NanOnTheWay, AFreeHandThatEntersNanStaysFreeAndIsCaughtBehind) {
   // free above; the probe goes through broken voxels and comes out on the held side: held there, at once
   const auto value = [](const Vec3& p) { return p.x > 0.4 && p.x < 0.9 ? kNan : p.z - 0.1 * p.x; };
-  const auto grid = haptics::test::grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, value);
+  const auto grid = haptics::tests::grid_of(field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)), {17, 17, 17}, value);
   Rig rig(isosurface(grid, 0, R"(, "free": "above")"));
   for (double x = 0; x < 1.6; x += 0.005) {
     const double z = x < 0.6 ? 0.3 : -0.2;  // sinks within the gap
@@ -409,5 +409,5 @@ TEST(NanOnTheWay, AFreeHandThatEntersNanStaysFreeAndIsCaughtBehind) {
   }
 }
 
-}  // namespace
+}  // namespace unexamined_test
 }  // namespace catena::acceptance

@@ -4,7 +4,7 @@
 
 #include "tests/bench/chain_bench.h"
 
-namespace {
+namespace constraint_bench {
 
 using namespace catena;
 using namespace catena::bench;
@@ -55,4 +55,4 @@ const Example kExamples[] = {
   return true;
 }();
 
-}  // namespace
+}  // namespace constraint_bench

@@ -7,7 +7,7 @@
 #include "engine/field/analytic.h"
 #include "engine/field/grid.h"
 
-namespace {
+namespace field_bench {
 
 using namespace catena;
 
@@ -64,4 +64,4 @@ BENCHMARK(scalar_random);
 BENCHMARK(vector_walk);
 BENCHMARK(vector_random);
 
-}  // namespace
+}  // namespace field_bench

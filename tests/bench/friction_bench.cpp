@@ -3,7 +3,7 @@
 #include "haptics/constraints/modes.h"
 #include "tests/bench/chain_bench.h"
 
-namespace {
+namespace friction_bench {
 
 using namespace catena;
 using namespace catena::bench;
@@ -72,4 +72,4 @@ void FetchOnTheWalkTorus256(benchmark::State& state) {
 }
 BENCHMARK(FetchOnTheWalkTorus256);
 
-}  // namespace
+}  // namespace friction_bench

@@ -9,7 +9,7 @@
 #include "haptics/servo/servo.h"
 #include "tests/bench/chain_bench.h"
 
-namespace {
+namespace log_bench {
 
 using namespace catena;
 using namespace catena::bench;
@@ -82,4 +82,4 @@ void LogOfAServoAt4kHz(benchmark::State& state) {
 }
 BENCHMARK(LogOfAServoAt4kHz)->Unit(benchmark::kMillisecond)->Iterations(1);
 
-}  // namespace
+}  // namespace log_bench

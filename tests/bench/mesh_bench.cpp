@@ -8,7 +8,7 @@
 #include "haptics/constraints/registry.h"
 #include "tests/support/mesh_shapes.h"
 
-namespace {
+namespace mesh_bench {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -65,4 +65,4 @@ BENCHMARK_CAPTURE(Mesh100k, tap_0_2, "above", 0.2, true)->Unit(benchmark::kMilli
 BENCHMARK_CAPTURE(Mesh100k, tap_1, "above", 1.0, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Mesh100k, two_sided_1, "none", 1.0, false)->Unit(benchmark::kMillisecond);
 
-}  // namespace
+}  // namespace mesh_bench

@@ -1,7 +1,7 @@
 /// The tick of a streamline and an isosurface on 256^3 grids.
 #include "tests/bench/chain_bench.h"
 
-namespace {
+namespace tick_bench {
 
 using namespace catena;
 using namespace catena::bench;
@@ -40,4 +40,4 @@ BENCHMARK(TickSelectedStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond)
 BENCHMARK(TickSelectedStreamlineAndIsosurface256OnADevice)->Unit(benchmark::kMillisecond);
 BENCHMARK(TickOnlineStreamlineAndIsosurface256)->Unit(benchmark::kMillisecond);
 
-}  // namespace
+}  // namespace tick_bench

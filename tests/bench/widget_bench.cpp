@@ -2,7 +2,7 @@
 #include "haptics/constraints/widget_link.h"
 #include "tests/bench/chain_bench.h"
 
-namespace {
+namespace widget_bench {
 
 using namespace catena;
 using namespace catena::bench;
@@ -35,4 +35,4 @@ BENCHMARK(TickCuttingPlaneAway)->Unit(benchmark::kMillisecond);
 BENCHMARK(TickCuttingPlaneExplored)->Unit(benchmark::kMillisecond);
 BENCHMARK(TickEightCuttingPlanes)->Unit(benchmark::kMillisecond);
 
-}  // namespace
+}  // namespace widget_bench

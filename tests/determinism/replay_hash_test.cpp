@@ -12,7 +12,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace replay_hash_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -128,8 +128,8 @@ std::string fmt_hash(std::uint64_t hash) {
 
 std::shared_ptr<const Program> program_of(const Recorded& recorded, const test::TemporaryFolder& folder) {
   for (const char* name : {"circle", "sphere"}) {
-    const auto run = test::run_program(
-        CATENA_PROGRAM, {"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
+    const auto run =
+        test::run_catena({"generate", name, "-o", folder / (std::string(name) + ".vdb"), "--resolution", "33", "--box", "-1", "1"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
   test::write_file(folder / "wedge.obj",
@@ -188,12 +188,12 @@ TEST_P(Hash, IsTheProgramsToo) {
     csv += to_text(p.t_s) + "," + to_text(p.position.x) + "," + to_text(p.position.y) + "," + to_text(p.position.z) + "," +
            std::to_string(p.buttons) + "\n";
   test::write_file(folder / "p.csv", csv);
-  const auto run = test::run_program(
-      CATENA_PROGRAM, {"replay", folder / "scene.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.json"});
+  const auto run = test::run_catena(
+      {"replay", folder / "scene.json", "--probe", folder / "p.csv", "-o", folder / "t.csv", "--stats", folder / "s.json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(test::read_file(folder / "s.json").find(fmt_hash(GetParam().hash)), std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Hash, testing::ValuesIn(kRecorded), [](const auto& tested) { return std::string(tested.param.name); });
 
-}  // namespace
+}  // namespace replay_hash_test

@@ -4,7 +4,7 @@
 #include "tests/fuzz/mutate.h"
 
 namespace catena {
-namespace {
+namespace csv_fuzz_test {
 
 constexpr int kMutations = 20000;
 
@@ -67,5 +67,5 @@ TEST(CsvFuzz, LongTexts) {
   EXPECT_FALSE(check(parse_seeds("x,y,z\n" + std::string(1000000, '\n') + "1,2,3", "path.csv"), ""));
 }
 
-}  // namespace
+}  // namespace csv_fuzz_test
 }  // namespace catena

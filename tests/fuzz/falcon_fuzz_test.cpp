@@ -10,7 +10,7 @@
 #include "tests/fuzz/mutate.h"
 
 namespace catena::haptics::usb {
-namespace {
+namespace falcon_fuzz_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -187,5 +187,5 @@ TEST(FalconFuzz, ImagesAreTakenOrRefusedWithTheByteAndWhatWasExpected) {
   EXPECT_LT(taken, n);
 }
 
-}  // namespace
+}  // namespace falcon_fuzz_test
 }  // namespace catena::haptics::usb

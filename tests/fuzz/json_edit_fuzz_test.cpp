@@ -4,7 +4,7 @@
 #include "tests/fuzz/mutate.h"
 
 namespace catena {
-namespace {
+namespace json_edit_fuzz_test {
 
 constexpr int kMutations = 30000;
 
@@ -63,5 +63,5 @@ TEST(JsonEditFuzz, ManyEditsOfOneText) {
   EXPECT_GT(done, 1000);
 }
 
-}  // namespace
+}  // namespace json_edit_fuzz_test
 }  // namespace catena

@@ -10,7 +10,7 @@
 #include "tests/support/log_rig.h"
 
 namespace catena {
-namespace {
+namespace log_fuzz_test {
 
 using namespace haptics::log;
 
@@ -168,5 +168,5 @@ TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
   EXPECT_EQ(counts.clean, 0);
 }
 
-}  // namespace
+}  // namespace log_fuzz_test
 }  // namespace catena

@@ -5,7 +5,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace catena {
-namespace {
+namespace mesh_fuzz_test {
 
 constexpr int kMutations = 20000;
 const std::string kObj =
@@ -80,5 +80,5 @@ TEST(MeshFuzz, LongTexts) {
   EXPECT_TRUE(obj(polygon));
 }
 
-}  // namespace
+}  // namespace mesh_fuzz_test
 }  // namespace catena

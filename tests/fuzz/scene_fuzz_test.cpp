@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace {
+namespace scene_fuzz_test {
 
 constexpr int kMutations = 20000;
 
@@ -155,5 +155,5 @@ TEST(SceneFuzz, DeepAndLongTexts) {
   EXPECT_FALSE(check("{\"quality\": " + std::string(100000, '9') + "}", false));
 }
 
-}  // namespace
+}  // namespace scene_fuzz_test
 }  // namespace catena

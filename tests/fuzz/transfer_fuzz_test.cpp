@@ -9,7 +9,7 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace {
+namespace transfer_fuzz_test {
 
 constexpr int kMutations = 20000;
 
@@ -97,5 +97,5 @@ TEST(TransferFuzz, RangesBesideFiles) {
   }
 }
 
-}  // namespace
+}  // namespace transfer_fuzz_test
 }  // namespace catena

@@ -8,14 +8,17 @@
 #include <sstream>
 #include <string>
 
-namespace {
+#include "tests/support/support.h"
+
+namespace rooms_test {
 
 namespace fs = std::filesystem;
+namespace test = catena::test;
 using Edges = std::map<std::string, std::set<std::string>>;
 
 Edges declared_edges() {
   Edges edges;
-  std::ifstream in(std::string(CATENA_BINARY_DIR) + "/rooms.txt");
+  std::ifstream in(test::binary_dir() + "/rooms.txt");
   for (std::string line; std::getline(in, line);) {
     const auto colon = line.find(':');
     if (colon == std::string::npos) continue;
@@ -65,13 +68,13 @@ std::string included_path(const std::string& line) {
 
 std::vector<Include> all_includes(const std::string& top) {
   std::vector<Include> found;
-  for (const auto& entry : fs::recursive_directory_iterator(std::string(CATENA_SOURCE_DIR) + "/" + top)) {
+  for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() + "/" + top)) {
     const std::string extension = entry.path().extension().string();
     if (extension != ".h" && extension != ".cpp") continue;
     std::ifstream in(entry.path());
     for (std::string line; std::getline(in, line);)
       if (const std::string path = included_path(line); !path.empty())
-        found.push_back({fs::relative(entry.path(), CATENA_SOURCE_DIR).string(), path});
+        found.push_back({fs::relative(entry.path(), test::source_dir()).string(), path});
   }
   return found;
 }
@@ -104,7 +107,7 @@ TEST(Rooms, ProjectHeadersAreIncludedFromTheRepositoryRoot) {
   for (const char* top : {"engine", "haptics", "render"})
     for (const Include& include : all_includes(top)) {
       const bool sibling = include.to.find('/') == std::string::npos &&
-                           fs::exists(fs::path(CATENA_SOURCE_DIR) / fs::path(include.from).parent_path() / include.to);
+                           fs::exists(fs::path(test::source_dir()) / fs::path(include.from).parent_path() / include.to);
       EXPECT_FALSE(sibling) << include.from << " includes " << include.to << ": write the path from the repository root";
       EXPECT_FALSE(include.to.starts_with("..")) << include.from;
     }
@@ -161,4 +164,4 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   for (const char* library : {"openvdb/", "vulkan/", "json/"}) EXPECT_FALSE(users[library].empty()) << library;
 }
 
-}  // namespace
+}  // namespace rooms_test

@@ -35,6 +35,8 @@ ProgramResult run_program(const std::string& program, const std::vector<std::str
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_file(out), read_file(err)};
 }
 
+ProgramResult run_catena(const std::vector<std::string>& arguments) { return run_program(program_path(), arguments); }
+
 namespace {
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells;

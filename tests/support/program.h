@@ -12,6 +12,8 @@ struct ProgramResult {
 
 /// No shell in between; standard input is empty.
 ProgramResult run_program(const std::string& program, const std::vector<std::string>& arguments);
+/// The `catena` of this build.
+ProgramResult run_catena(const std::vector<std::string>& arguments);
 
 /// A CSV by columns: numbers where they parse, words elsewhere.
 class Table {

@@ -10,6 +10,22 @@
 
 namespace catena::test {
 
+// The only file of the tests that is compiled with a path, so that a compiler cache serves every checkout.
+const std::string& source_dir() {
+  static const std::string path = CATENA_SOURCE_DIR;
+  return path;
+}
+
+const std::string& binary_dir() {
+  static const std::string path = CATENA_BINARY_DIR;
+  return path;
+}
+
+const std::string& program_path() {
+  static const std::string path = binary_dir() + "/catena";
+  return path;
+}
+
 TemporaryFolder::TemporaryFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "catena-test-XXXXXX").string();
   CATENA_ASSERT(mkdtemp(pattern.data()) != nullptr);
@@ -37,7 +53,7 @@ std::string read_file(const std::string& path) {
 bool exists(const std::string& path) { return std::filesystem::exists(path); }
 
 std::string shared_data(const std::string& name) {
-  const auto path = std::filesystem::path(CATENA_SOURCE_DIR_FOR_SUPPORT).parent_path() / "shared" / "data" / name;
+  const auto path = std::filesystem::path(source_dir()).parent_path() / "shared" / "data" / name;
   return std::filesystem::exists(path) ? path.string() : std::string();
 }
 

@@ -1,8 +1,12 @@
-/// Helpers of all tests: a folder that vanishes, text files, the shared data folder.
+/// Helpers of all tests: where things are, a folder that vanishes, text files, the shared data folder.
 #pragma once
 #include <string>
 
 namespace catena::test {
+
+const std::string& source_dir();    ///< of the checkout
+const std::string& binary_dir();    ///< of this build
+const std::string& program_path();  ///< of `catena` in this build
 
 /// A fresh folder, removed with all that is in it.
 class TemporaryFolder {

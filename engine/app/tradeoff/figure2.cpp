@@ -3,6 +3,7 @@
 ///   figure2-path.csv    where the proxy of the linear method goes
 ///   figure2-tremor.csv  a hand that holds still but for a tremor of 1 mm at 10 Hz along the line
 #include <cmath>
+#include <numbers>
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/figures.h"
@@ -12,11 +13,11 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kRadius_m = 0.05, kTick_s = 1e-3, kPi = 3.14159265358979323846;
+constexpr double kRadius_m = 0.05, kFigure2Tick_s = 1e-3;
 constexpr double kTremor_m = 1e-3, kTremor_hz = 10, kStill_s = 60;
 constexpr int kLaps = 5, kPathLaps = 8;
 constexpr double kSpeeds[] = {0.05, 0.2, 1.0}, kPathSpeed = 1.0;
-constexpr const char* kMethods[] = {"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54", "selected"};
+constexpr const char* kFigure2Methods[] = {"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54", "selected"};
 
 Hand follower(const std::string& method) {
   const std::string how = method == "selected" ? "" : R"(, "method": ")" + method + "\"";
@@ -31,15 +32,15 @@ double off_circle_mm(const Vec3& p) { return 1e3 * std::hypot(std::hypot(p.x, p.
 
 std::string drift_table(Progress& progress, double& done) {
   CsvTable table("method,speed_m_per_s,drift_mm_first_lap,drift_mm_after_5_laps,evaluations_per_tick,evaluations_max");
-  for (const char* method : kMethods)
+  for (const char* method : kFigure2Methods)
     for (const double speed : kSpeeds) {
       Hand hand = follower(method);
-      const double lap_ticks = 2 * kPi * kRadius_m / (speed * kTick_s);
+      const double lap_ticks = 2 * std::numbers::pi * kRadius_m / (speed * kFigure2Tick_s);
       double first = 0, last = 0, sum = 0;
       int most = 0;
       const int ticks = static_cast<int>(std::ceil(kLaps * lap_ticks)), first_ticks = static_cast<int>(std::ceil(lap_ticks));
       for (int k = 0; k <= ticks; ++k) {
-        const auto& out = hand.at(k * kTick_s, on_circle(speed * kTick_s * k / kRadius_m));
+        const auto& out = hand.at(k * kFigure2Tick_s, on_circle(speed * kFigure2Tick_s * k / kRadius_m));
         last = std::max(last, off_circle_mm(out.links[0].proxy));
         if (k <= first_ticks) first = last;
         sum += out.links[0].evaluations;
@@ -54,12 +55,12 @@ std::string drift_table(Progress& progress, double& done) {
 std::string path_table() {
   CsvTable table("t_s,laps,streamline_x_mm,streamline_y_mm,linear_x_mm,linear_y_mm,selected_x_mm,selected_y_mm");
   Hand linear = follower("linear"), selected = follower("selected");
-  const int ticks = static_cast<int>(std::ceil(kPathLaps * 2 * kPi * kRadius_m / (kPathSpeed * kTick_s)));
+  const int ticks = static_cast<int>(std::ceil(kPathLaps * 2 * std::numbers::pi * kRadius_m / (kPathSpeed * kFigure2Tick_s)));
   for (int k = 0; k <= ticks; ++k) {
-    const double t = k * kTick_s, angle = kPathSpeed * t / kRadius_m;
+    const double t = k * kFigure2Tick_s, angle = kPathSpeed * t / kRadius_m;
     const Vec3 probe = on_circle(angle);
     const Vec3 a = 1e3 * linear.at(t, probe).links[0].proxy, b = 1e3 * selected.at(t, probe).links[0].proxy;
-    table.add(t).add(angle / (2 * kPi));
+    table.add(t).add(angle / (2 * std::numbers::pi));
     for (const double value : {1e3 * probe.x, 1e3 * probe.y, a.x, a.y, b.x, b.y}) table.add(value);
     table.end_row();
   }
@@ -69,15 +70,15 @@ std::string path_table() {
 std::string tremor_table(Progress& progress, double& done) {
   std::string header = "t_s";
   std::vector<Hand> hands;
-  for (const char* method : kMethods) {
+  for (const char* method : kFigure2Methods) {
     header += std::string(",") + method + "_drift_mm";
     hands.push_back(follower(method));
   }
   CsvTable table(header);
-  const int ticks = static_cast<int>(kStill_s / kTick_s);
+  const int ticks = static_cast<int>(kStill_s / kFigure2Tick_s);
   for (int k = 0; k <= ticks; ++k) {
-    const double t = k * kTick_s;
-    const Vec3 probe(kRadius_m, kTremor_m * std::sin(2 * kPi * kTremor_hz * t), 0);
+    const double t = k * kFigure2Tick_s;
+    const Vec3 probe(kRadius_m, kTremor_m * std::sin(2 * std::numbers::pi * kTremor_hz * t), 0);
     const bool row = k % 250 == 0;
     if (row) table.add(t);
     for (Hand& hand : hands) {
@@ -90,7 +91,7 @@ std::string tremor_table(Progress& progress, double& done) {
   return table.text();
 }
 
-constexpr const char* kScript = R"gp(# gnuplot figure2.gp: the plots of figure 2 from its tables
+constexpr const char* kFigure2Script = R"gp(# gnuplot figure2.gp: the plots of figure 2 from its tables
 set datafile separator ','
 set terminal pngcairo size 1200,750 font 'DejaVu Sans,13' linewidth 1.5
 set border linewidth 1.2
@@ -149,7 +150,7 @@ Outcome figure2(ResultFolder& folder) {
   CATENA_CHECK(folder.add("figure2-drift.csv", drift_table(progress, done)));
   CATENA_CHECK(folder.add("figure2-path.csv", path_table()));
   CATENA_CHECK(folder.add("figure2-tremor.csv", tremor_table(progress, done)));
-  CATENA_CHECK(folder.add("figure2.gp", kScript));
+  CATENA_CHECK(folder.add("figure2.gp", kFigure2Script));
   return folder.plot("figure2.gp", {"figure2-drift.png", "figure2-path.png", "figure2-tremor.png"});
 }
 

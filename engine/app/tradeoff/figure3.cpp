@@ -7,6 +7,7 @@
 ///                        (off_curve_at_release_depth: when the probe is as deep as the release distance)
 /// One proxy: both residuals are its own. Chain: the curve's is of the curve's proxy, the surface's of the surface's proxy.
 #include <cmath>
+#include <numbers>
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/figures.h"
@@ -17,12 +18,11 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr double kRelease = 0.05, kBefore = 0.03, kDeepest = 0.125, kStep = 2e-4, kTick_s = 1e-3,
+constexpr double kRelease = 0.05, kBefore = 0.03, kDeepest = 0.125, kStep = 2e-4, kFigure3Tick_s = 1e-3,
                  kWeakLine = 10;  // N/m: 2 % of the coupling's
 constexpr double kAngles_deg[] = {5, 10, 15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 75, 80, 85, 90};
 constexpr double kSeriesAngle_deg = 30;
-constexpr const char* kMethods[] = {"chain", "pipe", "balance", "closest", "linear"};
+constexpr const char* kFigure3Methods[] = {"chain", "pipe", "balance", "closest", "linear"};
 
 /// A curve by its arc length s, 0 where it meets the surface, negative inside; and what there is to measure.
 struct Case {
@@ -61,7 +61,7 @@ struct Case {
 Case flat_case(double degrees) {
   Case c;
   c.name = "flat";
-  c.angle = degrees * kPi / 180;
+  c.angle = degrees * std::numbers::pi / 180;
   c.fields = R"("v": {"analytic": "uniform", "direction": )" + to_json(c.at(1)) + R"(}, "s": {"analytic": "plane"})";
   c.surface = "0";
   return c;
@@ -71,7 +71,7 @@ Case curved_case(double degrees) {
   Case c;
   c.name = "curved";
   c.helix = true;
-  c.angle = degrees * kPi / 180;
+  c.angle = degrees * std::numbers::pi / 180;
   c.fields = R"("v": {"analytic": "helix"}, "s": {"analytic": "sphere"})";
   c.surface = "1";
   // the helix (R cos, R sin, z) meets the unit sphere at height z with sin(angle) = t . n = pitch z / sqrt(R^2 + pitch^2)
@@ -110,7 +110,7 @@ void add_release_row(const Case& c, double degrees, const std::string& method, C
   for (int k = 0; k <= ticks; ++k) {
     const double s = kBefore - kStep * k;
     const Vec3 probe = c.at(s);
-    const auto& out = hand.at(k * kTick_s, probe);
+    const auto& out = hand.at(k * kFigure3Tick_s, probe);
     const exchange::LinkReport &curve = out.links[0], &surface = out.links[1];
     most = std::max(most, curve.evaluations + surface.evaluations);
     if (std::isnan(at_depth) && c.depth(probe) >= (1 - 1e-12) * kRelease) at_depth = c.off_curve(curve.proxy, s);
@@ -147,7 +147,7 @@ std::string release_table(Progress& progress) {
       "force_while_held_n,evaluations_max");
   double done = 0;
   for (const bool curved : {false, true})
-    for (const char* method : kMethods) {
+    for (const char* method : kFigure3Methods) {
       for (const double degrees : kAngles_deg) add_release_row(curved ? curved_case(degrees) : flat_case(degrees), degrees, method, table);
       progress.at(++done);
     }
@@ -158,7 +158,7 @@ std::string series_table() {
   const Case c = flat_case(kSeriesAngle_deg);
   std::string header = "t_s,travel,depth,probe_x,probe_z,chain_curve_x,chain_curve_z";
   std::vector<Hand> hands;
-  for (const char* method : kMethods) {
+  for (const char* method : kFigure3Methods) {
     for (const char* column : {"_x", "_z", "_force_n", "_active"}) header += std::string(",") + method + column;
     hands.push_back(hand_for(c, method));
   }
@@ -168,9 +168,9 @@ std::string series_table() {
     const double s = kBefore - kStep * k;
     const Vec3 probe = c.at(s);
     for (std::size_t m = 0; m < hands.size(); ++m) {
-      const auto& out = hands[m].at(k * kTick_s, probe);
+      const auto& out = hands[m].at(k * kFigure3Tick_s, probe);
       if (m == 0) {
-        for (const double value : {k * kTick_s, -s, c.depth(probe), probe.x, probe.z, out.links[0].proxy.x, out.links[0].proxy.z})
+        for (const double value : {k * kFigure3Tick_s, -s, c.depth(probe), probe.x, probe.z, out.links[0].proxy.x, out.links[0].proxy.z})
           table.add(value);
       }
       table.add(out.links[1].proxy.x).add(out.links[1].proxy.z).add(norm(out.force_n)).add(out.links[1].active ? 1 : 0);
@@ -180,7 +180,7 @@ std::string series_table() {
   return table.text();
 }
 
-constexpr const char* kScript = R"gp(# gnuplot figure3.gp: the plots of figure 3 from its tables
+constexpr const char* kFigure3Script = R"gp(# gnuplot figure3.gp: the plots of figure 3 from its tables
 set datafile separator ','
 set terminal pngcairo size 1200,700 font 'DejaVu Sans,13' linewidth 1.5
 set border linewidth 1.2
@@ -260,10 +260,10 @@ unset multiplot
 }  // namespace
 
 Outcome figure3(ResultFolder& folder) {
-  Progress progress("figure 3", 2 * std::size(kMethods));
+  Progress progress("figure 3", 2 * std::size(kFigure3Methods));
   CATENA_CHECK(folder.add("figure3-release.csv", release_table(progress)));
   CATENA_CHECK(folder.add("figure3-series.csv", series_table()));
-  CATENA_CHECK(folder.add("figure3.gp", kScript));
+  CATENA_CHECK(folder.add("figure3.gp", kFigure3Script));
   return folder.plot("figure3.gp", {"figure3-release-flat.png", "figure3-release-curved.png", "figure3-off-curve.png", "figure3-force.png",
                                     "figure3-path.png"});
 }

@@ -7,6 +7,7 @@
 /// the swing dies away; controlled, the largest of a rising row (steps of a quarter) at which the passivity controller still
 /// keeps the energy within 5 % of what the spring had at the start.
 #include <cmath>
+#include <numbers>
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/figures.h"
@@ -20,7 +21,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kMass_kg = 0.159, kStart_m = 1e-3, kDamping = 0.5, kPi = 3.14159265358979323846;
+constexpr double kMass_kg = 0.159, kStart_m = 1e-3, kDamping = 0.5;
 constexpr double kDampings[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20};
 constexpr double kDelays_ms[] = {0, 0.25, 0.5, 1, 1.5, 2, 3, 4, 5};
 constexpr double kVirtual[] = {0, 1, 2, 5, 10, 20, 35, 50, 75, 100, 125, 150, 175, 200};
@@ -69,7 +70,7 @@ class Swing {
         scratch_(std::make_unique<haptics::ChainScratch>()),
         period_s_(1 / setting.rate_hz),
         stiffness_(stiffness) {
-    window_ = std::max(300, static_cast<int>(1.5 * 2 * kPi * std::sqrt(kMass_kg / stiffness) / period_s_));
+    window_ = std::max(300, static_cast<int>(1.5 * 2 * std::numbers::pi * std::sqrt(kMass_kg / stiffness) / period_s_));
   }
   double start_j() const { return 0.5 * stiffness_ * kStart_m * kStart_m; }
   double window() {
@@ -166,7 +167,7 @@ std::string virtual_table(Progress& progress, double& done) {
   return table.text();
 }
 
-constexpr const char* kScript = R"gp(# gnuplot stiffness.gp: the plots of figure "stiffness" from its tables
+constexpr const char* kStiffnessScript = R"gp(# gnuplot stiffness.gp: the plots of figure "stiffness" from its tables
 set datafile separator ','
 set terminal pngcairo size 1200,750 font 'DejaVu Sans,13' linewidth 1.5
 set border linewidth 1.2
@@ -220,7 +221,7 @@ Outcome figure_stiffness(ResultFolder& folder) {
   CATENA_CHECK(folder.add("stiffness-damping.csv", damping_table(progress, done)));
   CATENA_CHECK(folder.add("stiffness-delay.csv", delay_table(progress, done)));
   CATENA_CHECK(folder.add("stiffness-virtual.csv", virtual_table(progress, done)));
-  CATENA_CHECK(folder.add("stiffness.gp", kScript));
+  CATENA_CHECK(folder.add("stiffness.gp", kStiffnessScript));
   return folder.plot("stiffness.gp", {"stiffness-damping.png", "stiffness-delay.png", "stiffness-virtual.png"});
 }
 

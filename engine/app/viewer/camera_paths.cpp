@@ -11,7 +11,7 @@ namespace catena::app {
 namespace {
 
 constexpr double kFast = 4, kZoomRate = 1;  // per second
-constexpr double kPoleAngle = 0.02;
+constexpr double kPathPoleAngle = 0.02;
 
 /// The integral of a value that settles from v to w, and the value at the end.
 template <class T>
@@ -52,7 +52,7 @@ void look(render::View& view, double yaw, double pitch) {
     return std::cos(angle) * v + std::sin(angle) * cross(axis, v) + (1 - std::cos(angle)) * dot(axis, v) * axis;
   };
   const double polar = std::atan2(norm(side), dot(up, ahead));
-  const double turn = polar - std::clamp(polar - pitch, kPoleAngle, std::numbers::pi - kPoleAngle);
+  const double turn = polar - std::clamp(polar - pitch, kPathPoleAngle, std::numbers::pi - kPathPoleAngle);
   ahead = rotated(ahead, direction(side), turn);
   ahead = rotated(ahead, up, -yaw);
   view.target = view.position + distance * direction(ahead);

@@ -11,8 +11,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kTurnPerHeight = kPi;  // a drag over the window's height
+constexpr double kTurnPerHeight = std::numbers::pi;  // a drag over the window's height
 constexpr double kZoomPerNotch = 0.9;
 constexpr double kDepthPerNotch = 0.01;  // of the distance from the eye
 constexpr double kPoleAngle = 0.02;      // radians
@@ -80,7 +79,7 @@ void orbit(render::View& view, double yaw, double pitch) {
   }
   back = rotated(back, up, yaw);
   const double polar = std::atan2(norm(cross(up, back)), dot(up, back));
-  const double turn = std::clamp(polar - pitch, kPoleAngle, kPi - kPoleAngle) - polar;
+  const double turn = std::clamp(polar - pitch, kPoleAngle, std::numbers::pi - kPoleAngle) - polar;
   back = direction(rotated(back, direction(cross(up, back)), turn));
   view.position = view.target + distance * back;
 }
@@ -93,7 +92,7 @@ void zoom(render::View& view, double factor) {
 }
 
 void toggle_projection(render::View& view) {
-  const double height_at_1 = 2 * std::tan(0.5 * view.fovy_deg * kPi / 180);
+  const double height_at_1 = 2 * std::tan(0.5 * view.fovy_deg * std::numbers::pi / 180);
   const Vec3 arm = view.position - view.target;
   if (view.orthographic)
     view.position = view.target + view.height / height_at_1 * direction(arm);
@@ -120,7 +119,7 @@ Changed apply(Controls& controls, const Input& input) {
     move_hand(controls, input);
     changed.hand = true;
   } else if (controls.fly && input.left && moved) {
-    const double turn = controls.view.fovy_deg * kPi / 180 / input.height;
+    const double turn = controls.view.fovy_deg * std::numbers::pi / 180 / input.height;
     look(controls.view, turn * input.dx, -turn * input.dy);
     changed.view = true;
   } else if (input.left && moved) {

@@ -7,7 +7,7 @@
 namespace catena::haptics::usb {
 namespace {
 
-constexpr int kWriteMs = 500, kReadMs = 100;
+constexpr int kBootWriteMs = 500, kBootReadMs = 100;
 constexpr int kProbeReads = 10, kProbeReadMs = 20;
 constexpr int kHandshakeReads = 4, kEchoIdleReads = 20;  // an idle device sends a packet each 16 ms
 
@@ -44,12 +44,12 @@ Step shake_hands(Ftdi& ftdi, const FalconBootOptions& options) {
   constexpr std::uint8_t kAnswer[] = {0x0A, 0x44, 0x2C, 0x0D};  // some systems put a 0 before it
   std::size_t matched = 0;
   for (int attempt = 0; attempt < options.handshake_tries; ++attempt) {
-    UsbError error = ftdi.write(kHello, kWriteMs);
+    UsbError error = ftdi.write(kHello, kBootWriteMs);
     if (error == UsbError::gone) return failed(error, "at the hand shake");
     for (int i = 0; i < kHandshakeReads && error == UsbError::none; ++i) {
       if (given_up(options)) return cancelled();
       std::span<const std::uint8_t> payload;
-      error = ftdi.read(payload, kReadMs);
+      error = ftdi.read(payload, kBootReadMs);
       if (error == UsbError::gone) return failed(error, "at the hand shake");
       for (const std::uint8_t byte : payload) {
         matched = byte == kAnswer[matched] ? matched + 1 : (byte == kAnswer[0] ? 1 : 0);
@@ -65,11 +65,11 @@ Step ready_for_image(Ftdi& ftdi, const FalconBootOptions& options) {
   CATENA_USB(ftdi.dtr_low(), "before the image");
   CATENA_USB(ftdi.baud(FtdiBaud::image_140000), "before the image");
   constexpr std::uint8_t kAsk[] = {0x41};
-  CATENA_USB(ftdi.write(kAsk, kWriteMs), "before the image");
+  CATENA_USB(ftdi.write(kAsk, kBootWriteMs), "before the image");
   for (int idle = 0; idle < kEchoIdleReads; ++idle) {
     if (given_up(options)) return cancelled();
     std::span<const std::uint8_t> payload;
-    const UsbError error = ftdi.read(payload, kReadMs);
+    const UsbError error = ftdi.read(payload, kBootReadMs);
     if (error != UsbError::none && error != UsbError::timeout) return failed(error, "before the image");
     // what is left of a hand shake may come before it
     for (const std::uint8_t byte : payload)
@@ -84,13 +84,13 @@ Step send_image(Ftdi& ftdi, std::span<const std::uint8_t> image, int attempt, co
   while (echoed < image.size()) {
     if (options.progress && !options.progress(attempt, static_cast<double>(echoed) / static_cast<double>(image.size()))) return cancelled();
     const auto chunk = image.subspan(sent, std::min(kFtdiPayloadBytes, image.size() - sent));
-    CATENA_USB(ftdi.write(chunk, kWriteMs), fmt::format("at byte {} of the image", sent));
+    CATENA_USB(ftdi.write(chunk, kBootWriteMs), fmt::format("at byte {} of the image", sent));
     sent += chunk.size();
     for (int idle = 0; echoed < sent; ++idle) {
       if (given_up(options)) return cancelled();
       if (idle == kEchoIdleReads) return failed(fmt::format("no echo of byte {} of the image", echoed));
       std::span<const std::uint8_t> payload;
-      const UsbError error = ftdi.read(payload, kReadMs);
+      const UsbError error = ftdi.read(payload, kBootReadMs);
       if (error != UsbError::none && error != UsbError::timeout) return failed(error, fmt::format("at byte {} of the image", echoed));
       if (!payload.empty()) idle = -1;
       for (const std::uint8_t byte : payload) {

@@ -14,12 +14,6 @@ namespace catena::haptics::log {
 
 namespace {
 
-std::uint64_t hash_of(const void* data, std::size_t size) {
-  Fnv1a hash;
-  hash.bytes(data, size);
-  return hash.value;
-}
-
 bool is_regular(int descriptor) {
   struct stat about {};
   return fstat(descriptor, &about) == 0 && S_ISREG(about.st_mode);

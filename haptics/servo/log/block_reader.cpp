@@ -12,12 +12,6 @@ namespace {
 constexpr std::uint64_t kHeadBytes = sizeof(BlockHead);
 constexpr std::size_t kWindow = std::size_t{64} << 10;
 
-std::uint64_t hash_of(const void* data, std::size_t size) {
-  Fnv1a hash;
-  hash.bytes(data, size);
-  return hash.value;
-}
-
 bool is_head(const char* bytes, BlockHead& head) {
   std::memcpy(&head, bytes, sizeof head);
   return head.mark == BlockHead::kBlockMark && head.head_hash == hash_of(bytes, BlockHead::kHashed) && head.length <= kMostPayload;

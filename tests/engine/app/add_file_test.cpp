@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::app {
-namespace {
+namespace add_file_test {
 
 TEST(AddFile, AFieldAndItsVolumeJoinUnderAFreeName) {
   const auto added =
@@ -35,5 +35,5 @@ TEST(AddFile, MeshesAreRenamedAlike) {
   EXPECT_EQ(*added->edits[0].value, R"({"name": "mesh_2", "file": "b.stl"})");
 }
 
-}  // namespace
+}  // namespace add_file_test
 }  // namespace catena::app

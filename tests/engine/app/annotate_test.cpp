@@ -7,7 +7,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace annotate_test {
 
 using namespace catena;
 using render::Picture;
@@ -31,7 +31,7 @@ class Annotate : public testing::Test {
     all.insert(all.end(), arguments.begin(), arguments.end());
     for (const char* more : {"--size", "256x192", "--validation", "--quality", "step=1"}) all.push_back(more);
     all.insert(all.end(), {"-o", folder_ / "o.png", "--stats", folder_ / "o.json"});
-    const auto run = test::run_program(CATENA_PROGRAM, all);
+    const auto run = test::run_catena(all);
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_NE(test::read_file(folder_ / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
     if (err) *err = run.err;
@@ -43,7 +43,7 @@ class Annotate : public testing::Test {
 };
 
 TEST_F(Annotate, ABareFileTakesATitleABarAndAMarker) {
-  const auto made = test::run_program(CATENA_PROGRAM, {"generate", "gaussian", "-o", folder_ / "g.vdb", "--resolution", "24"});
+  const auto made = test::run_catena({"generate", "gaussian", "-o", folder_ / "g.vdb", "--resolution", "24"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Picture plain = picture({folder_ / "g.vdb"});
   const Picture full = picture({folder_ / "g.vdb", "--title", "A Gaussian", "--scalar-bar", "--orientation-marker"});
@@ -55,7 +55,7 @@ TEST_F(Annotate, ABareFileTakesATitleABarAndAMarker) {
 
 TEST_F(Annotate, AScalarBarNeedsColours) {
   test::write_file(folder_ / "s.json", R"({"fields": {}})");
-  const auto run = test::run_program(CATENA_PROGRAM, {"render", folder_ / "s.json", "-o", folder_ / "o.png", "--scalar-bar"});
+  const auto run = test::run_catena({"render", folder_ / "s.json", "-o", folder_ / "o.png", "--scalar-bar"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("--scalar-bar: nothing here has colours"), std::string::npos) << run.err;
 }
@@ -75,4 +75,4 @@ TEST_F(Annotate, WithoutAFontThereIsOneSentenceAndNoText) {
   EXPECT_GT(changed(plain, without, 0, 40), 50) << "the marker's arrows are there";
 }
 
-}  // namespace
+}  // namespace annotate_test

@@ -6,7 +6,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace bad_input_test {
 
 using namespace catena;
 
@@ -39,8 +39,8 @@ TEST_P(BadScene, IsRefusedByReplayAndRender) {
   test::write_file(folder / "broken.vdb", "this is no VDB");
   for (const bool picture : {false, true}) {
     const std::string output = folder / (picture ? "o.png" : "o.csv");
-    const auto run = picture ? test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", output, "--size", "16x16"})
-                             : test::run_program(CATENA_PROGRAM, {"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", output});
+    const auto run = picture ? test::run_catena({"render", folder / "s.json", "-o", output, "--size", "16x16"})
+                             : test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", output});
     std::vector<std::string> expects = GetParam().expects;
     expects.push_back("s.json:");
     expect_one_line_and_no_file(run, output, expects);
@@ -122,7 +122,7 @@ TEST_P(BadProbe, IsRefused) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", "{}");
   test::write_file(folder / "p.csv", GetParam().text);
-  const auto run = test::run_program(CATENA_PROGRAM, {"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "o.csv"});
+  const auto run = test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "o.csv"});
   std::vector<std::string> expects = GetParam().expects;
   expects.push_back("p.csv");
   expect_one_line_and_no_file(run, folder / "o.csv", expects);
@@ -147,7 +147,7 @@ class BadArguments : public testing::Test {
   }
   void refused(const std::vector<std::string>& arguments, const std::string& output, const std::vector<std::string>& expects) {
     SCOPED_TRACE(arguments.empty() ? std::string("nothing") : arguments.front());
-    expect_one_line_and_no_file(test::run_program(CATENA_PROGRAM, arguments), output, expects);
+    expect_one_line_and_no_file(test::run_catena(arguments), output, expects);
   }
   test::TemporaryFolder folder_;
 };
@@ -211,4 +211,4 @@ TEST_F(BadArguments, TraceRenderInfo) {
   refused({}, {}, {});
 }
 
-}  // namespace
+}  // namespace bad_input_test

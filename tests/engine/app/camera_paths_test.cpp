@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace catena::app {
-namespace {
+namespace camera_paths_test {
 
 render::View view() { return {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4}; }
 
@@ -87,5 +87,5 @@ TEST(Turntable, ItGoesRoundInItsTime) {
   EXPECT_NEAR(norm(v.position - view().position), 0, 1e-9);
 }
 
-}  // namespace
+}  // namespace camera_paths_test
 }  // namespace catena::app

@@ -11,7 +11,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace chain_edit_test {
 
 constexpr const char* kScene = R"({
   // the flow
@@ -153,5 +153,5 @@ TEST(NewWidget, EveryTypeIsReadAndHasANameOfItsOwn) {
   EXPECT_TRUE(scene::find_widget(f.host->scene(), "cut"));
 }
 
-}  // namespace
+}  // namespace chain_edit_test
 }  // namespace catena::app

@@ -8,12 +8,12 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace color_map_test {
 
 using namespace catena;
 using render::Picture;
 
-test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
 Picture draw(std::vector<std::string> arguments, const std::string& keep) {
   const test::TemporaryFolder folder;
@@ -24,7 +24,7 @@ Picture draw(std::vector<std::string> arguments, const std::string& keep) {
   EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
   auto picture = render::read_png(folder / "o.png");
   EXPECT_TRUE(picture) << picture.error().message;
-  EXPECT_TRUE(render::write_png(std::string(CATENA_BINARY_DIR) + "/app-" + keep + ".png", *picture, false));
+  EXPECT_TRUE(render::write_png(test::binary_dir() + "/app-" + keep + ".png", *picture, false));
   return *picture;
 }
 
@@ -150,4 +150,4 @@ TEST(ColorMapProgram, RefusesWhatItCannotColour) {
   EXPECT_EQ(test::read_file(folder / "t.json"), "{\"color\": \"grey\"}");
 }
 
-}  // namespace
+}  // namespace color_map_test

@@ -7,7 +7,7 @@
 #include "engine/app/hand/hand_setup.h"
 
 namespace catena::app {
-namespace {
+namespace controls_test {
 
 Controls controls() {
   Controls c;
@@ -295,5 +295,5 @@ TEST(Controls, EveryKeyIsInTheHelp) {
     EXPECT_NE(help.find(word), std::string::npos) << word;
 }
 
-}  // namespace
+}  // namespace controls_test
 }  // namespace catena::app

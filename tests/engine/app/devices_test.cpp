@@ -11,7 +11,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace devices_test {
 
 using namespace catena;
 using namespace catena::app;
@@ -222,7 +222,7 @@ TEST(DeviceCheck, ADeviceWithoutForceCannotPush) {
 
 test::ProgramResult devices(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "devices");
-  return test::run_program(CATENA_PROGRAM, arguments);
+  return test::run_catena(arguments);
 }
 
 TEST(Devices, ListsWhatThereIs) {
@@ -277,7 +277,7 @@ TEST(Devices, PushesTheEmulatedFalconInAStillHand) {
 
 TEST(Devices, TheEmulatedFalconBootsAStatedFirmware) {
   const test::TemporaryFolder folder;
-  const auto image = haptics::test::boot_image({40, 3});
+  const auto image = haptics::tests::boot_image({40, 3});
   test::write_file(folder / "good.bin", std::string(image.begin(), image.end()));
   const test::ProgramResult good = devices({"test", "emulated-falcon", "--seconds", "0.05", "--firmware", folder / "good.bin"});
   EXPECT_EQ(good.exit_code, 0) << good.err;
@@ -307,4 +307,4 @@ TEST(Devices, FailuresAreOneLineAndOneBadNamesTwo) {
   expect(devices({"test", "emulated-falcon:stil"}), 1, "emulated-falcon:still");
 }
 
-}  // namespace
+}  // namespace devices_test

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace {
+namespace feel_test {
 
 constexpr const char* kScene = R"({
   "fields": {"v": {"analytic": "circle"}},
@@ -20,7 +20,7 @@ class Feel : public testing::Test {
     test::write_file(folder_ / "s.json", kScene + (device.empty() ? "" : ", \"device\": " + device) + "}");
     std::vector<std::string> arguments{"feel", folder_ / "s.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return test::run_program(CATENA_PROGRAM, arguments);
+    return test::run_catena(arguments);
   }
   /// A run of a fifth of a second, and its figures.
   json::Node stats(std::vector<std::string> more, const std::string& device = "") {
@@ -85,8 +85,8 @@ TEST_F(Feel, WithoutRealTimeItHasNothingToSay) {
 
 TEST_F(Feel, CtrlCEndsItCleanly) {
   test::write_file(folder_ / "s.json", std::string(kScene) + "}");
-  const test::ProgramResult run = test::run_program("/usr/bin/timeout", {"--preserve-status", "-s", "INT", "1", CATENA_PROGRAM, "feel",
-                                                                         folder_ / "s.json", "--stats", folder_ / "stats.json"});
+  const test::ProgramResult run = test::run_program("/usr/bin/timeout", {"--preserve-status", "-s", "INT", "1", test::program_path(),
+                                                                         "feel", folder_ / "s.json", "--stats", folder_ / "stats.json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(test::exists(folder_ / "stats.json"));
   EXPECT_NE(run.out.find("ticks in"), std::string::npos) << run.out;
@@ -106,10 +106,10 @@ TEST_F(Feel, BadInputIsOneLine) {
   expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"type": "simulated", "colour": 3})"), "colour");
   expect_refused(feel({"--seconds", "0.1", "--stats", file}, R"({"rate": 500})"), "type");
   expect_refused(feel({"--stats", folder_ / "none/stats.json"}), "none");
-  const test::ProgramResult data = test::run_program(CATENA_PROGRAM, {"feel", "grid.vdb"});
+  const test::ProgramResult data = test::run_catena({"feel", "grid.vdb"});
   EXPECT_EQ(data.exit_code, 2);
   EXPECT_NE(data.err.find("expected a scene file"), std::string::npos) << data.err;
 }
 
-}  // namespace
+}  // namespace feel_test
 }  // namespace catena

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace file_list_test {
 
 class FileList : public testing::Test {
  protected:
@@ -58,5 +58,5 @@ TEST_F(FileList, PicturesGetTheNextFreeNumber) {
   EXPECT_EQ(stem_of_path(""), "catena");
 }
 
-}  // namespace
+}  // namespace file_list_test
 }  // namespace catena::app

@@ -6,16 +6,15 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace generate_test {
 
 using namespace catena;
 
 TEST(Generate, InfoTellsWhatWasWritten) {
   const test::TemporaryFolder folder;
-  const auto made =
-      test::run_program(CATENA_PROGRAM, {"generate", "linear", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-1", "3"});
+  const auto made = test::run_catena({"generate", "linear", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-1", "3"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const auto info = test::run_program(CATENA_PROGRAM, {"info", folder / "a.vdb"});
+  const auto info = test::run_catena({"info", folder / "a.vdb"});
   ASSERT_EQ(info.exit_code, 0) << info.err;
   for (const char* part : {"linear (float)", "5 5 5 voxels from index 0 0 0", "voxel        1 1 1", "origin       -1 -1 -1",
                            "world box    -1 -1 -1 .. 3 3 3", "active       125 voxels", "not finite   0", "bytes"})
@@ -24,8 +23,8 @@ TEST(Generate, InfoTellsWhatWasWritten) {
 
 TEST(Generate, LeftVentricleHasItsPartsAndAMask) {
   const test::TemporaryFolder folder;
-  ASSERT_EQ(test::run_program(CATENA_PROGRAM, {"generate", "left-ventricle", "-o", folder / "lv.vdb", "--resolution", "24"}).exit_code, 0);
-  const auto info = test::run_program(CATENA_PROGRAM, {"info", folder / "lv.vdb"});
+  ASSERT_EQ(test::run_catena({"generate", "left-ventricle", "-o", folder / "lv.vdb", "--resolution", "24"}).exit_code, 0);
+  const auto info = test::run_catena({"info", folder / "lv.vdb"});
   for (const char* part : {"density (float)", "transmural (float)", "fibre (vec3s)", "valid (bool"})
     EXPECT_NE(info.out.find(part), std::string::npos) << part << " in\n" << info.out;
 }
@@ -35,7 +34,7 @@ TEST(Generate, EveryNameOfTheContractWorks) {
   for (const char* name : {"circle", "saddle", "node", "rankine", "lamb-oseen", "hill", "abc", "helix", "uniform", "sphere", "plane",
                            "torus", "constant", "linear", "gaussian", "marschner-lobb", "tanh", "left-ventricle"}) {
     const std::string out = folder / (std::string(name) + ".vdb");
-    const auto run = test::run_program(CATENA_PROGRAM, {"generate", name, "-o", out, "--resolution", "9"});
+    const auto run = test::run_catena({"generate", name, "-o", out, "--resolution", "9"});
     EXPECT_EQ(run.exit_code, 0) << name << ": " << run.err;
     EXPECT_TRUE(test::exists(out)) << name;
   }
@@ -43,14 +42,11 @@ TEST(Generate, EveryNameOfTheContractWorks) {
 
 TEST(Generate, VoxelsSmallerThanAVdbCanHoldAreRefusedInOneSentence) {
   const test::TemporaryFolder folder;
-  const auto run =
-      test::run_program(CATENA_PROGRAM, {"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-2e-9", "2e-9"});
+  const auto run = test::run_catena({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-2e-9", "2e-9"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("unit of length"), std::string::npos) << run.err;
   EXPECT_FALSE(test::exists(folder / "a.vdb"));
-  EXPECT_EQ(test::run_program(CATENA_PROGRAM, {"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-4e-5", "4e-5"})
-                .exit_code,
-            0);
+  EXPECT_EQ(test::run_catena({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "5", "--box", "-4e-5", "4e-5"}).exit_code, 0);
 }
 
 TEST(Generate, WritesThroughALink) {
@@ -59,9 +55,7 @@ TEST(Generate, WritesThroughALink) {
   std::filesystem::create_symlink(folder / "real.csv", folder / "link.csv");
   test::write_file(folder / "s.json", "{}");
   test::write_file(folder / "p.csv", "t,x,y,z\n0,0,0,0\n");
-  ASSERT_EQ(
-      test::run_program(CATENA_PROGRAM, {"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "link.csv"}).exit_code,
-      0);
+  ASSERT_EQ(test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "link.csv"}).exit_code, 0);
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
   EXPECT_NE(test::read_file(folder / "real.csv"), "old");
 }
@@ -70,9 +64,9 @@ TEST(Import, NiftiOfTheDistributionBecomesAVdb) {
   const std::string brain = "/usr/share/mricron/templates/ch2bet.nii.gz";
   if (!test::exists(brain)) GTEST_SKIP() << "package mricron-data is not installed";
   const test::TemporaryFolder folder;
-  const auto run = test::run_program(CATENA_PROGRAM, {"import", brain, "-o", folder / "brain.vdb"});
+  const auto run = test::run_catena({"import", brain, "-o", folder / "brain.vdb"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto info = test::run_program(CATENA_PROGRAM, {"info", folder / "brain.vdb"});
+  const auto info = test::run_catena({"info", folder / "brain.vdb"});
   EXPECT_NE(info.out.find("voxel        1 1 1"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("origin       -90 -125 -71"), std::string::npos) << info.out;
 }
@@ -82,16 +76,16 @@ TEST(Info, DescribesAScene) {
   test::write_file(
       folder / "s.json",
       R"({"fields": {"s": {"analytic": "sphere"}}, "chain": [{"name": "a", "type": "isosurface", "field": "s", "level": 1}]})");
-  const auto info = test::run_program(CATENA_PROGRAM, {"info", folder / "s.json"});
+  const auto info = test::run_catena({"info", folder / "s.json"});
   ASSERT_EQ(info.exit_code, 0) << info.err;
   EXPECT_NE(info.out.find("field s: scalar sphere"), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("link a: isosurface"), std::string::npos) << info.out;
 }
 
 TEST(Info, PrintsTheChainSchema) {
-  const auto info = test::run_program(CATENA_PROGRAM, {"info", "--schema"});
+  const auto info = test::run_catena({"info", "--schema"});
   ASSERT_EQ(info.exit_code, 0) << info.err;
   EXPECT_NE(info.out.find("\"isosurface\""), std::string::npos);
 }
 
-}  // namespace
+}  // namespace generate_test

@@ -11,7 +11,7 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace {
+namespace golden_test {
 
 constexpr double kMostRmse = 0.5;   // of 8-bit RGB
 constexpr int kFar = 8;             // a pixel further off than this
@@ -45,13 +45,13 @@ class GoldenPicture : public testing::TestWithParam<Golden> {};
 TEST_P(GoldenPicture, IsAsItWasLookedAt) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene_of(GetParam()));
-  const auto run = test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "o.png", "--size", "192x144", "--quality",
-                                                      "step=0.5", "--validation", "--stats", folder / "o.json"});
+  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "192x144", "--quality", "step=0.5",
+                                     "--validation", "--stats", folder / "o.json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
   const auto found = render::read_png(folder / "o.png");
   ASSERT_TRUE(found);
-  const std::string path = std::string(CATENA_SOURCE_DIR) + "/tests/golden/" + GetParam().name + ".png";
+  const std::string path = test::source_dir() + "/tests/golden/" + GetParam().name + ".png";
   if (std::getenv("CATENA_GOLDEN_WRITE") != nullptr) {
     ASSERT_TRUE(render::write_png(path, *found, false));
   }
@@ -81,5 +81,5 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GoldenPicture, testing::ValuesIn(kGoldens), [](
   return name;
 });
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace catena

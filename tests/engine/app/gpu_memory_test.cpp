@@ -6,15 +6,15 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace gpu_memory_test {
 
 using namespace catena;
 
 test::ProgramResult render(const test::TemporaryFolder& folder, const std::string& megabytes) {
   test::write_file(folder / "s.json", R"({"fields": {"density": {"analytic": "sphere", "resolution": 64}},
     "volumes": [{"field": "density", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}]})");
-  return test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "o.png", "--size", "96x64", "--quality",
-                                            "reference", "--validation", "--gpu-memory", megabytes, "--stats", folder / "o.json"});
+  return test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "96x64", "--quality", "reference", "--validation",
+                           "--gpu-memory", megabytes, "--stats", folder / "o.json"});
 }
 
 TEST(GpuMemory, AGridThatDoesNotFitIsDrawnCoarser) {
@@ -47,4 +47,4 @@ TEST(GpuMemory, NothingIsWrittenWhereNothingFits) {
   EXPECT_EQ(words.exit_code, 2) << words.err;
 }
 
-}  // namespace
+}  // namespace gpu_memory_test

@@ -13,7 +13,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace hand_host_test {
 
 constexpr const char* kScene = R"({
   "fields": {"ball": {"analytic": "sphere"}},
@@ -211,5 +211,5 @@ TEST(HandHost, TheScenesDeviceIsTriedWhereNoneIsAskedFor) {
   EXPECT_FALSE(wrong.hand.open_device(wrong.host->scene()));
 }
 
-}  // namespace
+}  // namespace hand_host_test
 }  // namespace catena::app

@@ -9,7 +9,7 @@
 #include "engine/base/assert.h"
 #include "haptics/device/device.h"
 
-namespace {
+namespace hand_signals_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -75,4 +75,4 @@ TEST(Interrupt, EverythingThatWouldEndOrSuspendTheProgramIsOnlyAsked) {
   }
 }
 
-}  // namespace
+}  // namespace hand_signals_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::app {
-namespace {
+namespace layout_test {
 
 TEST(Layout, ThePictureFillsWhatPanelsLeave) {
   const Area area = picture_area(1000, 700, {320, 20, 25});
@@ -33,5 +33,5 @@ TEST(Layout, PixelsFollowTheFramesScale) {
   EXPECT_EQ(pixels_of(area, 1000, 700, 2000, 1400), (std::array<std::uint32_t, 4>{640, 40, 2000, 1350}));
 }
 
-}  // namespace
+}  // namespace layout_test
 }  // namespace catena::app

@@ -8,13 +8,13 @@
 #include "tests/support/log_rig.h"
 #include "tests/support/program.h"
 
-namespace {
+namespace log_test {
 
 using namespace catena;
 using namespace catena::haptics;
 using test::Change;
 
-test::ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+test::ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
 struct Felt {
   const char* name;
@@ -257,4 +257,4 @@ TEST_F(Recording, ReplacedFieldsAreFoundFromWhereItWasRecorded) {
   EXPECT_NE(catena_program({"info", log_}).out.find("s=a/sphere.vdb"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace log_test

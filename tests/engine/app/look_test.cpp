@@ -5,7 +5,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace look_test {
 
 using namespace catena;
 
@@ -14,8 +14,8 @@ render::Picture picture_of(const std::string& drawn) {
   test::write_file(folder / "s.json", R"({"fields": {"d": {"analytic": "constant", "resolution": 9, "box": [-1, 1]}},)" + drawn +
                                           R"(, "background": "transparent",
     "camera": {"position": [0, -8, 0], "target": [0, 0, 0], "up": [0, 0, 1], "projection": "orthographic", "height": 3}})");
-  const auto run = test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "o.png", "--size", "64x64",
-                                                      "--validation", "--stats", folder / "o.json"});
+  const auto run = test::run_catena(
+      {"render", folder / "s.json", "-o", folder / "o.png", "--size", "64x64", "--validation", "--stats", folder / "o.json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
   auto picture = render::read_png(folder / "o.png");
@@ -43,4 +43,4 @@ TEST(RenderLook, AVolumeIsColouredByAnotherField) {
   EXPECT_EQ(picture.pixel(32, 32)[2], 0);
 }
 
-}  // namespace
+}  // namespace look_test

@@ -12,7 +12,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace offscreen_test {
 
 using namespace catena;
 using render::Picture;
@@ -24,7 +24,7 @@ class Offscreen : public testing::Test {
   test::ProgramResult render(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"render", folder_ / "s.json", "--validation"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    auto run = test::run_program(CATENA_PROGRAM, arguments);
+    auto run = test::run_catena(arguments);
     EXPECT_EQ(run.err.find("validation"), std::string::npos) << run.err;
     return run;
   }
@@ -48,7 +48,7 @@ class Offscreen : public testing::Test {
   int files() const { return int(std::distance(std::filesystem::directory_iterator(folder_.path()), {})); }
   /// Kept in the build folder, to look at.
   void keep(const std::string& name, const std::string& as) {
-    const std::string pictures = std::string(CATENA_BINARY_DIR) + "/pictures";
+    const std::string pictures = test::binary_dir() + "/pictures";
     std::filesystem::create_directories(pictures);
     std::filesystem::copy_file(folder_ / name, pictures + "/Offscreen." + as, std::filesystem::copy_options::overwrite_existing);
   }
@@ -368,4 +368,4 @@ TEST_F(Offscreen, StandardOutputIsThePictureAlone) {
   EXPECT_EQ(test::read_exr(folder_ / "z.exr").width, 32);
 }
 
-}  // namespace
+}  // namespace offscreen_test

@@ -6,7 +6,7 @@
 #include "engine/app/viewer/pulse_clock.h"
 
 namespace catena::app {
-namespace {
+namespace pacing_test {
 
 constexpr SceneKind kFast{true, true, false}, kExact{true, false, false}, kNoRays{false, false, false};
 
@@ -168,5 +168,5 @@ TEST(Pacing, AnyGoalMayHearTheErrorOfItsPictureAtRest) {
   }
 }
 
-}  // namespace
+}  // namespace pacing_test
 }  // namespace catena::app

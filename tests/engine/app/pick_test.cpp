@@ -10,7 +10,7 @@
 #include "engine/field/grid.h"
 
 namespace catena::app {
-namespace {
+namespace pick_test {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
@@ -120,5 +120,5 @@ TEST(Pick, DepthsBecomePlacesOfASphereAndAPlane) {
   EXPECT_FALSE(pick(packet, 80, 60, kNone, 0));
 }
 
-}  // namespace
+}  // namespace pick_test
 }  // namespace catena::app

@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace recent_files_test {
 
 using Names = std::vector<std::string>;
 
@@ -121,5 +121,5 @@ TEST(RecentFiles, LieInTheStateFolderOfTheUser) {
   EXPECT_EQ(RecentFiles().path(), "");
 }
 
-}  // namespace
+}  // namespace recent_files_test
 }  // namespace catena::app

@@ -7,11 +7,11 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace render_slices_test {
 
 using namespace catena;
 
-test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
 /// z on the plane y = 0, -2..2, black to blue, a white line at 1; before it a red mesh over the right half, half translucent.
 const std::string kScene = R"({"fields": {"z": {"analytic": "plane", "resolution": 17}},
@@ -33,8 +33,7 @@ TEST(RenderSlices, ASliceWithALineBehindATranslucentMesh) {
     EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos);
     const auto picture = render::read_png(folder / "o.png");
     ASSERT_TRUE(picture);
-    EXPECT_TRUE(
-        render::write_png(std::string(CATENA_BINARY_DIR) + "/app-slice-" + (opacity < 1 ? "half" : "whole") + ".png", *picture, true));
+    EXPECT_TRUE(render::write_png(test::binary_dir() + "/app-slice-" + (opacity < 1 ? "half" : "whole") + ".png", *picture, true));
     for (const std::uint32_t y : {10u, 40u, 60u, 84u}) {
       const double z = 2.4 - (y + 0.5) * 0.05, blue = 255 * opacity * (z + 2) / 4;  // 0.05 a pixel
       EXPECT_NEAR(picture->pixel(40, y)[2], blue, 2) << y;
@@ -58,4 +57,4 @@ TEST(RenderSlices, WhatCannotBeDrawnIsOneLine) {
   EXPECT_NE(run.err.find("does not meet the domain"), std::string::npos) << run.err;
 }
 
-}  // namespace
+}  // namespace render_slices_test

@@ -11,12 +11,12 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace render_test {
 
 using namespace catena;
 using render::Picture;
 
-test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+test::ProgramResult program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
 Picture picture_of(const std::string& scene, const std::vector<std::string>& more, const std::string& keep) {
   const test::TemporaryFolder folder;
@@ -29,7 +29,7 @@ Picture picture_of(const std::string& scene, const std::vector<std::string>& mor
   auto picture = render::read_png(folder / "o.png");
   EXPECT_TRUE(picture) << picture.error().message;
   if (!keep.empty()) {
-    EXPECT_TRUE(render::write_png(std::string(CATENA_BINARY_DIR) + "/app-" + keep + ".png", *picture, true));
+    EXPECT_TRUE(render::write_png(test::binary_dir() + "/app-" + keep + ".png", *picture, true));
   }
   return *picture;
 }
@@ -143,7 +143,7 @@ TEST(Render, ABareFileMakesAPictureByItself) {
     for (std::uint32_t y = 0; y < 96; ++y)
       for (std::uint32_t x = 0; x < 128; ++x) lit += picture->pixel(x, y)[0] + picture->pixel(x, y)[1] + picture->pixel(x, y)[2] > 60;
     EXPECT_GT(lit, 128 * 96 / 50) << name;
-    EXPECT_TRUE(render::write_png(std::string(CATENA_BINARY_DIR) + "/app-bare-" + name + ".png", *picture, false));
+    EXPECT_TRUE(render::write_png(test::binary_dir() + "/app-bare-" + name + ".png", *picture, false));
   }
 }
 
@@ -172,7 +172,7 @@ TEST(Render, ABareMeshMakesAPictureAndIsDescribed) {
   for (std::uint32_t y = 0; y < 96; ++y)
     for (std::uint32_t x = 0; x < 128; ++x) lit += picture->pixel(x, y)[0] > 30;
   EXPECT_GT(lit, 128 * 96 / 20);
-  EXPECT_TRUE(render::write_png(std::string(CATENA_BINARY_DIR) + "/app-bare-mesh.png", *picture, false));
+  EXPECT_TRUE(render::write_png(test::binary_dir() + "/app-bare-mesh.png", *picture, false));
 
   // seen and felt in one scene: pushed 0.1 into the slanted face
   test::write_file(folder / "s.json", R"({"meshes": [{"name": "t", "file": "t.stl", "color": [0.9, 0.5, 0.3]}],
@@ -216,7 +216,7 @@ TEST(Render, AFieldCanBeReplacedFromTheCommandLine) {
 
 TEST(Render, CombustorIsSeenAndFeltFromOneScene) {
   if (test::shared_data("combustor_cfd.vdb").empty()) GTEST_SKIP() << "the shared data is not there";
-  const std::string assets = std::string(CATENA_SOURCE_DIR) + "/assets/";
+  const std::string assets = test::source_dir() + "/assets/";
   const test::TemporaryFolder folder;
   const auto felt =
       program({"replay", assets + "scenes/combustor.json", "--probe", assets + "probes/combustor.csv", "-o", folder / "t.csv"});
@@ -227,9 +227,9 @@ TEST(Render, CombustorIsSeenAndFeltFromOneScene) {
     both += ticks.word(row, "curve_status") == "OK" && ticks.word(row, "surface_status") == "OK";
   EXPECT_GT(both, 100) << "the hand is on the streamline and pressed into the isosurface";
   const auto seen = program({"render", assets + "scenes/combustor.json", "--probe", assets + "probes/combustor.csv", "-o",
-                             std::string(CATENA_BINARY_DIR) + "/app-combustor.png", "--size", "256x192", "--validation"});
+                             test::binary_dir() + "/app-combustor.png", "--size", "256x192", "--validation"});
   EXPECT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_EQ(seen.err.find("validation"), std::string::npos) << seen.err;
 }
 
-}  // namespace
+}  // namespace render_test

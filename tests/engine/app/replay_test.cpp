@@ -9,13 +9,13 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace replay_test {
 
 using namespace catena;
 using test::ProgramResult;
 using test::Table;
 
-ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
 Vec3 vector_at(const Table& table, std::size_t row, const std::string& name) {
   return {table.number(row, name + "_x"), table.number(row, name + "_y"), table.number(row, name + "_z")};
@@ -303,7 +303,7 @@ TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
 TEST(Replay, TheExamplesOfTheReferencesRun) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons\n0,0.5,0.01,0,0\n0.001,0.49,0.05,-0.01,1\n0.002,0.45,0.1,-0.02,0\n");
-  const std::string hand = std::string(CATENA_SOURCE_DIR) + "/haptics/";
+  const std::string hand = test::source_dir() + "/haptics/";
   const std::string text = test::read_file(hand + "README.md") + test::read_file(hand + "device/README.md");
   int examples = 0;
   for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at + 1), ++examples) {
@@ -339,4 +339,4 @@ TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
   EXPECT_EQ(plain.header().size(), 4u + 2 * 6 + 3);
 }
 
-}  // namespace
+}  // namespace replay_test

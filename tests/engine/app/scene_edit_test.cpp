@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace scene_edit_test {
 
 TEST(Histogram, BarsHoldEveryValueOnceWithBothEnds) {
   const std::vector<float> sorted{0, 0, 0.5f, 1, 1, 1, 2};
@@ -111,5 +111,5 @@ TEST_F(EditedScene, TheFeltLevelIsTheSeenOne) {
   EXPECT_TRUE(felt[1].empty());
 }
 
-}  // namespace
+}  // namespace scene_edit_test
 }  // namespace catena::app

@@ -5,7 +5,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace stereo_test {
 
 using namespace catena;
 using render::Picture;
@@ -28,7 +28,7 @@ Drawn draw(const std::string& more, const std::vector<std::string>& options) {
   std::vector<std::string> arguments{"render", folder / "s.json", "-o",      folder / "o.png", "--size",
                                      "80x60",  "--validation",    "--stats", folder / "o.json"};
   arguments.insert(arguments.end(), options.begin(), options.end());
-  const auto run = test::run_program(CATENA_PROGRAM, arguments);
+  const auto run = test::run_catena(arguments);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(test::read_file(folder / "o.json").find("\"validation_messages\": 0"), std::string::npos) << run.err;
   auto picture = render::read_png(folder / "o.png");
@@ -102,8 +102,8 @@ TEST(RenderStereo, AnOrbitTakesTheEyesAlong) {
   // the ball is round: seen from any side, each eye's picture stays as it is
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene(R"(, "stereo": {"mode": "side-by-side", "separation": 0.8, "zero_parallax": 5})"));
-  const auto run = test::run_program(
-      CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "o_%d.png", "--size", "80x60", "--frames", "2", "--orbit", "180"});
+  const auto run =
+      test::run_catena({"render", folder / "s.json", "-o", folder / "o_%d.png", "--size", "80x60", "--frames", "2", "--orbit", "180"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto a = render::read_png(folder / "o_0.png"), b = render::read_png(folder / "o_1.png");
   ASSERT_TRUE(a && b);
@@ -127,7 +127,7 @@ TEST(RenderStereo, BadInputIsOneLine) {
   const auto expect = [&](const std::vector<std::string>& options, const char* part) {
     std::vector<std::string> arguments{"render", folder / "s.json", "-o", folder / "o.png"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    const auto run = test::run_program(CATENA_PROGRAM, arguments);
+    const auto run = test::run_catena(arguments);
     EXPECT_EQ(run.exit_code, 2) << options[1];
     EXPECT_NE(run.err.find(part), std::string::npos) << run.err;
     EXPECT_FALSE(test::exists(folder / "o.png"));
@@ -139,4 +139,4 @@ TEST(RenderStereo, BadInputIsOneLine) {
   expect({"--size", "9000x10", "--stereo", "side-by-side"}, "18000");
 }
 
-}  // namespace
+}  // namespace stereo_test

@@ -9,13 +9,13 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace {
+namespace trace_test {
 
 using test::ProgramResult;
 using test::read_file;
 using test::write_file;
 
-ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_program(CATENA_PROGRAM, arguments); }
+ProgramResult catena_program(const std::vector<std::string>& arguments) { return test::run_catena(arguments); }
 
 class TraceLines : public ::testing::Test {
  protected:
@@ -116,5 +116,5 @@ TEST_F(TraceLines, MistakesAreOneLine) {
   refused({"--seeds", folder_ / "seeds.csv", "-o", o, "--stats", o}, "expected two");
 }
 
-}  // namespace
+}  // namespace trace_test
 }  // namespace catena

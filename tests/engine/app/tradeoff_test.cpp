@@ -9,7 +9,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace tradeoff_test {
 
 using namespace catena;
 using test::Table;
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 test::ProgramResult tradeoff(const std::vector<std::string>& arguments) {
   std::vector<std::string> all{"tradeoff"};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  return test::run_program(CATENA_PROGRAM, all);
+  return test::run_catena(all);
 }
 
 bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
@@ -213,4 +213,4 @@ TEST(Tradeoff, TheSameTwice) {
     EXPECT_EQ(test::read_file((folder / "a") + name), test::read_file((folder / "b") + name));
 }
 
-}  // namespace
+}  // namespace tradeoff_test

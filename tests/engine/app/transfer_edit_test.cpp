@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace transfer_edit_test {
 
 constexpr PlotFrame kFrame{10, 0, 210, 100, 0, 1};
 
@@ -327,5 +327,5 @@ TEST_F(EditedVolume, AConstantFieldHasOnePointAndCanBeEdited) {
   EXPECT_EQ(edit_.opacities.size(), 2u);
 }
 
-}  // namespace
+}  // namespace transfer_edit_test
 }  // namespace catena::app

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace catena::app {
-namespace {
+namespace values_test {
 
 TEST(Values, EveryLoadedFieldHasItsValueAndUnitAtAPlace) {
   auto scene = scene::parse_scene(R"({"unit_length": "mm", "fields": {
@@ -36,5 +36,5 @@ TEST(Values, OutsideOfADomainThereIsNone) {
   EXPECT_EQ(line_words({Vec3(1, 2, 3), "", {value}}, ""), "1, 2, 3");
 }
 
-}  // namespace
+}  // namespace values_test
 }  // namespace catena::app

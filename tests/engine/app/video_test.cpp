@@ -17,7 +17,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace video_test {
 
 using namespace catena;
 
@@ -70,7 +70,7 @@ TEST(Video, FramesAreThePicturesOfTheSequence) {
   const auto render = [&](const char* name) {
     std::vector<std::string> arguments{"render", folder / "s.json", "-o", folder / name};
     arguments.insert(arguments.end(), turn.begin(), turn.end());
-    const auto run = test::run_program(CATENA_PROGRAM, arguments);
+    const auto run = test::run_catena(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
   };
   render("p_%d.png");
@@ -98,8 +98,7 @@ TEST(Video, ATransparentBackgroundIsKeptByWebm) {
   std::string scene = kScene;
   scene.insert(scene.rfind('}'), ", \"background\": \"transparent\"");
   test::write_file(folder / "s.json", scene);
-  const auto run =
-      test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "v.webm", "--size", "65x49", "--frames", "2"});
+  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "v.webm", "--size", "65x49", "--frames", "2"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto decoded = test::run_program("/usr/bin/env", {"ffmpeg", "-v", "error", "-c:v", "libvpx-vp9", "-i", folder / "v.webm",
                                                           "-frames:v", "1", "-pix_fmt", "rgba", folder / "f.png"});
@@ -117,8 +116,7 @@ TEST(Video, WithoutFfmpegOneSentenceSaysWhatToInstall) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", kScene);
   const Path path(folder.path());
-  const auto run =
-      test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "v.mp4", "--frames", "2", "--size", "16x16"});
+  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "v.mp4", "--frames", "2", "--size", "16x16"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   EXPECT_NE(run.err.find("apt-get install ffmpeg"), std::string::npos) << run.err;
@@ -133,8 +131,7 @@ TEST(Video, AFailureOfFfmpegIsReportedByItsLastLine) {
                              "cat >/dev/null; echo no such codec >&2; exit 3"}) {
     make_ffmpeg(tools.path(), script);
     const Path path(tools.path() + ":" + std::getenv("PATH"));
-    const auto run =
-        test::run_program(CATENA_PROGRAM, {"render", folder / "s.json", "-o", folder / "v.mp4", "--frames", "3", "--size", "64x64"});
+    const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "v.mp4", "--frames", "3", "--size", "64x64"});
     EXPECT_EQ(run.exit_code, 2) << script;
     EXPECT_NE(run.err.find("v.mp4: ffmpeg failed (exit 3): no such codec"), std::string::npos) << run.err;
     EXPECT_EQ(files_in(folder.path()), 1) << script;
@@ -155,8 +152,8 @@ TEST(Video, CtrlCLeavesNothingHalfWritten) {
       const int nothing = open("/dev/null", O_WRONLY);
       dup2(nothing, 1);
       dup2(nothing, 2);
-      execl(CATENA_PROGRAM, CATENA_PROGRAM, "render", scene.c_str(), "-o", out.c_str(), "--frames", video ? "90000" : "1", "--size",
-            video ? "64x64" : "16000x16000", nullptr);
+      execl(test::program_path().c_str(), test::program_path().c_str(), "render", scene.c_str(), "-o", out.c_str(), "--frames",
+            video ? "90000" : "1", "--size", video ? "64x64" : "16000x16000", nullptr);
       _exit(127);
     }
     // once it writes
@@ -186,4 +183,4 @@ TEST(Video, SizesAndKindsThatCannotBeAreRefused) {
   EXPECT_EQ(app::video_kind("mp4"), std::nullopt);
 }
 
-}  // namespace
+}  // namespace video_test

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace viewer_hand_test {
 
 bool has(const std::string& program) { return std::system(("command -v " + program + " > /dev/null 2>&1").c_str()) == 0; }
 
@@ -17,8 +17,7 @@ class ViewerHand : public testing::Test {
   /// The exit code of a window of a few frames; its words are in log().
   int view(const std::string& scene, const std::string& options) {
     test::write_file(folder_ / "scene.json", scene);
-    test::write_file(folder_ / "script.sh",
-                     std::string(CATENA_PROGRAM) + " view " + (folder_ / "scene.json") + " --size 320x240 " + options);
+    test::write_file(folder_ / "script.sh", test::program_path() + " view " + (folder_ / "scene.json") + " --size 320x240 " + options);
     const int status = std::system(
         ("timeout 120 xvfb-run -a -s '-screen 0 640x480x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -37,7 +36,7 @@ TEST_F(ViewerHand, WhatIsNotPluggedInLeavesTheMouseAndIsSaidInOneSentence) {
   EXPECT_NE(log().find("2 frames"), std::string::npos) << log();
   // and what was recorded runs again
   const int status =
-      std::system((std::string(CATENA_PROGRAM) + " replay --log " + (folder_ / "a.catlog") + " > " + (folder_ / "log") + " 2>&1").c_str());
+      std::system((test::program_path() + " replay --log " + (folder_ / "a.catlog") + " > " + (folder_ / "log") + " 2>&1").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 0) << log();
 }
 
@@ -48,5 +47,5 @@ TEST_F(ViewerHand, AGridThatDoesNotFitIntoTheMemoryIsSaid) {
   EXPECT_NE(log().find("resolution"), std::string::npos) << log();
 }
 
-}  // namespace
+}  // namespace viewer_hand_test
 }  // namespace catena::app

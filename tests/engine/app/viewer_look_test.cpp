@@ -13,7 +13,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace viewer_look_test {
 
 // Quick pictures: a press and a move within one slow frame would be one event to ImGui. Pure green: the colour bar; pure magenta: the line
 // of the level; nothing else of the interface has them.
@@ -46,7 +46,7 @@ Spot find(const render::Picture& picture, int r, int g, int b) {
 
 class ViewerLook : public testing::Test {
  protected:
-  std::string view() const { return std::string(CATENA_PROGRAM) + " view " + scene_ + " --size 640x720 --quality draft"; }
+  std::string view() const { return test::program_path() + " view " + scene_ + " --size 640x720 --quality draft"; }
   int on_display(const std::string& script) {
     test::write_file(folder_ / "script.sh", script);
     const int status = std::system(
@@ -122,5 +122,5 @@ TEST_F(ViewerLook, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBack) {
   EXPECT_EQ(back.transfer.opacities[1].alpha, edited.transfer.opacities[1].alpha);
 }
 
-}  // namespace
+}  // namespace viewer_look_test
 }  // namespace catena::app

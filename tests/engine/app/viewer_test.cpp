@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace viewer_test {
 
 constexpr const char* kScene = R"({
   "fields": {"v": {"analytic": "circle"}},
@@ -34,7 +34,7 @@ class Viewer : public testing::Test {
     scene_ = folder_ / "scene.json";
     test::write_file(scene_, kScene);
   }
-  std::string view() const { return std::string(CATENA_PROGRAM) + " view " + scene_ + " --size 320x240"; }
+  std::string view() const { return test::program_path() + " view " + scene_ + " --size 320x240"; }
   int on_display(const std::string& script) {
     test::write_file(folder_ / "script.sh", script);
     return exit_code("timeout 60 xvfb-run -a -s '-screen 0 640x480x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") +
@@ -131,7 +131,7 @@ TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
 TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
   if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
   const std::string shaders = folder_ / "shaders", compose = shaders + "/passes/compose.frag";
-  std::filesystem::copy(std::string(CATENA_SOURCE_DIR) + "/shaders", shaders, std::filesystem::copy_options::recursive);
+  std::filesystem::copy(test::source_dir() + "/shaders", shaders, std::filesystem::copy_options::recursive);
   test::write_file(folder_ / "green.frag",
                    "#version 460\nlayout(location = 0) out vec4 c;\nvoid main() { c = vec4(0.0, 1.0, 0.0, 1.0); }\n");
   test::write_file(folder_ / "broken.frag", "#version 460\nvoid main() { nonsense; }\n");
@@ -221,5 +221,5 @@ TEST_F(Viewer, DragsTurnTheViewAndMoveTheHand) {
   EXPECT_LT(probe(moved), 0) << moved;
 }
 
-}  // namespace
+}  // namespace viewer_test
 }  // namespace catena::app

@@ -11,7 +11,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace viewer_widget_test {
 
 using namespace catena;
 
@@ -38,7 +38,7 @@ class ViewerWidget : public testing::Test {
         << "titled() { for i in $(seq 300); do xdotool search --name \"$1\" > /dev/null 2>&1 && return; sleep 0.1; done; "
            "echo \"never titled $1\"; }\n"
         << "by() { for i in 1 2 3 4 5 6; do xdotool mousemove_relative -- $1 $2; sleep 0.1; done; sleep 0.4; }\n"
-        << CATENA_PROGRAM << " view " << options << " &\nV=$!\ntitled '^catena  '\nsleep 1\n"
+        << test::program_path() << " view " << options << " &\nV=$!\ntitled '^catena  '\nsleep 1\n"
         << script << "\nwait $V\n";
     test::write_file(folder_ / "script.sh", all.str());
     const int status = std::system(
@@ -72,8 +72,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
   EXPECT_EQ(test::read_file(folder_ / "plane.json").find("// held by the mouse"), 0u) << "the author's comment stays";
 
   // the recording says which modes the hand went through
-  const auto run = test::run_program(CATENA_PROGRAM,
-                                     {"replay", "--log", folder_ / "hand.catlog", "-o", folder_ / "t.csv", "--widgets", folder_ / "w.csv"});
+  const auto run = test::run_catena({"replay", "--log", folder_ / "hand.catlog", "-o", folder_ / "t.csv", "--widgets", folder_ / "w.csv"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const test::Table table = test::Table::read(folder_ / "w.csv");
   std::set<std::string> modes;
@@ -84,7 +83,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
 TEST_F(ViewerWidget, AFileThatIsDroppedIsOpened) {
   if (!has("/usr/bin/python3 -c 'import Xlib'")) GTEST_SKIP() << "no python3-xlib here";
   ASSERT_EQ(drive("plane.json --size 640x480 --no-panels --quality draft",
-                  "/usr/bin/python3 " CATENA_SOURCE_DIR "/tests/support/drop_file.py $(xdotool search --name '^catena  ' | head -1) " +
+                  "/usr/bin/python3 " + test::source_dir() + "/tests/support/drop_file.py $(xdotool search --name '^catena  ' | head -1) " +
                       (folder_ / "ball.json") +
                       " && echo taken\ntitled 'ball.json'\nxdotool search --name ball.json > /dev/null && echo opened\n"
                       "xdotool mousemove 320 240; sleep 0.3; xdotool key q"),
@@ -94,4 +93,4 @@ TEST_F(ViewerWidget, AFileThatIsDroppedIsOpened) {
   EXPECT_NE(log().find("opened"), std::string::npos) << log();
 }
 
-}  // namespace
+}  // namespace viewer_widget_test

@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::app {
-namespace {
+namespace viewer_window_test {
 
 constexpr const char* kScene = R"({
   "fields": {"v": {"analytic": "circle"}},
@@ -45,7 +45,7 @@ class ViewerWindow : public testing::Test {
            "echo \"never titled $1\"; }\n"
         << "written() { for i in $(seq 300); do [ -s \"$1\" ] && return; sleep 0.1; done; echo \"never written $1\"; }\n"
         << "keys() { for k in \"$@\"; do xdotool key $k; sleep 0.25; done; }\n"
-        << environment << " " << CATENA_PROGRAM << " view " << options << " &\nV=$!\ntitled '^catena  '\n"
+        << environment << " " << test::program_path() << " view " << options << " &\nV=$!\ntitled '^catena  '\n"
         << "xdotool mousemove 600 300; sleep 0.3\n"
         << script << "\nwait $V\n";
     test::write_file(folder_ / "script.sh", all.str());
@@ -159,16 +159,16 @@ TEST(ViewerLost, DISABLED_InAWindow) {
 
 TEST_F(ViewerWindow, ADeviceThatIsLostIsStartedAgain) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  const std::string command = "CATENA_TEST_SCENE=" + scene_ + " timeout 90 xvfb-run -a -s '-screen 0 640x480x24' " + self +
-                              " --gtest_also_run_disabled_tests --gtest_filter=ViewerLost.DISABLED_InAWindow > " + (folder_ / "log") +
-                              " 2>&1";
+  const std::string command =
+      "env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX CATENA_TEST_SCENE=" + scene_ + " timeout 90 xvfb-run -a -s '-screen 0 640x480x24' " +
+      self + " --gtest_also_run_disabled_tests --gtest_filter=ViewerLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << log();
   EXPECT_NE(log().find("60 frames"), std::string::npos) << log();
   EXPECT_NE(log().find("lost and started again 4 times"), std::string::npos) << log();
 }
 
 TEST_F(ViewerWindow, WithoutADisplayTheScreenshotIsDrawnAllTheSame) {
-  const std::string command = "cd " + folder_.path() + " && env -u DISPLAY -u WAYLAND_DISPLAY " + CATENA_PROGRAM + " view " + scene_ +
+  const std::string command = "cd " + folder_.path() + " && env -u DISPLAY -u WAYLAND_DISPLAY " + test::program_path() + " view " + scene_ +
                               " --size 200x150 --screenshot a.png > log 2>&1";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0) << log();
   EXPECT_NE(log().find("drawn without a window"), std::string::npos) << log();
@@ -177,5 +177,5 @@ TEST_F(ViewerWindow, WithoutADisplayTheScreenshotIsDrawnAllTheSame) {
   EXPECT_EQ(a.height, 150u);
 }
 
-}  // namespace
+}  // namespace viewer_window_test
 }  // namespace catena::app

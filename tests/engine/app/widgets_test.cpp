@@ -8,7 +8,7 @@
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace widgets_test {
 
 using namespace catena;
 
@@ -22,8 +22,8 @@ class Widgets : public testing::Test {
   test::Table replay(const std::string& path_csv) {
     test::write_file(folder_ / "s.json", kScene);
     test::write_file(folder_ / "p.csv", "t,x,y,z,buttons\n" + path_csv);
-    const auto run = test::run_program(CATENA_PROGRAM, {"replay", folder_ / "s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv",
-                                                        "--widgets", folder_ / "w.csv"});
+    const auto run = test::run_catena(
+        {"replay", folder_ / "s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv", "--widgets", folder_ / "w.csv"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return test::Table::read(folder_ / "w.csv");
   }
@@ -79,12 +79,11 @@ TEST_F(Widgets, ANameTakenByAWidgetsLinkIsRefusedInOneLine) {
   test::write_file(folder_ / "bad.json", R"({"fields": {}, "chain": [{"name": "widget_x", "type": "point", "position": [0, 0, 0]}],
     "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}]})");
   test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
-  const auto run =
-      test::run_program(CATENA_PROGRAM, {"replay", folder_ / "bad.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
+  const auto run = test::run_catena({"replay", folder_ / "bad.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_NE(run.err.find("bad.json:2:"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("widget_x"), std::string::npos) << run.err;
   EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
 }
 
-}  // namespace
+}  // namespace widgets_test

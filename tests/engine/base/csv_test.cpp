@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena {
-namespace {
+namespace csv_test {
 
 template <class T>
 void expect_error(const Result<T>& result, std::initializer_list<const char*> parts) {
@@ -108,5 +108,5 @@ TEST(Csv, ManyRowsKeepTheirValues) {
   EXPECT_EQ(rows->back().position.z, 399998.0);
 }
 
-}  // namespace
+}  // namespace csv_test
 }  // namespace catena

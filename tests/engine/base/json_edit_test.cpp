@@ -9,7 +9,7 @@
 #include <random>
 
 namespace catena::json {
-namespace {
+namespace json_edit_test {
 
 std::string set(std::string_view text, std::string_view pointer, std::string_view value) {
   const auto edited = set_value(text, "f.json", pointer, value);
@@ -375,5 +375,5 @@ TEST_P(AnyLayout, EditsOfTheTextAreEditsOfTheTree) {
   EXPECT_GT(removals, 300);
 }
 
-}  // namespace
+}  // namespace json_edit_test
 }  // namespace catena::json

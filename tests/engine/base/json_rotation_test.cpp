@@ -3,7 +3,7 @@
 #include "engine/base/json.h"
 
 namespace catena {
-namespace {
+namespace json_rotation_test {
 
 Result<Mat3> rotation(const std::string& text) {
   auto node = json::parse(text, "scene.json");
@@ -31,5 +31,5 @@ TEST(JsonRotation, RefusesWhatIsNone) {
   }
 }
 
-}  // namespace
+}  // namespace json_rotation_test
 }  // namespace catena

@@ -5,7 +5,7 @@
 #include "tests/support/support.h"
 
 namespace catena::json {
-namespace {
+namespace json_test {
 
 std::string error_of(std::string_view text) {
   const auto result = parse(text, "scene.json");
@@ -121,5 +121,5 @@ TEST(Json, FilesThatCannotBeRead) {
   EXPECT_TRUE(read(folder / "a.json"));
 }
 
-}  // namespace
+}  // namespace json_test
 }  // namespace catena::json

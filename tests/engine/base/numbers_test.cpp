@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace {
+namespace numbers_test {
 
 using catena::parse_double;
 using catena::to_text;
@@ -36,4 +36,4 @@ TEST(Numbers, TooSmallIsZeroAndTooLargeIsNoNumber) {
   EXPECT_FALSE(parse_double("1e999"));
 }
 
-}  // namespace
+}  // namespace numbers_test

@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace catena {
-namespace {
+namespace rotation_test {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -77,5 +77,5 @@ TEST(Rotation, NothingUsableIsNoRotation) {
   EXPECT_EQ(rotation_of({inf, 0, 0}), kNoRotation);
 }
 
-}  // namespace
+}  // namespace rotation_test
 }  // namespace catena

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace catena {
-namespace {
+namespace shorten_path_test {
 
 TEST(ShortenPath, ADetourInThePlaneBecomesStraight) {
   const std::vector<Vec3> path =
@@ -38,5 +38,5 @@ TEST(ShortenPath, WhereNothingCanBePutNothingMoves) {
   EXPECT_EQ(length_of(shorten_path({{1, 1, 1}, {1, 1, 1}}, [](Vec3&) { return true; })), 0);
 }
 
-}  // namespace
+}  // namespace shorten_path_test
 }  // namespace catena

@@ -9,7 +9,7 @@
 #include "engine/base/numbers.h"
 
 namespace catena {
-namespace {
+namespace ticks_test {
 
 std::vector<std::string> labels_of(double lo, double hi, int about = 5) {
   std::vector<std::string> labels;
@@ -78,5 +78,5 @@ TEST(Ticks, AnyRangeHasNiceTicks) {
   }
 }
 
-}  // namespace
+}  // namespace ticks_test
 }  // namespace catena

@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace catena {
-namespace {
+namespace vec_test {
 
 TEST(Vec, NormAndDirectionToBothEndsOfTheDoubles) {
   for (const double scale : {1e-323, 1e-300, 1e-150, 1.0, 1e150, 1e307}) {
@@ -35,5 +35,5 @@ TEST(Vec, WhatIsNotFiniteIsNeverLost) {
       }
 }
 
-}  // namespace
+}  // namespace vec_test
 }  // namespace catena

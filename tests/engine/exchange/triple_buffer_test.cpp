@@ -4,7 +4,7 @@
 
 #include <thread>
 
-namespace {
+namespace triple_buffer_test {
 
 struct Pair {
   std::uint64_t a = 0, b = 0, c[30] = {};
@@ -48,4 +48,4 @@ TEST(TripleBuffer, NeverTearsAndNeverGoesBack) {
   EXPECT_TRUE(forward);
 }
 
-}  // namespace
+}  // namespace triple_buffer_test

@@ -8,7 +8,7 @@
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
-namespace {
+namespace analytic_test {
 
 using test::Random;
 
@@ -217,5 +217,5 @@ TEST(LeftVentricle, FibresTurnWithDepthInTheWall) {
   EXPECT_GT(tried, 100);
 }
 
-}  // namespace
+}  // namespace analytic_test
 }  // namespace catena::field

@@ -5,7 +5,7 @@
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
-namespace {
+namespace cell_test {
 
 using test::Random;
 
@@ -75,5 +75,5 @@ TEST(VectorCell, AlignmentUndoesSignFlips) {
   EXPECT_EQ(v.value(Vec3(0.3, 0.6, 0.9)), -Vec3(1, 0.5, 0.25));
 }
 
-}  // namespace
+}  // namespace cell_test
 }  // namespace catena::field

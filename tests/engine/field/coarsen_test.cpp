@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace catena::field {
-namespace {
+namespace coarsen_test {
 
 std::shared_ptr<const ScalarGrid> grid_of(const Index3& n, const std::function<double(int, int, int)>& f, const Mapping& mapping = {},
                                           const std::function<bool(int, int, int)>& valid = nullptr) {
@@ -105,5 +105,5 @@ TEST(Coarsen, OnlyValidVoxelsAreAveraged) {
       }
 }
 
-}  // namespace
+}  // namespace coarsen_test
 }  // namespace catena::field

@@ -8,7 +8,7 @@
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
-namespace {
+namespace grid_scalar_test {
 
 using test::Block;
 using test::Random;
@@ -288,5 +288,5 @@ TEST(Field, TheLengthIsTheLongestEdgeAndVersionsDiffer) {
   EXPECT_NE(a->version(), b->version());
 }
 
-}  // namespace
+}  // namespace grid_scalar_test
 }  // namespace catena::field

@@ -6,7 +6,7 @@
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
-namespace {
+namespace grid_vector_test {
 
 using test::Block;
 using test::Random;
@@ -101,5 +101,5 @@ TEST(VectorGrid, SamplingMarksNodesThatTheFieldDoesNotCover) {
   EXPECT_NEAR(grid->stats().min, 1, 1e-6);
 }
 
-}  // namespace
+}  // namespace grid_vector_test
 }  // namespace catena::field

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace {
+namespace load_nifti_test {
 
 using catena::test::TemporaryFolder;
 
@@ -206,5 +206,5 @@ TEST(LoadNifti, ACutCompressedFileIsNoticed) {
   EXPECT_FALSE(load_path(folder / "cut.nii.gz"));
 }
 
-}  // namespace
+}  // namespace load_nifti_test
 }  // namespace catena::field

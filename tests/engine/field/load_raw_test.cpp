@@ -6,7 +6,7 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace {
+namespace load_raw_test {
 
 using catena::test::TemporaryFolder;
 
@@ -89,5 +89,5 @@ TEST(LoadRaw, BadLayoutsAreErrors) {
   EXPECT_FALSE(describe(path));
 }
 
-}  // namespace
+}  // namespace load_raw_test
 }  // namespace catena::field

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace {
+namespace load_vdb_test {
 
 using catena::test::TemporaryFolder;
 using test::Block;
@@ -336,5 +336,5 @@ TEST(WriteVdb, EveryFailureIsToldAndLeavesNothing) {
   EXPECT_TRUE(write_vdb(folder / "x.vdb", {{ga, "a"}, {ga, "b"}}));
 }
 
-}  // namespace
+}  // namespace load_vdb_test
 }  // namespace catena::field

@@ -8,7 +8,7 @@
 #include "tests/engine/field/field_helpers.h"
 
 namespace catena::field {
-namespace {
+namespace magnitude_test {
 
 TEST(Magnitude, OfFormulasOverTheirBox) {
   EXPECT_DOUBLE_EQ(largest_magnitude(*make_analytic("circle")->vector), std::sqrt(8.0));
@@ -58,5 +58,5 @@ TEST(Magnitude, OfAFlatGridIsZero) {
   EXPECT_EQ(largest_gradient(*make_scalar_grid("g", Mapping{}, {3, 3, 3}, values)), 0);
 }
 
-}  // namespace
+}  // namespace magnitude_test
 }  // namespace catena::field

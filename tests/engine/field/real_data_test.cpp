@@ -6,7 +6,7 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace {
+namespace real_data_test {
 
 using catena::test::shared_data;
 
@@ -116,5 +116,5 @@ TEST(RealData, FibresHaveTheirHelixAngle) {
   EXPECT_LT(error / compared, 10);
 }
 
-}  // namespace
+}  // namespace real_data_test
 }  // namespace catena::field

@@ -9,10 +9,10 @@
 #include "tests/support/support.h"
 
 namespace catena::field {
-namespace {
+namespace units_test {
 
 TEST(Units, ANiftiHeaderSaysTheUnitOfLength) {
-  const test::TemporaryFolder folder;
+  const catena::test::TemporaryFolder folder;
   std::string header(360, '\0');
   const auto put = [&](std::size_t at, auto v) { std::memcpy(header.data() + at, &v, sizeof v); };
   put(0, std::int32_t{348});
@@ -26,18 +26,18 @@ TEST(Units, ANiftiHeaderSaysTheUnitOfLength) {
   for (const auto& [code, unit] : {std::pair{0, ""}, {1, "m"}, {2, "mm"}, {3, "µm"}}) {
     put(123, static_cast<char>(code | 8));  // with seconds
     const std::string path = folder / (std::to_string(i++) + ".nii");
-    test::write_file(path, header);
+    catena::test::write_file(path, header);
     EXPECT_EQ(units_of(path, "").length, unit);
     EXPECT_EQ(units_of(path, "").value, "");
   }
-  test::write_file(folder / "bad.nii", "no header");
+  catena::test::write_file(folder / "bad.nii", "no header");
   EXPECT_EQ(units_of(folder / "bad.nii", "").length, "");
   EXPECT_EQ(units_of(folder / "none.nii", "").length, "");
 }
 
 TEST(Units, AVdbGridSaysItsOwn) {
   openvdb::initialize();
-  const test::TemporaryFolder folder;
+  const catena::test::TemporaryFolder folder;
   auto speed = openvdb::FloatGrid::create(), other = openvdb::FloatGrid::create();
   speed->setName("speed");
   speed->insertMeta("unit", openvdb::StringMetadata("m/s"));
@@ -64,5 +64,5 @@ TEST(Units, FreeTextIsTakenWhereItIsPlain) {
   EXPECT_TRUE(is_unit("µm"));
 }
 
-}  // namespace
+}  // namespace units_test
 }  // namespace catena::field

@@ -10,7 +10,7 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::flow {
-namespace {
+namespace advect_test {
 
 using test::analytic_vector;
 using test::lambda_field;
@@ -152,5 +152,5 @@ TEST(Advect, SpeedsAtOrBelowTheLeastAreZero) {
   EXPECT_NEAR(advect({field.get(), false, 0.4}, Vec3(0.0), 1, Method::rk4, 1e-9, cursor).displacement.x, 0.5, 1e-15);
 }
 
-}  // namespace
+}  // namespace advect_test
 }  // namespace catena::flow

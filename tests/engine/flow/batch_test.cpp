@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::flow {
-namespace {
+namespace batch_test {
 
 using test::analytic_vector;
 using test::grid_of;
@@ -283,5 +283,5 @@ TEST(Batch, NoSeedsGiveNoLines) {
   EXPECT_TRUE(BatchTracer(Flow{grid.get()}).trace({}).empty());
 }
 
-}  // namespace
+}  // namespace batch_test
 }  // namespace catena::flow

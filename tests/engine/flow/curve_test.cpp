@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::flow {
-namespace {
+namespace curve_test {
 
 /// A quarter of the unit circle a knot.
 std::vector<Knot> ring() {
@@ -58,5 +58,5 @@ TEST(Curve, EndsHaveTheirWords) {
   EXPECT_STREQ(end_word(End::lap), "LAP");
 }
 
-}  // namespace
+}  // namespace curve_test
 }  // namespace catena::flow

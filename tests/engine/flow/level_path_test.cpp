@@ -13,7 +13,7 @@
 #include "engine/field/grid.h"
 
 namespace catena::flow {
-namespace {
+namespace level_path_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -111,5 +111,5 @@ TEST(LevelPath, OnAPlaneStraight) {
   EXPECT_NEAR(length_of(path), norm(Vec3(2.5, 2, 0)), 1e-6);
 }
 
-}  // namespace
+}  // namespace level_path_test
 }  // namespace catena::flow

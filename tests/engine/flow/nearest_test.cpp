@@ -7,7 +7,7 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::flow {
-namespace {
+namespace nearest_test {
 
 CurvePtr traced(const field::VectorFieldPtr& field, const Vec3& seed, double length = 0) {
   const Flow flow{field.get(), false, 0};
@@ -73,5 +73,5 @@ TEST(NearestOnCurve, IsBoundedWhereAllPlacesAreEquallyNear) {
   }
 }
 
-}  // namespace
+}  // namespace nearest_test
 }  // namespace catena::flow

@@ -8,7 +8,7 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::flow {
-namespace {
+namespace seeds_test {
 
 using test::grid_of;
 
@@ -154,5 +154,5 @@ TEST(PartOf, IsTheSameCurveBetweenItsEnds) {
   for (double s = -1.5; s <= 2.25; s += 0.25) EXPECT_NEAR(norm(part->position(s) - (*curve)->position(s)), 0, 1e-9);
 }
 
-}  // namespace
+}  // namespace seeds_test
 }  // namespace catena::flow

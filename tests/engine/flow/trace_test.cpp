@@ -10,7 +10,7 @@
 #include "tests/support/support.h"
 
 namespace catena::flow {
-namespace {
+namespace trace_test {
 
 using test::analytic_vector;
 using test::grid_of;
@@ -378,5 +378,5 @@ TEST(Trace, RealFlowsEndAndStayBounded) {
   EXPECT_LE(worst / loaded->vector->length(), 1e-9);
 }
 
-}  // namespace
+}  // namespace trace_test
 }  // namespace catena::flow

@@ -6,7 +6,7 @@
 #include "tests/support/support.h"
 
 namespace catena::mesh {
-namespace {
+namespace load_test {
 
 using namespace catena::test;
 
@@ -122,5 +122,5 @@ TEST(LoadMesh, FilesPlacementAndFaults) {
   EXPECT_EQ(load_mesh(folder / "empty.obj").error().message, (folder / "empty.obj") + ": holds no triangle; at least one was expected");
 }
 
-}  // namespace
+}  // namespace load_test
 }  // namespace catena::mesh

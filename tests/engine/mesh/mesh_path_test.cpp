@@ -6,7 +6,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::mesh {
-namespace {
+namespace mesh_path_test {
 
 TEST(MeshPath, OnASphereTheGreatCircle) {
   const MeshPtr ball = *make_mesh(test::sphere_soup(24), "ball");
@@ -34,5 +34,5 @@ TEST(MeshPath, PiecesThatDoNotHangTogether) {
   EXPECT_TRUE(path_on_mesh(*two, {std::nan(""), 0, 0.5}, {2.5, 0, 0.5}).empty());
 }
 
-}  // namespace
+}  // namespace mesh_path_test
 }  // namespace catena::mesh

@@ -5,7 +5,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::mesh {
-namespace {
+namespace mesh_test {
 
 using namespace catena::test;
 
@@ -134,5 +134,5 @@ TEST(TriangleMesh, ManyEqualBoxesMakeABoundedTree) {
   EXPECT_GE(met, 6000);
 }
 
-}  // namespace
+}  // namespace mesh_test
 }  // namespace catena::mesh

@@ -3,7 +3,7 @@
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
-namespace {
+namespace aids_test {
 
 Result<Scene> parse(const std::string& rest) { return parse_scene("{\"fields\": {},\n" + rest + "}", "s.json"); }
 
@@ -46,5 +46,5 @@ TEST(SceneAids, WrongOnesNameTheirLine) {
   EXPECT_NE(scene.error().message.find("more than 4 lights"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace aids_test
 }  // namespace catena::scene

@@ -7,7 +7,7 @@
 #include "engine/scene/systems.h"
 
 namespace catena::scene {
-namespace {
+namespace annotations_test {
 
 std::string with(const std::string& body) {
   return R"({"fields": {"d": {"analytic": "sphere", "resolution": 5}, "e": {"analytic": "plane"}, "v": {"analytic": "circle"}},
@@ -116,5 +116,5 @@ TEST(Annotations, TheCursorKeepsWhatEveryLinkSays) {
   EXPECT_EQ(scene->world.get<Cursor>(scene->cursor).statuses, (std::vector{exchange::Status::ok, exchange::Status::boundary}));
 }
 
-}  // namespace
+}  // namespace annotations_test
 }  // namespace catena::scene

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace {
+namespace carry_over_test {
 
 Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
   auto scene = parse_scene(text, path);
@@ -306,5 +306,5 @@ TEST(WriteValues, APoseHasTheKeysOfItsKind) {
   EXPECT_EQ(keys(widget::Kind::box), "lo=[1, 2, 3] hi=[4, 5, 6] ");
 }
 
-}  // namespace
+}  // namespace carry_over_test
 }  // namespace catena::scene

@@ -3,7 +3,7 @@
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
-namespace {
+namespace clip_test {
 
 Result<Scene> parse(const std::string& clip) { return parse_scene("{\"fields\": {},\n\"clip\": " + clip + "}", "s.json"); }
 
@@ -36,5 +36,5 @@ TEST(SceneClip, WrongClipsNameTheirLine) {
   EXPECT_NE(two.error().message.find("more than 8 clip planes"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace clip_test
 }  // namespace catena::scene

@@ -7,7 +7,7 @@
 #include "engine/scene/color_spaces.h"
 
 namespace catena::scene {
-namespace {
+namespace color_maps_test {
 
 struct Published {
   int at;
@@ -162,5 +162,5 @@ TEST(ColorSpaces, HsvGoesTheShorterWayOnlyWhereItWraps) {
                 1e-3);
 }
 
-}  // namespace
+}  // namespace color_maps_test
 }  // namespace catena::scene

@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace {
+namespace document_test {
 
 namespace fs = std::filesystem;
 
@@ -397,7 +397,7 @@ class EveryScene : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(std::string(CATENA_SOURCE_DIR) + "/assets/scenes"))
+  for (const auto& entry : fs::directory_iterator(test::source_dir() + "/assets/scenes"))
     if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
@@ -410,7 +410,7 @@ INSTANTIATE_TEST_SUITE_P(Document, EveryScene, testing::ValuesIn(scene_names()),
 
 TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   if (test::shared_data("combustor_cfd.vdb").empty()) GTEST_SKIP() << "no shared data";
-  const std::string path = std::string(CATENA_SOURCE_DIR) + "/assets/scenes/" + GetParam() + ".json", text = test::read_file(path);
+  const std::string path = test::source_dir() + "/assets/scenes/" + GetParam() + ".json", text = test::read_file(path);
   Document document = open(path);
   ASSERT_EQ(document.text(), text);
   const auto root = json::parse(text, path);
@@ -470,5 +470,5 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   EXPECT_EQ(i, files.size());
 }
 
-}  // namespace
+}  // namespace document_test
 }  // namespace catena::scene

@@ -5,7 +5,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace {
+namespace lines_test {
 
 /// A scene of a sampled swirl (by formula: traced exactly) and a ball, with one set of streamlines.
 std::string scene_text(const std::string& set) {
@@ -134,5 +134,5 @@ TEST(ColoredLines, TheIndicatorNamesAField) {
   expect_error(parse_scene(text("\"feld\": \"swirl\""), "s.json"), 2, {"feld", "field"});
 }
 
-}  // namespace
+}  // namespace lines_test
 }  // namespace catena::scene

@@ -4,7 +4,7 @@
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
-namespace {
+namespace look_test {
 
 const std::string kFields = R"({"fields": {"s": {"analytic": "sphere"}, "t": {"analytic": "torus"}},)";
 
@@ -69,5 +69,5 @@ TEST(SceneLook, WrongOnesNameTheirLine) {
   }
 }
 
-}  // namespace
+}  // namespace look_test
 }  // namespace catena::scene

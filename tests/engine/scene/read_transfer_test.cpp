@@ -9,7 +9,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace {
+namespace read_transfer_test {
 
 class ReadTransfer : public testing::Test {
  protected:
@@ -246,5 +246,5 @@ TEST_F(ReadTransfer, AMapLiesOverTheValuesOrTheRange) {
   EXPECT_EQ(both.extinctions.size(), 1u);
 }
 
-}  // namespace
+}  // namespace read_transfer_test
 }  // namespace catena::scene

@@ -4,7 +4,7 @@
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {
-namespace {
+namespace read_widgets_test {
 
 using widget::Kind;
 
@@ -172,5 +172,5 @@ TEST(ReadWidgets, WrongFollowersNameTheirLine) {
     refused(text + ",\n" + widgets.substr(0, widgets.size() - 2), expected);
 }
 
-}  // namespace
+}  // namespace read_widgets_test
 }  // namespace catena::scene

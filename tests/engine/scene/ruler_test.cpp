@@ -8,7 +8,7 @@
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {
-namespace {
+namespace ruler_test {
 
 using How = RulerMeasure::How;
 constexpr double kPi = std::numbers::pi;
@@ -145,5 +145,5 @@ TEST(Ruler, MeasuredOnceUntilAnEndMoves) {
   EXPECT_NE(measured(scene, {1, 0, 0}, {0, 0, 1}).points, first.points);
 }
 
-}  // namespace
+}  // namespace ruler_test
 }  // namespace catena::scene

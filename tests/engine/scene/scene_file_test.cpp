@@ -4,7 +4,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace {
+namespace scene_file_test {
 
 std::string error_of(const std::string& text, const std::vector<FieldOverride>& overrides = {}) {
   const auto result = parse_scene(text, "scene.json", overrides);
@@ -268,5 +268,5 @@ TEST(SceneFile, CamerasAndBackgrounds) {
   expect_error(with("\"cursor\": {\"size\": 0}"), 2, {"> 0 was expected"});
 }
 
-}  // namespace
+}  // namespace scene_file_test
 }  // namespace catena::scene

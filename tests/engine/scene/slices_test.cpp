@@ -4,7 +4,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace {
+namespace slices_test {
 
 Result<Scene> parse(const std::string& slices) {
   return parse_scene("{\"fields\": {\"s\": {\"analytic\": \"sphere\"}},\n\"slices\": " + slices + "}", "s.json");
@@ -102,5 +102,5 @@ TEST(SceneMeshes, LooksAreReadAndChecked) {
   }
 }
 
-}  // namespace
+}  // namespace slices_test
 }  // namespace catena::scene

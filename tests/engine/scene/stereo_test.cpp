@@ -5,7 +5,7 @@
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
-namespace {
+namespace stereo_test {
 
 std::string error_of(const std::string& text) {
   const auto scene = parse_scene(text, "scene.json");
@@ -56,5 +56,5 @@ TEST(Stereo, WrongKeysAreErrorsWithTheirLine) {
   expect(R"({"eyes": 2})", "eyes");
 }
 
-}  // namespace
+}  // namespace stereo_test
 }  // namespace catena::scene

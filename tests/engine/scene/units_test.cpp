@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::scene {
-namespace {
+namespace units_test {
 
 TEST(SceneUnits, FieldsAndLengthsHaveTheWordsThatTheSceneStates) {
   const auto scene = parse_scene(R"({"unit_length": "mm",
@@ -27,5 +27,5 @@ TEST(SceneUnits, WhatIsNoWordIsSaidWithItsLine) {
   }
 }
 
-}  // namespace
+}  // namespace units_test
 }  // namespace catena::scene

@@ -7,7 +7,7 @@
 #include "tests/support/support.h"
 
 namespace catena::scene {
-namespace {
+namespace use_test {
 
 Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
   auto scene = parse_scene(text, path);
@@ -295,5 +295,5 @@ TEST(UpdateCursor, FollowsTheState) {
   EXPECT_EQ(cursor.probe, Vec3(1, 2, 3));
 }
 
-}  // namespace
+}  // namespace use_test
 }  // namespace catena::scene

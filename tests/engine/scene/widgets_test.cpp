@@ -8,7 +8,7 @@
 #include "engine/scene/systems.h"
 
 namespace catena::scene {
-namespace {
+namespace widgets_test {
 
 using widget::Kind;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -328,5 +328,5 @@ TEST(Widgets, FixedSeedsKeepTheirErrors) {
   EXPECT_EQ(lines.error().message.find("s.json:2: "), 0u) << lines.error().message;
 }
 
-}  // namespace
+}  // namespace widgets_test
 }  // namespace catena::scene

@@ -5,7 +5,7 @@
 #include <string>
 
 namespace catena::scene {
-namespace {
+namespace world_test {
 
 TEST(World, KeepsComponentsByEntityInOrderOfInsertion) {
   World world;
@@ -36,5 +36,5 @@ TEST(World, RemovalKeepsTheOthers) {
   EXPECT_EQ(world.get<int>(entities[1]), 7);
 }
 
-}  // namespace
+}  // namespace world_test
 }  // namespace catena::scene

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::widget {
-namespace {
+namespace machine_test {
 
 constexpr Mode kModes[] = {Mode::away, Mode::explore, Mode::translate, Mode::rotate, Mode::turn, Mode::hover, Mode::drag};
 
@@ -242,5 +242,5 @@ TEST(WidgetMachine, BeginsWithThePoseToTheBitAndTheRevision) {
   EXPECT_EQ(state.pose.orientation, kNoRotation);
 }
 
-}  // namespace
+}  // namespace machine_test
 }  // namespace catena::widget

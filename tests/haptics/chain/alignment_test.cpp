@@ -12,7 +12,7 @@
 #include "tests/support/axis_link.h"
 #include "tests/support/simple_links.h"
 
-namespace {
+namespace alignment_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -270,4 +270,4 @@ TEST(Alignment, AllocatesNothingAndRepeatsToTheBit) {
   }
 }
 
-}  // namespace
+}  // namespace alignment_test

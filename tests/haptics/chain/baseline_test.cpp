@@ -7,8 +7,8 @@
 #include "haptics/chain/tick.h"
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace baseline_test {
 
 constexpr Combination kAll[] = {Combination::pipe, Combination::balance, Combination::closest, Combination::linear};
 
@@ -396,5 +396,5 @@ TEST(Baseline, NoLinksIsFreeMotion) {
   }
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace baseline_test
+}  // namespace catena::haptics::tests

@@ -7,10 +7,10 @@
 #include "tests/haptics/chain/order_links.h"
 
 namespace catena::haptics {
-namespace {
+namespace fade_test {
 
-using test::ChainHand;
-using test::hold_plane;
+using catena::test::ChainHand;
+using catena::test::hold_plane;
 
 const Vec3 kProbe(0.3, 0.4, 0.5);
 
@@ -61,7 +61,7 @@ TEST(Fade, TheLastLinkFollowsItsWeightUpAndDown) {
 }
 
 TEST(Fade, WithoutARampAllIsAtOnce) {
-  ChainHand fading(test::order_program(0)), fresh(test::order_program(0));
+  ChainHand fading(catena::test::order_program(0)), fresh(catena::test::order_program(0));
   for (const std::uint32_t buttons : {0u, 1u, 3u, 7u, 4u, 8u, 0u, 2u, 12u}) {
     fading.step(kProbe, buttons);
     fresh.state = ChainState{};
@@ -73,7 +73,7 @@ TEST(Fade, WithoutARampAllIsAtOnce) {
 TEST(Fade, NoJumpHoweverLinksAreSwitchedAndReordered) {
   std::mt19937_64 random(11);
   for (const double ramp : {0.02, 0.1}) {
-    ChainHand hand(test::order_program(ramp));
+    ChainHand hand(catena::test::order_program(ramp));
     const double most = bound(hand.program, 1e-3);
     hand.step(kProbe);
     double largest = 0, least = 1e300, swing = 0;
@@ -96,7 +96,7 @@ TEST(Fade, NoJumpHoweverLinksAreSwitchedAndReordered) {
 TEST(Fade, AfterTheRampTheForceIsThatOfTheNewOrder) {
   for (const std::uint32_t from : {0u, 1u, 3u, 7u, 8u})
     for (const std::uint32_t to : {0u, 2u, 3u, 4u, 7u, 12u, 8u}) {
-      ChainHand hand(test::order_program(0.02)), fresh(test::order_program(0.02));
+      ChainHand hand(catena::test::order_program(0.02)), fresh(catena::test::order_program(0.02));
       for (int i = 0; i < 5; ++i) hand.step(kProbe, from);
       for (int i = 0; i < 25; ++i) hand.step(kProbe, to);
       fresh.step(kProbe, to);
@@ -105,7 +105,7 @@ TEST(Fade, AfterTheRampTheForceIsThatOfTheNewOrder) {
 }
 
 TEST(Fade, NoJumpWhenAProgramReplacesAnother) {
-  const Program first = test::order_program(0.02);
+  const Program first = catena::test::order_program(0.02);
   std::vector<std::function<void(Program&)>> changes{
       [](Program& p) { p.links.erase(p.links.begin()), p.modes.clear(); },
       [](Program& p) { p.links.pop_back(), p.modes.clear(); },
@@ -158,7 +158,7 @@ TEST(Fade, ASwitchBackWithinTheRampGoesOnFromWhereItIs) {
 }
 
 TEST(Fade, TheSameBitsAgainAndNoAllocation) {
-  ChainHand a(test::order_program(0.02)), b(test::order_program(0.02));
+  ChainHand a(catena::test::order_program(0.02)), b(catena::test::order_program(0.02));
   std::mt19937_64 random(12);
   const AllocationGuard guard;
   for (int i = 0; i < 3000; ++i) {
@@ -172,7 +172,7 @@ TEST(Fade, TheSameBitsAgainAndNoAllocation) {
 }
 
 TEST(Fade, NoJumpWhereAForceOrdersTheChain) {
-  Program program = test::order_program(0.02);
+  Program program = catena::test::order_program(0.02);
   for (Link& link : program.links) link.on = {};
   program.modes = {{"pressed", {2, 3, 0, 1}, {.force_above_n = 70, .force_below_n = 55}}};
   ChainHand hand(program);
@@ -203,17 +203,17 @@ TEST(Fade, NoJumpWhereAForceOrdersTheChain) {
 }
 
 TEST(Fade, ForcesBeyondDoublesLeaveNothingBehind) {
-  ChainHand hand(test::order_program(0.02));
+  ChainHand hand(catena::test::order_program(0.02));
   hand.step({1e308, -1e308, 1e308}, 3);
   hand.step({1e308, -1e308, 1e308}, 4);
   for (int i = 0; i < 30; ++i) {
     hand.step(kProbe, 0);
     ASSERT_TRUE(is_finite(hand.out.force_n)) << i;
   }
-  ChainHand fresh(test::order_program(0.02));
+  ChainHand fresh(catena::test::order_program(0.02));
   fresh.step(kProbe, 0);
   EXPECT_LE(norm(hand.out.force_n - fresh.out.force_n), 1e-10);
 }
 
-}  // namespace
+}  // namespace fade_test
 }  // namespace catena::haptics

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-namespace {
+namespace guard_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -277,4 +277,4 @@ TEST(Guard, NeverGrowsAForceInAnyOrderOfConditions) {
   EXPECT_GT(held, 1000);
 }
 
-}  // namespace
+}  // namespace guard_test

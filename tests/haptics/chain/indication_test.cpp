@@ -5,7 +5,7 @@
 #include "tests/haptics/chain/order_links.h"
 
 namespace catena::haptics {
-namespace {
+namespace indication_test {
 
 using Cue = Indication::Cue;
 
@@ -164,5 +164,5 @@ TEST(Indication, ABadProbeReportsNoGap) {
   EXPECT_EQ(hand.out.force_n, Vec3(0.0));
 }
 
-}  // namespace
+}  // namespace indication_test
 }  // namespace catena::haptics

@@ -11,7 +11,7 @@
 #include "tests/support/simple_links.h"
 
 namespace catena::haptics {
-namespace {
+namespace parameter_test {
 
 using By = ParameterMap::By;
 
@@ -166,5 +166,5 @@ TEST(Parameter, DrivesTheStiffnessThroughTheWholeTick) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
+}  // namespace parameter_test
 }  // namespace catena::haptics

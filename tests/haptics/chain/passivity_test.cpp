@@ -6,7 +6,7 @@
 #include "haptics/chain/rebind.h"
 #include "tests/support/simple_links.h"
 
-namespace {
+namespace passivity_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -135,4 +135,4 @@ TEST(Passivity, PlacesTooLargeForADoubleLeaveNoNaN) {
   }
 }
 
-}  // namespace
+}  // namespace passivity_test

@@ -3,7 +3,7 @@
 #include "tests/haptics/chain/order_links.h"
 
 namespace catena::haptics {
-namespace {
+namespace switching_test {
 
 using test::ChainHand;
 using test::hold_plane;
@@ -146,5 +146,5 @@ TEST(Switching, RebindKeepsTogglesAndModesOfTheSameName) {
   EXPECT_TRUE(hand.out.links[0].active) << "b was toggled on";
 }
 
-}  // namespace
+}  // namespace switching_test
 }  // namespace catena::haptics

@@ -10,7 +10,7 @@
 #include "haptics/chain/state_hash.h"
 #include "tests/support/simple_links.h"
 
-namespace {
+namespace tick_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -221,4 +221,4 @@ TEST(Rebind, KeepsTheStateOfTheSameConstraintUnderTheSameName) {
   EXPECT_FALSE(run.state.links[1].started);
 }
 
-}  // namespace
+}  // namespace tick_test

@@ -7,7 +7,7 @@
 #include "tests/haptics/chain/widget_hand.h"
 
 namespace catena::haptics {
-namespace {
+namespace widget_force_test {
 
 using test::widget_program;
 using test::widget_spec;
@@ -225,5 +225,5 @@ TEST(WidgetForce, ATickAllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
+}  // namespace widget_force_test
 }  // namespace catena::haptics

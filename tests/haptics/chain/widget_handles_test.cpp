@@ -3,7 +3,7 @@
 #include "tests/haptics/chain/widget_hand.h"
 
 namespace catena::haptics {
-namespace {
+namespace widget_handles_test {
 
 using test::off;
 using test::widget_program;
@@ -313,5 +313,5 @@ TEST(WidgetRebind, ReportsThePosesBeforeThereIsAProbe) {
   EXPECT_EQ(hand.place(), Vec3(1, 2, 3));
 }
 
-}  // namespace
+}  // namespace widget_handles_test
 }  // namespace catena::haptics

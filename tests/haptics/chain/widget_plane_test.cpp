@@ -4,7 +4,7 @@
 #include "tests/haptics/chain/widget_hand.h"
 
 namespace catena::haptics {
-namespace {
+namespace widget_plane_test {
 
 using test::off;
 using test::widget_spec;
@@ -309,5 +309,5 @@ TEST(WidgetPlane, TheSphereTurnsAboutTheAxesThatItHasTurned) {
   }
 }
 
-}  // namespace
+}  // namespace widget_plane_test
 }  // namespace catena::haptics

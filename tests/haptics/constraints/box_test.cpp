@@ -2,8 +2,8 @@
 
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace box_test {
 
 struct Made {
   Vec3 center{0.0}, size{1.0};
@@ -373,5 +373,5 @@ TEST(Box, RefusesBadKeys) {
   EXPECT_FALSE(try_build(R"({"name": "a", "type": "box", "center": [0, 0, 0]})"));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace box_test
+}  // namespace catena::haptics::tests

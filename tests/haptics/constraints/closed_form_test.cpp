@@ -1,8 +1,8 @@
 // What all closed forms share: hostile probes, hostile sizes, a proxy on its feature to round-off, energy, primitives.
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace closed_form_test {
 
 struct Kind {
   const char* type;
@@ -108,5 +108,5 @@ TEST(ClosedForms, ThePrimitiveTouchesTheProxyAndHoldsTheProbeThere) {
   }
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace closed_form_test
+}  // namespace catena::haptics::tests

@@ -3,8 +3,8 @@
 #include "engine/base/allocation_guard.h"
 #include "tests/haptics/constraints/examples.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace conformance_test {
 
 TEST(ConformanceTable, EveryRegisteredTypeHasExamples) {
   const auto table = examples();
@@ -107,5 +107,5 @@ TEST_P(Conformance, TheSameBitsAgain) {
 INSTANTIATE_TEST_SUITE_P(All, Conformance, testing::ValuesIn(all_examples()),
                          [](const auto& test) { return test.param.type + "_" + std::to_string(test.index); });
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace conformance_test
+}  // namespace catena::haptics::tests

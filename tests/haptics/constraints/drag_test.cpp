@@ -1,8 +1,8 @@
 #include "haptics/chain/tick.h"
 #include "tests/haptics/constraints/friction_fixture.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace drag_test {
 
 std::string drag(const std::string& threshold, const std::string& more = "") {
   return R"({"name": "a", "type": "drag", "threshold": )" + threshold + more + "}";
@@ -203,5 +203,5 @@ TEST(Drag, RefusesBadKeys) {
   refused(drag("1", R"(, "surfaces": "s")"), "unknown key");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace drag_test
+}  // namespace catena::haptics::tests

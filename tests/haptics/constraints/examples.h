@@ -7,7 +7,7 @@
 #include "tests/haptics/constraints/rig.h"
 #include "tests/support/mesh_shapes.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 /// A polyline of many corners, near and far from each other.
 inline std::string zigzag(int points) {
@@ -170,4 +170,4 @@ inline std::vector<Example> all_examples() {
   return out;
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

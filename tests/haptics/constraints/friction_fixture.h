@@ -3,7 +3,7 @@
 #include "haptics/constraints/isosurface_level.h"
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 /// `step`: of the hand, world units a tick. Starts near `from`.
 inline std::vector<Vec3> walk_on(const field::ScalarFieldPtr& surface, double level, const Vec3& from, double step, int ticks,
@@ -35,4 +35,4 @@ inline Vec3 normal_at(const field::ScalarField& surface, const Vec3& p) {
   return direction(surface.sample(p, cursor).gradient);
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

@@ -1,8 +1,8 @@
 #include "engine/flow/curve.h"
 #include "tests/haptics/constraints/friction_fixture.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace friction_test {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -292,5 +292,5 @@ TEST(Friction, RefusesBadKeys) {
   EXPECT_DOUBLE_EQ(rig.state.limit, 0.02);  // 0.005 L
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace friction_test
+}  // namespace catena::haptics::tests

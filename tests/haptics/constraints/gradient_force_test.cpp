@@ -2,8 +2,8 @@
 
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace gradient_force_test {
 
 ConstraintPtr pull(field::ScalarFieldPtr f, const std::string& towards, const std::string& displacement = "0.2") {
   Fields fields;
@@ -89,5 +89,5 @@ TEST(GradientForce, RefusesBadKeys) {
   fails(R"("field": "f", "displacement": -0.1, "towards": "low")", "displacement");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace gradient_force_test
+}  // namespace catena::haptics::tests

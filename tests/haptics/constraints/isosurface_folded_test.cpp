@@ -5,8 +5,8 @@
 
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace isosurface_folded_test {
 
 constexpr double kLength = 4, kPi = std::numbers::pi;
 
@@ -218,5 +218,5 @@ TEST(FoldedIsosurface, OnlyADegenerateSurfaceIsGivenUp) {
   EXPECT_GT(given_up, 0);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace isosurface_folded_test
+}  // namespace catena::haptics::tests

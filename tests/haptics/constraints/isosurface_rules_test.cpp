@@ -1,8 +1,8 @@
 // Sides, release, thin sheets, the edge of the data, broken voxels: the exact meaning of an isosurface link.
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace isosurface_rules_test {
 
 const std::string kAbove = R"(, "free": "above")", kBelow = R"(, "free": "below")";
 
@@ -293,5 +293,5 @@ TEST(IsosurfaceRules, KeysAreChecked) {
   EXPECT_NE(level.find("99"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace isosurface_rules_test
+}  // namespace catena::haptics::tests

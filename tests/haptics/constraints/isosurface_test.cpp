@@ -1,8 +1,8 @@
 // Acceptance 8 of the numerics (figures printed when they fail), then the rules of sides, release and the domain's edge.
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace isosurface_test {
 
 constexpr double kOffAnalytic = 1e-11, kOffSampled = 1e-9, kTangential = 1e-6;  // of L
 
@@ -290,5 +290,5 @@ INSTANTIATE_TEST_SUITE_P(Grids, SampledIsosurface,
                                   (test.param.anisotropic ? "boxes" : "");
                          });
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace isosurface_test
+}  // namespace catena::haptics::tests

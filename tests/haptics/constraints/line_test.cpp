@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace line_test {
 
 TEST(Line, ProjectsOrthogonally) {
   Rig rig(build(R"({"name": "a", "type": "line", "point": [1, 2, 3], "direction": [2, 4, -4]})"));
@@ -80,5 +80,5 @@ TEST(Line, RefusesBadKeys) {
   EXPECT_FALSE(try_build(R"({"name": "a", "type": "line", "point": [0, 0, 0], "direction": [0, 0, 1], "release": 0})"));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace line_test
+}  // namespace catena::haptics::tests

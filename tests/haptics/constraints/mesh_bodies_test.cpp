@@ -1,8 +1,8 @@
 /// Meshes that are hard on a god-object: seams, parts that cut each other, rough and stepped bodies.
 #include "tests/haptics/constraints/mesh_fixture.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace mesh_bodies_test {
 
 /// Two halves of a sheet whose seam does not share vertices, and is 1e-8 wide.
 TEST(Mesh, SeamsThatDoNotQuiteMeetAreCrossed) {
@@ -135,5 +135,5 @@ TEST(Mesh, NothingLeaksThroughSeams) {
   EXPECT_GT(held, 3000);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace mesh_bodies_test
+}  // namespace catena::haptics::tests

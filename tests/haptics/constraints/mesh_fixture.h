@@ -3,7 +3,7 @@
 #include "tests/haptics/constraints/rig.h"
 #include "tests/support/mesh_shapes.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 using catena::test::add_box;
 using catena::test::add_quad;
@@ -60,4 +60,4 @@ inline bool is_inside(const mesh::TriangleMesh& mesh, const Vec3& x) {
 
 inline double off(const mesh::TriangleMesh& mesh, const Vec3& p) { return norm(brute_force(mesh, p) - p) / mesh.length(); }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

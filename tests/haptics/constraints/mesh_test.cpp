@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/mesh_fixture.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace mesh_test {
 
 TEST(Mesh, BoxIsFreeOutsideAndHoldsInside) {
   Rig rig(felt(mesh_of(box_soup())));
@@ -281,5 +281,5 @@ TEST(Mesh, RefusesBadKeys) {
   EXPECT_FALSE(try_build(head + R"(, "mesh": "m", "level": 1})", fields));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace mesh_test
+}  // namespace catena::haptics::tests

@@ -2,8 +2,8 @@
 
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace modes_test {
 
 json::Node node_of(const std::string& text) {
   auto node = json::parse(text, "scene.json");
@@ -84,5 +84,5 @@ TEST(Modes, ErrorsNameThePlace) {
   refused(kSkin + ",\n\"treshold\": 1}", 5, "did you mean \"threshold\"");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace modes_test
+}  // namespace catena::haptics::tests

@@ -2,8 +2,8 @@
 
 #include "tests/haptics/constraints/friction_fixture.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace modulated_friction_test {
 
 class Formula final : public field::VectorField {
  public:
@@ -151,5 +151,5 @@ TEST(ModulatedFriction, RefusesBadKeys) {
   refused(modulated(0, 1, R"(, "level": -1)"), "not attained");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace modulated_friction_test
+}  // namespace catena::haptics::tests

@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace plane_test {
 
 const std::string kFloor = R"({"name": "a", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 5])";
 
@@ -76,5 +76,5 @@ TEST(Plane, RefusesBadKeys) {
   EXPECT_FALSE(try_build(kFloor + R"(, "colour": 1})"));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace plane_test
+}  // namespace catena::haptics::tests

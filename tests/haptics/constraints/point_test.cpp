@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace point_test {
 
 TEST(Point, HoldsTheProxyAtItsPosition) {
   Rig rig(build(R"({"name": "a", "type": "point", "position": [1, -2, 3]})"));
@@ -33,5 +33,5 @@ TEST(Point, RefusesBadKeys) {
   EXPECT_FALSE(try_build(R"({"name": "a", "type": "point", "position": [0, 0, 0], "free": "above"})"));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace point_test
+}  // namespace catena::haptics::tests

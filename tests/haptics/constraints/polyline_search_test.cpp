@@ -2,8 +2,8 @@
 
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace polyline_search_test {
 
 std::vector<Straight> pieces_of(const std::vector<Vec3>& points) {
   std::vector<Straight> pieces;
@@ -117,5 +117,5 @@ TEST(PolylineSearch, TinyAndHugeCurves) {
   }
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace polyline_search_test
+}  // namespace catena::haptics::tests

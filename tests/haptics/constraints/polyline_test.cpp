@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace polyline_test {
 
 std::string polyline(const std::vector<Vec3>& points, const std::string& more = "") {
   std::string text = R"({"name": "a", "type": "polyline", "points": [)";
@@ -265,5 +265,5 @@ TEST(Polyline, RefusesBadKeys) {
   EXPECT_FALSE(try_build(R"({"name": "a", "type": "polyline", "points": [[0, 0], [1, 1]]})"));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace polyline_test
+}  // namespace catena::haptics::tests

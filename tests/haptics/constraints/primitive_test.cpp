@@ -1,8 +1,8 @@
 /// The linear primitives that stand for curves and surfaces near a place: what the baselines combine.
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace primitive_test {
 
 Fields with_vector(const std::string& name) {
   Fields fields;
@@ -86,5 +86,5 @@ TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneFetch) {
   EXPECT_EQ(flat.state.status, Status::critical);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace primitive_test
+}  // namespace catena::haptics::tests

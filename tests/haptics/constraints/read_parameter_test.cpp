@@ -2,8 +2,8 @@
 
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace read_parameter_test {
 
 Fields fields() {
   Fields made;
@@ -104,5 +104,5 @@ TEST(ReadParameter, AReleaseFollowsAField) {
   EXPECT_EQ(higher.tick({0.29, 0, 1}).status, Status::ok);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace read_parameter_test
+}  // namespace catena::haptics::tests

@@ -3,8 +3,8 @@
 #include "haptics/constraints/modes.h"
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace registry_test {
 
 TEST(Registry, TypesAreUniqueAndFound) {
   std::set<std::string> seen;
@@ -57,5 +57,5 @@ TEST(Registry, SchemaIsJsonWithEveryTypeAndKey) {
   }
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace registry_test
+}  // namespace catena::haptics::tests

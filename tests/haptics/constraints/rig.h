@@ -12,7 +12,7 @@
 #include "engine/field/grid.h"
 #include "haptics/constraints/registry.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 using ConstraintPtr = std::shared_ptr<const Constraint>;
 
@@ -120,4 +120,4 @@ struct Spread {
   }
 };
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

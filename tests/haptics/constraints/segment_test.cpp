@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace segment_test {
 
 /// The closest point of a..b in extended precision.
 Vec3 reference(const Vec3& a, const Vec3& b, const Vec3& x) {
@@ -104,5 +104,5 @@ TEST(Segment, RefusesBadKeys) {
   EXPECT_FALSE(try_build(segment({0, 0, 0}, {1, 0, 0}, R"(, "free": "above")")));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace segment_test
+}  // namespace catena::haptics::tests

@@ -4,8 +4,8 @@
 #include "haptics/constraints/streamline_selected.h"
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace snap_test {
 
 const std::string kPoint = R"({"name": "a", "type": "point", "position": [0, 0, 0])";
 
@@ -235,5 +235,5 @@ TEST(Snap, RefusesBadKeys) {
   fails(",\n\"snap\": {\"field\": \"none\", \"map\": [[0, 1]]}}", 2, "none");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace snap_test
+}  // namespace catena::haptics::tests

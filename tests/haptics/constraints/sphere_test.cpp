@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace sphere_test {
 
 std::string sphere(double radius, const std::string& more = "") {
   char text[120];
@@ -145,5 +145,5 @@ TEST(Sphere, RefusesBadKeys) {
   EXPECT_FALSE(try_build(R"({"name": "a", "type": "sphere", "radius": 1})"));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace sphere_test
+}  // namespace catena::haptics::tests

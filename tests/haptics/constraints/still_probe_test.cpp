@@ -3,8 +3,8 @@
 #include "haptics/chain/tick.h"
 #include "tests/haptics/constraints/examples.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace still_probe_test {
 
 constexpr double kStiffness = 500;
 
@@ -98,5 +98,5 @@ TEST(StillProbeTest, ASnapIsBookedInItsTick) {
   EXPECT_NEAR(felt.out.energy_j, snapped.booked_j, 1e-12) << "the hand may have it";
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace still_probe_test
+}  // namespace catena::haptics::tests

@@ -8,7 +8,7 @@
 #include "tests/haptics/constraints/streamline_fixture.h"
 
 namespace catena::haptics {
-namespace {
+namespace streamline_online_test {
 
 using test::analytic_vector;
 using test::grid_of;
@@ -323,5 +323,5 @@ TEST(StreamlineOnline, SameBitsAndNoAllocation) {
   EXPECT_EQ(std::memcmp(a.data(), b.data(), 500 * sizeof(Vec3)), 0);
 }
 
-}  // namespace
+}  // namespace streamline_online_test
 }  // namespace catena::haptics

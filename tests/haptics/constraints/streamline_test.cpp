@@ -8,7 +8,7 @@
 #include "tests/haptics/constraints/streamline_fixture.h"
 
 namespace catena::haptics {
-namespace {
+namespace streamline_test {
 
 using test::analytic_vector;
 using test::grid_of;
@@ -188,5 +188,5 @@ TEST(Streamline, SelectedNeverAllocatesAndKeepsUpWithAFastHand) {
   EXPECT_LE(most, 8);
 }
 
-}  // namespace
+}  // namespace streamline_test
 }  // namespace catena::haptics

@@ -6,8 +6,8 @@
 #include "engine/base/allocation_guard.h"
 #include "tests/haptics/constraints/friction_fixture.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace surface_contact_test {
 
 const field::Mapping kMapping = field::Mapping::from_linear(Mat3(0.2), Vec3(-2.0));
 constexpr field::Index3 kSize{21, 21, 21};
@@ -136,5 +136,5 @@ TEST(SurfaceContact, OutsideTheDomainIsOffTheSurface) {
   EXPECT_EQ(rig.tick({1.95, 0, 0}).status, Status::ok);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace surface_contact_test
+}  // namespace catena::haptics::tests

@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/friction_fixture.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace texture_test {
 
 std::string texture(const std::string& more) { return R"({"name": "a", "type": "texture", "threshold": 0.05)" + more + "}"; }
 
@@ -111,5 +111,5 @@ TEST(Texture, RefusesBadKeys) {
   refused(R"({"name": "a", "type": "texture", "wavelength": 1})", "threshold");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace texture_test
+}  // namespace catena::haptics::tests

@@ -1,7 +1,7 @@
 #include "tests/haptics/constraints/rig.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace viscosity_test {
 
 Rig viscous(const std::string& keys, double dt, double stiffness = 0, const Fields& fields = {}) {
   Rig rig(build(R"({"name": "a", "type": "viscosity", )" + keys + "}", fields));
@@ -92,5 +92,5 @@ TEST(Viscosity, RefusesBadKeys) {
   fails(", \"coefficient\": \"x\"", "coefficient");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace viscosity_test
+}  // namespace catena::haptics::tests

@@ -3,8 +3,8 @@
 #include "tests/haptics/constraints/rig.h"
 #include "tests/support/support.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace vortex_core_test {
 
 ConstraintPtr core_of(field::VectorFieldPtr field, const std::string& more = "") {
   Fields fields;
@@ -216,5 +216,5 @@ TEST(VortexCore, RefusesBadKeys) {
   fails(R"("field": "v", "radius": 0.3, "search": 0.3)", "> \"radius\"");
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace vortex_core_test
+}  // namespace catena::haptics::tests

@@ -5,7 +5,7 @@
 #include "tests/haptics/device/fake_falcon.h"
 
 namespace catena::haptics::usb {
-namespace {
+namespace falcon_boot_test {
 
 using test::Bytes;
 using Controls = std::vector<std::pair<int, int>>;
@@ -174,5 +174,5 @@ TEST_F(FalconBoot, ModemBytesAreStrippedAndAloneAreNoUnplug) {
   EXPECT_EQ(payload[0], 62);
 }
 
-}  // namespace
+}  // namespace falcon_boot_test
 }  // namespace catena::haptics::usb

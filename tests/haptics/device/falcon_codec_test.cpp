@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace catena::haptics::usb {
-namespace {
+namespace falcon_codec_test {
 
 FalconPacket packet(const std::string& text) {
   FalconPacket out{};
@@ -173,5 +173,5 @@ TEST(FalconFramer, ResetForgetsTheFrameBegun) {
   EXPECT_EQ(framer.push(stream, f), 1);
 }
 
-}  // namespace
+}  // namespace falcon_codec_test
 }  // namespace catena::haptics::usb

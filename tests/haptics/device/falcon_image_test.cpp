@@ -8,7 +8,7 @@
 #include "tests/haptics/device/fake_falcon.h"
 
 namespace catena::haptics::usb {
-namespace {
+namespace falcon_image_test {
 
 std::string error_of(const std::vector<std::uint8_t>& image) {
   const auto result = check_falcon_image(image, "a.bin");
@@ -94,5 +94,5 @@ TEST(FalconImage, AFileIsReadWhole) {
   EXPECT_NE(missing.error().message.find("a Falcon firmware image was expected"), std::string::npos) << missing.error().message;
 }
 
-}  // namespace
+}  // namespace falcon_image_test
 }  // namespace catena::haptics::usb

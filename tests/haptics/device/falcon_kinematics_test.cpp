@@ -7,7 +7,7 @@
 #include <numbers>
 
 namespace catena::haptics::usb {
-namespace {
+namespace falcon_kinematics_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -162,5 +162,5 @@ TEST(FalconKinematics, ATorqueThatIsNoNumberIsZero) {
     EXPECT_EQ(falcon_motor_counts(torque, 1e4), (FalconCounts{}));
 }
 
-}  // namespace
+}  // namespace falcon_kinematics_test
 }  // namespace catena::haptics::usb

@@ -5,7 +5,7 @@
 #include "tests/haptics/device/fake_falcon.h"
 
 namespace catena::haptics::usb {
-namespace {
+namespace falcon_session_test {
 
 using Cycle = FalconSession::Cycle;
 constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};  // mm on the axis, about
@@ -215,5 +215,5 @@ TEST_F(FalconSessionTest, LeavingSendsZeroWithTheLightsOff) {
   EXPECT_EQ(fake->last().control, 0);
 }
 
-}  // namespace
+}  // namespace falcon_session_test
 }  // namespace catena::haptics::usb

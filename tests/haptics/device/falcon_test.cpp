@@ -9,7 +9,7 @@
 #include "tests/haptics/device/fake_falcon.h"
 
 namespace catena::haptics::usb {
-namespace {
+namespace falcon_test {
 
 using namespace std::chrono_literals;
 constexpr FalconCounts kAt110{-516, -516, -516}, kAt175{1168, 1168, 1168};
@@ -328,5 +328,5 @@ TEST(FalconRegistry, IsKnownListedAndRefusedWithAReason) {
   EXPECT_NE(missing.error().message.find("/nowhere/falcon.bin"), std::string::npos) << missing.error().message;
 }
 
-}  // namespace
+}  // namespace falcon_test
 }  // namespace catena::haptics::usb

@@ -9,7 +9,7 @@
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/scripted_device.h"
 
-namespace {
+namespace hand_map_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -286,4 +286,4 @@ TEST(Registry, NamesWhatThereIs) {
   EXPECT_NE(open_device("mouse", {}).error().message.find("catena view"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace hand_map_test

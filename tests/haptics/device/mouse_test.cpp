@@ -6,7 +6,7 @@
 #include <thread>
 
 namespace catena::haptics {
-namespace {
+namespace mouse_test {
 
 TEST(Mouse, BeginsWhereItIsPut) {
   MouseDevice mouse({1.0, 2.0, 3.0});
@@ -83,5 +83,5 @@ TEST(Mouse, PlacesAreNeverTornBetweenThreads) {
   frame.join();
 }
 
-}  // namespace
+}  // namespace mouse_test
 }  // namespace catena::haptics

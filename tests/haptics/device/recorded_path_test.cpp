@@ -5,7 +5,7 @@
 #include "haptics/device/registry.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace recorded_path_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -39,4 +39,4 @@ TEST(RecordedPath, SaysWhatIsWrongWithItsFile) {
   EXPECT_NE(open_device("recorded", {}).error().message.find("recorded:PATH.csv"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace recorded_path_test

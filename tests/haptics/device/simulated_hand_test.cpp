@@ -9,7 +9,7 @@
 #include "haptics/device/safe_stiffness.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace simulated_hand_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -185,4 +185,4 @@ TEST(SimulatedHand, WhatIsWrongWithItsNameOrDelayIsSaid) {
   EXPECT_NE(slow.error().message.find("delay"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace simulated_hand_test

@@ -8,7 +8,7 @@
 #include "haptics/servo/servo.h"
 #include "tests/support/axis_link.h"
 
-namespace {
+namespace simulated_tool_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -133,4 +133,4 @@ TEST(SimulatedTool, RepeatsToTheBit) {
   EXPECT_EQ(run(), run());
 }
 
-}  // namespace
+}  // namespace simulated_tool_test

@@ -11,7 +11,7 @@
 #include "tests/haptics/device/spacemouse_daemon.h"
 #include "tests/support/support.h"
 
-namespace {
+namespace spacemouse_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -149,4 +149,4 @@ TEST(SpaceMouse, OneAtATime) {
   EXPECT_NE(open_device("spacemouse", {}).error().message.find("open already"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace spacemouse_test

@@ -6,7 +6,7 @@
 #include "tests/support/support.h"
 
 namespace catena::haptics {
-namespace {
+namespace align_test {
 
 scene::Scene scene_of(const std::string& text) {
   auto scene = scene::parse_scene(text, "scene.json");
@@ -157,5 +157,5 @@ TEST(ExtractAlign, ASurfaceAndAStreamlineHoldTheWholeTool) {
   }
 }
 
-}  // namespace
+}  // namespace align_test
 }  // namespace catena::haptics

@@ -9,7 +9,7 @@
 #include "tests/support/support.h"
 
 namespace catena::haptics {
-namespace {
+namespace anisotropic_friction_test {
 
 struct Random {
   std::mt19937_64 engine;
@@ -232,5 +232,5 @@ TEST(AnisotropicFriction, ErrorsNameTheLine) {
   refused(many + "]}", "9", "too long");
 }
 
-}  // namespace
+}  // namespace anisotropic_friction_test
 }  // namespace catena::haptics

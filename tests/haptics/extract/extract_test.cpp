@@ -6,7 +6,7 @@
 #include "tests/support/support.h"
 
 namespace catena::haptics {
-namespace {
+namespace extract_test {
 
 scene::Scene scene_of(const std::string& text, const std::string& path = "scene.json") {
   auto scene = scene::parse_scene(text, path);
@@ -352,5 +352,5 @@ TEST(ExtractProgram, LinkErrorsNameTheirLine) {
       3, {"level", "expected"});
 }
 
-}  // namespace
+}  // namespace extract_test
 }  // namespace catena::haptics

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::haptics {
-namespace {
+namespace widgets_test {
 
 scene::Scene scene_of(const std::string& text) {
   auto scene = scene::parse_scene(text, "scene.json");
@@ -140,5 +140,5 @@ TEST(ExtractWidgets, WhatCannotBeIsSaidInOneLine) {
                {"\"widget_x\"", "widgets' own"});
 }
 
-}  // namespace
+}  // namespace widgets_test
 }  // namespace catena::haptics

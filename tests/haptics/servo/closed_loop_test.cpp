@@ -10,7 +10,7 @@
 #include "tests/support/closed_loop.h"
 #include "tests/support/simple_links.h"
 
-namespace {
+namespace closed_loop_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -277,4 +277,4 @@ TEST(ClosedLoopTest, TheCapBringsAStiffWallBackBelowTheLimit) {
   EXPECT_LT(unrest_j(p, hand), 1e-4);
 }
 
-}  // namespace
+}  // namespace closed_loop_test

@@ -14,7 +14,7 @@
 #include "tests/support/simple_links.h"
 
 namespace catena::haptics {
-namespace {
+namespace condition_test {
 
 std::shared_ptr<Program> program() {
   auto p = std::make_shared<Program>();
@@ -304,5 +304,5 @@ TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
   EXPECT_FALSE(device.live.back()) << "the last zero";
 }
 
-}  // namespace
+}  // namespace condition_test
 }  // namespace catena::haptics

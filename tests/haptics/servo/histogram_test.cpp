@@ -9,7 +9,7 @@
 #include "engine/base/quantile.h"
 
 namespace catena::haptics {
-namespace {
+namespace histogram_test {
 
 TEST(Histogram, OfNothingIsNothing) {
   const HistogramFigures f = Histogram().figures();
@@ -90,5 +90,5 @@ TEST(Histogram, IsReadableWhileItIsFilled) {
   writer.join();
 }
 
-}  // namespace
+}  // namespace histogram_test
 }  // namespace catena::haptics

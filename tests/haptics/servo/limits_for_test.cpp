@@ -4,7 +4,7 @@
 
 #include "haptics/device/registry.h"
 
-namespace {
+namespace limits_for_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -83,4 +83,4 @@ TEST(LimitsFor, ADeviceWithTorqueGetsASafeRotationalSpring) {
   EXPECT_EQ(limits_for(device, s).max_rotational_stiffness_nm_per_rad, Limits::kNone);
 }
 
-}  // namespace
+}  // namespace limits_for_test

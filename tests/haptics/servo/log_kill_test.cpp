@@ -13,7 +13,7 @@
 
 extern char** environ;
 
-namespace {
+namespace log_kill_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -59,7 +59,8 @@ TEST(LogKill, EveryKilledRecordingOpensAndRepeats) {
     arguments.push_back(nullptr);
     std::string variable = "CATENA_LOG_OF_THE_CHILD=" + path;
     std::vector<char*> environment{variable.data()};
-    for (char** e = environ; *e != nullptr; ++e) environment.push_back(*e);
+    for (char** e = environ; *e != nullptr; ++e)
+      if (!std::string_view(*e).starts_with("GTEST_")) environment.push_back(*e);
     environment.push_back(nullptr);
     posix_spawn_file_actions_t quiet;
     posix_spawn_file_actions_init(&quiet);
@@ -98,4 +99,4 @@ TEST(LogKill, EveryKilledRecordingOpensAndRepeats) {
   RecordProperty("ticks", static_cast<int>(all));
 }
 
-}  // namespace
+}  // namespace log_kill_test

@@ -6,7 +6,7 @@
 #include "engine/base/hash.h"
 #include "tests/haptics/servo/log_fixture.h"
 
-namespace {
+namespace log_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -435,4 +435,4 @@ TEST(Log, AnyBitOfTheLastRecordThatIsFlippedIsFound) {
   EXPECT_GE(found, words);
 }
 
-}  // namespace
+}  // namespace log_test

@@ -9,7 +9,7 @@
 #include "haptics/servo/log/ring.h"
 #include "tests/haptics/servo/log_fixture.h"
 
-namespace {
+namespace log_writer_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -213,4 +213,4 @@ TEST(LogSoak, ServoProgramsAndWriterTogether) {
   EXPECT_EQ(reader->end()->state_hash, servo.state_hash());
 }
 
-}  // namespace
+}  // namespace log_writer_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace catena::haptics {
-namespace {
+namespace pace_test {
 
 constexpr std::int64_t kMs = 1'000'000, kFirst = 77 * kMs;
 
@@ -85,5 +85,5 @@ TEST(Pace, TicksAndMissedDeadlinesAddUpAndTimeRises) {
   EXPECT_GT(missed, 1000);
 }
 
-}  // namespace
+}  // namespace pace_test
 }  // namespace catena::haptics

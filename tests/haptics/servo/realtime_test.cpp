@@ -16,7 +16,7 @@
 #include "haptics/servo/servo.h"
 
 namespace catena::haptics {
-namespace {
+namespace realtime_test {
 
 /// The calling thread, and only it, loses every privilege.
 bool drop_privileges() {
@@ -159,5 +159,5 @@ TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {
   EXPECT_EQ(report.notes.empty(), report.fifo);
 }
 
-}  // namespace
+}  // namespace realtime_test
 }  // namespace catena::haptics

@@ -9,7 +9,7 @@
 #include "haptics/servo/servo.h"
 
 namespace catena::haptics {
-namespace {
+namespace report_test {
 
 json::Node parsed(const std::string& text) {
   auto node = json::parse(text, "stats");
@@ -87,5 +87,5 @@ TEST(Report, JsonHasEveryFigure) {
   EXPECT_EQ(root.find("state_hash")->string, "0000000000000abc");
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace catena::haptics

@@ -9,7 +9,7 @@
 #include "haptics/servo/replay.h"
 #include "tests/support/simple_links.h"
 
-namespace {
+namespace servo_test {
 
 using namespace catena;
 using namespace catena::haptics;
@@ -131,4 +131,4 @@ TEST(Replay, CountsTicksAndStopsWhenAsked) {
   EXPECT_EQ(stats.evaluations_p50, 1);
 }
 
-}  // namespace
+}  // namespace servo_test

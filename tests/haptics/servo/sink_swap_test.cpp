@@ -4,7 +4,7 @@
 #include "tests/haptics/servo/log_fixture.h"
 
 namespace catena::test {
-namespace {
+namespace sink_swap_test {
 
 // A device that lets the servo run as far as it may.
 class Led final : public Device {
@@ -156,5 +156,5 @@ TEST(SinkSwap, AnotherServoGoesOnWithWhatTheChainRemembers) {
   EXPECT_EQ(seen.program_epoch, 4u);
 }
 
-}  // namespace
+}  // namespace sink_swap_test
 }  // namespace catena::test

@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::test {
-namespace {
+namespace compile_shader_test {
 
 namespace fs = std::filesystem;
 using namespace catena::render;
@@ -33,7 +33,7 @@ class Shaders : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = temporary_ / "shaders";
-    fs::copy(std::string(CATENA_SOURCE_DIR) + "/shaders", folder_, fs::copy_options::recursive);
+    fs::copy(test::source_dir() + "/shaders", folder_, fs::copy_options::recursive);
   }
   void write(const std::string& file, const std::string& text) {
     const auto before = fs::exists(folder_ + "/" + file) ? fs::last_write_time(folder_ + "/" + file) : fs::file_time_type::clock::now();
@@ -141,5 +141,5 @@ void main() { out_color = u.color; }
   EXPECT_GT(max_difference(before, green), 100);
 }
 
-}  // namespace
+}  // namespace compile_shader_test
 }  // namespace catena::test

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace catena::render {
-namespace {
+namespace camera_moves_test {
 
 void expect_near(const Vec3& a, const Vec3& b) { EXPECT_LE(norm(a - b), 1e-12) << a.x << " " << a.y << " " << a.z; }
 
@@ -95,5 +95,5 @@ TEST(CameraMoves, FittedKeepsDirectionUpAngleAndProjection) {
   }
 }
 
-}  // namespace
+}  // namespace camera_moves_test
 }  // namespace catena::render

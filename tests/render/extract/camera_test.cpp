@@ -7,7 +7,7 @@
 #include <random>
 
 namespace catena::render {
-namespace {
+namespace camera_test {
 
 Bounds box(const Vec3& lo, const Vec3& hi) {
   Bounds b;
@@ -161,5 +161,5 @@ TEST(Camera, FitOfNothingAndOfAPoint) {
   EXPECT_GT(norm(point.position - Vec3(5.0)), 0.5);
 }
 
-}  // namespace
+}  // namespace camera_test
 }  // namespace catena::render

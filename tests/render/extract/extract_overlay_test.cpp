@@ -8,7 +8,7 @@
 #include "render/extract/extract.h"
 
 namespace catena::render {
-namespace {
+namespace extract_overlay_test {
 
 FramePacket packet_of(const std::string& text) {
   auto scene = scene::parse_scene(text, "test.json");
@@ -140,5 +140,5 @@ TEST(ExtractOverlay, TitleLabelsAndMarkerGoOver) {
   EXPECT_TRUE(packet_of("{}").overlay.empty());
 }
 
-}  // namespace
+}  // namespace extract_overlay_test
 }  // namespace catena::render

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::render {
-namespace {
+namespace extract_test {
 
 scene::Scene scene_of(const std::string& text) {
   auto scene = scene::parse_scene(text, "test.json");
@@ -333,5 +333,5 @@ TEST(Extract, ErrorsNameThePlaceAndWhatWasExpected) {
   EXPECT_NE(e.find("test.json:3:"), std::string::npos) << e;
 }
 
-}  // namespace
+}  // namespace extract_test
 }  // namespace catena::render

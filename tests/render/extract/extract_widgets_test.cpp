@@ -11,7 +11,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace extract_widgets_test {
 
 using namespace catena::render;
 using widget::Kind;
@@ -489,5 +489,5 @@ TEST_F(WidgetPictures, Gallery) {
     }
 }
 
-}  // namespace
+}  // namespace extract_widgets_test
 }  // namespace catena::test

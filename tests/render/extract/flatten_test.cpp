@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace catena::render {
-namespace {
+namespace flatten_test {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -77,5 +77,5 @@ TEST(Flatten, TheNumberOfPointsIsCapped) {
   EXPECT_GE(points.size(), 100u);
 }
 
-}  // namespace
+}  // namespace flatten_test
 }  // namespace catena::render

@@ -6,7 +6,7 @@
 #include "render/extract/extract.h"
 
 namespace catena::render {
-namespace {
+namespace followers_test {
 
 scene::Scene parsed() {
   auto scene = scene::parse_scene(R"({
@@ -85,5 +85,5 @@ TEST(Followers, ARulerShowsTheWayThatItMeasures) {
   EXPECT_GT(longest, 8u) << "the arc beside the straight way";
 }
 
-}  // namespace
+}  // namespace followers_test
 }  // namespace catena::render

@@ -4,7 +4,7 @@
 #include "render/extract/extract.h"
 
 namespace catena::render {
-namespace {
+namespace look_test {
 
 const std::string kFields = R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}, "t": {"analytic": "torus", "resolution": 9},
                                            "v": {"analytic": "circle"}},)";
@@ -44,5 +44,5 @@ TEST(ExtractLook, AVectorFieldCannotColour) {
   EXPECT_EQ(packet.error().message.find("s.json:"), 0u);
 }
 
-}  // namespace
+}  // namespace look_test
 }  // namespace catena::render

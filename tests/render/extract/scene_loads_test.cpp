@@ -8,7 +8,7 @@
 #include "tests/support/vulkan.h"
 
 namespace catena::render {
-namespace {
+namespace scene_loads_test {
 
 const std::string kScene = R"({
   "fields": {"s": {"analytic": "sphere", "resolution": 17}, "v": {"analytic": "circle"}},
@@ -51,5 +51,5 @@ TEST(SceneLoads, AHundredHoldNoMore) {
   }
 }
 
-}  // namespace
+}  // namespace scene_loads_test
 }  // namespace catena::render

@@ -4,7 +4,7 @@
 #include "render/frame/camera.h"
 
 namespace catena::render {
-namespace {
+namespace stereo_test {
 
 FramePacket packet() {
   FramePacket p;
@@ -76,5 +76,5 @@ TEST(SetEyes, AWindowIsFilledByItsEyes) {
   }
 }
 
-}  // namespace
+}  // namespace stereo_test
 }  // namespace catena::render

@@ -8,7 +8,7 @@
 #include "tests/support/support.h"
 
 namespace catena::render {
-namespace {
+namespace surfaces_test {
 
 Result<FramePacket> extract(const std::string& text, const std::string& path = "test.json") {
   auto scene = scene::parse_scene(text, path);
@@ -125,5 +125,5 @@ TEST(ExtractMeshes, NormalsColoursAndOpacity) {
   }
 }
 
-}  // namespace
+}  // namespace surfaces_test
 }  // namespace catena::render

@@ -5,7 +5,7 @@
 #include "render/frame/camera.h"
 
 namespace catena::render {
-namespace {
+namespace tiles_test {
 
 TEST(Tiles, CoverEverySampleOnce) {
   for (const auto& [w, h, n, tile] : {std::array{200u, 150u, 1u, 64u}, {33u, 7u, 3u, 24u}, {5000u, 3u, 1u, 0u}, {64u, 64u, 1u, 64u}}) {
@@ -63,5 +63,5 @@ TEST(Tiles, ATileSeesTheSameRays) {
   }
 }
 
-}  // namespace
+}  // namespace tiles_test
 }  // namespace catena::render

@@ -5,7 +5,7 @@
 #include "tests/support/support.h"
 
 namespace catena::render {
-namespace {
+namespace visible_test {
 
 std::string scene_text(const std::string& visible) {
   std::string text = R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}, "v": {"analytic": "circle"}},
@@ -69,5 +69,5 @@ TEST_F(Visible, OnlyTruthValues) {
   }
 }
 
-}  // namespace
+}  // namespace visible_test
 }  // namespace catena::render

@@ -9,7 +9,7 @@
 #include "tests/render/support/device_fixture.h"
 
 namespace catena::test {
-namespace {
+namespace brick_map_test {
 
 using namespace catena::render;
 
@@ -86,5 +86,5 @@ TEST_F(GridMirrors, ActiveBricksAreThoseAsked) {
   EXPECT_EQ(map->active, 16u);
 }
 
-}  // namespace
+}  // namespace brick_map_test
 }  // namespace catena::test

@@ -9,7 +9,7 @@
 #include "tests/render/support/device_fixture.h"
 
 namespace catena::test {
-namespace {
+namespace cell_map_test {
 
 using namespace catena::render;
 
@@ -166,5 +166,5 @@ TEST_F(CellMaps, NoneAndTooMany) {
   EXPECT_EQ(many.hi, mirror.box_hi);
 }
 
-}  // namespace
+}  // namespace cell_map_test
 }  // namespace catena::test

@@ -6,7 +6,7 @@
 #include <random>
 
 namespace catena::test {
-namespace {
+namespace half_test {
 
 using namespace catena::render;
 
@@ -39,5 +39,5 @@ TEST(Half, RoundsToTheNearestAndTiesToEven) {
   }
 }
 
-}  // namespace
+}  // namespace half_test
 }  // namespace catena::test

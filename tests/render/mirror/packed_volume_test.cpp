@@ -8,7 +8,7 @@
 #include "tests/render/support/device_fixture.h"
 
 namespace catena::test {
-namespace {
+namespace packed_volume_test {
 
 using namespace catena::render;
 
@@ -70,5 +70,5 @@ TEST(PlainDistances, AreThoseOfBruteForce) {
   }
 }
 
-}  // namespace
+}  // namespace packed_volume_test
 }  // namespace catena::test

@@ -5,7 +5,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace aids_test {
 
 using namespace catena::render;
 
@@ -132,5 +132,5 @@ TEST_F(Aids, TheFastRaycastLeavesFogAndLightsToTheExactOne) {
   EXPECT_FALSE(renderer_->draws_fast(packet));
 }
 
-}  // namespace
+}  // namespace aids_test
 }  // namespace catena::test

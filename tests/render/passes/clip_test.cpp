@@ -5,7 +5,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace clip_test {
 
 using namespace catena::render;
 
@@ -99,5 +99,5 @@ TEST_F(Clip, MoreThanEightPlanesAreAnErrorInOneLine) {
   EXPECT_NE(drawn.error().message.find("9 clip planes"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace clip_test
 }  // namespace catena::test

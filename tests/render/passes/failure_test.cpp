@@ -7,7 +7,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace failure_test {
 
 using namespace catena::render;
 using vk::DriverCall;
@@ -138,5 +138,5 @@ TEST_F(Failures, ADeviceLostBetweenPicturesIsSaid) {
   EXPECT_EQ(max_difference(draw(packet), before), 0);
 }
 
-}  // namespace
+}  // namespace failure_test
 }  // namespace catena::test

@@ -6,7 +6,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace fast_volume_test {
 
 using namespace catena::render;
 
@@ -299,5 +299,5 @@ TEST_F(FastVolume, TransferFunctionsAndGridsMayChange) {
   EXPECT_EQ(max_difference(draw(packet, fast(2, 2)), first), 0);
 }
 
-}  // namespace
+}  // namespace fast_volume_test
 }  // namespace catena::test

@@ -4,7 +4,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace isosurface_test {
 
 using namespace catena::render;
 
@@ -207,5 +207,5 @@ TEST_F(Isosurface, MaskedCellsHaveNoSurface) {
   EXPECT_GT(below, 800);
 }
 
-}  // namespace
+}  // namespace isosurface_test
 }  // namespace catena::test

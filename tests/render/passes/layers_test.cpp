@@ -7,7 +7,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace layers_test {
 
 using namespace catena::render;
 
@@ -168,5 +168,5 @@ TEST_F(Layers, MoreThanFourAreRefusedWithASentence) {
   EXPECT_NE(prepared.error().message.find("5 translucent layers"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace layers_test
 }  // namespace catena::test

@@ -7,7 +7,7 @@
 #include "tests/support/resident.h"
 
 namespace catena::test {
-namespace {
+namespace leak_test {
 
 using namespace catena::render;
 
@@ -93,5 +93,5 @@ TEST_F(Leaks, WhatComesAndGoesLeavesTheValidationLayerSilent) {
   EXPECT_EQ(renderer_->device().retired(), 0u);
 }
 
-}  // namespace
+}  // namespace leak_test
 }  // namespace catena::test

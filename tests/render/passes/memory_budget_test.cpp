@@ -6,7 +6,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace memory_budget_test {
 
 using namespace catena::render;
 
@@ -183,5 +183,5 @@ TEST_F(MemoryBudget, ALargerPictureKeepsWithinIt) {
   expect_within();
 }
 
-}  // namespace
+}  // namespace memory_budget_test
 }  // namespace catena::test

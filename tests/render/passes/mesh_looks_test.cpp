@@ -5,7 +5,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::test {
-namespace {
+namespace mesh_looks_test {
 
 using namespace catena::render;
 
@@ -92,5 +92,5 @@ TEST_F(MeshLooks, ColoursRunBetweenVertices) {
     }
 }
 
-}  // namespace
+}  // namespace mesh_looks_test
 }  // namespace catena::test

@@ -4,7 +4,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::test {
-namespace {
+namespace mesh_test {
 
 using namespace catena::render;
 
@@ -194,5 +194,5 @@ TEST_F(Mesh, CursorIsDrawn) {
   EXPECT_GT(covered, 60);
 }
 
-}  // namespace
+}  // namespace mesh_test
 }  // namespace catena::test

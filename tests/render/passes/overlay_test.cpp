@@ -9,7 +9,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace overlay_test {
 
 using namespace catena::render;
 
@@ -319,5 +319,5 @@ TEST_F(OverlayPictures, Everything) {
   }
 }
 
-}  // namespace
+}  // namespace overlay_test
 }  // namespace catena::test

@@ -5,7 +5,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace pick_test {
 
 using namespace catena::render;
 
@@ -110,5 +110,5 @@ TEST_F(Pick, AnAreaOfTheWindowHoldsThePictureAndBlackIsBesideIt) {
   EXPECT_EQ(int(shown(8, 4).pixel(2, 2)[1]), 255);
 }
 
-}  // namespace
+}  // namespace pick_test
 }  // namespace catena::test

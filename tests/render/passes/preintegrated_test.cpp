@@ -5,7 +5,7 @@
 #include <bit>
 
 namespace catena::test {
-namespace {
+namespace preintegrated_test {
 
 using namespace catena::render;
 
@@ -63,5 +63,5 @@ TEST(Preintegrated, ShadedNothingVisibleIsPlainOrLeftOut) {
   EXPECT_NEAR(active_interval(grey, {0, 1}, true).least, 0.3, 1e-3);
 }
 
-}  // namespace
+}  // namespace preintegrated_test
 }  // namespace catena::test

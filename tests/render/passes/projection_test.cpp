@@ -5,7 +5,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace projection_test {
 
 using namespace catena::render;
 
@@ -173,5 +173,5 @@ TEST_F(ProjectionTest, StandsAloneOrIsRefusedWithASentence) {
   EXPECT_NE(drawn.error().message.find("expected alone"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace projection_test
 }  // namespace catena::test

@@ -8,7 +8,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace quality_test {
 
 using namespace catena::render;
 
@@ -137,5 +137,5 @@ TEST_F(Quality, ScenesWithoutVolumesAreExactAlready) {
   EXPECT_EQ(choice->estimated_rmse, 0);
 }
 
-}  // namespace
+}  // namespace quality_test
 }  // namespace catena::test

@@ -6,7 +6,7 @@
 #include <map>
 
 namespace catena::test {
-namespace {
+namespace refinement_test {
 
 using namespace catena::render;
 
@@ -140,5 +140,5 @@ TEST(Refinement, WithoutTheFastRaycastStepsAreRefined) {
   EXPECT_EQ(steps, (std::vector<double>{2, 1, 0.5}));
 }
 
-}  // namespace
+}  // namespace refinement_test
 }  // namespace catena::test

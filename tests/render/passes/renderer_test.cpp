@@ -3,7 +3,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace renderer_test {
 
 using namespace catena::render;
 
@@ -132,5 +132,5 @@ TEST_F(Frames, ImpossibleSizesAreRefused) {
   EXPECT_NE(drawn.error().message.find("1048576 x 120"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace renderer_test
 }  // namespace catena::test

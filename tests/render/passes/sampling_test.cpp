@@ -12,7 +12,7 @@
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
-namespace {
+namespace sampling_test {
 
 using namespace catena::render;
 
@@ -143,5 +143,5 @@ TEST_F(Sampling, MaskedCells) {
     expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
 }
 
-}  // namespace
+}  // namespace sampling_test
 }  // namespace catena::test

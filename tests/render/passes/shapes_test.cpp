@@ -8,7 +8,7 @@
 #include <tuple>
 
 namespace catena::render {
-namespace {
+namespace shapes_test {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -312,5 +312,5 @@ TEST(Tube, EveryRingHasItsPointsColour) {
   }
 }
 
-}  // namespace
+}  // namespace shapes_test
 }  // namespace catena::render

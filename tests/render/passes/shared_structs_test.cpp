@@ -11,7 +11,7 @@
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
-namespace {
+namespace shared_structs_test {
 
 using namespace catena::render::shared;
 
@@ -198,5 +198,5 @@ TEST(SharedStructs, Overlay) {
   EXPECT_EQ(compared, 5u);
 }
 
-}  // namespace
+}  // namespace shared_structs_test
 }  // namespace catena::test

@@ -6,7 +6,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace slice_test {
 
 using namespace catena::render;
 
@@ -343,5 +343,5 @@ TEST_F(SlicePicture, BricksAndDenseImagesAgree) {
   EXPECT_LE(max_difference(draw(packet, dense, "dense"), draw(packet, atlas, "atlas")), 1);
 }
 
-}  // namespace
+}  // namespace slice_test
 }  // namespace catena::test

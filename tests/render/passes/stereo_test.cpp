@@ -9,7 +9,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace stereo_test {
 
 using namespace catena::render;
 
@@ -370,5 +370,5 @@ TEST_F(StereoPicture, AScreenInTheRoomShowsWhatLiesOnItAtItsPlace) {
   }
 }
 
-}  // namespace
+}  // namespace stereo_test
 }  // namespace catena::test

@@ -9,7 +9,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace surface_depth_test {
 
 using namespace catena::render;
 
@@ -314,5 +314,5 @@ TEST_F(SurfaceDepth, ATentOfOneVoxel) {
   compare(packet, {}, "tent", 30);
 }
 
-}  // namespace
+}  // namespace surface_depth_test
 }  // namespace catena::test

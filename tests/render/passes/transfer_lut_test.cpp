@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace catena::test {
-namespace {
+namespace transfer_lut_test {
 
 using namespace catena::render;
 
@@ -87,5 +87,5 @@ TEST(TransferLut, FactorsAreHeldBeyondTheirEnds) {
   EXPECT_EQ(make_factor_lut({{2, 0.5}}).entries.front().x, 0.5f);
 }
 
-}  // namespace
+}  // namespace transfer_lut_test
 }  // namespace catena::test

@@ -6,7 +6,7 @@
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::test {
-namespace {
+namespace translucent_test {
 
 using namespace catena::render;
 
@@ -320,5 +320,5 @@ TEST_F(Translucent, AWindowShowsItsPartOfThePicture) {
   EXPECT_LE(most, 3);
 }
 
-}  // namespace
+}  // namespace translucent_test
 }  // namespace catena::test

@@ -8,9 +8,10 @@
 #include "tests/render/support/failing.h"
 #include "tests/render/support/frames.h"
 #include "tests/support/resident.h"
+#include "tests/support/support.h"
 
 namespace catena::test {
-namespace {
+namespace ui_test {
 
 using namespace catena::render;
 using Rgb = std::array<int, 3>;
@@ -65,7 +66,7 @@ class Ui : public PictureTest {
     EXPECT_TRUE(picture);
     if (!name.empty()) {
       const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-      const std::string folder = std::string(CATENA_BINARY_DIR) + "/pictures";
+      const std::string folder = test::binary_dir() + "/pictures";
       std::filesystem::create_directories(folder);
       EXPECT_TRUE(write_png(folder + "/Ui." + test->name() + "." + name + ".png", *picture, false));
     }
@@ -424,5 +425,5 @@ TEST(UiFailures, MirrorsMakeRoomForTheWindow) {
   for (const std::string& text : (*renderer)->validation_texts()) ADD_FAILURE() << text;
 }
 
-}  // namespace
+}  // namespace ui_test
 }  // namespace catena::test

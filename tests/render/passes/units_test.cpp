@@ -2,7 +2,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace units_test {
 
 using namespace catena::render;
 
@@ -59,5 +59,5 @@ TEST_F(Units, ShadedVolumesKeepTheirLight) {
   for (const double unit : kUnits) EXPECT_LE(max_difference(at(unit), one), 3) << unit;
 }
 
-}  // namespace
+}  // namespace units_test
 }  // namespace catena::test

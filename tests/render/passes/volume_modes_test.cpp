@@ -7,7 +7,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace volume_modes_test {
 
 using namespace catena::render;
 
@@ -360,5 +360,5 @@ TEST_F(VolumeModes, EightTranslucentSurfacesInOrder) {
   EXPECT_NE(drawn.error().message.find("expected at most 8 together"), std::string::npos) << drawn.error().message;
 }
 
-}  // namespace
+}  // namespace volume_modes_test
 }  // namespace catena::test

@@ -5,7 +5,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace volume_test {
 
 using namespace catena::render;
 
@@ -248,5 +248,5 @@ TEST_F(Volume, TooManyAreRefusedWithASentence) {
   EXPECT_NE(drawn.error().message.find("5 volumes"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace volume_test
 }  // namespace catena::test

@@ -3,7 +3,7 @@
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
-namespace {
+namespace window_test {
 
 using namespace catena::render;
 
@@ -88,5 +88,5 @@ TEST(Window, CameraFunctionsAgreeOffTheAxis) {
   }
 }
 
-}  // namespace
+}  // namespace window_test
 }  // namespace catena::test

@@ -9,7 +9,7 @@
 #include "render/frame/camera.h"
 
 namespace catena::render {
-namespace {
+namespace eyes_test {
 
 constexpr double kWidth = 800, kHeight = 600;
 
@@ -127,5 +127,5 @@ TEST(Eyes, AViewAlongItsUpStillHasEyesThatAgree) {
   EXPECT_NEAR(norm(right.position - left.position - 0.2 * left.right), 0, 1e-12);
 }
 
-}  // namespace
+}  // namespace eyes_test
 }  // namespace catena::render

@@ -7,7 +7,7 @@
 #include "render/stereo/eyes.h"
 
 namespace catena::render {
-namespace {
+namespace projections_test {
 
 TEST(ScreenView, CornersOfTheScreenAreCornersOfThePictureFromAnyEye) {
   // a tilted screen, eyes off its middle and beyond its edge
@@ -96,5 +96,5 @@ TEST(HeadsetView, RefusesEdgesOutOfOrder) {
   EXPECT_FALSE(headset_view(Vec3(0.0), Mat3(1.0), {-1, NAN, 1, -1}));
 }
 
-}  // namespace
+}  // namespace projections_test
 }  // namespace catena::render

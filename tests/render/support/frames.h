@@ -7,6 +7,7 @@
 
 #include "engine/field/grid.h"
 #include "render/passes/renderer.h"
+#include "tests/support/support.h"
 #include "tests/support/vulkan.h"
 
 namespace catena::test {
@@ -63,7 +64,7 @@ class PictureTest : public testing::Test {
     EXPECT_TRUE(picture);
     if (!name.empty()) {
       const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-      const std::string folder = std::string(CATENA_BINARY_DIR) + "/pictures";
+      const std::string folder = test::binary_dir() + "/pictures";
       std::filesystem::create_directories(folder);
       const std::string path = folder + "/" + test->test_suite_name() + "." + test->name() + "." + name + ".png";
       EXPECT_TRUE(render::write_png(path, *picture, packet.background[3] < 1));

@@ -8,11 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/support.h"
+
 namespace catena::test {
 
 /// The words of <build>/spirv/spirv/NAME.inc, which is a list for #include.
 inline std::vector<std::uint32_t> shader_words(const std::string& name) {
-  std::ifstream in(std::string(CATENA_BINARY_DIR) + "/spirv/spirv/" + name + ".inc");
+  std::ifstream in(test::binary_dir() + "/spirv/spirv/" + name + ".inc");
   std::vector<std::uint32_t> words;
   std::string line;
   while (std::getline(in, line)) {

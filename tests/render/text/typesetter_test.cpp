@@ -9,7 +9,7 @@
 #include "tests/support/support.h"
 
 namespace catena::test {
-namespace {
+namespace typesetter_test {
 
 using namespace catena::render;
 
@@ -154,5 +154,5 @@ TEST(Typesetter, AnUnknownFamilyFallsBackAndAnotherOneStartsAnew) {
   EXPECT_EQ(typesetter.measure("Hamburg", {20, false, 0}).width, width);
 }
 
-}  // namespace
+}  // namespace typesetter_test
 }  // namespace catena::test

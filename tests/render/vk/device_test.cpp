@@ -8,7 +8,7 @@
 #include "tests/render/support/device_fixture.h"
 
 namespace catena::test {
-namespace {
+namespace device_test {
 
 using namespace catena::render;
 
@@ -95,5 +95,5 @@ TEST_F(Device, AnImpossibleImageIsOneSentence) {
   expect_silence();
 }
 
-}  // namespace
+}  // namespace device_test
 }  // namespace catena::test

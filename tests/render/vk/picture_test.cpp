@@ -12,7 +12,7 @@
 #include "tests/support/support.h"
 
 namespace catena::test {
-namespace {
+namespace picture_test {
 
 using namespace catena::render;
 
@@ -168,5 +168,5 @@ TEST(Exr, DisplayValuesBecomeLinearLight) {
   EXPECT_FLOAT_EQ(c[3], 0.25f);
 }
 
-}  // namespace
+}  // namespace picture_test
 }  // namespace catena::test

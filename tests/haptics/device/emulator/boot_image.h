@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 /// Blocks of these sizes (words), filled with a pattern.
 inline std::vector<std::uint8_t> boot_image(const std::vector<int>& blocks) {
@@ -22,4 +22,4 @@ inline std::vector<std::uint8_t> boot_image(const std::vector<int>& blocks) {
   return bytes;
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

@@ -8,7 +8,7 @@
 #include <numbers>
 
 namespace catena::haptics {
-namespace {
+namespace delta_legs_test {
 
 Vec3 counts_at(const Vec3& p_mm) {
   const auto legs = delta_legs(p_mm * 1e-3);
@@ -61,5 +61,5 @@ TEST(DeltaLegs, OutOfReachIsSaid) {
   EXPECT_FALSE(delta_legs({0, 0, std::numeric_limits<double>::quiet_NaN()}));
 }
 
-}  // namespace
+}  // namespace delta_legs_test
 }  // namespace catena::haptics

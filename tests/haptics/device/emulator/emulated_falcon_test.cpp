@@ -6,7 +6,7 @@
 #include "tests/haptics/device/emulator/boot_image.h"
 
 namespace catena::haptics {
-namespace {
+namespace emulated_falcon_test {
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
@@ -107,7 +107,7 @@ TEST(EmulatedFalcon, BootsAWholeImageAndStartsIt) {
   rig.send(kRest);
   EXPECT_EQ(rig.device.frames(), 0u);
   rig.wake();
-  const auto image = test::boot_image({100, 7});
+  const auto image = tests::boot_image({100, 7});
   for (std::size_t at = 0; at < image.size(); at += 62) {
     const std::vector<std::uint8_t> chunk(image.begin() + static_cast<std::ptrdiff_t>(at),
                                           image.begin() + static_cast<std::ptrdiff_t>(std::min(at + 62, image.size())));
@@ -124,7 +124,7 @@ TEST(EmulatedFalcon, BootsAWholeImageAndStartsIt) {
 TEST(EmulatedFalcon, ADamagedOrWrongImageNeverStarts) {
   EmulatedFalconOptions options;
   options.firmware = false;
-  const auto image = test::boot_image({20});
+  const auto image = tests::boot_image({20});
   Rig rig(options);
   rig.device.boot_rom().faults().echo_errors = {30};
   rig.wake();
@@ -254,5 +254,5 @@ TEST(EmulatedFalcon, AHandCarriesTheGripAndFeelsTheMotors) {
   EXPECT_NEAR(pushed.device.mechanism().position_m().z, 0.11 + 1.0 / hand.stiffness_n_per_m, 1e-4);
 }
 
-}  // namespace
+}  // namespace emulated_falcon_test
 }  // namespace catena::haptics

@@ -10,7 +10,7 @@
 #include "haptics/device/usb/falcon.h"
 
 namespace catena::haptics {
-namespace {
+namespace emulated_transport_test {
 
 template <class F>
 bool eventually(F&& condition) {
@@ -83,5 +83,5 @@ TEST(EmulatedTransport, TheRegistryOpensItAndItMovesByItself) {
   EXPECT_TRUE(eventually([&] { return (*device)->read().status == DeviceStatus::starting; }));
 }
 
-}  // namespace
+}  // namespace emulated_transport_test
 }  // namespace catena::haptics

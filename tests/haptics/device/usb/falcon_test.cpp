@@ -10,8 +10,8 @@
 #include "tests/haptics/device/usbfs/falcon_rig.h"
 #include "tests/haptics/device/usbfs/umockdev_bus.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace falcon_test {
 
 using usb::Falcon;
 using usb::FalconState;
@@ -391,5 +391,5 @@ TEST_F(FalconUsb, ADeviceThatIsNotReadStillEnds) {
   EXPECT_EQ(bus.port().counts.releases, 1u);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace falcon_test
+}  // namespace catena::haptics::tests

@@ -9,8 +9,8 @@
 
 #include "tests/haptics/device/usbfs/umockdev_bus.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace raw_client_test {
 
 struct Context {
   Context() { EXPECT_EQ(libusb_init(&context), 0); }
@@ -193,5 +193,5 @@ TEST_F(RawUsb, AnUnplugMidTransferEndsThatTransfer) {
   EXPECT_EQ(client.write_text(kRestFrame), LIBUSB_ERROR_NO_DEVICE);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace raw_client_test
+}  // namespace catena::haptics::tests

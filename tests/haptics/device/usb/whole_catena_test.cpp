@@ -4,8 +4,8 @@
 #include "haptics/device/usb/libusb_transport.h"
 #include "tests/haptics/device/usbfs/umockdev_bus.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace whole_catena_test {
 
 TEST(WholeCatenaUsb, TheMotorsGetTheTicksForceToWithinHalfACount) {
   ASSERT_TRUE(UmockdevBus::available()) << "run this program through umockdev-wrapper";
@@ -22,5 +22,5 @@ TEST(WholeCatenaUsb, TheMotorsGetTheTicksForceToWithinHalfACount) {
   EXPECT_EQ((*falcon)->stats().losses, 0u);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace whole_catena_test
+}  // namespace catena::haptics::tests

@@ -7,8 +7,8 @@
 #include "tests/haptics/device/usbfs/in_process_bus.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace whole_catena_test {
 
 TEST(WholeCatenaFast, TheMotorsGetTheTicksForceToWithinHalfACount) {
   InProcessBus bus({.homed = true});
@@ -117,5 +117,5 @@ TEST(WholeCatenaFast, AHandThatPushesInIsHeldByTheSurface) {
   EXPECT_GT(lowest, wish.z) << "it never got where it wanted";
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace whole_catena_test
+}  // namespace catena::haptics::tests

@@ -4,8 +4,8 @@
 #include "tests/haptics/device/usbfs/widget_catena.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace widget_test {
 
 using Mode = exchange::WidgetMode;
 
@@ -101,5 +101,5 @@ TEST(WidgetOverUsb, ExploreTranslateRotateTurn) {
   EXPECT_EQ(hand.cut().pose.points[0], centre);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace widget_test
+}  // namespace catena::haptics::tests

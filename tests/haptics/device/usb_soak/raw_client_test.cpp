@@ -5,8 +5,8 @@
 
 #include "tests/haptics/device/usbfs/in_process_bus.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace raw_client_test {
 
 struct Wrapped {
   explicit Wrapped(InProcessBus& bus) {
@@ -61,5 +61,5 @@ TEST(InProcessUsb, StallsTimeOutsAndTheUnplugAreSeen) {
   EXPECT_EQ(client.write_text(kRestFrame), LIBUSB_ERROR_NO_DEVICE);
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace raw_client_test
+}  // namespace catena::haptics::tests

@@ -7,8 +7,8 @@
 #include "tests/haptics/device/usbfs/servo_rig.h"
 #include "tests/haptics/device/usbfs/wrap_source.h"
 
-namespace catena::haptics::test {
-namespace {
+namespace catena::haptics::tests {
+namespace soak_test {
 
 TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
   const char* asked = std::getenv("CATENA_SOAK_TICKS");
@@ -69,5 +69,5 @@ TEST(UsbSoak, SoaksWithFaultsAndStaysReady) {
               static_cast<unsigned long long>(stats.stalls), static_cast<unsigned long long>(stats.resyncs));
 }
 
-}  // namespace
-}  // namespace catena::haptics::test
+}  // namespace soak_test
+}  // namespace catena::haptics::tests

@@ -2,7 +2,7 @@
 #pragma once
 #include "haptics/chain/program.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 class BallFromOutside final : public Constraint {
  public:
@@ -27,4 +27,4 @@ inline std::shared_ptr<const Program> ball_link_program() {
   return program;
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

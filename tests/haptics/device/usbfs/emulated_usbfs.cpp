@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string>
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 namespace {
 
 constexpr std::uint8_t kConfiguration[] = {9,    2,    32,
@@ -271,4 +271,4 @@ int EmulatedUsbfs::simple(unsigned long request, void* data) {
   }
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

@@ -13,7 +13,7 @@
 
 #include "haptics/device/emulator/emulated_falcon.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 /// What the tests may watch and break, beside the device's own faults. Guarded by the port's mutex.
 struct UsbfsFaults {
@@ -88,4 +88,4 @@ class EmulatedUsbfs {
   std::thread latency_;
 };
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

@@ -9,7 +9,7 @@
 #include "haptics/device/usb/falcon.h"
 #include "tests/haptics/device/usbfs/emulated_usbfs.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 /// Waits for what other threads bring about; false only where it never comes (half a minute).
 template <class F>
@@ -88,4 +88,4 @@ inline double encoder_quantum_m(const Vec3& position_m) {
   return half_count * (norm(p_by_theta[0]) + norm(p_by_theta[1]) + norm(p_by_theta[2]));
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

@@ -13,7 +13,7 @@
 
 #include "engine/base/assert.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 namespace {
 
 std::atomic<InProcessBus*> the_bus{nullptr};
@@ -90,7 +90,7 @@ long InProcessBus::on_lseek(long offset) {
   return offset;
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests
 
 // the program's own system calls: libusb's are bound to these
 extern "C" {
@@ -100,20 +100,20 @@ __attribute__((visibility("default"))) int ioctl(int fd, unsigned long request, 
   va_start(list, request);
   void* argument = va_arg(list, void*);
   va_end(list);
-  if (auto* bus = catena::haptics::test::bus_of(fd)) return bus->on_ioctl(request, argument);
-  static const auto original = catena::haptics::test::next<int (*)(int, unsigned long, ...)>("ioctl");
+  if (auto* bus = catena::haptics::tests::bus_of(fd)) return bus->on_ioctl(request, argument);
+  static const auto original = catena::haptics::tests::next<int (*)(int, unsigned long, ...)>("ioctl");
   return original(fd, request, argument);
 }
 
 __attribute__((visibility("default"))) ssize_t read(int fd, void* to, size_t size) {
-  if (auto* bus = catena::haptics::test::bus_of(fd)) return bus->on_read(to, size);
-  static const auto original = catena::haptics::test::next<ssize_t (*)(int, void*, size_t)>("read");
+  if (auto* bus = catena::haptics::tests::bus_of(fd)) return bus->on_read(to, size);
+  static const auto original = catena::haptics::tests::next<ssize_t (*)(int, void*, size_t)>("read");
   return original(fd, to, size);
 }
 
 __attribute__((visibility("default"))) off_t lseek(int fd, off_t offset, int whence) noexcept {
-  if (auto* bus = catena::haptics::test::bus_of(fd); bus != nullptr && whence == SEEK_SET) return bus->on_lseek(offset);
-  static const auto original = catena::haptics::test::next<off_t (*)(int, off_t, int)>("lseek");
+  if (auto* bus = catena::haptics::tests::bus_of(fd); bus != nullptr && whence == SEEK_SET) return bus->on_lseek(offset);
+  static const auto original = catena::haptics::tests::next<off_t (*)(int, off_t, int)>("lseek");
   return original(fd, offset, whence);
 }
 }

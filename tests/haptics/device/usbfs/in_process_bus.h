@@ -7,7 +7,7 @@
 
 #include "tests/haptics/device/usbfs/emulated_usbfs.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 class InProcessBus final : public EmulatedUsbfs::Node {
  public:
@@ -44,4 +44,4 @@ class InProcessBus final : public EmulatedUsbfs::Node {
   std::unique_ptr<EmulatedUsbfs> usbfs_;
 };
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

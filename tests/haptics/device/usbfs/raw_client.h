@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 /// An open handle with interface 0 claimed; empty where libusb said no.
 class RawClient {
@@ -56,4 +56,4 @@ class RawClient {
 /// Motors at rest, no lights.
 inline const char* const kRestFrame = "<AAAAAAAAAAAAAA>";
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

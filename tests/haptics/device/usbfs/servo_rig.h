@@ -5,7 +5,7 @@
 #include "haptics/servo/servo.h"
 #include "tests/haptics/device/usbfs/falcon_rig.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 inline constexpr double kBallRadiusM = 0.02, kBallStiffness = 400;
 inline const Vec3 kBallCentreM{0, 0, 0.12};
@@ -90,4 +90,4 @@ class ServoRig {
   Servo servo_;
 };
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

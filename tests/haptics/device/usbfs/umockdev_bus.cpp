@@ -13,7 +13,7 @@
 
 #include "engine/base/assert.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 namespace {
 
 /// One plug-in: its device node and what is behind it.
@@ -211,4 +211,4 @@ void UmockdevBus::announce_removal() {
   state_->current = nullptr;
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

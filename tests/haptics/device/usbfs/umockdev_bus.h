@@ -9,7 +9,7 @@
 
 #include "tests/haptics/device/usbfs/emulated_usbfs.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 class UmockdevBus {
  public:
@@ -45,4 +45,4 @@ auto UmockdevBus::with(F&& f) {
   return f(port().device);
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

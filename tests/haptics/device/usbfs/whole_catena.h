@@ -3,7 +3,7 @@
 #include "haptics/extract/extract.h"
 #include "tests/haptics/device/usbfs/servo_rig.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 inline std::shared_ptr<const Program> ball_program() {
   auto scene = scene::parse_scene(R"({
@@ -21,4 +21,4 @@ inline std::shared_ptr<const Program> ball_program() {
   return program ? *program : nullptr;
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests

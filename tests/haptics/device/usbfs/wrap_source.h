@@ -6,7 +6,7 @@
 #include "haptics/device/usb/libusb_transport.h"
 #include "tests/haptics/device/usbfs/falcon_rig.h"
 
-namespace catena::haptics::test {
+namespace catena::haptics::tests {
 
 class WrapSource final : public usb::TransportSource {
  public:
@@ -32,4 +32,4 @@ inline std::unique_ptr<usb::Falcon> open_wrapped_falcon(int fd) {
   return nullptr;
 }
 
-}  // namespace catena::haptics::test
+}  // namespace catena::haptics::tests
