@@ -167,8 +167,8 @@ Outcome trace_lines(const TraceOptions& options) {
   std::size_t knots = 0;
   for (const flow::CurvePtr& curve : curves) {
     knots += curve->knots().size();
-    ++ends[flow::end_word(curve->first_end())];
-    ++ends[flow::end_word(curve->last_end())];
+    ++ends[flow::end_word(curve->first_end().end)];
+    ++ends[flow::end_word(curve->last_end().end)];
   }
 
   CATENA_TRY(OutputFile out, OutputFile::open(options.output));

@@ -80,8 +80,8 @@ void write_lines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves,
   const std::vector<Appended> cell_data{
       by_line("line", Int(0), [](std::size_t line, const flow::Curve&) { return static_cast<Int>(line); }),
       by_line("length", 0.0, [](std::size_t, const flow::Curve& c) { return c.period(); }),
-      by_line("first_end", Int(0), [](std::size_t, const flow::Curve& c) { return static_cast<Int>(c.first_end()); }),
-      by_line("last_end", Int(0), [](std::size_t, const flow::Curve& c) { return static_cast<Int>(c.last_end()); })};
+      by_line("first_end", Int(0), [](std::size_t, const flow::Curve& c) { return static_cast<Int>(c.first_end().end); }),
+      by_line("last_end", Int(0), [](std::size_t, const flow::Curve& c) { return static_cast<Int>(c.last_end().end); })};
   Int next = 0;
   std::size_t offset_of_line = 0;
   const std::vector<Appended> cells{by_knot("connectivity", 1, Int(0), [&next](std::size_t, const flow::Knot&) { return next++; }),

@@ -1,7 +1,7 @@
 /// Lines as a table or for ParaView.
 ///   .csv   line,s,x,y,z,tx,ty,tz: arc length and unit tangent, rows in rising s; numbers read back exactly
 ///   .vtp   VTK's XML PolyData, raw appended doubles: a polyline a line. Points carry s, tangent, velocity and line; cells line,
-///          length, first_end and last_end (0 BOUNDARY, 1 CRITICAL, 2 LENGTH, 3 LAP)
+///          length, first_end and last_end (0 BOUNDARY, 1 CRITICAL, 2 LENGTH, 3 LAP, 4 INCOHERENT)
 #pragma once
 #include <vector>
 

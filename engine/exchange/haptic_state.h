@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "engine/base/reason.h"
 #include "engine/base/rotation.h"
 #include "engine/exchange/widget_report.h"
 
@@ -38,8 +39,9 @@ struct LinkReport {
   double leaving = 0;             ///< gap by the distance at which the hand leaves the feature; 1 where it has let go
   std::int32_t evaluations = 0;
   Status status = Status::ok;
-  bool active = false;  ///< enabled and not released
-  bool left = false;    ///< the hand has left the feature: leaving >= 1, or let go
+  bool active = false;           ///< enabled and not released
+  bool left = false;             ///< the hand has left the feature: leaving >= 1, or let go
+  Reason reason = Reason::none;  ///< why: of CRITICAL, BOUNDARY and BAD_PROBE
 
   /// Stored in the link's spring, joules; the largest double for what is larger.
   double energy_j(double metres_per_unit) const {

@@ -24,6 +24,9 @@ class ScalarByFormula final : public ScalarField {
     s.inside = std::isfinite(s.value) && is_finite(s.gradient);
     return s.inside ? s : ScalarSample{};
   }
+  Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept override {
+    return sample(world, cursor).inside ? Reason::none : Reason::not_finite;
+  }
   double min_value() const noexcept override { return scale_ * (scale_ > 0 ? formula_.min : formula_.max); }
   double max_value() const noexcept override { return scale_ * (scale_ > 0 ? formula_.max : formula_.min); }
 
@@ -36,14 +39,20 @@ class ScalarByFormula final : public ScalarField {
 class VectorByFormula : public VectorField {
  public:
   VectorByFormula(std::string_view name, double scale) : scale_(scale) { set_domain(std::string(name), Mapping{}, kBox); }
-  VectorSample sample(const Vec3& world, Cursor&, const Vec3* line_reference) const noexcept final {
+  VectorSample sample(const Vec3& world, Cursor&) const noexcept final {
     VectorSample s;
     if (!is_finite(world) || !evaluate(world, s.value)) return {};
     s.value *= scale_;
     if (!is_finite(s.value)) return {};
-    if (line_reference && dot(s.value, *line_reference) < 0) s.value = -s.value;
     s.inside = true;
     return s;
+  }
+  /// A formula without a value at a finite place is masked there.
+  Reason why_outside(const Vec3& world, Cursor&) const noexcept final {
+    Vec3 value(0.0);
+    if (!is_finite(world)) return Reason::not_finite;
+    if (!evaluate(world, value)) return Reason::mask;
+    return is_finite(scale_ * value) ? Reason::none : Reason::not_finite;
   }
 
  private:

@@ -11,9 +11,4 @@ Vec3 ScalarCell::mixed_second(const Vec3& f) const {
   return Vec3(yz0 + (yz1 - yz0) * f.x, xz0 + (xz1 - xz0) * f.y, xy0 + (xy1 - xy0) * f.z);
 }
 
-void VectorCell::align(const Vec3& reference) {
-  for (Vec3& v : corner)
-    if (dot(v, reference) < 0) v = -v;
-}
-
 }  // namespace catena::field

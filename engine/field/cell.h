@@ -32,8 +32,6 @@ struct VectorCell {
   std::array<Vec3, 8> corner{};
 
   Vec3 value(const Vec3& f) const;
-  /// For line fields (v ~ -v): every corner is turned to the side of `reference` before it is interpolated.
-  void align(const Vec3& reference);
 };
 
 // The hot path is in the header: one fetch costs a few nanoseconds, and so would the call.

@@ -21,4 +21,16 @@ void Field::set_domain(std::string name, const Mapping& mapping, const Box& inde
   }
 }
 
+Reason Field::why_outside(const Vec3& world, Cursor&) const noexcept { return is_finite(world) ? Reason::mask : Reason::not_finite; }
+
+LineSample VectorField::sample_line(const Vec3& world, Cursor& cursor) const noexcept {
+  const VectorSample here = sample(world, cursor);
+  LineSample s;
+  s.axis = direction(here.value);
+  s.speed = norm(here.value);
+  s.coherence = s.speed > 0 ? 1 : 0;
+  s.inside = here.inside;
+  return s;
+}
+
 }  // namespace catena::field

@@ -8,8 +8,10 @@
 #include <memory>
 #include <string>
 
+#include "engine/base/reason.h"
 #include "engine/base/vec.h"
 #include "engine/field/cell.h"
+#include "engine/field/line_axis.h"
 #include "engine/field/mapping.h"
 
 namespace catena::field {
@@ -32,6 +34,11 @@ struct VectorSample {
   bool inside = false;
 };
 
+/// A vector field read as a line field, where v and -v mean the same (line_axis.h).
+struct LineSample : LineAxis {
+  bool inside = false;
+};
+
 class Field {
  public:
   virtual ~Field() = default;
@@ -47,6 +54,8 @@ class Field {
   double longest_edge() const { return longest_edge_; }  ///< of a voxel, world units
   virtual bool is_grid() const noexcept { return false; }
   virtual std::size_t bytes() const noexcept { return 0; }
+  /// Why a sample at this place is not inside: box, mask or not_finite; none where it is. Here: a formula, which has no box.
+  virtual Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept;
 
  protected:
   void set_domain(std::string name, const Mapping& mapping, const Box& index_box);
@@ -73,9 +82,9 @@ class ScalarField : public Field {
 
 class VectorField : public Field {
  public:
-  /// `line_reference` not null: a line field (v ~ -v); corners are aligned with it before interpolation, and an analytic
-  /// value is turned to its side.
-  virtual VectorSample sample(const Vec3& world, Cursor& cursor, const Vec3* line_reference = nullptr) const noexcept = 0;
+  virtual VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept = 0;
+  /// The same place read as a line field. Formulas: the value's axis, coherent wherever it is not zero.
+  virtual LineSample sample_line(const Vec3& world, Cursor& cursor) const noexcept;
   virtual const VectorGrid* grid() const noexcept { return nullptr; }
 };
 

@@ -25,6 +25,7 @@ class ScalarGrid final : public ScalarField {
   ~ScalarGrid() override;
 
   ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
+  Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept override;
   double min_value() const noexcept override { return stats_.min; }
   double max_value() const noexcept override { return stats_.max; }
   const ScalarGrid* grid() const noexcept override { return this; }
@@ -56,7 +57,9 @@ class VectorGrid final : public VectorField {
   VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage, const GridStats& stats);
   ~VectorGrid() override;
 
-  VectorSample sample(const Vec3& world, Cursor& cursor, const Vec3* line_reference = nullptr) const noexcept override;
+  VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
+  LineSample sample_line(const Vec3& world, Cursor& cursor) const noexcept override;
+  Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept override;
   const VectorGrid* grid() const noexcept override { return this; }
   bool is_grid() const noexcept override { return true; }
   std::size_t bytes() const noexcept override;

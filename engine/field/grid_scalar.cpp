@@ -38,6 +38,12 @@ ScalarSample ScalarGrid::sample(const Vec3& world, Cursor& cursor) const noexcep
   return s;
 }
 
+Reason ScalarGrid::why_outside(const Vec3& world, Cursor& cursor) const noexcept {
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return Reason::not_finite;
+  return reason_outside(walk_to(*this, *storage_, storage_->base_of(index), cursor), index_box(), index, finite_scalar_corner);
+}
+
 ScalarCell ScalarGrid::cell(const Index3& base, Cursor& cursor) const noexcept {
   const ScalarWalk& walk = walk_to(*this, *storage_, storage_->clamp(base), cursor);
   ScalarCell c;

@@ -111,6 +111,16 @@ inline Vec3 place_in_cell(const Vec3& index, const Index3& base) {
 
 constexpr double domain_slack = 1e-9;  ///< voxels, at the faces of the domain
 
+/// Why a place is not inside, given the walk at its cell. `finite` judges a corner.
+template <class W, class Finite>
+Reason reason_outside(const W& walk, const Box& box, const Vec3& index, const Finite& finite) {
+  if (!box.contains(index, domain_slack)) return Reason::box;
+  if (walk.valid) return Reason::none;
+  for (const auto& corner : walk.corner)
+    if (!finite(corner)) return Reason::not_finite;
+  return Reason::mask;
+}
+
 /// Calls visit(leaf or null, block origin, first, last) for every aligned 8^3 block that meets the region.
 template <class Grid, class Visit>
 void for_blocks(const Grid& grid, const Index3& origin, const Index3& size, const Visit& visit) {

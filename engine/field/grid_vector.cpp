@@ -26,22 +26,30 @@ VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& inde
 
 VectorGrid::~VectorGrid() = default;
 
-VectorSample VectorGrid::sample(const Vec3& world, Cursor& cursor, const Vec3* line_reference) const noexcept {
+VectorSample VectorGrid::sample(const Vec3& world, Cursor& cursor) const noexcept {
   VectorSample s;
   const Vec3 index = mapping().index_from_world(world);
   if (!is_finite(index)) return s;
   const VectorWalk& walk = walk_to(*this, *storage_, storage_->base_of(index), cursor);
-  const Vec3 f = place_in_cell(index, walk.base);
-  if (line_reference) {
-    VectorCell cell;
-    cell.corner = walk.corner;
-    cell.align(*line_reference);
-    s.value = cell.value(f);
-  } else {
-    s.value = trilinear(walk.corner, f);
-  }
+  s.value = trilinear(walk.corner, place_in_cell(index, walk.base));
   s.inside = walk.valid && index_box().contains(index, domain_slack);
   return s;
+}
+
+LineSample VectorGrid::sample_line(const Vec3& world, Cursor& cursor) const noexcept {
+  LineSample s;
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return s;
+  const VectorWalk& walk = walk_to(*this, *storage_, storage_->base_of(index), cursor);
+  static_cast<LineAxis&>(s) = line_axis(walk.corner, place_in_cell(index, walk.base));
+  s.inside = walk.valid && index_box().contains(index, domain_slack);
+  return s;
+}
+
+Reason VectorGrid::why_outside(const Vec3& world, Cursor& cursor) const noexcept {
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return Reason::not_finite;
+  return reason_outside(walk_to(*this, *storage_, storage_->base_of(index), cursor), index_box(), index, finite_vector_corner);
 }
 
 VectorCell VectorGrid::cell(const Index3& base, Cursor& cursor) const noexcept {

@@ -15,7 +15,14 @@ struct Velocity {
   Vec3 reference{0.0};
 
   Stop operator()(const Vec3& p, Vec3& v) const {
-    const field::VectorSample sample = flow.field->sample(p, cursor, flow.line ? &reference : nullptr);
+    if (flow.line) {
+      const field::LineSample line = flow.field->sample_line(p, cursor);
+      if (!line.inside) return Stop::outside;
+      const Stop stop = axis_direction(line, flow.min_speed, reference, v);
+      v *= stop == Stop::still ? 0.0 : line.speed;
+      return stop == Stop::still ? Stop::none : stop;
+    }
+    const field::VectorSample sample = flow.field->sample(p, cursor);
     if (!sample.inside || !is_finite(sample.value)) return Stop::outside;
     v = norm(sample.value) <= flow.min_speed ? Vec3(0.0) : sample.value;
     return Stop::none;
@@ -44,6 +51,7 @@ Advected advect(const Flow& flow, const Vec3& p, double dt, Method method, doubl
     out.evaluations = 1;
     if (stop == Stop::outside) return {Vec3(0.0), 1, false, true};
     if (stop == Stop::still) return out;
+    if (stop == Stop::incoherent) return {Vec3(0.0), 1, false, true};
   }
   Vec3 first(0.0);
   ++out.evaluations;

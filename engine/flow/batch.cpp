@@ -126,7 +126,7 @@ class Worker {
     Lane& lane = lanes_[i];
     const bool ahead = lane.branch->sign() > 0;
     lane.branch.reset();
-    if (ahead && lane.forward.end != End::lap) return begin_branch(i, -1);
+    if (ahead && lane.forward.end.end != End::lap) return begin_branch(i, -1);
     slots_[lane.seed] = sewn(flow_, seeds_[lane.seed], lane.forward, lane.backward);
     --busy_;
     begin_next(i);

@@ -35,7 +35,7 @@ BatchBranch::BatchBranch(const VelocityBricks& bricks, const Flow& flow, const T
       out_(out) {
   steps_.clear();
   out_.knots.assign(1, {0, seed, tangent});
-  out_.end = End::length;
+  out_.end = {};
 }
 
 inline double BatchBranch::world_length(const Vec3& local) const { return length_of(bricks_.world_from_rate() * local); }
@@ -87,11 +87,12 @@ bool BatchBranch::go_by_hand(LaneGroup& group, int i) {
       if (way < 1e-10 * domain && (n + 1 < tail.knots.size() || !(way > 0))) continue;
       knots.push_back({s, tail.knots[n].p, tail.knots[n].t});
     }
-    out_.end = tail.end == End::lap && !whole ? End::length : tail.end;
-    if (tail.end == End::boundary || tail.end == End::critical || whole || tail.knots.size() < 2) return false;
+    const End how = tail.end.end;
+    out_.end = how == End::lap && !whole ? LineEnd{} : tail.end;
+    if (how == End::boundary || how == End::critical || how == End::incoherent || whole || tail.knots.size() < 2) return false;
     way_ = std::fabs(knots.back().s);
     height_ = dot(knots.back().p - seed_, tangent_);
-    out_.end = End::length;
+    out_.end = {};
     if (place(group, i, knots.back().p, kFirstStep)) return true;
   }
 }
@@ -141,7 +142,7 @@ bool BatchBranch::came_round(const LaneGroup& group, int i) {
   const RawStep first = steps_.front();
   steps_.push_back({{seed_local_.x, seed_local_.y, seed_local_.z}, 0, {first.k[0], first.k[1], first.k[2]}});
   add_knots();
-  out_.end = End::lap;
+  out_.end = {End::lap, Reason::none};
   out_.knots.back().p = seed_;
   out_.knots.back().t = tangent_;
   return true;

@@ -34,20 +34,24 @@ double first_passage(double c0, double c1, double c2, double c3, double face, do
 
 }  // namespace
 
-CellMedium::CellMedium(const Flow& flow) : flow_(flow), grid_(flow.field->grid()) {
+CellMedium::CellMedium(const Flow& flow, field::Cursor* cursor) : flow_(flow), grid_(flow.field->grid()), shared_cursor_(cursor) {
   longest_step_ = 2 * norm(world_difference(Vec3(1.0)));
   for (int axis = 0; axis < 3; ++axis) longest_step_ = std::max(longest_step_, 2 * norm(grid_->mapping().world_from_index_linear[axis]));
 }
 
 bool CellMedium::enter(const field::Index3& base) {
-  field::VectorCell cell = grid_->cell(base, cursor_);
-  if (!(cell.base == base) || !cell.valid) return false;
+  const field::VectorCell cell = grid_->cell(base, cursor());
+  outside_ = !(cell.base == base) ? Reason::box : cell.valid ? Reason::none : Reason::mask;
   for (const Vec3& v : cell.corner)
-    if (!is_finite(v)) return false;
-  if (flow_.line) cell.align(motion_);
+    if (!is_finite(v) && outside_ != Reason::box) outside_ = Reason::not_finite;
+  if (outside_ != Reason::none) return false;
   base_ = base;
   lo_ = Vec3(base.x, base.y, base.z);
   for (int axis = 0; axis < 3; ++axis) hi_[axis] = std::min(lo_[axis] + 1, grid_->index_box().hi[axis]);
+  if (flow_.line) {
+    polynomial_ = cell.corner;
+    return true;
+  }
   const auto& c = cell.corner;
   const Vec3 x00 = c[1] - c[0], x10 = c[3] - c[2], x01 = c[5] - c[4], x11 = c[7] - c[6];
   const Vec3 y0 = c[2] - c[0], y1 = c[6] - c[4];
@@ -59,35 +63,40 @@ bool CellMedium::enter(const field::Index3& base) {
 bool CellMedium::begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
   q = grid_->mapping().index_from_world(seed);
   const field::Box& box = grid_->index_box();
+  outside_ = is_finite(q) ? Reason::box : Reason::not_finite;
   if (!is_finite(q) || !box.contains(q, kSeedSlack)) return false;
   for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], box.lo[axis], box.hi[axis]);
   motion_ = sign * u;
   sign_ = flow_.line ? 1 : sign;
-  // the cell of the seed, or one that it lies on the face of
+  // the cell of the seed, or one that it lies on the face of (a rounding beside a face is on it)
   const field::Index3 base = grid_->base_of(q);
+  const std::int32_t bases[3] = {base.x, base.y, base.z};
+  int beside[3];
+  for (int axis = 0; axis < 3; ++axis)
+    beside[axis] = q[axis] - bases[axis] <= kSeedSlack ? -1 : bases[axis] + 1 - q[axis] <= kSeedSlack ? 1 : 0;
   for (int c = 0; c < 8; ++c) {
-    const field::Index3 other{base.x - (c & 1), base.y - (c >> 1 & 1), base.z - (c >> 2)};
-    if (((c & 1) && q.x > base.x) || ((c & 2) && q.y > base.y) || ((c & 4) && q.z > base.z)) continue;
-    if (enter(other)) return true;
+    if (((c & 1) && beside[0] == 0) || ((c & 2) && beside[1] == 0) || ((c & 4) && beside[2] == 0)) continue;
+    if (!enter({base.x + (c & 1 ? beside[0] : 0), base.y + (c & 2 ? beside[1] : 0), base.z + (c & 4 ? beside[2] : 0)})) continue;
+    if (c != 0)
+      for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], lo_[axis], hi_[axis]);
+    return true;
   }
   return false;
 }
 
 Stop CellMedium::seed(const Vec3& place, Vec3& u) {
   Vec3 q, w;
-  if (!begin(place, Vec3(0.0), 1, q)) return Stop::outside;
-  if (flow_.line) {
-    // zero keeps what begin() set
-    const Vec3 side = nearest_side(grid_->cell(base_, cursor_), q - lo_);
-    if (max_abs(side) > 0) motion_ = side;
-    enter(base_);
-  }
-  return rate(q, w, u);
+  return begin(place, Vec3(0.0), 1, q) ? rate(q, w, u) : Stop::outside;
 }
 
 Stop CellMedium::rate(const Vec3& q, Vec3& w, Vec3& u) const {
   const Vec3 f = q - lo_;
   const auto& c = polynomial_;
+  if (flow_.line) {
+    const Stop stop = axis_direction(field::line_axis(c, f), flow_.min_speed, motion_, u);
+    w = grid_->mapping().index_from_world_linear * u;
+    return stop;
+  }
   const Vec3 v = (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
   const Stop stop = unit_direction(v, flow_.min_speed, u);
   w = grid_->mapping().index_from_world_linear * u;

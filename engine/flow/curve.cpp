@@ -17,11 +17,13 @@ const char* end_word(End end) {
       return "LENGTH";
     case End::lap:
       return "LAP";
+    case End::incoherent:
+      return "INCOHERENT";
   }
   return "LENGTH";
 }
 
-Curve::Curve(std::vector<Knot> knots, bool closed, End first_end, End last_end, double domain_length)
+Curve::Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length)
     : knots_(std::move(knots)), closed_(closed), first_end_(first_end), last_end_(last_end), domain_length_(domain_length) {
   CATENA_ASSERT(knots_.size() >= 2);
   for (std::size_t k = 1; k < knots_.size(); ++k) CATENA_ASSERT(knots_[k].s > knots_[k - 1].s);

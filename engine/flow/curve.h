@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/base/reason.h"
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
 #include "engine/flow/advect.h"
@@ -18,18 +19,27 @@ struct Knot {
   Vec3 t{0.0};  ///< unit tangent
 };
 
-enum class End { boundary, critical, length, lap };
-const char* end_word(End end);  ///< BOUNDARY CRITICAL LENGTH LAP
+enum class End { boundary, critical, length, lap, incoherent };
+const char* end_word(End end);  ///< BOUNDARY CRITICAL LENGTH LAP INCOHERENT
+
+/// How a line ends, and what the field says there: boundary (box, mask or not_finite), critical (zero), incoherent, or nothing.
+struct LineEnd {
+  End end;
+  Reason reason;
+  LineEnd(End how = End::length, Reason why = Reason::none) : end(how), reason(why) {}
+  bool operator==(const LineEnd&) const = default;
+  bool operator==(End how) const { return end == how; }
+};
 
 class Curve {
  public:
-  Curve(std::vector<Knot> knots, bool closed, End first_end, End last_end, double domain_length);
+  Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd last_end, double domain_length);
 
   const std::vector<Knot>& knots() const { return knots_; }
   bool closed() const { return closed_; }  ///< the last knot repeats the first one's place; s wraps with period()
   double period() const { return knots_.back().s - knots_.front().s; }
-  End first_end() const { return first_end_; }
-  End last_end() const { return last_end_; }
+  const LineEnd& first_end() const { return first_end_; }
+  const LineEnd& last_end() const { return last_end_; }
   double domain_length() const { return domain_length_; }
 
   /// Cubic Hermite on the knot interval k: position and d/ds at s (world units; s within the interval).
@@ -40,7 +50,7 @@ class Curve {
  private:
   std::vector<Knot> knots_;
   bool closed_;
-  End first_end_, last_end_;
+  LineEnd first_end_, last_end_;
   double domain_length_;
 };
 using CurvePtr = std::shared_ptr<const Curve>;
@@ -53,8 +63,8 @@ struct TraceOptions {
 };
 
 /// Traces both directions from the seed with DP5(4); on grids with knots on cell faces. Ends at the domain's boundary, a
-/// critical point (or min_speed), the length, or one lap. A seed outside the domain, not finite, or at a zero is an error
-/// (the caller prefixes file and line).
+/// critical point (or min_speed), where a line field is incoherent, at the length, or after one lap. A seed outside the domain, not finite,
+/// or at a zero is an error (the caller prefixes file and line).
 Result<CurvePtr> trace(const Flow& flow, const Vec3& seed, const TraceOptions& options = {});
 
 }  // namespace catena::flow

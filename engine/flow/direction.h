@@ -1,10 +1,15 @@
 /// The unit direction u = v/|v| of a Flow at a place: what arc-length integration follows. Correct for |v| from 1e-323 to 1e308.
-/// Line fields (v ~ -v) are turned to the side of a reference direction. One call is one evaluation.
-/// Any thread; no allocation, lock or throw.
+/// Line fields (v ~ -v) follow the axis of the interpolated dyads (engine/field/line_axis.h), turned to the side of a reference
+/// direction; where the coherence of the dyads is below kCoherent there is none. Trace, both kinds of streamline links and friction
+/// all go by these functions. One call is one evaluation. Any thread; no allocation, lock or throw.
 #pragma once
 #include "engine/flow/runge_kutta.h"
 
 namespace catena::flow {
+
+/// Measured on a synthetic heart with noise of 10 degrees and seams of 90: noise alone leaves 0.8 to 1. At 0.2 to 0.3 the axis is off
+/// the fibre by 11 degrees in the median and by 29 at the 90th percentile, below that by 16 to 22 and by 40, so that it says nothing.
+inline constexpr double kCoherent = 0.2;
 
 /// The unit direction of a velocity, or why there is none: not finite counts as outside, zero or <= min_speed as still.
 inline Stop unit_direction(const Vec3& v, double min_speed, Vec3& u) noexcept {
@@ -14,15 +19,20 @@ inline Stop unit_direction(const Vec3& v, double min_speed, Vec3& u) noexcept {
   return Stop::none;
 }
 
+/// The same of an axis, turned to the side of `reference`; a reference of zero leaves its own side.
+inline Stop axis_direction(const field::LineAxis& line, double min_speed, const Vec3& reference, Vec3& u) noexcept {
+  u = dot(line.axis, reference) < 0 ? -line.axis : line.axis;
+  if (!std::isfinite(line.speed)) return Stop::outside;
+  if (!(line.speed > min_speed)) return Stop::still;
+  return line.coherence < kCoherent ? Stop::incoherent : Stop::none;
+}
+
 /// `reference` is used by line fields only.
 Stop direction_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::Cursor& cursor, Vec3& u) noexcept;
 
-/// The direction at a seed, where no previous tangent is known: on the grid of a line field the corner nearest to the seed
-/// is the reference, so that opposite signs within the cell do not cancel.
-Stop seed_direction(const Flow& flow, const Vec3& seed, field::Cursor& cursor, Vec3& u) noexcept;
-
-/// A line field's side at the place `f` of a cell, without a tangent to align with: the direction of the corner nearest to it
-/// that moves at all, so that opposite signs do not cancel. Zero where no corner moves.
-Vec3 nearest_side(const field::VectorCell& cell, const Vec3& f) noexcept;
+/// The direction at a seed, where no previous tangent is known; of a line field the side of the nearest voxel.
+inline Stop seed_direction(const Flow& flow, const Vec3& seed, field::Cursor& cursor, Vec3& u) noexcept {
+  return direction_at(flow, seed, Vec3(0.0), cursor, u);
+}
 
 }  // namespace catena::flow

@@ -91,8 +91,8 @@ CurvePtr part_of(const Curve& curve, double s0, double s1) {
     if (knot.s > s0 + least && knot.s < s1 - least) part.push_back(knot);
   part.push_back(to_end ? knots.back() : knot_at(s1));
   const bool cut = curve.closed();
-  return std::make_shared<const Curve>(std::move(part), false, from_start && !cut ? curve.first_end() : End::length,
-                                       to_end && !cut ? curve.last_end() : End::length, curve.domain_length());
+  return std::make_shared<const Curve>(std::move(part), false, from_start && !cut ? curve.first_end() : LineEnd{},
+                                       to_end && !cut ? curve.last_end() : LineEnd{}, curve.domain_length());
 }
 
 std::vector<CurvePtr> evenly_spaced(const Flow& flow, const EvenlySpaced& spacing, const BatchOptions& options) {

@@ -25,20 +25,21 @@ class March {
     u_ = sign * u_seed;
     forced_ = 1e-8 * domain_;
     if (!medium_.begin(seed, u_seed, sign, q_)) {
-      branch.end = End::boundary;
+      branch.end = boundary();
       return branch;
     }
-    std::optional<End> end = start_in_cell();
+    std::optional<LineEnd> end = start_in_cell();
     while (!end) {
       end = advance(branch.knots);
-      if (!end && s_ >= options_.length) end = End::length;
-      if (!end && branch.knots.size() >= options_.max_knots) end = End::length;
+      if (!end && (s_ >= options_.length || branch.knots.size() >= options_.max_knots)) end = LineEnd{};
     }
     branch.end = *end;
     return branch;
   }
 
  private:
+  static LineEnd critical() { return {End::critical, Reason::zero}; }
+  LineEnd boundary() const { return {End::boundary, medium_.outside()}; }
   double stop_step() const { return 1e-9 * domain_; }  ///< a tried step that still turns at this length is at a zero
 
   /// Rates of the stages, with the turn of the motion checked against the step's start.
@@ -51,23 +52,23 @@ class March {
   }
 
   /// Settles into the cell ahead and takes the rate there.
-  std::optional<End> start_in_cell() {
+  std::optional<LineEnd> start_in_cell() {
     for (int tries = 0; tries < 4; ++tries) {
       Vec3 u;
       const Stop stop = medium_.rate(q_, w_, u);
-      if (stop == Stop::outside) return End::boundary;
-      if (stop != Stop::none || dot(u, u_) < 0.5) return End::critical;  // a line field may jump at a face, around a singular line
+      if (stop != Stop::none) return line_end(stop, medium_.outside());
+      if (dot(u, u_) < 0.5) return critical();
       u_ = u;
       medium_.turn(u_);
       const Settled settled = medium_.settle(q_, w_);
-      if (settled == Settled::boundary) return End::boundary;
+      if (settled == Settled::boundary) return boundary();
       if (settled == Settled::here) break;
     }
     return std::nullopt;
   }
 
   /// One accepted step, or one change of the step's length, or the end.
-  std::optional<End> advance(std::vector<Knot>& knots) {
+  std::optional<LineEnd> advance(std::vector<Knot>& knots) {
     if (h_ <= 0) h_ = 1e-3 * domain_;
     double h = std::min(std::min(h_, medium_.longest_step()), options_.length - s_);
     const bool forced = idle_ > 8;
@@ -93,10 +94,10 @@ class March {
     if (left) {
       if (way.theta * h <= 1e-14 * domain_) {
         ++idle_;
-        if (!medium_.hop(way)) return End::boundary;
+        if (!medium_.hop(way)) return boundary();
         return start_without_settling();
       }
-      if (!land_on_face(way, h, step)) return shorten(knots, Stop::turned, h);
+      if (!land_on_face(medium_, tableaus::dp54, q_, w_, way, domain_, rates(), h, step)) return shorten(knots, Stop::turned, h);
       u_end = u_last_;
       piece = Hermite(q_, step.displacement, h, w_, step.last);
     }
@@ -104,7 +105,7 @@ class March {
     idle_ = 0;
     Vec3 next = q_ + step.displacement;
     if (left) next[way.axis] = way.face;
-    if (sign_ > 0 && closes(next, h, piece, knots)) return End::lap;
+    if (sign_ > 0 && closes(next, h, piece, knots)) return LineEnd{End::lap, Reason::none};
 
     // accept
     const Vec3 u_start = u_;
@@ -114,8 +115,8 @@ class March {
     s_ += h;
     h_ = std::max(grown, h);
     medium_.turn(u_);
-    std::optional<End> end;
-    if (left && !medium_.hop(way)) end = End::boundary;
+    std::optional<LineEnd> end;
+    if (left && !medium_.hop(way)) end = boundary();
     if (!end) end = start_in_cell();
     // of knots closer than 1e-10 L only the later stays, but the seed always
     const bool close = s_ - std::fabs(knots.back().s) < 1e-10 * domain_;
@@ -125,25 +126,25 @@ class March {
     return end;
   }
 
-  std::optional<End> start_without_settling() {
+  std::optional<LineEnd> start_without_settling() {
     Vec3 u;
     const Stop stop = medium_.rate(q_, w_, u);
-    if (stop == Stop::outside) return End::boundary;
-    if (stop != Stop::none || dot(u, u_) < 0.5) return End::critical;
+    if (stop != Stop::none) return line_end(stop, medium_.outside());
+    if (dot(u, u_) < 0.5) return critical();
     u_ = u;
     return std::nullopt;
   }
 
-  std::optional<End> reject(double h, double factor) {
+  std::optional<LineEnd> reject(double h, double factor) {
     h_ = h * factor;
-    if (h_ < 1e-13 * domain_) return End::critical;
+    if (h_ < 1e-13 * domain_) return critical();
     return std::nullopt;
   }
 
   /// A stage had no direction, or turned too far: halve, look for the zero, or end here.
-  std::optional<End> shorten(std::vector<Knot>& knots, Stop stop, double h) {
-    if (h <= stop_step()) return stop == Stop::outside ? End::boundary : End::critical;
-    if (stop != Stop::outside && flow_.min_speed <= 0 && h <= 4 * kCapture * domain_ && knots.size() != tried_at_) {
+  std::optional<LineEnd> shorten(std::vector<Knot>& knots, Stop stop, double h) {
+    if (h <= stop_step()) return line_end(stop, medium_.outside());
+    if ((stop == Stop::still || stop == Stop::turned) && flow_.min_speed <= 0 && h <= 4 * kCapture * domain_ && knots.size() != tried_at_) {
       tried_at_ = knots.size();
       if (const auto end = capture(knots)) return end;
     }
@@ -152,7 +153,7 @@ class March {
   }
 
   /// A zero within reach ends the line on it. (A curved stable manifold is reached no other way: rounding turns the line.)
-  std::optional<End> capture(std::vector<Knot>& knots) {
+  std::optional<LineEnd> capture(std::vector<Knot>& knots) {
     int evaluations = 0;
     const Vec3 p = knots.back().p;
     const auto zero = find_zero(flow_, p, u_, kCapture * domain_, zero_cursor_, 56, evaluations);
@@ -160,25 +161,7 @@ class March {
     const double way = norm(*zero - p);
     if (dot(*zero - p, u_) < 0.2 * way) return std::nullopt;  // passing by, or round a centre
     if (way > 1e-12 * domain_) knots.push_back({sign_ * (s_ + way), *zero, sign_ * direction(*zero - p)});
-    return End::critical;
-  }
-
-  /// Shortens the step so that it ends on the face: true steps until |q - face| <= 1e-14 L.
-  bool land_on_face(const WayOut& way, double& h, Step& step) {
-    double lo = 0, hi = h, at = way.theta * h;
-    const double unit = norm(medium_.world_difference(Vec3(way.axis == 0, way.axis == 1, way.axis == 2)));
-    for (int i = 0; i < 12; ++i) {
-      step = runge_kutta_step(tableaus::dp54, q_, w_, at, true, rates());
-      if (step.stop != Stop::none) return false;
-      const double miss = way.side * (q_[way.axis] + step.displacement[way.axis] - way.face);
-      if (std::fabs(miss) * unit <= 1e-14 * domain_) break;
-      (miss < 0 ? lo : hi) = at;
-      const double next = at - miss / (way.side * step.last[way.axis]);
-      if (!(hi - lo > 1e-16 * h)) break;
-      at = next > lo && next < hi ? next : 0.5 * (lo + hi);
-    }
-    h = at;
-    return true;
+    return critical();
   }
 
   /// The line is back: it crosses the seed's plane within 1e-7 L of the seed, in the seed's direction.

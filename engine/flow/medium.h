@@ -27,7 +27,12 @@ class FormulaMedium {
  public:
   explicit FormulaMedium(const Flow& flow) : flow_(flow) {}
   /// The field's direction at the seed, or why there is none.
-  Stop seed(const Vec3& place, Vec3& u) { return seed_direction(flow_, place, cursor_, u); }
+  Stop seed(const Vec3& place, Vec3& u) {
+    const Stop stop = seed_direction(flow_, place, cursor_, u);
+    if (stop == Stop::outside) outside_ = flow_.field->why_outside(place, cursor_);
+    return stop;
+  }
+  Reason outside() const { return outside_; }  ///< why the last rate that was outside was so
   bool begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
     q = seed;
     reference_ = sign * u;
@@ -38,6 +43,7 @@ class FormulaMedium {
   Vec3 world_difference(const Vec3& d) const { return d; }
   Stop rate(const Vec3& q, Vec3& w, Vec3& u) {
     const Stop stop = direction_at(flow_, q, reference_, cursor_, u);
+    if (stop == Stop::outside) outside_ = flow_.field->why_outside(q, cursor_);
     u *= sign_;
     w = u;
     return stop;
@@ -53,12 +59,16 @@ class FormulaMedium {
   field::Cursor cursor_;
   Vec3 reference_{0.0};
   double sign_ = 1;
+  Reason outside_ = Reason::none;
 };
 
-/// A sampled field: within a cell every stage uses that cell's polynomial, extended as far as a stage may reach.
+/// A sampled field: within a cell every stage uses that cell's polynomial (of a line field: its dyads), extended as far as a stage
+/// may reach.
 class CellMedium {
  public:
-  explicit CellMedium(const Flow& flow);
+  /// `cursor`: where the walk remembers nodes; none: its own.
+  explicit CellMedium(const Flow& flow, field::Cursor* cursor = nullptr);
+  Reason outside() const { return outside_; }  ///< why the last cell that could not be entered could not
   Stop seed(const Vec3& place, Vec3& u);
   bool begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q);
   Vec3 world(const Vec3& q) const { return grid_->mapping().world_from_index(q); }
@@ -75,15 +85,40 @@ class CellMedium {
  private:
   bool enter(const field::Index3& base);
 
+  field::Cursor& cursor() { return shared_cursor_ != nullptr ? *shared_cursor_ : own_cursor_; }
+
   Flow flow_;
   const field::VectorGrid* grid_;
-  field::Cursor cursor_;
+  field::Cursor* shared_cursor_;
+  field::Cursor own_cursor_;
   field::Index3 base_;
   Vec3 lo_{0.0}, hi_{0.0};          ///< the current cell's faces, index coordinates
-  std::array<Vec3, 8> polynomial_;  ///< coefficients of 1, x, y, xy, z, xz, yz, xyz
+  std::array<Vec3, 8> polynomial_;  ///< coefficients of 1, x, y, xy, z, xz, yz, xyz; of a line field the corners themselves
   Vec3 motion_{0.0};                ///< last tangent: line fields are turned to its side
   double sign_ = 1;
+  Reason outside_ = Reason::none;
   double longest_step_ = 0;
 };
+
+/// Shortens a step of length h from q (with the rate w there) that leaves the cell by `way`, so that it ends on the face: true steps
+/// until |q - face| <= 1e-14 L. `rate` is that of the cell. False: a stage stopped; `step.stop` says why.
+template <class Medium, class Rate>
+bool land_on_face(const Medium& medium, const Tableau& tableau, const Vec3& q, const Vec3& w, const WayOut& way, double domain, Rate&& rate,
+                  double& h, Step& step) {
+  double lo = 0, hi = h, at = way.theta * h;
+  const double unit = norm(medium.world_difference(Vec3(way.axis == 0, way.axis == 1, way.axis == 2)));
+  for (int i = 0; i < 12; ++i) {
+    step = runge_kutta_step(tableau, q, w, at, true, rate);
+    if (step.stop != Stop::none) return false;
+    const double miss = way.side * (q[way.axis] + step.displacement[way.axis] - way.face);
+    if (std::fabs(miss) * unit <= 1e-14 * domain) break;
+    (miss < 0 ? lo : hi) = at;
+    const double next = at - miss / (way.side * step.last[way.axis]);
+    if (!(hi - lo > 1e-16 * h)) break;
+    at = next > lo && next < hi ? next : 0.5 * (lo + hi);
+  }
+  h = at;
+  return true;
+}
 
 }  // namespace catena::flow

@@ -6,8 +6,8 @@
 
 namespace catena::flow {
 
-/// Why a rate could not be given: outside the domain (or not finite), too slow, or turned too far from the step's start.
-enum class Stop { none, outside, still, turned };
+/// Why a rate could not be given: outside the domain (or not finite), too slow, no single axis, or turned too far from the step's start.
+enum class Stop { none, outside, still, incoherent, turned };
 
 struct Step {
   Vec3 displacement{0.0};

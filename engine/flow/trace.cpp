@@ -19,6 +19,8 @@ Error no_direction(const Flow& flow, const Vec3& seed, Stop stop) {
   if (stop == Stop::outside)
     return Error{"seed " + triple(seed) + " lies outside the domain of " + name + " (its box goes from " + domain_text(*flow.field) +
                  "; masked and non-finite cells do not count)"};
+  if (stop == Stop::incoherent)
+    return Error{"seed " + triple(seed) + ": the axes of the line field " + name + " disagree there, so no single line passes through it"};
   if (flow.min_speed > 0)
     return Error{"seed " + triple(seed) + ": the speed of " + name + " is not above min_speed " + to_text(flow.min_speed) + " there"};
   return Error{"seed " + triple(seed) + ": " + name + " is zero there, so no line passes through it"};
@@ -35,7 +37,7 @@ template <class Medium>
 Branch march_in(Medium medium, const Flow& flow, const Vec3& place, double sign, const TraceOptions& options) {
   Vec3 u;
   const Stop stop = medium.seed(place, u);
-  if (stop != Stop::none) return {{}, stop == Stop::still ? End::critical : End::boundary};
+  if (stop != Stop::none) return {{}, line_end(stop, medium.outside())};
   return March<Medium>(medium, flow, options).run(place, u, sign);
 }
 
@@ -45,7 +47,7 @@ Result<CurvePtr> trace_in(Medium medium, const Flow& flow, const Vec3& seed, con
   // forward, and backward unless it came round
   Branch forward = March<Medium>(medium, flow, options).run(seed, u, 1);
   Branch backward;
-  if (forward.end != End::lap) backward = March<Medium>(medium, flow, options).run(seed, u, -1);
+  if (forward.end.end != End::lap) backward = March<Medium>(medium, flow, options).run(seed, u, -1);
   return sewn(flow, seed, forward, backward);
 }
 
@@ -63,7 +65,7 @@ Branch march_from(const Flow& flow, const Vec3& place, double sign, const TraceO
 
 Result<CurvePtr> sewn(const Flow& flow, const Vec3& seed, const Branch& forward, const Branch& backward) {
   const double domain = flow.field->length();
-  if (forward.end == End::lap) return CurvePtr(std::make_shared<const Curve>(forward.knots, true, End::lap, End::lap, domain));
+  if (forward.end.end == End::lap) return CurvePtr(std::make_shared<const Curve>(forward.knots, true, forward.end, forward.end, domain));
   std::vector<Knot> knots;
   knots.reserve(backward.knots.size() + forward.knots.size());
   knots.assign(backward.knots.rbegin(), backward.knots.rend());

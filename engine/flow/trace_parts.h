@@ -10,8 +10,15 @@ namespace catena::flow {
 /// One direction of a line.
 struct Branch {
   std::vector<Knot> knots;  ///< the seed first; s and t signed by the direction of the march
-  End end = End::length;
+  LineEnd end;
 };
+
+/// The end of a line where the medium gives no rate any more.
+inline LineEnd line_end(Stop stop, Reason outside) {
+  if (stop == Stop::outside) return {End::boundary, outside};
+  if (stop == Stop::incoherent) return {End::incoherent, Reason::incoherent};
+  return {End::critical, Reason::zero};
+}
 
 /// The direction at a seed, or the sentence that says why no line starts there.
 Result<Vec3> seed_tangent(const Flow& flow, const Vec3& seed);

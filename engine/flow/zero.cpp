@@ -7,7 +7,12 @@ namespace catena::flow {
 namespace {
 
 bool velocity_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::Cursor& cursor, Vec3& v) noexcept {
-  const field::VectorSample sample = flow.field->sample(p, cursor, flow.line ? &reference : nullptr);
+  if (flow.line) {
+    const field::LineSample line = flow.field->sample_line(p, cursor);
+    v = line.speed * (dot(line.axis, reference) < 0 ? -line.axis : line.axis);
+    return line.inside;
+  }
+  const field::VectorSample sample = flow.field->sample(p, cursor);
   v = sample.value;
   return sample.inside && is_finite(v);
 }
@@ -16,6 +21,8 @@ bool velocity_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::
 
 std::optional<Vec3> find_zero(const Flow& flow, const Vec3& p, const Vec3& reference, double radius, field::Cursor& cursor, int budget,
                               int& evaluations) noexcept {
+  // the speed of interpolated dyads has no isolated zeros
+  if (flow.line && flow.field->is_grid()) return std::nullopt;
   const double length = flow.field->length(), delta = 1e-6 * length;
   Vec3 z = p;
   double first_speed = -1;

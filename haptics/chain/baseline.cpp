@@ -89,7 +89,7 @@ bool SingleTick::apply(std::size_t i, const Vec3& incoming) noexcept {
   program.links[i].constraint->advance(incoming, link, scratch[i]);
   if (!is_finite(link.proxy)) {
     link.proxy = incoming;
-    link.status = Status::critical;
+    stop_link(link, Status::critical, Reason::not_finite);
     return false;
   }
   return link.status != Status::free && link.status != Status::no_surface;
@@ -101,7 +101,11 @@ bool SingleTick::primitive(std::size_t i, const Vec3& at, Primitive& out) noexce
   if (link.evaluations < kEvaluationCap && program.links[i].constraint->primitive(at, link, scratch[i], out) && is_finite(out.origin) &&
       is_finite(out.axis))
     return true;
-  if (link.status == before) link.status = link.evaluations < kEvaluationCap ? Status::critical : Status::budget;
+  if (link.status != before) return false;
+  if (link.evaluations < kEvaluationCap)
+    stop_link(link, Status::critical, Reason::zero);
+  else
+    link.status = Status::budget;
   return false;
 }
 

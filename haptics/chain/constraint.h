@@ -32,6 +32,7 @@ struct LinkState {
   double stiffness_n_per_m = 0;  ///< k_i of this tick
   std::int32_t evaluations = 0;  ///< of this tick
   Status status = Status::ok;
+  Reason reason = Reason::none;  ///< set together with a status of critical or boundary; means nothing beside another
   bool started = false;
   bool released = false;                             ///< let go; re-arms by the constraint's own rule
   bool on = false;                                   ///< its switch
@@ -43,6 +44,12 @@ struct LinkState {
   bool active() const { return on && !released; }
 };
 static_assert(std::is_trivially_copyable_v<LinkState>);
+
+/// Status and reason at once, where the field ends a motion.
+inline void stop_link(LinkState& state, Status status, Reason reason) noexcept {
+  state.status = status;
+  state.reason = reason;
+}
 
 /// The constraint's private memory in the state, as its own plain struct T (zero bytes must be a legal T).
 template <class T>

@@ -122,6 +122,12 @@ double bounded(double v) noexcept {
   return v > most ? most : v < -most ? -most : v == v ? v : 0;
 }
 
+/// The state's reason is of the last time that it was set: it counts only beside the statuses that have one.
+Reason reason_of(const LinkState& link) noexcept {
+  if (link.status == Status::bad_probe) return Reason::not_finite;
+  return link.status == Status::critical || link.status == Status::boundary ? link.reason : Reason::none;
+}
+
 void report(const Program& program, const ChainState& state, exchange::HapticState& out) noexcept {
   out.tick = state.ticks;
   out.t_s = state.last_t_s;
@@ -143,6 +149,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
     to.booked_j = bounded(state.passivity.booked_j(i));
     to.evaluations = link.evaluations;
     to.status = link.status;
+    to.reason = reason_of(link);
     to.active = link.active();
   }
   report_widgets(program, state.widgets, out);

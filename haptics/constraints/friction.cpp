@@ -31,13 +31,14 @@ struct FrictionSpec {
 struct Heading {
   SafeDirection t;
   Status status = Status::ok;
+  Reason reason = Reason::none;  ///< of a status that ends the line
   bool known() const { return t.factor > 0; }
 };
 
 struct FrictionMemory {
   ContactMemory contact;
   Heading heading;  ///< at the proxy
-  Vec3 side;        ///< the last direction: line fields are turned to it
+  Vec3 side;        ///< the last direction: the axis of a line field is turned to it
   double rate;      ///< -d(e.d)/ds of the last step: 1 - kappa N.e
   double bend;      ///< |dd/ds| of the last step, along the surface
   double arch;      ///< |dn/ds| of it
@@ -67,6 +68,7 @@ class FrictionTick {
       if (!lost) arrive(heading_at(contact_.here()));
     }
     if (lost) return contact_.lose();
+    if (ending_ == Status::ok) state_.reason = memory_.heading.reason;
     contact_.end(tau, !complete ? Status::budget : ending_ != Status::ok ? ending_ : memory_.heading.status);
   }
 
@@ -199,6 +201,7 @@ class FrictionTick {
     memory_.blocked = step > 0 ? 1 : -1;
     complete = true;
     ending_ = why.status != Status::ok ? why.status : Status::critical;
+    state_.reason = why.status != Status::ok ? why.reason : why.known() ? Reason::incoherent : Reason::zero;
     return moved;
   }
 
@@ -209,17 +212,26 @@ class FrictionTick {
 
   Heading heading_at(const LevelPoint& at) noexcept {
     if (contact_.spent(2)) return {{}, Status::budget};
-    if (!at.valid && !(contact_.has_normal() && at.finite)) return {{}, Status::boundary};
     field::Cursor& cursor = scratch_.cursors[1];
-    if (spec_.line && !(max_abs(memory_.side) > 0)) {
-      ++state_.evaluations;
-      flow::seed_direction({spec_.field.get(), true, 0}, at.p, cursor, memory_.side);
-    }
+    if (!at.valid && !(contact_.has_normal() && at.finite)) return boundary_at(at.p, cursor);
     ++state_.evaluations;
-    const field::VectorSample v = spec_.field->sample(at.p, cursor, spec_.line ? &memory_.side : nullptr);
-    if (!is_finite(v.value)) return {{}, Status::critical};
-    if (!v.inside) return {{}, Status::boundary};
+    if (spec_.line) {
+      const field::LineSample line = spec_.field->sample_line(at.p, cursor);
+      if (!line.inside) return boundary_at(at.p, cursor);
+      Vec3 d;
+      if (flow::axis_direction(line, 0, memory_.side, d) == flow::Stop::incoherent) return {{}, Status::critical, Reason::incoherent};
+      return {safe_direction(line.speed * d, spec_.largest, at.n), Status::ok};
+    }
+    const field::VectorSample v = spec_.field->sample(at.p, cursor);
+    if (!is_finite(v.value)) return {{}, Status::critical, Reason::not_finite};
+    if (!v.inside) return boundary_at(at.p, cursor);
     return {safe_direction(v.value, spec_.largest, at.n), Status::ok};
+  }
+
+  /// The line ends here because the vector field does, or the surface.
+  Heading boundary_at(const Vec3& place, field::Cursor& cursor) const noexcept {
+    const Reason reason = spec_.field->why_outside(place, cursor);
+    return {{}, Status::boundary, reason != Reason::none ? reason : spec_.contact.surface->why_outside(place, scratch_.cursors[0])};
   }
 
   const FrictionSpec& spec_;

@@ -22,7 +22,6 @@ struct ModulatedFrictionSpec {
 
 struct ModulatedFrictionMemory {
   ContactMemory contact;
-  Vec3 side;     ///< line fields are turned to it
   double angle;  ///< u at the proxy
 };
 
@@ -57,16 +56,22 @@ class ModulatedFriction final : public Constraint {
   double angle(const LevelPoint& at, ModulatedFrictionMemory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
     if (state.evaluations + 2 >= kEvaluationCap) return memory.angle;
     field::Cursor& cursor = scratch.cursors[1];
-    if (spec_.line && !(max_abs(memory.side) > 0)) {
-      ++state.evaluations;
-      flow::seed_direction({spec_.field.get(), true, 0}, at.p, cursor, memory.side);
-    }
     ++state.evaluations;
-    const field::VectorSample v = spec_.field->sample(at.p, cursor, spec_.line ? &memory.side : nullptr);
-    if (!v.inside || !at.finite) return 0;
-    const SafeDirection field = safe_direction(v.value, spec_.largest_speed);
+    Vec3 v;
+    bool inside;
+    if (spec_.line) {
+      const field::LineSample line = spec_.field->sample_line(at.p, cursor);
+      inside = line.inside;
+      if (flow::axis_direction(line, 0, Vec3(0.0), v) == flow::Stop::incoherent) return 0;
+      v *= line.speed;
+    } else {
+      const field::VectorSample sample = spec_.field->sample(at.p, cursor);
+      inside = sample.inside;
+      v = sample.value;
+    }
+    if (!inside || !at.finite) return 0;
+    const SafeDirection field = safe_direction(v, spec_.largest_speed);
     const SafeDirection surface = safe_direction(at.n * at.slope, spec_.largest_slope);
-    if (spec_.line && field.factor > 0) memory.side = field.d;
     const double u = field.factor * surface.factor * dot(field.d, surface.d);
     return std::min(std::max(spec_.line ? std::fabs(u) : u, -1.0), 1.0);
   }

@@ -40,12 +40,14 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
   CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
   spec.line = kind == 1;
   CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::Range::not_negative));
-  CATENA_TRY(spec.tolerance, json::get_number(link, "tolerance", 1e-9, json::Range::positive));
+  // neighbouring fibres of noisy data part quickly: what is not stated is chosen so that online and selected agree to 1e-6 L
+  const bool cells = spec.line && field->is_grid();
+  CATENA_TRY(spec.tolerance, json::get_number(link, "tolerance", cells ? 1e-13 : 1e-9, json::Range::positive));
   if (!(spec.tolerance < 1))
     return json::error_at(
         *link.find("tolerance"),
         fmt::format("\"tolerance\" is {}; a number > 0 and < 1 was expected (it is times the domain length)", spec.tolerance));
-  CATENA_TRY(const int method, json::get_choice(link, "method", static_cast<int>(flow::Method::rkf34),
+  CATENA_TRY(const int method, json::get_choice(link, "method", static_cast<int>(cells ? flow::Method::dp54 : flow::Method::rkf34),
                                                 {"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"}));
   spec.method = static_cast<flow::Method>(method);
   CATENA_TRY(const int follow, json::get_choice(link, "follow", 0, {"selected", "online"}));
@@ -70,16 +72,19 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
 }  // namespace
 
 ConstraintType streamline_constraint() {
-  return {"streamline",
-          "section 4, Eqs. 1-4",
-          {{"field", "string", true, "a vector field of the scene"},
-           {"seed", "array", false, "a place on the line, world units; without it the probe where the link is switched on", kVec3Schema},
-           {"follow", "string", false, "selected: on the traced curve (default with a seed); online: integrated every tick", kFollowSchema},
-           {"method", "string", false, "of online following, which it implies; linear is Eqs. 1-2 as printed", kMethodSchema},
-           {"tolerance", "number", false, "of the embedded error of one online step, times the domain length", kToleranceSchema},
-           {"kind", "string", false, "line: v and -v are the same, as for fibres", kKindSchema},
-           {"min_speed", "number", false, "speeds up to this count as zero", kNotNegativeSchema}},
-          build_streamline};
+  return {
+      "streamline",
+      "section 4, Eqs. 1-4",
+      {{"field", "string", true, "a vector field of the scene"},
+       {"seed", "array", false, "a place on the line, world units; without it the probe where the link is switched on", kVec3Schema},
+       {"follow", "string", false, "selected: on the traced curve (default with a seed); online: integrated every tick", kFollowSchema},
+       {"method", "string", false,
+        "of online following, which it implies; default rkf34, of sampled line fields dp54; linear is Eqs. 1-2 as printed", kMethodSchema},
+       {"tolerance", "number", false,
+        "of the embedded error of one online step, times the domain length; default 1e-9, of sampled line fields 1e-13", kToleranceSchema},
+       {"kind", "string", false, "line: v and -v are the same, as for fibres", kKindSchema},
+       {"min_speed", "number", false, "speeds up to this count as zero", kNotNegativeSchema}},
+      build_streamline};
 }
 
 }  // namespace catena::haptics

@@ -3,6 +3,7 @@
 #include "engine/flow/direction.h"
 #include "engine/flow/hermite.h"
 #include "engine/flow/zero.h"
+#include "haptics/constraints/streamline_cells.h"
 
 namespace catena::haptics {
 namespace {
@@ -42,7 +43,7 @@ class OnlineTick {
     if (stop == Stop::none)
       memory_.mode = Mode::following;
     else
-      state_.status = stop == Stop::outside ? Status::boundary : Status::critical;
+      stop_for(stop, seed);
   }
 
   void run() noexcept {
@@ -60,6 +61,14 @@ class OnlineTick {
     march();
   }
 
+  /// There is no direction at a place: says why.
+  void stop_for(Stop stop, const Vec3& place) noexcept {
+    if (stop == Stop::outside)
+      stop_link(state_, Status::boundary, spec_.field->why_outside(place, cursor_));
+    else
+      stop_link(state_, Status::critical, stop == Stop::incoherent ? Reason::incoherent : Reason::zero);
+  }
+
  private:
   // Eqs. 1-2 as printed
   void linear() noexcept {
@@ -69,10 +78,7 @@ class OnlineTick {
     Vec3 u;
     ++state_.evaluations;
     const Stop stop = flow::direction_at(flow_, next, memory_.t, cursor_, u);
-    if (stop != Stop::none) {
-      state_.status = stop == Stop::outside ? Status::boundary : Status::critical;
-      return;
-    }
+    if (stop != Stop::none) return stop_for(stop, next);
     state_.proxy = next;
     memory_.t = u;
   }
@@ -82,7 +88,7 @@ class OnlineTick {
     if (memory_.mode == Mode::following) return false;
     if (dot(x_ - memory_.hold, memory_.way) >= 0) {
       state_.proxy = memory_.hold;
-      state_.status = memory_.mode == Mode::at_zero ? Status::critical : Status::boundary;
+      stop_link(state_, memory_.mode == Mode::at_boundary ? Status::boundary : Status::critical, memory_.reason);
       return true;
     }
     state_.proxy = memory_.p_in;
@@ -103,8 +109,9 @@ class OnlineTick {
     }
     memory_.mode = mode;
     memory_.hold = place;
+    if (mode != Mode::at_boundary) memory_.reason = mode == Mode::at_zero ? Reason::zero : Reason::incoherent;
     state_.proxy = place;
-    state_.status = mode == Mode::at_zero ? Status::critical : Status::boundary;
+    stop_link(state_, mode == Mode::at_boundary ? Status::boundary : Status::critical, memory_.reason);
   }
 
   void remember_entry(double way) noexcept {
@@ -114,18 +121,25 @@ class OnlineTick {
     memory_.way = way * memory_.t;
   }
 
-  flow::Step try_step(double h) noexcept {
+  /// From the proxy over way * h; through cells h may become shorter.
+  flow::Step try_step(double way, double& h) noexcept {
+    if (flow_.line && flow_.field->is_grid()) {
+      if (!cells_) cells_.emplace(flow_, cursor_);
+      const flow::Step step = cells_->step(tableau_, state_.proxy, memory_.t, way, h);
+      state_.evaluations += step.evaluations;
+      return step;
+    }
     const auto rate = [this](const Vec3& q, Vec3& u) {
       const Stop stop = flow::direction_at(flow_, q, memory_.t, cursor_, u);
       return stop == Stop::none && dot(u, memory_.t) < 0.5 ? Stop::turned : stop;
     };
-    const flow::Step step = flow::runge_kutta_step(tableau_, state_.proxy, memory_.t, h, true, rate);
+    const flow::Step step = flow::runge_kutta_step(tableau_, state_.proxy, memory_.t, way * h, true, rate);
     state_.evaluations += step.evaluations;
     return step;
   }
 
   bool affordable() noexcept {
-    if (state_.evaluations + tableau_.stages <= kEvaluationCap) return true;
+    if (state_.evaluations + (cells_ ? 3 : 1) * tableau_.stages <= kEvaluationCap) return true;
     state_.status = Status::budget;
     return false;
   }
@@ -161,11 +175,11 @@ class OnlineTick {
       h = std::min(std::min(h, limit), kLongestStep * length_);
       if (bad > 0) h = std::min(h, halvings >= kHalvings ? bad : std::max(0.5 * bad, kSmallest * length_));
       if (!affordable()) return;
-      flow::Step step = try_step(way * h);
+      flow::Step step = try_step(way, h);
 
       if (step.stop == Stop::outside) {
         if (!has_entry_) remember_entry(way);
-        if (h <= kBoundary * length_) return hold_on_boundary(way);
+        if (h <= kBoundary * length_) return hold_on_boundary(way, h);
         limit = 0.5 * h;
         bad = h;
         bad_way = way;
@@ -174,8 +188,9 @@ class OnlineTick {
       }
       if (step.stop != Stop::none) {
         if (!has_entry_) remember_entry(way);
-        if (h <= 4 * kCapture * length_ && capture(way)) return;
-        if (h <= kCritical * length_) return hold_at(Mode::at_zero, state_.proxy, way);
+        const bool incoherent = step.stop == Stop::incoherent;
+        if (!incoherent && h <= 4 * kCapture * length_ && capture(way)) return;
+        if (h <= kCritical * length_) return hold_at(incoherent ? Mode::at_incoherent : Mode::at_zero, state_.proxy, way);
         limit = 0.5 * h;
         bad = h;
         bad_way = way;
@@ -200,7 +215,7 @@ class OnlineTick {
         const flow::Hermite piece(state_.proxy, step.displacement, way * h, memory_.t, step.last);
         const double theta = piece.foot(x_, way * h * g, way * h * g_end);
         h *= theta;
-        step = try_step(way * h);
+        step = try_step(way, h);
         if (step.stop != Stop::none) {
           limit = 0.5 * h;
           continue;
@@ -224,10 +239,13 @@ class OnlineTick {
     state_.status = Status::budget;
   }
 
-  void hold_on_boundary(double way) noexcept {
+  /// `step`: a length that leads out.
+  void hold_on_boundary(double way, double step) noexcept {
     memory_.p_in = state_.proxy;
     memory_.t_in = memory_.t;
     memory_.way = way * memory_.t;
+    memory_.reason = spec_.field->why_outside(state_.proxy + step * memory_.way, cursor_);
+    if (memory_.reason == Reason::none) memory_.reason = Reason::box;  // a stage beside the line lay outside
     hold_at(Mode::at_boundary, state_.proxy, way);
   }
 
@@ -250,6 +268,7 @@ class OnlineTick {
   OnlineMemory& memory_;
   field::Cursor& cursor_;
   double length_;
+  std::optional<CellSteps> cells_;
   bool has_entry_ = false;  ///< p_in, t_in and way are of this approach
 };
 
@@ -295,7 +314,7 @@ class OnlineStreamline final : public Constraint {
       ++state.evaluations;
       const Stop stop = flow::direction_at({spec_.field.get(), spec_.line, spec_.min_speed}, at, memory.t, scratch.cursors[0], u);
       if (stop != Stop::none) {
-        state.status = stop == Stop::outside ? Status::boundary : Status::critical;
+        OnlineTick(spec_, at, state, scratch).stop_for(stop, at);
         return false;
       }
       memory.t = u;

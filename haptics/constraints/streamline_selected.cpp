@@ -111,9 +111,10 @@ class SelectedStreamline final : public Constraint {
     Vec3 derivative;
     curve_->evaluate_in(k, s, state.proxy, derivative);
   }
-  void hold(SelectedMemory& memory, std::size_t k, double s, flow::End end, LinkState& state) const noexcept {
+  void hold(SelectedMemory& memory, std::size_t k, double s, const flow::LineEnd& end, LinkState& state) const noexcept {
     place(memory, k, s, state);
-    state.status = end == flow::End::boundary ? Status::boundary : end == flow::End::critical ? Status::critical : Status::ok;
+    const bool critical = end.end == flow::End::critical || end.end == flow::End::incoherent;
+    if (end.end == flow::End::boundary || critical) stop_link(state, critical ? Status::critical : Status::boundary, end.reason);
   }
   void out_of_budget(SelectedMemory& memory, std::size_t k, double s, LinkState& state) const noexcept {
     place(memory, k, s, state);

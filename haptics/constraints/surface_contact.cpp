@@ -95,7 +95,10 @@ bool Contact::begin() noexcept {
   // is the incoming probe on the level?
   LevelField near_probe(*spec_.surface, *spec_.level, probe_cursor_, state_.evaluations);
   fetch(near_probe, probe_, at_probe_);
-  if (!at_probe_.finite) return pass(Status::critical);
+  if (!at_probe_.finite) {
+    state_.reason = Reason::not_finite;
+    return pass(Status::critical);
+  }
   const double off = norm(at_probe_.p - probe_) + std::fabs(at_probe_.distance);
   if (at_probe_.plateau || !(off <= std::max(kTouch * length(), at_probe_.round_off))) return pass(Status::free);
   if (memory_.touching) return true;

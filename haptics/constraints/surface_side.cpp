@@ -18,6 +18,13 @@ bool is_behind(const Surface& surface, const SideRules& rules, const Vec3& probe
   return rules.free == FreeSide::above ? above < 0 : above > 0;
 }
 
+/// Passes the probe through where the field is not finite.
+void leave_broken(const Vec3& probe, LinkState& state) {
+  state.proxy = probe;
+  state.residual = 0;
+  stop_link(state, Status::critical, Reason::not_finite);
+}
+
 void leave(const Vec3& proxy, double residual, Status status, LinkState& state) {
   state.proxy = proxy;
   state.residual = residual;
@@ -39,7 +46,10 @@ void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, cons
 void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
   if (!hold.found || !is_finite(hold.proxy)) {
     memory.holding = memory.sheet = false;
-    leave(probe, 0, hold.found ? Status::critical : Status::no_surface, state);
+    if (hold.found)
+      leave_broken(probe, state);
+    else
+      leave(probe, 0, Status::no_surface, state);
     return;
   }
   if (rules.release > 0 && norm(probe - hold.proxy) >= rules.release) {
@@ -153,7 +163,10 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
 
   // nothing is known of the side here: what is held stays held, what is free stays free
   if (one_sided && !side.known && !memory.holding) {
-    leave(probe, 0, side.broken ? Status::critical : Status::free, state);
+    if (side.broken)
+      leave_broken(probe, state);
+    else
+      leave(probe, 0, Status::free, state);
     remember(probe, side, memory, state);
     return;
   }

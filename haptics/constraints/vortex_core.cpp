@@ -126,6 +126,13 @@ class Search {
     axis = way.axis;
     residual = left;
     status = how;
+    if (how == Status::boundary) state_.reason = where_the_axis_leads();
+  }
+
+  Reason where_the_axis_leads() noexcept {
+    const Vec3 way = axis * (1e-6 * length_);
+    const Reason ahead = spec_.field->why_outside(core + way, cursor_);
+    return ahead != Reason::none ? ahead : spec_.field->why_outside(core - way, cursor_);
   }
 
   Way look(const Vec3& place) noexcept {

@@ -43,14 +43,28 @@ class Trilinear {
       f[a] = at[a] - b[a];
     }
     R3 sum;
+    Real dyads[3][3] = {};
     for (int c = 0; c < 8; ++c) {
       const int x = b[0] + (c & 1), y = b[1] + (c >> 1 & 1), z = b[2] + (c >> 2);
       const float* v = &xyz_[((static_cast<std::size_t>(z) * size_.y + y) * size_.x + x) * 3];
       const Real w = (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
-      const R3 corner(v[0], v[1], v[2]);
-      sum = sum + (line_ && dot(corner, last) < 0 ? -w : w) * corner;
+      sum = sum + w * R3(v[0], v[1], v[2]);
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) dyads[i][k] += w * v[i] * v[k];
     }
-    return unit(sum);
+    return line_ ? leading(dyads, last) : unit(sum);
+  }
+  /// Power iteration from the last direction until it stands still.
+  static R3 leading(const Real (&m)[3][3], const R3& last) {
+    R3 u = unit(last);
+    for (int i = 0; i < 5000; ++i) {
+      const R3 next = unit(R3(m[0][0] * u.x + m[0][1] * u.y + m[0][2] * u.z, m[1][0] * u.x + m[1][1] * u.y + m[1][2] * u.z,
+                              m[2][0] * u.x + m[2][1] * u.y + m[2][2] * u.z));
+      const R3 change = next - u;
+      u = next;
+      if (dot(change, change) < 1e-38L) break;
+    }
+    return u;
   }
 
  private:

@@ -71,7 +71,7 @@ void pack_link(const LinkReport& link, std::uint64_t* words) noexcept {
   put(link.torque_nm);
   put(link.booked_j);
   put(link.leaving);
-  *put.at = from_parts(static_cast<std::uint32_t>(link.evaluations), link.status, link.active, link.left);
+  *put.at = from_parts(static_cast<std::uint32_t>(link.evaluations), link.status, link.active, link.left, link.reason);
 }
 
 bool unpack_link(const std::uint64_t* words, LinkReport& link) noexcept {
@@ -88,8 +88,9 @@ bool unpack_link(const std::uint64_t* words, LinkReport& link) noexcept {
   link.status = static_cast<exchange::Status>(byte_of(packed, 4));
   link.active = byte_of(packed, 5) == 1;
   link.left = byte_of(packed, 6) == 1;
+  link.reason = static_cast<Reason>(byte_of(packed, 7));
   return byte_of(packed, 4) <= static_cast<std::uint8_t>(exchange::Status::bad_probe) && byte_of(packed, 5) <= 1 &&
-         byte_of(packed, 6) <= 1 && byte_of(packed, 7) == 0;
+         byte_of(packed, 6) <= 1 && byte_of(packed, 7) <= static_cast<std::uint8_t>(Reason::not_finite);
 }
 
 void pack_widget(const WidgetReport& widget, std::uint64_t* words) noexcept {
@@ -243,7 +244,15 @@ std::string packed_link_difference(const std::string& link, std::uint64_t a, std
   if (byte_of(a, 4) != byte_of(b, 4)) return said(link + "_status", status(a), status(b));
   if (byte_of(a, 5) != byte_of(b, 5)) return said(link + "_active", std::to_string(byte_of(a, 5)), std::to_string(byte_of(b, 5)));
   if (byte_of(a, 6) != byte_of(b, 6)) return said(link + "_left", std::to_string(byte_of(a, 6)), std::to_string(byte_of(b, 6)));
+  const auto reason = [](std::uint64_t w) -> std::string { return reason_word(static_cast<Reason>(byte_of(w, 7))); };
+  if (byte_of(a, 7) != byte_of(b, 7) && byte_of(a, 7) != 0) return said(link + "_reason", reason(a), reason(b));
   return said(link + "_evaluations", evaluations(a), evaluations(b));
+}
+
+/// Recordings of before there were reasons say none.
+bool same_packed_link(std::uint64_t recorded, std::uint64_t replayed) {
+  const std::uint64_t all_but_reason = ~std::uint64_t{0} >> 8;
+  return recorded == replayed || (byte_of(recorded, 7) == 0 && ((recorded ^ replayed) & all_but_reason) == 0);
 }
 
 std::string packed_widget_difference(const std::string& widget, std::uint64_t a, std::uint64_t b) {
@@ -271,7 +280,7 @@ std::string first_difference(const Words& recorded, const Words& replayed, const
   for (std::size_t i = 0; i < link_names.size(); ++i)
     for (std::size_t w = 0; w < kLinkWords; ++w) {
       const std::size_t k = kTickWords + kLinkWords * i + w;
-      if (recorded[k] == replayed[k]) continue;
+      if (recorded[k] == replayed[k] || (w == kPackedLinkWord && same_packed_link(recorded[k], replayed[k]))) continue;
       if (w == kPackedLinkWord) return packed_link_difference(link_names[i], recorded[k], replayed[k]);
       return numbers(link_names[i] + "_" + std::string(kLinkNames[w]), k);
     }

@@ -8,7 +8,7 @@
 /// and for every link, from word 24 + 20 i on:
 ///   0-2    proxy          3-5  force share     6 residual   7 weight   8 stiffness   9 gap
 ///   10-13  orientation w x y z                 14-16 torque share      17 booked_j   18 leaving
-///   19     bytes: i32 evaluations, u8 status, u8 active, u8 left, u8 0
+///   19     bytes: i32 evaluations, u8 status, u8 active, u8 left, u8 reason (0 in recordings of before there were reasons)
 /// and for every widget, behind the links, 12 words:
 ///   0-2    points[0]      3-5  points[1]       6-9   orientation w x y z                  10  value
 ///   11     bytes: u32 revision, u8 mode, i8 handle, u8 held, u8 0

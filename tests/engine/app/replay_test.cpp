@@ -142,7 +142,8 @@ TEST(Replay, ColumnsAreThoseOfTheContract) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::string text = test::read_file(folder / "t.csv");
   EXPECT_EQ(text.substr(0, text.find('\n')),
-            "t,probe_x,probe_y,probe_z,a_x,a_y,a_z,a_active,a_status,a_evaluations,b_2_x,b_2_y,b_2_z,b_2_active,b_2_status,b_2_evaluations,"
+            "t,probe_x,probe_y,probe_z,a_x,a_y,a_z,a_active,a_status,a_evaluations,a_reason,b_2_x,b_2_y,b_2_z,b_2_active,b_2_status,b_2_"
+            "evaluations,b_2_reason,"
             "force_x,force_y,force_z");
   const std::string stats = test::read_file(folder / "s.out");
   for (const char* key : {"\"ticks\": 1", "\"tick_ns\"", "\"p50\"", "\"p99\"", "\"p999\"", "\"max\"", "\"evaluations\"", "\"state_hash\""})
@@ -336,7 +337,7 @@ TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
   // a path without orientations has the columns that it always had
   EXPECT_FALSE(plain.has("torque_x"));
   EXPECT_FALSE(plain.has("floor_qw"));
-  EXPECT_EQ(plain.header().size(), 4u + 2 * 6 + 3);
+  EXPECT_EQ(plain.header().size(), 4u + 2 * 7 + 3);
 }
 
 }  // namespace replay_test

@@ -146,10 +146,21 @@ TEST(AnalyticVectors, HillIsContinuousAcrossItsSphere) {
   }
 }
 
-TEST(AnalyticVectors, LineReferencesChooseTheSide) {
+TEST(AnalyticVectors, ReadAsLineFieldsTheyAreCoherent) {
   Cursor c;
-  const Vec3 reference(0, -1, 0);
-  EXPECT_EQ(vector("circle")->sample(Vec3(1, 0, 0), c, &reference).value, Vec3(-0.0, -1, -0.0));
+  const LineSample line = vector("circle")->sample_line(Vec3(2, 0, 0), c);
+  EXPECT_EQ(line.axis, Vec3(-0.0, 1, 0));
+  EXPECT_EQ(line.speed, 2);
+  EXPECT_EQ(line.coherence, 1);
+  EXPECT_EQ(vector("circle")->sample_line(Vec3(0.0), c).coherence, 0);
+}
+
+TEST(Analytic, SaysWhyAPlaceIsOutside) {
+  Cursor c;
+  const AnyField fibre = make_analytic("left-ventricle", {1, Vec3(1, 0, 0), "fibre"}).value();
+  EXPECT_EQ(fibre.vector->why_outside(Vec3(1.9, 1.9, 1.9), c), Reason::mask);
+  EXPECT_EQ(fibre.vector->why_outside(Vec3(std::nan("")), c), Reason::not_finite);
+  EXPECT_EQ(vector("circle")->why_outside(Vec3(50.0), c), Reason::none) << "a formula has no box";
 }
 
 TEST(Analytic, NothingBadComesOutOfBadPoints) {

@@ -66,14 +66,5 @@ TEST(VectorCell, InterpolatesEachComponent) {
   for (int a = 0; a < 3; ++a) EXPECT_NEAR(value[a], parts[a].value(f), 1e-15);
 }
 
-TEST(VectorCell, AlignmentUndoesSignFlips) {
-  VectorCell v;
-  for (int n = 0; n < 8; ++n) v.corner[n] = (n % 3 == 0 ? -1.0 : 1.0) * Vec3(1, 0.5, 0.25);
-  v.align(Vec3(1, 0, 0));
-  EXPECT_EQ(v.value(Vec3(0.3, 0.6, 0.9)), Vec3(1, 0.5, 0.25));
-  v.align(Vec3(-1, 0, 0));
-  EXPECT_EQ(v.value(Vec3(0.3, 0.6, 0.9)), -Vec3(1, 0.5, 0.25));
-}
-
 }  // namespace cell_test
 }  // namespace catena::field

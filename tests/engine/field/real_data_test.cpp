@@ -105,10 +105,10 @@ TEST(RealData, FibresHaveTheirHelixAngle) {
       const VectorCell cell = grid.cell(grid.base_of(fibre->mapping().index_from_world(p)), cf);
       if (!cell.valid) continue;
       const Vec3 around = direction(Vec3(-(p.y - centre.y), p.x - centre.x, 0));
-      const VectorSample f = fibre->sample(p, cf, &around);
+      const LineSample f = fibre->sample_line(p, cf);
       const ScalarSample t = depth->sample(p, cd);
       const Vec3 along = direction(cross(t.gradient, around));
-      const double angle = std::atan2(dot(f.value, along), dot(f.value, around)) * 180 / std::numbers::pi;
+      const double angle = std::atan(dot(f.axis, along) / dot(f.axis, around)) * 180 / std::numbers::pi;
       error += std::fabs(std::fabs(angle) - std::fabs(60 - 120 * t.value));
       ++compared;
     }

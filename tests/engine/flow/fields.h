@@ -16,11 +16,10 @@ class LambdaField final : public field::VectorField {
     field::Mapping mapping;
     set_domain("lambda", mapping, field::Box{Vec3(-2.0), Vec3(2.0)});
   }
-  field::VectorSample sample(const Vec3& p, field::Cursor&, const Vec3* reference) const noexcept override {
+  field::VectorSample sample(const Vec3& p, field::Cursor&) const noexcept override {
     field::VectorSample sample;
     sample.value = value_(p);
     sample.inside = !inside_ || inside_(p);
-    if (reference && dot(sample.value, *reference) < 0) sample.value = -sample.value;
     return sample;
   }
 

@@ -8,9 +8,9 @@ namespace modulated_friction_test {
 class Formula final : public field::VectorField {
  public:
   explicit Formula(std::function<Vec3(const Vec3&)> f) : f_(std::move(f)) { set_domain("formula", {}, {Vec3(-2.0), Vec3(2.0)}); }
-  field::VectorSample sample(const Vec3& p, field::Cursor&, const Vec3* reference) const noexcept override {
+  field::VectorSample sample(const Vec3& p, field::Cursor&) const noexcept override {
     const Vec3 v = f_(p);
-    return {reference && dot(v, *reference) < 0 ? -v : v, is_finite(v)};
+    return {v, is_finite(v)};
   }
 
  private:

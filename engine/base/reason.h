@@ -1,0 +1,22 @@
+/// Why a line ends or a link cannot go on, beside its status: what the field says at that place.
+#pragma once
+#include <cstdint>
+
+namespace catena {
+
+enum class Reason : std::uint8_t {
+  none,
+  zero,        ///< no direction: |v| (or the gradient) vanishes, or the speed is not above min_speed
+  incoherent,  ///< no single direction: the axes of a line field disagree there, or a normal jumps
+  mask,        ///< beside the valid voxels
+  box,         ///< beside the domain's box
+  not_finite,  ///< a value, or the probe, is not a finite number
+};
+
+/// NONE ZERO INCOHERENT MASK BOX NOT_FINITE
+inline const char* reason_word(Reason reason) {
+  constexpr const char* words[] = {"NONE", "ZERO", "INCOHERENT", "MASK", "BOX", "NOT_FINITE"};
+  return words[static_cast<int>(reason)];
+}
+
+}  // namespace catena

@@ -1,0 +1,41 @@
+/// The axis of a line field, in which v and -v mean the same (fibres, eigenvectors of a tensor). Vectors cannot be interpolated
+/// there: corners that agree but for their signs would cancel. What is interpolated are the dyads of the corners,
+///   M = sum over corners of w_c v_c v_c^T,
+/// whose leading eigenvector (eigenvalues l1 >= l2 >= l3) is the axis. It does not depend on any sign, nor on where a walk came from.
+///   speed = sqrt(l1), the magnitude;   coherence = (l1 - l2) / (l1 + l2 + l3): 1 where the corners agree, 0 where no axis is defined
+/// Computed with + - * / sqrt only, so that bits repeat; correct for magnitudes from 1e-300 to 1e300. Any thread; no allocation.
+#pragma once
+#include <array>
+
+#include "engine/base/vec.h"
+
+namespace catena::field {
+
+/// A symmetric 3x3 matrix.
+struct Dyad {
+  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+  void add(double weight, const Vec3& v) {
+    const Vec3 w = weight * v;
+    xx += w.x * v.x;
+    yy += w.y * v.y;
+    zz += w.z * v.z;
+    yz += w.y * v.z;
+    xz += w.x * v.z;
+    xy += w.x * v.y;
+  }
+};
+
+struct LineAxis {
+  Vec3 axis{0.0};  ///< unit, of either sign; zero where there is none
+  double speed = 0;
+  double coherence = 0;
+};
+
+/// The leading eigenvector of a matrix that is positive semidefinite but for rounding.
+LineAxis leading_axis(const Dyad& m) noexcept;
+
+/// The axis at the place f of a trilinear cell (corner order: cell.h; f may lie outside [0, 1]^3), turned to the side of the corner
+/// of the largest weight that moves. Not finite corners give no axis.
+LineAxis line_axis(const std::array<Vec3, 8>& corner, const Vec3& f) noexcept;
+
+}  // namespace catena::field
