@@ -18,6 +18,11 @@ double largest_root(double r) noexcept {
   return b > 1 ? b : 1;
 }
 
+/// v / scale, without overflow of the reciprocal.
+Vec3 scaled(const Vec3& v, double scale) noexcept {
+  return scale > 1e-290 && scale < 1e290 ? v * (1 / scale) : Vec3(v.x / scale, v.y / scale, v.z / scale);
+}
+
 }  // namespace
 
 LineAxis leading_axis(const Dyad& m) noexcept {
@@ -53,29 +58,41 @@ LineAxis leading_axis(const Dyad& m) noexcept {
   return out;
 }
 
-LineAxis line_axis(const std::array<Vec3, 8>& corner, const Vec3& f) noexcept {
-  double largest = 0;
-  for (const Vec3& v : corner) largest = std::max(largest, max_abs(v));
-  if (!(largest > 0) || !std::isfinite(largest)) return {};
+DyadCell::DyadCell(const std::array<Vec3, 8>& corner) noexcept {
+  for (const Vec3& v : corner) scale_ = std::max(scale_, max_abs(v));
+  if (!(scale_ > 0) || !std::isfinite(scale_)) {
+    scale_ = 0;
+    return;
+  }
+  for (std::size_t c = 0; c < 8; ++c) coefficients_[c].add(1, scaled(corner[c], scale_));
+  // from the corners to the coefficients: differences along x, y, z
+  for (const std::size_t bit : {1u, 2u, 4u})
+    for (std::size_t c = 0; c < 8; ++c)
+      if (c & bit) coefficients_[c].add(-1, coefficients_[c - bit]);
+}
 
-  // the dyads, scaled so that none over- or underflows
-  Dyad sum;
+LineAxis DyadCell::at(const Vec3& f) const noexcept {
+  if (!(scale_ > 0)) return {};
+  Dyad sum = coefficients_[0];
+  const double xy = f.x * f.y;
+  const double weights[8] = {1, f.x, f.y, xy, f.z, f.x * f.z, f.y * f.z, xy * f.z};
+  for (std::size_t c = 1; c < 8; ++c) sum.add(weights[c], coefficients_[c]);
+  LineAxis out = leading_axis(sum);
+  out.speed *= scale_;
+  return out;
+}
+
+LineAxis line_axis(const std::array<Vec3, 8>& corner, const Vec3& f) noexcept {
+  LineAxis out = DyadCell(corner).at(f);
   double heaviest = -1;
   Vec3 side(0.0);
-  const bool by_product = largest > 1e-290 && largest < 1e290;
-  const double scale = 1 / largest;
   for (std::size_t c = 0; c < 8; ++c) {
     const double weight = ((c & 1) ? f.x : 1 - f.x) * ((c & 2) ? f.y : 1 - f.y) * ((c & 4) ? f.z : 1 - f.z);
-    const Vec3& v = corner[c];
-    const Vec3 w = by_product ? v * scale : Vec3(v.x / largest, v.y / largest, v.z / largest);
-    sum.add(weight, w);
-    if (weight > heaviest && max_abs(w) > 0) {
+    if (weight > heaviest && max_abs(corner[c]) > 0) {
       heaviest = weight;
-      side = w;
+      side = direction(corner[c]);
     }
   }
-  LineAxis out = leading_axis(sum);
-  out.speed *= largest;
   if (dot(out.axis, side) < 0) out.axis = -out.axis;
   return out;
 }

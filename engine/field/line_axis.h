@@ -14,6 +14,14 @@ namespace catena::field {
 /// A symmetric 3x3 matrix.
 struct Dyad {
   double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+  void add(double weight, const Dyad& m) {
+    xx += weight * m.xx;
+    yy += weight * m.yy;
+    zz += weight * m.zz;
+    yz += weight * m.yz;
+    xz += weight * m.xz;
+    xy += weight * m.xy;
+  }
   void add(double weight, const Vec3& v) {
     const Vec3 w = weight * v;
     xx += w.x * v.x;
@@ -31,11 +39,24 @@ struct LineAxis {
   double coherence = 0;
 };
 
+/// The dyads of a cell as a trilinear polynomial, for many places in one cell.
+class DyadCell {
+ public:
+  DyadCell() = default;
+  explicit DyadCell(const std::array<Vec3, 8>& corner) noexcept;
+  /// As line_axis at f, but of either sign.
+  LineAxis at(const Vec3& f) const noexcept;
+
+ private:
+  std::array<Dyad, 8> coefficients_;  ///< of 1, x, y, xy, z, xz, yz, xyz
+  double scale_ = 0;                  ///< the largest component of a corner
+};
+
 /// The leading eigenvector of a matrix that is positive semidefinite but for rounding.
 LineAxis leading_axis(const Dyad& m) noexcept;
 
 /// The axis at the place f of a trilinear cell (corner order: cell.h; f may lie outside [0, 1]^3), turned to the side of the corner
-/// of the largest weight that moves. Not finite corners give no axis.
+/// of the largest weight that moves. Corners that are not finite give no axis.
 LineAxis line_axis(const std::array<Vec3, 8>& corner, const Vec3& f) noexcept;
 
 }  // namespace catena::field

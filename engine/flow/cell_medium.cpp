@@ -49,7 +49,7 @@ bool CellMedium::enter(const field::Index3& base) {
   lo_ = Vec3(base.x, base.y, base.z);
   for (int axis = 0; axis < 3; ++axis) hi_[axis] = std::min(lo_[axis] + 1, grid_->index_box().hi[axis]);
   if (flow_.line) {
-    polynomial_ = cell.corner;
+    dyads_ = field::DyadCell(cell.corner);
     return true;
   }
   const auto& c = cell.corner;
@@ -86,14 +86,17 @@ bool CellMedium::begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
 
 Stop CellMedium::seed(const Vec3& place, Vec3& u) {
   Vec3 q, w;
-  return begin(place, Vec3(0.0), 1, q) ? rate(q, w, u) : Stop::outside;
+  if (!begin(place, Vec3(0.0), 1, q)) return Stop::outside;
+  // of a line field the side of the nearest voxel
+  if (flow_.line) motion_ = field::line_axis(grid_->cell(base_, cursor()).corner, q - lo_).axis;
+  return rate(q, w, u);
 }
 
 Stop CellMedium::rate(const Vec3& q, Vec3& w, Vec3& u) const {
   const Vec3 f = q - lo_;
   const auto& c = polynomial_;
   if (flow_.line) {
-    const Stop stop = axis_direction(field::line_axis(c, f), flow_.min_speed, motion_, u);
+    const Stop stop = axis_direction(dyads_.at(f), flow_.min_speed, motion_, u);
     w = grid_->mapping().index_from_world_linear * u;
     return stop;
   }
