@@ -42,7 +42,7 @@ bool begin_links(SingleTick& tick) noexcept {
     LinkState& link = tick.links[i];
     tick.length = std::max(tick.length, tick.program.links[i].constraint->domain_length());
     link.dt_s = tick.dt_s;
-    link.evaluations = 0;
+    link.begin_tick();
     if (link.started) continue;
     begun = true;
     single.watches[i] = {};

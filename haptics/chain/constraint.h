@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <type_traits>
 
@@ -19,6 +20,10 @@ using exchange::kMaxLinks;
 using exchange::Status;
 
 inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, for every method
+/// All that takes time in a link's tick goes into one counter, in units of about 10 ns: a field fetch counts kFetchWork, and every
+/// evaluation of a cell's polynomial, node of a search, knot or face visited 1. A constraint stops before kWorkCap, with BUDGET, and
+/// goes on in the next tick.
+inline constexpr int kWorkCap = 4096, kFetchWork = 15;
 inline constexpr double kRearmPart = 0.1;   ///< of `release`: within it a link that has let go takes hold again
 
 /// What "bit for bit" means: tells -0 from 0, and a NaN is itself.
@@ -30,7 +35,10 @@ struct LinkState {
   double limit = 0;              ///< |probe - proxy| at which the link slips or lets go now, world units; 0: never
   double dt_s = 0;               ///< since the last tick; 0 in the first
   double stiffness_n_per_m = 0;  ///< k_i of this tick
-  std::int32_t evaluations = 0;  ///< of this tick
+  std::int32_t evaluations = 0;  ///< field fetches of this tick
+  std::int32_t steps = 0;        ///< other counted work of this tick
+  /// How far the proxy may slip in this tick beyond what its probe moves, world units: 0.05 max_force / (k_i S).
+  double slip = std::numeric_limits<double>::infinity();
   Status status = Status::ok;
   Reason reason = Reason::none;  ///< set together with a status of critical or boundary; means nothing beside another
   bool started = false;
@@ -42,6 +50,10 @@ struct LinkState {
   alignas(16) std::array<std::byte, 128> outer{};    ///< of a constraint that wraps another one, zero at start
 
   bool active() const { return on && !released; }
+  int work() const { return kFetchWork * evaluations + steps; }
+  /// Less than `reserve` units are left.
+  bool exhausted(int reserve = 0) const { return work() + reserve >= kWorkCap; }
+  void begin_tick() { evaluations = steps = 0; }
 };
 static_assert(std::is_trivially_copyable_v<LinkState>);
 

@@ -21,7 +21,7 @@ bool is_single(const Program& program) noexcept { return program.coupling.combin
 void switch_off(LinkState& link) noexcept {
   link.on = link.started = link.released = false;
   link.residual = link.limit = link.weight = 0;
-  link.evaluations = 0;
+  link.begin_tick();
   link.status = Status::free;
 }
 
@@ -32,7 +32,7 @@ double capped(double stiffness, const Limits& limits) noexcept {
 // One link that is on: its start, its advance, its weight (the ramp after a switch).
 void advance_link(const Link& spec, const Limits& limits, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
                   LinkState& link, LinkScratch& scratch) noexcept {
-  link.evaluations = 0;
+  link.begin_tick();
   link.dt_s = dt;
   if (!link.started) {
     begin_link(spec, incoming, first_tick, link, scratch);
@@ -158,7 +158,7 @@ void report(const Program& program, const ChainState& state, exchange::HapticSta
 void hold_all(const Program& program, double t_s, ChainState& state, exchange::HapticState& out) noexcept {
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     state.links[i].status = Status::bad_probe;
-    state.links[i].evaluations = 0;
+    state.links[i].begin_tick();
     out.links[i].force_n = out.links[i].torque_nm = Vec3(0.0);
     out.links[i].gap = out.links[i].leaving = 0;
     out.links[i].left = state.indications[i].left;

@@ -227,19 +227,19 @@ class Isosurface final : public Constraint {
     IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
     memory = IsosurfaceMemory{};
     const SideRules rules = rules_.at(probe, state, scratch);
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), frames_, memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
     start_on(surface, rules, probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
     const SideRules rules = rules_.now(state, scratch);
-    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state.evaluations), frames_, memory);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
-    const LevelPoint here = LevelField(*field_, level_, scratch.cursors[0], state.evaluations).at(at);
+    const LevelPoint here = LevelField(*field_, level_, scratch.cursors[0], state).at(at);
     if (!here.valid || here.plateau) {
       state.status = here.finite && !here.valid ? Status::boundary : Status::critical;
       return false;

@@ -20,12 +20,13 @@ struct LevelPoint {
 
 class LevelField {
  public:
-  LevelField(const field::ScalarField& field, double level, field::Cursor& cursor, std::int32_t& evaluations)
-      : field_(field), grid_(field.grid()), level_(level), cursor_(cursor), evaluations_(evaluations) {}
+  LevelField(const field::ScalarField& field, double level, field::Cursor& cursor, LinkState& state)
+      : field_(field), grid_(field.grid()), level_(level), cursor_(cursor), state_(state) {}
 
   /// One evaluation. Costs nothing and is not valid when the budget is spent.
   LevelPoint at(const Vec3& world) noexcept;
-  bool spent(int reserve = 0) const noexcept { return evaluations_ + reserve >= kEvaluationCap; }
+  /// Fewer than `reserve` fetches are left, or no work.
+  bool spent(int reserve = 0) const noexcept { return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(); }
 
   /// The nearest point of a grid's box, in index space; a formula has no walls.
   Vec3 clamped(const Vec3& world) const noexcept {
@@ -42,7 +43,8 @@ class LevelField {
   const field::ScalarField& field() const noexcept { return field_; }
   const field::ScalarGrid* grid() const noexcept { return grid_; }
   field::Cursor& cursor() noexcept { return cursor_; }
-  std::int32_t& evaluations() noexcept { return evaluations_; }
+  std::int32_t& evaluations() noexcept { return state_.evaluations; }
+  std::int32_t& steps() noexcept { return state_.steps; }
 
  private:
   Vec3 nearest(const Vec3& index) const noexcept;
@@ -50,7 +52,7 @@ class LevelField {
   const field::ScalarGrid* grid_;  ///< the same, or none
   double level_;
   field::Cursor& cursor_;
-  std::int32_t& evaluations_;
+  LinkState& state_;
 };
 
 /// An orthonormal pair across the unit vector n; the same bits for the same n.

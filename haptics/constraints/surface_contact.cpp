@@ -93,7 +93,7 @@ bool Contact::begin() noexcept {
   }
 
   // is the incoming probe on the level?
-  LevelField near_probe(*spec_.surface, *spec_.level, probe_cursor_, state_.evaluations);
+  LevelField near_probe(*spec_.surface, *spec_.level, probe_cursor_, state_);
   fetch(near_probe, probe_, at_probe_);
   if (!at_probe_.finite) {
     state_.reason = Reason::not_finite;

@@ -48,7 +48,7 @@ class Contact {
         probe_(probe),
         memory_(memory),
         state_(state),
-        field_(spec.surface.get(), spec.level.value_or(0), scratch.cursors[0], state.evaluations),
+        field_(spec.surface.get(), spec.level.value_or(0), scratch.cursors[0], state),
         probe_cursor_(scratch.cursors[2]) {}
 
   /// False: nothing is left to do in this tick, the state is complete.
@@ -61,7 +61,7 @@ class Contact {
   /// True where the proxy is not what the last tick left: what is known of its place is void.
   bool placed_anew() const noexcept { return placed_; }
   bool has_normal() const noexcept { return spec_.surface != nullptr; }
-  bool spent(int reserve) const noexcept { return state_.evaluations + reserve >= kEvaluationCap; }
+  bool spent(int reserve) const noexcept { return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(); }
   double length() const noexcept { return spec_.length; }
 
   /// The surface near `wanted`, brought back to the level if asked to. Not valid: there is none.
@@ -82,8 +82,8 @@ class Contact {
   /// A level field that may be absent.
   class Ground {
    public:
-    Ground(const field::ScalarField* field, double level, field::Cursor& cursor, std::int32_t& evaluations) {
-      if (field != nullptr) level_.emplace(*field, level, cursor, evaluations);
+    Ground(const field::ScalarField* field, double level, field::Cursor& cursor, LinkState& state) {
+      if (field != nullptr) level_.emplace(*field, level, cursor, state);
     }
     LevelField* operator->() noexcept { return &*level_; }
     LevelField& operator*() noexcept { return *level_; }

@@ -73,7 +73,7 @@ TEST(Primitive, OfAnIsosurfaceIsTheTangentPlaneByOneFetch) {
       EXPECT_LE(norm(plane.origin - n), tolerance);
       EXPECT_LE(norm(plane.axis - n), 20 * tolerance);
       EXPECT_EQ(rig.state.evaluations, before + 1);
-      rig.state.evaluations = 0;
+      rig.state.begin_tick();
     }
     rig.state.evaluations = kEvaluationCap;
     Primitive plane;

@@ -84,7 +84,7 @@ inline ConstraintPtr isosurface(field::ScalarFieldPtr f, double level, const std
 struct Rig {
   explicit Rig(ConstraintPtr c) : constraint(std::move(c)) {}
   const LinkState& tick(const Vec3& probe) {
-    state.evaluations = 0;
+    state.begin_tick();
     if (!state.started) {
       state.on = state.started = true;
       constraint->start(probe, state, scratch);

@@ -52,7 +52,7 @@ struct Hand {
 
   explicit Hand(std::shared_ptr<const haptics::Constraint> c) : constraint(std::move(c)) {}
   const Vec3& to(const Vec3& probe) {
-    state.evaluations = 0;
+    state.begin_tick();
     if (!started) constraint->start(probe, state, scratch);
     started = true;
     constraint->advance(probe, state, scratch);
