@@ -20,11 +20,12 @@ using exchange::kMaxLinks;
 using exchange::Status;
 
 inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, for every method
-/// All that takes time in a link's tick goes into one counter, in units of about 10 ns: a field fetch counts kFetchWork, and every
-/// evaluation of a cell's polynomial, node of a search, knot or face visited 1. A constraint stops before kWorkCap, with BUDGET, and
-/// goes on in the next tick.
-inline constexpr int kWorkCap = 4096, kFetchWork = 15;
-inline constexpr double kRearmPart = 0.1;   ///< of `release`: within it a link that has let go takes hold again
+/// All that takes time in a link's tick goes into one counter, in units of about 15 ns: a field fetch counts kFetchWork (of a cell that
+/// may lie anywhere in a grid, kCellWork more), and every evaluation of a cell's polynomial, node of a search, knot or face that is
+/// visited 1. A constraint stops before kWorkCap, with BUDGET, and goes on in the next tick.
+inline constexpr int kWorkCap = 2048, kFetchWork = 7, kCellWork = 8;
+inline constexpr double kSlipPart = 0.05;  ///< of max_force: what a proxy's slip may add to the force in one tick
+inline constexpr double kRearmPart = 0.1;  ///< of `release`: within it a link that has let go takes hold again
 
 /// What "bit for bit" means: tells -0 from 0, and a NaN is itself.
 inline bool same_bits(const Vec3& a, const Vec3& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }

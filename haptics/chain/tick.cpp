@@ -30,8 +30,8 @@ double capped(double stiffness, const Limits& limits) noexcept {
 }
 
 // One link that is on: its start, its advance, its weight (the ramp after a switch).
-void advance_link(const Link& spec, const Limits& limits, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
-                  LinkState& link, LinkScratch& scratch) noexcept {
+void advance_link(const Link& spec, const Limits& limits, double metres_per_unit, const Vec3& incoming, bool first_tick, double dt,
+                  double ramp_step, LinkState& link, LinkScratch& scratch) noexcept {
   link.begin_tick();
   link.dt_s = dt;
   if (!link.started) {
@@ -40,6 +40,8 @@ void advance_link(const Link& spec, const Limits& limits, const Vec3& incoming, 
     link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness, link.evaluations);
   }
   link.stiffness_n_per_m = capped(link.stiffness_n_per_m, limits);
+  const double newtons_per_unit = link.stiffness_n_per_m * metres_per_unit;
+  link.slip = newtons_per_unit > 0 ? kSlipPart * limits.max_force_n / newtons_per_unit : std::numeric_limits<double>::infinity();
   spec.constraint->advance(incoming, link, scratch);
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
@@ -87,7 +89,8 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
   for (int k = 0; k < order.count; ++k) {
     const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
     LinkState& link = state.links[i];
-    advance_link(program.links[i], program.limits, incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
+    advance_link(program.links[i], program.limits, program.metres_per_unit, incoming, !state.has_probe, dt, ramp_step, link,
+                 scratch.links[i]);
     out.gaps[i] = link.proxy - incoming;
     out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
     out.force_n += out.shares_n[i];

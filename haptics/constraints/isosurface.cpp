@@ -1,5 +1,7 @@
 #include "haptics/constraints/isosurface.h"
 
+#include <limits>
+
 #include "haptics/constraints/isosurface_analytic.h"
 #include "haptics/constraints/isosurface_cell_walk.h"
 #include "haptics/constraints/isosurface_descent.h"
@@ -11,7 +13,7 @@ namespace catena::haptics {
 namespace {
 
 constexpr double kSearchRadius = 2;  // of L
-constexpr int kFirstWalk = 32;       // fetches before a walk asks for the coarse method
+constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no hand's
 constexpr int kQuick = 200;          // fetches before a formula asks for the descent
 constexpr int kQuickRefusals = 8;    // in a row, likewise
 constexpr int kSight = 16;           // fetches on the line of sight
@@ -25,6 +27,8 @@ struct IsosurfaceMemory {
   Curvature curvature;  // formulas
   CellPoint cell;       // grids: the point held
   Vec3 normal;
+  Scan scan;
+  double owed;  // of the way that a walk out of budget was allowed and has not gone
 };
 
 class LevelSurface final : public Surface {
@@ -42,7 +46,7 @@ class LevelSurface final : public Surface {
   Hold place(const Vec3& probe) noexcept override {
     const LevelPoint start = look(probe);
     const Reached reached = project(start, kSearchRadius * field_.length());
-    if (!reached.found) return {};
+    if (!reached.found) return {false, probe, 0, memory_.scan.open ? Status::budget : Status::no_surface, Reason::none};
     const Hold hold = settle(reached.at, probe, Curvature{});
     // further away than the field says: something nearer may be in sight
     const bool far = norm(probe - hold.proxy) > 1.05 * std::fabs(start.distance);
@@ -50,19 +54,8 @@ class LevelSurface final : public Surface {
   }
 
   Hold slide(const Vec3& probe) noexcept override {
-    if (!field_.grid()) return settle_formula(memory_.at, probe, memory_.curvature);
-    const Vec3 p = world_of(*field_.grid(), memory_.cell);
-    if (memory_.side.fresh && norm(probe - memory_.side.probe) > 2 * field_.voxel()) {
-      const LevelPoint start = field_.at(p);
-      if (start.valid && !start.plateau) return settle_grid(memory_.cell, start, probe);
-    }
-    CellPoint cell = memory_.cell;
-    WalkResult walk = walk_cells(field_, frames_, probe, kFirstWalk, cell);
-    if (walk.status == Status::budget && !field_.spent()) {
-      const LevelPoint start = field_.at(world_of(*field_.grid(), cell));
-      return settle_grid(cell, start, probe);
-    }
-    return hold_cell(cell, walk);
+    const double travel = memory_.side.fresh ? norm(probe - memory_.side.probe) + field_.slip() : std::numeric_limits<double>::infinity();
+    return field_.grid() ? slide_grid(probe, travel) : slide_formula(probe, travel);
   }
 
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
@@ -88,29 +81,95 @@ class LevelSurface final : public Surface {
  private:
   LevelPoint look(const Vec3& probe) noexcept { return have_here_ && same_bits(asked_, probe) ? here_ : field_.at(probe); }
 
+  /// The closest point wins over the limit where it is the closest point itself that has moved so far, as deep inside a concave
+  /// surface: what is met now was no nearer before than what is held.
+  bool has_moved(const Vec3& held, const Vec3& met, double travel) const noexcept {
+    const Vec3& before = memory_.side.probe;
+    return norm(before - met) >= norm(before - held) - travel;
+  }
+
+  Hold slide_grid(const Vec3& probe, double travel) noexcept {
+    CellPoint cell = memory_.cell;
+    const Vec3 held = world_of(*field_.grid(), cell);
+    // a probe that was thrown goes far along the surface first as if it were smooth
+    if (memory_.side.fresh && norm(probe - memory_.side.probe) > kThrown * field_.length()) {
+      const LevelPoint start = field_.at(held);
+      if (start.valid && !start.plateau) cell = leap(cell, start, probe);
+    }
+    TravelLimit limit{held, travel + memory_.owed, false, {}, Vec3(0.0)};
+    WalkResult walk = walk_cells(field_, frames_, probe, kEvaluationCap, cell, &limit);
+    const Vec3 met = world_of(*field_.grid(), cell);
+    memory_.owed = 0;
+    if (!limit.passed_by(met)) {
+      if (walk.status == Status::budget && std::isfinite(limit.room)) memory_.owed = limit.room - norm(met - held);
+    } else if (!walk.smooth || walk.status == Status::budget || !has_moved(held, met, travel)) {
+      cell = limit.last;
+      walk = {Status::budget, Reason::none, 0, limit.normal, true};
+    }
+    return hold_cell(cell, walk);
+  }
+
+  Hold slide_formula(const Vec3& probe, double travel) noexcept {
+    const LevelPoint from = memory_.at;
+    const Curvature curvature = memory_.curvature;
+    const Hold hold = settle_formula(from, probe, curvature, false);
+    if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy, travel)) return hold;
+
+    // so far down the surface as it may go
+    const Vec3 e = probe - from.p, way = direction(e - from.n * dot(e, from.n));
+    LevelPoint at = from;
+    for (double step = travel; step > 0.1 * travel && !field_.spent(kForLevel); step *= 0.5) {
+      const LevelPoint ahead = relevelled(field_.at(from.p + way * step));
+      if (!usable(ahead) || norm(ahead.p - from.p) > travel || !(norm(probe - ahead.p) < norm(e))) continue;
+      at = ahead;
+      break;
+    }
+    memory_.at = at;
+    memory_.curvature = curvature;
+    memory_.normal = at.n;
+    return {true, at.p, std::fabs(at.distance), Status::budget, Reason::none};
+  }
+
   /// From a point on the level to the closest point.
   Hold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
-    if (!field_.grid()) return settle_formula(start, probe, curvature);
+    if (!field_.grid()) return settle_formula(start, probe, curvature, true);
     return settle_grid(cell_point(*field_.grid(), start.p), start, probe);
   }
 
-  /// From anywhere to the level, without an earlier point.
+  /// From anywhere to the level, without an earlier point. A scan that runs out of budget stays open in the memory.
   Reached project(const LevelPoint& start, double radius) noexcept {
-    Reached reached = reach_along_gradient(field_, start, Vec3(0.0), radius);
-    if (reached.found) return reached;
-    if (!field_.grid()) {
-      const Reached near = reach_by_scan(field_, start, true);
-      if (near.found) return near;
+    Scan& scan = memory_.scan;
+    const bool goes_on = scan.open && norm(scan.probe - start.p) <= kThrown * field_.length();
+    LevelPoint centre = start;
+    if (!goes_on) {
+      const Reached reached = reach_along_gradient(field_, start, Vec3(0.0), radius);
+      if (reached.found) return closed(reached);
+      if (!field_.grid()) {
+        Scan near{};
+        const Reached by_axes = reach_by_scan(field_, start, true, near);
+        if (by_axes.found) return by_axes;
+      }
+      // where the march ended it may be much closer to the level
+      const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
+      if (closer) centre = reached.at;
+      scan = Scan{};
+      scan.probe = start.p;
+      scan.centre = centre.p;
+    } else if (!same_bits(scan.centre, start.p)) {
+      centre = field_.at(scan.centre);
     }
-    // where the march ended it may be much closer to the level
-    const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
-    reached = reach_by_scan(field_, closer ? reached.at : start);
-    if (!reached.found && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
+    Reached reached = reach_by_scan(field_, centre, false, scan);
+    if (!reached.found && !scan.open && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
+    return reached.found ? closed(reached) : reached;
+  }
+  Reached closed(const Reached& reached) noexcept {
+    memory_.scan = Scan{};
     return reached;
   }
 
-  /// The quick iteration; then down the surface from the better end of it; where that is stuck, from a fresh projection.
-  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature) noexcept {
+  /// The quick iteration; then down the surface from the better end of it; where that is stuck and any sheet will do, from a fresh
+  /// projection.
+  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
     LevelPoint best = at;
     if (closest_point(field_, probe, goal(kQuick), at, curvature) == Closest::converged)
       return hold_formula(at, Closest::converged, probe, curvature);
@@ -118,7 +177,7 @@ class LevelSurface final : public Surface {
     if (nearer(best, at, probe)) at = usable(best) ? best : relevelled(best);
     Closest how = Closest::stuck;
     if (usable(at)) how = descend(field_, probe, goal(kEvaluationCap), at, curvature);
-    if (how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
+    if (!any_sheet || how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
 
     const Reached fresh = project(field_.at(probe), kSearchRadius * field_.length());
     if (!fresh.found) return hold_formula(at, how, probe, curvature);
@@ -153,16 +212,19 @@ class LevelSurface final : public Surface {
 
   Hold hold_formula(LevelPoint at, Closest how, const Vec3& probe, const Curvature& curvature) noexcept {
     Status status = Status::ok;
+    Reason reason = Reason::none;
     if (how != Closest::converged) {
       at = relevelled(at);
       // not there yet is no reason to give up: only where the surface itself does
       const bool idle = how == Closest::stuck || norm(at.p - memory_.at.p) <= 1e-12 * field_.length();
-      status = degenerate(at) || (idle && usable(at) && kink(at, probe)) ? Status::critical : Status::budget;
+      const bool broken = degenerate(at);
+      status = broken || (idle && usable(at) && kink(at, probe)) ? Status::critical : Status::budget;
+      reason = !broken ? Reason::incoherent : at.finite ? Reason::zero : Reason::not_finite;
     }
     memory_.at = at;
     memory_.curvature = curvature;
     memory_.normal = at.n;
-    return {true, at.p, std::fabs(at.distance), status};
+    return {true, at.p, std::fabs(at.distance), status, reason};
   }
 
   ClosestGoal goal(int most) noexcept {
@@ -189,8 +251,8 @@ class LevelSurface final : public Surface {
     return reached.found ? reached.at : a;
   }
 
-  /// Far along the surface first as if it were smooth, then exactly, cell by cell.
-  Hold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
+  /// Towards the closest point as if the surface were smooth; `cell` where that leads to nothing nearer.
+  CellPoint leap(const CellPoint& cell, const LevelPoint& start, const Vec3& probe) noexcept {
     const double voxel = field_.voxel();
     const Vec3 e = probe - start.p;
     if (start.valid && !start.plateau && norm(e - start.n * dot(start.n, e)) > 2 * voxel) {
@@ -198,8 +260,14 @@ class LevelSurface final : public Surface {
       Curvature curvature;
       closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
       const Reached reached = reach_along_gradient(field_, at, at.n, 2 * voxel);
-      if (reached.found && reached.at.valid && norm(probe - reached.at.p) < norm(e)) cell = cell_point(*field_.grid(), reached.at.p);
+      if (reached.found && reached.at.valid && norm(probe - reached.at.p) < norm(e)) return cell_point(*field_.grid(), reached.at.p);
     }
+    return cell;
+  }
+
+  /// Far along the surface first, then exactly, cell by cell.
+  Hold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
+    cell = leap(cell, start, probe);
     const WalkResult walk = walk_cells(field_, frames_, probe, kEvaluationCap, cell);
     return hold_cell(cell, walk);
   }
@@ -207,7 +275,7 @@ class LevelSurface final : public Surface {
   Hold hold_cell(const CellPoint& cell, const WalkResult& walk) noexcept {
     memory_.cell = cell;
     memory_.normal = walk.normal;
-    return {true, world_of(*field_.grid(), cell), walk.residual, walk.status};
+    return {true, world_of(*field_.grid(), cell), walk.residual, walk.status, walk.reason};
   }
 
   LevelField field_;
@@ -241,7 +309,10 @@ class Isosurface final : public Constraint {
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     const LevelPoint here = LevelField(*field_, level_, scratch.cursors[0], state).at(at);
     if (!here.valid || here.plateau) {
-      state.status = here.finite && !here.valid ? Status::boundary : Status::critical;
+      if (here.finite && !here.valid)
+        stop_link(state, Status::boundary, Reason::mask);
+      else
+        stop_link(state, Status::critical, here.finite ? Reason::zero : Reason::not_finite);
       return false;
     }
     out = {Primitive::Kind::plane, here.p - here.n * here.distance, here.n};

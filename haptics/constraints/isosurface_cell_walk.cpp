@@ -8,7 +8,12 @@ constexpr double kConverged = 1e-10;  // of L: within a piece
 constexpr double kStill = 1e-13;      // of L: a shorter move is none
 constexpr double kAccepted = 1e-6;    // of L: what may remain where no piece moves any more
 constexpr double kFaceSlack = 1e-12;  // voxels: closer to a face than this is on it
+constexpr double kNearFace = 1e-10;   // voxels: a step out that cannot be shortened into the cell starts on the face
 constexpr int kWalkRounds = 600;
+constexpr double kFarAway = 4;        // voxels
+constexpr double kFlat = 0.25;        // voxels: so far off the level a straight way may end
+constexpr int kHalvings = 24;         // to find where a way passes its limit
+constexpr double kSmoothTurn = 0.87;  // cosine: a larger turn of the normal from step to step is no smooth surface
 
 bool is_flat(const field::Box& box, int a) { return !(box.hi[a] > box.lo[a]); }
 
@@ -17,31 +22,42 @@ class Cells {
  public:
   Cells(LevelField& field, int most) : field_(field), grid_(*field.grid()), last_(field.evaluations() + most) {}
 
-  /// nullptr: a wall, or the budget is spent.
+  /// nullptr: a wall, of which `wall` then says the kind, or the budget is spent.
   const field::ScalarCell* find(const field::Index3& base) {
+    ++field_.steps();
     const field::Box& box = grid_.index_box();
     const std::array<std::int32_t, 3> at{base.x, base.y, base.z};
     for (int a = 0; a < 3; ++a) {
       const double last = is_flat(box, a) ? box.lo[a] : box.hi[a] - 1;
       const double b = at[static_cast<std::size_t>(a)];
-      if (b < box.lo[a] || b > last) return nullptr;
+      if (b < box.lo[a] || b > last) {
+        wall = Reason::box;
+        return nullptr;
+      }
     }
     for (std::size_t k = 0; k < kCells && k < count_; ++k)
-      if (slot(k)->base == base) return slot(k)->valid ? slot(k) : nullptr;
+      if (slot(k)->base == base) return usable(slot(k));
     if (field_.spent() || field_.evaluations() >= last_) {
       spent_ = true;
       return nullptr;
     }
-    ++field_.evaluations();
+    field_.count_fetch();
     field::ScalarCell& cell = *new (slot(count_ % kCells)) field::ScalarCell(grid_.cell(base, field_.cursor()));
     ++count_;
     cell.base = base;
-    for (const double c : cell.corner) cell.valid = cell.valid && std::isfinite(c);
-    return cell.valid ? &cell : nullptr;
+    return usable(&cell);
   }
   bool spent() const { return spent_; }
+  Reason wall = Reason::none;
 
  private:
+  const field::ScalarCell* usable(const field::ScalarCell* cell) {
+    bool finite = true;
+    for (const double c : cell->corner) finite = finite && std::isfinite(c);
+    if (cell->valid && finite) return cell;
+    wall = cell->valid ? Reason::not_finite : Reason::mask;
+    return nullptr;
+  }
   LevelField& field_;
   const field::ScalarGrid& grid_;
   int last_;
@@ -102,23 +118,25 @@ void for_subsets(unsigned mask, const Visit& visit) {
 enum class Followed { converged, landed, blocked };
 
 /// Moves f within one piece towards the closest point, until it converges or meets a face of the cell. `s` and `t` are the sample
-/// and the tangential part at f, on the way in, and on the way out where it converged.
-Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& probe, double length, double voxel, Vec3& f, PieceSample& s,
-                Vec3& t) {
+/// and the tangential part at f, on the way in, and on the way out where it converged. Steepest: by t, not by Newton's step, which
+/// on a folded piece may lead out of the cell where t leads in.
+Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, bool steepest, Vec3& f, PieceSample& s, Vec3& t) {
+  const field::Mapping& mapping = field.grid()->mapping();
+  const double length = field.length(), voxel = field.voxel();
   const auto gain = [&](const Vec3& from, const Vec3& to) {
     const Vec3 dp = mapping.world_from_index_linear * (to - from);
     return dot(dp, probe - piece.world(from)) - 0.5 * dot(dp, dp);
   };
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 40 && !field.exhausted(); ++i) {
     if (!s.usable) return Followed::blocked;
     const double size = norm(t);
     if (size <= std::max(kConverged * length, 1e-15 * norm(probe - piece.world(f)))) return Followed::converged;
-    Vec3 u = piece.newton(f, probe, s, t);
+    Vec3 u = steepest ? t : piece.newton(f, probe, s, t);
     const double wanted = norm(u);
     if (wanted > 2 * voxel) u = u * (2 * voxel / wanted);
 
     bool accepted = false;
-    for (int trial = 0; trial < 30 && !accepted; ++trial, u = u * 0.35) {
+    for (int trial = 0; trial < 30 && !accepted && !field.exhausted(); ++trial, u = u * 0.35) {
       Vec3 g;
       int axis;
       if (!piece.retract(f, u, s, g)) continue;
@@ -135,15 +153,16 @@ Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& p
 
       // an inner end of the bracket: the first halving that stays in the cell
       double low = 0, high = 1, v_low = 0, v_high = piece.outside(g, axis);
-      Vec3 outer = g;
+      Vec3 outer = g, within = f;
       bool inner = false;
-      for (double alpha = 0.5; alpha > 1e-14; alpha *= 0.5) {
-        if (!piece.retract(f, u * alpha, s, g)) break;
+      for (double alpha = 0.5; alpha > 1e-14 && !field.exhausted(); alpha *= 0.5) {
+        if (!piece.retract(f, u * alpha, s, g)) continue;  // a fold: nearer by there is none
         int worst;
         const double v = piece.outside(g, worst);
         if (v <= 0) {
           low = alpha;
           v_low = v;
+          within = g;
           inner = true;
           break;
         }
@@ -155,25 +174,30 @@ Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& p
       if (!inner) {
         // a rounding away from a face, but not on it
         const double face = outer[axis] < 0.5 ? 0.0 : 1.0;
-        if (f[axis] == face || std::fabs(f[axis] - face) > kFaceSlack) return Followed::blocked;
+        if (f[axis] == face || std::fabs(f[axis] - face) > kNearFace) return Followed::blocked;
         f[axis] = face;
         return Followed::landed;
       }
 
       // land on the face: Illinois on how far the point is outside
       double a = v_low, b = v_high;
-      for (int k = 0; k < 80 && high - low > 1e-16 * high && v_high > 1e-15; ++k) {
+      for (int k = 0; k < 80 && high - low > 1e-16 * high && v_high > 1e-15 && !field.exhausted(); ++k) {
         double w = k % 4 == 3 || !(a < 0) ? 0.5 : a / (a - b);
         if (!(w > 0 && w < 1)) w = 0.5;
         const double mid = low + (high - low) * w;
         if (!(mid > low && mid < high) || !piece.retract(f, u * mid, s, g)) break;
         const double v = piece.outside(g, axis);
         if (v <= 0)
-          low = mid, a = v, b *= 0.5;
+          low = mid, within = g, a = v, b *= 0.5;
         else
           high = mid, b = v_high = v, outer = g, a *= 0.5;
       }
-      if (v_high > 1e-9) continue;
+      if (v_high > 1e-9) {
+        // a fold between: as far as the cell's level goes
+        accepted = gain(f, within) >= 1e-4 * low * dot(t, u);
+        if (accepted) f = within;
+        continue;
+      }
       piece.outside(outer, axis);
       for (int k = 0; k < 3; ++k) outer[k] = std::min(std::max(outer[k], 0.0), 1.0);
       outer[axis] = outer[axis] < 0.5 ? 0.0 : 1.0;
@@ -186,6 +210,53 @@ Followed follow(const Piece& piece, const field::Mapping& mapping, const Vec3& p
     t = piece.tangential(f, probe, s);
   }
   return Followed::converged;
+}
+
+/// Far from the probe, straight along t to the face where it leaves the cell, and on that face back to the level. False: the level
+/// bends too much for that, or the way is no way down.
+bool cross_cell(const LevelField& field, const PieceFrames& frames, const Piece& piece, const field::ScalarCell& cell, unsigned held,
+                const Vec3& probe, const PieceSample& s, const Vec3& t, Vec3& f) {
+  const field::Mapping& mapping = field.grid()->mapping();
+  const Vec3 d = piece.frame().index_step(mapping, t);
+  int axis = -1;
+  double part = 1;
+  for (int a = 0; a < 3; ++a) {
+    const double way = d[a] > 0 ? (1 - f[a]) / d[a] : d[a] < 0 ? -f[a] / d[a] : 2;
+    if (way < part) part = way, axis = a;
+  }
+  if (axis < 0) return false;
+  Vec3 exit = f + d * part;
+  for (int a = 0; a < 3; ++a) exit[a] = std::min(std::max(exit[a], 0.0), 1.0);
+  exit[axis] = d[axis] > 0 ? 1 : 0;
+
+  const Piece face(mapping, cell, field.level(), frames.of[held | 1u << axis], field.steps());
+  const PieceSample there = face.sample(exit);
+  Vec3 g;
+  int worst;
+  if (!there.usable || there.slope < kSmoothTurn * s.slope || std::fabs(there.distance) > kFlat * field.voxel()) return false;
+  if (!face.retract(exit, Vec3(0.0), there, g) || face.outside(g, worst) > 0) return false;
+  const Vec3 dp = mapping.world_from_index_linear * (g - f);
+  if (!(dot(dp, probe - piece.world(f)) - 0.5 * dot(dp, dp) > 0)) return false;
+  f = g;
+  return true;
+}
+
+/// The last point of the way from..to over one piece that keeps within `limit` and is no further from the probe than `from`.
+Vec3 cut_short(const LevelField& field, const Piece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
+               const Vec3& from, const Vec3& to) {
+  const Vec3 chord = field.grid()->mapping().world_from_index_linear * (to - from), along = chord - s.n * dot(s.n, chord);
+  const double most = norm(probe - piece.world(from));
+  Vec3 kept = from, g;
+  double low = 0, high = 1;
+  for (int i = 0; i < kHalvings && !field.exhausted(); ++i) {
+    const double mid = 0.5 * (low + high);
+    int axis;
+    const bool fits = piece.retract(from, along * mid, s, g) && piece.outside(g, axis) <= 0 && !limit.passed_by(piece.world(g)) &&
+                      norm(probe - piece.world(g)) <= most;
+    (fits ? low : high) = mid;
+    if (fits) kept = g;
+  }
+  return kept;
 }
 
 }  // namespace
@@ -207,14 +278,22 @@ Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
   return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
 }
 
-WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at) noexcept {
+WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at,
+                      TravelLimit* limit) noexcept {
   const field::ScalarGrid& grid = *field.grid();
   const field::Mapping& mapping = grid.mapping();
   const double length = field.length();
   Cells cells(field, most);
   WalkResult result;
   std::uint64_t exhausted = 0;
+  bool steepest = false;
+  Reason wall = Reason::none;
   double remaining = 0;
+  Vec3 last_normal(0.0);
+  const auto turn_to = [&](const Vec3& n) {
+    if (max_abs(last_normal) > 0 && dot(n, last_normal) < kSmoothTurn) result.smooth = false;
+    last_normal = n;
+  };
 
   for (int round = 0; round < kWalkRounds; ++round) {
     // every piece that meets the point: the steepest feasible descent
@@ -227,15 +306,16 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
       PieceSample s;
       Vec3 t;
     } best{kRelease * length, 0, 0, nullptr, {}, Vec3(0.0)};
-    bool usable = false, pulled = false;
+    bool usable = false, pulled = false, found = false;
     remaining = 0;
     for_subsets(corner.faces, [&](unsigned flip) {
       const unsigned upper = own ^ flip;
       const CellPoint here = corner.seen_from(upper);
       const field::ScalarCell* cell = cells.find(here.base);
       if (!cell) return;
+      found = true;
       for_subsets(corner.faces, [&](unsigned held) {
-        const Piece piece(mapping, *cell, field.level(), frames.of[held | corner.flat]);
+        const Piece piece(mapping, *cell, field.level(), frames.of[held | corner.flat], field.steps());
         const PieceSample s = piece.sample(here.f);
         if (!s.usable) return;
         if (!usable || (flip == 0 && held == 0)) {
@@ -253,40 +333,66 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
           if (here.f[a] == 0 ? d[a] >= 0 : d[a] <= 0) continue;
           feasible = false;
           // pulled across a face with nothing behind it
-          if (held == 0 && size > 1e-7 * length && !cells.find(corner.seen_from(upper ^ (1u << a)).base)) pulled = true;
+          if (held == 0 && size > 1e-7 * length && !cells.find(corner.seen_from(upper ^ (1u << a)).base)) {
+            pulled = true;
+            wall = cells.wall;
+          }
         }
         if (!feasible) return;
         remaining = std::max(remaining, size);
         if (size > best.size && !(exhausted >> (upper * 8 + held) & 1u)) best = {size, upper, held, cell, s, t};
       });
     });
-    if (cells.spent()) {
+    if (cells.spent() || field.exhausted()) {
       result.status = Status::budget;
       return result;
     }
     if (!usable) {
       result.status = Status::critical;
+      result.reason = found ? Reason::zero : cells.wall;
       return result;
     }
+    turn_to(result.normal);
     if (!best.cell) {
-      result.status = remaining > kAccepted * length ? Status::budget : pulled ? Status::boundary : Status::ok;
+      const bool stuck = remaining > kAccepted * length;
+      if (stuck && !steepest) {
+        steepest = true;
+        exhausted = 0;
+        continue;
+      }
+      result.status = stuck ? Status::budget : pulled ? Status::boundary : Status::ok;
+      result.reason = wall;
       return result;
     }
 
     // follow it
     CellPoint next = corner.seen_from(best.upper);
     const Vec3 before = next.f;
-    const Piece piece(mapping, *best.cell, field.level(), frames.of[best.held | corner.flat]);
-    const Followed how = follow(piece, mapping, probe, length, field.voxel(), next.f, best.s, best.t);
+    const PieceSample start = best.s;
+    const Piece piece(mapping, *best.cell, field.level(), frames.of[best.held | corner.flat], field.steps());
+    const bool crossed = best.size > kFarAway * field.voxel() &&
+                         cross_cell(field, frames, piece, *best.cell, best.held | corner.flat, probe, best.s, best.t, next.f);
+    const Followed how = crossed ? Followed::landed : follow(field, piece, probe, steepest, next.f, best.s, best.t);
+    if (limit != nullptr && !limit->passed && limit->passed_by(piece.world(next.f))) {
+      limit->passed = true;
+      limit->last = next;
+      limit->last.f = cut_short(field, piece, probe, *limit, start, before, next.f);
+      limit->normal = start.n;
+    }
     const unsigned faces = Corner(grid.index_box(), next).faces;
     if (how == Followed::converged && faces == 0 && norm(best.t) <= kRelease * length) {
       // within the cell no other piece meets the point
       at = next;
-      return {Status::ok, std::fabs(best.s.distance), best.s.n};
+      turn_to(best.s.n);
+      result.status = Status::ok;
+      result.residual = std::fabs(best.s.distance);
+      result.normal = best.s.n;
+      return result;
     }
     const bool moved = norm(mapping.world_from_index_linear * (next.f - before)) > kStill * length;
     const bool snapped = !moved && faces != corner.faces;
     if (moved || snapped) exhausted = 0;
+    if (moved) steepest = false;
     if ((!moved && !snapped) || how == Followed::blocked) exhausted |= std::uint64_t{1} << (best.upper * 8 + best.held);
     at = next;
   }

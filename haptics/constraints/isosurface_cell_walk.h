@@ -4,8 +4,9 @@
 ///   n = Q'grad s / |Q'grad s|, e = Q'(x - p), t = e - (n.e) n, (I + (n.e) Q'HQ / |Q'grad s|) u = t, then back to the level
 /// At p every adjoining cell x subset of the faces through p is a piece; the steepest feasible one is followed until it
 /// converges or meets a face. None left: p is the local closest point. Walls (the domain, the mask, cells with values that
-/// are not finite) have no cell behind them: BOUNDARY where the probe pulls across one.
-/// Worlds may be anisotropic, rotated, sheared. Haptic thread: bounded by the fetches, at most kEvaluationCap.
+/// are not finite) have no cell behind them: BOUNDARY where the probe pulls across one, with the reason.
+/// So the walk keeps to the sheet it is on, and |x - p| only falls: it never meets another sheet, however near.
+/// Worlds may be anisotropic, rotated, sheared. Haptic thread: bounded by the link's fetches and work (constraint.h).
 #pragma once
 #include "engine/field/grid.h"
 #include "haptics/constraints/isosurface_level.h"
@@ -20,9 +21,21 @@ struct CellPoint {
 };
 
 struct WalkResult {
-  Status status = Status::ok;  ///< ok, boundary, budget, critical
-  double residual = 0;         ///< off the level, world units
+  Status status = Status::ok;    ///< ok, boundary, budget, critical
+  Reason reason = Reason::none;  ///< of a status boundary or critical
+  double residual = 0;           ///< off the level, world units
   Vec3 normal{0.0};
+  bool smooth = true;  ///< the normal turned by less than 30 degrees from step to step
+};
+
+/// How far a walk may go from where it began. It is walked to its end all the same; `last` is the last point within `room`.
+struct TravelLimit {
+  Vec3 from{0.0};
+  double room = 0;  ///< world units
+  bool passed = false;
+  CellPoint last{};
+  Vec3 normal{0.0};
+  bool passed_by(const Vec3& p) const noexcept { return norm(p - from) > room; }
 };
 
 /// The cell point of a world position (clamped to the domain).
@@ -31,6 +44,7 @@ Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
 
 /// Moves `at` (on the level to 1e-9 L or so) to the local closest point to the probe, with at most `most` fetches. `frames`: the
 /// grid's.
-WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at) noexcept;
+WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at,
+                      TravelLimit* limit = nullptr) noexcept;
 
 }  // namespace catena::haptics

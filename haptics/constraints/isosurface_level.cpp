@@ -8,7 +8,7 @@ LevelPoint LevelField::at(const Vec3& world) noexcept {
   LevelPoint out;
   out.p = clamped(world);
   if (spent()) return out;
-  ++state_.evaluations;
+  count_fetch();
   const field::ScalarSample sample = grid_ ? grid_->sample(out.p, cursor_) : field_.sample(out.p, cursor_);
   out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
   out.valid = out.finite && (sample.inside || grid_ == nullptr);

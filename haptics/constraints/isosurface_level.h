@@ -26,7 +26,18 @@ class LevelField {
   /// One evaluation. Costs nothing and is not valid when the budget is spent.
   LevelPoint at(const Vec3& world) noexcept;
   /// Fewer than `reserve` fetches are left, or no work.
-  bool spent(int reserve = 0) const noexcept { return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(); }
+  bool spent(int reserve = 0) const noexcept {
+    return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(reserve * (kFetchWork + (grid_ ? kCellWork : 0)));
+  }
+  /// Counts one fetch.
+  void count_fetch() noexcept {
+    ++state_.evaluations;
+    if (grid_) state_.steps += kCellWork;
+  }
+
+  /// No work is left, whatever fetches are.
+  bool exhausted() const noexcept { return state_.exhausted(); }
+  double slip() const noexcept { return state_.slip; }
 
   /// The nearest point of a grid's box, in index space; a formula has no walls.
   Vec3 clamped(const Vec3& world) const noexcept {
@@ -44,7 +55,7 @@ class LevelField {
   const field::ScalarGrid* grid() const noexcept { return grid_; }
   field::Cursor& cursor() noexcept { return cursor_; }
   std::int32_t& evaluations() noexcept { return state_.evaluations; }
-  std::int32_t& steps() noexcept { return state_.steps; }
+  std::int32_t& steps() const noexcept { return state_.steps; }
 
  private:
   Vec3 nearest(const Vec3& index) const noexcept;

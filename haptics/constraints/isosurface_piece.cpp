@@ -49,6 +49,7 @@ bool Piece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3&
   for (int i = 0; i < 20; ++i) {
     double value;
     Vec3 g;
+    ++steps_;
     cell_.value_and_gradient(start + along * w, value, g);
     const double sigma = value - level_, slope = dot(g, along);
     if (!std::isfinite(sigma)) return false;

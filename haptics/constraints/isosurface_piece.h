@@ -43,8 +43,9 @@ struct PieceSample {
 
 class Piece {
  public:
-  Piece(const field::Mapping& mapping, const field::ScalarCell& cell, double level, const PieceFrame& frame) noexcept
-      : mapping_(mapping), cell_(cell), level_(level), frame_(frame) {}
+  /// `steps` counts the evaluations of the cell's polynomial.
+  Piece(const field::Mapping& mapping, const field::ScalarCell& cell, double level, const PieceFrame& frame, std::int32_t& steps) noexcept
+      : mapping_(mapping), cell_(cell), level_(level), frame_(frame), steps_(steps) {}
 
   const PieceFrame& frame() const noexcept { return frame_; }
   Vec3 world(const Vec3& f) const noexcept {
@@ -66,6 +67,7 @@ class Piece {
   const field::ScalarCell& cell_;
   double level_;
   const PieceFrame& frame_;
+  std::int32_t& steps_;
 };
 
 // The hot path is in the header: a walk samples a few times a tick.
@@ -74,6 +76,7 @@ inline PieceSample Piece::sample(const Vec3& f) const noexcept {
   PieceSample s;
   double value;
   Vec3 g;
+  ++steps_;
   cell_.value_and_gradient(f, value, g);
   const Vec3 slope = frame_.on_span(mapping_.world_gradient(g));
   s.sigma = value - level_;

@@ -46,7 +46,7 @@ Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
     if (norm(b.p - a.p) <= 1e-15 * field.length() + 2.3e-16 * max_abs(a.p)) break;
   }
   const LevelPoint& best = std::fabs(a.sigma) <= std::fabs(b.sigma) ? a : b;
-  return {!best.plateau, best};
+  return {!best.plateau && !field.spent(), best};
 }
 
 Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius, int reserve) noexcept {
@@ -75,29 +75,38 @@ Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const V
   return {a.valid && !a.plateau && on_level(field, a), a};
 }
 
-Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only) noexcept {
+Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only, Scan& scan) noexcept {
+  constexpr int kDirections = 27;
   constexpr std::array<double, 8> kRadii{1.0 / 64, 1.0 / 35, 1.0 / 20, 1.0 / 11, 1.0 / 6, 0.3, 0.55, 1.0};
-  std::array<LevelPoint, 27> last;
-  last.fill(centre);
+  std::array<LevelPoint, kDirections> last;
+  std::array<bool, kDirections> known{};
   LevelPoint nearest;
-  for (const double part : kRadii) {
-    for (int k = 0; k < 27; ++k) {
-      if (k == 13 || field.spent(kReserve)) continue;
-      const Vec3 towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      if (axes_only && dot(towards, towards) > 1) continue;
-      const Vec3 d = direction(towards);
-      const Vec3 wanted = centre.p + d * (part * field.length());
-      if (max_abs(field.clamped(wanted) - wanted) > 0) continue;
-      const LevelPoint here = field.at(wanted);
-      LevelPoint& before = last[static_cast<std::size_t>(k)];
-      if (here.valid && before.valid && opposite(here.sigma, before.sigma)) {
-        const Reached root = root_between(field, before, here);
-        if (root.found) return root;
-      }
-      before = here;
-      if (here.valid && !here.plateau && (!nearest.valid || std::fabs(here.sigma) < std::fabs(nearest.sigma))) nearest = here;
+  if (scan.has_nearest) nearest = field.at(scan.nearest);
+  for (constexpr int end = kDirections * static_cast<int>(kRadii.size()); scan.next < end; ++scan.next) {
+    const int k = scan.next % kDirections, ring = scan.next / kDirections;
+    const Vec3 towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    if (k == 13 || (axes_only && dot(towards, towards) > 1)) continue;
+    const Vec3 d = direction(towards);
+    const auto on_ring = [&](int r) { return centre.p + d * (kRadii[static_cast<std::size_t>(r)] * field.length()); };
+    const Vec3 wanted = on_ring(ring);
+    if (max_abs(field.clamped(wanted) - wanted) > 0) continue;
+    if (field.spent(kReserve)) break;
+    LevelPoint& before = last[static_cast<std::size_t>(k)];
+    // where a scan is taken up again, the ring before
+    if (!known[static_cast<std::size_t>(k)]) before = ring == 0 ? centre : field.at(on_ring(ring - 1));
+    known[static_cast<std::size_t>(k)] = true;
+    const LevelPoint here = field.at(wanted);
+    if (here.valid && before.valid && opposite(here.sigma, before.sigma)) {
+      const Reached root = root_between(field, before, here);
+      if (root.found) return root;
+      if (field.spent()) break;
     }
+    before = here;
+    if (here.valid && !here.plateau && (!nearest.valid || std::fabs(here.sigma) < std::fabs(nearest.sigma))) nearest = here;
   }
+  scan.has_nearest = nearest.valid;
+  scan.nearest = nearest.p;
+  scan.open = scan.next < kDirections * static_cast<int>(kRadii.size());
   return {false, nearest};
 }
 

@@ -18,9 +18,16 @@ Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept;
 /// `reserve`: fetches left to others. Not found: `at` is where the march ended, if it is valid.
 Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius, int reserve = 32) noexcept;
 
+/// How far a scan has come that takes more than one tick. Zero bytes: not begun.
+struct Scan {
+  Vec3 probe, centre, nearest;  ///< what it is made for; where it looks from; the sample nearest in value
+  std::int32_t next;
+  bool open, has_nearest;
+};
+
 /// Looks along 26 directions, or along the 6 axes only, near before far, up to L from the centre. Not found: `at` is the sample
-/// nearest in value.
-Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only = false) noexcept;
+/// nearest in value; with scan.open the budget has ended the scan, and the next call goes on.
+Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only, Scan& scan) noexcept;
 
 /// The first crossing of the segment from..to, seen with steps of march_step (at most 64).
 Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept;

@@ -21,7 +21,7 @@ void fetch(LevelField& field, const Vec3& world, LevelPoint& out) noexcept {
   out = LevelPoint{};
   out.p = p;
   if (field.spent()) return;
-  ++field.evaluations();
+  field.count_fetch();
   const field::ScalarGrid* grid = field.grid();
   const field::ScalarSample sample = grid ? grid->sample(out.p, field.cursor()) : field.field().sample(out.p, field.cursor());
   out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);

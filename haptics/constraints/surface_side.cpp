@@ -1,5 +1,7 @@
 #include "haptics/constraints/surface_side.h"
 
+#include <limits>
+
 #include "haptics/constraints/read_parameter.h"
 
 namespace catena::haptics {
@@ -25,10 +27,15 @@ void leave_broken(const Vec3& probe, LinkState& state) {
   stop_link(state, Status::critical, Reason::not_finite);
 }
 
-void leave(const Vec3& proxy, double residual, Status status, LinkState& state) {
+void leave(const Vec3& proxy, double residual, Status status, LinkState& state, Reason reason = Reason::none) {
   state.proxy = proxy;
   state.residual = residual;
-  state.status = status;
+  stop_link(state, status, reason);
+}
+
+/// How far the proxy may move in this tick.
+double travel_of(const SideMemory& memory, const Vec3& probe, const LinkState& state) {
+  return memory.fresh ? norm(probe - memory.probe) + state.slip : std::numeric_limits<double>::infinity();
 }
 
 void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, const LinkState& state) {
@@ -38,6 +45,7 @@ void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, cons
   memory.known = side.known;
   memory.residual = state.residual;
   memory.status = state.status;
+  memory.reason = state.reason;
   memory.fresh = true;
   memory.settled = state.status != Status::budget;
 }
@@ -49,7 +57,7 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
     if (hold.found)
       leave_broken(probe, state);
     else
-      leave(probe, 0, Status::no_surface, state);
+      leave(probe, 0, hold.status == Status::budget ? Status::budget : Status::no_surface, state);
     return;
   }
   if (rules.release > 0 && norm(probe - hold.proxy) >= rules.release) {
@@ -58,8 +66,30 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
     leave(probe, 0, Status::released, state);
     return;
   }
+  // a sheet taken hold of from afar pulls by the ramp
+  if (!memory.holding && norm(probe - hold.proxy) > travel_of(memory, probe, state)) state.weight = 0;
   memory.holding = true;
-  leave(hold.proxy, hold.residual, hold.status, state);
+  leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
+}
+
+/// One step of the way to the probe from a sheet that holds no more. True: it is there.
+bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
+  const Vec3 way = probe - memory.proxy;
+  const double far = norm(way), travel = travel_of(memory, probe, state);
+  if (!(far > travel)) {
+    memory.gliding = false;
+    return true;
+  }
+  memory.holding = memory.sheet = false;
+  if (rules.release > 0 && far >= rules.release) {
+    memory.gliding = false;
+    state.released = true;
+    leave(probe, 0, Status::released, state);
+  } else {
+    memory.gliding = true;
+    leave(memory.proxy + way * (travel / far), 0, Status::budget, state);
+  }
+  return false;
 }
 
 /// A thin sheet between the probe, on the free side, and where it came from: the held point on its near face, if any.
@@ -108,7 +138,7 @@ void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideM
     return;
   }
   memory.holding = true;
-  leave(hold.proxy, hold.residual, hold.status, state);
+  leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
 }
 
 void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
@@ -116,7 +146,7 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
   // a resting probe, or a proxy that somebody else has moved meanwhile
   const bool untouched = !memory.fresh || same_bits(memory.proxy, state.proxy);
   if (memory.fresh && untouched && memory.settled && same_bits(memory.probe, probe)) {
-    leave(memory.proxy, memory.residual, memory.status, state);
+    leave(memory.proxy, memory.residual, memory.status, state, memory.reason);
     return;
   }
   if (!untouched) {
@@ -148,11 +178,14 @@ void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, Sid
     state.released = memory.holding = memory.sheet = false;
   }
 
+  if (memory.gliding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
+
   // free motion, but not through a thin sheet
   if (free) {
     hold = catch_sheet(surface, rules, probe, memory);
     memory.sheet = hold.found;
     if (!hold.found) {
+      if (memory.holding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
       memory.holding = false;
       leave(probe, 0, Status::free, state);
       remember(probe, side, memory, state);

@@ -6,6 +6,9 @@
 ///   A one-sided link whose first probe is deeper than release starts released.
 /// Thin sheets: a one-sided probe that passes a sheet, within one step of at most 0.02 L (a hand, not a jump) or by being pushed
 /// through it step by step, is held on the sheet's near face until it comes back, or is 0.02 L away, or released.
+/// Travel: no hold ends or begins with a step of the force. In one tick the proxy moves at most |dx| + slip (constraint.h), but for
+/// release: a hold that ends far from its probe in another way glides to it so fast, BUDGET; one that begins far from its probe takes
+/// hold with the ramp of a link that is switched on.
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/chain/parameter.h"
@@ -47,6 +50,7 @@ struct Hold {
   Vec3 proxy{0.0};
   double residual = 0;
   Status status = Status::ok;
+  Reason reason = Reason::none;  ///< of a status critical or boundary
 };
 
 /// What the rules need to know about a surface. It remembers the point on which it holds from tick to tick.
@@ -82,7 +86,9 @@ struct SideMemory {
   bool holding;  ///< the surface has a point to go on from
   bool settled;  ///< nothing to gain from another tick at the same probe
   bool sheet;    ///< holding from the near face of a thin sheet
+  bool gliding;  ///< has let go of a sheet that is far, and is on its way to the probe
   Status status;
+  Reason reason;
 };
 
 void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;

@@ -22,7 +22,7 @@ namespace {
 using namespace catena;
 using namespace catena::haptics;
 
-constexpr int kReplays = 5, kThrows = 20000, kHeld = 60;
+const int kReplays = getenv("REPLAYS") ? atoi(getenv("REPLAYS")) : 5; constexpr int kThrows = 20000, kHeld = 60;
 
 struct Random {
   std::uint64_t state;
@@ -138,6 +138,15 @@ void measure(const Case& c, const std::string& free, std::size_t ticks) {
     while (held < kHeld && link.state.status == Status::budget) {
       link.tick(probe);
       ++held;
+    }
+    if (held > 20 && getenv("STUCK")) {
+      fmt::print("held {}: ", held);
+      for (int k = 0; k < 6; ++k) {
+        const Vec3 a = link.state.proxy;
+        link.tick(probe);
+        fmt::print(" [{} moved {:.3g} gap {:.6g} ev {} work {}]", static_cast<int>(link.state.status), norm(link.state.proxy - a), norm(probe - link.state.proxy), link.state.evaluations, link.state.work());
+      }
+      fmt::print("\n");
     }
     within += held <= 20;
     rest.push_back(static_cast<float>(held));
