@@ -20,10 +20,10 @@ using exchange::kMaxLinks;
 using exchange::Status;
 
 inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, for every method
-/// All that takes time in a link's tick goes into one counter, in units of about 15 ns: a field fetch counts kFetchWork (of a cell that
+/// All that takes time in a link's tick goes into one counter, in units of about 20 ns: a field fetch counts kFetchWork (of a cell that
 /// may lie anywhere in a grid, kCellWork more), and every evaluation of a cell's polynomial, node of a search, knot or face that is
 /// visited 1. A constraint stops before kWorkCap, with BUDGET, and goes on in the next tick.
-inline constexpr int kWorkCap = 2048, kFetchWork = 7, kCellWork = 8;
+inline constexpr int kWorkCap = 4096, kFetchWork = 7, kCellWork = 8;
 inline constexpr double kSlipPart = 0.05;  ///< of max_force: what a proxy's slip may add to the force in one tick
 inline constexpr double kRearmPart = 0.1;  ///< of `release`: within it a link that has let go takes hold again
 
@@ -38,6 +38,7 @@ struct LinkState {
   double stiffness_n_per_m = 0;  ///< k_i of this tick
   std::int32_t evaluations = 0;  ///< field fetches of this tick
   std::int32_t steps = 0;        ///< other counted work of this tick
+  std::int32_t most = kWorkCap;  ///< of this tick's work; a constraint may ask for less
   /// How far the proxy may slip in this tick beyond what its probe moves, world units: 0.05 max_force / (k_i S).
   double slip = std::numeric_limits<double>::infinity();
   Status status = Status::ok;
@@ -53,8 +54,11 @@ struct LinkState {
   bool active() const { return on && !released; }
   int work() const { return kFetchWork * evaluations + steps; }
   /// Less than `reserve` units are left.
-  bool exhausted(int reserve = 0) const { return work() + reserve >= kWorkCap; }
-  void begin_tick() { evaluations = steps = 0; }
+  bool exhausted(int reserve = 0) const { return work() + reserve >= most; }
+  void begin_tick() {
+    evaluations = steps = 0;
+    most = kWorkCap;
+  }
 };
 static_assert(std::is_trivially_copyable_v<LinkState>);
 

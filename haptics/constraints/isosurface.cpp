@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kSearchRadius = 2;  // of L
 constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no hand's
+constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
 constexpr int kQuick = 200;          // fetches before a formula asks for the descent
 constexpr int kQuickRefusals = 8;    // in a row, likewise
 constexpr int kSight = 16;           // fetches on the line of sight
@@ -292,8 +293,15 @@ class Isosurface final : public Constraint {
       : field_(std::move(field)), level_(level), rules_(rules), frames_(field_->mapping()) {}
 
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    memory_of<IsosurfaceMemory>(state).scan = Scan{};
+    seek(probe, state, scratch);
+  }
+  /// As start, but a search that ran out of budget goes on.
+  void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    const Scan scan = memory.scan;
     memory = IsosurfaceMemory{};
+    memory.scan = scan;
     const SideRules rules = rules_.at(probe, state, scratch);
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
     start_on(surface, rules, probe, memory.side, state);
@@ -301,6 +309,8 @@ class Isosurface final : public Constraint {
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
     const SideRules rules = rules_.now(state, scratch);
+    const SideMemory& side = memory.side;
+    if (side.fresh && (side.status == Status::budget || norm(probe - side.probe) > kThrown * field_->length())) state.most = kThrownWork;
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }

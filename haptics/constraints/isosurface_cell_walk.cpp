@@ -10,7 +10,7 @@ constexpr double kAccepted = 1e-6;    // of L: what may remain where no piece mo
 constexpr double kFaceSlack = 1e-12;  // voxels: closer to a face than this is on it
 constexpr double kNearFace = 1e-10;   // voxels: a step out that cannot be shortened into the cell starts on the face
 constexpr int kWalkRounds = 600;
-constexpr double kFarAway = 4;        // voxels
+constexpr double kFarAway = 2;        // voxels
 constexpr double kFlat = 0.25;        // voxels: so far off the level a straight way may end
 constexpr int kHalvings = 24;         // to find where a way passes its limit
 constexpr double kSmoothTurn = 0.87;  // cosine: a larger turn of the normal from step to step is no smooth surface
@@ -35,27 +35,34 @@ class Cells {
         return nullptr;
       }
     }
-    for (std::size_t k = 0; k < kCells && k < count_; ++k)
-      if (slot(k)->base == base) return usable(slot(k));
+    for (std::size_t i = 1; i <= kCells && i <= count_; ++i) {
+      const std::size_t k = (count_ - i) % kCells;
+      if (keys_[k].base == base) return usable(k);
+    }
     if (field_.spent() || field_.evaluations() >= last_) {
       spent_ = true;
       return nullptr;
     }
     field_.count_fetch();
-    field::ScalarCell& cell = *new (slot(count_ % kCells)) field::ScalarCell(grid_.cell(base, field_.cursor()));
-    ++count_;
+    const std::size_t k = count_++ % kCells;
+    field::ScalarCell& cell = *new (slot(k)) field::ScalarCell(grid_.cell(base, field_.cursor()));
     cell.base = base;
-    return usable(&cell);
+    bool finite = true;
+    for (const double c : cell.corner) finite = finite && std::isfinite(c);
+    keys_[k] = {base, !cell.valid ? Reason::mask : finite ? Reason::none : Reason::not_finite};
+    return usable(k);
   }
   bool spent() const { return spent_; }
   Reason wall = Reason::none;
 
  private:
-  const field::ScalarCell* usable(const field::ScalarCell* cell) {
-    bool finite = true;
-    for (const double c : cell->corner) finite = finite && std::isfinite(c);
-    if (cell->valid && finite) return cell;
-    wall = cell->valid ? Reason::not_finite : Reason::mask;
+  struct Key {
+    field::Index3 base;
+    Reason wall;  ///< none: a cell to walk in
+  };
+  const field::ScalarCell* usable(std::size_t k) {
+    if (keys_[k].wall == Reason::none) return slot(k);
+    wall = keys_[k].wall;
     return nullptr;
   }
   LevelField& field_;
@@ -67,6 +74,7 @@ class Cells {
     return std::launder(reinterpret_cast<field::ScalarCell*>(&bytes_[k * sizeof(field::ScalarCell)]));
   }
   alignas(field::ScalarCell) std::array<std::byte, kCells * sizeof(field::ScalarCell)> bytes_;
+  std::array<Key, kCells> keys_;  // NOLINT: set as cells come
   std::size_t count_ = 0;
   bool spent_ = false;
 };
@@ -155,7 +163,9 @@ Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, 
       double low = 0, high = 1, v_low = 0, v_high = piece.outside(g, axis);
       Vec3 outer = g, within = f;
       bool inner = false;
-      for (double alpha = 0.5; alpha > 1e-14 && !field.exhausted(); alpha *= 0.5) {
+      const bool hurried = field.hurried();
+      const double first = hurried ? std::min(0.5, piece.part_inside(f, u)) : 0.5;
+      for (double alpha = first; alpha > 1e-14 && !field.exhausted(); alpha *= 0.5) {
         if (!piece.retract(f, u * alpha, s, g)) continue;  // a fold: nearer by there is none
         int worst;
         const double v = piece.outside(g, worst);
@@ -179,19 +189,28 @@ Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, 
         return Followed::landed;
       }
 
-      // land on the face: Illinois on how far the point is outside
+      // land on the face: false position on how far the point is outside, to the last bit; where time is short by Illinois' rule (an
+      // end is halved only where it stays twice), which needs a quarter of the steps
       double a = v_low, b = v_high;
-      for (int k = 0; k < 80 && high - low > 1e-16 * high && v_high > 1e-15 && !field.exhausted(); ++k) {
+      int stays = 0;
+      double along = 0;
+      for (int k = 0; k < 80 && high - low > 1e-16 * high && v_high > 1e-15 && !(hurried && v_low > -kFaceSlack) && !field.exhausted();
+           ++k) {
         double w = k % 4 == 3 || !(a < 0) ? 0.5 : a / (a - b);
         if (!(w > 0 && w < 1)) w = 0.5;
         const double mid = low + (high - low) * w;
-        if (!(mid > low && mid < high) || !piece.retract(f, u * mid, s, g)) break;
+        if (!(mid > low && mid < high) || !piece.retract(f, u * mid, s, g, along)) break;
+        if (!hurried) along = 0;
         const double v = piece.outside(g, axis);
-        if (v <= 0)
-          low = mid, within = g, a = v, b *= 0.5;
+        const bool replaces_low = v <= 0;
+        const double other = hurried && stays != (replaces_low ? 1 : -1) ? 1 : 0.5;
+        stays = replaces_low ? 1 : -1;
+        if (replaces_low)
+          low = mid, within = g, a = v_low = v, b *= other;
         else
-          high = mid, b = v_high = v, outer = g, a *= 0.5;
+          high = mid, b = v_high = v, outer = g, a *= other;
       }
+      if (hurried && v_low > -kFaceSlack) outer = within, v_high = 0;
       if (v_high > 1e-9) {
         // a fold between: as far as the cell's level goes
         accepted = gain(f, within) >= 1e-4 * low * dot(t, u);
@@ -367,6 +386,11 @@ WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& 
 
     // follow it
     CellPoint next = corner.seen_from(best.upper);
+    best.cell = cells.find(next.base);  // the others of the round may have taken its place
+    if (!best.cell) {
+      result.status = Status::budget;
+      return result;
+    }
     const Vec3 before = next.f;
     const PieceSample start = best.s;
     const Piece piece(mapping, *best.cell, field.level(), frames.of[best.held | corner.flat], field.steps());

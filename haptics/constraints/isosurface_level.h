@@ -35,8 +35,10 @@ class LevelField {
     if (grid_) state_.steps += kCellWork;
   }
 
-  /// No work is left, whatever fetches are.
-  bool exhausted() const noexcept { return state_.exhausted(); }
+  /// Less work than `reserve` is left, whatever fetches are.
+  bool exhausted(int reserve = 0) const noexcept { return state_.exhausted(reserve); }
+  /// A tick that takes long: the rest of it need not be as exact on its way as at its end.
+  bool hurried() const noexcept { return state_.work() > kWorkCap / 8; }
   double slip() const noexcept { return state_.slip; }
 
   /// The nearest point of a grid's box, in index space; a formula has no walls.

@@ -41,17 +41,17 @@ Vec3 Piece::newton(const Vec3& f, const Vec3& probe, const PieceSample& s, const
   return t1 * u1 + t2 * u2;
 }
 
-bool Piece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out) const noexcept {
-  const Vec3 d = frame_.index_step(mapping_, step), along = frame_.index_step(mapping_, s.n);
+bool Piece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out, double& along) const noexcept {
+  const Vec3 d = frame_.index_step(mapping_, step), n = frame_.index_step(mapping_, s.n);
   const Vec3 start = f + d;
   // Newton on the cubic along n
-  double w = 0, best = 0, least = -1;
+  double w = along, best = 0, least = -1;
   for (int i = 0; i < 20; ++i) {
     double value;
     Vec3 g;
     ++steps_;
-    cell_.value_and_gradient(start + along * w, value, g);
-    const double sigma = value - level_, slope = dot(g, along);
+    cell_.value_and_gradient(start + n * w, value, g);
+    const double sigma = value - level_, slope = dot(g, n);
     if (!std::isfinite(sigma)) return false;
     if (least >= 0 && std::fabs(sigma) >= least) break;
     least = std::fabs(sigma);
@@ -60,7 +60,8 @@ bool Piece::retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3&
     if (!(slope > 0.05 * s.slope)) return false;
     w -= sigma / slope;
   }
-  out = start + along * best;
+  out = start + n * best;
+  along = best;
   // as well as the cell's values allow
   double largest = std::fabs(level_);
   for (const double c : cell_.corner) largest = std::max(largest, std::fabs(c));

@@ -57,7 +57,19 @@ class Piece {
   /// The Newton step on the tangent plane.
   Vec3 newton(const Vec3& f, const Vec3& probe, const PieceSample& s, const Vec3& t) const noexcept;
   /// f + step, brought back to the level along n (of the point f). False: no level near by. May leave the cell.
-  bool retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out) const noexcept;
+  /// `along`: where on that line a search begins (0: at f + step), and where it ended.
+  bool retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out, double& along) const noexcept;
+  bool retract(const Vec3& f, const Vec3& step, const PieceSample& s, Vec3& out) const noexcept {
+    double along = 0;
+    return retract(f, step, s, out, along);
+  }
+  /// How much of a step from f, a place in the cell, is in the cell, as far as the level is flat.
+  double part_inside(const Vec3& f, const Vec3& step) const noexcept {
+    const Vec3 d = frame_.index_step(mapping_, step);
+    double part = 1;
+    for (int a = 0; a < 3; ++a) part = std::min(part, d[a] > 0 ? (1 - f[a]) / d[a] : d[a] < 0 ? -f[a] / d[a] : 1.0);
+    return part;
+  }
   /// By how much f is outside the cell (negative: inside), over the axes that are not held; and the worst axis.
   double outside(const Vec3& f, int& axis) const noexcept;
 

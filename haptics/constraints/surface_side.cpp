@@ -132,6 +132,7 @@ void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideM
     if (!side.known || is_free(rules, side.value)) return;
   }
   const Hold hold = surface.place(probe);
+  if (!hold.found && hold.status == Status::budget) state.status = Status::budget;
   if (!hold.found || !is_finite(hold.proxy)) return;
   if (rules.free != FreeSide::none && rules.release > 0 && norm(probe - hold.proxy) > rules.release) {
     state.released = true;

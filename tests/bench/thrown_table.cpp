@@ -22,7 +22,7 @@ namespace {
 using namespace catena;
 using namespace catena::haptics;
 
-const int kReplays = getenv("REPLAYS") ? atoi(getenv("REPLAYS")) : 5; constexpr int kThrows = 20000, kHeld = 60;
+constexpr int kReplays = 5, kThrows = 20000, kHeld = 60;
 
 struct Random {
   std::uint64_t state;
@@ -110,7 +110,7 @@ double quantile_of(std::vector<float>& values, double part) {
 void measure(const Case& c, const std::string& free, std::size_t ticks) {
   const auto constraint = link_on(c, free);
   std::vector<float> least(ticks, 1e30f);
-  int evaluations = 0;
+  int evaluations = 0, work = 0;
   for (int replay = 0; replay < kReplays; ++replay) {
     Link link{constraint, {}, {}};
     Random random{17};
@@ -120,6 +120,7 @@ void measure(const Case& c, const std::string& free, std::size_t ticks) {
       link.tick(probe);
       least[i] = std::min(least[i], 1e-3f * static_cast<float>(now_ns() - before));
       evaluations = std::max(evaluations, link.state.evaluations);
+      work = std::max(work, link.state.work());
     }
   }
 
@@ -139,22 +140,14 @@ void measure(const Case& c, const std::string& free, std::size_t ticks) {
       link.tick(probe);
       ++held;
     }
-    if (held > 20 && getenv("STUCK")) {
-      fmt::print("held {}: ", held);
-      for (int k = 0; k < 6; ++k) {
-        const Vec3 a = link.state.proxy;
-        link.tick(probe);
-        fmt::print(" [{} moved {:.3g} gap {:.6g} ev {} work {}]", static_cast<int>(link.state.status), norm(link.state.proxy - a), norm(probe - link.state.proxy), link.state.evaluations, link.state.work());
-      }
-      fmt::print("\n");
-    }
     within += held <= 20;
     rest.push_back(static_cast<float>(held));
   }
   fmt::print(
-      "{:<18} {:<6} p50 {:6.2f}  p99 {:7.2f}  p99.9 {:7.2f}  max {:7.2f} us  evaluations {:3}  at rest within 20: {:.4f}  99.9 %: {:.0f} "
+      "{:<18} {:<6} p50 {:6.2f}  p99 {:7.2f}  p99.9 {:7.2f}  max {:7.2f} us  evaluations {:3}  work {:4}  at rest within 20: {:.4f}  99.9 "
+      "%: {:.0f} "
       "ticks\n",
-      c.name, free, quantile_of(least, 0.5), quantile_of(least, 0.99), quantile_of(least, 0.999), quantile_of(least, 1), evaluations,
+      c.name, free, quantile_of(least, 0.5), quantile_of(least, 0.99), quantile_of(least, 0.999), quantile_of(least, 1), evaluations, work,
       static_cast<double>(within) / kThrows, quantile_of(rest, 0.999));
   std::fflush(stdout);
 }
