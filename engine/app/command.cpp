@@ -39,18 +39,6 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
   return scene::scene_for_file(path, {}, colors);
 }
 
-std::vector<std::string> inputs_of(const scene::Scene& scene) {
-  std::vector<std::string> inputs{scene.path};
-  scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
-    if (source.file) inputs.push_back(source.file->path);
-  });
-  scene.world.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) {
-    if (!volume.transfer.file.empty()) inputs.push_back(volume.transfer.file);
-  });
-  scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) { inputs.push_back(source.path); });
-  return inputs;
-}
-
 std::string human_bytes(double bytes) {
   const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
   int unit = 0;

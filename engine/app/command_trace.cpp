@@ -10,6 +10,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/lines_file.h"
+#include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 #include "engine/base/csv_paths.h"
 #include "engine/base/quantile.h"
@@ -146,18 +147,16 @@ Outcome trace_lines(const TraceOptions& options) {
   if (!vtp && !options.output.ends_with(".csv") && !options.output.starts_with("/dev/"))
     return Error{options.output + ": expected an output that ends in .csv or .vtp"};
   CATENA_TRY(scene::Scene scene, scene_of(options));
-  std::vector<std::string> inputs = inputs_of(scene);
-  if (!options.seeds.starts_with("{")) inputs.push_back(options.seeds);
+  RunFiles files(scene);
+  if (!options.seeds.starts_with("{")) files.reads(options.seeds);
+  files.writes("-o", options.output);
+  files.writes("--stats", options.stats);
+  CATENA_CHECK(files.check());
   json::Node pattern;
   if (is_pattern(options.seeds)) {
     CATENA_TRY(pattern, pattern_of(options.seeds));
   }
   CATENA_TRY(const field::VectorFieldPtr field, vector_field(scene, options));
-  CATENA_CHECK(check_output(options.output, inputs));
-  if (!options.stats.empty()) {
-    CATENA_CHECK(check_output(options.stats, inputs));
-    if (same_file(options.stats, options.output)) return Error{options.stats + ": --stats and -o name one file: expected two"};
-  }
 
   const flow::Flow flow{field.get(), options.kind == "line", options.min_speed};
   Timing timing;

@@ -89,6 +89,10 @@ Result<std::string> with_override(std::string text, const std::string& path, con
 
 Result<std::vector<std::string>> files_of(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {
   CATENA_TRY(const json::Node root, json::parse(text, path));
+  return files_of(root, path, overrides);
+}
+
+std::vector<std::string> files_of(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides) {
   std::vector<std::string> files;
   for (const json::Node* name : file_names(root)) files.push_back(resolved_path(path, name->string));
   for (const FieldOverride& with : overrides) files.push_back(with.file);

@@ -1,4 +1,5 @@
 #include "engine/base/text.h"
+#include "engine/scene/named_files.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/units.h"
 
@@ -61,11 +62,12 @@ Result<Scene> parse_scene(std::string_view text, const std::string& path, const 
   scene.cursor = scene.world.create();
   scene.world.emplace<Cursor>(scene.cursor);
   CATENA_CHECK(read_root(scene, root, overrides));
+  scene.files = files_of(root, path, overrides);
   return scene;
 }
 
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides) {
-  CATENA_TRY(const std::string text, read_text(path, "a scene file (JSON)"));
+  CATENA_TRY(const std::string text, read_text(path, "a scene file (JSON)", kMostJsonBytes));
   return parse_scene(text, path, overrides);
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "engine/app/command.h"
+#include "engine/app/run_files.h"
 #include "engine/app/viewer/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
@@ -81,7 +81,10 @@ void Session::check_edits() {
 }
 
 RecordedScene Session::recorded() const {
-  return {scene_->document().path(), scene_->document().text(), hand_.fields(), inputs_of(scene_->scene())};
+  RunFiles files(scene_->scene());
+  files.reads_device(hand_.device_name());
+  files.reads(options_.hand.firmware);
+  return {scene_->document().path(), scene_->document().text(), hand_.fields(), files.inputs()};
 }
 
 /// What the loop has to know of a scene that was read.

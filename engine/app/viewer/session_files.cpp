@@ -13,7 +13,7 @@ namespace catena::app {
 
 namespace {
 
-std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+std::string name_of_file(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 bool same_view(const render::View& a, const render::View& b) {
   return a.position == b.position && a.target == b.target && a.up == b.up && a.fovy_deg == b.fovy_deg && a.orthographic == b.orthographic &&
@@ -81,7 +81,7 @@ bool Session::save(const std::string& path) {
 }
 
 void Session::start_loading(const std::string& path, bool adds) {
-  if (loader_.is_busy()) return state_.say("still loading " + name_of(loader_.path()) + "; then again", true);
+  if (loader_.is_busy()) return state_.say("still loading " + name_of_file(loader_.path()) + "; then again", true);
   loading_adds_ = adds;
   state_.loading = path;
   loader_.start(path, pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
@@ -122,7 +122,7 @@ void Session::add_to_scene(LoadedScene loaded, const std::string& path) {
   const scene::Document& document = scene_->document();
   const auto added = edits_to_add(document.text(), document.path(), loaded.host.document().text(), loaded.host.document().path());
   if (!added) return state_.say(added.error().message, true);
-  if (const Outcome done = scene_->apply(added->edits, "added " + name_of(path)); !done) return state_.say(done.error().message, true);
+  if (const Outcome done = scene_->apply(added->edits, "added " + name_of_file(path)); !done) return state_.say(done.error().message, true);
   for (const auto& [theirs, ours] : added->names) {
     const scene::Entity from = scene::find_field(loaded.host.scene(), theirs), to = scene::find_field(scene_->scene(), ours);
     if (!from || !to) continue;
@@ -133,7 +133,7 @@ void Session::add_to_scene(LoadedScene loaded, const std::string& path) {
   }
   scene_->bounds.add(loaded.bounds);
   controls_.bounds = scene_->bounds;
-  state_.say("added " + name_of(path) + " (A brings all into the picture)");
+  state_.say("added " + name_of_file(path) + " (A brings all into the picture)");
 }
 
 void Session::remember(const std::string& path) {
