@@ -129,7 +129,7 @@ std::optional<Failure> Session::open() {
   if (!options_.source.empty()) remember(options_.source);
   // a device that pushes is let go by its own way out, Ctrl-C or not
   if (!hand_.is_mouse()) interrupt_.emplace();
-  hand_.start();
+  if (const Outcome started = hand_.start(); !started) return Failure{1, started.error().message};
   if (!hand_.note().empty()) state_.say(hand_.note());
   return std::nullopt;
 }
