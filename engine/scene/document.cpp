@@ -102,6 +102,8 @@ void Document::redo() {
 
 // ---- to the disk ----
 
+Result<std::string> Document::whole_text() const { return moved_text(text(), path_, path_, overrides_); }
+
 Outcome Document::save(const std::string& path) {
   if (!path.ends_with(".json")) return Error{one_line(path + ": a scene is written to a .json file; such a name was expected")};
   CATENA_TRY(const std::vector<std::string> inputs, files_of(text(), path_, overrides_));

@@ -131,6 +131,7 @@ std::optional<Failure> Session::open() {
   if (!hand_.is_mouse()) interrupt_.emplace();
   if (const Outcome started = hand_.start(); !started) return Failure{1, started.error().message};
   if (!hand_.note().empty()) state_.say(hand_.note());
+  look_for_left();
   return std::nullopt;
 }
 
@@ -349,8 +350,10 @@ std::optional<Failure> Session::run() {
       live = false;
       fulfil_wishes();
     }
+    keep_unsaved();
     update_title();
   }
+  keep_unsaved(true);
   return finish();
 }
 
