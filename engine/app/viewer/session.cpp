@@ -19,6 +19,7 @@ namespace catena::app {
 
 namespace {
 
+constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
 constexpr double kRestS = 0.25;       // without input for so long: the picture may take its time
 constexpr double kEstimateS = 0.6;    // the same, before its error is looked at
 constexpr double kIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
@@ -188,7 +189,8 @@ std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
   scene::Scene& scene = scene_->scene();
   const render::Packing packing = render::packing_of(scene.stereo);
   const std::uint32_t scale = render::is_interlaced(packing) ? 1 : next.scale;
-  const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(1u, width / scale), std::max(1u, height / scale));
+  const auto eye =
+      render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width / scale), std::max(kLeastPixels, height / scale));
   std::int64_t start = now_ns();
   auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) {
@@ -238,7 +240,8 @@ std::optional<Failure> Session::estimate() {
   height = pixels_[3] - pixels_[1];
   scene::Scene& scene = scene_->scene();
   const render::Packing packing = render::packing_of(scene.stereo);
-  const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(1u, width), std::max(1u, height));
+  const auto eye =
+      render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width), std::max(kLeastPixels, height));
   auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) return std::nullopt;  // said where it was drawn
   const auto error = render::estimate_rmse(screen_->renderer(), *packet, pacing_.again().settings);
