@@ -20,7 +20,8 @@ Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std:
       return Error{"--field " + option + ": expected NAME=FILE or NAME=FILE:GRID"};
     scene::FieldOverride entry{option.substr(0, equals), option.substr(equals + 1), {}};
     const auto colon = entry.file.rfind(':');
-    if (colon != std::string::npos && !std::filesystem::exists(entry.file)) {
+    std::error_code code;
+    if (colon != std::string::npos && !std::filesystem::exists(entry.file, code)) {
       entry.grid = entry.file.substr(colon + 1);
       entry.file.resize(colon);
     }

@@ -47,7 +47,8 @@ fs::path folder_of(const std::string& path) {
 /// The file as a scene in that folder names it. Links on the way are followed, the file itself keeps its name: its ending counts.
 std::string name_from(const std::string& file, const fs::path& folder) {
   const std::string name = (folder_of(file).lexically_relative(folder) / fs::path(file).filename()).lexically_normal().string();
-  return same_file((folder / name).string(), file) ? name : fs::absolute(file).lexically_normal().string();
+  std::error_code code;
+  return same_file((folder / name).string(), file) ? name : fs::absolute(file, code).lexically_normal().string();
 }
 
 bool is_raw(const std::string& file) { return file.ends_with(".raw"); }

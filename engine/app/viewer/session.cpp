@@ -98,7 +98,8 @@ void Session::measure() {
 
 std::optional<Failure> Session::open() {
   // what is wrong with the scene or the device is said before any window opens
-  auto document = options_.source.empty() ? scene::Document::make(kEmptyScene, (std::filesystem::current_path() / "scene.json").string())
+  std::error_code code;
+  auto document = options_.source.empty() ? scene::Document::make(kEmptyScene, (std::filesystem::current_path(code) / "scene.json").string())
                                           : scene::Document::open(options_.source, options_.overrides);
   if (!document) return Failure{2, document.error().message};
   auto host = SceneHost::open(std::move(*document), options_.adjust);

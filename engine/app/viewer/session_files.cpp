@@ -27,7 +27,8 @@ bool same_view(const render::View& a, const render::View& b) {
 
 void Session::fulfil_wishes_for_files() {
   if (const auto path = std::exchange(state_.save, std::nullopt)) {
-    const bool nameless = path->empty() && (state_.untitled || (!owns_file_ && std::filesystem::exists(scene_->document().path())));
+    std::error_code code;
+    const bool nameless = path->empty() && (state_.untitled || (!owns_file_ && std::filesystem::exists(scene_->document().path(), code)));
     if (nameless) {
       state_.ask_save = true;  // with the question about what is there
       return;
@@ -203,7 +204,8 @@ void Session::remember(const std::string& path) {
 /// Empty: the next free SCENE-001.png of the folder that the program was started in.
 void Session::write_screenshot(const std::string& path) {
   std::string name = path;
-  if (name.empty()) name = free_name(std::filesystem::current_path().string(), stem_of_path(scene_->document().path()), ".png");
+  std::error_code code;
+  if (name.empty()) name = free_name(std::filesystem::current_path(code).string(), stem_of_path(scene_->document().path()), ".png");
   auto picture = state_.screenshot_of_window ? screen_->window_picture() : screen_->renderer().read_back();
   const bool transparent = !state_.screenshot_of_window && scene_->scene().background.transparent;
   const Outcome written = picture ? render::write_png(name, *picture, transparent) : Outcome(picture.error());
