@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "engine/app/command.h"
-#include "engine/app/run_files.h"
 #include "engine/app/log_scene.h"
+#include "engine/app/run_files.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "haptics/servo/log/reader.h"

@@ -119,7 +119,8 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
         curves.push_back(*traced[i]);
         knots += curves.back()->knots().size();
       }
-      if (knots > scene::kMostKnots) return Error{options.seeds + ": " + scene::too_many_knots(seeds.size(), first + block.size(), scene::kMostKnots)};
+      if (knots > scene::kMostKnots)
+        return Error{options.seeds + ": " + scene::too_many_knots(seeds.size(), first + block.size(), scene::kMostKnots)};
       progress.at(static_cast<double>(first + block.size()));
     }
     return curves;

@@ -15,13 +15,15 @@ std::string eye_problem(const Vec3& position, const Vec3& target) {
   if (!is_finite(position) || !is_finite(target) || size > kMostEyeCoordinate)
     return "the position or the target is too far away; numbers of at most " + to_text(kMostEyeCoordinate) + " in size were expected";
   const double distance = norm(target - position);
-  if (!(distance >= kLeastEyeHeight) || distance < kLeastShare * size) return "the target is at the position, or too near to it; two different points were expected";
+  if (!(distance >= kLeastEyeHeight) || distance < kLeastShare * size)
+    return "the target is at the position, or too near to it; two different points were expected";
   return {};
 }
 
 std::string fovy_problem(double fovy_deg) {
   if (fovy_deg >= kLeastFovyDeg && fovy_deg <= kMostFovyDeg) return {};
-  return "is " + to_text(fovy_deg) + "; degrees between 0 and 180 (" + to_text(kLeastFovyDeg) + " to " + to_text(kMostFovyDeg) + ") were expected";
+  return "is " + to_text(fovy_deg) + "; degrees between 0 and 180 (" + to_text(kLeastFovyDeg) + " to " + to_text(kMostFovyDeg) +
+         ") were expected";
 }
 
 }  // namespace catena

@@ -84,7 +84,8 @@ void remove_stale_parts(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   for (const std::string& name : left_in(folder.empty() ? fs::path(".") : folder)) {
     const std::string mine = fs::path(name).filename().string();
-    if (!mine.starts_with(fs::path(beginning).filename().string()) || process_of(mine.substr(fs::path(beginning).filename().string().size())) == 0)
+    if (!mine.starts_with(fs::path(beginning).filename().string()) ||
+        process_of(mine.substr(fs::path(beginning).filename().string().size())) == 0)
       continue;
     // another machine or container may write into the same folder: its files are locked
     const int descriptor = ::open(name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);

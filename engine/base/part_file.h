@@ -28,8 +28,7 @@ class PartFile {
   int release();
 
  private:
-  PartFile(std::string path, std::string name, int descriptor)
-      : path_(std::move(path)), name_(std::move(name)), descriptor_(descriptor) {}
+  PartFile(std::string path, std::string name, int descriptor) : path_(std::move(path)), name_(std::move(name)), descriptor_(descriptor) {}
 
   std::string path_, name_;  ///< name_ empty: nothing to remove
   int descriptor_ = -1;

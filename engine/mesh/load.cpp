@@ -1,6 +1,5 @@
 #include "engine/mesh/load.h"
 
-
 #include "engine/base/text.h"
 
 namespace catena::mesh {

@@ -107,8 +107,8 @@ std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t most) {
 }  // namespace
 
 std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most) {
-  return "the lines of " + std::to_string(done) + " of the " + std::to_string(seeds) + " seeds have more than " +
-         std::to_string(most) + " knots together; fewer seeds, a shorter length or a greater tolerance was expected";
+  return "the lines of " + std::to_string(done) + " of the " + std::to_string(seeds) + " seeds have more than " + std::to_string(most) +
+         " knots together; fewer seeds, a shorter length or a greater tolerance was expected";
 }
 
 Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
@@ -160,8 +160,7 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& r
         return json::error_at(begin + i < where.items.size() ? where.items[begin + i] : where, traced[i].error().message);
       if (first_error.empty()) first_error = traced[i].error().message;
     }
-    if (knots > request.most_knots)
-      return json::error_at(place, too_many_knots(places.size(), begin + some.size(), request.most_knots));
+    if (knots > request.most_knots) return json::error_at(place, too_many_knots(places.size(), begin + some.size(), request.most_knots));
     if (request.progress) request.progress(begin + some.size(), places.size());
   }
   if (curves.empty() && !seeds.widget)

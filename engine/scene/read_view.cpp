@@ -29,8 +29,8 @@ Outcome read_camera(Scene& scene, const json::Node& node) {
   if (camera.orthographic) {
     CATENA_TRY(camera.height, json::require_number(node, "height", json::Range::positive));
     if (!(camera.height >= kLeastEyeHeight && camera.height <= kMostEyeHeight))
-      return json::error_at(*node.find("height"), "\"height\" is " + to_text(camera.height) + "; a length from " + to_text(kLeastEyeHeight) +
-                                                      " to " + to_text(kMostEyeHeight) + " was expected");
+      return json::error_at(*node.find("height"), "\"height\" is " + to_text(camera.height) + "; a length from " +
+                                                      to_text(kLeastEyeHeight) + " to " + to_text(kMostEyeHeight) + " was expected");
   } else if (const json::Node* height = node.find("height")) {
     return json::error_at(*height, "\"height\" is given without \"projection\": \"orthographic\"; \"fovy_deg\" was expected");
   }

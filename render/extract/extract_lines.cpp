@@ -23,8 +23,8 @@ constexpr double kIndicatorLength = 0.1;                // of L
 constexpr double kArrowRadius = 2.4, kArrowLength = 6;  // by the tube's radius
 constexpr double kMostArrows = 100000;
 constexpr std::size_t kMostKeptKnots = 2000000;  // of a set: above it the curves go once they are polylines
-constexpr double kPulseShare = 1.0 / 12;  // of a pulse: the longest segment
-constexpr double kDimmest = 0.25;         // brightness between pulses
+constexpr double kPulseShare = 1.0 / 12;         // of a pulse: the longest segment
+constexpr double kDimmest = 0.25;                // brightness between pulses
 
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 

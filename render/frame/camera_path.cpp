@@ -25,8 +25,7 @@ Result<CameraPath> path_of(const Table& table) {
     key.target = {value("tx", i), value("ty", i), value("tz", i)};
     if (i > 0 && !(key.t_s > keys[i - 1].t_s))
       return refuse("t is " + to_text(key.t_s) + " after " + to_text(keys[i - 1].t_s) + "; strictly rising t was expected");
-    if (const std::string problem = eye_problem(key.position, key.target); !problem.empty())
-      return refuse(problem);
+    if (const std::string problem = eye_problem(key.position, key.target); !problem.empty()) return refuse(problem);
     if (table.find("ux") != nullptr) {
       key.up = Vec3(value("ux", i), value("uy", i), value("uz", i));
       if (!(norm(*key.up) > 0)) return refuse("up is 0,0,0; a direction was expected");

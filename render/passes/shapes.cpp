@@ -166,9 +166,9 @@ std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed) 
   if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return {};
   const std::vector<ColoredPoint> points = distinct_points(tube, closed);
   if (points.empty()) return {};
-  std::vector<TubeRing> wall = points.size() > 1
-                                   ? framed_rings(points, closed)
-                                   : std::vector<TubeRing>{{points.front().p, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, points.front().color, 0, 0}};
+  std::vector<TubeRing> wall =
+      points.size() > 1 ? framed_rings(points, closed)
+                        : std::vector<TubeRing>{{points.front().p, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, points.front().color, 0, 0}};
   for (TubeRing& ring : wall) ring.radius = tube.radius;
   if (closed) {
     wall.push_back(wall.front());

@@ -4,9 +4,9 @@
 #pragma once
 #include <vector>
 
-#include "engine/app/run_files.h"
 #include "engine/app/render/options.h"
 #include "engine/app/render/sinks.h"
+#include "engine/app/run_files.h"
 
 namespace catena::app {
 

@@ -251,7 +251,8 @@ std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const Chai
     if (member == key.name) value.string = name;
   for (const LinkKey& other : keys_of(row.type))
     if (other.name == "level")
-      if (const std::string level = first_value(scene, other, link, probe, 1); !level.empty()) edits.push_back({row.pointer("level"), level});
+      if (const std::string level = first_value(scene, other, link, probe, 1); !level.empty())
+        edits.push_back({row.pointer("level"), level});
   return edits;
 }
 

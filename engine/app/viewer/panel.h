@@ -52,10 +52,10 @@ struct ViewState {
   std::optional<std::string> device;        ///< another one to hold the probe
   std::optional<std::string> record;        ///< .catlog to write from now on; empty: no more
   bool fly = false, full_screen = false;
-  std::optional<Leaving> ask_unsaved;      ///< the question stands
-  std::optional<Answer> answer;            ///< to it
-  std::optional<Leaving> after_save;       ///< what a save that succeeds goes on with
-  std::optional<LeftDraft> ask_left;       ///< the question stands
+  std::optional<Leaving> ask_unsaved;  ///< the question stands
+  std::optional<Answer> answer;        ///< to it
+  std::optional<Leaving> after_save;   ///< what a save that succeeds goes on with
+  std::optional<LeftDraft> ask_left;   ///< the question stands
   std::optional<AnswerToLeft> answer_to_left;
   std::optional<std::string> ask_dropped;  ///< a data file on an open scene: open it, or add it
   std::optional<std::string> add;          ///< a data file that shall join the scene

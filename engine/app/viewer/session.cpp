@@ -20,9 +20,9 @@ namespace catena::app {
 namespace {
 
 constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
-constexpr double kRestS = 0.25;       // without input for so long: the picture may take its time
-constexpr double kEstimateS = 0.6;    // the same, before its error is looked at
-constexpr double kIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
+constexpr double kRestS = 0.25;             // without input for so long: the picture may take its time
+constexpr double kEstimateS = 0.6;          // the same, before its error is looked at
+constexpr double kIdleWaitS = 0.004;        // between looks at the servo's news when nothing else happens
 constexpr double kMinimisedWaitS = 0.1;
 constexpr double kTitleS = 0.25;
 constexpr double kLiveS = 0.1;  // between interfaces that only follow the hand
@@ -99,8 +99,9 @@ void Session::measure() {
 std::optional<Failure> Session::open() {
   // what is wrong with the scene or the device is said before any window opens
   std::error_code code;
-  auto document = options_.source.empty() ? scene::Document::make(kEmptyScene, (std::filesystem::current_path(code) / "scene.json").string())
-                                          : scene::Document::open(options_.source, options_.overrides);
+  auto document = options_.source.empty()
+                      ? scene::Document::make(kEmptyScene, (std::filesystem::current_path(code) / "scene.json").string())
+                      : scene::Document::open(options_.source, options_.overrides);
   if (!document) return Failure{2, document.error().message};
   auto host = SceneHost::open(std::move(*document), options_.adjust);
   if (!host) return Failure{2, host.error().message};
@@ -190,8 +191,8 @@ std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
   scene::Scene& scene = scene_->scene();
   const render::Packing packing = render::packing_of(scene.stereo);
   const std::uint32_t scale = render::is_interlaced(packing) ? 1 : next.scale;
-  const auto eye =
-      render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width / scale), std::max(kLeastPixels, height / scale));
+  const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width / scale),
+                                     std::max(kLeastPixels, height / scale));
   std::int64_t start = now_ns();
   auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) {

@@ -115,12 +115,12 @@ class Session {
   bool picked_stale_ = true;       ///< the place under the pointer is to be looked at again
   bool owns_file_ = true;          ///< the scene was read from, or saved to, the file of its path
   bool moved_by_menu_ = false;
-  bool leaves_ = false;  ///< the loop ends
-  Draft draft_;          ///< what is not saved
-  bool given_up_ = false;         ///< by the person, on the way out
+  bool leaves_ = false;    ///< the loop ends
+  Draft draft_;            ///< what is not saved
+  bool given_up_ = false;  ///< by the person, on the way out
   std::int64_t last_kept_ns_ = 0;
   std::string not_kept_;  ///< why, as it was said
-  int unsettled_ = 0;    ///< interfaces to come though nothing happens: they settle their sizes
+  int unsettled_ = 0;     ///< interfaces to come though nothing happens: they settle their sizes
 
   bool damaged_ = false;
   bool interface_holds_pointer_ = false;  ///< the buttons that are down went down on it

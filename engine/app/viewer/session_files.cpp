@@ -6,8 +6,8 @@
 #include "engine/app/viewer/add_file.h"
 #include "engine/app/viewer/file_list.h"
 #include "engine/app/viewer/session.h"
-#include "engine/scene/write_values.h"
 #include "engine/base/clock.h"
+#include "engine/scene/write_values.h"
 #include "render/vk/picture.h"
 
 namespace catena::app {

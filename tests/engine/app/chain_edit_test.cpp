@@ -138,7 +138,8 @@ TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
         const Outcome done = f.host->apply(changed_field(f.host->scene(), row, key, "other", probe), "field");
         ASSERT_TRUE(done) << type << ": " << done.error().message;
       }
-    EXPECT_EQ(surface_of(chain_rows(f.host->scene(), {})[0].node), (std::pair<std::string, std::string>("other", R"({"widget": "iso"})"))) << type;
+    EXPECT_EQ(surface_of(chain_rows(f.host->scene(), {})[0].node), (std::pair<std::string, std::string>("other", R"({"widget": "iso"})")))
+        << type;
     const auto program = haptics::extract_program(f.host->scene());
     EXPECT_TRUE(program) << type << ": " << program.error().message;
   }

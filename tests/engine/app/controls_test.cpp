@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "engine/base/eye_limits.h"
 #include "engine/app/hand/hand_setup.h"
+#include "engine/base/eye_limits.h"
 
 namespace catena::app {
 namespace controls_test {

@@ -39,7 +39,7 @@ endsolid s
 struct Try {
   const char* name;
   std::vector<std::string> words;
-  std::vector<std::string> inputs;  ///< files that no output may be
+  std::vector<std::string> inputs;     ///< files that no output may be
   std::vector<std::string> hostile{};  ///< of those, the words in which a pipe or a device can stand
   std::string ending{};                ///< that the output's name must have: then it is a link of such a name
 };
@@ -65,7 +65,8 @@ class RunFilesTest : public testing::Test {
     test::write_file(made / "pattern.json", R"({"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 2}})");
     test::write_file(made / "camera.csv", "t,px,py,pz,tx,ty,tz\n0,0,-6,3,0,0,0\n1,0,-7,3,0,0,0\n");
     test::write_file(made / "image.bin", "no firmware");
-    const auto felt = test::run_catena({"feel", made / "scene.json", "--device", "null", "--seconds", "0.05", "--record", made / "old.catlog"});
+    const auto felt =
+        test::run_catena({"feel", made / "scene.json", "--device", "null", "--seconds", "0.05", "--record", made / "old.catlog"});
     ASSERT_EQ(felt.exit_code, 0) << felt.err;
     for (const auto& entry : fs::directory_iterator(made.path()))
       originals_[entry.path().filename().string()] = test::read_file(entry.path().string());
@@ -91,7 +92,8 @@ class RunFilesTest : public testing::Test {
     for (const auto& [name, bytes] : originals_) EXPECT_EQ(test::read_file(folder_ / name) == bytes, true) << what << ": " << name;
     for (const auto& entry : fs::directory_iterator(folder_.path())) {
       const std::string name = entry.path().filename().string();
-      EXPECT_TRUE(originals_.contains(name) || name.starts_with("link") || name.starts_with("hard") || name == "pipe" || name == "sub") << what << " left " << name;
+      EXPECT_TRUE(originals_.contains(name) || name.starts_with("link") || name.starts_with("hard") || name == "pipe" || name == "sub")
+          << what << " left " << name;
     }
   }
   static inline std::map<std::string, std::string> originals_;
@@ -152,7 +154,11 @@ std::vector<std::string> with(std::vector<std::string> more) {
 INSTANTIATE_TEST_SUITE_P(
     Commands, Files,
     testing::Values(
-        Try{"RenderOutput", {"render", "{scene.json}", "-o", "{OUT}", "--size", "16x16"}, kScenesFiles, {"scene.json", "map.json", "shape.stl"}, ".png"},
+        Try{"RenderOutput",
+            {"render", "{scene.json}", "-o", "{OUT}", "--size", "16x16"},
+            kScenesFiles,
+            {"scene.json", "map.json", "shape.stl"},
+            ".png"},
         Try{"RenderDepth", {"render", "{scene.json}", "-o", "{x.png}", "--size", "16x16", "--depth", "{OUT}"}, kScenesFiles, {}, ".exr"},
         Try{"RenderIds", {"render", "{scene.json}", "-o", "{x.png}", "--size", "16x16", "--ids", "{OUT}"}, kScenesFiles, {}, ".png"},
         Try{"RenderCamera",
@@ -171,8 +177,12 @@ INSTANTIATE_TEST_SUITE_P(
             {"replay", "{scene.json}", "--probe", "{probe.csv}", "-o", "{OUT}"},
             with({"probe.csv"}),
             {"scene.json", "probe.csv", "map.json", "shape.stl"}},
-        Try{"ReplayDetails", {"replay", "{scene.json}", "--probe", "{probe.csv}", "-o", "{x.csv}", "--details", "{OUT}"}, with({"probe.csv"})},
-        Try{"ReplayWidgets", {"replay", "{scene.json}", "--probe", "{probe.csv}", "-o", "{x.csv}", "--widgets", "{OUT}"}, with({"probe.csv"})},
+        Try{"ReplayDetails",
+            {"replay", "{scene.json}", "--probe", "{probe.csv}", "-o", "{x.csv}", "--details", "{OUT}"},
+            with({"probe.csv"})},
+        Try{"ReplayWidgets",
+            {"replay", "{scene.json}", "--probe", "{probe.csv}", "-o", "{x.csv}", "--widgets", "{OUT}"},
+            with({"probe.csv"})},
         Try{"ReplayStats", {"replay", "{scene.json}", "--probe", "{probe.csv}", "-o", "{x.csv}", "--stats", "{OUT}"}, with({"probe.csv"})},
         Try{"ReplayLog", {"replay", "{scene.json}", "--log", "{old.catlog}", "-o", "{OUT}"}, with({"old.catlog"}), {"old.catlog"}},
         Try{"ReplayLogStats", {"replay", "{scene.json}", "--log", "{old.catlog}", "--stats", "{OUT}"}, with({"old.catlog"})},

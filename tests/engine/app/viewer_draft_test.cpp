@@ -122,20 +122,20 @@ constexpr const char* kChange =
     "keys ctrl+z; titled 'copy.json [^ ]'\n";
 
 TEST_F(ViewerDraft, IsOfferedAfterTheProgramWasKilled) {
-  const int code = test::drive_windows(
-      folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
-                   "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
-                   "kill -9 $V; wait $V\n"
-                   "cp copy.json saved.json\n"
-                   // later: nothing changes, and it is offered again
-                   "view copy.json --size 900x600\nsleep 0.5; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
-                   "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
-                   // restore, save
-                   "view copy.json --size 900x600\nsleep 0.5; keys Return; titled 'copy.json [^ ]'\n"
-                   "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
-                   "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
-                   // nothing is asked any more
-                   "view copy.json --size 900x600\nsleep 0.5; keys ctrl+q; wait $V\nexit $?\n");
+  const int code =
+      test::drive_windows(folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
+                                       "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
+                                       "kill -9 $V; wait $V\n"
+                                       "cp copy.json saved.json\n"
+                                       // later: nothing changes, and it is offered again
+                                       "view copy.json --size 900x600\nsleep 0.5; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
+                                       "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
+                                       // restore, save
+                                       "view copy.json --size 900x600\nsleep 0.5; keys Return; titled 'copy.json [^ ]'\n"
+                                       "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
+                                       "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
+                                       // nothing is asked any more
+                                       "view copy.json --size 900x600\nsleep 0.5; keys ctrl+q; wait $V\nexit $?\n");
   EXPECT_EQ(code, 0) << log();
   for (const char* bad : {"never", "lost", "changed", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
   EXPECT_EQ(test::read_file(folder_ / "copy.json"), kScene) << "what was undone, restored and saved";

@@ -38,7 +38,8 @@ std::vector<TubeItem> some_tubes() {
   corner.points = {{-9, 0, -9}, {-4, 0, -9}, {-4, 0, -4}, {-9, 0, -8}};
   corner.radius = 0.2;
   corner.color = {0.3f, 0.9f, 0.4f};
-  return {bent(0.6, {-6, 0, 5}, 0.8, 40), bent(0.4, {5, 0, -5}, 1, 60), bent(0.1, {5, 1, 5}, 1, 30), ball, corner, bent(0.05, {0, 0, 0}, 0.7, 30)};
+  return {bent(0.6, {-6, 0, 5}, 0.8, 40), bent(0.4, {5, 0, -5}, 1, 60), bent(0.1, {5, 1, 5}, 1, 30), ball, corner,
+          bent(0.05, {0, 0, 0}, 0.7, 30)};
 }
 
 /// The same as meshes.

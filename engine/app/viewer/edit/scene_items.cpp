@@ -41,7 +41,8 @@ std::vector<std::string> seen_levels(const scene::Scene& scene, const std::strin
   std::vector<std::string> pointers;
   scene.world.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
     const json::Node* stated = surface.where.find("level");
-    if (stated == nullptr || stated->kind != json::Kind::number || stated->number != level || name_of(scene, surface.field) != field) return;
+    if (stated == nullptr || stated->kind != json::Kind::number || stated->number != level || name_of(scene, surface.field) != field)
+      return;
     if (const std::string at = pointer_of(surface.where); !at.empty()) pointers.push_back(at + "/level");
   });
   return pointers;
