@@ -95,7 +95,8 @@ TEST(SharedStructs, TubeRingData) {
   EXPECT_OFFSET(TubeRingData, normal);
   EXPECT_OFFSET(TubeRingData, color);
   EXPECT_OFFSET(TubeRingData, id);
-  EXPECT_EQ(found.size(), compared);
+  EXPECT_EQ(found.at("[]"), sizeof(TubeRingData)) << "the stride of the array";
+  EXPECT_EQ(found.size(), compared + 1);
 }
 
 TEST(SharedStructs, MeshFrameData) {
