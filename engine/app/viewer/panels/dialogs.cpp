@@ -12,7 +12,7 @@ namespace {
 
 void centre_next() { ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f}); }
 
-std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+std::string file_name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 void draw_help(ViewState& state) {
   const ImGuiViewport& view = *ImGui::GetMainViewport();
@@ -54,7 +54,7 @@ void draw_unsaved(PanelContext& context) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
-  ImGui::Text("%s has changes that are not saved.", name_of(context.scene.document().path()).c_str());
+  ImGui::Text("%s has changes that are not saved.", file_name_of(context.scene.document().path()).c_str());
   ImGui::Spacing();
   const auto answer = [&](Answer given) {
     state.answer = given;
@@ -76,7 +76,7 @@ void draw_dropped(PanelContext& context) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
-  ImGui::TextUnformatted(name_of(*state.ask_dropped).c_str());
+  ImGui::TextUnformatted(file_name_of(*state.ask_dropped).c_str());
   ImGui::Spacing();
   const auto done = [&] {
     state.ask_dropped.reset();
