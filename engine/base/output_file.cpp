@@ -62,9 +62,15 @@ Result<OutputFile> OutputFile::open(const std::string& name) {
     if (code) return Error{name + ": cannot write: " + code.message()};
   }
   const std::string temporary = written_directly(path) ? std::string() : path + ".part" + std::to_string(::getpid());
-  std::FILE* file = std::fopen((temporary.empty() ? path : temporary).c_str(), "wb");
-  if (file == nullptr) return cannot_write(path, errno);
-  return OutputFile(path, temporary, file);
+  // what is to be removed is known before it is made: there may be no memory afterwards
+  OutputFile output(path, temporary, nullptr);
+  output.file_ = std::fopen((temporary.empty() ? path : temporary).c_str(), "wb");
+  if (output.file_ == nullptr) {
+    const int why = errno;
+    output.temporary_.clear();
+    return cannot_write(path, why);
+  }
+  return output;
 }
 
 void OutputFile::write(std::string_view text) {
