@@ -77,7 +77,7 @@ TEST_F(CrashGuardDeathTest, AFullStackLetsGo) {
     const app::CrashGuard guard(device);
     std::exit(Fill::deeper(0));
   };
-#ifndef CATENA_SANITIZED
+#ifndef __SANITIZE_ADDRESS__
   EXPECT_EXIT(crash(), testing::KilledBySignal(SIGSEGV), "let go\ncatena: ended by SIGSEGV");
 #endif
 }
