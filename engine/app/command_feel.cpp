@@ -145,7 +145,7 @@ Outcome feel(const FeelOptions& options) {
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
   fmt::print("{}", haptics::servo_summary(servo.report(), hand.device->capabilities().name));
-  return Done{};
+  return interrupt.outcome();
 }
 
 }  // namespace

@@ -97,7 +97,9 @@ Outcome replay_log_file(const ReplayOptions& options) {
     append_details(line, columns, program.modes, program.metres_per_unit, state);
     details->write(line + "\n");
   };
-  CATENA_TRY(const log::LogReplay result, log::replay_log(reader, hooks));
+  const Result<log::LogReplay> replayed = log::replay_log(reader, hooks);
+  if (!replayed) return Error{options.log + ": " + replayed.error().message};
+  const log::LogReplay& result = *replayed;
 
   CATENA_CHECK(open(json, options.stats, replay_stats_json(result.stats, running ? use.json(*running) : std::string())));
   std::vector<OutputFile*> files;

@@ -106,13 +106,18 @@ Result<PartFile> PartFile::create(const std::string& path, bool owner_only) {
   const bool replaces = ::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode);
   const mode_t mode = owner_only ? 0600 : replaces ? old.st_mode & 0777 : 0666;
   for (int attempt = 0;; ++attempt) {
-    const std::string name = part_name(path);
-    const int descriptor = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
-    if (descriptor < 0 && errno == EEXIST && attempt < 100) continue;
-    if (descriptor < 0) return cannot_write_part(path, errno);
-    if (replaces && !owner_only) static_cast<void>(::fchmod(descriptor, mode));
-    static_cast<void>(::flock(descriptor, LOCK_EX | LOCK_NB));
-    return PartFile(path, name, descriptor);
+    // what is to be removed is known before it is made: there may be no memory afterwards
+    PartFile part(path, part_name(path), -1);
+    part.descriptor_ = ::open(part.name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    if (part.descriptor_ < 0) {
+      const int why = errno;
+      part.name_.clear();
+      if (why == EEXIST && attempt < 100) continue;
+      return cannot_write_part(path, why);
+    }
+    if (replaces && !owner_only) static_cast<void>(::fchmod(part.descriptor_, mode));
+    static_cast<void>(::flock(part.descriptor_, LOCK_EX | LOCK_NB));
+    return part;
   }
 }
 

@@ -389,6 +389,8 @@ std::optional<Failure> Session::finish() {
       return Failure{2, written.error().message};
   }
   say_goodbye();
+  if (interrupt_)
+    if (const Outcome ended = interrupt_->outcome(); !ended) return Failure{1, ended.error().message};
   return std::nullopt;
 }
 
