@@ -3,9 +3,13 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
 #include <new>
+#include <system_error>
 
 #include "engine/app/command.h"
+#include "engine/app/process_limits.h"
 #include "engine/base/clock.h"
 #include "engine/base/text.h"
 
@@ -28,10 +32,10 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
   for (const CLI::App* sub : program.get_subcommands()) command += " " + sub->get_name();
   return std::string(error.what()) + " (see " + command + " --help)";
 }
-}  // namespace
 
-int run(int argc, char** argv) {
-  ms_since_process_start();
+// Everything that allocates: the caller tells what it throws.
+int parse_and_work(int argc, char** argv) {
+  if (const Outcome ready = prepare_process(); !ready) return machine_failed(ready.error().message);
   CLI::App program{"Catena: see a scientific field and feel it with a hand."};
   program.name("catena");
   program.require_subcommand(1);
@@ -56,15 +60,27 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
     return bad_input(usage_message(program, error));
   }
+  const Outcome done = chosen();
+  if (!done) return done.error().machine ? machine_failed(done.error().message) : bad_input(done.error().message);
+  return view_exit_code;
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  ms_since_process_start();
   try {
-    const Outcome done = chosen();
-    if (!done) return done.error().machine ? machine_failed(done.error().message) : bad_input(done.error().message);
+    return parse_and_work(argc, argv);
   } catch (const MachineFailure& failure) {
     return machine_failed(failure.message);
   } catch (const std::bad_alloc&) {
-    return machine_failed("out of memory");
+    std::fputs("catena: out of memory\n", stderr);
+  } catch (const std::system_error& error) {
+    return machine_failed(fmt::format("this machine does not give what is needed: {}", error.what()));
+  } catch (const std::exception& error) {
+    return machine_failed(fmt::format("ended by an error that nothing handles: {}", error.what()));
   }
-  return view_exit_code;
+  return 1;
 }
 
 }  // namespace catena::app

@@ -101,6 +101,7 @@ Outcome test(const DevicesOptions& options) {
     fmt::print(stderr, "{}: pushes of up to 1 N follow; hold the grip, Ctrl-C stops\n", options.name);
   const DeviceCheck check = check_device(device, check_options, paced(check_options.rate_hz));
   device.stop();
+  CATENA_CHECK(interrupt.outcome());
   print_check(device, options.name, check);
   if (!check.failure.empty()) throw MachineFailure{options.name + ": " + check.failure};
   fmt::print("pass{}\n", options.forces ? "" : " (no forces: --forces pushes, too)");

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "engine/base/numbers.h"
 #include "engine/scene/read_parts.h"
 
 namespace catena::scene {
@@ -42,6 +43,9 @@ Outcome read_stereo(Scene& scene, const json::Node& node) {
   if (!mode) return json::error_at(*node.find("mode"), "\"mode\" is not known; " + stereo_words() + " was expected");
   stereo.mode = *mode;
   CATENA_TRY(stereo.separation, json::get_optional_number(node, "separation", json::Range::not_negative));
+  if (stereo.separation > kMostStereoSeparation)
+    return json::error_at(*node.find("separation"), "\"separation\" is " + to_text(*stereo.separation) + "; at most " +
+                                                        to_text(kMostStereoSeparation) + " world units were expected");
   CATENA_TRY(stereo.zero_parallax, json::get_optional_number(node, "zero_parallax", json::Range::positive));
   CATENA_TRY(stereo.views, json::get_integer(node, "views", 2, 2, kMostStereoViews));
   if (stereo.views != 2 && needs_a_pair(stereo.mode))

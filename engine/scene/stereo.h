@@ -41,5 +41,6 @@ struct Stereo {
   bool swap = false;                    ///< the right eye's picture in the left eye's place
 };
 inline constexpr int kMostStereoViews = 64;
+inline constexpr double kMostStereoSeparation = 1e15;  ///< world units
 
 }  // namespace catena::scene

@@ -1,5 +1,7 @@
 #include "engine/widget/machine.h"
 
+#include <cstring>
+
 #include "engine/widget/cutting_plane.h"
 #include "engine/widget/handles.h"
 
@@ -152,5 +154,18 @@ void finish(const Spec& spec, State& state, const Vec3& proxy) noexcept {
 }
 
 Report report_of(const State& state) noexcept { return {state.pose, state.value, state.revision, state.mode, state.handle, state.held}; }
+
+bool is_sane(const Spec& spec, const State& state) noexcept {
+  const auto byte = [](const auto& value) {
+    unsigned char out;
+    std::memcpy(&out, &value, 1);
+    return out;
+  };
+  if (byte(state.known) > 1 || byte(state.gripped) > 1 || byte(state.rebase) > 1) return false;
+  if (byte(state.mode) > static_cast<unsigned char>(Mode::drag)) return false;
+  const bool on_handle = state.mode == Mode::hover || state.mode == Mode::drag, plane = spec.kind == Kind::cutting_plane;
+  if (state.mode != Mode::away && plane == on_handle) return false;
+  return state.handle >= (on_handle ? 0 : -1) && state.handle < std::max(handle_count(spec.kind), 1) && state.axis >= -1 && state.axis <= 2;
+}
 
 }  // namespace catena::widget

@@ -47,4 +47,7 @@ void finish(const Spec& spec, State& state, const Vec3& proxy) noexcept;
 
 Report report_of(const State& state) noexcept;
 
+/// Is this a state that the machine can leave, as far as it indexes with it? For states that come from a file; off the tick.
+bool is_sane(const Spec& spec, const State& state) noexcept;
+
 }  // namespace catena::widget

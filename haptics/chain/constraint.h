@@ -13,6 +13,7 @@
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/field.h"
 #include "engine/widget/state.h"
+#include "haptics/chain/plain_values.h"
 
 namespace catena::haptics {
 
@@ -82,6 +83,15 @@ T& outer_of(LinkState& state) {
   return *std::launder(reinterpret_cast<T*>(state.outer.data()));
 }
 
+template <class T>
+const T& memory_of(const LinkState& state) {
+  return memory_of<T>(const_cast<LinkState&>(state));
+}
+template <class T>
+const T& outer_of(const LinkState& state) {
+  return outer_of<T>(const_cast<LinkState&>(state));
+}
+
 struct LinkScratch {
   std::array<field::Cursor, 4> cursors{};  ///< the constraint's
   field::Cursor parameter{}, stiffness{};  ///< of its parameters, of the link's stiffness
@@ -127,6 +137,10 @@ class Constraint {
 
   /// True where it draws the hand by what it is, rather than holds it: the ledger (passivity.h) grants what it gives.
   virtual bool is_source() const noexcept { return false; }
+
+  /// True for what its ticks can leave in `state.memory` and `state.outer`; false where they would index or branch with something
+  /// else. For states that come from a file (check_state.h); off the tick. By default it remembers nothing, so that all is zero.
+  virtual bool is_sane(const LinkState& state) const noexcept { return state.memory == decltype(state.memory){}; }
 
   /// Its domain length L, for tolerances and tests.
   virtual double domain_length() const noexcept { return 4; }

@@ -27,6 +27,9 @@ class BoxSurface final : public Surface {
   };
   BoxSurface(const Shape& shape, Memory& memory, const SideMemory& last) : shape_(shape), memory_(memory), last_(last) {}
 
+  static bool is_sane(const Shape&, const Memory& m) noexcept {
+    return m.face.axis >= 0 && m.face.axis <= 2 && m.face.sign >= -1 && m.face.sign <= 1;
+  }
   SideValue side(const Vec3& at) noexcept override { return {value(to_box(at)), true, false}; }
 
   Hold place(const Vec3& probe) noexcept override {

@@ -1,6 +1,7 @@
 /// A constraint whose closest point is a formula: the rules of surface_side.h around a shape that is plain data. No field fetch.
 ///   ClosedForm<S>  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
-///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start).
+///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start); static
+///                  bool is_sane(shape, memory): of memory from a file, see Constraint::is_sane.
 ///   Feature<S>     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
 /// `seek` is `start` with the memory kept. A primitive is given on the free side too, but none where the link has let go.
 /// Haptic thread: no allocation, lock, or throw.
@@ -36,6 +37,10 @@ class ClosedForm final : public Constraint {
     return S(shape_, copy.own, copy.side).primitive(at, out);
   }
   bool has_primitive() const noexcept override { return true; }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const Memory& memory = memory_of<Memory>(state);
+    return haptics::is_sane(memory.side) && S::is_sane(shape_, memory.own);
+  }
   double domain_length() const noexcept override {
     Memory none{};
     return S(shape_, none.own, none.side).domain_length();
@@ -58,6 +63,7 @@ class Feature final : public Surface {
   using Shape = ShapeType;
   using Memory = NoMemory;
   Feature(const Shape& shape, Memory&, const SideMemory&) : shape_(shape) {}
+  static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
 
   SideValue side(const Vec3&) noexcept override { return {}; }
   Hold place(const Vec3& probe) noexcept override { return shape_.closest(probe); }

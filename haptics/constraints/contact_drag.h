@@ -21,6 +21,7 @@ class ContactDrag : public Constraint {
     if (!contact.drag(tau)) return contact.lose();
     contact.end(tau, Status::ok);
   }
+  bool is_sane(const LinkState& state) const noexcept final { return haptics::is_sane(memory_of<ContactMemory>(state)); }
   double domain_length() const noexcept final { return contact_.length; }
 
  private:

@@ -259,6 +259,10 @@ class Friction final : public Constraint {
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     FrictionTick(spec_, probe, state, scratch).run();
   }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const FrictionMemory& memory = memory_of<FrictionMemory>(state);
+    return haptics::is_sane(memory.contact) && is_one_of(memory.heading.status, Status::bad_probe);
+  }
   double domain_length() const noexcept override { return spec_.contact.length; }
 
  private:

@@ -314,6 +314,10 @@ class Isosurface final : public Constraint {
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell);
+  }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {

@@ -20,6 +20,14 @@ struct CellPoint {
   Vec3 f{0.0};
 };
 
+/// Of a state from a file (Constraint::is_sane): far from where integers end, and a place. Cells outside the grid are
+/// walls to the walk.
+inline bool is_sane(const CellPoint& at) noexcept {
+  constexpr std::int32_t most = 1 << 30;
+  const auto near = [](std::int32_t base) { return base > -most && base < most; };
+  return near(at.base.x) && near(at.base.y) && near(at.base.z) && is_finite(at.f);
+}
+
 struct WalkResult {
   Status status = Status::ok;    ///< ok, boundary, budget, critical
   Reason reason = Reason::none;  ///< of a status boundary or critical

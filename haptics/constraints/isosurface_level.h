@@ -18,6 +18,9 @@ struct LevelPoint {
   bool plateau = false;  ///< no usable gradient
 };
 
+/// Of a state from a file: see Constraint::is_sane.
+inline bool is_sane(const LevelPoint& at) noexcept { return are_bools(at.valid, at.finite, at.plateau); }
+
 class LevelField {
  public:
   LevelField(const field::ScalarField& field, double level, field::Cursor& cursor, LinkState& state)

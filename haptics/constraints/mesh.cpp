@@ -103,6 +103,10 @@ class TwoSidedMesh final : public Constraint {
     out = {Primitive::Kind::plane, state.proxy, mesh_->face(memory.at.face).normal};
     return true;
   }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const auto& memory = memory_of<WalkMemory>(state);
+    return haptics::is_sane(memory.side) && memory.at.face < mesh_->triangles().size();
+  }
   bool has_primitive() const noexcept override { return true; }
   double domain_length() const noexcept override { return mesh_->length(); }
 
@@ -184,6 +188,14 @@ class OneSidedMesh final : public Constraint {
       out = {Primitive::Kind::point, state.proxy, Vec3(0.0)};
     }
     return true;
+  }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const auto& memory = memory_of<GodMemory>(state);
+    const std::size_t faces = mesh_->triangles().size();
+    for (const std::uint32_t face : memory.god.faces)
+      if (face >= faces) return false;
+    return memory.god.count >= 0 && memory.god.count <= GodObject::kMost && memory.god.binding >= 0 && memory.god.binding <= 3 &&
+           memory.hint < faces && is_one_of(memory.status, Status::bad_probe) && are_bools(memory.fresh, memory.settled);
   }
   bool has_primitive() const noexcept override { return true; }
   double domain_length() const noexcept override { return mesh_->length(); }

@@ -49,6 +49,9 @@ class ModulatedFriction final : public Constraint {
     }
     contact.end(tau, Status::ok);
   }
+  bool is_sane(const LinkState& state) const noexcept override {
+    return haptics::is_sane(memory_of<ModulatedFrictionMemory>(state).contact);
+  }
   double domain_length() const noexcept override { return spec_.contact.length; }
 
  private:

@@ -14,6 +14,7 @@ class PlaneSurface final : public Surface {
   using Shape = PlaneShape;
   using Memory = NoMemory;
   PlaneSurface(const Shape& shape, Memory&, const SideMemory&) : point_(shape.point), normal_(shape.normal) {}
+  static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
   SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
   Hold place(const Vec3& probe) noexcept override {
     // a second projection takes off what rounding left

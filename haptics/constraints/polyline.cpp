@@ -29,6 +29,10 @@ class PolylineSurface final : public Surface {
   };
   PolylineSurface(const Shape& shape, Memory& memory, const SideMemory&) : shape_(shape), memory_(memory) {}
 
+  static bool is_sane(const Shape& shape, const Memory& m) noexcept {
+    const std::size_t pieces = shape.pieces.size();
+    return shape.tree.is_sane(m.search) && m.search.best < pieces && m.piece < pieces && m.end >= -1 && m.end <= 1;
+  }
   SideValue side(const Vec3&) noexcept override { return {}; }
 
   Hold place(const Vec3& probe) noexcept override {

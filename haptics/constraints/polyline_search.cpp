@@ -1,5 +1,6 @@
 #include "haptics/constraints/polyline_search.h"
 
+#include <bit>
 #include <limits>
 
 #include "haptics/chain/constraint.h"
@@ -61,6 +62,16 @@ PolylineSearch::PolylineSearch(const std::vector<Straight>& pieces) {
   const Vec3 half = nodes_[0].hi * 0.5 - nodes_[0].lo * 0.5;
   center_ = nodes_[0].lo + half;
   radius_ = max_abs(half);
+}
+
+bool PolylineSearch::is_sane(const SearchState& state) const noexcept {
+  if (!are_bools(state.any, state.open, state.whole)) return false;
+  if (state.depth < 0 || state.depth > static_cast<std::int32_t>(state.stack.size())) return false;
+  for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(state.depth); ++k) {
+    const std::uint32_t node = state.stack[k];
+    if (node >= nodes_.size() || static_cast<std::uint32_t>(std::bit_width(node + 1)) < k + 1) return false;
+  }
+  return true;
 }
 
 void PolylineSearch::search(const std::vector<Straight>& pieces, const Vec3& probe, int most_visits, SearchState& state) const noexcept {

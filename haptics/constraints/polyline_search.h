@@ -35,6 +35,10 @@ class PolylineSearch {
   /// any is left.
   void search(const std::vector<Straight>& pieces, const Vec3& probe, int most_visits, SearchState& state) const noexcept;
 
+  /// Of a state from a file (Constraint::is_sane), but for `best`: a search leaves its k-th node at depth k of the tree or below, so
+  /// that its stack never outgrows the tree's height.
+  bool is_sane(const SearchState& state) const noexcept;
+
   double extent() const noexcept { return 2 * radius_; }  ///< the longest edge of the box around all
 
  private:

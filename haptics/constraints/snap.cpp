@@ -68,6 +68,9 @@ class Snap final : public Constraint {
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
     return !outer_of<SnapMemory>(state).apart && inner_->primitive(at, state, scratch, out);
   }
+  bool is_sane(const LinkState& state) const noexcept override {
+    return are_bools(outer_of<SnapMemory>(state).apart) && inner_->is_sane(state);
+  }
   bool has_primitive() const noexcept override { return inner_->has_primitive(); }
   bool is_source() const noexcept override { return inner_->is_source(); }
   double domain_length() const noexcept override { return inner_->domain_length(); }

@@ -21,6 +21,7 @@ class SphereSurface final : public Surface {
   SphereSurface(const Shape& shape, Memory& memory, const SideMemory& side)
       : center_(shape.center), radius_(shape.radius), catches_(shape.catches), memory_(memory), side_(side) {}
 
+  static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
   SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
 
   Hold place(const Vec3& probe) noexcept override {

@@ -288,6 +288,10 @@ class OnlineStreamline final : public Constraint {
     if (fresh || !spec_.seed) tick.begin(spec_.seed.value_or(probe));
     if (spec_.seed) tick.run();
   }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const OnlineMemory& memory = memory_of<OnlineMemory>(state);
+    return is_one_of(memory.mode, Mode::at_boundary) && memory.tried >= 0 && memory.tried <= kEvaluationCap;
+  }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent at the foot of `at`; where the line is held, that point. At the proxy itself the direction is fetched anew,
   /// for somebody else may have moved it.

@@ -81,6 +81,7 @@ class SelectedStreamline final : public Constraint {
     place(memory_of<SelectedMemory>(state), found.interval, found.s, state);
   }
 
+  bool is_sane(const LinkState& state) const noexcept override { return memory_of<SelectedMemory>(state).interval < intervals_; }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent at the foot of `at`; an open end is a point.
   bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {

@@ -40,6 +40,11 @@ struct ContactMemory {
   bool fresh, settled, touching;
 };
 
+/// Of a state from a file: see Constraint::is_sane.
+inline bool is_sane(const ContactMemory& m) noexcept {
+  return is_sane(m.here) && is_one_of(m.status, Status::bad_probe) && are_bools(m.fresh, m.settled, m.touching);
+}
+
 /// One tick of one link.
 class Contact {
  public:

@@ -209,6 +209,10 @@ class VortexCore final : public Constraint {
     out = {Primitive::Kind::line, memory.core, memory.axis};
     return true;
   }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const CoreMemory& memory = memory_of<CoreMemory>(state);
+    return are_bools(memory.holding, memory.settled) && is_one_of(memory.status, Status::bad_probe);
+  }
   bool has_primitive() const noexcept override { return spec_.radius == 0; }
   double domain_length() const noexcept override { return spec_.field->length(); }
 

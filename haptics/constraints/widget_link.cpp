@@ -38,6 +38,8 @@ class WidgetLink final : public Constraint {
     state.residual = holds ? hold.residual : 0;
     state.status = holds ? Status::ok : Status::free;
   }
+  /// It remembers a normal.
+  bool is_sane(const LinkState&) const noexcept override { return true; }
 };
 
 }  // namespace

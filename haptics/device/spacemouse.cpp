@@ -12,6 +12,7 @@
 #include <cstdlib>
 
 #include "engine/base/assert.h"
+#include "engine/base/start_thread.h"
 
 namespace catena::haptics {
 namespace {
@@ -78,18 +79,19 @@ Result<std::unique_ptr<Device>> SpaceMouse::open(const SpaceMouseParameters& par
     in_use = false;
     return Error{daemon_missing()};
   }
-  return std::unique_ptr<Device>(new SpaceMouse(parameters));
+  auto device = std::unique_ptr<SpaceMouse>(new SpaceMouse(parameters));
+  CATENA_TRY(device->thread_, start_thread("the SpaceMouse", [mouse = device.get()] { mouse->listen(); }));
+  return std::unique_ptr<Device>(std::move(device));
 }
 
 SpaceMouse::SpaceMouse(const SpaceMouseParameters& parameters) : parameters_(parameters), capabilities_(nominal()) {
   CATENA_ASSERT(parameters.rate_hz > 0 && parameters.dead_zone_counts >= 0 && parameters.dead_zone_counts < kFullCounts);
   say(true);
-  thread_ = std::thread([this] { listen(); });
 }
 
 SpaceMouse::~SpaceMouse() {
   stop_ = true;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
   spnav_close();
   in_use = false;
 }

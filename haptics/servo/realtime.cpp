@@ -63,6 +63,14 @@ bool take_fifo(int priority, std::vector<std::string>& notes) {
   return false;
 }
 
+void limit_realtime_run(double soft_s, double hard_s) noexcept {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_RTTIME, &limit) != 0) return;
+  limit.rlim_max = std::min(limit.rlim_max, static_cast<rlim_t>(1e6 * hard_s));
+  limit.rlim_cur = std::min({limit.rlim_cur, limit.rlim_max, static_cast<rlim_t>(1e6 * soft_s)});
+  setrlimit(RLIMIT_RTTIME, &limit);
+}
+
 void leave_fifo() noexcept {
   const sched_param parameter{};
   sched_setscheduler(0, SCHED_OTHER, &parameter);
@@ -76,6 +84,7 @@ void leave_core() noexcept {
 RealtimeThread::RealtimeThread(const RealtimeOptions& options, const void* own, std::size_t own_bytes) {
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // at normal priority a wake-up may be 50 us late by default
   if (options.fifo) report_.fifo = take_fifo(options.priority, report_.notes);
+  if (report_.fifo) limit_realtime_run(kRealtimeRunS, kRealtimeEndS);
   if (options.cpu >= 0 || (options.cpu == RealtimeOptions::kAnyWithFifo && report_.fifo)) bind(options.cpu);
   if (options.lock_memory) lock(own, own_bytes);
 }

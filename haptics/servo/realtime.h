@@ -25,6 +25,11 @@ struct RealtimeReport {
 
 /// Fixed priority (SCHED_FIFO, not inherited by children) for the calling thread. On failure one sentence in `notes`.
 bool take_fifo(int priority, std::vector<std::string>& notes);
+/// How long this process may run at a fixed priority without a pause: beyond `soft_s` SIGXCPU, beyond `hard_s` SIGKILL, so that a tick that
+/// never ends gives the machine back. Only ever lowers a limit. A servo that is merely too slow has left the priority before (servo.h).
+void limit_realtime_run(double soft_s, double hard_s) noexcept;
+inline constexpr double kRealtimeRunS = 2, kRealtimeEndS = 3;
+
 /// Back to normal priority.
 void leave_fifo() noexcept;
 

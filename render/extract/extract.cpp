@@ -185,6 +185,7 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
   CATENA_CHECK(extract_widgets(scene, data_bounds(packet), packet));
   set_eyes(packet, scene.stereo);
+  CATENA_CHECK(check_eyes(packet, scene.stereo));
   return packet;
 }
 

@@ -1,6 +1,9 @@
 #include "render/extract/extract_stereo.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "render/frame/camera.h"
 #include "render/stereo/eyes.h"
@@ -41,6 +44,18 @@ Packing packing_of(const scene::Stereo& stereo) {
 std::size_t views_of(const scene::Stereo& stereo) {
   if (stereo.mode == StereoMode::mono || stereo.mode == StereoMode::left || stereo.mode == StereoMode::right) return 1;
   return scene::needs_a_pair(stereo.mode) ? 2 : static_cast<std::size_t>(stereo.views);
+}
+
+Outcome check_eyes(const FramePacket& packet, const scene::Stereo& stereo) {
+  constexpr double kMostApart = 1e15;  // world units: a float of the picture still tells them apart
+  const auto too_far = [&](const View& eye) {
+    return std::fabs(eye.window.left) > 0.5 * kMostShift || !is_finite(eye.position) || !is_finite(eye.target) ||
+           max_abs(eye.position) > kMostApart;
+  };
+  if (std::none_of(packet.eyes.begin(), packet.eyes.end(), too_far)) return Done{};
+  return Error{fmt::format("\"stereo\": the eyes are {} apart with a zero-parallax distance of {}: expected eyes that see one scene",
+                           stereo.separation ? fmt::format("{:g}", *stereo.separation) : "a 30th of it",
+                           stereo.zero_parallax ? fmt::format("{:g}", *stereo.zero_parallax) : "the camera's target")};
 }
 
 void set_eyes(FramePacket& packet, const scene::Stereo& stereo) {

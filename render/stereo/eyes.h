@@ -13,6 +13,9 @@
 
 namespace catena::render {
 
+/// Of an eye's window, in its own widths: farther apart no picture has both.
+inline constexpr double kMostShift = 1e6;
+
 struct EyeSettings {
   std::size_t views = 2;
   std::optional<double> separation;     ///< of neighbours, >= 0; none: a 30th of the zero-parallax distance

@@ -5,8 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "engine/base/hash.h"
-#include "tests/fuzz/mutate.h"
+#include "tests/fuzz/log_bytes.h"
 #include "tests/support/log_rig.h"
 
 namespace catena {
@@ -64,41 +63,6 @@ void read_through(std::string_view bytes, Counts& counts) {
   counts.ticks += ticks;
 }
 
-std::uint64_t hash_of(const char* data, std::size_t size) {
-  Fnv1a hash;
-  hash.bytes(data, size);
-  return hash.value;
-}
-
-// Makes the hashes of the blocks good again, as far as their lengths lead: what is behind the hashes is reached.
-void seal(std::string& bytes) {
-  for (std::size_t at = kPreambleBytes; at + sizeof(BlockHead) <= bytes.size();) {
-    BlockHead head;
-    std::memcpy(&head, bytes.data() + at, sizeof head);
-    if (head.mark != BlockHead::kBlockMark || head.length > bytes.size() - at - sizeof head) return;
-    head.payload_hash = hash_of(bytes.data() + at + sizeof head, head.length);
-    head.head_hash = hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
-    std::memcpy(bytes.data() + at, &head, sizeof head);
-    at += sizeof head + head.length;
-  }
-}
-
-// Bytes and numbers changed in place, so that the blocks stay where they are.
-std::string change_in_place(std::string bytes, test::Random& random) {
-  constexpr std::uint64_t kNumbers[] = {
-      0, 1, 2, 7, 8, 9, 255, 0x7fffffff, 0x80000000u, 0xffffffffu, ~std::uint64_t{0}, ~std::uint64_t{0} >> 1};
-  for (std::size_t i = 0, n = 1 + random.below(4); i < n; ++i) {
-    const std::size_t at = kPreambleBytes + random.below(bytes.size() - kPreambleBytes - 8);
-    if (random.below(2) == 0) {
-      bytes[at] = static_cast<char>(bytes[at] ^ static_cast<char>(1u << random.below(8)));
-    } else {
-      const std::uint64_t number = kNumbers[random.below(std::size(kNumbers))];
-      std::memcpy(bytes.data() + at, &number, random.below(2) == 0 ? 4 : 8);
-    }
-  }
-  return bytes;
-}
-
 TEST(LogFuzz, TheSeedIsWhole) {
   Counts counts;
   read_through(test::small_log(), counts);
@@ -113,8 +77,8 @@ TEST(LogFuzz, Mutations) {
   Counts counts;
   const int inputs = setting("CATENA_LOG_FUZZ", 20000);
   for (int i = 0; i < inputs && !HasFailure(); ++i) {
-    std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : change_in_place(seed, random);
-    if (random.below(2) == 0) seal(bytes);
+    std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : test::change_in_place(seed, random);
+    if (random.below(2) == 0) test::seal(bytes);
     // a copy of its own size: a read past the end is seen
     const std::vector<char> exact(bytes.begin(), bytes.end());
     read_through({exact.data(), exact.size()}, counts);
@@ -133,7 +97,7 @@ TEST(LogFuzz, EveryByteTurned) {
   for (std::size_t n = 0; n < seed.size() && !HasFailure(); ++n) {
     std::string bytes = seed;
     bytes[n] = static_cast<char>(bytes[n] ^ 0x41);
-    if (n % 2 == 0) seal(bytes);
+    if (n % 2 == 0) test::seal(bytes);
     read_through(bytes, counts);
   }
   EXPECT_GT(counts.damaged, 0);
@@ -147,7 +111,7 @@ TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
   head.type = 3;
   head.sequence = 1;
   head.length = kMostPayload;
-  head.head_hash = hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
+  head.head_hash = test::hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
   std::string bytes = seed.substr(0, 400);
   for (int i = 0; i < 50000; ++i) bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
   read_through(bytes, counts);
@@ -156,8 +120,8 @@ TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
   bytes = seed.substr(0, 400);
   for (std::uint64_t i = 0; i < 50000; ++i) {
     head.sequence = i;
-    head.payload_hash = hash_of(nullptr, 0);
-    head.head_hash = hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
+    head.payload_hash = test::hash_of(nullptr, 0);
+    head.head_hash = test::hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
     bytes.append(reinterpret_cast<const char*>(&head), sizeof head);
   }
   read_through(bytes, counts);

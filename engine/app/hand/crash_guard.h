@@ -1,10 +1,12 @@
-/// A program that crashes lets the hand go first: SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT (assertions, exceptions that nobody
-/// catches) and SIGQUIT stop the device, wait 50 ms for its I/O thread to send the zero, and then do what they would have done.
-/// The handler runs on the thread that crashed, the others go on: it stores atomics, sleeps, raises. Device::stop() must be safe in it.
-/// Not covered: SIGKILL, a power cut, a crash of the device's own I/O thread or of a stack that is full. One at a time.
+/// A program that crashes lets the hand go first: SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGABRT (assertions) and SIGQUIT
+/// stop the device, wait 50 ms for its I/O thread to send the zero, say so in one line, and then do what they would have done.
+/// The handler runs on the thread that crashed, the others go on: it stores atomics, writes, sleeps, raises. Device::stop() must be safe
+/// in it. The thread that makes the guard has a second stack for it, so that a full one is covered there; on others it is not.
+/// Not covered: SIGKILL, a power cut, a crash of the device's own I/O thread. One at a time.
 #pragma once
 #include <array>
 #include <csignal>
+#include <vector>
 
 #include "haptics/device/device.h"
 
@@ -13,13 +15,19 @@ namespace catena::app {
 class CrashGuard {
  public:
   explicit CrashGuard(haptics::Device& device);  ///< which outlives it
-  ~CrashGuard();                                 ///< as it was before
+  ~CrashGuard();                                 ///< as it was before; on the same thread
   CrashGuard(const CrashGuard&) = delete;
   CrashGuard& operator=(const CrashGuard&) = delete;
 
  private:
-  static constexpr std::array kSignals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGQUIT};
+  static constexpr std::array kSignals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGABRT, SIGQUIT};
   std::array<struct sigaction, kSignals.size()> before_{};
+  std::vector<char> stack_;
+  stack_t stack_before_{};
 };
+
+/// Stops the device that a guard holds, if any, and waits for its zero: for who ends the process otherwise. Safe in a signal handler.
+/// True: there was one.
+bool let_go() noexcept;
 
 }  // namespace catena::app

@@ -2,6 +2,7 @@
 
 #include "engine/app/hand/hand_setup.h"
 #include "engine/app/viewer/hand_host.h"
+#include "engine/base/start_thread.h"
 #include "render/extract/extract.h"
 
 namespace catena::app {
@@ -33,15 +34,21 @@ void SceneLoader::start(const std::string& path, std::uint32_t width, std::uint3
   CATENA_ASSERT(!is_busy());
   path_ = path;
   done_ = false;
-  thread_ = std::jthread([this, path, width, height] {
+  const auto load = [this, path, width, height] {
     loaded_.emplace(open_and_load(path, width, height));
     done_ = true;
-  });
+  };
+  try {
+    thread_ = std::jthread(load);
+  } catch (const std::system_error& error) {
+    loaded_.emplace(no_thread(path, error));
+    done_ = true;
+  }
 }
 
 std::optional<Result<LoadedScene>> SceneLoader::take() {
   if (!is_busy() || !done_) return std::nullopt;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
   path_.clear();
   return std::exchange(loaded_, std::nullopt);
 }

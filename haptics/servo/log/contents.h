@@ -60,7 +60,8 @@ struct LogEnd {
   std::uint64_t ticks = 0, lost = 0, last_tick = 0, state_hash = 0;
 };
 
-/// Where a log begins that is not the servo's beginning: what the chain remembers after `tick`.
+/// Where a log begins that is not the servo's beginning: what the chain remembers after `tick`. Its bytes are the file's: they are to be
+/// run only after check_state (haptics/chain/check_state.h) with the program.
 struct LogState {
   std::uint64_t tick = 0;
   std::optional<ChainState> chain;  ///< none: the program that recorded keeps its state in another way

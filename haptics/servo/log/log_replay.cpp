@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/base/clock.h"
+#include "haptics/chain/check_state.h"
 #include "haptics/chain/rebind.h"
 
 namespace catena::haptics::log {
@@ -31,6 +32,13 @@ Result<std::shared_ptr<const Program>> with_recorded_recipes(const Program& buil
   return std::shared_ptr<const Program>(std::make_shared<Program>(std::move(program)));
 }
 
+// The log says where it begins, and which links of the next program keep their state: neither is trusted.
+Outcome check_at(std::uint64_t tick, const Program& program, const ChainState& state) {
+  const Outcome sane = check_state(program, state);
+  if (!sane) return Error{"before tick " + std::to_string(tick) + ": " + sane.error().message};
+  return Done{};
+}
+
 }  // namespace
 
 Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
@@ -52,7 +60,10 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         }
         CATENA_TRY(const std::shared_ptr<const Program> built, hooks.build(log.program()));
         CATENA_TRY(std::shared_ptr<const Program> next, with_recorded_recipes(*built, log.program()));
-        if (program) rebind(*program, *next, *state, *scratch);
+        if (program) {
+          rebind(*program, *next, *state, *scratch);
+          CATENA_CHECK(check_at(log.program().first_tick, *next, *state));
+        }
         program = std::move(next);
         names = log.program().link_names();
         widgets = log.program().widget_names();
@@ -67,7 +78,10 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         result.stopped = log.gap().text();
         break;
       case LogEvent::tick: {
-        if (!std::exchange(begun, true) && log.state().chain) *state = *log.state().chain;
+        if (!std::exchange(begun, true) && log.state().chain) {
+          *state = *log.state().chain;
+          CATENA_CHECK(check_at(log.tick().output.tick, *program, *state));
+        }
         const std::int64_t start = now_ns();
         tick(*program, log.tick().input, *state, *scratch, out);
         meter.add(static_cast<double>(now_ns() - start), out);

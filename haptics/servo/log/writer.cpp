@@ -14,6 +14,7 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
+#include "engine/base/start_thread.h"
 #include "haptics/servo/log/ring.h"
 #include "haptics/servo/log/tick_blocks.h"
 
@@ -130,12 +131,17 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
     file.discard();
     return Error{file.error()};
   }
-  return std::unique_ptr<LogWriter>(new LogWriter(std::make_unique<Parts>(std::move(file), path, options)));
+  auto parts = std::make_unique<Parts>(std::move(file), path, options);
+  auto thread = start_thread("the recording", [p = parts.get()] { p->loop(); });
+  if (!thread) {
+    parts->blocks.file().discard();
+    return thread.error();
+  }
+  parts->thread = std::move(*thread);
+  return std::unique_ptr<LogWriter>(new LogWriter(std::move(parts)));
 }
 
-LogWriter::LogWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {
-  parts_->thread = std::thread([p = parts_.get()] { p->loop(); });
-}
+LogWriter::LogWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 LogWriter::~LogWriter() {
   if (const Outcome done = finish(); !done) fmt::print(stderr, "{}\n", done.error().message);

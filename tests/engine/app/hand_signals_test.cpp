@@ -2,10 +2,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <new>
+#include <system_error>
 #include <thread>
 
 #include "engine/app/hand/crash_guard.h"
 #include "engine/app/hand/interrupt.h"
+#include "engine/app/process_limits.h"
 #include "engine/base/assert.h"
 #include "haptics/device/device.h"
 
@@ -43,7 +47,7 @@ TEST_F(CrashGuardDeathTest, AnAssertionLetsGoAndAborts) {
 }
 
 TEST_F(CrashGuardDeathTest, EveryCrashLetsGoAndEndsAsItWould) {
-  for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGQUIT}) {
+  for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGQUIT}) {
     const auto crash = [&] {
       const app::CrashGuard guard(device);
       std::raise(signal_number);
@@ -58,6 +62,64 @@ TEST_F(CrashGuardDeathTest, AfterItsEndNobodyIsStopped) {
     std::raise(SIGQUIT);
   };
   EXPECT_EXIT(crash(), testing::KilledBySignal(SIGQUIT), "^$");
+}
+
+// what fills the first thread's stack leaves none for a handler, but its own
+TEST_F(CrashGuardDeathTest, AFullStackLetsGo) {
+  struct Fill {
+    static int deeper(int n) {
+      volatile char page[4096];
+      page[n % 4096] = 1;
+      return n > 100'000'000 ? page[0] : deeper(n + 1) + page[1];
+    }
+  };
+  const auto crash = [&] {
+    const app::CrashGuard guard(device);
+    std::exit(Fill::deeper(0));
+  };
+#ifndef __SANITIZE_ADDRESS__
+  EXPECT_EXIT(crash(), testing::KilledBySignal(SIGSEGV), "let go\ncatena: ended by SIGSEGV");
+#endif
+}
+
+TEST_F(CrashGuardDeathTest, AnErrorThatNothingHandlesLetsGoAndIsOneSentence) {
+  const auto end = [&] {
+    EXPECT_TRUE(app::prepare_process());
+    const app::CrashGuard guard(device);
+    std::thread([] { throw std::system_error(EAGAIN, std::generic_category(), "a thread"); }).join();
+  };
+  EXPECT_EXIT(end(), testing::ExitedWithCode(1), "let go\ncatena: ended by an error that nothing handles: a thread: Resource");
+  const auto full = [&] {
+    EXPECT_TRUE(app::prepare_process());
+    const app::CrashGuard guard(device);
+    std::thread([] { throw std::bad_alloc(); }).join();
+  };
+  EXPECT_EXIT(full(), testing::ExitedWithCode(1), "let go\ncatena: out of memory\n$");
+}
+
+TEST(Interrupt, WhatWouldEndTheProgramIsAnErrorOfTheMachine) {
+  for (const int signal_number : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGXCPU, SIGIO, SIGPWR, SIGSTKFLT, SIGRTMIN, SIGRTMAX}) {
+    const app::Interrupt interrupt;
+    EXPECT_TRUE(interrupt.outcome());
+    std::raise(signal_number);
+    EXPECT_TRUE(interrupt.asked()) << signal_number;
+    const Outcome ended = interrupt.outcome();
+    ASSERT_FALSE(ended);
+    EXPECT_TRUE(ended.error().machine);
+    EXPECT_TRUE(ended.error().message.starts_with("ended by ")) << ended.error().message;
+  }
+  const app::Interrupt interrupt;
+  std::raise(SIGTERM);
+  std::raise(SIGUSR1);
+  EXPECT_TRUE(interrupt.outcome()) << "the first one counts: a person asked";
+}
+
+TEST(Interrupt, WhatSomebodyIgnoresOrHandlesIsLeftAlone) {
+  std::signal(SIGUSR1, SIG_IGN);
+  const app::Interrupt interrupt;
+  std::raise(SIGUSR1);
+  EXPECT_FALSE(interrupt.asked());
+  std::signal(SIGUSR1, SIG_DFL);
 }
 
 // a closed pipe and Ctrl-Z, too: a process that is stopped or killed leaves the last force at the device

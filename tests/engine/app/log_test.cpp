@@ -5,6 +5,7 @@
 
 #include "engine/app/log_scene.h"
 #include "haptics/extract/extract.h"
+#include "tests/fuzz/log_bytes.h"
 #include "tests/support/log_rig.h"
 #include "tests/support/program.h"
 
@@ -255,6 +256,56 @@ TEST_F(Recording, ReplacedFieldsAreFoundFromWhereItWasRecorded) {
   const auto run = catena_program({"replay", "--log", log_});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(catena_program({"info", log_}).out.find("s=a/sphere.vdb"), std::string::npos);
+}
+
+// a log that begins in mid-run holds the chain's raw state: with good hashes it is not believed either
+TEST(ForgedRecording, IsOneSentenceAndExitCodeTwo) {
+  const test::TemporaryFolder folder;
+  const std::string scene_path = folder / "s.json", log_path = folder / "l.catlog";
+  test::write_file(scene_path, R"({"chain": [{"name": "path", "type": "polyline", "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0]]}]})");
+  auto header = app::log_header(scene_path, {}, "simulated", 1000);
+  ASSERT_TRUE(header);
+  auto scene = scene::parse_scene(header->scene_text, scene_path);
+  ASSERT_TRUE(scene);
+  const auto program = extract_program(*scene, {});
+  ASSERT_TRUE(program);
+  const auto path = test::hostile_path(80);
+  auto state = std::make_unique<ChainState>();
+  auto scratch = std::make_unique<ChainScratch>();
+  exchange::HapticState out;
+  auto writer = log::LogWriter::open(log_path, *header, {scene_path});
+  ASSERT_TRUE(writer);
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    if (k == 60) {
+      (*writer)->begin(*state);
+      (*writer)->add_program(**program, {});
+      *scratch = {};
+    }
+    tick(**program, path[k], *state, *scratch, out);
+    if (k >= 60) (*writer)->put(path[k], out);
+  }
+  ASSERT_TRUE((*writer)->finish());
+  writer->reset();
+  const auto good = catena_program({"replay", "--log", log_path});
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+
+  // the piece of the polyline that is held, far outside of it
+  std::string bytes = test::read_file(log_path);
+  for (std::size_t at = log::kPreambleBytes; at < bytes.size();) {
+    log::BlockHead head;
+    std::memcpy(&head, bytes.data() + at, sizeof head);
+    at += sizeof head;
+    if (head.type == static_cast<std::uint32_t>(log::BlockType::state))
+      std::memset(bytes.data() + at + 16 + offsetof(LinkState, memory) + 64, 0x7f, 300);
+    at += head.length;
+  }
+  test::seal(bytes);
+  test::write_file(log_path, bytes);
+  const auto forged = catena_program({"replay", "--log", log_path, "-o", folder / "t.csv"});
+  EXPECT_EQ(forged.exit_code, 2) << forged.out << forged.err;
+  EXPECT_NE(forged.err.find("l.catlog: before tick 61: the state of link \"path\" is damaged or forged"), std::string::npos) << forged.err;
+  EXPECT_EQ(std::count(forged.err.begin(), forged.err.end(), '\n'), 1) << forged.err;
+  EXPECT_FALSE(test::exists(folder / "t.csv"));
 }
 
 }  // namespace log_test

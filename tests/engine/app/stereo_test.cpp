@@ -1,6 +1,8 @@
 /// `catena render --stereo` from the outside: sizes, eyes, keys and errors.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "render/vk/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
@@ -137,6 +139,17 @@ TEST(RenderStereo, BadInputIsOneLine) {
   expect({"--stereo", "left", "--eye-separation", "nan"}, "--eye-separation");
   expect({"--stereo", "left", "--zero-parallax", "0"}, "--zero-parallax");
   expect({"--size", "9000x10", "--stereo", "side-by-side"}, "18000");
+}
+
+// before: an assertion, "a bug", and SIGABRT
+TEST(RenderStereo, EyesThatNoPictureHasBothOfAreOneSentence) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", scene(R"(, "stereo": {"mode": "anaglyph", "separation": 1e12, "zero_parallax": 1e-9})"));
+  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "80x60"});
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  EXPECT_NE(run.err.find("\"stereo\": the eyes are 1e+12 apart with a zero-parallax distance of 1e-09"), std::string::npos) << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_FALSE(test::exists(folder / "o.png"));
 }
 
 }  // namespace stereo_test

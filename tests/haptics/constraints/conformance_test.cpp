@@ -60,6 +60,7 @@ TEST_P(Conformance, FiniteBoundedAndWithoutAllocation) {
     }
     ASSERT_EQ(s.released, s.status == Status::released) << "tick " << i;
     ASSERT_NE(s.status, Status::bad_probe);
+    ASSERT_TRUE(constraint_->is_sane(s)) << "tick " << i;
   }
   EXPECT_EQ(guard.count(), 0u);
 }

@@ -5,15 +5,19 @@
 #include <sched.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <thread>
 
 #include "haptics/device/null_device.h"
 #include "haptics/servo/servo.h"
+#include "tests/support/child_test.h"
 
 namespace catena::haptics {
 namespace realtime_test {
@@ -157,6 +161,41 @@ TEST(Realtime, AFixedPriorityIsTheThreadsOwnAndIsGivenBack) {
   other.join();
   EXPECT_EQ(sched_getscheduler(0), before);
   EXPECT_EQ(report.notes.empty(), report.fifo);
+}
+
+TEST(Realtime, DISABLED_RunsAtAFixedPriorityForEver) {
+  std::vector<std::string> notes;
+  if (!take_fifo(1, notes)) _exit(77);
+  limit_realtime_run(0.05, 0.2);
+  std::signal(SIGXCPU, std::getenv("CATENA_IGNORES_XCPU") != nullptr ? SIG_IGN : SIG_DFL);
+  for (std::atomic<int> n{0};; ++n) {
+  }
+}
+
+// before, only the kernel's share for others kept a machine of one core usable
+TEST(Realtime, ATickThatNeverEndsIsEnded) {
+  for (const bool ignores : {false, true}) {
+    const pid_t child = test::start_case("Realtime.DISABLED_RunsAtAFixedPriorityForEver",
+                                         {.environment = {ignores ? "CATENA_IGNORES_XCPU=1" : "CATENA_OTHER=1"}});
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 77) GTEST_SKIP() << "a fixed priority is not permitted here";
+    EXPECT_TRUE(WIFSIGNALED(status)) << status;
+    EXPECT_EQ(WTERMSIG(status), ignores ? SIGKILL : SIGXCPU);
+  }
+}
+
+TEST(Realtime, AServoWithAFixedPriorityLimitsItsRun) {
+  NullDevice device;
+  Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5});
+  ASSERT_TRUE(servo.start());
+  while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  servo.stop();
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_RTTIME, &limit), 0);
+  if (!servo.report().realtime.fifo) GTEST_SKIP() << "a fixed priority is not permitted here";
+  EXPECT_LE(limit.rlim_cur, static_cast<rlim_t>(1e6 * kRealtimeRunS));
+  EXPECT_LE(limit.rlim_max, static_cast<rlim_t>(1e6 * kRealtimeEndS));
 }
 
 }  // namespace realtime_test

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <system_error>
 
 #include "engine/scene/transfer.h"
 
@@ -56,7 +57,7 @@ SortedValues FieldValues::of(scene::Scene& scene, scene::Entity field) {
   if (job_) return nullptr;
   job_ = std::make_unique<Job>();
   job_->version = version;
-  job_->thread = std::jthread([job = job_.get(), any] {
+  const auto sort = [job = job_.get(), any] {
     if (any.scalar) {
       job->values = scene::sorted_values(*any.scalar->grid());
     } else {
@@ -65,7 +66,12 @@ SortedValues FieldValues::of(scene::Scene& scene, scene::Entity field) {
       job->values = std::move(values);
     }
     job->done = true;
-  });
+  };
+  try {
+    job_->thread = std::jthread(sort);
+  } catch (const std::system_error&) {
+    job_.reset();  // without a histogram for now
+  }
   return nullptr;
 }
 

@@ -225,6 +225,28 @@ TEST_F(WatchdogUsb, AProgramThatEndsByItselfEndsItAndItWritesNothing) {
   EXPECT_EQ(rig.said().find("let go"), std::string::npos) << rig.said();
 }
 
+// before, each of these ended the program as SIGKILL does: the last force stayed until the watchdog process had let go
+TEST_F(WatchdogUsb, ASignalThatEndsTheProgramLetsGoFirst) {
+  Rig rig;
+  for (const int signal_number : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGXCPU, SIGRTMAX, SIGTRAP}) {
+    rig.start();
+    ASSERT_TRUE(rig.pushes()) << rig.said();
+    kill(rig.child, SIGXFSZ);  // of a file that is too long: it ends nothing
+    kill(rig.child, signal_number);
+    const int status = rig.wait();
+    if (signal_number == SIGTRAP) {
+      EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTRAP) << status;
+    } else {
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 1) << signal_number << ": " << status;
+    }
+    EXPECT_EQ(rig.last().force_n, 0) << signal_number;
+    EXPECT_EQ(rig.said().find("has ended with a force on"), std::string::npos)
+        << "nothing was left to the watchdog process: " << rig.said();
+    EXPECT_NE(rig.said().find("catena: ended by "), std::string::npos) << rig.said();
+    EXPECT_NE(rig.said().find("the device is off\n"), std::string::npos) << rig.said();
+  }
+}
+
 TEST_F(WatchdogUsb, TheProcessStandsApartIsSmallAndIsStartedAgain) {
   Rig rig;
   rig.start();

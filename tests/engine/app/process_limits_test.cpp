@@ -1,0 +1,119 @@
+// The program under limits that a shell or a service manager sets: one sentence and a defined exit code, never a signal.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <thread>
+
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace process_limits_test {
+
+constexpr const char* kScene = R"({
+  "fields": {"v": {"analytic": "circle"}},
+  "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}]})";
+
+struct Limit {
+  __rlimit_resource what;
+  rlim_t most;
+};
+
+class ProcessLimits : public testing::Test {
+ protected:
+  ProcessLimits() { test::write_file(scene_, kScene); }
+
+  /// Starts the program under a limit; its output goes to files.
+  pid_t start(const std::vector<std::string>& arguments, const std::vector<Limit>& limits) {
+    const std::string program = test::program_path(), out = folder_ / "out", err = folder_ / "err";
+    std::vector<char*> argv{const_cast<char*>(program.c_str())};
+    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child != 0) return child;
+    const int out_fd = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600),
+              err_fd = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    dup2(out_fd, 1);
+    dup2(err_fd, 2);
+    for (const Limit& limit : limits) {
+      const rlimit both{limit.most, limit.most};
+      setrlimit(limit.what, &both);
+    }
+    execv(program.c_str(), argv.data());
+    _exit(127);
+  }
+  /// Its exit code, 128 + signal if it was killed.
+  int wait(pid_t child) {
+    int status = 0;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    err_ = test::read_file(folder_ / "err");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  int run(const std::vector<std::string>& arguments, const std::vector<Limit>& limits) { return wait(start(arguments, limits)); }
+  std::vector<std::string> feel(const std::string& seconds = "0.1", const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all{"feel", scene_, "--forces", "on", "--realtime", "off", "--seconds", seconds};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  void expect_one_sentence() { EXPECT_EQ(std::count(err_.begin(), err_.end(), '\n'), 1) << err_; }
+
+  test::TemporaryFolder folder_;
+  std::string scene_ = folder_ / "s.json", err_;
+};
+
+// before: SIGSEGV, for a thread's stack is the limit, and the servo touches 256 KiB of its own
+TEST_F(ProcessLimits, ASmallStackIsRefusedOrEnough) {
+  for (const rlim_t kib : {192, 512, 1000}) {
+    EXPECT_EQ(run(feel(), {{RLIMIT_STACK, kib << 10}}), 1) << err_;
+    EXPECT_NE(err_.find("catena: the stack is limited to " + std::to_string(kib) + " KiB: at least 1024 (ulimit -s) were expected\n"),
+              std::string::npos)
+        << err_;
+    expect_one_sentence();
+  }
+  EXPECT_EQ(run(feel(), {{RLIMIT_STACK, 1u << 20}}), 0) << err_;
+}
+
+// before: SIGXFSZ, with the force on
+TEST_F(ProcessLimits, AFileThatMayNotGrowIsAFullDisk) {
+  const std::string log = folder_ / "l.catlog";
+  EXPECT_EQ(run(feel("1", {"--record", log}), {{RLIMIT_FSIZE, 8192}}), 2) << err_;
+  EXPECT_NE(err_.find("l.catlog: cannot write: File too large; the recording ends with tick "), std::string::npos) << err_;
+  expect_one_sentence();
+  EXPECT_EQ(run({"generate", "sphere", "-o", folder_ / "s.vdb", "--resolution", "32"}, {{RLIMIT_FSIZE, 8192}}), 2) << err_;
+  expect_one_sentence();
+  EXPECT_FALSE(test::exists(folder_ / "s.vdb"));
+}
+
+TEST_F(ProcessLimits, ProcessorTimeThatIsUsedUpIsAnErrorOfTheMachine) {
+  const pid_t child = start(feel("20"), {});
+  // what the kernel sends when the soft limit is passed; "at 1000 Hz" is said when the servo runs
+  while (test::read_file(folder_ / "out").find("forces on") == std::string::npos) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  kill(child, SIGXCPU);
+  EXPECT_EQ(wait(child), 1) << err_;
+  EXPECT_NE(err_.find("catena: ended by SIGXCPU (CPU time limit exceeded); the device is off\n"), std::string::npos) << err_;
+  expect_one_sentence();
+}
+
+#ifndef __SANITIZE_ADDRESS__
+// from next to nothing to enough: what a thread, a field or the servo cannot get is a sentence
+TEST_F(ProcessLimits, LittleMemoryIsOneSentence) {
+  int ended = 0, enough = 0;
+  for (rlim_t mib = 240; mib <= 640; mib += 40) {
+    const int code = run(feel(), {{RLIMIT_AS, mib << 20}});
+    if (code == 127) continue;  // not even its libraries
+    EXPECT_TRUE(code == 0 || code == 1) << mib << " MiB: " << code << ": " << err_;
+    ++(code == 0 ? enough : ended);
+    if (code == 1) expect_one_sentence();
+  }
+  EXPECT_GT(enough, 0);
+  RecordProperty("ended", ended);
+}
+#endif
+
+}  // namespace process_limits_test
+}  // namespace catena

@@ -1,0 +1,272 @@
+/// A recording that begins in mid-run holds the chain's raw state. Forged, with good hashes, it is refused before a tick indexes with it,
+/// or it is harmless: run these under the sanitizers. CATENA_STATE_FUZZ=1000000 sets the number of forged states of each test,
+/// CATENA_STATE_FUZZ_SEED where they begin.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "haptics/chain/check_state.h"
+#include "haptics/constraints/widget_link.h"
+#include "haptics/servo/log/log_replay.h"
+#include "tests/fuzz/log_bytes.h"
+#include "tests/haptics/constraints/examples.h"
+#include "tests/support/log_rig.h"
+
+namespace catena {
+namespace state_fuzz_test {
+
+using namespace haptics;
+
+std::uint64_t setting(const char* variable, std::uint64_t otherwise) {
+  const char* wanted = std::getenv(variable);
+  return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : otherwise;
+}
+
+/// Any bytes, or numbers at the ends of what indices and doubles can be, mostly among the first `most` bytes.
+void forge(std::span<std::byte> memory, std::size_t most, test::Random& random) {
+  static constexpr std::int64_t kIntegers[] = {-1, 1, 2, 6, 7, 40, 255, 1000, 0x7fffffff, -0x80000000ll, 1ll << 40, -(1ll << 40)};
+  static const double kNumbers[] = {
+      std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e300, 1e300, 0.0, 0.5, 5e-324, -1e18};
+  const std::size_t reach = random.below(8) == 0 ? memory.size() : std::min(most, memory.size());
+  for (std::size_t i = 0, n = 1 + random.below(5); i < n; ++i) {
+    const std::size_t at = random.below(reach - 8) & ~(random.below(3) == 0 ? std::size_t{0} : std::size_t{3});
+    switch (random.below(5)) {
+      case 0:
+        memory[at] ^= static_cast<std::byte>(1u << random.below(8));
+        break;
+      case 1:
+        memory[at] = static_cast<std::byte>(random.below(256));
+        break;
+      case 2:
+        std::memcpy(&memory[at], &kIntegers[random.below(std::size(kIntegers))], 4);
+        break;
+      case 3:
+        std::memcpy(&memory[at], &kIntegers[random.below(std::size(kIntegers))], 8);
+        break;
+      default:
+        std::memcpy(&memory[at & ~std::size_t{7}], &kNumbers[random.below(std::size(kNumbers))], 8);
+    }
+  }
+}
+
+/// Bytes up to the last one that is not zero: what the constraint uses.
+std::size_t used(std::span<const std::byte> memory) {
+  std::size_t n = memory.size();
+  while (n > 16 && memory[n - 1] == std::byte{0}) --n;
+  return n;
+}
+
+TEST(StateFuzz, WhatAConstraintTakesForSaneItCanRunWith) {
+  test::Random random{setting("CATENA_STATE_FUZZ_SEED", 5)};
+  haptics::tests::Random places(7);
+  const auto table = haptics::tests::all_examples();
+  const std::uint64_t inputs = setting("CATENA_STATE_FUZZ", 20000);
+  std::uint64_t refused = 0, ran = 0;
+  std::map<std::string, std::uint64_t> refused_of;
+  for (const haptics::tests::Example& example : table) {
+    const auto constraint =
+        haptics::tests::build(R"({"name": "a", "type": ")" + example.type + "\", " + example.body + "}", haptics::tests::fields());
+    ASSERT_NE(constraint, nullptr);
+    haptics::tests::Rig rig(constraint);
+    for (std::uint64_t i = 0; i < inputs / table.size() + 1; ++i) {
+      if (i % 8 == 0) {
+        for (int k = 0; k < 4; ++k) rig.tick(places.box(1.2));
+      }
+      ASSERT_TRUE(constraint->is_sane(rig.state)) << "as a tick left it";
+      haptics::tests::Rig forged(constraint);
+      forged.state = rig.state;
+      forge(forged.state.memory, used(rig.state.memory), random);
+      if (random.below(4) == 0) forge(forged.state.outer, 32, random);
+      if (random.below(8) == 0) forged.state.proxy = Vec3(std::numeric_limits<double>::quiet_NaN());
+      if (!constraint->is_sane(forged.state)) {
+        ++refused;
+        ++refused_of[example.type];
+        continue;
+      }
+      ++ran;
+      Primitive primitive;
+      for (int k = 0; k < 3; ++k) {
+        forged.tick(places.box(k == 2 ? 3 : 1));
+        constraint->primitive(places.box(1), forged.state, forged.scratch, primitive);
+      }
+      forged.state.evaluations = 0;
+      constraint->seek(places.box(1), forged.state, forged.scratch);
+    }
+  }
+  EXPECT_GT(refused, inputs / 50);
+  EXPECT_GT(ran, inputs / 4);
+  for (const char* type : {"polyline", "box", "isosurface", "mesh", "streamline", "drag", "friction", "sphere", "vortex_core"})
+    EXPECT_GT(refused_of[type], 0u) << type;
+  std::printf("%llu forged memories: %llu refused, %llu run\n", static_cast<unsigned long long>(ran + refused),
+              static_cast<unsigned long long>(refused), static_cast<unsigned long long>(ran));
+}
+
+/// Links that index with what they remember, widgets, a mode, a link that aligns.
+std::shared_ptr<Program> program_of_indices(std::uint64_t epoch) {
+  auto program = std::make_shared<Program>();
+  program->epoch = epoch;
+  const char* const kLinks[] = {R"({"name": "a", "type": "polyline", "points": [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.5]]})",
+                                R"({"name": "b", "type": "mesh", "mesh": "box", "free": "above"})",
+                                R"({"name": "c", "type": "isosurface", "field": "sphere_grid", "level": 1, "snap": 0.1, "release": 0.3})",
+                                R"({"name": "d", "type": "streamline", "field": "circle", "seed": [0.5, 0, 0]})"};
+  for (const char* text : kLinks) {
+    Link link;
+    link.constraint = haptics::tests::build(text, haptics::tests::fields());
+    link.name = std::string(1, static_cast<char>('a' + program->links.size()));
+    link.recipe = program->links.size() + 1;
+    link.align.on = program->links.empty();
+    program->links.push_back(std::move(link));
+  }
+  program->modes.push_back({"turned", {3, 0}, {}});
+  program->modes.back().on.button = 2;
+  for (const auto& [kind, name] : {std::pair{widget::Kind::box, "crop"}, std::pair{widget::Kind::cutting_plane, "cut"}}) {
+    widget::Spec spec;
+    spec.kind = kind;
+    spec.pose.points = {Vec3(-0.5), Vec3(0.5)};
+    program->widgets.push_back(spec);
+    program->widget_names.push_back(name);
+  }
+  add_widget_links(*program);
+  program->coupling.ramp_s = 0.02;
+  return program;
+}
+
+/// A recording of ticks 301 to 340 with the state before them, and another program from tick 321 on.
+std::string log_from_the_middle(const std::vector<test::Change>& changes) {
+  const test::TemporaryFolder folder;
+  auto state = std::make_unique<ChainState>();
+  auto scratch = std::make_unique<ChainScratch>();
+  exchange::HapticState out;
+  const auto path = test::hostile_path(340);
+  for (std::size_t k = 0; k < 300; ++k) tick(*changes[0].program, path[k], *state, *scratch, out);
+
+  log::LogHeader header{"scene.json", "/somewhere", "{\"chain\": []}", {}, "null", "0.1.0", 1000, 1};
+  auto writer = log::LogWriter::open(folder / "middle.catlog", header, {}, {});
+  (*writer)->begin(*state);
+  for (const test::Change& change : changes) (*writer)->add_program(*change.program, change.scene_text);
+  *scratch = ChainScratch{};
+  const Program* program = changes[0].program.get();
+  for (std::size_t k = 300; k < path.size(); ++k) {
+    if (k == 320) {
+      rebind(*program, *changes[1].program, *state, *scratch);
+      program = changes[1].program.get();
+    }
+    tick(*program, path[k], *state, *scratch, out);
+    (*writer)->put(path[k], out);
+  }
+  EXPECT_TRUE((*writer)->finish());
+  writer->reset();
+  return test::read_file(folder / "middle.catlog");
+}
+
+/// Where the payload of a block of this type lies: from, behind.
+std::pair<std::size_t, std::size_t> block_of(const std::string& bytes, log::BlockType type) {
+  for (std::size_t at = log::kPreambleBytes; at < bytes.size();) {
+    log::BlockHead head;
+    std::memcpy(&head, bytes.data() + at, sizeof head);
+    at += sizeof head;
+    if (head.type == static_cast<std::uint32_t>(type)) return {at, at + head.length};
+    at += head.length;
+  }
+  ADD_FAILURE() << "no such block";
+  return {};
+}
+
+Result<log::LogReplay> replay(const std::string& bytes, const std::vector<test::Change>& changes) {
+  auto reader = log::LogReader::open(log::from_memory(bytes), "x.catlog");
+  if (!reader) return reader.error();
+  return log::replay_log(*reader, test::hooks_for(changes));
+}
+
+struct MiddleLog {
+  std::vector<test::Change> changes{{1, program_of_indices(1), {}}, {321, program_of_indices(2), "{}"}};
+  std::string bytes = log_from_the_middle(changes);
+  std::size_t state = block_of(bytes, log::BlockType::state).first + 16;  // behind tick and layout
+
+  std::string forged(std::size_t at, std::int64_t value, std::size_t size) const {
+    std::string out = bytes;
+    std::memcpy(out.data() + state + at, &value, size);
+    test::seal(out);
+    return out;
+  }
+};
+
+TEST(StateFuzz, AsRecordedItIsReplayedToTheBit) {
+  const MiddleLog log;
+  const auto result = replay(log.bytes, log.changes);
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_TRUE(result->exact()) << result->difference << result->stopped;
+  EXPECT_EQ(result->stats.ticks, 40u);
+}
+
+TEST(StateFuzz, AForgedIndexIsOneSentence) {
+  const MiddleLog log;
+  const auto memory = [](std::size_t link) { return link * sizeof(LinkState) + offsetof(LinkState, memory); };
+  const struct {
+    const char* part;
+    std::size_t at;
+    std::int64_t value;
+    std::size_t size;
+  } kForged[] = {
+      {"link \"d\"", memory(3) + 8, 1ll << 40, 8},  // the interval of a curve
+      {"link \"a\"", memory(0) + offsetof(LinkState, started) - offsetof(LinkState, memory), 2, 1},
+      {"chain", offsetof(ChainState, passivity) + offsetof(PassivityState, next), 1 << 30, 4},
+      {"chain", offsetof(ChainState, fade) + offsetof(Fade, order), 100, 1},
+      {"chain", offsetof(ChainState, has_probe), 77, 1},
+      {"widgets", offsetof(ChainState, widgets) + offsetof(WidgetsState, engaged), 5, 1},
+      {"widgets", offsetof(ChainState, widgets) + offsetof(widget::State, handle), 100, 1},
+  };
+  for (const auto& forged : kForged) {
+    const auto result = replay(log.forged(forged.at, forged.value, forged.size), log.changes);
+    ASSERT_FALSE(result) << forged.part << " at " << forged.at;
+    EXPECT_TRUE(result.error().message.starts_with("before tick 301: the state of ")) << result.error().message;
+    EXPECT_NE(result.error().message.find(forged.part), std::string::npos) << result.error().message;
+    EXPECT_EQ(result.error().message.find('\n'), std::string::npos);
+  }
+}
+
+// which links keep their state says the file: one that goes to another constraint is looked at by that one
+TEST(StateFuzz, AStateHandedToAnotherConstraintIsLookedAt) {
+  const MiddleLog log;
+  auto other = std::make_shared<Program>(*log.changes[1].program);
+  std::swap(other->links[0].constraint, other->links[3].constraint);
+  const std::vector<test::Change> changes{log.changes[0], {321, other, "{}"}};
+  // an arc length becomes a search's stack and depth
+  const std::string bytes = log.forged(3 * sizeof(LinkState) + offsetof(LinkState, memory) + 200, -1, 8);
+  const auto result = replay(bytes, changes);
+  ASSERT_FALSE(result);
+  EXPECT_TRUE(result.error().message.starts_with("before tick 321: the state of link \"")) << result.error().message;
+}
+
+TEST(StateFuzz, ForgedStatesAndProgramsWithGoodHashes) {
+  const MiddleLog log;
+  test::Random random{setting("CATENA_STATE_FUZZ_SEED", 9)};
+  const std::uint64_t inputs = setting("CATENA_STATE_FUZZ", 4000);
+  const auto state = block_of(log.bytes, log::BlockType::state), program = block_of(log.bytes, log::BlockType::program);
+  std::uint64_t refused = 0, ran = 0;
+  for (std::uint64_t i = 0; i < inputs; ++i) {
+    std::string bytes = log.bytes;
+    if (random.below(4) != 0) {
+      // one link, widget or the rest: each as likely
+      const std::size_t link = sizeof(LinkState), parts = kMaxLinks + 8;
+      const std::size_t part = random.below(parts);
+      const std::size_t from = part < static_cast<std::size_t>(kMaxLinks) ? log.state + part * link : log.state + kMaxLinks * link;
+      const std::size_t behind = part < static_cast<std::size_t>(kMaxLinks) ? from + link : state.second;
+      forge(std::as_writable_bytes(std::span(bytes.data() + from, behind - from)), behind - from, random);
+    }
+    if (random.below(3) == 0) bytes = test::change_in_place(bytes, random, program.first, program.second);
+    test::seal(bytes);
+    const auto result = replay(bytes, log.changes);
+    ++(result ? ran : refused);
+    if (!result) {
+      ASSERT_EQ(result.error().message.find('\n'), std::string::npos) << result.error().message;
+    }
+  }
+  EXPECT_GT(refused, inputs / 20);
+  EXPECT_GT(ran, inputs / 20);
+  std::printf("%llu forged recordings: %llu refused, %llu run\n", static_cast<unsigned long long>(inputs),
+              static_cast<unsigned long long>(refused), static_cast<unsigned long long>(ran));
+}
+
+}  // namespace state_fuzz_test
+}  // namespace catena
