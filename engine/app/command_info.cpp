@@ -47,7 +47,8 @@ Outcome describe_file(const std::string& path) {
   CATENA_TRY(const std::vector<field::GridInfo> grids, field::describe(path));
   fmt::print("{}: {} grid{}\n", printable(path), grids.size(), grids.size() == 1 ? "" : "s");
   for (const field::GridInfo& g : grids) {
-    fmt::print("{} ({}{})\n", g.name.empty() ? "(no name)" : printable(g.name), printable(g.type), g.usable ? "" : "; not a field that Catena can show or feel");
+    fmt::print("{} ({}{})\n", g.name.empty() ? "(no name)" : printable(g.name), printable(g.type),
+               g.usable ? "" : "; not a field that Catena can show or feel");
     fmt::print("  size         {} {} {} voxels from index {} {} {}\n", g.size.x, g.size.y, g.size.z, g.lowest.x, g.lowest.y, g.lowest.z);
     print_mapping(g.mapping);
     const field::Units units = field::units_of(path, g.name);
@@ -56,7 +57,7 @@ Outcome describe_file(const std::string& path) {
     const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
     fmt::print("  world box    {} .. {}\n", text(g.mapping.world_from_index(lowest)),
                text(g.mapping.world_from_index(lowest + Vec3(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1),
-                                                               static_cast<double>(g.size.z - 1)))));
+                                                             static_cast<double>(g.size.z - 1)))));
     fmt::print("  active       {} voxels\n", g.stats.active_voxels);
     if (g.usable) {
       fmt::print("  {}        {} .. {}\n", g.is_vector ? "speed" : "range", to_text(g.stats.min), to_text(g.stats.max));
@@ -92,7 +93,8 @@ Outcome describe_widgets(scene::Scene& scene) {
   scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget&) { widgets.push_back(e); });
   for (const scene::Entity e : widgets) {
     CATENA_TRY(const widget::Spec spec, scene::use_widget(scene, e));
-    fmt::print("widget {}: {} at {}", printable(scene.world.get<scene::Name>(e).value), scene::kind_word(spec.kind), text(spec.pose.points[0]));
+    fmt::print("widget {}: {} at {}", printable(scene.world.get<scene::Name>(e).value), scene::kind_word(spec.kind),
+               text(spec.pose.points[0]));
     switch (spec.kind) {
       case widget::Kind::cutting_plane:
         fmt::print(", normal {}, sphere {}, snap {}, release {}", text(scene::normal_of(spec.pose)), to_text(spec.radius),

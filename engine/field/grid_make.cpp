@@ -57,9 +57,7 @@ Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Ma
   storage->values = &values;
   if (valid) {
     if (buffers.cells.size() == 0) {
-      CATENA_TRY(buffers.cells, erode(*valid, box, &NanoMemory::reserve, [](double bytes) {
-                   return ask_for_memory("its mask", bytes);
-                 }));
+      CATENA_TRY(buffers.cells, erode(*valid, box, &NanoMemory::reserve, [](double bytes) { return ask_for_memory("its mask", bytes); }));
     }
     storage->valid_voxels = valid;
     storage->valid_cells = &nano_grid<nanovdb::ValueMask>(buffers.cells);

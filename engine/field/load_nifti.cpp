@@ -170,8 +170,9 @@ Result<DenseFile> open_nifti(const LoadRequest& request) {
   // the voxels of the first volume: dimensions are 16-bit numbers
   const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size);
   CATENA_CHECK(layers->open(image.iname));
-  DenseFile file{name, image.nt > 1 ? fmt::format("{}, first of {} volumes", word, image.nt) : std::string(word),
-                 path + ": the volume ", mapping, 1, {}};
+  DenseFile file{
+      name, image.nt > 1 ? fmt::format("{}, first of {} volumes", word, image.nt) : std::string(word), path + ": the volume ", mapping, 1,
+      {}};
   file.source.size = {image.nx, image.ny, image.nz};
   CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, image.nx, image.ny, image.nz), file.source.size, 1,
                              /*masked=*/false));

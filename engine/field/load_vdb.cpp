@@ -10,7 +10,8 @@ namespace catena::field {
 namespace {
 
 bool is_sound(const Mapping& m) {
-  return is_finite(m.origin) && is_finite(m.index_from_world(Vec3(1.0))) && m.smallest_edge() > 0 && is_finite(m.world_from_index(Vec3(1.0)));
+  return is_finite(m.origin) && is_finite(m.index_from_world(Vec3(1.0))) && m.smallest_edge() > 0 &&
+         is_finite(m.world_from_index(Vec3(1.0)));
 }
 
 Error damaged(const std::string& path, const std::string& what) {

@@ -106,6 +106,6 @@ NanoMemory reserve_leaves(std::uint64_t leaves);
 /// An error only where the blocks are too far apart.
 template <class T>
 Result<NanoMemory> finish_blocks(NanoMemory memory, std::uint64_t leaves, std::vector<NanoBlock<T>> blocks,
-                         const typename NanoTypes<T>::Value& background);
+                                 const typename NanoTypes<T>::Value& background);
 
 }  // namespace catena::field

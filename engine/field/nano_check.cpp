@@ -83,9 +83,7 @@ Result<Layout<T>> layout_of(std::span<const std::byte> bytes) {
   return l;
 }
 
-std::int64_t distance(const void* to, const void* from) {
-  return static_cast<const std::byte*>(to) - static_cast<const std::byte*>(from);
-}
+std::int64_t distance(const void* to, const void* from) { return static_cast<const std::byte*>(to) - static_cast<const std::byte*>(from); }
 
 /// The children of one internal node are the next ones of their array, in order, each at the place of its entry.
 template <class Node, class Children, class PlaceOf>

@@ -19,8 +19,8 @@ Outcome check_volume(const std::string& path, const Mapping& mapping) {
   // OpenVDB takes smaller voxels for flat ones
   const double volume = std::fabs(glm::determinant(mapping.world_from_index_linear));
   if (!(volume > 3e-15) || !std::isfinite(volume))
-    return Error{fmt::format(
-        "{}: a .vdb cannot hold voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length", path, volume)};
+    return Error{fmt::format("{}: a .vdb cannot hold voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length",
+                             path, volume)};
   return Done{};
 }
 
@@ -160,8 +160,7 @@ Result<std::string> import_as_vdb(const LoadRequest& request, const std::string&
   const float background[3]{};
   const bool vector = file.components == 3;
   out.begin_grid(vector ? StreamKind::vector : StreamKind::scalar, chosen, file.mapping, background, true);
-  CATENA_TRY(const bool some_finite,
-             vector ? stream_layers<nanovdb::Vec3f>(out, file.source) : stream_layers<float>(out, file.source));
+  CATENA_TRY(const bool some_finite, vector ? stream_layers<nanovdb::Vec3f>(out, file.source) : stream_layers<float>(out, file.source));
   if (!some_finite) return Error{file.prefix + "has no finite value in any active voxel"};
   count_file();
   count_grid();

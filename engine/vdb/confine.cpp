@@ -43,7 +43,8 @@ void set_limits(const ProcessLimits& limits) {
   constexpr std::uint64_t kRoom = 512 << 20;
   ::mallopt(M_ARENA_MAX, 1);
   const bool limited = limits.memory_bytes < ~std::uint64_t{0} / 2;
-  if (limited && !kSanitized) set_limit(RLIMIT_AS, mapped_bytes() + limits.memory_bytes + kRoom, mapped_bytes() + limits.memory_bytes + kRoom);
+  if (limited && !kSanitized)
+    set_limit(RLIMIT_AS, mapped_bytes() + limits.memory_bytes + kRoom, mapped_bytes() + limits.memory_bytes + kRoom);
   if (limited && limits.only_memory_files) {
     ::signal(SIGXFSZ, SIG_IGN);
     set_limit(RLIMIT_FSIZE, limits.memory_bytes + kRoom, limits.memory_bytes + kRoom);
@@ -75,24 +76,32 @@ std::uint32_t landlock() {
 bool seccomp() {
   const std::unique_ptr<void, void (*)(void*)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)), [](void* f) { seccomp_release(f); });
   if (!filter) return false;
-  constexpr int kAllowed[] = {
-      SCMP_SYS(read), SCMP_SYS(pread64), SCMP_SYS(readv), SCMP_SYS(write), SCMP_SYS(pwrite64), SCMP_SYS(writev), SCMP_SYS(lseek),
-      SCMP_SYS(fstat), SCMP_SYS(ftruncate), SCMP_SYS(close), SCMP_SYS(recvfrom), SCMP_SYS(sendto), SCMP_SYS(munmap), SCMP_SYS(mremap),
-      SCMP_SYS(madvise), SCMP_SYS(brk), SCMP_SYS(futex), SCMP_SYS(set_robust_list), SCMP_SYS(rseq), SCMP_SYS(sched_yield),
-      SCMP_SYS(sched_getaffinity), SCMP_SYS(getcpu), SCMP_SYS(clock_gettime), SCMP_SYS(clock_nanosleep), SCMP_SYS(nanosleep),
-      SCMP_SYS(gettimeofday), SCMP_SYS(time), SCMP_SYS(getrandom), SCMP_SYS(getpid), SCMP_SYS(gettid), SCMP_SYS(rt_sigaction),
-      SCMP_SYS(rt_sigprocmask), SCMP_SYS(rt_sigreturn), SCMP_SYS(sigaltstack), SCMP_SYS(restart_syscall), SCMP_SYS(exit),
-      SCMP_SYS(exit_group), SCMP_SYS(getrlimit), SCMP_SYS(sysinfo)};
+  constexpr int kAllowed[] = {SCMP_SYS(read),         SCMP_SYS(pread64),         SCMP_SYS(readv),
+                              SCMP_SYS(write),        SCMP_SYS(pwrite64),        SCMP_SYS(writev),
+                              SCMP_SYS(lseek),        SCMP_SYS(fstat),           SCMP_SYS(ftruncate),
+                              SCMP_SYS(close),        SCMP_SYS(recvfrom),        SCMP_SYS(sendto),
+                              SCMP_SYS(munmap),       SCMP_SYS(mremap),          SCMP_SYS(madvise),
+                              SCMP_SYS(brk),          SCMP_SYS(futex),           SCMP_SYS(set_robust_list),
+                              SCMP_SYS(rseq),         SCMP_SYS(sched_yield),     SCMP_SYS(sched_getaffinity),
+                              SCMP_SYS(getcpu),       SCMP_SYS(clock_gettime),   SCMP_SYS(clock_nanosleep),
+                              SCMP_SYS(nanosleep),    SCMP_SYS(gettimeofday),    SCMP_SYS(time),
+                              SCMP_SYS(getrandom),    SCMP_SYS(getpid),          SCMP_SYS(gettid),
+                              SCMP_SYS(rt_sigaction), SCMP_SYS(rt_sigprocmask),  SCMP_SYS(rt_sigreturn),
+                              SCMP_SYS(sigaltstack),  SCMP_SYS(restart_syscall), SCMP_SYS(exit),
+                              SCMP_SYS(exit_group),   SCMP_SYS(getrlimit),       SCMP_SYS(sysinfo)};
   for (const int call : kAllowed)
     if (seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) != 0) return false;
   // threads, but no processes; the newer call hides its arguments, and the C library does without
-  bool good = seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(clone), 1, SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD)) == 0;
+  bool good =
+      seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(clone), 1, SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD)) == 0;
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0;
   // memory, but no code
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mmap), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(mprotect), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0)) == 0;
-  // limits may be asked for, of itself
-  good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0), SCMP_A2(SCMP_CMP_EQ, 0)) == 0;
+  // how a descriptor is open may be asked for, and limits, of itself
+  good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_GETFL)) == 0;
+  good =
+      good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 2, SCMP_A0(SCMP_CMP_EQ, 0), SCMP_A2(SCMP_CMP_EQ, 0)) == 0;
   // the end of an assertion, and nobody else's
   good = good && seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, SCMP_SYS(tgkill), 1,
                                   SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(::getpid()))) == 0;

@@ -42,7 +42,7 @@ VdbEntry entry_of(const openvdb::io::GridDescriptor& descriptor) {
 
 }  // namespace
 
-OpenFile::OpenFile(std::span<const std::byte> bytes) 
+OpenFile::OpenFile(std::span<const std::byte> bytes)
     : about_(new openvdb::io::StreamMetadata), stream_(bytes), archive_(std::make_shared<Archive>()) {}
 
 Result<std::unique_ptr<OpenFile>> OpenFile::open(std::span<const std::byte> bytes, const std::string& path) {
@@ -61,7 +61,9 @@ Result<std::unique_ptr<OpenFile>> OpenFile::open(std::span<const std::byte> byte
     Archive::grid(grid, descriptor, in);
     if (descriptor.isInstance()) {
       const auto parent = file->streamed_.find(descriptor.instanceParentName());
-      if (parent == file->streamed_.end()) return Error{path + ": grid \"" + descriptor.gridName() + "\" shares the tree of a grid that is not there, expected a complete .vdb file"};
+      if (parent == file->streamed_.end())
+        return Error{path + ": grid \"" + descriptor.gridName() +
+                     "\" shares the tree of a grid that is not there, expected a complete .vdb file"};
       grid->setTree(parent->second->baseTreePtr());
     }
     if (!file->streamed_.emplace(descriptor.uniqueName(), grid).second) continue;

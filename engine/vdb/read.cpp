@@ -109,14 +109,13 @@ class Answer {
     const std::string name = fmt::format("{}: grid \"{}\"", what_.path, entry->name);
     Result<NanoMemory> values = Error{};
     const bool scalar = with_scalars(grid, [&](const auto& tree) { values = to_nano<float>(tree, name, left(), into(reply.values)); });
-    reply.is_vector = !scalar && with_vectors(grid, [&](const auto& tree) {
-      values = to_nano<nanovdb::Vec3f>(tree, name, left(), into(reply.values));
-    });
+    reply.is_vector =
+        !scalar && with_vectors(grid, [&](const auto& tree) { values = to_nano<nanovdb::Vec3f>(tree, name, left(), into(reply.values)); });
     if (!scalar && !reply.is_vector) return not_a_field(*entry);
     if (!values) return values.error();
     grid.reset();
-    const ActiveBox box = scalar ? field::active_box(field::nano_grid<float>(*values))
-                                 : field::active_box(field::nano_grid<nanovdb::Vec3f>(*values));
+    const ActiveBox box =
+        scalar ? field::active_box(field::nano_grid<float>(*values)) : field::active_box(field::nano_grid<nanovdb::Vec3f>(*values));
     if (box.empty()) return about(Error{"has no active voxels, expected a grid with data"});
     if (!is_near(box)) return about(field::too_far(box));
     return load_mask(reply, box);
@@ -205,8 +204,8 @@ class Answer {
       info.bytes = grid->memUsage();
     }
     if (!done) return done.error();
-    info.usable = mapping && (is_scalar_type(info.type) || is_vector_type(info.type)) && info.stats.active_voxels > info.stats.nan_count &&
-                  is_near_;
+    info.usable =
+        mapping && (is_scalar_type(info.type) || is_vector_type(info.type)) && info.stats.active_voxels > info.stats.nan_count && is_near_;
     return info;
   }
 
@@ -247,9 +246,10 @@ ReadReply answer(const ReadRequest& request, std::span<const std::byte> file, An
     done = answer_or_throw(request, file, out, reply);
   } catch (const std::bad_alloc&) {
     constexpr double kMegabyte = 1e6;
-    done = Error{fmt::format("{}: reading it needs more than the {:.0f} MB of memory that are allowed, or the file is damaged (--memory MB "
-                             "allows more)",
-                             path, static_cast<double>(request.memory_bytes) / kMegabyte)};
+    done =
+        Error{fmt::format("{}: reading it needs more than the {:.0f} MB of memory that are allowed, or the file is damaged (--memory MB "
+                          "allows more)",
+                          path, static_cast<double>(request.memory_bytes) / kMegabyte)};
   } catch (const std::exception& e) {
     done = Error{fmt::format("{}: the file is damaged or of an unknown kind ({})", path, one_line(e.what()))};
   } catch (...) {

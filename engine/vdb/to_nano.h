@@ -106,13 +106,17 @@ Result<field::NanoMemory> to_nano(const Tree& tree, const std::string& what, std
   };
   parallel_for(uppers.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
-      fill_node(*uppers[n], build.begin_upper(n, nano_coord(uppers[n]->origin())),
-                [&](std::size_t child) -> auto& { return build.lower(first_lower[n] + child); });
+      fill_node(
+          *uppers[n], build.begin_upper(n, nano_coord(uppers[n]->origin())), [&](std::size_t child) -> auto& {
+            return build.lower(first_lower[n] + child);
+          });
   });
   parallel_for(lowers.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n)
-      fill_node(*lowers[n], build.begin_lower(n, nano_coord(lowers[n]->origin())),
-                [&](std::size_t child) -> auto& { return build.leaf(first_leaf[n] + child); });
+      fill_node(
+          *lowers[n], build.begin_lower(n, nano_coord(lowers[n]->origin())), [&](std::size_t child) -> auto& {
+            return build.leaf(first_leaf[n] + child);
+          });
   });
   parallel_for(leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {

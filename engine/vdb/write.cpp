@@ -1,9 +1,8 @@
 #include "engine/vdb/write.h"
 
-#include <ext/stdio_filebuf.h>
 #include <openvdb/io/Archive.h>
 #include <openvdb/openvdb.h>
-#include <sys/stat.h>
+#include <ext/stdio_filebuf.h>
 
 #include <cerrno>
 #include <cstring>
@@ -132,13 +131,11 @@ openvdb::GridCPtrVec take_grids(const Take& take) {
   return grids;
 }
 
-void put_all(const openvdb::GridCPtrVec& grids, int fd) {
-  struct stat status {};
-  const bool regular = ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+void put_all(const openvdb::GridCPtrVec& grids, int fd, bool seekable) {
   __gnu_cxx::stdio_filebuf<char> buffer(fd, std::ios::out | std::ios::binary, 1 << 20);
   std::ostream out(&buffer);
   out.exceptions(std::ios::failbit | std::ios::badbit);
-  if (regular) {
+  if (seekable) {
     Writer().put(out, grids);
   } else {
     // offsets are filled in later: not every place can be written twice
@@ -151,12 +148,12 @@ void put_all(const openvdb::GridCPtrVec& grids, int fd) {
 
 }  // namespace
 
-std::string write_grids(const Take& take, int fd) {
+std::string write_grids(const Take& take, int fd, bool seekable) {
   openvdb::initialize();
   try {
     const openvdb::GridCPtrVec grids = take_grids(take);
     errno = 0;
-    put_all(grids, fd);
+    put_all(grids, fd, seekable);
     return {};
   } catch (const std::ios_base::failure&) {
     return errno != 0 ? std::strerror(errno) : "the stream failed";

@@ -8,7 +8,7 @@ namespace catena::vdb {
 /// Reads so many bytes from the stream; false at its end.
 using Take = std::function<bool(void* to, std::size_t bytes)>;
 
-/// Writes to the descriptor; empty, or why it failed.
-std::string write_grids(const Take& take, int fd);
+/// Writes to the descriptor; `seekable`: it is a regular file. Empty, or why it failed.
+std::string write_grids(const Take& take, int fd, bool seekable);
 
 }  // namespace catena::vdb

@@ -1,5 +1,6 @@
 // The program catena-write: takes grids block by block from its descriptor 3 and writes them, as a .vdb file, to its descriptor 4.
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -53,12 +54,15 @@ int main() {
     static constexpr char kWho[] = "catena-write: a part of catena, which starts it\n";
     return ::write(STDERR_FILENO, kWho, sizeof kWho - 1) < 0 ? 1 : 2;
   }
+  struct stat status {};
+  const bool seekable = ::fstat(kFile, &status) == 0 && S_ISREG(status.st_mode);
   catena::vdb::ProcessLimits limits;
   limits.only_memory_files = false;
   const auto confined = catena::vdb::confine(limits);
   Line line;
   const std::string failure =
-      confined ? catena::vdb::write_grids([&](void* to, std::size_t bytes) { return line.take(to, bytes); }, kFile) : confined.error().message;
+      confined ? catena::vdb::write_grids([&](void* to, std::size_t bytes) { return line.take(to, bytes); }, kFile, seekable)
+               : confined.error().message;
   if (!failure.empty() && ::send(kLine, failure.data(), failure.size(), MSG_NOSIGNAL) < 0) return 1;
   ::_exit(0);
 }
