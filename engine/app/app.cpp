@@ -18,12 +18,18 @@ int bad_input(const std::string& message) {
   return 2;
 }
 
+int machine_failed(const std::string& message) {
+  fmt::print(stderr, "catena: {}\n", printable(one_line(message)));
+  return 1;
+}
+
 // "catena: unknown option: expected one of ..., see catena render --help"
 std::string usage_message(const CLI::App& program, const CLI::ParseError& error) {
   std::string command = "catena";
   for (const CLI::App* sub : program.get_subcommands()) command += " " + sub->get_name();
   return std::string(error.what()) + " (see " + command + " --help)";
 }
+
 // --memory MB, of every command: where its data comes from is the reader's business
 void add_memory_limit(CLI::App& program) {
   for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
@@ -65,13 +71,11 @@ int run(int argc, char** argv) {
   }
   try {
     const Outcome done = chosen();
-    if (!done) return bad_input(done.error().message);
+    if (!done) return done.error().machine ? machine_failed(done.error().message) : bad_input(done.error().message);
   } catch (const MachineFailure& failure) {
-    fmt::print(stderr, "catena: {}\n", printable(one_line(failure.message)));
-    return 1;
+    return machine_failed(failure.message);
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "catena: out of memory\n");
-    return 1;
+    return machine_failed("out of memory");
   }
   return view_exit_code;
 }

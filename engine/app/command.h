@@ -15,7 +15,7 @@ namespace catena::app {
 
 inline constexpr const char* kCatenaVersion = "0.1.0";
 
-/// A subcommand's work; the exit code of a success is 0. An Error means bad input: exit code 2.
+/// A subcommand's work; the exit code of a success is 0. An Error means bad input: exit code 2, or 1 where it is the machine's.
 using Work = std::function<Outcome()>;
 
 /// Each adds its subcommand and, when the user chose it, sets `chosen`.

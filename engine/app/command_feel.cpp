@@ -130,7 +130,7 @@ Outcome feel(const FeelOptions& options) {
   CATENA_TRY(Recording recording, Recording::open(options.record, scene, options.fields, hand, *program));
   servo_options.sink = recording.sink();
   haptics::Servo servo(*hand.device, program, servo_options);
-  servo.start();
+  CATENA_CHECK(servo.start());
   for (const std::string& note : servo.report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
   fmt::print("{} at {:g} Hz, forces {}{}\n", hand.device->capabilities().name, servo_options.rate_hz, options.forces,
              options.seconds > 0 ? "" : "; Ctrl-C ends");

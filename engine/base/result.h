@@ -9,7 +9,8 @@
 namespace catena {
 
 struct Error {
-  std::string message;  ///< one line: file, line, what, and what was expected
+  std::string message;   ///< one line: file, line, what, and what was expected
+  bool machine = false;  ///< this machine does not give what is needed (a thread, memory): no fault of the input
 };
 
 template <class T>

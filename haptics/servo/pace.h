@@ -4,10 +4,13 @@
 ///   A tick's time is its deadline, or the moment at which it began if that is more than T/4 later: the velocity's dt is honest
 ///   after a miss too. It is late if its time is more than 2 T after the last tick's.
 ///   The next deadline is after the end of the tick and at least T/2 after its begin, so that dt never gets small.
+///   A tick has stalled before it if more than `stall` has passed between the end of the last one and its begin: the thread did not
+///   run, and nor perhaps did the whole program (SIGSTOP), its watchdog among it.
 /// Haptic thread.
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 namespace catena::haptics {
 
@@ -16,11 +19,15 @@ struct Beat {
   std::int64_t time_ns = 0;  ///< of the tick, since the first deadline
   std::int64_t missed = 0;   ///< deadlines between the last tick's and its own
   bool late = false;
+  bool stalled = false;
 };
 
 class Pace {
  public:
-  Pace(std::int64_t period_ns, std::int64_t first_ns) : period_ns_(period_ns), first_ns_(first_ns) {}
+  static constexpr std::int64_t kNeverStalls = std::numeric_limits<std::int64_t>::max();
+
+  Pace(std::int64_t period_ns, std::int64_t first_ns, std::int64_t stall_ns = kNeverStalls)
+      : period_ns_(period_ns), first_ns_(first_ns), stall_ns_(stall_ns), last_end_ns_(first_ns) {}
 
   std::int64_t next_wake_ns() const noexcept { return first_ns_ + next_ * period_ns_; }
 
@@ -31,6 +38,7 @@ class Pace {
     beat.time_ns = deadline * period_ns_;
     if (since - beat.time_ns > period_ns_ / 4) beat.time_ns = since;
     beat.late = last_ >= 0 && beat.time_ns - last_time_ns_ > 2 * period_ns_;
+    beat.stalled = now_ns - last_end_ns_ > stall_ns_;
     last_ = deadline;
     last_time_ns_ = beat.time_ns;
     return beat;
@@ -39,10 +47,11 @@ class Pace {
   void ends(std::int64_t now_ns) noexcept {
     const std::int64_t since = std::max(now_ns - first_ns_, last_time_ns_ + (period_ns_ - 1) / 2);
     next_ = std::max(last_, since / period_ns_) + 1;
+    last_end_ns_ = now_ns;
   }
 
  private:
-  std::int64_t period_ns_, first_ns_;
+  std::int64_t period_ns_, first_ns_, stall_ns_, last_end_ns_;
   std::int64_t next_ = 0, last_ = -1, last_time_ns_ = 0;
 };
 

@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <optional>
 
 #include "engine/base/assert.h"
 #include "engine/base/clock.h"
+#include "engine/base/start_thread.h"
 #include "haptics/servo/watchdog.h"
 
 namespace catena::haptics {
 
 namespace {
 
-constexpr int kMissesUntilNormal = 1000;  // ticks in a row that miss a deadline before a fixed priority is given back
+// so many ticks in a row, or for so long every tick, that missed a deadline: a fixed priority is given back
+constexpr int kMissesUntilNormal = 1000;
+constexpr std::int64_t kMissesUntilNormalNs = 1'000'000'000;
 
 void add_one(std::atomic<std::uint64_t>& counter, std::uint64_t n = 1) noexcept {
   counter.store(counter.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
@@ -50,13 +52,24 @@ Servo::Servo(Device& device, std::shared_ptr<const Program> program, const Servo
 
 Servo::~Servo() { stop(); }
 
-void Servo::start() {
+Outcome Servo::start() {
   CATENA_ASSERT(!thread_.joinable());
+  if (options_.paced && options_.watchdog_s > 0) {
+    const double limit_s = std::max(options_.watchdog_s, 4 / options_.rate_hz);
+    CATENA_TRY(watchdog_, Watchdog::make(device_, limit_s, counters_.watchdog_trips));
+  }
   stop_.store(false, std::memory_order_release);
   running_.store(true, std::memory_order_release);
   prepared_.store(false, std::memory_order_release);
-  thread_ = std::thread([this] { loop(); });
+  auto thread = start_thread("the servo", [this] { loop(); });
+  if (!thread) {
+    running_.store(false, std::memory_order_release);
+    watchdog_.reset();
+    return thread.error();
+  }
+  thread_ = std::move(*thread);
   prepared_.wait(false, std::memory_order_acquire);
+  return Done{};
 }
 
 void Servo::go_on_from(const Servo& other) {
@@ -68,6 +81,7 @@ void Servo::go_on_from(const Servo& other) {
 void Servo::stop() {
   stop_.store(true, std::memory_order_release);
   if (thread_.joinable()) thread_.join();
+  watchdog_.reset();
 }
 
 void Servo::set_program(std::shared_ptr<const Program> program) {
@@ -121,7 +135,7 @@ ServoReport Servo::report() const {
   return out;
 }
 
-void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::HapticState& out) noexcept {
+void Servo::one_tick(double t_s, const Beat& beat, exchange::HapticState& out) noexcept {
   // before the program: a sink that is taken up knows every program that was handed over before it
   TickSink* wanted = wanted_sink_.load(std::memory_order_acquire);
   const bool takes_up = wanted != sink_;
@@ -152,13 +166,17 @@ void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::Haptic
   probe.forces_on = input.forces_on && forces();
 
   // the tick that finds the watchdog's flag is without force; the one after it may drive the device again
-  const bool tripped = watchdog != nullptr && watchdog->take_trip();
+  const bool stalled = watchdog_ && (beat.stalled || stalled_within_);
+  if (stalled) watchdog_->stalled();
+  const bool tripped = (watchdog_ && watchdog_->take_trip()) || stalled;
   if (stopped_ && !tripped) device_.resume();
   stopped_ = tripped;
   const bool lost = input.status != DeviceStatus::ready;
-  probe.condition = tripped ? Condition::watchdog : lost ? Condition::no_device : late ? Condition::late : Condition::normal;
+  probe.condition = tripped ? Condition::watchdog : lost ? Condition::no_device : beat.late ? Condition::late : Condition::normal;
   tick(*program_, probe, state_, scratch_, out);
   const std::int64_t computed = now_ns();
+  stalled_within_ = watchdog_ && computed - began > watchdog_->limit_ns();
+  if (stalled_within_) watchdog_->stalled();
 
   // v * R = R^T v: back to the device's axes
   const bool live = out.force_state != ForceState::off && out.force_state != ForceState::stopped;
@@ -177,10 +195,12 @@ void Servo::one_tick(double t_s, bool late, Watchdog* watchdog, exchange::Haptic
   if (sink_ != nullptr) sink_->put(probe, out);
 }
 
-/// A fixed priority is for ticks that fit into their period: a second or so of misses gives it back.
-void Servo::relax(bool missed) noexcept {
-  misses_in_row_ = missed ? std::min(misses_in_row_, kMissesUntilNormal) + 1 : 0;
-  if (misses_in_row_ != kMissesUntilNormal || !realtime_.fifo) return;
+/// A fixed priority is for ticks that fit into their period: a second of misses gives it back.
+void Servo::relax(bool missed, std::int64_t now_ns) noexcept {
+  if (!missed) misses_in_row_ = 0;
+  if (!missed || !realtime_.fifo || counters_.left_fifo.load(std::memory_order_relaxed)) return;
+  if (misses_in_row_++ == 0) missing_since_ns_ = now_ns;
+  if (misses_in_row_ < kMissesUntilNormal && now_ns - missing_since_ns_ < kMissesUntilNormalNs) return;
   leave_fifo();
   counters_.left_fifo.store(true, std::memory_order_relaxed);
 }
@@ -188,18 +208,16 @@ void Servo::relax(bool missed) noexcept {
 void Servo::loop() noexcept {
   const RealtimeThread realtime(realtime_options(options_), this, sizeof *this);
   realtime_ = realtime.report();
-  const double watchdog_s = std::max(options_.watchdog_s, 4 / options_.rate_hz);
-  const bool watched = options_.paced && options_.watchdog_s > 0;
-  std::optional<Watchdog> watchdog;
-  if (watched) watchdog.emplace(device_, watchdog_s, realtime_.fifo ? options_.realtime.priority + 1 : 0, counters_.watchdog_trips);
+  if (watchdog_) watchdog_->begin(now_ns(), realtime_.fifo ? options_.realtime.priority + 1 : 0);
   exchange::HapticState out;
   device_.resume();
-  stopped_ = false;
+  stopped_ = stalled_within_ = false;
+  misses_in_row_ = 0;
   state_.guard = {};  // whatever an earlier run sent, this one begins at zero
   suspend(state_.passivity);
 
   const auto period_ns = static_cast<std::int64_t>(1e9 / options_.rate_hz);
-  Pace pace(period_ns, now_ns() + period_ns);
+  Pace pace(period_ns, now_ns() + period_ns, watchdog_ ? watchdog_->limit_ns() : Pace::kNeverStalls);
   counters_.started_ns.store(now_ns(), std::memory_order_relaxed);
   counters_.ended_ns.store(0, std::memory_order_relaxed);
   prepared_.store(true, std::memory_order_release);
@@ -222,16 +240,15 @@ void Servo::loop() noexcept {
       t_s = 1e-9 * static_cast<double>(beat.time_ns);
       add_one(counters_.missed_deadlines, static_cast<std::uint64_t>(beat.missed));
       if (beat.late) add_one(counters_.late_ticks);
-      relax(beat.missed > 0);
+      relax(beat.missed > 0, began);
     }
-    one_tick(t_s, beat.late, watchdog ? &*watchdog : nullptr, out);
+    one_tick(t_s, beat, out);
     published_.publish(out);
 
     const std::int64_t ended = now_ns();
     pace.ends(ended);
-    if (watchdog) watchdog->tick_ended(ended);
+    if (watchdog_) watchdog_->tick_ended(ended);
   }
-  watchdog.reset();
   device_.write({.live = false});
   device_.stop();
   counters_.ended_ns.store(now_ns(), std::memory_order_relaxed);

@@ -4,7 +4,9 @@
 /// looks at a time stamp. They share two triple buffers, flags, counters and two pointers, all lock-free. The haptic thread never frees:
 /// programs are kept by the frame side until a published epoch shows that a newer one has run.
 ///
-/// The tick's condition: WATCHDOG no tick had ended for watchdog_s (the device has been stopped; the tick after resumes it);
+/// The tick's condition: WATCHDOG no tick had ended for watchdog_s (the device has been stopped; the tick after resumes it), whether
+/// the watchdog has seen it or, after the whole program stood still (SIGSTOP), the haptic thread itself. A tick that stood still within
+/// itself stops the device before it writes.
 /// NO_DEVICE the device is not ready; LATE its time is more than two periods after the last tick's; else NORMAL.
 #pragma once
 #include <atomic>
@@ -12,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "engine/base/result.h"
 #include "engine/exchange/triple_buffer.h"
 #include "haptics/chain/rebind.h"
 #include "haptics/chain/state_hash.h"
@@ -48,7 +51,8 @@ class Servo {
   /// Before start(): what the chain remembers comes from a servo that has been stopped (another device takes over). The force begins at
   /// zero, as it always does. Programs need epochs of their own over both.
   void go_on_from(const Servo& other);
-  void start();                                              ///< returns when the thread is prepared, just before its first tick
+  /// Returns when the thread is prepared, just before its first tick. Where this machine gives no thread: an error, and nothing runs.
+  Outcome start();
   void stop();                                               ///< joins; the device has had a last zero force and is stopped
   void set_program(std::shared_ptr<const Program> program);  ///< of an epoch of its own: by it the older ones are freed
   bool take(exchange::HapticState& state);                   ///< true if there was something newer
@@ -67,8 +71,8 @@ class Servo {
 
  private:
   void loop() noexcept;
-  void one_tick(double t_s, bool late, Watchdog* watchdog, exchange::HapticState& out) noexcept;
-  void relax(bool missed) noexcept;
+  void one_tick(double t_s, const Beat& beat, exchange::HapticState& out) noexcept;
+  void relax(bool missed, std::int64_t now_ns) noexcept;
 
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::uint64_t>::is_always_lock_free &&
                 std::atomic<const Program*>::is_always_lock_free && std::atomic<TickSink*>::is_always_lock_free);
@@ -86,12 +90,15 @@ class Servo {
   ChainState state_;
   ChainScratch scratch_;
   StateHash hash_;
-  bool stopped_ = false;  ///< the watchdog has stopped the device
+  bool stopped_ = false;         ///< the watchdog has stopped the device
+  bool stalled_within_ = false;  ///< the last tick did
   int misses_in_row_ = 0;
+  std::int64_t missing_since_ns_ = 0;
 
   // frame side only; realtime_ is written before prepared_
   RealtimeReport realtime_;
   std::vector<std::shared_ptr<const Program>> programs_;
+  std::unique_ptr<Watchdog> watchdog_;  ///< null: none
   std::thread thread_;
 };
 

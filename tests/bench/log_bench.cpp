@@ -69,7 +69,7 @@ void LogOfAServoAt4kHz(benchmark::State& state) {
     const auto writer = open_log(*program);
     RecordedPath device(samples);
     Servo servo(device, program, {.rate_hz = 4000, .max_ticks = samples.size(), .sink = writer.get()});
-    servo.start();
+    CATENA_ASSERT(static_cast<bool>(servo.start()));
     while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     servo.stop();
     CATENA_ASSERT(static_cast<bool>(writer->finish()));

@@ -173,7 +173,7 @@ TEST_P(Hash, IsTheCommittedOneWithAndWithoutTheThread) {
   for (const ProbeSample& p : path) samples.push_back({p.t_s, p.position, p.buttons});
   RecordedPath device(samples);
   Servo servo(device, program, {.rate_hz = 1000, .paced = false, .max_ticks = path.size()});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
   EXPECT_EQ(servo.state_hash(), stats.state_hash);

@@ -166,7 +166,8 @@ const std::vector<KeyHelp>& key_list() {
       {"The window", "F11", "full screen"},
       {"The window", "F12, Shift+F12", "write the picture, the window, as SCENE-001.png"},
       {"The window", "F1, ?", "these keys"},
-      {"The window", "Q, Ctrl+Q, Esc", "quit"}};
+      {"The window", "Esc", "closes or cancels what is open, ends flying, hand mode, full screen"},
+      {"The window", "Ctrl+Q", "quit"}};
   return keys;
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/app/viewer/keys.h"
 #include "render/frame/camera.h"
 
 namespace catena::app {
@@ -18,19 +19,20 @@ namespace catena::app {
 /// What a key asks of the program as a whole.
 enum class Command { undo, redo, open, save, save_as, quit, screenshot, window_screenshot, full_screen, toggle_panels, turntable, fly };
 
-/// A piece of input under one set of held buttons. Coordinates of the window, or of the picture's area in it (y down); differences since
-/// the last piece.
+/// A piece of input: what begins it, a stroke or a button, and the motion until the next such thing. Coordinates of the window, or of the
+/// picture's area in it (y down); differences since the last piece.
 struct Input {
   double width = 1, height = 1;  ///< of the window, or the area
   double x = 0, y = 0;           ///< of the pointer where the piece begins
   double dx = 0, dy = 0, wheel = 0;
   bool left = false, middle = false, right = false;  ///< held
   bool shift = false, control = false, space = false;
-  bool toggle_hand = false, toggle_forces = false, reset_view = false, next_stereo = false, help = false,
-       quit = false;  ///< pressed in this piece
+  std::optional<KeyEvent> key;  ///< with which the piece begins
+  // what the key asks for (keys.h)
+  bool toggle_hand = false, toggle_forces = false, reset_view = false, next_stereo = false, help = false;
   bool fit = false, toggle_projection = false, toggle_pulses = false;
   std::optional<int> axis;  ///< 0, 1, 2: look along x, y, z; with shift the other way
-  bool escape = false;      ///< what is open above all goes, else the program
+  bool escape = false;      ///< what is open above all goes
   bool damaged = false;     ///< the window system lost the picture
   std::vector<Command> commands{};
   std::vector<std::string> dropped{};  ///< files

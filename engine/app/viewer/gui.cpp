@@ -8,6 +8,7 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "render/text/font.h"
@@ -17,6 +18,7 @@ namespace catena::app {
 namespace {
 
 constexpr float kFontPixels = 15;
+constexpr int kSettling = 3;  // frames until what was opened has the keyboard
 
 void choose_style(float scale) {
   ImGui::StyleColorsDark();
@@ -34,15 +36,29 @@ void choose_style(float scale) {
 struct Gui::Parts {
   Window* window;
   std::shared_ptr<const render::UiTexture> font;
-  float wheel = 0;  ///< turned in frames of catch_up
+  KeyFrames keys{};
+  Input last{};        ///< the piece that was told last
+  bool moved = false;  ///< the pointer, since the last frame
+  int settling = 0;    ///< frames to make before the next stroke
+  float wheel = 0;     ///< turned in frames that nobody saw
+
+  /// A frame that nobody sees, with the pointer at a place and the buttons of a piece.
+  void make(const Input& buttons, double x, double y, const Frame& frame);
+  void tell_key(const KeyEvent& event) const;
+  void framed() {
+    keys.framed();
+    moved = false;
+    settling = std::max(0, settling - 1);
+  }
 };
 
-Gui::Gui(Window& window) : parts_(std::make_unique<Parts>(Parts{&window, nullptr})) {
+Gui::Gui(Window& window) : parts_(std::make_unique<Parts>(Parts{.window = &window, .font = nullptr})) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
+  io.KeyRepeatDelay = std::numeric_limits<float>::max();  // keys repeat as the system says (keys.h)
   const float scale = window.content_scale();
   choose_style(scale);
   ImGui_ImplGlfw_InitForVulkan(window.native(), false);
@@ -70,36 +86,58 @@ Gui::~Gui() {
   ImGui::DestroyContext();
 }
 
-void Gui::catch_up(const std::vector<Input>& pieces, const std::function<void()>& make_panels) {
-  if (pieces.size() < 2) return;
-  const auto frame = [&](const Input& piece, double x, double y) {
-    ImGui_ImplGlfw_NewFrame();
-    ImGuiIO& io = ImGui::GetIO();
-    io.DeltaTime = std::max(io.DeltaTime, 1e-6f);
-    io.MousePos = {static_cast<float>(x), static_cast<float>(y)};
-    io.MouseDown[0] = piece.left;
-    io.MouseDown[1] = piece.right;
-    io.MouseDown[2] = piece.middle;
-    parts_->wheel += std::exchange(io.MouseWheel, 0.0f);
-    ImGui::NewFrame();
-    make_panels();
-    ImGui::EndFrame();
-  };
-  const auto differ = [](const Input& a, const Input& b) { return a.left != b.left || a.right != b.right || a.middle != b.middle; };
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const Input& piece = pieces[k];
-    if (k > 0 && differ(piece, pieces[k - 1])) frame(piece, piece.x, piece.y);
-    // where a drag ends before its button goes up
-    const bool moved = piece.dx != 0 || piece.dy != 0;
-    if (moved && k + 1 < pieces.size() && differ(piece, pieces[k + 1])) frame(piece, piece.x + piece.dx, piece.y + piece.dy);
-  }
+void Gui::Parts::make(const Input& buttons, double x, double y, const Frame& frame) {
+  ImGui_ImplGlfw_NewFrame();
+  ImGuiIO& io = ImGui::GetIO();
+  io.DeltaTime = std::max(io.DeltaTime, 1e-6f);
+  io.MousePos = {static_cast<float>(x), static_cast<float>(y)};
+  io.MouseDown[0] = buttons.left;
+  io.MouseDown[1] = buttons.right;
+  io.MouseDown[2] = buttons.middle;
+  wheel += std::exchange(io.MouseWheel, 0.0f);
+  ImGui::NewFrame();
+  framed();
+  frame.make_panels();
+  ImGui::EndFrame();
+  frame.fulfil();
 }
+
+void Gui::Parts::tell_key(const KeyEvent& event) const {
+  using What = KeyEvent::What;
+  GLFWwindow* const native = window->native();
+  if (event.what == What::press || event.what == What::release)
+    ImGui_ImplGlfw_KeyCallback(native, event.key, event.scancode, event.what == What::press ? GLFW_PRESS : GLFW_RELEASE, 0);
+  if (event.what == What::character) ImGui_ImplGlfw_CharCallback(native, event.character);
+  if (event.what == What::focus_gained || event.what == What::focus_lost)
+    ImGui_ImplGlfw_WindowFocusCallback(native, event.what == What::focus_gained ? GLFW_TRUE : GLFW_FALSE);
+}
+
+void Gui::tell(const Input& piece, const Frame& frame) {
+  Parts& parts = *parts_;
+  const Input& last = parts.last;
+  if (piece.left != last.left || piece.right != last.right || piece.middle != last.middle) {
+    // where a drag ends before its button goes up, and what was typed before
+    if (parts.moved || parts.keys.waits()) parts.make(last, piece.x, piece.y, frame);
+    parts.make(piece, piece.x, piece.y, frame);
+  }
+  for (const KeyEvent& event : piece.key ? without_repeats(*piece.key) : std::vector<KeyEvent>()) {
+    const bool stroke = event.what == KeyEvent::What::press || event.what == KeyEvent::What::character;
+    while (stroke && parts.settling > 0) parts.make(piece, piece.x, piece.y, frame);
+    if (!parts.keys.joins(event)) parts.make(piece, piece.x, piece.y, frame);
+    parts.keys.tell(event);
+    parts.tell_key(event);
+  }
+  parts.last = piece;
+  parts.moved = parts.moved || piece.dx != 0 || piece.dy != 0;
+}
+
+void Gui::expect_change() { parts_->settling = kSettling; }
 
 void Gui::begin() {
   ImGui_ImplGlfw_NewFrame();
   ImGui::GetIO().MouseWheel += std::exchange(parts_->wheel, 0.0f);
   ImGui::NewFrame();
-  parts_->window->tell_releases();
+  parts_->framed();
 }
 
 render::UiItems Gui::end() {
@@ -135,7 +173,11 @@ bool Gui::holds(double x, double y) const {
   return false;
 }
 
-bool Gui::wants_keys() const { return ImGui::GetIO().WantTextInput || ImGui::GetTopMostPopupModal() != nullptr; }
+bool Gui::wants_keys() const {
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  const bool typing = context.ActiveId != 0 && context.InputTextState.ID == context.ActiveId;
+  return typing || ImGui::GetTopMostPopupModal() != nullptr;
+}
 
 void Gui::hide_pointer() { ImGui::SetMouseCursor(ImGuiMouseCursor_None); }
 

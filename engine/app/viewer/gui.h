@@ -18,12 +18,19 @@ class Gui {
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  /// Between the two the panels are made.
+  /// What a frame of the interface is made of: the panels, and after each frame what they asked for.
+  struct Frame {
+    std::function<void()> make_panels, fulfil;
+  };
+  /// Between the two the panels are made, once for what is shown.
   void begin();
   render::UiItems end();
-  /// What the pointer did since the last frame, piece by piece, however long that frame took: `make_panels` is called for every press and
-  /// release in between, with the pointer where it was then. Before begin().
-  void catch_up(const std::vector<Input>& pieces, const std::function<void()>& make_panels);
+  /// Tells the beginning of a piece of input, a button or a stroke, and makes frames that nobody sees wherever it must be read apart from
+  /// what was told before: however long a picture takes, each press, release and character counts, in order, with the pointer and the
+  /// modifiers as they were. Not between begin() and end().
+  void tell(const Input& piece, const Frame& frame);
+  /// What was just done may open something: the next stroke is told once it is there.
+  void expect_change();
 
   /// Something of the interface lay at this place of the window in the last frame (window coordinates).
   bool holds(double x, double y) const;

@@ -139,7 +139,7 @@ Outcome HandHost::switch_device(scene::Scene& scene, const std::string& name, co
   name_links(scene);
   make_servo();
   servo_->go_on_from(*before);
-  start();
+  CATENA_CHECK(start());
   return recorded;
 }
 
@@ -156,18 +156,19 @@ Outcome HandHost::stop_recording() {
   // a servo that does not let go is stopped: its recording must not be written to any more
   if (servo_ && !servo_->set_sink(nullptr)) {
     servo_->stop();
-    servo_->start();
+    CATENA_CHECK(servo_->start());
   }
   return recording_.finish();
 }
 
-void HandHost::start() {
+Outcome HandHost::start() {
   if (!is_mouse()) crash_guard_.emplace(*hand_.device);
-  servo_->start();
+  CATENA_CHECK(servo_->start());
   if (!hand_.note.empty()) fmt::print(stderr, "catena: {}\n", hand_.note);
-  if (is_mouse()) return;
+  if (is_mouse()) return Done{};
   for (const std::string& note : servo_->report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
   say_forces();
+  return Done{};
 }
 
 void HandHost::stop() {

@@ -41,7 +41,7 @@ class HandHost {
   Outcome prepare(scene::Scene& scene, const render::Bounds& bounds, const RecordedScene& text);
   /// Another scene, while the servo runs: as prepare, with the device and the servo that there are. Ends a recording.
   Outcome take_over(scene::Scene& scene, const render::Bounds& bounds);
-  void start();
+  Outcome start();
   void stop();
   /// Stops, writes what is asked for.
   Outcome finish(const std::string& servo_stats);

@@ -126,7 +126,7 @@ std::optional<Failure> Session::open() {
   if (!options_.source.empty()) remember(options_.source);
   // a device that pushes is let go by its own way out, Ctrl-C or not
   if (!hand_.is_mouse()) interrupt_.emplace();
-  hand_.start();
+  if (const Outcome started = hand_.start(); !started) return Failure{1, started.error().message};
   if (!hand_.note().empty()) state_.say(hand_.note());
   return std::nullopt;
 }
@@ -250,11 +250,6 @@ std::optional<Failure> Session::estimate() {
 std::optional<Failure> Session::show() {
   const std::int64_t start = now_ns();
   update_values();
-  gui_->catch_up(pieces_, [this] {
-    PanelContext panels = context();
-    draw_interface(panels);
-  });
-  pieces_.clear();
   gui_->begin();
   // the glyph is the pointer while the mouse is the hand
   if (controls_.hand_mode && hand_.is_mouse() && state_.pointer_on_picture) gui_->hide_pointer();
@@ -262,7 +257,6 @@ std::optional<Failure> Session::show() {
   draw_interface(panels);
   render::UiItems items = gui_->end();
   items.area = pixels_;
-  window_->keys_are_text(gui_->wants_keys());
   if (auto shown = screen_->show(items); !shown) return Failure{1, shown.error().message};
   times_.add_interface(ms_since(start));
   damaged_ = false;

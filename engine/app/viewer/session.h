@@ -61,8 +61,10 @@ class Session {
 
   // session_input.cpp
   Changed take_input(double wait_s);
+  Changed take_piece(Input piece);
+  Gui::Frame interface_frame();
   void obey(Command command);
-  void obey_once(const Input& input, Changed& changed);
+  bool obey_once(const Input& input);
   Input routed(Input input);
   void escape();
   void fulfil_wishes();
@@ -112,8 +114,6 @@ class Session {
   bool leaves_ = false;  ///< the loop ends
   int unsettled_ = 0;    ///< interfaces to come though nothing happens: they settle their sizes
 
-  std::vector<Input> pieces_;  ///< since the last interface; kMostPieces at most
-  static constexpr std::size_t kMostPieces = 32;
   bool damaged_ = false;
   bool interface_holds_pointer_ = false;  ///< the buttons that are down went down on it
   std::int64_t last_title_ = 0;

@@ -32,16 +32,11 @@ Input Session::routed(Input input) {
   return input;
 }
 
-/// What is open above all goes first, the program last.
+/// What is open above all goes first; the program stays.
 void Session::escape() {
-  if (state_.help)
-    state_.help = false;
-  else if (state_.fly)
-    state_.fly = false;
-  else if (state_.turntable)
-    state_.turntable = false;
-  else
-    state_.quit = true;
+  bool* const open[] = {&state_.help, &state_.fly, &state_.turntable, &controls_.hand_mode, &state_.full_screen};
+  for (bool* what : open)
+    if (std::exchange(*what, false)) return;
 }
 
 void Session::obey(Command command) {
@@ -85,14 +80,13 @@ void Session::obey(Command command) {
   }
 }
 
-void Session::obey_once(const Input& input, Changed& changed) {
-  state_.quit = state_.quit || input.quit;
+/// True: the picture is another.
+bool Session::obey_once(const Input& input) {
   damaged_ = damaged_ || input.damaged;
   if (input.toggle_pulses) pulses_run_ = !pulses_run_;
   if (input.next_stereo) {
     auto& mode = scene_->scene().stereo.mode;
     mode = static_cast<scene::StereoMode>((static_cast<int>(mode) + 1) % scene::kStereoModes);
-    changed.view = true;
   }
   if (input.toggle_forces) hand_.set_forces(!hand_.forces());
   if (input.help) state_.help = !state_.help;
@@ -101,6 +95,7 @@ void Session::obey_once(const Input& input, Changed& changed) {
   stop_turning(input);
   if (input.dropped.size() > 1) state_.say("several files were dropped: the last one counts");
   if (!input.dropped.empty()) drop(input.dropped.back());
+  return input.next_stereo;
 }
 
 /// The last proxy that something holds away from the hand.
@@ -113,14 +108,29 @@ static std::optional<Vec3> held_place(const exchange::HapticState& felt) {
   return place;
 }
 
+Gui::Frame Session::interface_frame() {
+  return {[this] {
+            PanelContext panels = context();
+            draw_interface(panels);
+          },
+          [this] { fulfil_wishes(); }};
+}
+
+/// The interface first: it says whether a stroke is text for it or a command.
+Changed Session::take_piece(Input piece) {
+  gui_->tell(piece, interface_frame());
+  if (piece.key && !gui_->wants_keys()) interpret(*piece.key, state_.fly, piece);
+  if (!piece.commands.empty()) gui_->expect_change();
+  const Changed changed = apply(controls_, routed(piece));
+  return obey_once(piece) ? Changed{true, changed.hand} : changed;
+}
+
 Changed Session::take_input(double wait_s) {
   Changed changed;
   for (const Input& piece : window_->poll(wait_s)) {
-    if (window_->happened() && pieces_.size() < kMostPieces) pieces_.push_back(piece);
-    const Changed by_piece = apply(controls_, routed(piece));
+    const Changed by_piece = take_piece(piece);
     changed.view = changed.view || by_piece.view;
     changed.hand = changed.hand || by_piece.hand;
-    obey_once(piece, changed);
   }
   if (window_->closing()) {
     window_->keep_open();

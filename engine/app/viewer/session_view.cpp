@@ -30,7 +30,6 @@ void Session::obey_view() {
     window_->set_full_screen(state_.full_screen);
     state_.full_screen = window_->is_full_screen();
   }
-  window_->set_fly(state_.fly);
   controls_.fly = state_.fly;
   if (!state_.fly) flight_ = {};
 }
@@ -45,7 +44,7 @@ bool Session::move_camera() {
     moved = true;
   }
   const double size = controls_.bounds.empty() ? 1 : controls_.bounds.diagonal();
-  const FlyKeys keys = state_.fly ? window_->held_keys() : FlyKeys{};
+  const FlyKeys keys = state_.fly && !gui_->wants_keys() ? window_->held_keys() : FlyKeys{};
   if (keys.any() || is_gliding()) {
     fly(controls_.view, flight_, keys, size, controls_.fly_speed, dt_s);
     if (!keys.any() && flight_.rests(size)) flight_ = {};

@@ -17,46 +17,24 @@ std::string& last_error() {
   return text;
 }
 
-std::optional<Command> command_of(int key, bool control, bool shift) {
-  if (key == GLFW_KEY_F11) return Command::full_screen;
-  if (key == GLFW_KEY_F12) return shift ? Command::window_screenshot : Command::screenshot;
-  if (key == GLFW_KEY_TAB) return Command::toggle_panels;
-  if (key == GLFW_KEY_T && !control) return Command::turntable;
-  if (key == GLFW_KEY_V && !control) return Command::fly;
-  if (!control) return std::nullopt;
-  if (key == GLFW_KEY_Z) return shift ? Command::redo : Command::undo;
-  if (key == GLFW_KEY_Y) return Command::redo;
-  if (key == GLFW_KEY_S) return shift ? Command::save_as : Command::save;
-  if (key == GLFW_KEY_O) return Command::open;
-  if (key == GLFW_KEY_Q) return Command::quit;
-  return std::nullopt;
-}
-
-bool is_fly_key(int key) {
-  constexpr int kKeys[] = {GLFW_KEY_W, GLFW_KEY_A,    GLFW_KEY_S,     GLFW_KEY_D,  GLFW_KEY_E,
-                           GLFW_KEY_Q, GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_UP, GLFW_KEY_DOWN};
-  return std::ranges::find(kKeys, key) != std::end(kKeys);
-}
-
 }  // namespace
 
 struct Window::Parts {
   GLFWwindow* window = nullptr;
-  std::vector<Input> done;  ///< gathered since the last poll, cut where a button or modifier changed
+  std::vector<Input> done;  ///< gathered since the last poll
   Input current;
   double last_x = 0, last_y = 0;
   bool has_last = false;
   bool happened = false;
-  bool gui = false, keys_are_text = false, fly = false;
-  std::vector<std::array<int, 3>> released;  ///< keys that the interface has not been told of: key, scancode, modifiers
-  std::array<int, 4> place{};                ///< before full screen: x, y, width, height
+  bool gui = false;
+  std::array<int, 4> place{};  ///< before full screen: x, y, width, height
 
   ~Parts() {
     if (window != nullptr) glfwDestroyWindow(window);
     glfwTerminate();
   }
 
-  /// Ends the current piece: what follows has other buttons held.
+  /// Ends the current piece.
   void cut() {
     done.push_back(current);
     Input next;
@@ -75,6 +53,12 @@ struct Window::Parts {
     if (current.*what == held) return;
     cut();
     current.*what = held;
+  }
+  /// The next piece begins with it.
+  void stroke(const KeyEvent& event) {
+    happened = true;
+    cut();
+    current.key = event;
   }
 };
 
@@ -112,17 +96,17 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   });
   glfwSetWindowFocusCallback(parts.window, [](GLFWwindow* w, int focused) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
-    p.happened = true;
-    if (p.gui) ImGui_ImplGlfw_WindowFocusCallback(w, focused);
+    KeyEvent event;
+    event.what = focused == GLFW_TRUE ? KeyEvent::What::focus_gained : KeyEvent::What::focus_lost;
+    p.stroke(event);
   });
   glfwSetDropCallback(parts.window, [](GLFWwindow* w, int count, const char** paths) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
     p.happened = true;
     p.current.dropped.insert(p.current.dropped.end(), paths, paths + count);
   });
-  glfwSetMouseButtonCallback(parts.window, [](GLFWwindow* w, int button, int action, int mods) {
+  glfwSetMouseButtonCallback(parts.window, [](GLFWwindow* w, int button, int action, int) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
-    if (p.gui) ImGui_ImplGlfw_MouseButtonCallback(w, button, action, mods);
     if (button == GLFW_MOUSE_BUTTON_LEFT) p.hold(&Input::left, action == GLFW_PRESS);
     if (button == GLFW_MOUSE_BUTTON_MIDDLE) p.hold(&Input::middle, action == GLFW_PRESS);
     if (button == GLFW_MOUSE_BUTTON_RIGHT) p.hold(&Input::right, action == GLFW_PRESS);
@@ -135,41 +119,24 @@ Result<std::unique_ptr<Window>> Window::create(std::uint32_t width, std::uint32_
   });
   glfwSetKeyCallback(parts.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
     Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
-    p.happened = true;
-    if (p.gui && action == GLFW_RELEASE)
-      p.released.push_back({key, scancode, mods});
-    else if (p.gui)
-      ImGui_ImplGlfw_KeyCallback(w, key, scancode, action, mods);
     const bool held = action != GLFW_RELEASE;
-    if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) p.hold(&Input::shift, held);
-    if (key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL) p.hold(&Input::control, held);
-    if (key == GLFW_KEY_SPACE) p.hold(&Input::space, held);
-    if (action != GLFW_PRESS || p.keys_are_text) return;
-    if (const auto command = command_of(key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0)) {
-      p.current.commands.push_back(*command);
-      return;
-    }
-    if ((mods & GLFW_MOD_CONTROL) != 0 || (p.fly && is_fly_key(key))) return;
-    if (key == GLFW_KEY_H) {
-      p.cut();
-      p.current.toggle_hand = true;
-    }
-    if (key == GLFW_KEY_F) p.current.toggle_forces = !p.current.toggle_forces;
-    if (key == GLFW_KEY_R) p.current.reset_view = true;
-    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_3) p.current.axis = key - GLFW_KEY_1;
-    if (key == GLFW_KEY_A || key == GLFW_KEY_HOME) p.current.fit = true;
-    if (key == GLFW_KEY_O) p.current.toggle_projection = true;
-    if (key == GLFW_KEY_P) p.current.toggle_pulses = true;
-    if (key == GLFW_KEY_F2) p.current.next_stereo = true;
-    if (key == GLFW_KEY_F1) p.current.help = true;
-    if (key == GLFW_KEY_ESCAPE) p.current.escape = true;
-    if (key == GLFW_KEY_Q) p.current.quit = true;
+    KeyEvent event;
+    event.what = action == GLFW_PRESS ? KeyEvent::What::press : held ? KeyEvent::What::repeat : KeyEvent::What::release;
+    event.key = key;
+    event.scancode = scancode;
+    event.shift = (mods & GLFW_MOD_SHIFT) != 0;
+    event.control = (mods & GLFW_MOD_CONTROL) != 0;
+    event.alt = (mods & GLFW_MOD_ALT) != 0;
+    p.stroke(event);
+    if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) p.current.shift = held;
+    if (key == GLFW_KEY_LEFT_CONTROL || key == GLFW_KEY_RIGHT_CONTROL) p.current.control = held;
+    if (key == GLFW_KEY_SPACE) p.current.space = held;
   });
   glfwSetCharCallback(parts.window, [](GLFWwindow* w, unsigned int c) {
-    Parts& p = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
-    p.happened = true;
-    if (p.gui) ImGui_ImplGlfw_CharCallback(w, c);
-    if (c == '?' && !p.keys_are_text) p.current.help = true;
+    KeyEvent event;
+    event.what = KeyEvent::What::character;
+    event.character = c;
+    static_cast<Parts*>(glfwGetWindowUserPointer(w))->stroke(event);
   });
   glfwSetWindowRefreshCallback(parts.window,
                                [](GLFWwindow* w) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->current.damaged = true; });
@@ -214,13 +181,6 @@ float Window::content_scale() const {
 }
 
 void Window::set_gui(bool on) { parts_->gui = on; }
-
-void Window::tell_releases() {
-  for (const auto& [key, scancode, mods] : std::exchange(parts_->released, {}))
-    ImGui_ImplGlfw_KeyCallback(parts_->window, key, scancode, GLFW_RELEASE, mods);
-}
-
-void Window::keys_are_text(bool on) { parts_->keys_are_text = on; }
 
 GLFWwindow* Window::native() const { return parts_->window; }
 
@@ -280,13 +240,11 @@ void Window::set_full_screen(bool on) {
   glfwSetWindowMonitor(parts_->window, best, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
-void Window::set_fly(bool on) { parts_->fly = on; }
-
 FlyKeys Window::held_keys() const {
   const auto held = [&](int a, int b) {
     return glfwGetKey(parts_->window, a) == GLFW_PRESS || glfwGetKey(parts_->window, b) == GLFW_PRESS;
   };
-  if (parts_->keys_are_text || held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL)) return {};
+  if (held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL)) return {};
   FlyKeys keys;
   keys.forward = held(GLFW_KEY_W, GLFW_KEY_UP);
   keys.back = held(GLFW_KEY_S, GLFW_KEY_DOWN);

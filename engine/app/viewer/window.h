@@ -24,8 +24,8 @@ class Window {
   Window& operator=(const Window&) = delete;
 
   render::vk::SurfaceFactory surface_factory() const;
-  /// Takes what happened since the last call; waits up to `wait_s` for something to happen (0: not at all). In pieces, in
-  /// order, cut where a button or modifier changed: a whole drag within one slow picture is still a drag. At least one.
+  /// Takes what happened since the last call; waits up to `wait_s` for something to happen (0: not at all). In pieces, in order, cut at
+  /// every stroke, button and change of the focus: what was done within one slow picture counts as it was done. At least one.
   std::vector<Input> poll(double wait_s);
   bool closing() const;
   /// The person was asked and stays.
@@ -42,18 +42,13 @@ class Window {
   void set_full_screen(bool on);
   bool is_full_screen() const;
 
-  /// Letters and arrows fly (held_keys) and are no commands.
-  void set_fly(bool on);
+  /// The keys of flight that are down.
   FlyKeys held_keys() const;
 
   /// Pixels by the size that interfaces are designed for.
   float content_scale() const;
-  /// Events go to the user interface (gui.h) as well.
+  /// The pointer's coming and going and the wheel go to the user interface (gui.h) as well.
   void set_gui(bool on);
-  /// The keys that were let go since the last call: told after a frame, so that a short stroke between two frames is one all the same.
-  void tell_releases();
-  /// Keys are text for the user interface: none is a command.
-  void keys_are_text(bool on);
   GLFWwindow* native() const;
 
  private:

@@ -5,13 +5,16 @@
 #include <sched.h>
 
 #include "engine/base/assert.h"
+#include "engine/base/start_thread.h"
 
 namespace catena::haptics::usb {
 namespace {
 
 static_assert(std::atomic<FalconState>::is_always_lock_free);
-constexpr int kSliceMs = 50;   // how long the thread may not hear that it shall end
-constexpr int kTuneAfter = 3;  // cycles without a frame until the line is set up again
+constexpr int kSliceMs = 50;                              // how long the thread may not hear that it shall end
+constexpr int kTuneAfter = 3;                             // cycles without a frame until the line is set up again
+constexpr int kLookEvery = 500, kStartAgainEvery = 1000;  // cycles: whether the watchdog process lives; when it could not be started
+constexpr std::uint8_t kOutEndpoint = 0x02;
 
 bool take_realtime(int priority) noexcept {
   if (priority <= 0) return false;
@@ -38,23 +41,42 @@ DeviceCapabilities Falcon::nominal_capabilities() {
 
 Result<std::unique_ptr<Falcon>> Falcon::open(std::unique_ptr<TransportSource> source, FalconOptions options) {
   CATENA_ASSERT(source && options.force_gain > 0 && options.lost_after > 0 && options.clock != nullptr);
+  std::unique_ptr<WatchdogMemory> memory;
+  if (options.watchdog) {
+    CATENA_TRY(memory, WatchdogMemory::make(kOutEndpoint, encode_command({})));
+  }
   CATENA_TRY(std::unique_ptr<Transport> transport, source->open());
-  auto falcon = std::unique_ptr<Falcon>(new Falcon(std::move(source), std::move(options), std::move(transport)));
+  auto falcon = std::unique_ptr<Falcon>(new Falcon(std::move(source), std::move(options), std::move(transport), std::move(memory)));
   Ftdi ftdi(*falcon->transport_, falcon->counters_.ftdi);
   CATENA_CHECK(falcon_boot(ftdi, falcon->options_.firmware, falcon->options_.boot, &falcon->counters_.uploads));
   falcon->pose_ = {.position_m = kFalconWorkspaceCentre, .state = FalconState::homing};
   falcon->publish(falcon->pose_);
-  falcon->thread_ = std::thread([device = falcon.get()] { device->run(); });
+  CATENA_CHECK(falcon->start_watchdog());
+  CATENA_TRY(falcon->thread_, start_thread("the Falcon", [device = falcon.get()] { device->run(); }));
   return falcon;
 }
 
-Falcon::Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport)
-    : options_(std::move(options)), source_(std::move(source)), transport_(std::move(transport)) {}
+Falcon::Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport,
+               std::unique_ptr<WatchdogMemory> memory)
+    : options_(std::move(options)), watchdog_memory_(std::move(memory)), source_(std::move(source)), transport_(std::move(transport)) {}
 
 Falcon::~Falcon() {
   quit_ = true;
   if (thread_.joinable()) thread_.join();
+  if (watchdog_) watchdog_->quit();  // there is no thread that could have pushed
+  watchdog_.reset();
   transport_.reset();  // before its source
+}
+
+Outcome Falcon::start_watchdog() {
+  if (!watchdog_memory_) return Done{};
+  watchdog::Page& page = watchdog_memory_->page();
+  page.pushing.store(0);
+  page.holder.store(watchdog::Holder::program);
+  watchdog_.reset();
+  CATENA_TRY(watchdog_, options_.watchdog(*transport_, *watchdog_memory_));
+  until_look_ = kLookEvery;
+  return Done{};
 }
 
 // ---- haptic thread ----
@@ -69,17 +91,22 @@ DeviceInput Falcon::read() noexcept {
   input.age_s = pose.taken_ns == 0 ? 0 : 1e-9 * static_cast<double>(now_ns - pose.taken_ns);
   // the I/O thread has taken the force away meanwhile: the servo must not go on where it was
   const bool let_go = pushes_since_ns_ != 0 && 1e-9 * static_cast<double>(now_ns - pushes_since_ns_) >= options_.command_timeout_s;
+  // so has the watchdog process
+  const std::uint64_t takeovers = takeovers_.load(std::memory_order_acquire);
+  const bool taken = takeovers != seen_takeovers_;
+  seen_takeovers_ = takeovers;
   input.forces_on = pose.state == FalconState::ready;
   const bool homed = pose.state == FalconState::ready || pose.state == FalconState::waiting;
   if (pose.state == FalconState::booting || pose.state == FalconState::homing)
     input.status = DeviceStatus::starting;
-  else if (!homed || !pose.good || let_go || input.age_s > options_.lost_age_s)
+  else if (!homed || !pose.good || let_go || taken || input.age_s > options_.lost_age_s)
     input.status = DeviceStatus::lost;
   return input;
 }
 
 void Falcon::write(const DeviceOutput& output) noexcept {
-  const Order order{is_finite(output.force_n) ? output.force_n : Vec3(0.0), options_.clock()};
+  const Order order{is_finite(output.force_n) ? output.force_n : Vec3(0.0), options_.clock(), seen_takeovers_};
+  if (watchdog_memory_) watchdog_memory_->page().ticks.fetch_add(1, std::memory_order_release);
   pushes_since_ns_ = max_abs(order.force_n) > 0 ? order.written_ns : 0;
   orders_.publish(order);
 }
@@ -87,7 +114,7 @@ void Falcon::write(const DeviceOutput& output) noexcept {
 void Falcon::resume() noexcept {
   // what was written before the stop must not come back
   pushes_since_ns_ = 0;
-  orders_.publish({Vec3(0.0), options_.clock()});
+  orders_.publish({Vec3(0.0), options_.clock(), seen_takeovers_});
   stopped_.store(false);
 }
 
@@ -110,6 +137,10 @@ std::string Falcon::status_text() const {
       return "Falcon: pull the grip fully out once; then its forces are on";
     case FalconState::ready:
       break;
+  }
+  if (unwatched_) {
+    const std::lock_guard lock(note_mutex_);
+    return "Falcon: its forces are off: " + note_;
   }
   return stopped_ ? "Falcon: its forces are stopped" : "";
 }
@@ -137,6 +168,8 @@ FalconStats Falcon::stats() const {
           .uploads = get(c.uploads),
           .losses = get(c.losses),
           .returns = get(c.returns),
+          .takeovers = get(takeovers_),
+          .watchdog_restarts = get(watchdog_restarts_),
           .realtime = realtime_.load(std::memory_order_relaxed)};
 }
 
@@ -172,6 +205,51 @@ void Falcon::run() noexcept {
   }
 }
 
+// A packet out. One with a force that was held up on its way, by a stop of the program at this very place, is followed by a zero.
+bool Falcon::send(FalconSession& session, bool forces) noexcept {
+  watchdog::Page* page = watchdog_memory_ ? &watchdog_memory_->page() : nullptr;
+  if (page != nullptr) {
+    page->cycles.fetch_add(1, std::memory_order_relaxed);
+    if (forces) page->pushing.store(1, std::memory_order_release);
+  }
+  const std::int64_t began = options_.clock();
+  if (!session.send(orders_.front().force_n, forces)) return false;
+  const bool late = 1e-9 * static_cast<double>(options_.clock() - began) > options_.command_timeout_s;
+  if (forces && (late || (page != nullptr && page->holder.load(std::memory_order_acquire) == watchdog::Holder::watchdog))) session.let_go();
+  if (page != nullptr && session.at_rest()) page->pushing.store(0, std::memory_order_release);
+  return true;
+}
+
+// The watchdog process has taken the force away: a zero from here, too, then the device is this program's again. What the device has
+// answered meanwhile is of a time that is over.
+bool Falcon::taken_away(FalconSession& session, Ftdi& ftdi) noexcept {
+  if (!watchdog_memory_ || watchdog_memory_->page().holder.load(std::memory_order_acquire) == watchdog::Holder::program) return false;
+  session.let_go();
+  publish(session.pose());
+  ftdi.purge_in();
+  takeovers_.fetch_add(1, std::memory_order_release);
+  watchdog_memory_->page().holder.store(watchdog::Holder::program, std::memory_order_release);
+  return true;
+}
+
+// There is a watchdog, or none is wanted; one that has died is started again.
+bool Falcon::watched(FalconSession& session) noexcept {
+  if (!watchdog_memory_) return true;
+  if (--until_look_ > 0) return watchdog_ != nullptr;
+  until_look_ = kLookEvery;
+  if (watchdog_ && watchdog_->alive()) return true;
+  // starting one takes its time: not with a force on
+  session.let_go();
+  count(watchdog_restarts_);
+  const Outcome started = start_watchdog();
+  if (!started) {
+    note(started.error().message);
+    until_look_ = kStartAgainEvery;
+  }
+  unwatched_ = !started;
+  return static_cast<bool>(started);
+}
+
 // until the device is lost, or the end
 void Falcon::serve() noexcept {
   Ftdi ftdi(*transport_, counters_.ftdi);
@@ -179,8 +257,9 @@ void Falcon::serve() noexcept {
   int silent = 0;
   auto cycle = FalconSession::Cycle::frame;
   while (!quit_ && cycle != FalconSession::Cycle::gone && silent < options_.lost_after) {
-    const bool fresh = fresh_order();
-    cycle = session.cycle(orders_.front().force_n, fresh && !stopped_);
+    const bool held = taken_away(session, ftdi), fresh = fresh_order();
+    const bool forces = watched(session) && !held && fresh && !stopped_ && orders_.front().seen_takeovers == takeovers_;
+    cycle = send(session, forces) ? session.receive() : FalconSession::Cycle::gone;
     if (cycle == FalconSession::Cycle::frame) {
       silent = 0;
       homed_.store(session.homed(), std::memory_order_relaxed);
@@ -194,6 +273,9 @@ void Falcon::serve() noexcept {
     }
   }
   session.leave();
+  // a device that has not acknowledged its zero is left to the watchdog
+  if (watchdog_ && (session.at_rest() || cycle == FalconSession::Cycle::gone)) watchdog_->quit();
+  watchdog_.reset();
   transport_.reset();
   if (quit_) return;
   count(counters_.losses);
@@ -227,7 +309,9 @@ void Falcon::return_again() noexcept {
   };
   boot.give_up = [this] { return quit_.load(); };
   Ftdi ftdi(*transport_, counters_.ftdi);
-  if (const Outcome booted = falcon_boot(ftdi, options_.firmware, boot, &counters_.uploads); !booted) {
+  Outcome booted = falcon_boot(ftdi, options_.firmware, boot, &counters_.uploads);
+  if (booted) booted = start_watchdog();
+  if (!booted) {
     note(booted.error().message);
     transport_.reset();
     pose_.state = FalconState::absent;

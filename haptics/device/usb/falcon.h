@@ -3,6 +3,10 @@
 ///   force: sent with the Jacobian of the newest pose; zero when no force was written for `command_timeout_s` (a servo that
 ///          hangs; the next read is `lost`, so that the force ramps in), after stop(), after three cycles without a frame, before
 ///          homing and before the grip was once pulled out past 0.170 m (forces_on is false)
+///          A packet with a force that took longer than command_timeout_s on its way (the program was stopped) is followed by a zero
+///   watchdog: where one is given, a process of its own watches over the open device (watchdog_process.h) and takes the force away if
+///          this program is stopped or killed, or this thread hangs. When it has, the force stays away until the haptic thread has
+///          seen it: a read is `lost`, so that the force ramps in. Without its watchdog process the device gets no force
 ///   lost:  silent for `lost_after` cycles, or unplugged; the thread then waits for the device to come back, starts its firmware
 ///          again, and homing and arming begin anew
 /// The destructor sends zero force with the LEDs off; it waits for at most some tenths of a second.
@@ -17,6 +21,7 @@
 #include "haptics/device/device.h"
 #include "haptics/device/usb/falcon_boot.h"
 #include "haptics/device/usb/falcon_session.h"
+#include "haptics/device/usb/watchdog_process.h"
 
 namespace catena::haptics::usb {
 
@@ -32,6 +37,7 @@ struct FalconOptions {
   double lost_age_s = 0.1;  ///< a pose this old is `lost`, whatever the I/O thread does
   int return_poll_ms = 500;
   int realtime_priority = 0;  ///< of the I/O thread, SCHED_FIFO, if permitted; 0: none
+  StartWatchdog watchdog{};   ///< for each open device, once its firmware runs; empty: none
   FalconSession::Clock clock = now_ns;
 };
 
@@ -43,6 +49,7 @@ struct FalconStats {
   std::uint64_t timeouts = 0, stalls = 0, retries = 0, errors = 0, line_errors = 0;
   /// frames that were not believed or are no place; cycles whose force was more than the motors have
   std::uint64_t jumps = 0, out_of_reach = 0, saturated = 0, stale_commands = 0, uploads = 0, losses = 0, returns = 0;
+  std::uint64_t takeovers = 0, watchdog_restarts = 0;  ///< the watchdog process took the force away; it had died
   bool realtime = false;
 };
 
@@ -69,22 +76,31 @@ class Falcon final : public Device {
  private:
   struct Order {
     Vec3 force_n{0.0};
-    std::int64_t written_ns = 0;  ///< 0: never
+    std::int64_t written_ns = 0;       ///< 0: never
+    std::uint64_t seen_takeovers = 0;  ///< by the haptic thread, when it was written
   };
 
-  Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport);
+  Falcon(std::unique_ptr<TransportSource> source, FalconOptions options, std::unique_ptr<Transport> transport,
+         std::unique_ptr<WatchdogMemory> memory);
   void run() noexcept;
   void serve() noexcept;
   void return_again() noexcept;
   void publish(const FalconPose& pose) noexcept;
   void note(const std::string& text);
   bool fresh_order() noexcept;
+  Outcome start_watchdog();
+  bool watched(FalconSession& session) noexcept;
+  bool taken_away(FalconSession& session, Ftdi& ftdi) noexcept;
+  bool send(FalconSession& session, bool forces) noexcept;
 
   DeviceCapabilities capabilities_ = nominal_capabilities();
   FalconOptions options_;
   FalconCounters counters_;
   exchange::TripleBuffer<FalconPose> poses_;
   exchange::TripleBuffer<Order> orders_;
+  const std::unique_ptr<WatchdogMemory> watchdog_memory_;  ///< null: there is no watchdog
+  std::atomic<std::uint64_t> takeovers_{0}, watchdog_restarts_{0};
+  std::atomic<bool> unwatched_{false};
   std::atomic<bool> stopped_{false}, quit_{false}, realtime_{false};
   std::atomic<FalconState> state_{FalconState::booting};
   std::atomic<int> boot_try_{0}, boot_percent_{0};
@@ -96,12 +112,15 @@ class Falcon final : public Device {
   // I/O thread only
   std::unique_ptr<TransportSource> source_;
   std::unique_ptr<Transport> transport_;
+  std::unique_ptr<ExternalWatchdog> watchdog_;  ///< after transport_: told to end before it closes
+  int until_look_ = 0;                          ///< cycles until the next look whether it lives
   FalconPose pose_;
   bool was_fresh_ = false;
   std::thread thread_;
 
   // haptic thread only
   std::int64_t pushes_since_ns_ = 0;  ///< the last write, if it was a force; 0: it was none
+  std::uint64_t seen_takeovers_ = 0;
 };
 
 }  // namespace catena::haptics::usb

@@ -28,18 +28,21 @@ FalconCommand FalconSession::command(const Vec3& force_n, bool forces) noexcept 
   }
 }
 
-FalconSession::Cycle FalconSession::cycle(const Vec3& force_n, bool forces) noexcept {
+bool FalconSession::send(const Vec3& force_n, bool forces) noexcept {
   count(counters_.cycles);
   sent_ = command(force_n, forces);
-  UsbError error = ftdi_.write(encode_command(sent_), kWriteMs);
-  if (error == UsbError::gone) return Cycle::gone;
+  const UsbError error = ftdi_.write(encode_command(sent_), kWriteMs);
+  acknowledged_ = error == UsbError::none;
+  return error != UsbError::gone;
+}
 
+FalconSession::Cycle FalconSession::receive() noexcept {
   // until a frame: the device answers each packet by one, whole or in parts, among packets without payload
   FalconFrame frame;
   int frames = 0;
   for (int i = 0; i < kReads && frames == 0; ++i) {
     std::span<const std::uint8_t> payload;
-    error = ftdi_.read(payload, kReadMs);
+    const UsbError error = ftdi_.read(payload, kReadMs);
     frames = framer_.push(payload, frame);
     if (error == UsbError::gone) return Cycle::gone;
     if (error != UsbError::none) break;
@@ -57,8 +60,10 @@ FalconSession::Cycle FalconSession::cycle(const Vec3& force_n, bool forces) noex
 
 void FalconSession::leave() noexcept {
   sent_ = {};
-  for (int i = 0; i < kLeaveTries; ++i)
-    if (const UsbError error = ftdi_.write(encode_command(sent_), kWriteMs); error == UsbError::none || error == UsbError::gone) return;
+  UsbError error = UsbError::timeout;
+  for (int i = 0; i < kLeaveTries && error != UsbError::none && error != UsbError::gone; ++i)
+    error = ftdi_.write(encode_command(sent_), kWriteMs);
+  acknowledged_ = error == UsbError::none;
 }
 
 void FalconSession::let_go() noexcept {

@@ -49,7 +49,10 @@ class FalconSession {
 
   enum class Cycle : std::uint8_t { frame, no_frame, gone };
   /// One packet each way. `force_n` counts only where `forces` and the state allow it.
-  Cycle cycle(const Vec3& force_n, bool forces) noexcept;
+  Cycle cycle(const Vec3& force_n, bool forces) noexcept { return send(force_n, forces) ? receive() : Cycle::gone; }
+  /// The two halves. False: the device is gone.
+  bool send(const Vec3& force_n, bool forces) noexcept;
+  Cycle receive() noexcept;
   /// Zero force, all LEDs off; the last packet before closing. A time-out is tried again.
   void leave() noexcept;
   /// Zero force until the next good frame: after cycles without one.
@@ -58,6 +61,8 @@ class FalconSession {
   const FalconPose& pose() const { return pose_; }
   std::uint8_t homed() const { return homed_; }                ///< bits 0-2, of the last frame
   const FalconCommand& last_command() const { return sent_; }  ///< what the motors and LEDs were sent
+  /// The last packet was a zero, and the device has it.
+  bool at_rest() const { return acknowledged_ && sent_.motors == FalconCounts{}; }
 
  private:
   FalconCommand command(const Vec3& force_n, bool forces) noexcept;
@@ -73,6 +78,7 @@ class FalconSession {
   FalconFramer framer_;
   FalconState state_ = FalconState::homing;
   FalconCommand sent_;
+  bool acknowledged_ = false;
   FalconCounts last_seen_{};
   bool has_seen_ = false;
   std::uint8_t homed_ = 0;

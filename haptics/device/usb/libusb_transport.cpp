@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <libusb.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <chrono>
@@ -46,12 +47,25 @@ struct HandleClose {
 };
 using HandlePtr = std::unique_ptr<libusb_device_handle, HandleClose>;
 
-// a device of the id: its handle, or libusb's code why it cannot be opened
+// a device of the id: its handle and file, or libusb's code why it cannot be opened
 struct Candidate {
   DevicePtr device;
   HandlePtr handle;
   int code = 0;
+  int fd = -1;
 };
+
+void on_pollfd(int fd, short events, void* at) {
+  if ((events & POLLOUT) != 0) *static_cast<int*>(at) = fd;
+}
+
+// libusb tells of the file that it opens, and waits for (POLLOUT: a transfer is complete); it has no other way to ask
+int open_with_file(libusb_context* context, libusb_device* device, libusb_device_handle*& handle, int& fd) {
+  libusb_set_pollfd_notifiers(context, on_pollfd, nullptr, &fd);
+  const int code = libusb_open(device, &handle);
+  libusb_set_pollfd_notifiers(context, nullptr, nullptr, nullptr);
+  return code;
+}
 
 std::string place(libusb_device* device) {
   return fmt::format("USB bus {}, address {}", libusb_get_bus_number(device), libusb_get_device_address(device));
@@ -87,10 +101,11 @@ std::vector<Candidate> candidates(libusb_context* context, const UsbId& id) {
         descriptor.idProduct != id.product)
       continue;
     libusb_device_handle* handle = nullptr;
-    const int code = libusb_open(device.get(), &handle);
+    int fd = -1;
+    const int code = open_with_file(context, device.get(), handle, fd);
     HandlePtr opened(code == 0 ? handle : nullptr);
     if (code == 0 && says_another_name(handle, device.get(), id.product_string)) continue;
-    found.push_back({std::move(device), std::move(opened), code});
+    found.push_back({std::move(device), std::move(opened), code, fd});
   }
   libusb_free_device_list(all, 0);
   std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) {
@@ -126,8 +141,8 @@ Result<std::vector<UsbListed>> list_usb(const UsbId& id) {
 
 // ---- the open device ----
 
-LibusbTransport::LibusbTransport(std::shared_ptr<libusb_context> context, libusb_device_handle* handle)
-    : context_(std::move(context)), handle_(handle) {}
+LibusbTransport::LibusbTransport(std::shared_ptr<libusb_context> context, libusb_device_handle* handle, int fd)
+    : context_(std::move(context)), handle_(handle), fd_(fd) {}
 
 LibusbTransport::~LibusbTransport() {
   libusb_release_interface(handle_, kInterface);
@@ -144,7 +159,7 @@ Result<std::unique_ptr<LibusbTransport>> LibusbTransport::wrap(int fd) {
     libusb_close(handle);
     return Error{fmt::format("the USB device cannot be claimed: {}", libusb_strerror(code))};
   }
-  return std::unique_ptr<LibusbTransport>(new LibusbTransport(std::move(context), handle));
+  return std::unique_ptr<LibusbTransport>(new LibusbTransport(std::move(context), handle, fd));
 }
 
 UsbError LibusbTransport::control(std::uint8_t request, std::uint16_t value) noexcept {
@@ -204,7 +219,7 @@ Result<std::unique_ptr<Transport>> LibusbSource::open() {
   if (code == 0) code = claim(chosen.handle.get());
   if (code != 0)
     return Error{fmt::format("{} at {} cannot be opened: {}", id_.product_string, place(chosen.device.get()), why_not(id_, code))};
-  return std::unique_ptr<Transport>(new LibusbTransport(context_, chosen.handle.release()));
+  return std::unique_ptr<Transport>(new LibusbTransport(context_, chosen.handle.release(), chosen.fd));
 }
 
 bool LibusbSource::wait_for_arrival(int timeout_ms) noexcept {

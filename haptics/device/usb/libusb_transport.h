@@ -39,13 +39,15 @@ class LibusbTransport final : public Transport {
   UsbMoved write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept override;
   UsbMoved read(UsbPacket& packet, int timeout_ms) noexcept override;
   UsbError clear_halt(UsbEndpoint endpoint) noexcept override;
+  int descriptor() const noexcept override { return fd_; }
 
  private:
   friend class LibusbSource;
-  LibusbTransport(std::shared_ptr<libusb_context> context, libusb_device_handle* handle);
+  LibusbTransport(std::shared_ptr<libusb_context> context, libusb_device_handle* handle, int fd);
 
   std::shared_ptr<libusb_context> context_;
   libusb_device_handle* handle_;
+  int fd_;  ///< libusb's own
 };
 
 /// The n-th device of an id on the bus, again and again.

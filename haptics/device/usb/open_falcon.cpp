@@ -45,6 +45,7 @@ Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const Dev
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, read_falcon_image(settings.firmware));
   }
+  options.watchdog = watchdog_process(watchdog_program_path());
   options.boot.progress = boot_progress_lines(settings.tell);
   CATENA_TRY(auto falcon, Falcon::open(std::make_unique<LibusbSource>(kFalconUsbId, static_cast<int>(*index)), std::move(options)));
   return std::unique_ptr<Device>(std::move(falcon));

@@ -37,6 +37,8 @@ class Transport {
   virtual UsbMoved write(std::span<const std::uint8_t> bytes, int timeout_ms) noexcept = 0;
   virtual UsbMoved read(UsbPacket& packet, int timeout_ms) noexcept = 0;  ///< always asks for 64 bytes
   virtual UsbError clear_halt(UsbEndpoint endpoint) noexcept = 0;
+  /// The open device as a file, to be shared with another process; < 0: there is none.
+  virtual int descriptor() const noexcept { return -1; }
 };
 
 /// Where a driver's transport comes from, now and again after the device was unplugged. One thread at a time.

@@ -43,7 +43,7 @@ struct Rig {
     const Outcome prepared = hand.prepare(host->scene(), bounds, recorded());
     ASSERT_TRUE(prepared) << prepared.error().message;
     host->set_check([this](scene::Scene& scene) { return hand.check(scene); });
-    hand.start();
+    EXPECT_TRUE(hand.start());
   }
   RecordedScene recorded() const { return {host->document().path(), host->document().text(), {}, inputs_of(host->scene())}; }
   /// An edit as the window makes it.

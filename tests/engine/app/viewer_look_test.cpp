@@ -102,7 +102,7 @@ TEST_F(ViewerLook, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBack) {
          << drag(at(level, middle), at(level + 10, middle), at(level + 40, middle)) << "xdotool key ctrl+s\n"
          << wait_change("0.json") << "cp " << scene_ << " " << (folder_ / "1.json") << "\n"
          << "xdotool key ctrl+z; sleep 0.5; xdotool key ctrl+s\n"
-         << wait_change("1.json") << "cp " << scene_ << " " << (folder_ / "2.json") << "\nxdotool key q; wait $!\n";
+         << wait_change("1.json") << "cp " << scene_ << " " << (folder_ / "2.json") << "\nxdotool key ctrl+q; wait $!\n";
   ASSERT_EQ(on_display(script.str()), 0) << log();
 
   const Saved edited = saved("1.json");

@@ -97,7 +97,7 @@ TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
          << "for i in $(seq 200); do xdotool search --name 'forces off' > /dev/null 2>&1 && break; sleep 0.1; done\n"
          << "xdotool mousemove 160 120; sleep 0.3; xdotool key f\n"
          << "for i in $(seq 100); do xdotool search --name 'forces on' > /dev/null 2>&1 && break; sleep 0.1; done\n"
-         << "xdotool key q; wait $!\n";
+         << "xdotool key ctrl+q; wait $!\n";
   ASSERT_EQ(on_display(script.str()), 0) << log();
   const std::size_t off = log().find("forces off (F turns them on)"), on = log().find("forces on (F turns them off)");
   EXPECT_LT(off, on) << log();
@@ -123,7 +123,7 @@ TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
          << "for i in $(seq 200); do xdotool search --name 'top-bottom-half' > /dev/null 2>&1 && break; sleep 0.1; done\n"
          << "xdotool mousemove 160 120; sleep 0.3; xdotool key F2\n"
          << "for i in $(seq 100); do xdotool search --name '[[]anaglyph[]]' > /dev/null 2>&1 && echo arrived && break; sleep 0.1; done\n"
-         << "xdotool key q; wait $!\n";
+         << "xdotool key ctrl+q; wait $!\n";
   ASSERT_EQ(on_display(script.str()), 0) << log();
   EXPECT_NE(log().find("arrived"), std::string::npos) << log();
 }
@@ -144,7 +144,7 @@ TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
          << "xdotool mousemove 160 120; sleep 0.6\n"
          << "cp " << (folder_ / "green.frag") << " " << compose << "\n"
          << wait_for("compose.frag: taken from the file") << "cp " << (folder_ / "broken.frag") << " " << compose << "\n"
-         << wait_for("compose.frag:2: ") << "xdotool key q; wait $!\n";
+         << wait_for("compose.frag:2: ") << "xdotool key ctrl+q; wait $!\n";
   ASSERT_EQ(on_display(script.str()), 0) << log();
   EXPECT_NE(log().find("catena: " + compose + ":2: 'nonsense'"), std::string::npos) << log();
   const render::Picture green = picture("green.png");
@@ -174,7 +174,7 @@ TEST_F(Viewer, TheTitleSaysTheSettingAndKeysTurnTheView) {
     script
         << view() << " --quality time=30 --screenshot " << (folder_ / png) << " &\n"
         << "for i in $(seq 200); do xdotool search --name '[[].*step .* ms[]]' > /dev/null 2>&1 && echo arrived && break; sleep 0.1; done\n"
-        << "xdotool mousemove 160 120; sleep 0.3; " << keys << "\nsleep 0.5; xdotool key q; wait $!\n";
+        << "xdotool mousemove 160 120; sleep 0.3; " << keys << "\nsleep 0.5; xdotool key ctrl+q; wait $!\n";
     EXPECT_EQ(on_display(script.str()), 0) << log();
     EXPECT_NE(log().find("arrived"), std::string::npos) << log();
   };
@@ -198,7 +198,7 @@ TEST_F(Viewer, DragsTurnTheViewAndMoveTheHand) {
     script << view() << " --screenshot " << (folder_ / png) << " &\n"
            << "for i in $(seq 200); do xdotool search --name '^catena  ' > /dev/null 2>&1 && break; sleep 0.1; done\n"
            << "xdotool mousemove 160 120; sleep 0.3\n"
-           << events << "\nsleep 0.5; xdotool key q; wait $!\n";
+           << events << "\nsleep 0.5; xdotool key ctrl+q; wait $!\n";
     EXPECT_EQ(on_display(script.str()), 0) << log();
     return log();
   };

@@ -57,7 +57,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
                   "by 7 0\n"                                                                     // to the sphere
                   "xdotool keydown space; sleep 0.5; by 0 -8; xdotool keyup space; sleep 0.7\n"  // turns it
                   "xdotool key h; sleep 0.3; xdotool key ctrl+s; sleep 1\n"
-                  "xdotool key q"),
+                  "xdotool key ctrl+q"),
             0)
       << log();
 
@@ -86,7 +86,7 @@ TEST_F(ViewerWidget, AFileThatIsDroppedIsOpened) {
                   "/usr/bin/python3 " + test::source_dir() + "/tests/support/drop_file.py $(xdotool search --name '^catena  ' | head -1) " +
                       (folder_ / "ball.json") +
                       " && echo taken\ntitled 'ball.json'\nxdotool search --name ball.json > /dev/null && echo opened\n"
-                      "xdotool mousemove 320 240; sleep 0.3; xdotool key q"),
+                      "xdotool mousemove 320 240; sleep 0.3; xdotool key ctrl+q"),
             0)
       << log();
   EXPECT_NE(log().find("taken"), std::string::npos) << log();

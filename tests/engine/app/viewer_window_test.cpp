@@ -73,7 +73,7 @@ bool is_color(const render::Picture& p, std::uint32_t x, std::uint32_t y, int r,
 TEST_F(ViewerWindow, ThePictureLiesBesideThePanelsAndTabGivesItTheWindow) {
   ASSERT_EQ(drive(scene_ + " --size 900x600 --screenshot end.png",
                   "keys shift+F12; written flow-001.png\nkeys F12; written flow-002.png\n"
-                  "keys Tab; sleep 0.5; keys F12; written flow-003.png\nkeys q"),
+                  "keys Tab; sleep 0.5; keys F12; written flow-003.png\nkeys ctrl+q"),
             0)
       << log();
   const render::Picture window = picture("flow-001.png"), beside = picture("flow-002.png"), alone = picture("flow-003.png"),
@@ -97,9 +97,9 @@ TEST_F(ViewerWindow, WhatIsNotSavedIsAskedForBeforeItIsLost) {
   ASSERT_EQ(drive(scene_ + " --size 900x600",
                   "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
                   "keys ctrl+z; titled 'copy.json [^ ]'\n"
-                  "keys q; sleep 0.5; kill -0 $V && echo 'still there'\n"
+                  "keys ctrl+q; sleep 0.5; kill -0 $V && echo 'still there'\n"
                   "keys Escape; sleep 0.3; kill -0 $V && echo 'still open'\n"
-                  "keys q; sleep 0.5; keys Return"),
+                  "keys ctrl+q; sleep 0.5; keys Return"),
             0)
       << log();
   EXPECT_NE(log().find("still there"), std::string::npos) << log();
@@ -115,7 +115,7 @@ TEST_F(ViewerWindow, TheOpenDialogOpensWhatIsTypedAndAFailureLeavesTheScene) {
                   "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'flow.js'; keys Tab Return; titled 'flow.json'\n"
                   "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'none.json'; keys Return; sleep 0.7; titled 'flow.json'\n"
                   "keys ctrl+o; sleep 0.3; xdotool type --delay 60 'ball.json'; keys Return; titled 'ball.json'\n"
-                  "sleep 0.5; keys q"),
+                  "sleep 0.5; keys ctrl+q"),
             0)
       << log();
   EXPECT_EQ(log().find("never titled"), std::string::npos) << log();
@@ -129,7 +129,7 @@ TEST_F(ViewerWindow, ResizedAgainAndAgainItFollows) {
                   "W=$(xdotool search --name '^catena  ' | head -1)\n"
                   "for s in '300 200' '900 650' '40 30' '1 1' '700 400' '820 610'; do xdotool windowsize $W $s; sleep 0.15; done\n"
                   "xdotool windowminimize $W; sleep 0.3; xdotool windowmap $W; xdotool windowsize $W 860 560; sleep 1\n"
-                  "xdotool mousemove 600 300; keys shift+F12; written flow-001.png; keys q"),
+                  "xdotool mousemove 600 300; keys shift+F12; written flow-001.png; keys ctrl+q"),
             0)
       << log();
   const render::Picture window = picture("flow-001.png");

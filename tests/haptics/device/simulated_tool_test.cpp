@@ -113,7 +113,7 @@ TEST(SimulatedTool, TheServoTurnsOrientationAndTorqueWithTheWorkspace) {
     options.paced = false;
     options.max_ticks = 3000;
     Servo servo(tool, program, options);
-    servo.start();
+    EXPECT_TRUE(servo.start());
     while (servo.running()) std::this_thread::yield();
     servo.stop();
     return tool.orientation();

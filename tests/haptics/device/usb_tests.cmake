@@ -27,6 +27,11 @@ if(NOT CATENA_SANITIZE MATCHES "thread")
   endif()
   # every case runs through the wrapper: the property of a target that is set here, which gtest_discover_tests reads
   catena_tests(haptics/device/usb ROOMS haptics/servo haptics/extract THIRD_PARTY catena_test_umockdev catena_test_usbfs PkgConfig::LIBUSB
-    LABELS usb)
+    PROGRAM LABELS usb)
+  # preloaded into the programs that these tests start
+  add_library(catena_inherited_node MODULE haptics/device/usbfs/inherited_node.cpp)
+  set_target_properties(catena_inherited_node PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR})
+  target_link_libraries(catena_inherited_node PRIVATE ${CMAKE_DL_LIBS})
+  add_dependencies(test_haptics_device_usb catena_inherited_node)
   unset(CMAKE_CROSSCOMPILING_EMULATOR)
 endif()

@@ -77,7 +77,7 @@ ServoReport run(Device& device, std::uint64_t ticks, Seen& seen, ServoOptions op
   seen.inputs.reserve(ticks);
   seen.outputs.reserve(ticks);
   Servo servo(device, program(), options);
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) nap_ms(1);
   servo.stop();
   return servo.report();
@@ -200,7 +200,7 @@ TEST(Condition, AForceComesBackByTheRampHoweverLongTheDeviceWasAway) {
   ramped->limits.ramp_in_s = 0.5;
   ramped->limits.slew_n_per_s = 4000;
   Servo servo(device, ramped, {.paced = false, .max_ticks = 2600, .sink = &seen});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) nap_ms(1);
   ASSERT_NEAR(norm(device.sent[999]), 2, 1e-12);
   EXPECT_EQ(norm(device.sent[1999]), 0);
@@ -242,7 +242,7 @@ TEST(Condition, AServoThatStartsAgainRampsInAgain) {
   Servo servo(device, ramped, {.paced = false, .max_ticks = 200});
   for (int run = 0; run < 2; ++run) {
     device.sent.clear();
-    servo.start();
+    EXPECT_TRUE(servo.start());
     while (servo.running()) nap_ms(1);
     servo.stop();
     EXPECT_LE(norm(device.sent[0]), 0.03) << run;
@@ -285,7 +285,7 @@ TEST(Condition, TheForcesAreThePersonsAndTheDevicesChoice) {
   Servo servo(device, program(), {.paced = false, .max_ticks = 60, .sink = &flip, .forces = false});
   servo_at = &servo;
   EXPECT_FALSE(servo.forces());
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) nap_ms(1);
   servo.stop();
   EXPECT_TRUE(servo.forces());

@@ -1,17 +1,12 @@
 /// A recording whose process is killed at any moment opens, has no hole, and repeats to the bit.
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 
 #include "tests/haptics/servo/log_fixture.h"
-
-extern char** environ;
+#include "tests/support/child_test.h"
 
 namespace log_kill_test {
 
@@ -22,8 +17,8 @@ using namespace catena::test;
 
 // The child of the next test: records until it is killed. Runs only when it is told where.
 TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
-  const char* path = std::getenv("CATENA_LOG_OF_THE_CHILD");
-  if (path == nullptr) GTEST_SKIP() << "the child of LogKill.EveryKilledRecordingOpensAndRepeats";
+  const std::string path = test::child_variable("CATENA_LOG_OF_THE_CHILD");
+  if (path.empty()) GTEST_SKIP() << "the child of LogKill.EveryKilledRecordingOpensAndRepeats";
   auto writer = LogWriter::open(path, {}, {}, fast_flush());
   ASSERT_TRUE(writer);
   Throttled device(**writer, test::hostile_path(1000));
@@ -33,7 +28,7 @@ TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
   (*writer)->add_program(*first);
   device.allow(kTicks);
   Servo servo(device, first, {.rate_hz = 1000, .paced = false, .sink = writer->get()});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   exchange::HapticState seen;
   for (std::uint64_t epoch = 2;; ++epoch) {
     while (seen.tick < kTicks * (epoch - 1)) {
@@ -49,25 +44,10 @@ TEST(LogKill, DISABLED_RecordsUntilItIsKilled) {
 
 TEST(LogKill, EveryKilledRecordingOpensAndRepeats) {
   const test::TemporaryFolder folder;
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   std::uint64_t all = 0, programs = 0;
   for (int moment = 0; moment < 24; ++moment) {
     const std::string path = folder / ("k" + std::to_string(moment) + ".catlog");
-    std::vector<std::string> words{self, "--gtest_filter=LogKill.DISABLED_*", "--gtest_also_run_disabled_tests"};
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    std::string variable = "CATENA_LOG_OF_THE_CHILD=" + path;
-    std::vector<char*> environment{variable.data()};
-    for (char** e = environ; *e != nullptr; ++e)
-      if (!std::string_view(*e).starts_with("GTEST_")) environment.push_back(*e);
-    environment.push_back(nullptr);
-    posix_spawn_file_actions_t quiet;
-    posix_spawn_file_actions_init(&quiet);
-    posix_spawn_file_actions_addopen(&quiet, 1, "/dev/null", O_WRONLY, 0);
-    pid_t child = 0;
-    ASSERT_EQ(posix_spawn(&child, self.c_str(), &quiet, nullptr, arguments.data(), environment.data()), 0);
-    posix_spawn_file_actions_destroy(&quiet);
+    const pid_t child = test::start_case("LogKill.DISABLED_*", {.environment = {"CATENA_LOG_OF_THE_CHILD=" + path}});
     // the moment: so many bytes, then a little more
     const auto enough = static_cast<std::uintmax_t>(4000 + 12000 * moment);
     std::error_code code;

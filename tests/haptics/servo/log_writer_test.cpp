@@ -190,7 +190,7 @@ TEST(LogSoak, ServoProgramsAndWriterTogether) {
   const auto first = numbered_program(1);
   (*writer)->add_program(*first);
   Servo servo(device, first, {.rate_hz = 1000, .paced = false, .max_ticks = kTicks, .sink = writer->get()});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   exchange::HapticState seen;
   for (std::uint64_t epoch = 2; servo.running(); ++epoch) {
     const auto program = numbered_program(epoch);

@@ -85,5 +85,19 @@ TEST(Pace, TicksAndMissedDeadlinesAddUpAndTimeRises) {
   EXPECT_GT(missed, 1000);
 }
 
+TEST(Pace, AGapLongerThanTheLimitIsAStallOfTheTickAfterIt) {
+  for (const double gap : {1.0, 49.0, 51.0, 5000.0}) {
+    Pace pace(kMs, kFirst, 50 * kMs);
+    EXPECT_FALSE(pace.begins(at(0)).stalled);
+    pace.ends(at(0.5));
+    EXPECT_EQ(pace.begins(at(0.5 + gap)).stalled, gap > 50) << gap;
+    pace.ends(at(0.6 + gap));
+    EXPECT_FALSE(pace.begins(at(1.6 + gap)).stalled) << "once";
+  }
+  Pace pace(kMs, kFirst);
+  pace.begins(at(0));
+  EXPECT_FALSE(pace.begins(at(1e9)).stalled) << "without a limit";
+}
+
 }  // namespace pace_test
 }  // namespace catena::haptics

@@ -54,7 +54,7 @@ TEST(Realtime, WithoutPrivilegesItSaysWhatItDidWithoutAndHowToHaveIt) {
 TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
   NullDevice device;
   Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5, .realtime = {.fifo = false, .lock_memory = false, .cpu = 100000}});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
   const ServoReport r = servo.report();
@@ -67,7 +67,7 @@ TEST(Realtime, ACoreThatIsNotThereIsSaidAndTheServoGoesOn) {
 TEST(Realtime, EveryWishIsEitherGrantedOrHasItsSentence) {
   NullDevice device;
   Servo servo(device, std::make_shared<Program>(), {.max_ticks = 5});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   const RealtimeReport r = servo.report().realtime;
   servo.stop();
   const std::size_t refused = (r.fifo ? 0u : 1u) + (r.locked ? 0u : 1u);
@@ -95,7 +95,7 @@ class Slow final : public Device {
 TEST(Realtime, AFixedPriorityIsGivenBackWhereTheTicksNeverFitIntoTheirPeriod) {
   Slow device;
   Servo servo(device, std::make_shared<Program>(), {.rate_hz = 10000, .max_ticks = 1010});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   const bool granted = servo.report().realtime.fifo;
   while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   servo.stop();
@@ -134,7 +134,7 @@ TEST(Realtime, TheWatchdogIsNotBoundToTheCoreOfTheThreadThatItWatches) {
   while (!CPU_ISSET(static_cast<unsigned>(core), &allowed)) ++core;
   Stuck device;
   Servo servo(device, std::make_shared<Program>(), {.max_ticks = 2, .realtime = {.fifo = false, .lock_memory = false, .cpu = core}});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   servo.stop();
   EXPECT_EQ(servo.report().realtime.cpu, core);

@@ -20,7 +20,7 @@ json::Node parsed(const std::string& text) {
 TEST(Report, IsReadableByOtherThreadsWhileTheServoRuns) {
   NullDevice device;
   Servo servo(device, std::make_shared<Program>(), {.rate_hz = 4000});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   std::uint64_t last = 0;
   while (last < 400) {
     const ServoReport r = servo.report();

@@ -35,7 +35,7 @@ TEST(Servo, ThreadAndReplayGiveOneHash) {
   const ReplayStats stats = replay(*program, path, [](const exchange::HapticState&) { return true; });
   RecordedPath device(samples);
   Servo servo(device, program, {.rate_hz = 1000, .paced = false, .max_ticks = 5000});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   exchange::HapticState seen;
   while (servo.running()) servo.take(seen);
   servo.stop();
@@ -56,7 +56,7 @@ TEST(ServoDeathTest, TwoProgramsOfOneEpochAreABug) {
 TEST(Servo, NewProgramsTakeOverAndOldOnesAreFreedByTheFrameSide) {
   SimulatedHand hand({{0, {0, 0, 0.4}}}, {});
   Servo servo(hand, program_at(0.5, 1), {.rate_hz = 1000, .paced = false});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   exchange::HapticState seen;
   for (std::uint64_t epoch = 2; epoch <= 40; ++epoch) {
     servo.set_program(program_at(0.5 + 0.001 * static_cast<double>(epoch), epoch));
@@ -73,7 +73,7 @@ TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
   program->coupling.damping_ns_per_m = 0;
   SimulatedHand hand({{0, {0, 0, 0}}}, {.mass_kg = 0.15, .stiffness_n_per_m = 500, .damping_ns_per_m = 5, .period_s = 1e-3});
   Servo servo(hand, program, {.rate_hz = 1000, .paced = false, .max_ticks = 4000});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
   EXPECT_NEAR(hand.position_m().z, 0.005, 1e-6);
@@ -82,7 +82,7 @@ TEST(Servo, ASimulatedHandSettlesWhereItsGripBalancesTheForce) {
 TEST(Servo, PacedLoopKeepsCountOfItsTicks) {
   SimulatedHand hand({{0, {0, 0, 0}}}, {});
   Servo servo(hand, program_at(0.5, 1), {.rate_hz = 2000, .paced = true, .max_ticks = 200});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
   exchange::HapticState seen;
@@ -115,7 +115,7 @@ class Unplugged final : public Device {
 TEST(Servo, ALostDeviceGetsZeroForceInThatTick) {
   Unplugged device;
   Servo servo(device, program_at(0.5, 1), {.rate_hz = 1000, .paced = false, .max_ticks = 50});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   while (servo.running()) std::this_thread::yield();
   servo.stop();
   EXPECT_TRUE(device.all_zero_after_loss);

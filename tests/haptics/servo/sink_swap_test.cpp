@@ -60,7 +60,7 @@ TEST(SinkSwap, ARecordingThatBeginsInTheMiddleRunsAgainToTheBit) {
   std::uint64_t epoch = 1;
   std::shared_ptr<const Program> program = numbered_program(epoch);
   Servo servo(device, program, {.paced = false});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   for (int round = 0; round < 4; ++round) {
     run_to(device, servo, ticks_of(servo) + 700 + static_cast<std::uint64_t>(round));
     const std::string path = folder / "l.catlog";
@@ -102,7 +102,7 @@ TEST(SinkSwap, AServoThatStandsStillIsNotWaitedForForEver) {
   } first, second;
   Led device(test::hostile_path(10));
   Servo servo(device, numbered_program(1), {.paced = false, .sink = &first});
-  servo.start();
+  EXPECT_TRUE(servo.start());
   run_to(device, servo, 5);
   // held in its device, the servo may have looked already: a first swap can still go through, a second one cannot
   EXPECT_FALSE(servo.set_sink(&second, 0.01) && servo.set_sink(&first, 0.01));
@@ -141,13 +141,13 @@ TEST(SinkSwap, AnotherServoGoesOnWithWhatTheChainRemembers) {
   const auto program = numbered_program(1), next = numbered_program(4);
   Servo first(device, program, {.paced = false, .max_ticks = 100});
   device.allowed = 100;
-  first.start();
+  EXPECT_TRUE(first.start());
   while (first.running()) std::this_thread::yield();
   first.stop();
   device.allowed = 101;
   Servo second(device, next, {.paced = false, .max_ticks = 1});
   second.go_on_from(first);
-  second.start();
+  EXPECT_TRUE(second.start());
   while (second.running()) std::this_thread::yield();
   second.stop();
   exchange::HapticState seen;

@@ -25,7 +25,7 @@ void draw_file_menu(PanelContext& context) {
   if (ImGui::MenuItem("Picture as PNG", "F12")) shoot(false);
   if (ImGui::MenuItem("Window as PNG", "Shift+F12")) shoot(true);
   ImGui::Separator();
-  if (ImGui::MenuItem("Quit", "Q")) state.quit = true;
+  if (ImGui::MenuItem("Quit", "Ctrl+Q")) state.quit = true;
   ImGui::EndMenu();
 }
 

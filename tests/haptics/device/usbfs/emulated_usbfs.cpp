@@ -186,6 +186,22 @@ int EmulatedUsbfs::reap(Urb& urb) {
   return 0;
 }
 
+int EmulatedUsbfs::bulk(unsigned endpoint, std::uint8_t* data, std::size_t size, std::size_t& moved) {
+  const std::scoped_lock lock(port_.mutex);
+  ++port_.counts.bulks;
+  EmulatedFalcon& device = port_.device;
+  if (!plugged_) return ENODEV;
+  if (endpoint != EmulatedFalcon::kEndpointOut) return ENOENT;
+  pump_locked();
+  if (!out_.empty() || port_.faults.out_naks) return ETIMEDOUT;
+  if (device.halted(EmulatedFalcon::kEndpointOut)) return EPIPE;
+  device.bulk_out({data, size});
+  pump_locked();
+  if (!plugged_) return ESHUTDOWN;
+  moved = size;
+  return 0;
+}
+
 int EmulatedUsbfs::discard(std::uintptr_t client) {
   const std::scoped_lock lock(port_.mutex);
   for (std::deque<Urb>* queue : {&in_, &out_})

@@ -24,7 +24,7 @@ struct UsbfsFaults {
 };
 
 struct UsbfsCounts {
-  std::uint64_t submitted = 0, completed = 0, discarded = 0, reaped = 0, stalled = 0, shut_down = 0, clear_halts = 0, claims = 0,
+  std::uint64_t submitted = 0, completed = 0, discarded = 0, reaped = 0, stalled = 0, shut_down = 0, clear_halts = 0, claims = 0, bulks = 0,
                 releases = 0, idle_packets = 0, after_unplug = 0;
 };
 
@@ -63,6 +63,9 @@ class EmulatedUsbfs {
   int submit(const Urb& urb);
   int reap(Urb& urb);
   int discard(std::uintptr_t client);
+  /// USBDEVFS_BULK: one transfer that completes within the request, whoever asks; behind what is queued. `moved`: its bytes. Never
+  /// waits: what would is ETIMEDOUT at once.
+  int bulk(unsigned endpoint, std::uint8_t* data, std::size_t size, std::size_t& moved);
   /// Every other request; `data` is the argument's memory, as large as the request says. ENOTTY: not known.
   int simple(unsigned long request, void* data);
 

@@ -19,6 +19,18 @@ namespace {
 std::atomic<InProcessBus*> the_bus{nullptr};
 std::atomic<int> the_fd{-1};
 
+thread_local int kernel_depth = 0;
+std::atomic<void (*)()> return_hook{nullptr};
+
+/// The time that a thread spends in the kernel.
+struct Kernel {
+  Kernel() { ++kernel_depth; }
+  ~Kernel() {
+    if (--kernel_depth > 0) return;
+    if (auto* hook = return_hook.load()) hook();
+  }
+};
+
 InProcessBus* bus_of(int fd) { return fd >= 0 && fd == the_fd.load(std::memory_order_acquire) ? the_bus.load() : nullptr; }
 
 template <class F>
@@ -27,6 +39,9 @@ F next(const char* name) {
 }
 
 }  // namespace
+
+bool InProcessBus::in_kernel() { return kernel_depth > 0; }
+void InProcessBus::on_return(void (*hook)()) { return_hook.store(hook); }
 
 InProcessBus::InProcessBus(const EmulatedFalconOptions& options) : port_(options) {
   const int made = pipe2(fds_, O_CLOEXEC | O_NONBLOCK);
@@ -60,6 +75,7 @@ void InProcessBus::gone() {
 }
 
 int InProcessBus::on_ioctl(unsigned long request, void* argument) {
+  const Kernel kernel;
   int error = 0;
   if (request == USBDEVFS_SUBMITURB) {
     auto* urb = static_cast<usbdevfs_urb*>(argument);
@@ -70,6 +86,11 @@ int InProcessBus::on_ioctl(unsigned long request, void* argument) {
     if (error == 0) *static_cast<usbdevfs_urb**>(argument) = urb.urb;
   } else if (request == USBDEVFS_DISCARDURB) {
     error = usbfs_->discard(reinterpret_cast<std::uintptr_t>(argument));
+  } else if (request == USBDEVFS_BULK) {
+    auto* transfer = static_cast<usbdevfs_bulktransfer*>(argument);
+    std::size_t moved = 0;
+    error = usbfs_->bulk(transfer->ep, static_cast<std::uint8_t*>(transfer->data), transfer->len, moved);
+    if (error == 0) return static_cast<int>(moved);
   } else {
     error = usbfs_->simple(request, argument);
   }

@@ -27,6 +27,11 @@ class InProcessBus final : public EmulatedUsbfs::Node {
     return f(port_.device);
   }
 
+  /// True while this thread is within one of the system calls below: the kernel's side, where no signal stops a process.
+  static bool in_kernel();
+  /// Called by a thread that comes back from there; nullptr: nothing.
+  static void on_return(void (*hook)());
+
   // the system calls
   int on_ioctl(unsigned long request, void* argument);
   long on_read(void* to, std::size_t size);

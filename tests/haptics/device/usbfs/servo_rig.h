@@ -40,8 +40,7 @@ class ServoRig {
     for (const double z : {0.165, 0.175, 0.165, 0.155})
       if (!hold_at(bus_, {0, 0, z})) return false;
     if (!eventually([&] { return falcon_.state() == usb::FalconState::ready; })) return false;
-    servo_.start();
-    return true;
+    return static_cast<bool>(servo_.start());
   }
 
   /// With the grip held there: the tick's probe, and what the motors get, both settled.

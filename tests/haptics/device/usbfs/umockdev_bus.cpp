@@ -57,7 +57,9 @@ class Plug final : public EmulatedUsbfs::Node {
   std::unique_ptr<EmulatedUsbfs> usbfs_;
 };
 
-void finish(UMockdevIoctlClient* client, int error) { umockdev_ioctl_client_complete(client, error == 0 ? 0 : -1, error); }
+void finish(UMockdevIoctlClient* client, int error, int value = 0) {
+  umockdev_ioctl_client_complete(client, error == 0 ? value : -1, error);
+}
 
 int submit(Plug& plug, UMockdevIoctlData* argument) {
   UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_urb), nullptr);
@@ -85,11 +87,27 @@ int reap(Plug& plug, UMockdevIoctlData* argument) {
   if (const int error = plug.usbfs().reap(urb); error != 0) return error;
   auto* data = static_cast<UMockdevIoctlData*>(urb.owner);
   UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(argument, 0, sizeof(void*), nullptr);
-  umockdev_ioctl_data_set_ptr(pointer, 0, data);
-  g_object_unref(pointer);
+  if (pointer != nullptr) {  // else the client was killed meanwhile
+    umockdev_ioctl_data_set_ptr(pointer, 0, data);
+    g_object_unref(pointer);
+  }
   plug.held_.erase(data);
   g_object_unref(data);  // the argument holds it now, until it is written back
   return 0;
+}
+
+int bulk(Plug& plug, UMockdevIoctlData* argument, int& moved) {
+  UMockdevIoctlData* data = umockdev_ioctl_data_resolve(argument, 0, sizeof(usbdevfs_bulktransfer), nullptr);
+  if (data == nullptr) return EFAULT;
+  const auto* transfer = reinterpret_cast<const usbdevfs_bulktransfer*>(data->data);
+  const unsigned endpoint = transfer->ep, length = transfer->len;
+  UMockdevIoctlData* bytes = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_bulktransfer, data), length, nullptr);
+  std::size_t n = 0;
+  const int error = bytes == nullptr ? EFAULT : plug.usbfs().bulk(endpoint, bytes->data, length, n);
+  moved = static_cast<int>(n);
+  if (bytes != nullptr) g_object_unref(bytes);
+  g_object_unref(data);
+  return error;
 }
 
 }  // namespace
@@ -108,6 +126,10 @@ struct UmockdevBus::State {
       finish(client, reap(*plug, argument));
     } else if (request == USBDEVFS_DISCARDURB) {
       finish(client, plug->usbfs().discard(*reinterpret_cast<std::uintptr_t*>(argument->data)));
+    } else if (request == USBDEVFS_BULK) {
+      int moved = 0;
+      const int error = bulk(*plug, argument, moved);
+      finish(client, error, moved);
     } else {
       UMockdevIoctlData* data = _IOC_SIZE(request) > 0 ? umockdev_ioctl_data_resolve(argument, 0, _IOC_SIZE(request), nullptr) : nullptr;
       finish(client, plug->usbfs().simple(request, data != nullptr ? data->data : nullptr));

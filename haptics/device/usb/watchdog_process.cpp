@@ -1,0 +1,165 @@
+#include "haptics/device/usb/watchdog_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <new>
+
+#include "engine/base/assert.h"
+#include "haptics/watchdog/watch.h"
+
+namespace catena::haptics::usb {
+
+namespace {
+
+constexpr int kReadyMs = 5000, kEndMs = 1000, kFirstFree = 10;
+
+Error no_watchdog(const std::string& why) {
+  return {"the process that lets the device go if this program dies cannot be started: " + why, true};
+}
+
+/// A descriptor that is closed at the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { reset(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
+  void reset() {
+    if (fd_ >= 0) close(std::exchange(fd_, -1));
+  }
+
+ private:
+  int fd_;
+};
+
+class WatchdogProcess final : public ExternalWatchdog {
+ public:
+  WatchdogProcess(pid_t child, int lifeline) : child_(child), lifeline_(lifeline) {}
+  /// Without quit() it is the end of the lifeline that the process hears.
+  ~WatchdogProcess() override {
+    close(lifeline_);
+    for (int i = 0; i < kEndMs; ++i) {
+      if (waitpid(child_, nullptr, WNOHANG) != 0) return;  // it has ended, or is none of ours to wait for
+      const timespec nap{0, 1000000};
+      nanosleep(&nap, nullptr);
+    }
+    // still writes: a device that does not answer. It goes on until the device is gone
+  }
+  bool alive() noexcept override {
+    pollfd line{lifeline_, POLLIN, 0};
+    return poll(&line, 1, 0) == 0;  // it says nothing after it was ready: only its end is heard
+  }
+  void quit() noexcept override { [[maybe_unused]] const auto sent = send(lifeline_, &watchdog::kQuit, 1, MSG_NOSIGNAL); }
+
+ private:
+  pid_t child_;
+  int lifeline_;
+};
+
+/// The descriptors at 3, 4, 5; nothing else but stderr; no signal of this program's is ignored or blocked there.
+int spawn(const std::string& path, int usb, int page, int lifeline, pid_t& child) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDWR, 0);
+  posix_spawn_file_actions_adddup2(&actions, 0, 1);
+  posix_spawn_file_actions_adddup2(&actions, usb, 3);
+  posix_spawn_file_actions_adddup2(&actions, page, 4);
+  posix_spawn_file_actions_adddup2(&actions, lifeline, 5);
+  posix_spawn_file_actions_addclosefrom_np(&actions, 6);
+  posix_spawn_file_actions_addchdir_np(&actions, "/");
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t set;
+  sigfillset(&set);
+  posix_spawnattr_setsigdefault(&attributes, &set);
+  sigemptyset(&set);
+  posix_spawnattr_setsigmask(&attributes, &set);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  char name[] = "catena-watchdog";
+  char* arguments[] = {name, nullptr};
+  const int code = posix_spawn(&child, path.c_str(), &actions, &attributes, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  return code;
+}
+
+bool becomes_ready(int lifeline) {
+  pollfd line{lifeline, POLLIN, 0};
+  int n = 0;
+  do n = poll(&line, 1, kReadyMs);
+  while (n < 0 && errno == EINTR);
+  char byte = 0;
+  return n == 1 && read(lifeline, &byte, 1) == 1 && byte == watchdog::kReady;
+}
+
+Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path, Transport& transport, const WatchdogMemory& memory) {
+  if (transport.descriptor() < 0) return no_watchdog("the device's file could not be found among libusb's");
+  int pair[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0) return no_watchdog(std::strerror(errno));
+  Descriptor ours(pair[0]);
+  Descriptor theirs(pair[1]);
+  // out of the way of 3, 4 and 5
+  const Descriptor usb(fcntl(transport.descriptor(), F_DUPFD_CLOEXEC, kFirstFree)), page(fcntl(memory.fd(), F_DUPFD_CLOEXEC, kFirstFree));
+  Descriptor lifeline(fcntl(theirs.get(), F_DUPFD_CLOEXEC, kFirstFree));
+  if (usb.get() < 0 || page.get() < 0 || lifeline.get() < 0) return no_watchdog(std::strerror(errno));
+  pid_t child = 0;
+  if (const int code = spawn(path, usb.get(), page.get(), lifeline.get(), child); code != 0)
+    return no_watchdog(fmt::format("{}: {}", path, std::strerror(code)));
+  // the process holds the only other end: its death is heard
+  theirs.reset();
+  lifeline.reset();
+  auto process = std::make_unique<WatchdogProcess>(child, ours.get());
+  if (!becomes_ready(ours.release())) {
+    kill(child, SIGKILL);
+    return no_watchdog(path + " does not answer");
+  }
+  return std::unique_ptr<ExternalWatchdog>(std::move(process));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<WatchdogMemory>> WatchdogMemory::make(std::uint8_t endpoint, std::span<const std::uint8_t> off) {
+  CATENA_ASSERT(off.size() <= watchdog::Page::kMostOffBytes);
+  Descriptor fd(memfd_create("catena-watchdog", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (fd.get() < 0 || ftruncate(fd.get(), sizeof(watchdog::Page)) != 0 ||
+      fcntl(fd.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+    return no_watchdog(std::strerror(errno));
+  void* const at = mmap(nullptr, sizeof(watchdog::Page), PROT_READ | PROT_WRITE, MAP_SHARED, fd.get(), 0);
+  if (at == MAP_FAILED) return no_watchdog(std::strerror(errno));
+  auto* const page = new (at) watchdog::Page{};
+  page->endpoint = endpoint;
+  page->off_bytes = static_cast<std::uint32_t>(off.size());
+  std::memcpy(page->off, off.data(), off.size());
+  return std::unique_ptr<WatchdogMemory>(new WatchdogMemory(fd.release(), page));
+}
+
+WatchdogMemory::~WatchdogMemory() {
+  munmap(page_, sizeof(watchdog::Page));
+  close(fd_);
+}
+
+StartWatchdog watchdog_process(const std::string& path) {
+  return [path](Transport& transport, const WatchdogMemory& memory) { return start_process(path, transport, memory); };
+}
+
+std::string watchdog_program_path() {
+  std::error_code code;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", code);
+  return code ? std::string("catena-watchdog") : (self.parent_path() / "catena-watchdog").string();
+}
+
+}  // namespace catena::haptics::usb

@@ -1,0 +1,56 @@
+// The program `catena-watchdog`: started by the driver of a USB device, which gives it the device's node (descriptor 3), the page
+// (descriptor 4) and the lifeline (descriptor 5). It has a session of its own, hears no signal that can be blocked, and keeps its memory.
+#include <fcntl.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "haptics/watchdog/watch.h"
+
+namespace {
+
+constexpr int kUsb = 3, kPage = 4, kLifeline = 5;
+constexpr int kPriority = 85;  // before all of the program's threads: it hardly ever runs
+
+int usage() {
+  std::fputs("catena-watchdog: is started by catena for a USB device, and is of no use alone\n", stderr);
+  return 2;
+}
+
+// What is not permitted is done without.
+void prefer() {
+  sched_param parameter{};
+  parameter.sched_priority = kPriority;
+  if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0) setpriority(PRIO_PROCESS, 0, -20);
+  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT);
+  const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (file < 0) return;
+  [[maybe_unused]] const auto written = write(file, "-1000", 5);
+  close(file);
+}
+
+}  // namespace
+
+int main() {
+  using namespace catena::haptics::watchdog;
+  sigset_t all;
+  sigfillset(&all);
+  sigprocmask(SIG_SETMASK, &all, nullptr);
+  struct stat page_file {};
+  if (fcntl(kUsb, F_GETFD) < 0 || fcntl(kLifeline, F_GETFD) < 0 || fstat(kPage, &page_file) != 0 ||
+      page_file.st_size < static_cast<off_t>(sizeof(Page)))
+    return usage();
+  void* const at = mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, kPage, 0);
+  if (at == MAP_FAILED) return usage();
+  Page& page = *static_cast<Page*>(at);
+  if (page.mark != Page::kMark) return usage();
+  prefer();
+  if (write(kLifeline, &kReady, 1) != 1) return 1;
+  return watch(page, kUsb, kLifeline, STDERR_FILENO) == Ended::told ? 0 : 1;
+}

@@ -1,0 +1,55 @@
+// Strokes that come faster than pictures: none is lost, none comes in another order, and the interface never sees a modifier change within
+// one of its frames.
+#include <gtest/gtest.h>
+
+#include "tests/support/support.h"
+#include "tests/support/windows.h"
+
+namespace catena::app {
+namespace viewer_keys_test {
+
+constexpr const char* kScene = R"({
+  "fields": {"d": {"analytic": "gaussian", "resolution": 64}},
+  "volumes": [{"field": "d"}],
+  "background": [0, 0.3, 0] })";
+
+class ViewerKeys : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!test::can_drive_windows()) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+    test::write_file(folder_ / "slow.json", kScene);
+    test::write_file(folder_ / "Capital.json", R"({"fields": {}})");
+  }
+  std::string log() const { return test::read_file(folder_ / "log"); }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ViewerKeys, CapitalsTypedInOneGoDoNotEndTheProgram) {
+  // strokes that overlap, as fast hands make them: the next key is down before the last modifier is up
+  ASSERT_EQ(test::drive_window(folder_, "slow.json --size 900x600",
+                               "for i in $(seq 40); do\n"
+                               "  xdotool key ctrl+o; xdotool key --delay 0 ctrl+a\n"
+                               "  xdotool type --delay 1 'ABCDEFGhijKLM'\n"
+                               "  xdotool keydown ctrl keydown shift keydown a keyup ctrl keyup a keyup shift keydown B keyup B\n"
+                               "  xdotool key --delay 0 ctrl+shift+Left Escape\n"
+                               "  kill -0 $V || break\n"
+                               "done\nkeys ctrl+q"),
+            0)
+      << log();
+}
+
+TEST_F(ViewerKeys, WhatIsTypedAtOnceIsReadInOrder) {
+  // no pause between the command that opens the dialog, the name, and Return; the H before is a command, those in the name are not. Strokes
+  // of one key within one millisecond are one for GLFW: no hand makes them
+  ASSERT_EQ(test::drive_window(
+                folder_, "slow.json --size 900x600",
+                "xdotool key --delay 0 h ctrl+o; xdotool type --delay 0 'XXh'; xdotool key --delay 12 BackSpace BackSpace BackSpace\n"
+                "xdotool type --delay 0 'Capital.json'; xdotool key --delay 0 Return\n"
+                "titled 'Capital.json.*[[]hand[]]'\nkeys ctrl+q"),
+            0)
+      << log();
+  EXPECT_EQ(log().find("never"), std::string::npos) << log();
+}
+
+}  // namespace viewer_keys_test
+}  // namespace catena::app

@@ -1,0 +1,261 @@
+/// The program `catena` with a Falcon on umockdev's bus is killed and stopped at random moments: the motors' last packet is a zero. The
+/// device is this test's: it outlives the program, and keeps every packet that it gets. Asserts order and counts; the times that a
+/// force outlived its program are kept as properties.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "engine/base/clock.h"
+#include "tests/haptics/device/usbfs/falcon_rig.h"
+#include "tests/haptics/device/usbfs/umockdev_bus.h"
+#include "tests/support/support.h"
+
+namespace catena::haptics::tests {
+namespace watchdog_test {
+
+constexpr const char* kScene = R"({
+  "fields": {"ball": {"analytic": "sphere"}},
+  "chain": [{"name": "surface", "type": "isosurface", "field": "ball", "level": 0.5, "free": "above"}],
+  "coupling": {"stiffness": 400, "damping": 0, "max_force": 8},
+  "device": {"type": "falcon", "ramp_in": 0.1},
+  "workspace": {"metres_per_unit": 0.04, "origin": [0, 0, -0.125]} })";
+
+struct Packet {
+  std::int64_t ns = 0;
+  double force_n = 0;
+};
+
+/// LD_PRELOAD with one library more, before umockdev's and behind a sanitizer's.
+std::string before_umockdev(const std::string& library) {
+  std::istringstream in(std::getenv("LD_PRELOAD"));
+  std::string all;
+  for (std::string word; std::getline(in, word, ':');)
+    all += (all.empty() ? "" : ":") + (word.find("umockdev") != std::string::npos ? library + ":" : "") + word;
+  return all;
+}
+
+/// A Falcon on the bus, homed, and the program that holds its hand out of a ball.
+class Rig {
+ public:
+  Rig() {
+    test::write_file(folder / "ball.json", kScene);
+    bus.with([&](EmulatedFalcon& device) {
+      device.on_exchange([&](const EmulatedFalcon::Exchange& e) { packets.push_back({now_ns(), norm(e.force_n)}); });
+    });
+  }
+  ~Rig() {
+    if (child > 0) kill(child, SIGKILL), wait();
+  }
+
+  void start() {
+    // what a killed program left in the queues went with the last of its descriptors
+    if (std::exchange(plugged, true)) bus.unplug();
+    bus.plug(true);
+    std::vector<std::string> words{test::program_path(), "feel", folder / "ball.json", "--device", "falcon", "--forces", "on"};
+    std::vector<char*> arguments, environment;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    std::string preload = "LD_PRELOAD=" + before_umockdev(test::binary_dir() + "/libcatena_inherited_node.so");
+    environment.push_back(preload.data());
+    for (char** e = environ; *e != nullptr; ++e)
+      if (!std::string_view(*e).starts_with("LD_PRELOAD=")) environment.push_back(*e);
+    environment.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 1, (folder / "out").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, (folder / "err").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    ASSERT_EQ(posix_spawn(&child, words[0].c_str(), &actions, nullptr, arguments.data(), environment.data()), 0);
+    posix_spawn_file_actions_destroy(&actions);
+    const std::uint64_t frames = frames_of(bus);
+    ASSERT_TRUE(eventually([&] { return frames_of(bus) > frames + 3; })) << said();
+    // armed, then into the ball: 10 mm
+    for (const double z : {0.155, 0.165, 0.175, 0.165, 0.155, 0.145, 0.135}) ASSERT_TRUE(hold_at(bus, {0, 0, z}));
+  }
+  bool pushes() {
+    return eventually([&] { return last().force_n > 1; });
+  }
+  int wait() {
+    int status = 0;
+    waitpid(std::exchange(child, 0), &status, 0);
+    return status;
+  }
+  std::string said() const { return test::read_file(folder / "err"); }
+
+  /// The program's watchdog process; 0: none.
+  int watchdog() const {
+    for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(child) + "/task")) {
+      std::istringstream children(test::read_file(task.path() / "children"));
+      for (int id = 0; children >> id;)
+        if (test::read_file("/proc/" + std::to_string(id) + "/comm") == "catena-watchdog\n") return id;
+    }
+    return 0;
+  }
+  static bool lives(int id) {
+    // a zombie does not
+    const std::string path = "/proc/" + std::to_string(id) + "/stat";
+    std::ifstream in(path);
+    std::string line;
+    return std::getline(in, line) && line.find(") Z ") == std::string::npos;
+  }
+
+  Packet last() {
+    return bus.with([&](EmulatedFalcon&) { return packets.empty() ? Packet{} : packets.back(); });
+  }
+  std::size_t count() {
+    return bus.with([&](EmulatedFalcon&) { return packets.size(); });
+  }
+  std::uint64_t bulks() {
+    return bus.with([&](EmulatedFalcon&) { return bus.port().counts.bulks; });
+  }
+  /// How long after `since` a force was still there, ms.
+  double force_outlived_ms(std::int64_t since) {
+    return bus.with([&](EmulatedFalcon&) {
+      std::size_t k = packets.size();
+      while (k > 0 && packets[k - 1].force_n == 0) --k;
+      return k == packets.size() ? -1 : 1e-6 * static_cast<double>(packets[k].ns - since);
+    });
+  }
+
+  UmockdevBus bus{{.homed = true}};
+  test::TemporaryFolder folder;
+  std::vector<Packet> packets;  ///< under the port's mutex
+  pid_t child = 0;
+  bool plugged = false;
+};
+
+class WatchdogUsb : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_TRUE(UmockdevBus::available()) << "run this program through umockdev-wrapper"; }
+  void sleep_at_random() {
+    random_ = random_ * 6364136223846793005u + 1442695040888963407u;
+    std::this_thread::sleep_for(std::chrono::microseconds((random_ >> 33) % 5000));
+  }
+  void keep(const std::string& name, std::vector<double> ms) {
+    std::sort(ms.begin(), ms.end());
+    RecordProperty(name + "_ms_median", std::to_string(ms[ms.size() / 2]));
+    RecordProperty(name + "_ms_most", std::to_string(ms.back()));
+  }
+  std::uint64_t random_ = 17;
+};
+
+TEST_F(WatchdogUsb, AKilledProgramHoldsNoForce) {
+  std::vector<double> outlived_ms;
+  Rig rig;
+  for (int i = 0; i < 8; ++i) {
+    rig.start();
+    ASSERT_TRUE(rig.pushes()) << rig.said();
+    sleep_at_random();
+    const int watchdog = rig.watchdog();
+    ASSERT_GT(watchdog, 0);
+    const std::uint64_t bulks = rig.bulks();
+    const std::int64_t killed_ns = now_ns();
+    kill(rig.child, SIGKILL);
+    const int status = rig.wait();
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+    ASSERT_TRUE(eventually([&] { return !Rig::lives(watchdog); })) << "its work is done";
+    EXPECT_EQ(rig.bulks(), bulks + 2);
+    EXPECT_EQ(rig.last().force_n, 0) << i;
+    outlived_ms.push_back(rig.force_outlived_ms(killed_ns));
+    EXPECT_NE(rig.said().find("catena: the program has ended with a force on: its device was let go\n"), std::string::npos) << rig.said();
+  }
+  keep("killed", outlived_ms);
+}
+
+TEST_F(WatchdogUsb, AStoppedProgramHoldsNoForceAndRampsInWhenItGoesOn) {
+  std::vector<double> outlived_ms;
+  Rig rig;
+  rig.start();
+  int on_its_way = 0;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(rig.pushes()) << rig.said();
+    sleep_at_random();
+    const std::uint64_t bulks = rig.bulks();
+    kill(rig.child, SIGRTMIN + 5);  // SIGSTOP, outside of a request (inherited_node.cpp)
+    int status = 0;
+    waitpid(rig.child, &status, WUNTRACED);
+    ASSERT_TRUE(WIFSTOPPED(status));
+    const std::int64_t stopped_ns = now_ns();
+    ASSERT_TRUE(eventually([&] { return rig.bulks() > bulks && rig.last().force_n == 0; }));
+    outlived_ms.push_back(rig.force_outlived_ms(stopped_ns));
+    // it holds: a second zero, and nothing else
+    const std::uint64_t held = rig.bulks();
+    ASSERT_TRUE(eventually([&] { return rig.bulks() > held; }));
+    EXPECT_EQ(rig.last().force_n, 0);
+    const std::size_t from = rig.count();
+    kill(rig.child, SIGCONT);
+    ASSERT_TRUE(rig.pushes());
+    rig.bus.with([&](EmulatedFalcon&) {
+      std::size_t k = from;
+      while (k < rig.packets.size() && rig.packets[k].force_n == 0) ++k;
+      // a packet that was on its way at the moment of the stop; the next one is a zero
+      if (rig.packets[k].force_n > 1) {
+        ++on_its_way;
+        EXPECT_EQ(rig.packets[++k].force_n, 0) << i;
+        while (k < rig.packets.size() && rig.packets[k].force_n == 0) ++k;
+      }
+      EXPECT_LT(rig.packets[k].force_n, 0.5) << "the ramp from its beginning, " << i;
+    });
+  }
+  keep("stopped", outlived_ms);
+  RecordProperty("on_its_way", on_its_way);
+  EXPECT_NE(rig.said().find("catena: the program has stood still with a force on"), std::string::npos) << rig.said();
+}
+
+TEST_F(WatchdogUsb, AProgramThatEndsByItselfEndsItAndItWritesNothing) {
+  Rig rig;
+  rig.start();
+  ASSERT_TRUE(rig.pushes());
+  const int watchdog = rig.watchdog();
+  ASSERT_GT(watchdog, 0);
+  const std::uint64_t bulks = rig.bulks();
+  kill(rig.child, SIGINT);
+  const int status = rig.wait();
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_FALSE(Rig::lives(watchdog));
+  EXPECT_EQ(rig.bulks(), bulks);
+  EXPECT_EQ(rig.last().force_n, 0);
+  EXPECT_EQ(rig.said().find("let go"), std::string::npos) << rig.said();
+}
+
+TEST_F(WatchdogUsb, TheProcessStandsApartIsSmallAndIsStartedAgain) {
+  Rig rig;
+  rig.start();
+  ASSERT_TRUE(rig.pushes());
+  const int first = rig.watchdog();
+  ASSERT_GT(first, 0);
+  EXPECT_EQ(getsid(first), first);
+  EXPECT_EQ(getpgid(first), first);
+  std::ifstream status("/proc/" + std::to_string(first) + "/status");
+  std::string line;
+  long resident_kb = 0;
+  while (std::getline(status, line))
+    if (line.starts_with("VmRSS:")) resident_kb = std::stol(line.substr(6));
+  EXPECT_GT(resident_kb, 0);
+#ifndef __SANITIZE_ADDRESS__
+  EXPECT_LT(resident_kb, 8192);
+#endif
+  RecordProperty("resident_kb", static_cast<int>(resident_kb));
+  for (const int signal_number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGUSR1, SIGPIPE}) kill(first, signal_number);
+  ASSERT_TRUE(frames_pass(rig.bus, 20));
+  EXPECT_TRUE(Rig::lives(first)) << "signals do not end it";
+  // it is killed: the driver lets go while it starts another one
+  kill(first, SIGKILL);
+  ASSERT_TRUE(eventually([&] { return rig.watchdog() != 0 && rig.watchdog() != first; }));
+  ASSERT_TRUE(rig.pushes());
+  const int second = rig.watchdog();
+  kill(rig.child, SIGKILL);
+  rig.wait();
+  ASSERT_TRUE(eventually([&] { return !Rig::lives(second); }));
+  EXPECT_EQ(rig.last().force_n, 0);
+}
+
+}  // namespace watchdog_test
+}  // namespace catena::haptics::tests

@@ -1,0 +1,371 @@
+/// The watchdog's work (haptics/watchdog) and the driver's side of it, in one process: it runs on a thread here, and "the program stands
+/// still" is the driver's threads held in a signal handler, at any instruction outside the kernel, as SIGSTOP would hold them.
+/// Asserts order and counts.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <set>
+
+#include "haptics/watchdog/watch.h"
+#include "tests/haptics/device/usbfs/in_process_bus.h"
+#include "tests/haptics/device/usbfs/wrap_source.h"
+
+namespace catena::haptics::tests {
+namespace watchdog_test {
+
+using watchdog::Ended;
+using watchdog::Holder;
+
+// ---- threads that stand still ----
+
+std::atomic<bool> still{false};
+std::atomic<int> standing{0};
+thread_local bool asked_in_kernel = false;
+
+void stand() {
+  ++standing;
+  while (still) {
+    timespec nap{0, 200000};
+    nanosleep(&nap, nullptr);
+  }
+  --standing;
+}
+void on_signal(int) {
+  const int error = errno;
+  if (InProcessBus::in_kernel())
+    asked_in_kernel = true;
+  else
+    stand();
+  errno = error;
+}
+void on_return() {
+  if (!std::exchange(asked_in_kernel, false)) return;
+  const int error = errno;
+  stand();
+  errno = error;
+}
+
+std::set<int> threads() {
+  std::set<int> all;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/task")) all.insert(std::stoi(entry.path().filename()));
+  return all;
+}
+
+/// Holds threads where they are until it ends.
+class StandStill {
+ public:
+  explicit StandStill(std::set<int> ids) : ids_(std::move(ids)) {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGRTMIN + 3, &action, nullptr);
+    InProcessBus::on_return(on_return);
+    still = true;
+    for (const int id : ids_) syscall(SYS_tgkill, getpid(), id, SIGRTMIN + 3);
+    const int all = static_cast<int>(ids_.size());
+    EXPECT_TRUE(eventually([&] { return standing == all; }));
+  }
+  ~StandStill() {
+    still = false;
+    EXPECT_TRUE(eventually([] { return standing == 0; }));
+  }
+  StandStill(const StandStill&) = delete;
+  StandStill& operator=(const StandStill&) = delete;
+
+ private:
+  std::set<int> ids_;
+};
+
+// ---- the watchdog on a thread ----
+
+class OnAThread final : public usb::ExternalWatchdog {
+ public:
+  OnAThread(watchdog::Page& page, int usb) {
+    const int made = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line_);
+    EXPECT_EQ(made, 0);
+    thread_ = std::thread([this, &page, usb] {
+      id = static_cast<int>(syscall(SYS_gettid));
+      ended = watch(page, usb, line_[1], -1);
+      has_ended = true;
+    });
+    while (id == 0) std::this_thread::yield();
+  }
+  ~OnAThread() override {
+    ::close(line_[0]);
+    thread_.join();
+    ::close(line_[1]);
+  }
+  bool alive() noexcept override { return !has_ended; }
+  void quit() noexcept override { EXPECT_EQ(::send(line_[0], &watchdog::kQuit, 1, 0), 1); }
+
+  std::atomic<int> id{0};
+  std::atomic<bool> has_ended{false};
+  Ended ended = Ended::told;
+
+ private:
+  int line_[2] = {-1, -1};
+  std::thread thread_;
+};
+
+/// Orders a force, tick by tick, as a servo would: after a read that is not ready it begins at zero and grows.
+class Ticks {
+ public:
+  static constexpr int kRampTicks = 60;
+  static constexpr double kForceN = 3;
+
+  explicit Ticks(usb::Falcon& falcon) : falcon_(falcon) {
+    falcon_.resume();
+    thread_ = std::thread([this] { run(); });
+    while (id == 0) std::this_thread::yield();
+  }
+  ~Ticks() {
+    stop_ = true;
+    thread_.join();
+  }
+  std::atomic<int> id{0};
+  std::atomic<std::uint64_t> lost{0};
+  std::atomic<bool> pushes{true};
+
+ private:
+  void run() {
+    id = static_cast<int>(syscall(SYS_gettid));
+    int since = 0;
+    while (!stop_) {
+      const DeviceInput input = falcon_.read();
+      const bool good = input.status == DeviceStatus::ready;
+      if (!good) ++lost;
+      since = good && pushes ? std::min(since + 1, kRampTicks) : 0;
+      falcon_.write({.force_n = Vec3(0, 0, kForceN * since / kRampTicks)});
+      std::this_thread::sleep_for(std::chrono::microseconds(300));
+    }
+  }
+  usb::Falcon& falcon_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// A Falcon that is armed and pushes, its watchdog, and every force that its motors have had.
+class Rig {
+ public:
+  Rig() {
+    usb::FalconOptions options = patient();
+    options.watchdog = [this](usb::Transport& transport, const usb::WatchdogMemory& memory) {
+      page = &memory.page();
+      auto made = std::make_unique<OnAThread>(memory.page(), transport.descriptor());
+      watchdog = made.get();
+      return Result<std::unique_ptr<usb::ExternalWatchdog>>(std::unique_ptr<usb::ExternalWatchdog>(std::move(made)));
+    };
+    const std::set<int> before = threads();
+    auto opened = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), std::move(options));
+    EXPECT_TRUE(opened);
+    falcon = std::move(*opened);
+    for (const int id : threads())
+      if (!before.contains(id) && id != watchdog->id) io_threads.insert(id);
+    EXPECT_EQ(io_threads.size(), 1u);
+    EXPECT_TRUE(hold_at(bus, {0, 0, 0.165}) && hold_at(bus, {0, 0, 0.175}) && hold_at(bus, {0, 0, 0.165}) && hold_at(bus, {0, 0, 0.155}) &&
+                hold_at(bus, {0, 0, 0.145}) && hold_at(bus, {0, 0, 0.13}));
+    EXPECT_TRUE(eventually([&] { return falcon->state() == usb::FalconState::ready; }));
+    bus.with(
+        [&](EmulatedFalcon& device) { device.on_exchange([&](const EmulatedFalcon::Exchange& e) { forces.push_back(norm(e.force_n)); }); });
+    ticks = std::make_unique<Ticks>(*falcon);
+  }
+  ~Rig() {
+    ticks.reset();
+    falcon.reset();
+  }
+  std::set<int> all_threads() const {
+    std::set<int> ids = io_threads;
+    ids.insert(ticks->id);
+    return ids;
+  }
+  double last() {
+    return bus.with([&](EmulatedFalcon&) { return forces.empty() ? 0.0 : forces.back(); });
+  }
+  bool pushes_fully() {
+    return eventually([&] { return last() > 0.97 * Ticks::kForceN; });
+  }
+  std::size_t packets() {
+    return bus.with([&](EmulatedFalcon&) { return forces.size(); });
+  }
+
+  InProcessBus bus{{.homed = true}};
+  watchdog::Page* page = nullptr;
+  OnAThread* watchdog = nullptr;
+  std::unique_ptr<usb::Falcon> falcon;
+  std::unique_ptr<Ticks> ticks;
+  std::set<int> io_threads;
+  std::vector<double> forces;  ///< under the port's mutex
+};
+
+/// How often a packet that was on its way at the moment of the stop came after the watchdog's zero.
+int stand_still_at_random(Rig& rig, bool ticks_too, int times) {
+  int on_its_way = 0;
+  std::uint64_t state = 88172645463325252u;
+  for (int i = 0; i < times && !testing::Test::HasFailure(); ++i) {
+    EXPECT_TRUE(rig.pushes_fully()) << i;
+    state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+    const std::int64_t until = now_ns() + static_cast<std::int64_t>(state % 2000000);
+    while (now_ns() < until) {
+    }
+    const std::uint32_t zeros = rig.page->zeros, takeovers = rig.page->takeovers;
+    const std::uint64_t lost = rig.ticks->lost;
+    std::size_t after_zero = 0;
+    {
+      const StandStill stopped(ticks_too ? rig.all_threads() : rig.io_threads);
+      EXPECT_TRUE(eventually([&] { return rig.page->zeros > zeros; })) << i;
+      after_zero = rig.packets();
+      EXPECT_EQ(rig.last(), 0) << i;
+      // it goes on to hold: another zero, and nothing but zeros
+      EXPECT_TRUE(eventually([&] { return rig.page->zeros > zeros + 1; })) << i;
+      EXPECT_EQ(rig.page->holder, Holder::watchdog);
+      EXPECT_EQ(rig.page->takeovers, takeovers + 1);
+      const double most = rig.bus.with([&](EmulatedFalcon&) {
+        return *std::max_element(rig.forces.begin() + static_cast<std::ptrdiff_t>(after_zero) - 1, rig.forces.end());
+      });
+      EXPECT_EQ(most, 0) << i;
+      after_zero = rig.packets();
+    }
+    EXPECT_TRUE(rig.pushes_fully()) << i;
+    EXPECT_EQ(rig.page->holder, Holder::program);
+    EXPECT_GT(rig.ticks->lost, lost) << "the haptic thread has been told";
+    // what came: at most one packet of the force of before, zeros, then the ramp from its beginning; never to and fro
+    rig.bus.with([&](EmulatedFalcon&) {
+      std::size_t k = after_zero;
+      if (rig.forces[k] > 0.5 * Ticks::kForceN) ++k, ++on_its_way;
+      EXPECT_EQ(rig.forces[k], 0) << i;
+      while (k < rig.forces.size() && rig.forces[k] == 0) ++k;
+      EXPECT_LT(rig.forces[k], 0.2 * Ticks::kForceN) << i;
+      for (; k + 1 < rig.forces.size(); ++k) EXPECT_GE(rig.forces[k + 1], rig.forces[k] - 0.05) << i << " " << k;
+      rig.forces.clear();
+    });
+  }
+  return on_its_way;
+}
+
+TEST(Watchdog, AProgramThatStandsStillAtAnyMomentHoldsNoForceAndRampsInAgain) {
+  Rig rig;
+  const int on_its_way = stand_still_at_random(rig, true, 40);
+  RecordProperty("on_its_way", on_its_way);
+  EXPECT_EQ(rig.falcon->stats().takeovers, rig.page->takeovers);
+}
+
+TEST(Watchdog, SoDoesADriverWhoseOwnThreadHangs) {
+  Rig rig;
+  stand_still_at_random(rig, false, 10);
+}
+
+TEST(Watchdog, ADeviceWithoutAForceIsLeftAlone) {
+  Rig rig;
+  rig.ticks->pushes = false;
+  ASSERT_TRUE(eventually([&] { return rig.last() == 0 && rig.page->pushing == 0; }));
+  const std::uint64_t bulks = rig.bus.port().counts.bulks;
+  {
+    // at rest a packet with room for a force is only now and then on its way: such a moment would count
+    const StandStill stopped(rig.all_threads());
+    if (rig.page->pushing == 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(150));
+      EXPECT_EQ(rig.page->takeovers, 0u);
+      EXPECT_EQ(rig.bus.port().counts.bulks, bulks);
+    }
+  }
+}
+
+TEST(Watchdog, AStalledEndpointIsClearedAndAFullOneIsTriedAgain) {
+  Rig rig;
+  ASSERT_TRUE(rig.pushes_fully());
+  {
+    const StandStill stopped(rig.all_threads());
+    rig.bus.with([](EmulatedFalcon& device) { device.halt(EmulatedFalcon::kEndpointOut); });
+    ASSERT_TRUE(eventually([&] { return rig.page->zeros > 0; }));
+    EXPECT_GE(rig.bus.port().counts.clear_halts, 1u);
+    EXPECT_EQ(rig.last(), 0);
+  }
+  ASSERT_TRUE(rig.pushes_fully());
+  rig.bus.with([&](EmulatedFalcon&) { rig.bus.port().faults.out_naks = true; });
+  {
+    const StandStill stopped(rig.all_threads());
+    const std::uint64_t bulks = rig.bus.port().counts.bulks;
+    ASSERT_TRUE(eventually([&] { return rig.bus.port().counts.bulks > bulks + 3; })) << "it tries on";
+    const std::uint32_t zeros = rig.page->zeros;
+    rig.bus.with([&](EmulatedFalcon&) { rig.bus.port().faults.out_naks = false; });
+    ASSERT_TRUE(eventually([&] { return rig.page->zeros > zeros; }));
+    EXPECT_EQ(rig.last(), 0) << "behind the packet that was queued";
+  }
+  EXPECT_TRUE(rig.pushes_fully());
+}
+
+TEST(Watchdog, AnUnpluggedDeviceEndsIt) {
+  Rig rig;
+  ASSERT_TRUE(rig.pushes_fully());
+  const StandStill stopped(rig.all_threads());
+  rig.bus.unplug();
+  EXPECT_TRUE(eventually([&] { return rig.watchdog->has_ended.load(); }));
+  EXPECT_EQ(rig.watchdog->ended, Ended::device_gone);
+}
+
+TEST(Watchdog, WhereTheProgramIsGoneItLetsGoAndEnds) {
+  InProcessBus bus({.homed = true});
+  auto memory = usb::WatchdogMemory::make(0x02, usb::encode_command({}));
+  ASSERT_TRUE(memory);
+  { const OnAThread gone((*memory)->page(), bus.fd()); }
+  EXPECT_EQ((*memory)->page().zeros, 2u);
+  EXPECT_EQ(bus.port().counts.bulks, 2u);
+  {
+    OnAThread told((*memory)->page(), bus.fd());
+    told.quit();
+    EXPECT_TRUE(eventually([&] { return told.has_ended.load(); }));
+    EXPECT_EQ(told.ended, Ended::told);
+  }
+  EXPECT_EQ(bus.port().counts.bulks, 2u) << "told to end, it writes nothing";
+}
+
+TEST(Watchdog, ADriverThatClosesTellsItToEnd) {
+  InProcessBus bus({.homed = true});
+  usb::FalconOptions options = patient();
+  std::atomic<int> started{0}, told{0};
+  struct Counted final : usb::ExternalWatchdog {
+    explicit Counted(std::atomic<int>& told_by) : told(told_by) {}
+    bool alive() noexcept override { return true; }
+    void quit() noexcept override { ++told; }
+    std::atomic<int>& told;
+  };
+  options.watchdog = [&](usb::Transport&, const usb::WatchdogMemory&) {
+    ++started;
+    return Result<std::unique_ptr<usb::ExternalWatchdog>>(std::make_unique<Counted>(told));
+  };
+  auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), std::move(options));
+  ASSERT_TRUE(falcon);
+  ASSERT_TRUE(frames_pass(bus, 3));
+  falcon->reset();
+  EXPECT_EQ(started, 1);
+  EXPECT_EQ(told, 1);
+}
+
+TEST(Watchdog, WithoutOneADeviceThatShallHaveOneGetsNoForceUntilItIsBack) {
+  Rig rig;
+  ASSERT_TRUE(rig.pushes_fully());
+  OnAThread* const first = rig.watchdog;
+  // it dies
+  first->quit();
+  EXPECT_TRUE(eventually([&] { return rig.falcon->stats().watchdog_restarts == 1; }));
+  EXPECT_TRUE(rig.pushes_fully());
+  EXPECT_NE(rig.watchdog, nullptr);
+}
+
+TEST(Watchdog, WhereItCannotBeStartedTheDeviceIsNotOpened) {
+  InProcessBus bus({.homed = true});
+  usb::FalconOptions options = patient();
+  options.watchdog = usb::watchdog_process("/no/such/program");
+  const auto falcon = usb::Falcon::open(std::make_unique<WrapSource>(bus.fd()), std::move(options));
+  ASSERT_FALSE(falcon);
+  EXPECT_NE(falcon.error().message.find("/no/such/program"), std::string::npos) << falcon.error().message;
+}
+
+}  // namespace watchdog_test
+}  // namespace catena::haptics::tests

@@ -1,0 +1,184 @@
+/// A program that is stopped (SIGSTOP) and goes on: the motors get zero in the first packet, and then the ramp.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "engine/base/clock.h"
+#include "haptics/device/emulator/emulated_transport.h"
+#include "haptics/device/usb/falcon.h"
+#include "haptics/servo/servo.h"
+#include "tests/haptics/device/usbfs/ball_link.h"
+#include "tests/support/child_test.h"
+#include "tests/support/support.h"
+
+namespace catena::haptics {
+namespace stopped_program_test {
+
+constexpr int kStops = 16;
+constexpr double kRampS = 0.05;
+constexpr std::int64_t kRampNs = 50000000;
+constexpr std::int64_t kStopMs = 75;  // the watchdog trips after 50 ms
+
+/// What the motors were sent, and when.
+struct Packet {
+  std::int64_t ns = 0;
+  double force_n = 0;
+};
+
+void nap_ms(std::int64_t ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+
+constexpr std::size_t kMostPackets = 200000;
+
+/// A device that does nothing by itself: what it is told is what the motors have. It rests 10 mm deep in the ball.
+class Plain final : public Device {
+ public:
+  explicit Plain(std::vector<Packet>& packets) : packets_(packets) { capabilities_.max_force_n = 10; }
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override { return {.position_m = {0, 0, 0.13}}; }
+  void write(const DeviceOutput& output) noexcept override {
+    if (packets_.size() < kMostPackets) packets_.push_back({now_ns(), stopped_ ? 0 : norm(output.force_n)});
+  }
+  void stop() noexcept override { stopped_ = true; }
+  void resume() noexcept override { stopped_ = false; }
+
+ private:
+  std::vector<Packet>& packets_;
+  DeviceCapabilities capabilities_;
+  std::atomic<bool> stopped_{false};
+};
+
+std::unique_ptr<Device> emulated_falcon(const std::shared_ptr<SharedEmulatedFalcon>& shared, std::vector<Packet>& packets) {
+  {
+    const std::scoped_lock lock(shared->mutex);
+    EXPECT_TRUE(shared->device.mechanism().hold({0, 0, 0.175}));
+    shared->device.on_exchange([&](const EmulatedFalcon::Exchange& e) {
+      if (packets.size() < kMostPackets) packets.push_back({now_ns(), norm(e.force_n)});
+    });
+  }
+  auto falcon = usb::Falcon::open(std::make_unique<EmulatedSource>(shared, true));
+  EXPECT_TRUE(falcon);
+  for (int i = 0; i < 5000 && (*falcon)->state() != usb::FalconState::ready; ++i) nap_ms(1);
+  return std::move(*falcon);
+}
+
+// The child of the tests below: holds a hand that presses into a ball, and is stopped again and again.
+TEST(StoppedProgram, DISABLED_HoldsAHandAndIsStopped) {
+  const std::string path = test::child_variable("CATENA_PACKETS_OF_THE_CHILD");
+  if (path.empty()) GTEST_SKIP() << "the child of this suite";
+  std::vector<Packet> packets;
+  packets.reserve(kMostPackets);
+  auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.homed = true});
+  const bool plain = test::child_variable("CATENA_DEVICE_OF_THE_CHILD") == "plain";
+  std::unique_ptr<Device> device = plain ? std::make_unique<Plain>(packets) : emulated_falcon(shared, packets);
+  auto program = std::make_shared<Program>(*tests::ball_link_program());
+  program->limits.ramp_in_s = kRampS;
+  Servo servo(*device, program, {});
+  ASSERT_TRUE(servo.start());
+  {
+    const std::scoped_lock lock(shared->mutex);
+    ASSERT_TRUE(shared->device.mechanism().hold({0, 0, 0.13}));
+  }
+  nap_ms(200);
+  std::ofstream(path + ".ready") << "1";
+  for (int i = 0; i < 100000 && !test::exists(path + ".enough"); ++i) nap_ms(1);
+  servo.stop();
+  device.reset();
+  std::ofstream out(path + ".part");
+  for (const Packet& packet : packets) out << packet.ns << ' ' << packet.force_n << '\n';
+  out.close();
+  ASSERT_EQ(std::rename((path + ".part").c_str(), path.c_str()), 0);
+}
+
+/// From when the program stood still, until it was told to go on.
+struct Stop {
+  std::int64_t from_ns = 0, to_ns = 0;
+};
+
+/// Stops the child so many times; what its motors got.
+void stop_and_go(const std::string& device, std::vector<Packet>& packets, std::vector<Stop>& stops) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "packets";
+  const pid_t child = test::start_case("StoppedProgram.DISABLED_*",
+                                       {.environment = {"CATENA_PACKETS_OF_THE_CHILD=" + path, "CATENA_DEVICE_OF_THE_CHILD=" + device}});
+  int status = 0;
+  while (!test::exists(path + ".ready") && waitpid(child, &status, WNOHANG) == 0) nap_ms(1);
+  for (int i = 0; i < kStops; ++i) {
+    Stop stop;
+    kill(child, SIGSTOP);
+    ASSERT_EQ(waitpid(child, &status, WUNTRACED), child);
+    stop.from_ns = now_ns();
+    nap_ms(kStopMs);
+    stop.to_ns = now_ns();
+    kill(child, SIGCONT);
+    stops.push_back(stop);
+    nap_ms(kStopMs + 35);
+    // at another moment of the period each time
+    std::this_thread::sleep_for(std::chrono::microseconds(83 * i));
+  }
+  test::write_file(path + ".enough", "1");
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  std::ifstream in(path);
+  for (Packet packet; in >> packet.ns >> packet.force_n;) packets.push_back(packet);
+  ASSERT_GT(packets.size(), 1000u);
+}
+
+std::string around(const std::vector<Packet>& packets, std::size_t at) {
+  std::string text;
+  for (std::size_t i = at > 3 ? at - 3 : 0; i < std::min(at + 5, packets.size()); ++i)
+    text +=
+        std::to_string(1e-6 * static_cast<double>(packets[i].ns - packets[at].ns)) + " ms " + std::to_string(packets[i].force_n) + " N; ";
+  return text;
+}
+
+/// `on_its_way`: packets that may have been on their way to the motors at the moment of the stop, and arrive after it.
+void check(const std::vector<Packet>& packets, const std::vector<Stop>& stops, std::size_t on_its_way) {
+  double most = 0;
+  for (const Packet& packet : packets) most = std::max(most, packet.force_n);
+  ASSERT_GT(most, 2) << "the hand was held";
+  int with_force = 0;
+  for (const Stop& stop : stops) {
+    // the first packet after it
+    std::size_t i = 1;
+    while (i + 1 < packets.size() && packets[i].ns < stop.from_ns) ++i;
+    EXPECT_GE(packets[i].ns, stop.to_ns);
+    with_force += packets[i - 1].force_n > 1;
+    const std::size_t first = i + on_its_way;
+    ASSERT_LT(first, packets.size());
+    // what has its own thread may send the tick after the zero: the ramp's first
+    if (on_its_way == 0) {
+      EXPECT_EQ(packets[first].force_n, 0) << around(packets, i);
+    }
+    // the ramp: never more than its share of the time since; a motor count, and two ticks of what a packet shows late
+    for (std::size_t k = first; k < packets.size() && packets[k].ns < stop.to_ns + kRampNs; ++k) {
+      const double share = (1e-9 * static_cast<double>(packets[k].ns - stop.to_ns) + 2e-3) / kRampS;
+      ASSERT_LE(packets[k].force_n, most * share + 0.02) << around(packets, i);
+    }
+  }
+  EXPECT_GE(with_force, kStops / 4);
+}
+
+TEST(StoppedProgram, TheFirstTickAfterAStopIsZeroAndThenTheRamp) {
+  std::vector<Packet> packets;
+  std::vector<Stop> stops;
+  stop_and_go("plain", packets, stops);
+  check(packets, stops, 0);
+}
+
+TEST(StoppedProgram, TheMotorsOfAFalconGetTheRamp) {
+  std::vector<Packet> packets;
+  std::vector<Stop> stops;
+  stop_and_go("falcon", packets, stops);
+  check(packets, stops, 1);
+}
+
+}  // namespace stopped_program_test
+}  // namespace catena::haptics
