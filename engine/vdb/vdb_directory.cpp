@@ -99,11 +99,12 @@ Result<VdbDirectory> read_vdb_directory(std::span<const std::byte> file, const s
   for (std::int32_t i = 0; i < count && has_offsets; ++i) {
     const std::uint64_t at = reader.at();
     std::string name = reader.text(), type = reader.text();
-    reader.text();
+    const bool shares_tree = !reader.text().empty();
     const auto begin = reader.number<std::int64_t>(), blocks = reader.number<std::int64_t>(), end = reader.number<std::int64_t>();
     if (!reader.ok()) return cut(fmt::format("the entry of grid {}", i + 1));
     VdbEntry entry = entry_of(std::move(name), std::move(type));
-    if (begin <= 0 || blocks < begin || end < blocks || static_cast<std::uint64_t>(end) > size)
+    const bool in_order = shares_tree ? begin <= end : begin <= blocks && blocks <= end;  // of a shared tree there are no blocks
+    if (begin <= 0 || !in_order || static_cast<std::uint64_t>(end) > size)
       return cut(fmt::format("grid \"{}\"", entry.name));
     entry.at = at;
     reader.seek(static_cast<std::uint64_t>(end));

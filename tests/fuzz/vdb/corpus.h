@@ -44,8 +44,8 @@ inline std::vector<Specimen> vdb_corpus() {
   openvdb::initialize();
   using namespace openvdb;
   constexpr std::uint32_t mask = io::COMPRESS_ACTIVE_MASK, blosc = io::COMPRESS_BLOSC | mask, zip = io::COMPRESS_ZIP | mask;
-  const auto floats = bump<FloatGrid>("density", 6);
-  auto halves = bump<FloatGrid>("density", 6);
+  const auto floats = bump<FloatGrid>("density", 4);
+  auto halves = bump<FloatGrid>("density", 4);
   halves->setSaveFloatAsHalf(true);
   const auto vectors = bump<Vec3SGrid>("velocity", 4);
   auto half_vectors = bump<Vec3SGrid>("velocity", 4);

@@ -29,15 +29,14 @@ int main() {
   if (text.starts_with("HANG"))
     for (;;) ::pause();
   if (text.starts_with("SPIN"))
-    for (volatile int n = 0;; n = n + 1) {
-    }
+    for (;;) ::getppid();
   if (text.starts_with("EXIT")) return 7;
   if (text.starts_with("ABORT")) std::abort();
   if (text.starts_with("KEEP")) {
-    void* place = ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, kAnswer, 0);
+    if (::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, kAnswer, 0) == MAP_FAILED) return 4;
     if (::fork() == 0) {
       ::alarm(5);
-      for (;;) static_cast<volatile char*>(place)[0] = 1;
+      for (;;) ::pause();
     }
     return 0;
   }
