@@ -104,8 +104,7 @@ Result<VdbDirectory> read_vdb_directory(std::span<const std::byte> file, const s
     if (!reader.ok()) return cut(fmt::format("the entry of grid {}", i + 1));
     VdbEntry entry = entry_of(std::move(name), std::move(type));
     const bool in_order = shares_tree ? begin <= end : begin <= blocks && blocks <= end;  // of a shared tree there are no blocks
-    if (begin <= 0 || !in_order || static_cast<std::uint64_t>(end) > size)
-      return cut(fmt::format("grid \"{}\"", entry.name));
+    if (begin <= 0 || !in_order || static_cast<std::uint64_t>(end) > size) return cut(fmt::format("grid \"{}\"", entry.name));
     entry.at = at;
     reader.seek(static_cast<std::uint64_t>(end));
     if (!reader.ok()) return cut(fmt::format("grid \"{}\"", entry.name));

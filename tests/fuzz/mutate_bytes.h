@@ -8,11 +8,26 @@
 
 namespace catena::test {
 
-inline constexpr std::uint64_t kExtremes[] = {0, 1, 2, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff, 0x100000000,
-                                              0x7fffffffffffffff, 0x8000000000000000, 0xffffffffffffffff, 0x7ff8000000000000};
+inline constexpr std::uint64_t kExtremes[] = {0,
+                                              1,
+                                              2,
+                                              0x7f,
+                                              0x80,
+                                              0xff,
+                                              0x7fff,
+                                              0xffff,
+                                              0x7fffffff,
+                                              0x80000000,
+                                              0xffffffff,
+                                              0x100000000,
+                                              0x7fffffffffffffff,
+                                              0x8000000000000000,
+                                              0xffffffffffffffff,
+                                              0x7ff8000000000000};
 
 /// One to `most` changes, all of them within [first, last) of the bytes.
-inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t most = 3, std::size_t first = 0, std::size_t last = ~std::size_t{0}) {
+inline std::string mutate_bytes(std::string bytes, Random& random, std::size_t most = 3, std::size_t first = 0,
+                                std::size_t last = ~std::size_t{0}) {
   const std::size_t changes = 1 + random.below(most);
   for (std::size_t i = 0; i < changes && first < bytes.size(); ++i) {
     const std::size_t end = std::min(last, bytes.size()), at = first + random.below(end - first);

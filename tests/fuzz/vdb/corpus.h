@@ -25,7 +25,8 @@ typename Grid::Ptr bump(const std::string& name, int radius) {
   for (int x = -radius; x <= radius; ++x)
     for (int y = -radius; y <= radius; ++y)
       for (int z = -radius; z <= radius; ++z)
-        if (const int r2 = x * x + y * y + z * z; r2 <= radius * radius) accessor.setValue({x + 3, y - 2, z}, Value(1 + r2 + (x * 7 + y * 3 + z) % 5));
+        if (const int r2 = x * x + y * y + z * z; r2 <= radius * radius)
+          accessor.setValue({x + 3, y - 2, z}, Value(1 + r2 + (x * 7 + y * 3 + z) % 5));
   return grid;
 }
 

@@ -34,8 +34,8 @@ struct Tally {
 
   void count(const std::string& message) {
     last = message;
-    for (const char* words : {"took more than", "broke down", "gave up", "was killed", "what its reader made of it", "of memory", "cut short",
-                              "not a .vdb", "has no", "there is no", "transform"})
+    for (const char* words : {"took more than", "broke down", "gave up", "was killed", "what its reader made of it", "of memory",
+                              "cut short", "not a .vdb", "has no", "there is no", "transform"})
       if (message.find(words) != std::string::npos) {
         ++ends[words];
         return;
