@@ -1,5 +1,6 @@
 /// Deterministic mutations of a binary file: bits and bytes changed, numbers made extreme, pieces cut, doubled and exchanged.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <string>

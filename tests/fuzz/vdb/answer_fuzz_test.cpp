@@ -1,6 +1,7 @@
 /// What the reader's process hands over is foreign, too: it may have been taken over. Its answers are forged here, whole and in parts.
 ///   CATENA_FUZZ_INPUTS=1000000 build/asan/test_fuzz_vdb --gtest_filter='AnswerFuzz.*'
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>
