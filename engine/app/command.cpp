@@ -20,7 +20,8 @@ Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std:
       return Error{"--field " + option + ": expected NAME=FILE or NAME=FILE:GRID"};
     scene::FieldOverride entry{option.substr(0, equals), option.substr(equals + 1), {}};
     const auto colon = entry.file.rfind(':');
-    if (colon != std::string::npos && !std::filesystem::exists(entry.file)) {
+    std::error_code code;
+    if (colon != std::string::npos && !std::filesystem::exists(entry.file, code)) {
       entry.grid = entry.file.substr(colon + 1);
       entry.file.resize(colon);
     }
@@ -37,18 +38,6 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
   return scene::scene_for_file(path, {}, colors);
-}
-
-std::vector<std::string> inputs_of(const scene::Scene& scene) {
-  std::vector<std::string> inputs{scene.path};
-  scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
-    if (source.file) inputs.push_back(source.file->path);
-  });
-  scene.world.each<scene::Volume>([&](scene::Entity, const scene::Volume& volume) {
-    if (!volume.transfer.file.empty()) inputs.push_back(volume.transfer.file);
-  });
-  scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) { inputs.push_back(source.path); });
-  return inputs;
 }
 
 std::string human_bytes(double bytes) {

@@ -43,8 +43,6 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
                                 const scene::NamedColors& colors = {});
 /// NAME=FILE[:GRID], as the command line gives them.
 Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std::string>& field_options);
-/// The scene file itself and every data file that its fields name: what no output may overwrite.
-std::vector<std::string> inputs_of(const scene::Scene& scene);
 
 /// "1.23 MiB", "512 B".
 std::string human_bytes(double bytes);

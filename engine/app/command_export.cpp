@@ -7,6 +7,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/log_scene.h"
+#include "engine/app/run_files.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "haptics/servo/log/reader.h"
@@ -72,11 +73,11 @@ void append_recorded(std::string& line, const LinkColumns& columns, const log::L
 
 Outcome export_log(const ExportOptions& options) {
   CATENA_TRY(log::LogReader reader, log::LogReader::open(options.log));
-  CATENA_CHECK(check_output(options.output, {options.log}));
-  if (!options.details.empty()) {
-    CATENA_CHECK(check_output(options.details, {options.log}));
-    if (same_file(options.details, options.output)) return Error{options.details + ": --details and -o name one file: expected two"};
-  }
+  RunFiles files;
+  files.reads(options.log);
+  files.writes("-o", options.output);
+  files.writes("--details", options.details);
+  CATENA_CHECK(files.check());
   CATENA_TRY(LinkColumns columns, columns_of_log(options.log));
   CATENA_TRY(OutputFile ticks, OutputFile::open(options.output));
   ticks.write(tick_header(columns));
@@ -103,9 +104,9 @@ Outcome export_log(const ExportOptions& options) {
     append_recorded(line, columns, reader.tick());
     details->write(line);
   }
-  std::vector<OutputFile*> files{&ticks};
-  if (details) files.push_back(&*details);
-  CATENA_CHECK(commit_all(files));
+  std::vector<OutputFile*> written{&ticks};
+  if (details) written.push_back(&*details);
+  CATENA_CHECK(commit_all(written));
   fmt::print("{}: {} ticks; {}\n", options.log, count, reader.ending());
   return Done{};
 }

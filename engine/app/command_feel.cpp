@@ -17,8 +17,8 @@
 #include "engine/app/hand/realtime_option.h"
 #include "engine/app/hand/recording.h"
 #include "engine/app/number_option.h"
+#include "engine/app/run_files.h"
 #include "engine/base/clock.h"
-#include "engine/base/output_file.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
 
@@ -112,9 +112,12 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
 Outcome feel(const FeelOptions& options) {
   if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to feel"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
-  if (!options.stats.empty()) CATENA_CHECK(check_output(options.stats, inputs_of(scene)));
-  if (!options.stats.empty() && !options.record.empty() && same_file(options.stats, options.record))
-    return Error{options.stats + ": --stats and --record name one file: expected two"};
+  RunFiles files(scene);
+  files.reads_device(options.device);
+  files.reads(options.firmware);
+  files.writes("--stats", options.stats);
+  files.writes("--record", options.record);
+  CATENA_CHECK(files.check());
   CATENA_TRY(OpenHand hand, open_hand(scene, options.device, options.rate_hz, options.firmware));
   // from here on: while it opens there is no force, and Ctrl-C ends at once
   const Interrupt interrupt;

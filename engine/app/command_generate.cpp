@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "engine/app/command.h"
+#include "engine/app/run_files.h"
 #include "engine/base/numbers.h"
-#include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
@@ -43,7 +43,9 @@ Outcome check(const GenerateOptions& o) {
   const Vec3 d(o.direction[0], o.direction[1], o.direction[2]);
   if (!is_finite(d) || norm(d) == 0) return Error{"--direction: expected three finite numbers, not all zero"};
   if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
-  return check_output(o.output, {});
+  RunFiles files;
+  files.writes("-o", o.output);
+  return files.check();
 }
 
 Outcome generate(const GenerateOptions& o) {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "engine/app/command.h"
-#include "engine/base/output_file.h"
+#include "engine/app/run_files.h"
 #include "engine/base/text.h"
 #include "engine/field/load.h"
 
@@ -21,7 +21,10 @@ struct ImportOptions {
 };
 
 Outcome import_file(const ImportOptions& o) {
-  CATENA_CHECK(check_output(o.output, {o.input}));
+  RunFiles files;
+  files.reads(o.input);
+  files.writes("-o", o.output);
+  CATENA_CHECK(files.check());
   if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
   if (!o.input.ends_with(".raw") && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
   field::LoadRequest request;

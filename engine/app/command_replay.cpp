@@ -63,9 +63,9 @@ Outcome replay_scene(const ReplayOptions& options) {
   if (options.output.empty()) return Error{"--output is required (see catena replay --help)"};
   if (!is_scene_file(options.scene)) return Error{options.scene + ": expected a scene file (.json) with a chain to replay"};
   CATENA_TRY(scene::Scene scene, open_scene(options.scene, options.fields));
-  std::vector<std::string> inputs = inputs_of(scene);
-  inputs.push_back(options.probe);
-  CATENA_CHECK(check_replay_outputs(options, inputs));
+  RunFiles named = replay_files(options);
+  named.reads(scene);
+  CATENA_CHECK(named.check());
   CATENA_TRY(const haptics::Limits limits, device_limits(scene, options.scene));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene, limits));
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));

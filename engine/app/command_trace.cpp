@@ -6,10 +6,12 @@
 #include <ctime>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "engine/app/command.h"
 #include "engine/app/lines_file.h"
+#include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 #include "engine/base/csv_paths.h"
 #include "engine/base/quantile.h"
@@ -107,6 +109,7 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
     Curves curves;
     curves.reserve(seeds.size());
     Progress progress("trace", static_cast<double>(seeds.size()));
+    std::size_t knots = 0;
     for (std::size_t first = 0; first < seeds.size(); first += at_once) {
       const std::span block(seeds.data() + first, std::min(at_once, seeds.size() - first));
       const auto traced = exactly ? flow::trace_each(flow, block, exact) : tracer.trace(block);
@@ -114,7 +117,10 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
         if (!traced[i])
           return Error{fmt::format("{}:{}: {}", options.seeds, first + i + 2, traced[i].error().message)};  // after the header
         curves.push_back(*traced[i]);
+        knots += curves.back()->knots().size();
       }
+      if (knots > scene::kMostKnots)
+        return Error{options.seeds + ": " + scene::too_many_knots(seeds.size(), first + block.size(), scene::kMostKnots)};
       progress.at(static_cast<double>(first + block.size()));
     }
     return curves;
@@ -135,7 +141,12 @@ Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node
   if (const json::Node* surface = node.find("isosurface"); surface != nullptr && !is_scene_file(options.source))
     if (const json::Node* name = surface->find("field"); name != nullptr && name->kind == json::Kind::string) add_grid(scene, name->string);
   CATENA_TRY(const scene::Seeds seeds, scene::read_seeds(scene, node));
-  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step}, node);
+  std::optional<Progress> shown;
+  const auto progress = [&](std::size_t done, std::size_t of) {
+    if (!shown) shown.emplace("trace", static_cast<double>(of));
+    shown->at(static_cast<double>(done));
+  };
+  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step, scene::kMostKnots, progress}, node);
 }
 
 Outcome trace_lines(const TraceOptions& options) {
@@ -146,18 +157,16 @@ Outcome trace_lines(const TraceOptions& options) {
   if (!vtp && !options.output.ends_with(".csv") && !options.output.starts_with("/dev/"))
     return Error{options.output + ": expected an output that ends in .csv or .vtp"};
   CATENA_TRY(scene::Scene scene, scene_of(options));
-  std::vector<std::string> inputs = inputs_of(scene);
-  if (!options.seeds.starts_with("{")) inputs.push_back(options.seeds);
+  RunFiles files(scene);
+  if (!options.seeds.starts_with("{")) files.reads(options.seeds);
+  files.writes("-o", options.output);
+  files.writes("--stats", options.stats);
+  CATENA_CHECK(files.check());
   json::Node pattern;
   if (is_pattern(options.seeds)) {
     CATENA_TRY(pattern, pattern_of(options.seeds));
   }
   CATENA_TRY(const field::VectorFieldPtr field, vector_field(scene, options));
-  CATENA_CHECK(check_output(options.output, inputs));
-  if (!options.stats.empty()) {
-    CATENA_CHECK(check_output(options.stats, inputs));
-    if (same_file(options.stats, options.output)) return Error{options.stats + ": --stats and -o name one file: expected two"};
-  }
 
   const flow::Flow flow{field.get(), options.kind == "line", options.min_speed};
   Timing timing;

@@ -6,10 +6,10 @@
 #include "engine/app/command.h"
 #include "engine/app/hand/realtime_option.h"
 #include "engine/app/number_option.h"
+#include "engine/app/run_files.h"
 #include "engine/app/size_option.h"
 #include "engine/app/stereo_option.h"
 #include "engine/app/viewer/viewer.h"
-#include "engine/base/output_file.h"
 
 namespace catena::app {
 
@@ -29,21 +29,18 @@ struct ViewArguments {
   StereoChoice stereo;
 };
 
-/// One file twice, or an input: said before anything is opened.
-Outcome check_outputs(const ViewArguments& o, const std::vector<std::string>& inputs) {
-  const std::pair<const char*, const std::string&> outputs[] = {{"--screenshot", o.screenshot},
-                                                                {"--window-screenshot", o.window_screenshot},
-                                                                {"--servo-stats", o.servo_stats},
-                                                                {"--frame-stats", o.frame_stats},
-                                                                {"--record", o.record}};
-  for (const auto& [option, path] : outputs) {
-    if (path.empty()) continue;
-    if (&path != &o.record) CATENA_CHECK(check_output(path, inputs));
-    for (const auto& [other, other_path] : outputs)
-      if (&path != &other_path && !other_path.empty() && same_file(path, other_path))
-        return Error{path + ": " + option + " and " + other + " name one file: expected two"};
-  }
-  return Done{};
+/// Of the whole run, as far as the command line says.
+RunFiles files_of(const ViewArguments& o, const scene::Scene& scene) {
+  RunFiles files(scene);
+  files.reads_device(o.device);
+  files.reads(o.firmware);
+  files.reads_folder(o.shaders);
+  files.writes("--screenshot", o.screenshot);
+  files.writes("--window-screenshot", o.window_screenshot);
+  files.writes("--servo-stats", o.servo_stats);
+  files.writes("--frame-stats", o.frame_stats);
+  files.writes("--record", o.record);
+  return files;
 }
 
 Outcome open_window(const ViewArguments& o, int& exit_code) {
@@ -59,7 +56,7 @@ Outcome open_window(const ViewArguments& o, int& exit_code) {
     if (o.source.empty() && !o.fields.empty()) return Error{"--field: there is no scene whose field it could replace, expected a SOURCE"};
     CATENA_TRY(scene::Scene scene, o.source.empty() ? Result<scene::Scene>(scene::Scene()) : open_scene(o.source, o.fields));
     if (!o.source.empty()) CATENA_CHECK(options.adjust(scene));
-    CATENA_CHECK(check_outputs(o, inputs_of(scene)));
+    CATENA_CHECK(files_of(o, scene).check());
     options.quality_stated = !o.quality.empty();
     const std::string& own = scene.quality.empty() ? kQuality : scene.quality;
     CATENA_TRY(options.quality, parse_quality(options.quality_stated ? o.quality : own));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "engine/app/run_files.h"
 #include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "haptics/servo/log/reader.h"
@@ -16,7 +17,7 @@ Result<log::LogHeader> log_header(const std::string& scene_path, const std::vect
   log::LogHeader header;
   header.scene_path = scene_path;
   if (is_scene_file(scene_path)) {
-    CATENA_TRY(header.scene_text, read_text(scene_path, "a scene file (JSON)"));
+    CATENA_TRY(header.scene_text, read_text(scene_path, "a scene file (JSON)", kMostJsonBytes));
   }
   header.fields = field_options;
   header.device = device;

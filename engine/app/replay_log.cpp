@@ -14,18 +14,14 @@ namespace catena::app {
 
 namespace log = haptics::log;
 
-Outcome check_replay_outputs(const ReplayOptions& options, const std::vector<std::string>& inputs) {
-  const std::pair<const char*, const std::string&> outputs[] = {
-      {"-o", options.output}, {"--details", options.details}, {"--widgets", options.widgets}, {"--stats", options.stats}};
-  for (std::size_t i = 0; i < std::size(outputs); ++i) {
-    const auto& [option, path] = outputs[i];
-    if (path.empty()) continue;
-    CATENA_CHECK(check_output(path, inputs));
-    for (std::size_t k = 0; k < i; ++k)
-      if (!outputs[k].second.empty() && same_file(path, outputs[k].second))
-        return Error{fmt::format("{}: {} and {} name one file: expected two", path, option, outputs[k].first)};
-  }
-  return Done{};
+RunFiles replay_files(const ReplayOptions& options) {
+  RunFiles files;
+  for (const std::string* path : {&options.scene, &options.probe, &options.log}) files.reads(*path);
+  files.writes("-o", options.output);
+  files.writes("--details", options.details);
+  files.writes("--widgets", options.widgets);
+  files.writes("--stats", options.stats);
+  return files;
 }
 
 std::string replay_stats_json(const haptics::ReplayStats& s, const std::string& more) {
@@ -59,9 +55,10 @@ Outcome replay_log_file(const ReplayOptions& options) {
   LinkColumns columns = all_links;
 
   // what the first program needs must not be overwritten; it is known once its scene has been read
-  CATENA_TRY(std::vector<std::string> inputs, scene.inputs());
-  inputs.push_back(options.log);
-  CATENA_CHECK(check_replay_outputs(options, inputs));
+  CATENA_TRY(const std::vector<std::string> inputs, scene.inputs());
+  RunFiles named = replay_files(options);
+  named.reads(inputs);
+  CATENA_CHECK(named.check());
   std::optional<OutputFile> ticks, details, widgets, json;
   const auto open = [](std::optional<OutputFile>& file, const std::string& path, const std::string& header) -> Outcome {
     if (path.empty()) return Done{};

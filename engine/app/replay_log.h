@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/app/command.h"
+#include "engine/app/run_files.h"
 #include "haptics/servo/replay.h"
 
 namespace catena::app {
@@ -16,8 +17,8 @@ struct ReplayOptions {
 
 Outcome replay_log_file(const ReplayOptions& options);
 
-/// No output names an input, and no two name one file.
-Outcome check_replay_outputs(const ReplayOptions& options, const std::vector<std::string>& inputs);
+/// What the run reads beside its scene, and what it writes.
+RunFiles replay_files(const ReplayOptions& options);
 /// `more`: members behind the others ("\"widgets\": {..}"), or none.
 std::string replay_stats_json(const haptics::ReplayStats& stats, const std::string& more = {});
 

@@ -212,7 +212,7 @@ Result<Node> parse(std::string_view text, const std::string& file) {
 }
 
 Result<Node> read(const std::string& path) {
-  CATENA_TRY(const std::string text, read_text(path, "a JSON file"));
+  CATENA_TRY(const std::string text, read_text(path, "a JSON file", kMostJsonBytes));
   return parse(text, path);
 }
 

@@ -1,10 +1,12 @@
 #include "engine/base/output_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace catena {
 
@@ -20,51 +22,41 @@ bool written_directly(const std::string& path) {
 }
 }  // namespace
 
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code code;
-  if (written_directly(a)) return false;
-  if (fs::exists(a, code) && fs::exists(b, code)) return fs::equivalent(a, b, code);
-  return fs::weakly_canonical(a, code) == fs::weakly_canonical(b, code);
-}
-
-Outcome check_output(const std::string& path, const std::vector<std::string>& inputs) {
-  std::error_code code;
-  if (path.empty()) return Error{"the output's name is empty: expected a file name"};
-  if (fs::is_directory(path, code)) return Error{path + ": is a folder: expected a file name to write to"};
-  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, code)) return Error{path + ": the folder " + folder.string() + " does not exist"};
-  for (const std::string& input : inputs) {
-    if (same_file(path, input)) return Error{path + ": is also an input: expected another name for the output"};
-  }
-  return Done{};
-}
-
-OutputFile::OutputFile(std::string path, std::string temporary, std::FILE* file)
-    : path_(std::move(path)), temporary_(std::move(temporary)), file_(file) {}
+OutputFile::OutputFile(std::string path, std::optional<PartFile> part, std::FILE* file)
+    : path_(std::move(path)), part_(std::move(part)), file_(file) {}
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : path_(std::move(other.path_)), temporary_(std::move(other.temporary_)), file_(other.file_), error_(other.error_) {
-  other.file_ = nullptr;
-  other.temporary_.clear();
+    : path_(std::move(other.path_)), part_(std::move(other.part_)), file_(std::exchange(other.file_, nullptr)), error_(other.error_) {
+  other.part_.reset();
 }
 
 OutputFile::~OutputFile() {
   if (file_ != nullptr) std::fclose(file_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 Result<OutputFile> OutputFile::open(const std::string& name) {
+  if (written_directly(name)) {
+    std::FILE* const file = std::fopen(name.c_str(), "wbe");
+    if (file == nullptr) return cannot_write(name, errno);
+    return OutputFile(name, std::nullopt, file);
+  }
   // through a link to the file that it names
   std::error_code code;
   std::string path = name;
-  if (fs::is_symlink(name, code) && !written_directly(name)) {
+  if (fs::is_symlink(name, code)) {
     path = fs::weakly_canonical(name, code).string();
     if (code) return Error{name + ": cannot write: " + code.message()};
   }
-  const std::string temporary = written_directly(path) ? std::string() : path + ".part" + std::to_string(::getpid());
-  std::FILE* file = std::fopen((temporary.empty() ? path : temporary).c_str(), "wb");
-  if (file == nullptr) return cannot_write(path, errno);
-  return OutputFile(path, temporary, file);
+  CATENA_TRY(PartFile part, PartFile::create(path));
+  // the stream has a descriptor of its own: the part's keeps the lock until the end
+  const int own = ::fcntl(part.descriptor(), F_DUPFD_CLOEXEC, 0);
+  std::FILE* const file = own < 0 ? nullptr : ::fdopen(own, "wb");
+  if (file == nullptr) {
+    const int why = errno;
+    if (own >= 0) ::close(own);
+    return cannot_write(path, why);
+  }
+  return OutputFile(path, std::move(part), file);
 }
 
 void OutputFile::write(std::string_view text) {
@@ -73,6 +65,11 @@ void OutputFile::write(std::string_view text) {
 
 void OutputFile::seek(std::uint64_t position) {
   if (error_ == 0 && ::fseeko(file_, static_cast<off_t>(position), SEEK_SET) != 0) error_ = errno;
+}
+
+void OutputFile::sync() {
+  if (error_ != 0 || !part_) return;
+  if (std::fflush(file_) != 0 || ::fsync(part_->descriptor()) != 0) error_ = errno;
 }
 
 Outcome OutputFile::finish() {
@@ -88,11 +85,7 @@ Outcome OutputFile::finish() {
 
 Outcome OutputFile::commit() {
   CATENA_CHECK(finish());
-  if (!temporary_.empty()) {
-    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return cannot_write(path_, errno);
-    temporary_.clear();
-  }
-  return Done{};
+  return part_ ? part_->commit() : Outcome(Done{});
 }
 
 Outcome commit_all(const std::vector<OutputFile*>& files) {

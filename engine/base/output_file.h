@@ -1,22 +1,18 @@
-/// An output that is either complete or not there: written to a temporary file beside its place, renamed by commit().
+/// An output that is either complete or not there: written to an unfinished file beside its place (part_file.h), renamed by commit().
 /// Places that are no regular files (/dev/stdout, /dev/full, pipes) are written directly. Errors name the path and why.
 #pragma once
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/output_check.h"
+#include "engine/base/part_file.h"
 #include "engine/base/result.h"
 
 namespace catena {
-
-/// Refuses, before any work is done: a missing folder, a folder as the file, a place that cannot be written, an output that is
-/// one of the inputs.
-Outcome check_output(const std::string& path, const std::vector<std::string>& inputs);
-
-/// Two names of one place, whether or not it exists yet. Devices and pipes are nobody's own.
-bool same_file(const std::string& a, const std::string& b);
 
 class OutputFile {
  public:
@@ -30,14 +26,17 @@ class OutputFile {
   void seek(std::uint64_t position);  ///< regular files; failures are kept for finish()
   /// Everything is on its way to the disk, or one line why not.
   Outcome finish();
+  /// Before finish(): waits until all of it is on the disk, so that it survives the machine, too. Failures are kept for finish().
+  void sync();
   /// finish(), then the rename to the final name.
   Outcome commit();
   std::FILE* stream() { return file_; }
 
  private:
-  OutputFile(std::string path, std::string temporary, std::FILE* file);
+  OutputFile(std::string path, std::optional<PartFile> part, std::FILE* file);
 
-  std::string path_, temporary_;  ///< temporary_ empty: written directly
+  std::string path_;
+  std::optional<PartFile> part_;  ///< none: written directly
   std::FILE* file_ = nullptr;
   int error_ = 0;
 };

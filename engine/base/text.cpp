@@ -1,28 +1,68 @@
 #include "engine/base/text.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <memory>
 
 namespace catena {
 
-Result<std::string> read_text(const std::string& path, std::string_view expected) {
+namespace {
+
+/// What is no regular file, in words.
+const char* kind_of_place(mode_t mode) {
+  if (S_ISDIR(mode)) return "is a folder";
+  if (S_ISFIFO(mode)) return "is a pipe";
+  if (S_ISSOCK(mode)) return "is a socket";
+  return "is a device";
+}
+
+std::string size_in_words(std::uint64_t bytes) {
+  const bool large = bytes >= (std::uint64_t{10} << 20);
+  return std::to_string(bytes >> (large ? 20 : 10)) + (large ? " MiB" : " KiB");
+}
+
+struct Closer {
+  int descriptor;
+  ~Closer() { ::close(descriptor); }
+};
+
+}  // namespace
+
+Result<std::string> read_text(const std::string& path, std::string_view expected, std::uint64_t most_bytes) {
   const auto failed = [&](const std::string& why) {
     return Error{one_line(path + ": " + why + "; " + std::string(expected) + " was expected")};
   };
-  std::error_code code;
-  if (std::filesystem::is_directory(path, code)) return failed("is a folder");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), [](std::FILE* f) { return std::fclose(f); });
-  if (!file) return failed("cannot be read: " + std::string(std::strerror(errno)));
+  const auto too_large = [&](std::uint64_t bytes) {
+    return Error{one_line(path + ": is " + size_in_words(bytes) + " large; " + std::string(expected) + " of at most " +
+                          size_in_words(most_bytes) + " was expected")};
+  };
+  // a pipe without a writer is opened at once, and then refused
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (descriptor < 0 && errno == ENXIO) return failed("is a socket or a device");
+  if (descriptor < 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
+  const Closer closer{descriptor};
+  struct stat about {};
+  if (::fstat(descriptor, &about) != 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
+  if (!S_ISREG(about.st_mode)) return failed(kind_of_place(about.st_mode));
+  const auto size = static_cast<std::uint64_t>(about.st_size);
+  if (size > most_bytes) return too_large(size);
   std::string text;
+  text.reserve(size);
   char buffer[1 << 16];
-  while (const std::size_t size = std::fread(buffer, 1, sizeof buffer, file.get())) text.append(buffer, size);
-  if (std::ferror(file.get()) != 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
-  return text;
+  for (;;) {
+    const ssize_t got = ::read(descriptor, buffer, sizeof buffer);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
+    if (got == 0) return text;
+    // one that grows while it is read
+    if (text.size() + static_cast<std::size_t>(got) > most_bytes) return too_large(text.size() + static_cast<std::size_t>(got));
+    text.append(buffer, static_cast<std::size_t>(got));
+  }
 }
 
 std::string_view without_bom(std::string_view text) {

@@ -1,5 +1,6 @@
 /// Text from the outside world: whole files, words quoted for a one-line message, and the word that was probably meant.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,8 +9,12 @@
 
 namespace catena {
 
-/// The whole file. The error says PATH, why it cannot be read, and that `expected` ("a scene file") was expected.
-Result<std::string> read_text(const std::string& path, std::string_view expected);
+/// The sizes that texts are believed: of scenes and other JSON, of tables of numbers and all else.
+inline constexpr std::uint64_t kMostJsonBytes = std::uint64_t{128} << 20, kMostTextBytes = std::uint64_t{1} << 30;
+
+/// The whole file, which must be a regular one of at most `most_bytes`: nothing is allocated for a greater one, and a pipe, a device or a
+/// socket is never waited for. The error says PATH, why it cannot be read, and that `expected` ("a scene file") was expected.
+Result<std::string> read_text(const std::string& path, std::string_view expected, std::uint64_t most_bytes = kMostTextBytes);
 
 /// Without a UTF-8 byte order mark at its start.
 std::string_view without_bom(std::string_view text);

@@ -1,7 +1,5 @@
 #include "engine/mesh/load.h"
 
-#include <filesystem>
-
 #include "engine/base/text.h"
 
 namespace catena::mesh {
@@ -26,12 +24,7 @@ bool is_mesh_file(std::string_view path) { return ends_with(path, ".stl") || end
 Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement) {
   const auto failed = [&](const std::string& what) { return Error{one_line(path + ": " + what)}; };
   if (!is_mesh_file(path)) return failed("has an unknown kind; a .stl or .obj file was expected");
-  std::error_code code;
-  if (std::filesystem::exists(path, code) && !std::filesystem::is_regular_file(path, code))
-    return failed("is not a file; a .stl or .obj file was expected");
-  const std::uintmax_t size = std::filesystem::file_size(path, code);
-  if (!code && size > kMostBytes) return failed("has " + std::to_string(size) + " bytes; a mesh of at most 4 GiB was expected");
-  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (.stl or .obj)"));
+  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (.stl or .obj)", kMostBytes));
   CATENA_TRY(Soup soup, ends_with(path, ".stl") ? parse_stl(bytes, path) : parse_obj(bytes, path));
   for (Vec3& v : soup.vertices) {
     v = v * placement.scale + placement.offset;

@@ -15,7 +15,7 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
   if (path.ends_with(".json")) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": a scene says its colours; a data file was expected beside a colour map")};
-    CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)"));
+    CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)", kMostJsonBytes));
   } else {
     if (!overrides.empty()) return Error{one_line(path + ": a field of a data file cannot be replaced; a scene file (.json) was expected")};
     CATENA_TRY(BareFile bare, describe_bare_file(path, {}, colors));
@@ -102,6 +102,8 @@ void Document::redo() {
 
 // ---- to the disk ----
 
+Result<std::string> Document::whole_text() const { return moved_text(text(), path_, path_, overrides_); }
+
 Outcome Document::save(const std::string& path) {
   if (!path.ends_with(".json")) return Error{one_line(path + ": a scene is written to a .json file; such a name was expected")};
   CATENA_TRY(const std::vector<std::string> inputs, files_of(text(), path_, overrides_));
@@ -115,6 +117,7 @@ Outcome Document::save(const std::string& path) {
 
   CATENA_TRY(OutputFile file, OutputFile::open(path));
   file.write(texts[now_]);
+  file.sync();
   CATENA_CHECK(file.commit());
   for (std::size_t i = 0; i < versions_.size(); ++i) versions_[i].text = std::move(texts[i]);
   saved_ = text();

@@ -56,6 +56,11 @@ class Document {
   void undo();
   void redo();
 
+  /// The text with the overrides as part of it: what a file at path() has to say for this scene.
+  Result<std::string> whole_text() const;
+  /// Another text in its place, as one step of undo. An error (all stays) where it is no scene.
+  Outcome replace(const std::string& text, const std::string& what) { return push(text, what, {}); }
+
   /// Writes the text, byte for byte, to a .json file: whole or not at all. In another folder than before, relative names of files are
   /// rewritten so that they name the same ones. Overrides become part of the text: their file, the grid that they name, and what of the
   /// field's own "grid" and "valid" the file has. The document goes on under this path, its history with it. Refuses a path that is one

@@ -1,5 +1,7 @@
 #include "engine/scene/lines.h"
 
+#include <atomic>
+
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/flow/evenly_spaced.h"
@@ -18,6 +20,8 @@ struct MadeLines {
   std::uint64_t field_version = 0;
   std::vector<Vec3> points;  ///< the seeds, which a widget may move
   Curves curves;
+  std::uint64_t version = 0;
+  bool released = false;
 };
 
 const json::Node& member_or(const json::Node& node, std::string_view key) {
@@ -92,7 +96,20 @@ std::vector<Vec3> default_start(const field::Field& field) {
   return start;
 }
 
+constexpr std::size_t kFirstBlock = 64, kLargestBlock = 8192;
+
+/// Seeds whose lines have room if they are as those so far.
+std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t most) {
+  const std::size_t left = most - std::min(most, knots), each = std::max<std::size_t>(1, knots / seeds);
+  return std::clamp(left / each, kFirstBlock, kLargestBlock);
+}
+
 }  // namespace
+
+std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most) {
+  return "the lines of " + std::to_string(done) + " of the " + std::to_string(seeds) + " seeds have more than " + std::to_string(most) +
+         " knots together; fewer seeds, a shorter length or a greater tolerance was expected";
+}
 
 Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
   const bool many = seeds.pattern || (seeds.widget && scene.world.get<Widget>(seeds.widget).spec.kind == widget::Kind::rake);
@@ -123,18 +140,31 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& r
   }
   flow::TraceOptions exact;
   exact.length = request.length;
-  auto traced = tolerance <= kExact ? flow::trace_each(request.flow, places, exact) : flow::BatchTracer(request.flow, batch).trace(places);
+  const flow::BatchTracer tracer(request.flow, batch);
   Curves curves;
-  curves.reserve(traced.size());
-  for (std::size_t i = 0; i < traced.size(); ++i) {
-    if (traced[i])
-      curves.push_back(*traced[i]);
-    else if (!seeds.pattern && !seeds.widget)
-      return json::error_at(i < where.items.size() ? where.items[i] : where, traced[i].error().message);
+  curves.reserve(places.size());
+  std::string first_error;
+  // in blocks, of as many seeds as the knots that are left allow for
+  std::size_t knots = 0, block = kFirstBlock;
+  for (std::size_t begin = 0; begin < places.size(); begin += block) {
+    if (begin > 0) block = next_block(begin, knots, request.most_knots);
+    const std::span<const Vec3> some = std::span<const Vec3>(places).subspan(begin, std::min(block, places.size() - begin));
+    const auto traced = tolerance <= kExact ? flow::trace_each(request.flow, some, exact) : tracer.trace(some);
+    for (std::size_t i = 0; i < traced.size(); ++i) {
+      if (traced[i]) {
+        curves.push_back(*traced[i]);
+        knots += curves.back()->knots().size();
+        continue;
+      }
+      if (!seeds.pattern && !seeds.widget)
+        return json::error_at(begin + i < where.items.size() ? where.items[begin + i] : where, traced[i].error().message);
+      if (first_error.empty()) first_error = traced[i].error().message;
+    }
+    if (knots > request.most_knots) return json::error_at(place, too_many_knots(places.size(), begin + some.size(), request.most_knots));
+    if (request.progress) request.progress(begin + some.size(), places.size());
   }
   if (curves.empty() && !seeds.widget)
-    return json::error_at(
-        place, "none of the " + std::to_string(places.size()) + " seeds starts a line; the first: " + traced.front().error().message);
+    return json::error_at(place, "none of the " + std::to_string(places.size()) + " seeds starts a line; the first: " + first_error);
   return curves;
 }
 
@@ -146,12 +176,28 @@ Result<Curves> use_lines(Scene& scene, Entity entity) {
                                                              " is a scalar field; expected a vector field for streamlines");
   if (!scene.world.has<MadeLines>(entity)) scene.world.emplace<MadeLines>(entity);
   MadeLines& made = scene.world.get<MadeLines>(entity);
-  if (made.field_version == any.vector->version() && made.points == set.seeds.points) return made.curves;
+  if (!made.released && made.field_version == any.vector->version() && made.points == set.seeds.points) return made.curves;
   const LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
   CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, member_or(set.where, "seeds")));
-  made = {any.vector->version(), set.seeds.points, std::move(curves)};
+  static std::atomic<std::uint64_t> versions{0};
+  made = {any.vector->version(), set.seeds.points, std::move(curves), ++versions, false};
   if (set.seeds.widget) drop_unused_curves(scene);
   return made.curves;
+}
+
+std::uint64_t lines_version(Scene& scene, Entity entity) {
+  if (!scene.world.has<MadeLines>(entity)) return 0;
+  const StreamlineSet& set = scene.world.get<StreamlineSet>(entity);
+  const MadeLines& made = scene.world.get<MadeLines>(entity);
+  const auto any = use_field(scene, set.field, set.where);
+  return any && any->vector && made.field_version == any->vector->version() && made.points == set.seeds.points ? made.version : 0;
+}
+
+void release_lines(Scene& scene, Entity entity) {
+  if (!scene.world.get<StreamlineSet>(entity).seeds.pattern || !scene.world.has<MadeLines>(entity)) return;
+  MadeLines& made = scene.world.get<MadeLines>(entity);
+  made.curves = Curves();
+  made.released = true;
 }
 
 void drop_unused_curves(Scene& scene) {

@@ -5,6 +5,8 @@
 ///   tolerance  of one step, times L, chooses otherwise: up to 1e-9 the exact tracer, above it the batch tracer
 /// Frame thread.
 #pragma once
+#include <functional>
+
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
@@ -12,12 +14,20 @@ namespace catena::scene {
 /// The value of "seeds": an array of places, or an object with one pattern. `trace --seeds` reads the same.
 Result<Seeds> read_seeds(const Scene& scene, const json::Node& node);
 
+/// Of all lines of one set together: 56 bytes each. More are an error, said before they fill the memory.
+inline constexpr std::size_t kMostKnots = 40'000'000;
+
 struct LineRequest {
   flow::Flow flow;
   double length = 0;     ///< 0: 10 L each direction
   double tolerance = 0;  ///< 0: by the seeds' kind
   double step = 0;       ///< the batch tracer's longest, voxels; 0: its default
+  std::size_t most_knots = kMostKnots;
+  std::function<void(std::size_t seeds, std::size_t of)> progress{};  ///< told now and then how many seeds of a pattern are done
 };
+
+/// The sentence that says that the lines of so many seeds have more knots together, and what was expected.
+std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most);
 
 /// Every line of the seeds. Points that start nothing are errors at their place in the file; a pattern of which no place
 /// starts a line is one, too. Not those of a widget, which the hand may carry anywhere: what starts nothing is left out.
@@ -25,6 +35,12 @@ Result<std::vector<flow::CurvePtr>> make_lines(Scene& scene, const Seeds& seeds,
 
 /// The lines of a streamline set; made once, and again when a widget has moved their seeds.
 Result<std::vector<flow::CurvePtr>> use_lines(Scene& scene, Entity set);
+
+/// Which lines use_lines returns: another number with every other set of them; 0: they are not made, or out of date.
+std::uint64_t lines_version(Scene& scene, Entity set);
+/// The set lets go of the curves of a pattern, for those that need them once: 1e5 lines are a gigabyte. The version stays; use_lines would
+/// make them again.
+void release_lines(Scene& scene, Entity set);
 
 /// Drops the curves that nothing but the scene holds any more (no line that is drawn, no link of a program).
 void drop_unused_curves(Scene& scene);

@@ -47,7 +47,8 @@ fs::path folder_of(const std::string& path) {
 /// The file as a scene in that folder names it. Links on the way are followed, the file itself keeps its name: its ending counts.
 std::string name_from(const std::string& file, const fs::path& folder) {
   const std::string name = (folder_of(file).lexically_relative(folder) / fs::path(file).filename()).lexically_normal().string();
-  return same_file((folder / name).string(), file) ? name : fs::absolute(file).lexically_normal().string();
+  std::error_code code;
+  return same_file((folder / name).string(), file) ? name : fs::absolute(file, code).lexically_normal().string();
 }
 
 bool is_raw(const std::string& file) { return file.ends_with(".raw"); }
@@ -89,6 +90,10 @@ Result<std::string> with_override(std::string text, const std::string& path, con
 
 Result<std::vector<std::string>> files_of(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {
   CATENA_TRY(const json::Node root, json::parse(text, path));
+  return files_of(root, path, overrides);
+}
+
+std::vector<std::string> files_of(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides) {
   std::vector<std::string> files;
   for (const json::Node* name : file_names(root)) files.push_back(resolved_path(path, name->string));
   for (const FieldOverride& with : overrides) files.push_back(with.file);

@@ -11,6 +11,8 @@ namespace catena::scene {
 /// The files of fields, meshes and colours, the device's firmware, and those of the overrides; as the scene would open them.
 Result<std::vector<std::string>> files_of(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides);
 
+std::vector<std::string> files_of(const json::Node& root, const std::string& path, const std::vector<FieldOverride>& overrides);
+
 /// The text for a file at `to` that says what the text of the file at `from` with these overrides says. Nothing changes where both lie in
 /// one folder and there are no overrides.
 Result<std::string> moved_text(std::string_view text, const std::string& from, const std::string& to,

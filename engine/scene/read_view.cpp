@@ -1,3 +1,4 @@
+#include "engine/base/eye_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/read_parts.h"
@@ -12,9 +13,8 @@ Outcome read_camera(Scene& scene, const json::Node& node) {
   CATENA_TRY(camera.target, json::require_vec3(node, "target"));
   CATENA_TRY(const auto up, json::get_optional_vec3(node, "up"));
   const Vec3 view = camera.target - camera.position;
-  if (!(norm(view) > 0) || !is_finite(view))
-    return json::error_at(*node.find("target"),
-                          "\"target\" is the camera's position, or too far from it; two different points were expected");
+  if (const std::string problem = eye_problem(camera.position, camera.target); !problem.empty())
+    return json::error_at(*node.find("target"), "\"target\": " + problem);
   const auto parallel = [&](const Vec3& v) { return norm(cross(direction(view), direction(v))) < 1e-9; };
   if (up && norm(*up) == 0) return json::error_at(*node.find("up"), "\"up\" is zero; a vector other than [0, 0, 0] was expected");
   if (up && parallel(*up)) return json::error_at(*node.find("up"), "\"up\" is parallel to the view; a vector across it was expected");
@@ -22,13 +22,15 @@ Outcome read_camera(Scene& scene, const json::Node& node) {
   if (!up && parallel(camera.up)) camera.up = {0.0, 1.0, 0.0};
 
   CATENA_TRY(camera.fovy_deg, json::get_number(node, "fovy_deg", camera.fovy_deg, json::Range::positive));
-  if (camera.fovy_deg >= 180)
-    return json::error_at(*node.find("fovy_deg"),
-                          "\"fovy_deg\" is " + to_text(camera.fovy_deg) + "; degrees between 0 and 180 were expected");
+  if (const std::string problem = fovy_problem(camera.fovy_deg); !problem.empty())
+    return json::error_at(*node.find("fovy_deg"), "\"fovy_deg\" " + problem);
   CATENA_TRY(const int projection, json::get_choice(node, "projection", 0, {"perspective", "orthographic"}));
   camera.orthographic = projection == 1;
   if (camera.orthographic) {
     CATENA_TRY(camera.height, json::require_number(node, "height", json::Range::positive));
+    if (!(camera.height >= kLeastEyeHeight && camera.height <= kMostEyeHeight))
+      return json::error_at(*node.find("height"), "\"height\" is " + to_text(camera.height) + "; a length from " +
+                                                      to_text(kLeastEyeHeight) + " to " + to_text(kMostEyeHeight) + " was expected");
   } else if (const json::Node* height = node.find("height")) {
     return json::error_at(*height, "\"height\" is given without \"projection\": \"orthographic\"; \"fovy_deg\" was expected");
   }

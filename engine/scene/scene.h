@@ -16,6 +16,7 @@ namespace catena::scene {
 
 struct Scene {
   std::string path;
+  std::vector<std::string> files;  ///< all that its text and the overrides name, as the scene opens them, read so far or not
   World world;
   Coupling coupling;
   Workspace workspace;

@@ -1,4 +1,8 @@
+#include <cmath>
+
+#include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/named_files.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/units.h"
 
@@ -54,18 +58,32 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
 
 }  // namespace
 
+/// Numbers whose squares and quotients are numbers, too, of a double and (lengths of the picture) of a float.
+static Outcome check_sizes(const json::Node& node) {
+  constexpr double least = 1e-30, most = 1e30;
+  const double size = std::abs(node.number);
+  if (node.kind == json::Kind::number && size != 0 && !(size >= least && size <= most))
+    return json::error_at(node, to_text(node.number) + " is too " + (size < least ? "small" : "large") +
+                                    "; 0 or a number from 1e-30 to 1e30 in size was expected");
+  for (const json::Node& item : node.items) CATENA_CHECK(check_sizes(item));
+  for (const auto& [key, value] : node.members) CATENA_CHECK(check_sizes(value));
+  return Done{};
+}
+
 Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {
   CATENA_TRY(const json::Node root, json::parse(text, path));
+  CATENA_CHECK(check_sizes(root));
   Scene scene;
   scene.path = path;
   scene.cursor = scene.world.create();
   scene.world.emplace<Cursor>(scene.cursor);
   CATENA_CHECK(read_root(scene, root, overrides));
+  scene.files = files_of(root, path, overrides);
   return scene;
 }
 
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides) {
-  CATENA_TRY(const std::string text, read_text(path, "a scene file (JSON)"));
+  CATENA_TRY(const std::string text, read_text(path, "a scene file (JSON)", kMostJsonBytes));
   return parse_scene(text, path, overrides);
 }
 

@@ -5,11 +5,11 @@
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
+
+#include "engine/base/text.h"
 
 namespace catena::render {
 namespace {
@@ -18,11 +18,9 @@ constexpr std::string_view kTop = "shaders/";
 constexpr int kVersion = 460;
 
 std::optional<std::string> text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return std::nullopt;
-  std::ostringstream out;
-  out << in.rdbuf();
-  return std::move(out).str();
+  auto text = read_text(path, "a shader");
+  if (!text) return std::nullopt;
+  return std::move(*text);
 }
 
 std::optional<EShLanguage> stage_of(std::string_view name) {

@@ -22,14 +22,15 @@ constexpr double kIndicatorShare = 0.004;               // the same of the indic
 constexpr double kIndicatorLength = 0.1;                // of L
 constexpr double kArrowRadius = 2.4, kArrowLength = 6;  // by the tube's radius
 constexpr double kMostArrows = 100000;
-constexpr double kPulseShare = 1.0 / 12;  // of a pulse: the longest segment
-constexpr double kDimmest = 0.25;         // brightness between pulses
+constexpr std::size_t kMostKeptKnots = 2000000;  // of a set: above it the curves go once they are polylines
+constexpr double kPulseShare = 1.0 / 12;         // of a pulse: the longest segment
+constexpr double kDimmest = 0.25;                // brightness between pulses
 
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 
 /// What this room keeps beside a StreamlineSet: each curve as a polyline with values, made once.
 struct FlatLines {
-  std::vector<flow::CurvePtr> curves;
+  std::uint64_t version = 0;  ///< of the lines (scene::lines_version)
   double radius = 0;
   std::vector<TubeItem> tubes;
   std::vector<std::vector<double>> arc_lengths;  ///< by point
@@ -115,9 +116,13 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
     FlattenOptions of_this = options;
     if (value && detail == 0) of_this.longest = band > 0 ? std::min(band, curves[i]->period() / 64) : curves[i]->period() / 64;
     std::vector<double> arc;
-    for (const FlatPoint& point : flatten_places(*curves[i], of_this)) {
-      tube.points.push_back(point.p);
-      arc.push_back(point.s);
+    const std::vector<FlatPoint> places = flatten_places(*curves[i], of_this);
+    std::vector<Vec3> points;
+    points.reserve(places.size());
+    if (set.pulse > 0) arc.reserve(places.size());
+    for (const FlatPoint& point : places) {
+      points.push_back(point.p);
+      if (set.pulse > 0) arc.push_back(point.s);
       if (!value) continue;
       values[i].push_back(value->at(point));
       if (std::isfinite(values[i].back())) {
@@ -129,33 +134,39 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
     std::vector<double>& v = values[i];
     if (v.size() > 1 && std::isnan(v.front())) v.front() = v[1];
     if (v.size() > 1 && std::isnan(v.back())) v.back() = v[v.size() - 2];
+    tube.points = std::move(points);
     flat.tubes.push_back(std::move(tube));
-    flat.arc_lengths.push_back(std::move(arc));
+    if (set.pulse > 0) flat.arc_lengths.push_back(std::move(arc));
     if (set.arrows > 0) add_arrows(*curves[i], set.arrows, flat.radius, flat.arrows, arrow_places);
+    curves[i].reset();
   }
 
   // colours
   if (value) {
     const ColorTable& table = flat.colors = scene::color_table(set.color_by->colors, set.color_by->named, lo, hi);
-    for (std::size_t i = 0; i < curves.size(); ++i)
-      for (const double v : values[i]) flat.tubes[i].colors.push_back(table_color(table, v));
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      std::vector<Color> colors;
+      colors.reserve(values[i].size());
+      for (const double v : values[i]) colors.push_back(table_color(table, v));
+      flat.tubes[i].colors = std::move(colors);
+    }
     for (std::size_t i = 0; i < flat.arrows.size(); ++i) flat.arrows[i].color = table_color(table, value->at(arrow_places[i]));
   } else {
     for (ArrowItem& arrow : flat.arrows) arrow.color = color_of(set.color);
   }
-  flat.curves = std::move(curves);
   return flat;
 }
 
 /// The tube with its colours dimmed between the pulses.
 TubeItem with_pulse(TubeItem tube, const std::vector<double>& arc, double pulse, double phase) {
-  if (tube.colors.empty()) tube.colors.assign(tube.points.size(), tube.color);
-  for (std::size_t i = 0; i < tube.colors.size(); ++i) {
+  std::vector<Color> colors = tube.colors.empty() ? std::vector<Color>(tube.points.size(), tube.color) : tube.colors.list();
+  for (std::size_t i = 0; i < colors.size(); ++i) {
     const double wave = 0.5 + 0.5 * std::cos(2 * std::numbers::pi * (arc[i] / pulse - phase));
     const auto bright = static_cast<float>(kDimmest + (1 - kDimmest) * wave * wave);
-    Color& c = tube.colors[i];
+    Color& c = colors[i];
     c = {bright * c.r, bright * c.g, bright * c.b};
   }
+  tube.colors = std::move(colors);
   return tube;
 }
 
@@ -183,14 +194,21 @@ Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
     if (!is_hidden(scene.world, e)) sets.push_back(e);
   });
   for (const scene::Entity e : sets) {
-    CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
     if (!scene.world.has<FlatLines>(e)) scene.world.emplace<FlatLines>(e);
-    FlatLines& flat = scene.world.get<FlatLines>(e);
-    const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
-    if (flat.curves != curves) {
+    const std::uint64_t version = scene::lines_version(scene, e);
+    if (version == 0 || scene.world.get<FlatLines>(e).version != version) {
+      CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
+      std::size_t knots = 0;
+      for (const flow::CurvePtr& curve : curves) knots += curve->knots().size();
+      if (knots > kMostKeptKnots) scene::release_lines(scene, e);
+      const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
       CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
-      CATENA_TRY(flat, flat_lines(scene, set, std::move(curves), any.vector));
+      CATENA_TRY(FlatLines made, flat_lines(scene, set, std::move(curves), any.vector));
+      made.version = scene::lines_version(scene, e);
+      scene.world.get<FlatLines>(e) = std::move(made);
     }
+    const FlatLines& flat = scene.world.get<FlatLines>(e);
+    const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
     const std::uint32_t id = packet.add_object("streamlines", name_of(scene, set.field));
     const auto add = [&](auto& items, auto item) {
       item.id = id;

@@ -5,6 +5,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/csv.h"
+#include "engine/base/eye_limits.h"
 #include "engine/base/numbers.h"
 
 namespace catena::render {
@@ -24,15 +25,14 @@ Result<CameraPath> path_of(const Table& table) {
     key.target = {value("tx", i), value("ty", i), value("tz", i)};
     if (i > 0 && !(key.t_s > keys[i - 1].t_s))
       return refuse("t is " + to_text(key.t_s) + " after " + to_text(keys[i - 1].t_s) + "; strictly rising t was expected");
-    if (!(norm(key.position - key.target) > 0)) return refuse("the target is at the position; two different points were expected");
+    if (const std::string problem = eye_problem(key.position, key.target); !problem.empty()) return refuse(problem);
     if (table.find("ux") != nullptr) {
       key.up = Vec3(value("ux", i), value("uy", i), value("uz", i));
       if (!(norm(*key.up) > 0)) return refuse("up is 0,0,0; a direction was expected");
     }
     if (table.find("fovy") != nullptr) {
       key.fovy_deg = value("fovy", i);
-      if (!(*key.fovy_deg > 0 && *key.fovy_deg < 180))
-        return refuse("fovy is " + to_text(*key.fovy_deg) + "; an angle between 0 and 180 degrees was expected");
+      if (const std::string problem = fovy_problem(*key.fovy_deg); !problem.empty()) return refuse("fovy " + problem);
     }
   }
   return CameraPath(std::move(keys));

@@ -12,6 +12,7 @@
 #include "render/frame/color.h"
 #include "render/frame/overlay_items.h"
 #include "render/frame/packing.h"
+#include "render/frame/shared_list.h"
 
 namespace catena::field {
 class ScalarGrid;
@@ -134,10 +135,10 @@ struct SliceItem {
 
 /// A tube around a polyline, already flattened from the curve finely enough for its radius.
 struct TubeItem {
-  std::vector<Vec3> points;
+  SharedList<Vec3> points;
   double radius = 0;
   Color color;
-  std::vector<Color> colors{};  ///< by point; empty: `color` everywhere
+  SharedList<Color> colors{};  ///< by point; empty: `color` everywhere
   std::uint32_t id = 0;
   bool clipped = true;
 };

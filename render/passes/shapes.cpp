@@ -39,10 +39,7 @@ Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {  // v across the ax
   return std::cos(angle) * v + std::sin(angle) * cross(axis, v);
 }
 
-struct Ring {
-  Vec3 centre, tangent, normal;
-  Color color{};
-};
+using Ring = TubeRing;
 
 /// `sides` vertices around centre + height * tangent, at `radius`; vertex normals lean by `slope` along the tangent.
 std::uint32_t add_ring(Shape& shape, const Ring& ring, double radius, double height, double across, double along, int sides,
@@ -76,9 +73,11 @@ void add_fan(Shape& shape, std::uint32_t ring, std::uint32_t apex, int sides, bo
   }
 }
 
+int cap_steps(int sides) { return std::max(2, sides / 4); }
+
 /// A half sphere on a ring that exists already.
 void add_round_cap(Shape& shape, const Ring& ring, std::uint32_t equator, double radius, int sides, const Color& color, bool ahead) {
-  const int steps = std::max(2, sides / 4);
+  const int steps = cap_steps(sides);
   const double sign = ahead ? 1 : -1;
   std::uint32_t last = equator;
   for (int i = 1; i < steps; ++i) {
@@ -123,14 +122,30 @@ std::vector<Ring> rings_of(const std::vector<ColoredPoint>& points, bool closed)
     const Vec3 before = first ? segment(0) : segment(i + n - 1), after = last ? before : segment(i);
     const double turn = std::atan2(norm(cross(before, after)), dot(before, after));
     if (turn <= kJointTurn) {
-      rings.push_back({p, direction(before + after), Vec3(0.0), color});
+      rings.push_back({p, direction(before + after), Vec3(0.0), color, 0, 0});
       continue;
     }
     Vec3 axis = direction(cross(before, after));
     if (max_abs(axis) == 0) axis = any_perpendicular(before);
     const int steps = static_cast<int>(std::ceil(turn / kJointTurn));
-    for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(turned(before, axis, turn * k / steps)), Vec3(0.0), color});
+    for (int k = 0; k <= steps; ++k) rings.push_back({p, direction(turned(before, axis, turn * k / steps)), Vec3(0.0), color, 0, 0});
   }
+  return rings;
+}
+
+/// Rings with their normals, transported from ring to ring.
+std::vector<Ring> framed_rings(const std::vector<ColoredPoint>& points, bool closed) {
+  std::vector<Ring> rings = rings_of(points, closed);
+  rings.front().normal = any_perpendicular(rings.front().tangent);
+  for (std::size_t i = 1; i < rings.size(); ++i) rings[i].normal = transport(rings[i - 1].normal, rings[i - 1].tangent, rings[i].tangent);
+  if (!closed) return rings;
+  // the frame comes back turned by some angle; taken up bit by bit along the line
+  const Ring &a = rings.front(), &b = rings.back();
+  const Vec3 back = transport(b.normal, b.tangent, a.tangent);
+  const double angle = std::atan2(dot(cross(back, a.normal), a.tangent), dot(back, a.normal));
+  const double count = static_cast<double>(rings.size());
+  for (std::size_t i = 0; i < rings.size(); ++i)
+    rings[i].normal = turned(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
   return rings;
 }
 
@@ -146,6 +161,36 @@ int tube_sides(double radius, double scene_size) {
   return share < 0.002 ? 8 : share < 0.006 ? 12 : 16;
 }
 
+std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed) {
+  closed = false;
+  if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return {};
+  const std::vector<ColoredPoint> points = distinct_points(tube, closed);
+  if (points.empty()) return {};
+  std::vector<TubeRing> wall =
+      points.size() > 1 ? framed_rings(points, closed)
+                        : std::vector<TubeRing>{{points.front().p, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, points.front().color, 0, 0}};
+  for (TubeRing& ring : wall) ring.radius = tube.radius;
+  if (closed) {
+    wall.push_back(wall.front());
+    return wall;
+  }
+  // a half sphere's rings, from its equator or to it
+  const int steps = cap_steps(sides);
+  const auto latitude = [&](TubeRing ring, int i, double sign) {
+    const double angle = 0.5 * kPi * i / steps;
+    ring.centre += sign * tube.radius * std::sin(angle) * ring.tangent;
+    ring.radius = i == steps ? 0 : tube.radius * std::cos(angle);
+    ring.lean = i == steps ? sign : sign * std::sin(angle);
+    return ring;
+  };
+  std::vector<TubeRing> rings;
+  rings.reserve(wall.size() + 2 * static_cast<std::size_t>(steps));
+  for (int i = steps; i > 0; --i) rings.push_back(latitude(wall.front(), i, -1));
+  rings.insert(rings.end(), wall.begin(), wall.end());
+  for (int i = 1; i <= steps; ++i) rings.push_back(latitude(wall.back(), i, 1));
+  return rings;
+}
+
 void add_tube(Shape& shape, const TubeItem& tube, int sides) {
   CATENA_ASSERT(sides >= 3);
   if (!(tube.radius > 0) || !std::isfinite(tube.radius)) return;
@@ -153,21 +198,7 @@ void add_tube(Shape& shape, const TubeItem& tube, int sides) {
   const std::vector<ColoredPoint> points = distinct_points(tube, closed);
   if (points.empty()) return;
   if (points.size() == 1) return add_ball(shape, points.front().p, tube.radius, points.front().color, std::max(8, sides));
-  std::vector<Ring> rings = rings_of(points, closed);
-
-  // frames: transported from ring to ring
-  rings.front().normal = any_perpendicular(rings.front().tangent);
-  for (std::size_t i = 1; i < rings.size(); ++i) rings[i].normal = transport(rings[i - 1].normal, rings[i - 1].tangent, rings[i].tangent);
-
-  // a closed line: its frame comes back turned by some angle; taken up bit by bit along the line
-  if (closed) {
-    const Ring &a = rings.front(), &b = rings.back();
-    const Vec3 back = transport(b.normal, b.tangent, a.tangent);
-    const double angle = std::atan2(dot(cross(back, a.normal), a.tangent), dot(back, a.normal));
-    const double count = static_cast<double>(rings.size());
-    for (std::size_t i = 0; i < rings.size(); ++i)
-      rings[i].normal = turned(rings[i].normal, rings[i].tangent, angle * static_cast<double>(i) / count);
-  }
+  const std::vector<Ring> rings = framed_rings(points, closed);
 
   std::uint32_t first = 0, last = 0;
   for (std::size_t i = 0; i < rings.size(); ++i) {
@@ -210,7 +241,7 @@ void add_mesh(Shape& shape, const MeshItem& mesh) {
 void add_ball(Shape& shape, const Vec3& centre, double radius, const Color& color, int sides) {
   CATENA_ASSERT(is_finite(centre) && sides >= 4);
   if (!(radius > 0) || !std::isfinite(radius)) return;
-  const Ring ring{centre, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}};
+  const Ring ring{centre, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, color, radius, 0};
   const std::uint32_t equator = add_ring(shape, ring, radius, 0, 1, 0, sides, color);
   add_round_cap(shape, ring, equator, radius, sides, color, false);
   add_round_cap(shape, ring, equator, radius, sides, color, true);
@@ -221,7 +252,7 @@ void add_cylinder(Shape& shape, const Vec3& a, const Vec3& b, double radius, con
   const double length = norm(b - a);
   if (!(length > 0) || !(radius > 0)) return;
   const Vec3 t = direction(b - a);
-  const Ring ring{a, t, any_perpendicular(t)};
+  const Ring ring{a, t, any_perpendicular(t), color, radius, 0};
   add_wall(shape, add_ring(shape, ring, radius, 0, 1, 0, sides, color), add_ring(shape, ring, radius, length, 1, 0, sides, color), sides);
   add_fan(shape, add_ring(shape, ring, radius, 0, 0, -1, sides, color), add_vertex(shape, a, -t, color), sides, false);
   add_fan(shape, add_ring(shape, ring, radius, length, 0, 1, sides, color), add_vertex(shape, b, t, color), sides, true);
@@ -232,7 +263,7 @@ void add_cone(Shape& shape, const Vec3& base, const Vec3& tip, double radius, co
   const double length = norm(tip - base);
   if (!(length > 0) || !(radius > 0)) return;
   const Vec3 t = direction(tip - base);
-  const Ring ring{base, t, any_perpendicular(t)};
+  const Ring ring{base, t, any_perpendicular(t), color, radius, 0};
   const double slant = std::sqrt(length * length + radius * radius), across = length / slant, along = radius / slant;
 
   // the side: the tip once for each facet, so that its normal can be the facet's

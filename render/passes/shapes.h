@@ -31,6 +31,16 @@ void mark(Shape& shape, std::size_t first, std::uint32_t id, bool clipped);
 /// 8 to 16 by the radius' share of the scene's size (0: 12).
 int tube_sides(double radius, double scene_size);
 
+/// A circle of a tube's surface: its vertices at centre + radius out, with the normals sqrt(1 - lean^2) out + lean tangent.
+struct TubeRing {
+  Vec3 centre{0.0}, tangent{0.0}, normal{0.0};  ///< normal: to the first vertex
+  Color color{};
+  double radius = 0, lean = 0;
+};
+/// A tube as rings: walls from each to the next are its surface. Of an open one the first and the last have no radius: they are the tips of
+/// the caps; a closed one ends with its first ring. Points as add_tube takes them.
+std::vector<TubeRing> tube_rings(const TubeItem& tube, int sides, bool& closed);
+
 /// Appends a tube. Points that are not further apart than 1e-9 of the radius are one; a single point gives a ball, none nothing.
 /// Colours by point run linearly between them. Closed: the last point repeats the first. Non-finite points are a bug of the caller.
 void add_tube(Shape& shape, const TubeItem& tube, int sides);

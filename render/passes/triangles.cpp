@@ -87,8 +87,8 @@ bool same(const MeshItem& a, const MeshItem& b) {
 }
 
 bool same(const TubeItem& a, const TubeItem& b) {
-  return a.radius == b.radius && same(a.color, b.color) && a.points == b.points && all_same(a.colors, b.colors) && a.id == b.id &&
-         a.clipped == b.clipped;
+  return a.radius == b.radius && same(a.color, b.color) && a.points == b.points &&
+         (a.colors.is_same(b.colors) || all_same(a.colors, b.colors)) && a.id == b.id && a.clipped == b.clipped;
 }
 
 bool same(const ArrowItem& a, const ArrowItem& b) {

@@ -187,8 +187,10 @@ void Commands::bind_mesh(const Buffer& vertices, const Buffer& indices, VkIndexT
   const VkBuffer buffer = vertices.handle();
   const VkDeviceSize offset = 0;
   vkCmdBindVertexBuffers(buffer_, 0, 1, &buffer, &offset);
-  vkCmdBindIndexBuffer(buffer_, indices.handle(), 0, type);
+  bind_indices(indices, type);
 }
+
+void Commands::bind_indices(const Buffer& indices, VkIndexType type) { vkCmdBindIndexBuffer(buffer_, indices.handle(), 0, type); }
 
 void Commands::draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex) {
   vkCmdDrawIndexed(buffer_, index_count, 1, first_index, std::int32_t(first_vertex), 0);

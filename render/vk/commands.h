@@ -84,6 +84,7 @@ class Commands {
   void draw_triangle();                                        ///< one that covers the picture
   void draw(std::uint32_t vertices, std::uint32_t instances);  ///< without buffers
   void draw_indexed(const Buffer& vertices, const Buffer& indices, std::uint32_t index_count);
+  void bind_indices(const Buffer& indices, VkIndexType type);  ///< of a pipeline without a vertex buffer
   void bind_mesh(const Buffer& vertices, const Buffer& indices, VkIndexType type);
   /// Of the bound mesh; indices count from `first_vertex` on.
   void draw_mesh(std::uint32_t first_index, std::uint32_t index_count, std::uint32_t first_vertex);

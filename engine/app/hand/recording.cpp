@@ -2,6 +2,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/log_scene.h"
+#include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 
 namespace catena::app {

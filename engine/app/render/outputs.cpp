@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 
 #include "engine/app/render/numbering.h"
 #include "engine/app/render/video_writer.h"
 #include "engine/base/clock.h"
-#include "engine/base/output_file.h"
 
 namespace catena::app {
 namespace {
@@ -25,20 +23,18 @@ Outcome check_kind(const std::string& path, const char* option, std::initializer
 }
 
 /// Every file that will be written, with the option that names it.
-std::vector<std::pair<std::string, std::string>> files_of(const RenderOptions& o, int frames) {
-  std::vector<std::pair<std::string, std::string>> files;
+void add_outputs(const RenderOptions& o, int frames, RunFiles& files) {
   for (const auto& [path, option] : {std::pair{o.output, "-o"}, {o.depth, "--depth"}, {o.ids, "--ids"}}) {
     if (path.empty()) continue;
     const int count = is_numbered(path) && !video_kind(path) ? frames : 1;
-    for (int k = 0; k < count; ++k) files.emplace_back(count > 1 || is_numbered(path) ? numbered(path, k) : path, option);
+    for (int k = 0; k < count; ++k) files.writes(option, count > 1 || is_numbered(path) ? numbered(path, k) : path);
   }
-  if (!o.stats.empty()) files.emplace_back(o.stats, "--stats");
-  return files;
+  files.writes("--stats", o.stats);
 }
 
 }  // namespace
 
-Outcome check_outputs(const RenderOptions& o, const PictureShape& shape, int frames, const std::vector<std::string>& inputs) {
+Outcome check_outputs(const RenderOptions& o, const PictureShape& shape, int frames, RunFiles files) {
   CATENA_CHECK(check_kind(o.output, "-o", {".png", ".exr", ".mp4", ".webm", ".gif"}));
   if (!o.depth.empty()) CATENA_CHECK(check_kind(o.depth, "--depth", {".exr"}));
   if (!o.ids.empty()) CATENA_CHECK(check_kind(o.ids, "--ids", {".png"}));
@@ -48,21 +44,8 @@ Outcome check_outputs(const RenderOptions& o, const PictureShape& shape, int fra
     if (frames < 2) return Error{o.output + ": a video has several frames: expected --frames N (and --orbit DEG), or --camera PATH.csv"};
     CATENA_CHECK(check_video(o.output, {shape.width, shape.height, shape.fps, shape.alpha}));
   }
-  std::map<std::string, std::string> seen;
-  std::string first;
-  for (const auto& [path, option] : files_of(o, frames)) {
-    // links and other spellings of one place
-    std::error_code code;
-    const std::string place = std::filesystem::weakly_canonical(path, code).string();
-    if (!std::filesystem::exists(path, code) || std::filesystem::is_regular_file(path, code)) {
-      const auto [at, fresh] = seen.emplace(place, option);
-      if (!fresh)
-        return Error{path + ": " + at->second + " and " + option + " name one file: expected " +
-                     (at->second == option ? "one a frame" : "two")};
-    }
-    CATENA_CHECK(check_output(path, inputs));
-  }
-  return Done{};
+  add_outputs(o, frames, files);
+  return files.check();
 }
 
 bool uses_standard_output(const RenderOptions& o) {

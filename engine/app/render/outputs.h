@@ -6,11 +6,12 @@
 
 #include "engine/app/render/options.h"
 #include "engine/app/render/sinks.h"
+#include "engine/app/run_files.h"
 
 namespace catena::app {
 
 /// Refuses: kinds of file that do not exist, no ffmpeg, sizes that a video cannot hold, an output that is an input or another output.
-Outcome check_outputs(const RenderOptions& options, const PictureShape& shape, int frames, const std::vector<std::string>& inputs);
+Outcome check_outputs(const RenderOptions& options, const PictureShape& shape, int frames, RunFiles files);
 /// Whether something is written to standard output; what the program says then goes to standard error.
 bool uses_standard_output(const RenderOptions& options);
 /// What the bands must hold for them.

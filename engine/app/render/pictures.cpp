@@ -130,11 +130,11 @@ Outcome render_pictures(const RenderOptions& o) {
   CATENA_TRY(const Size picture, picture_size(o, scene.stereo, size));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(const Quality wanted, parse_quality(quality));
-  std::vector<std::string> inputs = inputs_of(scene);
-  if (!o.probe.empty()) inputs.push_back(o.probe);
-  if (!o.camera.empty()) inputs.push_back(o.camera);
+  RunFiles files(scene);
+  files.reads(o.probe);
+  files.reads(o.camera);
   PictureShape shape{picture.width, picture.height, scene.background.transparent, o.bits, o.fps, {}};
-  CATENA_CHECK(check_outputs(o, shape, motion.frames(), inputs));
+  CATENA_CHECK(check_outputs(o, shape, motion.frames(), files));
   std::FILE* const words = uses_standard_output(o) ? stderr : stdout;
 
   // the chain is checked with the picture: one scene, two senses

@@ -91,12 +91,8 @@ Outcome check_video(const std::string& path, const VideoFormat& format) {
 Result<VideoWriter> VideoWriter::open(const std::string& path, const VideoFormat& format) {
   CATENA_CHECK(check_video(path, format));
   const std::string program = find_ffmpeg().value_or("ffmpeg");
-  VideoWriter self(path, path + ".part" + std::to_string(::getpid()));
-
-  // the place can be written
-  const int place = ::open(self.temporary_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (place < 0) return cannot(std::exchange(self.path_, path), "write", errno);
-  ::close(place);
+  CATENA_TRY(PartFile part, PartFile::create(path));
+  VideoWriter self(path, std::move(part));
   self.messages_ = std::tmpfile();
   if (self.messages_ == nullptr) return cannot(path, "open a temporary file", errno);
   int ends[2];
@@ -123,7 +119,7 @@ Result<VideoWriter> VideoWriter::open(const std::string& path, const VideoFormat
                                  "pipe:0",
                                  "-an"};
   words.insert(words.end(), kind.arguments.begin(), kind.arguments.end());
-  words.insert(words.end(), {"-f", kind.name, "file:" + self.temporary_});
+  words.insert(words.end(), {"-f", kind.name, "file:" + self.part_.name()});
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
@@ -155,7 +151,7 @@ Result<VideoWriter> VideoWriter::open(const std::string& path, const VideoFormat
 
 VideoWriter::VideoWriter(VideoWriter&& other) noexcept
     : path_(std::move(other.path_)),
-      temporary_(std::exchange(other.temporary_, {})),
+      part_(std::move(other.part_)),
       child_(std::exchange(other.child_, -1)),
       pipe_(std::exchange(other.pipe_, -1)),
       messages_(std::exchange(other.messages_, nullptr)),
@@ -170,7 +166,6 @@ VideoWriter::~VideoWriter() {
     }
   }
   if (messages_ != nullptr) std::fclose(messages_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
   if (ignores_pipe_) sigaction(SIGPIPE, &before_, nullptr);
 }
 
@@ -201,10 +196,6 @@ Outcome VideoWriter::end() {
 
 Outcome VideoWriter::finish() { return end(); }
 
-Outcome VideoWriter::commit() {
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) return cannot(path_, "write", errno);
-  temporary_.clear();
-  return Done{};
-}
+Outcome VideoWriter::commit() { return part_.commit(); }
 
 }  // namespace catena::app

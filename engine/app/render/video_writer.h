@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 
+#include "engine/base/part_file.h"
 #include "engine/base/result.h"
 
 namespace catena::app {
@@ -43,11 +44,12 @@ class VideoWriter {
   Outcome commit();
 
  private:
-  VideoWriter(std::string path, std::string temporary) : path_(std::move(path)), temporary_(std::move(temporary)) {}
+  VideoWriter(std::string path, PartFile part) : path_(std::move(path)), part_(std::move(part)) {}
   /// Closes the pipe and waits; the error of ffmpeg, if it failed.
   Outcome end();
 
-  std::string path_, temporary_;
+  std::string path_;
+  PartFile part_;  ///< which ffmpeg writes
   pid_t child_ = -1;
   int pipe_ = -1;
   std::FILE* messages_ = nullptr;  ///< what ffmpeg says

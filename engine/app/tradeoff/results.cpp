@@ -2,13 +2,17 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
+#include "engine/base/part_file.h"
 
 namespace catena::app {
 
@@ -73,9 +77,11 @@ Result<ResultFolder> ResultFolder::open(const std::string& path) {
   if (fs::exists(path, code) && !fs::is_directory(path, code)) return Error{path + ": is a file: expected a folder to write into"};
   const bool created = !fs::exists(path, code);
   if (created && !fs::create_directories(path, code) && code) return Error{path + ": cannot create the folder: " + code.message()};
-  const std::string staging = path + "/.part" + std::to_string(::getpid());
-  ResultFolder folder(path, staging, created);
-  if (!fs::create_directory(staging, code)) return Error{path + ": cannot write into the folder: " + code.message()};
+  const std::string staged = path + "/tables", staging = part_name(staged);
+  remove_stale_parts(staged);
+  ResultFolder folder(path, {}, created);
+  if (::mkdir(staging.c_str(), 0777) != 0) return Error{path + ": cannot write into the folder: " + std::strerror(errno)};
+  folder.staging_ = staging;
   return folder;
 }
 

@@ -1,5 +1,5 @@
 /// Where a figure's tables, gnuplot script and plots go: a folder that gets all of them or none.
-/// They are made in a folder beside their places, DIR/.part<pid>, and renamed at the end.
+/// They are made in a folder beside their places, DIR/tables.part<pid>-<random> (part_file.h), and renamed at the end.
 #pragma once
 #include <string>
 #include <vector>

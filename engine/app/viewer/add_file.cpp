@@ -48,8 +48,10 @@ std::string free_among(std::set<std::string>& taken, const std::string& name) {
 
 /// A file that is named from `from`, as it is named from `to`.
 std::string named_from(const fs::path& from, const fs::path& to, const std::string& file) {
-  const fs::path whole = fs::absolute(fs::path(file).is_absolute() ? fs::path(file) : from / file).lexically_normal();
-  const fs::path near = whole.lexically_relative(fs::absolute(to).lexically_normal());
+  // a scene that was named without its folder is in the current one
+  std::error_code code;
+  const fs::path here = fs::current_path(code);
+  const fs::path whole = (here / from / file).lexically_normal(), near = whole.lexically_relative((here / to).lexically_normal());
   return near.empty() || *near.begin() == ".." ? whole.string() : near.string();
 }
 

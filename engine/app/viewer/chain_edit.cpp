@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/viewer/edit/scene_items.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/modes.h"
 
@@ -146,7 +147,12 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
         for (const char* holder : {"surface", "field"}) {
           const json::Node* name = link.find(holder);
           if (name == nullptr) continue;
-          if (const field::AnyField field = use(scene, name->string, false); field.scalar) return level_at(*field.scalar, probe);
+          const field::AnyField field = use(scene, name->string, false);
+          if (!field.scalar) continue;
+          field::Cursor cursor;
+          // what is felt is what is seen
+          const std::string seen = drawn_level(scene, name->string, field.scalar->sample(probe, cursor).value);
+          return seen.empty() ? level_at(*field.scalar, probe) : seen;
         }
         return {};
       }
@@ -172,6 +178,8 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
     case Kind::boolean:
       return "true";
     case Kind::scalar_field:
+      if (const std::string seen = drawn_field(scene); use(scene, seen, false).get() != nullptr) return scene::text_of(seen);
+      [[fallthrough]];
     case Kind::vector_field:
       for (const std::string& name : fields_of(scene, key.kind == Kind::vector_field))
         if (use(scene, name, key.kind == Kind::vector_field).get() != nullptr) return scene::text_of(name);
@@ -230,6 +238,33 @@ std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow
       if (const std::string level = first_value(scene, other, link, probe, length); !level.empty())
         edits.push_back({row.pointer("level"), level});
   return edits;
+}
+
+std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const std::string& name,
+                                                 const Vec3& probe) {
+  std::vector<scene::Document::Edit> edits{{row.pointer(key.name), scene::text_of(name)}};
+  const json::Node* holder = row.node.find("surface") != nullptr ? row.node.find("surface") : row.node.find("field");
+  if (field_of_level(row.node).empty() || holder != row.node.find(key.name)) return edits;
+  // another surface has another level
+  json::Node link = row.node;
+  for (auto& [member, value] : link.members)
+    if (member == key.name) value.string = name;
+  for (const LinkKey& other : keys_of(row.type))
+    if (other.name == "level")
+      if (const std::string level = first_value(scene, other, link, probe, 1); !level.empty())
+        edits.push_back({row.pointer("level"), level});
+  return edits;
+}
+
+std::vector<std::string> levels_along(const scene::Scene& scene, const ChainRow& row) {
+  const std::string field = field_of_level(row.node);
+  if (field.empty() || row.node.find("level")->kind != json::Kind::number) return {};
+  const double level = row.node.find("level")->number;
+  std::vector<std::string> along = seen_levels(scene, field, level);
+  if (along.empty()) return {};
+  for (const std::string& pointer : felt_levels(scene, field, level))
+    if (pointer != row.pointer("level")) along.push_back(pointer);
+  return along;
 }
 
 std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b) {

@@ -37,8 +37,9 @@ std::vector<LinkKey> keys_of(std::string_view type);
 /// All types of links and ready-made modes.
 std::vector<std::string> link_types();
 
-/// A link with sane keys, as JSON text: the first field or mesh of the scene that fits (loaded if need be), places at the probe, a level
-/// that the field has there, lengths as parts of `length` (that of all that is there). An error where the scene has no such field.
+/// A link with sane keys, as JSON text: the field of a surface that is drawn, or else the first field or mesh of the scene that fits
+/// (loaded if need be); the level of the surface that is drawn, or else one that the field has at the probe; places at the probe; lengths
+/// as parts of `length` (that of all that is there). An error where the scene has no such field.
 Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length);
 /// What a key that lacks begins with, JSON text; empty: nothing is known to be sane.
 std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Node& link, const Vec3& probe, double length);
@@ -46,6 +47,15 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
 /// A key that the link lacks, with what it needs beside it; empty: nothing is known to be sane.
 std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const Vec3& probe,
                                              double length);
+
+/// The link's key names another field now; where the link lies on a level of it, the level is that of the surface that is drawn, or one
+/// that the field has.
+std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const std::string& name,
+                                                 const Vec3& probe);
+
+/// Pointers to the levels that go along with the link's own, so that what is felt stays what is seen: of the drawn surface that the link
+/// lies on, and of the other links that lie on it. Empty where no such surface is drawn.
+std::vector<std::string> levels_along(const scene::Scene& scene, const ChainRow& row);
 
 /// Two neighbours change places, as one step. The comments within the two links go.
 std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/app/viewer/camera_paths.h"
+#include "engine/base/eye_limits.h"
 #include "render/frame/camera_moves.h"
 
 namespace catena::app {
@@ -101,8 +102,15 @@ void toggle_projection(render::View& view) {
   view.orthographic = !view.orthographic;
 }
 
+static bool is_possible(const render::View& view) {
+  const bool high = !view.orthographic || (view.height >= kLeastEyeHeight && view.height <= kMostEyeHeight);
+  return high && eye_problem(view.position, view.target).empty();
+}
+
 Changed apply(Controls& controls, const Input& input) {
   Changed changed;
+  const render::View view_before = controls.view;
+  const Vec3 hand_before = controls.hand;
   if (input.toggle_hand) controls.hand_mode = !controls.hand_mode;
   const bool moved = input.dx != 0 || input.dy != 0, wheeled = input.wheel != 0;
   const bool hand = controls.hand_mode || input.control || input.right;
@@ -138,6 +146,9 @@ Changed apply(Controls& controls, const Input& input) {
   if (input.toggle_projection) toggle_projection(controls.view);
   if (input.reset_view) controls.view = controls.home;
   changed.view = changed.view || (fits && (input.axis || input.fit)) || input.toggle_projection || input.reset_view;
+  // neither eye nor hand leaves the world
+  if (!is_possible(controls.view)) controls.view = view_before;
+  if (!is_finite(controls.hand) || max_abs(controls.hand) > kMostEyeCoordinate) controls.hand = hand_before;
   return changed;
 }
 

@@ -179,6 +179,12 @@ bool Gui::wants_keys() const {
   return typing || ImGui::GetTopMostPopupModal() != nullptr;
 }
 
+bool Gui::close_popup() {
+  const int open = ImGui::GetCurrentContext()->OpenPopupStack.Size;
+  if (open > 0) ImGui::ClosePopupToLevel(open - 1, true);
+  return open > 0;
+}
+
 void Gui::hide_pointer() { ImGui::SetMouseCursor(ImGuiMouseCursor_None); }
 
 bool Gui::is_busy() const { return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput; }

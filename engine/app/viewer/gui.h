@@ -36,6 +36,8 @@ class Gui {
   bool holds(double x, double y) const;
   /// Keys are text now.
   bool wants_keys() const;
+  /// What is open above the panels (a menu, a list to choose from, a dialog) closes; false: nothing is. Not between begin() and end().
+  bool close_popup();
   /// The pointer is not shown over the window, for this frame.
   void hide_pointer();
   /// Something of it is being held, typed into, or open above all.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/app/viewer/controls.h"
+#include "engine/app/viewer/draft.h"
 #include "engine/app/viewer/frame_times.h"
 #include "engine/app/viewer/hand_host.h"
 #include "engine/app/viewer/layout.h"
@@ -33,6 +34,8 @@ struct Leaving {
   std::string open;  ///< a path; empty: nothing is opened
 };
 enum class Answer { save, discard, cancel };
+/// What becomes of work that an earlier run left unsaved.
+enum class AnswerToLeft { restore, discard, later };
 
 /// What the window does that is not the scene; panels write their wishes here, the session fulfils them after the frame.
 struct ViewState {
@@ -49,9 +52,11 @@ struct ViewState {
   std::optional<std::string> device;        ///< another one to hold the probe
   std::optional<std::string> record;        ///< .catlog to write from now on; empty: no more
   bool fly = false, full_screen = false;
-  std::optional<Leaving> ask_unsaved;      ///< the question stands
-  std::optional<Answer> answer;            ///< to it
-  std::optional<Leaving> after_save;       ///< what a save that succeeds goes on with
+  std::optional<Leaving> ask_unsaved;  ///< the question stands
+  std::optional<Answer> answer;        ///< to it
+  std::optional<Leaving> after_save;   ///< what a save that succeeds goes on with
+  std::optional<LeftDraft> ask_left;   ///< the question stands
+  std::optional<AnswerToLeft> answer_to_left;
   std::optional<std::string> ask_dropped;  ///< a data file on an open scene: open it, or add it
   std::optional<std::string> add;          ///< a data file that shall join the scene
   std::string loading;                     ///< the path that is being opened; empty: none

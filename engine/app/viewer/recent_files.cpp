@@ -25,7 +25,7 @@ std::string users_path() {
 std::vector<std::string> read_list(const std::string& path) {
   std::error_code code;
   if (path.empty() || !fs::is_regular_file(path, code) || fs::file_size(path, code) > kLargestList || code) return {};
-  const auto text = read_text(path, "a list of files");
+  const auto text = read_text(path, "a list of files", kMostJsonBytes);
   const auto root = text ? json::parse(*text, path) : Result<json::Node>(Error{});
   const json::Node* list = root ? root->find("files") : nullptr;
   std::vector<std::string> files;

@@ -70,6 +70,10 @@ Outcome SceneHost::apply(const std::vector<scene::Document::Edit>& edits, const 
   return change([&](scene::Document& document) { return document.apply(edits, what, drag); });
 }
 
+Outcome SceneHost::replace(const std::string& text, const std::string& what) {
+  return change([&](scene::Document& document) { return document.replace(text, what); });
+}
+
 Outcome SceneHost::undo() {
   if (!document_.can_undo()) return Done{};
   return change([](scene::Document& document) -> Outcome {

@@ -29,6 +29,8 @@ class SceneHost {
   Outcome set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
   Outcome remove(std::string_view pointer, const std::string& what);
   Outcome apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag = {});
+  /// Another text, as one step of undo.
+  Outcome replace(const std::string& text, const std::string& what);
   Outcome undo();
   Outcome redo();
   Outcome save(const std::string& path);

@@ -11,6 +11,7 @@ Result<std::unique_ptr<Screen>> Screen::open(Window& window, Options options) {
 }
 
 Outcome Screen::make() {
+  has_picture_ = is_shown_ = false;
   swapchain_.reset();
   renderer_.reset();
   render::vk::DeviceOptions device;
@@ -33,7 +34,6 @@ bool Screen::is_resized() const {
 
 /// The device was lost: another one. Once for every picture: what is lost again at once is an error.
 Outcome Screen::recover() {
-  has_picture_ = false;
   CATENA_CHECK(make());
   ++recoveries_;
   return Done{};
@@ -61,6 +61,7 @@ Outcome Screen::show(const render::UiItems& ui) {
   constexpr int kMostLosses = 3;
   if (!shown && renderer_->device().lost() && ++losses_ <= kMostLosses) return recover();
   if (shown) losses_ = 0;
+  is_shown_ = is_shown_ || shown;
   return shown;
 }
 

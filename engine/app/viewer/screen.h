@@ -35,6 +35,8 @@ class Screen {
   std::optional<render::Picked> pick(double x, double y);
   /// There is a picture to show.
   bool has_picture() const { return has_picture_; }
+  /// There is a window's picture: what was shown last.
+  bool is_shown() const { return is_shown_; }
   /// The window as it is shown, user interface and all.
   Result<render::Picture> window_picture();
 
@@ -52,7 +54,7 @@ class Screen {
   std::unique_ptr<render::Renderer> renderer_;
   std::unique_ptr<render::vk::Swapchain> swapchain_;
   bool fits_ = true;  ///< the swapchain still has the window's size
-  bool has_picture_ = false;
+  bool has_picture_ = false, is_shown_ = false;
   int recoveries_ = 0, losses_ = 0;  ///< losses_: while showing, in a row
 };
 

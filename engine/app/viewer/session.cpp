@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "engine/app/command.h"
+#include "engine/app/run_files.h"
 #include "engine/app/viewer/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
@@ -20,9 +20,10 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kRestS = 0.25;       // without input for so long: the picture may take its time
-constexpr double kEstimateS = 0.6;    // the same, before its error is looked at
-constexpr double kIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
+constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
+constexpr double kRestS = 0.25;             // without input for so long: the picture may take its time
+constexpr double kEstimateS = 0.6;          // the same, before its error is looked at
+constexpr double kIdleWaitS = 0.004;        // between looks at the servo's news when nothing else happens
 constexpr double kMinimisedWaitS = 0.1;
 constexpr double kTitleS = 0.25;
 constexpr double kLiveS = 0.1;  // between interfaces that only follow the hand
@@ -82,7 +83,10 @@ void Session::check_edits() {
 }
 
 RecordedScene Session::recorded() const {
-  return {scene_->document().path(), scene_->document().text(), hand_.fields(), inputs_of(scene_->scene())};
+  RunFiles files(scene_->scene());
+  files.reads_device(hand_.device_name());
+  files.reads(options_.hand.firmware);
+  return {scene_->document().path(), scene_->document().text(), hand_.fields(), files.inputs()};
 }
 
 /// What the loop has to know of a scene that was read.
@@ -95,8 +99,10 @@ void Session::measure() {
 
 std::optional<Failure> Session::open() {
   // what is wrong with the scene or the device is said before any window opens
-  auto document = options_.source.empty() ? scene::Document::make(kEmptyScene, (std::filesystem::current_path() / "scene.json").string())
-                                          : scene::Document::open(options_.source, options_.overrides);
+  std::error_code code;
+  auto document = options_.source.empty()
+                      ? scene::Document::make(kEmptyScene, (std::filesystem::current_path(code) / "scene.json").string())
+                      : scene::Document::open(options_.source, options_.overrides);
   if (!document) return Failure{2, document.error().message};
   auto host = SceneHost::open(std::move(*document), options_.adjust);
   if (!host) return Failure{2, host.error().message};
@@ -129,6 +135,7 @@ std::optional<Failure> Session::open() {
   if (!hand_.is_mouse()) interrupt_.emplace();
   if (const Outcome started = hand_.start(); !started) return Failure{1, started.error().message};
   if (!hand_.note().empty()) state_.say(hand_.note());
+  look_for_left();
   return std::nullopt;
 }
 
@@ -185,7 +192,8 @@ std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
   scene::Scene& scene = scene_->scene();
   const render::Packing packing = render::packing_of(scene.stereo);
   const std::uint32_t scale = render::is_interlaced(packing) ? 1 : next.scale;
-  const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(1u, width / scale), std::max(1u, height / scale));
+  const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width / scale),
+                                     std::max(kLeastPixels, height / scale));
   std::int64_t start = now_ns();
   auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) {
@@ -235,7 +243,8 @@ std::optional<Failure> Session::estimate() {
   height = pixels_[3] - pixels_[1];
   scene::Scene& scene = scene_->scene();
   const render::Packing packing = render::packing_of(scene.stereo);
-  const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(1u, width), std::max(1u, height));
+  const auto eye =
+      render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width), std::max(kLeastPixels, height));
   auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) return std::nullopt;  // said where it was drawn
   const auto error = render::estimate_rmse(screen_->renderer(), *packet, pacing_.again().settings);
@@ -347,8 +356,10 @@ std::optional<Failure> Session::run() {
       live = false;
       fulfil_wishes();
     }
+    keep_unsaved();
     update_title();
   }
+  keep_unsaved(true);
   return finish();
 }
 

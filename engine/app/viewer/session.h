@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/app/hand/interrupt.h"
+#include "engine/app/viewer/draft.h"
 #include "engine/app/viewer/gui.h"
 #include "engine/app/viewer/panel.h"
 #include "engine/app/viewer/pulse_clock.h"
@@ -76,6 +77,9 @@ class Session {
   void leave_or_ask(const Leaving& leaving);
   void drop(const std::string& path);
   bool save(const std::string& path);
+  void keep_unsaved(bool now = false);
+  void look_for_left();
+  void fulfil_wishes_for_left();
   void start_loading(const std::string& path, bool adds);
   bool take_loaded();
   void replace_scene(LoadedScene loaded, const std::string& path);
@@ -111,8 +115,12 @@ class Session {
   bool picked_stale_ = true;       ///< the place under the pointer is to be looked at again
   bool owns_file_ = true;          ///< the scene was read from, or saved to, the file of its path
   bool moved_by_menu_ = false;
-  bool leaves_ = false;  ///< the loop ends
-  int unsettled_ = 0;    ///< interfaces to come though nothing happens: they settle their sizes
+  bool leaves_ = false;    ///< the loop ends
+  Draft draft_;            ///< what is not saved
+  bool given_up_ = false;  ///< by the person, on the way out
+  std::int64_t last_kept_ns_ = 0;
+  std::string not_kept_;  ///< why, as it was said
+  int unsettled_ = 0;     ///< interfaces to come though nothing happens: they settle their sizes
 
   bool damaged_ = false;
   bool interface_holds_pointer_ = false;  ///< the buttons that are down went down on it

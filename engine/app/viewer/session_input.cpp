@@ -34,6 +34,7 @@ Input Session::routed(Input input) {
 
 /// What is open above all goes first; the program stays.
 void Session::escape() {
+  if (gui_->close_popup()) return;
   bool* const open[] = {&state_.help, &state_.fly, &state_.turntable, &controls_.hand_mode, &state_.full_screen};
   for (bool* what : open)
     if (std::exchange(*what, false)) return;

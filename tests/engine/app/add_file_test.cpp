@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 namespace catena::app {
 namespace add_file_test {
 
@@ -26,6 +28,17 @@ TEST(AddFile, FilesElsewhereAreNamedWhole) {
   EXPECT_EQ(*added->edits[0].value, R"({"file": "/b/x.vdb"})");
   EXPECT_EQ(added->edits[0].pointer, "/fields/v");
   EXPECT_EQ(added->edits[1].pointer, "/streamlines/-");
+}
+
+TEST(AddFile, ScenesThatAreNamedWithoutTheirFolderAreInTheCurrentOne) {
+  const char* added = R"({"fields": {"v": {"file": "x.vdb"}}})";
+  const auto beside = edits_to_add("{}", "s.json", added, "x.vdb.json");
+  ASSERT_TRUE(beside);
+  EXPECT_EQ(*beside->edits[0].value, R"({"file": "x.vdb"})");
+  const auto below = edits_to_add("{}", "s.json", added, (std::filesystem::current_path() / "data/x.vdb.json").string());
+  ASSERT_TRUE(below);
+  EXPECT_EQ(*below->edits[0].value, R"({"file": "data/x.vdb"})");
+  EXPECT_TRUE(edits_to_add("{}", "sub/s.json", added, "x.vdb.json"));
 }
 
 TEST(AddFile, MeshesAreRenamedAlike) {

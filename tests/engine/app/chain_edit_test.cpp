@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/new_widget.h"
 #include "engine/app/viewer/scene_host.h"
 #include "haptics/extract/extract.h"
@@ -97,6 +98,71 @@ TEST(ChainEdit, KeysThatAreAddedHaveValuesThatCanBeRead) {
       EXPECT_TRUE(done) << type << " " << key.name << " " << value << ": " << done.error().message;
     }
   }
+}
+
+constexpr const char* kDrawn = R"({
+  "fields": {"other": {"analytic": "plane"}, "ball": {"analytic": "sphere"}, "flow": {"analytic": "circle"}},
+  "widgets": [{"name": "iso", "type": "isolevel", "field": "other", "position": [0, 0, 0.5]}],
+  "isosurfaces": [{"field": "ball", "level": 0.3, "visible": false}, {"field": "ball", "level": 1.2345678901}, {"field": "ball", "level": 0.7},
+                  {"field": "other", "level": {"widget": "iso"}}]
+})";
+
+/// The link's field and level as its text has them.
+std::pair<std::string, std::string> surface_of(const json::Node& link) {
+  const json::Node* level = link.find("level");
+  return {field_of_level(link), level == nullptr ? "" : json_of(*level)};
+}
+
+TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
+  int with_level = 0;
+  for (const std::string& type : link_types()) {
+    if (type == "mesh") continue;
+    Fixture f(kDrawn);
+    const Vec3 probe(1.1, 0, 0);  // |x| = 1.1: nearer to 1.23 than to 0.7
+    ASSERT_TRUE(f.host->set("/chain/-", *new_link(f.host->scene(), type, probe, 4), "add"));
+    ChainRow row = chain_rows(f.host->scene(), {})[0];
+    // a surface that may be stated, is
+    for (const LinkKey& key : keys_of(type))
+      if (key.name == "surface" && row.node.find("surface") == nullptr) {
+        ASSERT_TRUE(f.host->apply(added_key(f.host->scene(), row, key, probe, 4), "add")) << type;
+        row = chain_rows(f.host->scene(), {})[0];
+      }
+    const auto [field, level] = surface_of(row.node);
+    if (level.empty()) continue;
+    ++with_level;
+    EXPECT_EQ(field, "ball") << type;
+    EXPECT_EQ(level, "1.2345678901") << type << ": all digits of what is drawn";
+    // from one field to another: its surface follows a widget, and so does what is felt
+    for (const LinkKey& key : keys_of(type))
+      if (key.kind == LinkKey::Kind::scalar_field) {
+        const Outcome done = f.host->apply(changed_field(f.host->scene(), row, key, "other", probe), "field");
+        ASSERT_TRUE(done) << type << ": " << done.error().message;
+      }
+    EXPECT_EQ(surface_of(chain_rows(f.host->scene(), {})[0].node), (std::pair<std::string, std::string>("other", R"({"widget": "iso"})")))
+        << type;
+    const auto program = haptics::extract_program(f.host->scene());
+    EXPECT_TRUE(program) << type << ": " << program.error().message;
+  }
+  EXPECT_GE(with_level, 5) << "isosurface, friction, modulated friction, texture, the ready-made mode";
+}
+
+TEST(ChainEdit, ALevelThatIsDraggedMovesAllThatLiesOnTheSurface) {
+  Fixture f(R"({
+    "fields": {"ball": {"analytic": "sphere"}, "other": {"analytic": "plane"}, "flow": {"analytic": "circle"}},
+    "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1},
+              {"name": "rough", "type": "texture", "surface": "ball", "level": 1, "wavelength": 0.1},
+              {"name": "inner", "type": "isosurface", "field": "ball", "level": 0.5},
+              {"name": "easy", "type": "anisotropic_friction", "surface": "ball", "level": 1, "field": "flow"},
+              {"name": "flat", "type": "isosurface", "field": "other", "level": 1}],
+    "isosurfaces": [{"field": "ball", "level": 1}, {"field": "ball", "level": 0.25}] })");
+  const auto rows = chain_rows(f.host->scene(), {});
+  ASSERT_EQ(rows.size(), 5u);
+  // by the histogram of the isosurface
+  EXPECT_EQ(felt_levels(f.host->scene(), "ball", 1), (std::vector<std::string>{"/chain/0/level", "/chain/1/level", "/chain/3/level"}));
+  // by the key of a link: what is seen and the other links go along
+  EXPECT_EQ(levels_along(f.host->scene(), rows[1]), (std::vector<std::string>{"/isosurfaces/0/level", "/chain/0/level", "/chain/3/level"}));
+  EXPECT_TRUE(levels_along(f.host->scene(), rows[2]).empty()) << "no surface is drawn there";
+  EXPECT_TRUE(levels_along(f.host->scene(), rows[4]).empty()) << "another field";
 }
 
 TEST(ChainEdit, NeighboursChangePlacesInOneStepAndTheRestOfTheTextStays) {

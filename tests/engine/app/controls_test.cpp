@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/app/hand/hand_setup.h"
+#include "engine/base/eye_limits.h"
 
 namespace catena::app {
 namespace controls_test {
@@ -81,6 +82,22 @@ TEST(Controls, TheWheelZooms) {
   apply(c, input(0, 0, -1));
   EXPECT_NEAR(c.view.height, 4 / 0.9, 1e-12);
   EXPECT_NEAR(norm(c.view.position), 9, 1e-12);
+}
+
+TEST(Controls, NeitherEyeNorHandLeavesTheWorld) {
+  for (const double notches : {30.0, -30.0})
+    for (const bool flat : {false, true})
+      for (const bool as_hand : {false, true}) {
+        Controls c = controls();
+        c.view.orthographic = flat;
+        c.hand_mode = as_hand;
+        for (int k = 0; k < 1000; ++k) {
+          apply(c, input(50, -20, notches));
+          ASSERT_TRUE(is_finite(c.view.position) && is_finite(c.hand)) << k;
+          ASSERT_LE(std::max(max_abs(c.view.position), max_abs(c.hand)), kMostEyeCoordinate) << k;
+          ASSERT_EQ(eye_problem(c.view.position, c.view.target), "") << k;
+        }
+      }
 }
 
 TEST(Controls, TheNumberKeysLookAlongTheAxesAtAllThatIsDrawn) {

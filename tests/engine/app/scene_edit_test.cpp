@@ -104,8 +104,9 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
 
 TEST_F(EditedScene, TheFeltLevelIsTheSeenOne) {
   std::vector<std::vector<std::string>> felt;
-  scene_.world.each<scene::Isosurface>(
-      [&](scene::Entity, const scene::Isosurface& surface) { felt.push_back(felt_levels(scene_, surface)); });
+  scene_.world.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
+    felt.push_back(felt_levels(scene_, name_of(scene_, surface.field), surface.level));
+  });
   ASSERT_EQ(felt.size(), 2u);
   EXPECT_EQ(felt[0], std::vector<std::string>{"/chain/0/level"}) << "not the other field's, not the other level's";
   EXPECT_TRUE(felt[1].empty());

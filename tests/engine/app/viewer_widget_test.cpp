@@ -57,7 +57,7 @@ TEST_F(ViewerWidget, TheMouseTakesTheCuttingPlaneThroughAllItsModes) {
                   "by 7 0\n"                                                                     // to the sphere
                   "xdotool keydown space; sleep 0.5; by 0 -8; xdotool keyup space; sleep 0.7\n"  // turns it
                   "xdotool key h; sleep 0.3; xdotool key ctrl+s; sleep 1\n"
-                  "xdotool key ctrl+q"),
+                  "xdotool key ctrl+q; sleep 0.7; xdotool key Return"),  // it records: quit asks
             0)
       << log();
 

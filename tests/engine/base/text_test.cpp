@@ -2,38 +2,74 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "tests/support/support.h"
+
 namespace catena {
 namespace text_test {
 
-TEST(Printable, KeepsWhatCanBeRead) {
-  for (const char* text : {"", "density", "v [m/s]", "Druck \xc3\xa4\xc3\xb6", "\xe6\xb8\xa9\xe5\xba\xa6", "\xf0\x9f\xab\x80"})
-    EXPECT_EQ(printable(text), text);
+std::uint64_t peak_bytes() {
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
+  return static_cast<std::uint64_t>(used.ru_maxrss) << 10;
 }
 
-TEST(Printable, LetsNoControlThrough) {
-  EXPECT_EQ(printable("a\033[31mb"), "a?[31mb");
-  EXPECT_EQ(printable("\033]0;title\007"), "?]0;title?");
-  EXPECT_EQ(printable("a\r\nb\tc\x7f"), "a??b?c?");
-  EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a?b");
-  // the same escapes as one character of the C1 set, and marks that turn the writing
-  EXPECT_EQ(printable("\xc2\x9b"
-                      "31m"),
-            "?31m");
-  EXPECT_EQ(printable("a\xe2\x80\xae"
-                      "b"),
-            "a?b");
-  EXPECT_EQ(printable("\xe2\x80\xa8"), "?");
+std::string why_not(const std::string& path, std::uint64_t most = kMostTextBytes) {
+  const auto text = read_text(path, "a list", most);
+  return text ? "read" : text.error().message;
 }
 
-TEST(Printable, BytesThatAreNoUtf8) {
-  EXPECT_EQ(printable("\x9b"
-                      "31m"),
-            "?31m");
-  EXPECT_EQ(printable("a\xc3"), "a?");
-  EXPECT_EQ(printable("\xc0\x9b"), "??");            // longer than need be: an escape in disguise
-  EXPECT_EQ(printable("\xed\xa0\x80"), "???");       // half of a pair
-  EXPECT_EQ(printable("\xf4\x90\x80\x80"), "????");  // beyond the last
-  EXPECT_EQ(printable("\xff\xfe"), "??");
+TEST(ReadText, ReadsRegularFilesAlsoThroughLinks) {
+  const test::TemporaryFolder folder;
+  std::string text(200000, 'x');
+  text[1] = '\0';
+  test::write_file(folder / "a", text);
+  std::filesystem::create_symlink("a", folder / "link");
+  EXPECT_EQ(read_text(folder / "a", "a list").value(), text);
+  EXPECT_EQ(read_text(folder / "link", "a list").value(), text);
+  test::write_file(folder / "empty", "");
+  EXPECT_EQ(read_text(folder / "empty", "a list").value(), "");
+  // a size of 0 is no promise
+  EXPECT_NE(read_text("/proc/self/status", "a list").value().find("Pid:"), std::string::npos);
+}
+
+TEST(ReadText, WaitsForNoPipeDeviceSocketOrFolder) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/dev/zero", folder / "zero");
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  (folder / "socket").copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(why_not(folder / "pipe"), (folder / "pipe") + ": is a pipe; a list was expected");
+  EXPECT_EQ(why_not(folder / "zero"), (folder / "zero") + ": is a device; a list was expected");
+  EXPECT_EQ(why_not("/dev/zero"), "/dev/zero: is a device; a list was expected");
+  EXPECT_EQ(why_not(folder / "socket"), (folder / "socket") + ": is a socket or a device; a list was expected");
+  EXPECT_EQ(why_not(folder.path()), folder.path() + ": is a folder; a list was expected");
+  EXPECT_EQ(why_not(folder / "none"), (folder / "none") + ": cannot be read: No such file or directory; a list was expected");
+  ::close(socket);
+}
+
+TEST(ReadText, ASizeBeyondTheLimitIsSaidBeforeAnythingIsAllocated) {
+  const test::TemporaryFolder folder;
+  const std::string path = folder / "sparse";
+  test::write_file(path, "x");
+  ASSERT_EQ(::truncate(path.c_str(), off_t{1} << 40), 0);
+  const std::uint64_t before = peak_bytes();
+  EXPECT_EQ(why_not(path), path + ": is 1048576 MiB large; a list of at most 1024 MiB was expected");
+  EXPECT_EQ(why_not(path, kMostJsonBytes), path + ": is 1048576 MiB large; a list of at most 128 MiB was expected");
+  EXPECT_LT(peak_bytes() - before, 64u << 20);
+  test::write_file(folder / "short", "0123456789");
+  EXPECT_EQ(why_not(folder / "short", 10), "read");
+  EXPECT_EQ(why_not(folder / "short", 9), (folder / "short") + ": is 0 KiB large; a list of at most 0 KiB was expected");
 }
 
 }  // namespace text_test

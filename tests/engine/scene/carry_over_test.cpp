@@ -264,7 +264,7 @@ TEST(CarryOver, AWidgetStaysWhereTheHandHasPutIt) {
 TEST(WriteValues, AreReadBack) {
   Camera camera;
   camera.position = {0.1, 1.0 / 3, -1e-7};
-  camera.target = {5, 6, 7e20};
+  camera.target = {5, 6, 7e14};
   camera.up = {0.3, 0.2, 0.1};
   camera.orthographic = true;
   camera.height = 2.0 / 3;

@@ -134,5 +134,50 @@ TEST(ColoredLines, TheIndicatorNamesAField) {
   expect_error(parse_scene(text("\"feld\": \"swirl\""), "s.json"), 2, {"feld", "field"});
 }
 
+TEST(Lines, ReleasedOnesAreThoseThatWereMadeUntilSomebodyAsksAgain) {
+  auto scene = parse_scene(scene_text(R"("seeds": {"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 5}})"), "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const Entity set = set_of(*scene);
+  EXPECT_EQ(lines_version(*scene, set), 0u) << "not made";
+  const auto first = use_lines(*scene, set);
+  ASSERT_TRUE(first) << first.error().message;
+  const std::uint64_t version = lines_version(*scene, set);
+  EXPECT_NE(version, 0u);
+  release_lines(*scene, set);
+  EXPECT_EQ(first->at(0).use_count(), 1) << "nobody else holds them";
+  EXPECT_EQ(lines_version(*scene, set), version);
+  const auto again = use_lines(*scene, set);
+  ASSERT_TRUE(again);
+  EXPECT_NE(lines_version(*scene, set), version);
+  ASSERT_EQ(again->size(), first->size());
+  for (std::size_t i = 0; i < first->size(); ++i) EXPECT_EQ(again->at(i)->knots().size(), first->at(i)->knots().size());
+}
+
+TEST(Lines, MoreKnotsThanAllowedAreSaidAndEveryBlockIsTold) {
+  auto scene = parse_scene(scene_text(R"("seeds": [[1, 0, 0]])"), "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto node = json::parse(R"({"line": {"from": [0.5, 0, 0], "to": [1, 0, 0], "count": 300}})", "seeds.json");
+  ASSERT_TRUE(node);
+  const auto seeds = read_seeds(*scene, *node);
+  ASSERT_TRUE(seeds) << seeds.error().message;
+  const auto field = use_field(*scene, scene->world.get<StreamlineSet>(set_of(*scene)).field, {});
+  ASSERT_TRUE(field && field->vector);
+  LineRequest request{flow::Flow{field->vector.get()}};
+  std::vector<std::size_t> done;
+  request.progress = [&](std::size_t seeds_done, std::size_t of) {
+    EXPECT_EQ(of, 300u);
+    done.push_back(seeds_done);
+  };
+  const auto all = make_lines(*scene, *seeds, request, *node);
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_EQ(all->size(), 300u);
+  ASSERT_GE(done.size(), 2u);
+  EXPECT_EQ(done.back(), 300u);
+  request.most_knots = 1000;
+  const auto some = make_lines(*scene, *seeds, request, *node);
+  ASSERT_FALSE(some);
+  EXPECT_NE(some.error().message.find("of the 300 seeds have more than 1000 knots together"), std::string::npos) << some.error().message;
+}
+
 }  // namespace lines_test
 }  // namespace catena::scene

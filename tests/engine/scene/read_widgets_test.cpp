@@ -120,7 +120,7 @@ TEST(ReadWidgets, WrongOnesNameTheirLine) {
            {"{" + cut + R"(, "snap": 0.2, "release": 0.2})", "a longer distance than snap's was expected"},
            {"{" + cut + R"(, "radius": 0})", "radius"},
            {"{" + cut + R"(, "step": -1})", "step"},
-           {"{" + cut + R"(, "near": 1e200})", "up to 1e100"},
+           {"{" + cut + R"(, "near": 1e200})", "1e-30 to 1e30"},
            {"{" + cut + R"(, "button": 0})", "button"},
            {"{" + cut + R"(, "button": 33})", "button"},
            {"{" + cut + R"(, "turning": "none"})", "free"},

@@ -268,5 +268,28 @@ TEST(SceneFile, CamerasAndBackgrounds) {
   expect_error(with("\"cursor\": {\"size\": 0}"), 2, {"> 0 was expected"});
 }
 
+TEST(SceneFile, CamerasThatSeeNothingAreRefused) {
+  const auto camera = [](const std::string& keys) { return with("\"camera\": {" + keys + "}"); };
+  expect_error(camera("\"position\": [1e30, 0, 0], \"target\": [0, 0, 0]"), 2, {"too far away", "1e+15"});
+  expect_error(camera("\"position\": [1, 0, 0], \"target\": [0, -1e20, 0]"), 2, {"too far away"});
+  expect_error(camera("\"position\": [6, 0, 0], \"target\": [6, 0, 0]"), 2, {"two different points"});
+  expect_error(camera("\"position\": [6, 0, 0], \"target\": [6.0000000000001, 0, 0]"), 2, {"two different points"});
+  expect_error(camera("\"position\": [6, 0, 0], \"target\": [0, 0, NaN]"), 2, {"not valid JSON"});
+  expect_error(camera("\"position\": [6, 0, 0], \"target\": [0, 0, 1e999]"), 2, {"finite number"});
+  for (const char* fovy : {"0", "-30", "1e-10", "179.9999999", "180", "1e30"})
+    expect_error(camera("\"position\": [6, 0, 0], \"target\": [0, 0, 0], \"fovy_deg\": " + std::string(fovy)), 2, {"fovy_deg"});
+  for (const char* height : {"0", "-1", "1e-20", "1e20"})
+    expect_error(camera(R"("position": [6, 0, 0], "target": [0, 0, 0], "projection": "orthographic", "height": )" + std::string(height)), 2,
+                 {"height"});
+}
+
+TEST(SceneFile, NumbersOfAbsurdSizeAreRefusedWhereverTheyStand) {
+  expect_error(with("\"coupling\": {\"stiffness\": 1e308}"), 2, {"1e+308 is too large", "1e-30 to 1e30"});
+  expect_error(with("\"stereo\": {\"mode\": \"side-by-side\", \"separation\": 1e308}"), 2, {"too large"});
+  expect_error(with("\"isosurfaces\": [{\"field\": \"ball\",\n \"level\": -1e31}]"), 3, {"-1e+31 is too large"});
+  expect_error(with("\"workspace\": {\"metres_per_unit\": 1e-320}"), 2, {"is too small"});
+  EXPECT_EQ(error_of(with("\"isosurfaces\": [{\"field\": \"ball\", \"level\": 1e29}, {\"field\": \"ball\", \"level\": 0}]")), "no error");
+}
+
 }  // namespace scene_file_test
 }  // namespace catena::scene

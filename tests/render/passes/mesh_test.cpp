@@ -44,7 +44,7 @@ TEST_F(Mesh, ColoursRunAlongATube) {
   packet.view.orthographic = true;
   packet.view.height = 24;
   TubeItem tube = tube_of({3.5, 10, 15.5}, {27.5, 10, 15.5}, 3, {1, 1, 1});
-  tube.points.insert(tube.points.begin() + 1, Vec3(15.5, 10, 15.5));
+  tube.points = {tube.points[0], Vec3(15.5, 10, 15.5), tube.points[1]};
   tube.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   packet.tubes = {tube};
   const Picture picture = draw(packet, {}, "rainbow");

@@ -7,6 +7,7 @@
 #include "shaders/shared/layers.h"
 #include "shaders/shared/overlay.h"
 #include "shaders/shared/pack.h"
+#include "shaders/shared/tube.h"
 #include "shaders/shared/ui.h"
 #include "tests/render/support/spirv.h"
 
@@ -81,6 +82,21 @@ TEST(SharedStructs, FrameAndGridData) {
     EXPECT_OFFSET(FrameData, grids);
     EXPECT_EQ(found.size(), compared);
   }
+}
+
+TEST(SharedStructs, TubeRingData) {
+  auto all = struct_offsets(shader_words("tube.vert"));
+  const auto& found = all["TubeRingData"];
+  std::size_t compared = 0;
+  EXPECT_OFFSET(TubeRingData, centre);
+  EXPECT_OFFSET(TubeRingData, radius);
+  EXPECT_OFFSET(TubeRingData, lean);
+  EXPECT_OFFSET(TubeRingData, tangent);
+  EXPECT_OFFSET(TubeRingData, normal);
+  EXPECT_OFFSET(TubeRingData, color);
+  EXPECT_OFFSET(TubeRingData, id);
+  EXPECT_EQ(found.at("[]"), sizeof(TubeRingData)) << "the stride of the array";
+  EXPECT_EQ(found.size(), compared + 1);
 }
 
 TEST(SharedStructs, MeshFrameData) {

@@ -10,7 +10,19 @@ namespace catena::app {
 std::string name_of(const scene::Scene& scene, scene::Entity entity);
 std::vector<std::string> field_names(const scene::Scene& scene);
 
-/// Pointers to the levels of the chain's isosurface links that hold the hand on this very surface: the same field, the same level.
-std::vector<std::string> felt_levels(const scene::Scene& scene, const scene::Isosurface& surface);
+/// The field on a level of which a link lies ("surface", or "field" where it has none); empty: the link has no level.
+std::string field_of_level(const json::Node& link);
+
+/// Pointers to the levels of all links of the chain that lie on the surface `field` = `level`, of whatever type (isosurface, friction,
+/// texture): the same field, the same number.
+std::vector<std::string> felt_levels(const scene::Scene& scene, const std::string& field, double level);
+/// The same of the isosurfaces that are drawn or hidden.
+std::vector<std::string> seen_levels(const scene::Scene& scene, const std::string& field, double level);
+
+/// The level of the field's surface that is drawn, as JSON text: a number, or {"widget": NAME} where it follows a widget. Of several, the
+/// one that is nearest to `value`. Empty: none is drawn.
+std::string drawn_level(const scene::Scene& scene, const std::string& field, double value);
+/// The field of the first surface that is drawn; empty: none is.
+std::string drawn_field(const scene::Scene& scene);
 
 }  // namespace catena::app

@@ -70,7 +70,12 @@ Vec3 probe_of(const PanelContext& context) {
 void draw_name_choice(PanelContext& context, const ChainRow& row, const LinkKey& key, const std::vector<std::string>& words,
                       const std::string& now) {
   std::string chosen = now;
-  if (choose(key.name.c_str(), words, chosen)) context.edit(row.pointer(key.name), scene::text_of(chosen), key.name);
+  if (!choose(key.name.c_str(), words, chosen)) return;
+  const bool field = key.kind == Kind::scalar_field || key.kind == Kind::vector_field;
+  if (field)
+    context.apply(changed_field(context.scene.scene(), row, key, chosen, probe_of(context)), key.name);
+  else
+    context.edit(row.pointer(key.name), scene::text_of(chosen), key.name);
 }
 
 /// One key that the link states.
@@ -81,6 +86,7 @@ void draw_stated(PanelContext& context, const ChainRow& row, const LinkKey& key,
   if (key.kind == Kind::number && number) {
     NumberItem item{key.name.c_str(), pointer, value.number, 0, 0, speed};
     if (key.positive) item.hi = 1e9;
+    if (key.name == "level") item.along = levels_along(context.scene.scene(), row);
     edit_number(context, item);
   } else if (key.kind == Kind::vector && value.items.size() == 3) {
     if (const auto v = json::as_vec3(value, key.name)) {

@@ -1,6 +1,7 @@
 // What is told or asked above everything else.
 #include <imgui.h>
 
+#include <ctime>
 #include <filesystem>
 #include <string_view>
 
@@ -12,7 +13,7 @@ namespace {
 
 void centre_next() { ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f}); }
 
-std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+std::string file_name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 void draw_help(ViewState& state) {
   const ImGuiViewport& view = *ImGui::GetMainViewport();
@@ -49,34 +50,73 @@ bool button(const char* label, ImGuiKey_ key = ImGuiKey_COUNT) {
 
 void draw_unsaved(PanelContext& context) {
   ViewState& state = context.state;
-  if (!begin_question("Unsaved changes", state.ask_unsaved.has_value())) return;
+  if (!begin_question("Before this scene is left", state.ask_unsaved.has_value())) return;
   if (!state.ask_unsaved) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
-  ImGui::Text("%s has changes that are not saved.", name_of(context.scene.document().path()).c_str());
+  const bool modified = context.scene.document().is_modified();
+  if (modified) ImGui::Text("%s has changes that are not saved.", file_name_of(context.scene.document().path()).c_str());
+  if (state.ask_unsaved->quit && context.hand.recording().running())
+    ImGui::Text("%s is being recorded: quitting ends it.", file_name_of(context.hand.recording().path()).c_str());
   ImGui::Spacing();
   const auto answer = [&](Answer given) {
     state.answer = given;
     ImGui::CloseCurrentPopup();
   };
-  if (button("Save", ImGuiKey_Enter)) answer(Answer::save);
-  ImGui::SetItemDefaultFocus();
-  ImGui::SameLine();
-  if (button("Discard")) answer(Answer::discard);
+  if (modified) {
+    if (button("Save", ImGuiKey_Enter)) answer(Answer::save);
+    ImGui::SetItemDefaultFocus();
+    ImGui::SameLine();
+    if (button("Discard")) answer(Answer::discard);
+  } else {
+    if (button("Quit", ImGuiKey_Enter)) answer(Answer::discard);
+    ImGui::SetItemDefaultFocus();
+  }
   ImGui::SameLine();
   if (button("Cancel", ImGuiKey_Escape)) answer(Answer::cancel);
   ImGui::EndPopup();
 }
 
-void draw_dropped(PanelContext& context) {
+std::string words_of_time(std::int64_t at_s) {
+  const auto time = static_cast<std::time_t>(at_s);
+  std::tm parts{};
+  char words[64] = "";
+  if (::localtime_r(&time, &parts) != nullptr) std::strftime(words, sizeof words, "%d %B, %H:%M", &parts);
+  return words;
+}
+
+void draw_left(PanelContext& context, bool wanted) {
   ViewState& state = context.state;
-  if (!begin_question("A file was dropped", state.ask_dropped.has_value())) return;
+  if (!begin_question("Unsaved changes of an earlier run", wanted)) return;
+  if (!state.ask_left) {
+    ImGui::CloseCurrentPopup();
+    return ImGui::EndPopup();
+  }
+  ImGui::Text("%s had changes that were not saved when its window ended", file_name_of(context.scene.document().path()).c_str());
+  ImGui::Text("(%s).", words_of_time(state.ask_left->at_s).c_str());
+  ImGui::Spacing();
+  const auto answer = [&](AnswerToLeft given) {
+    state.answer_to_left = given;
+    ImGui::CloseCurrentPopup();
+  };
+  if (button("Restore", ImGuiKey_Enter)) answer(AnswerToLeft::restore);
+  ImGui::SetItemDefaultFocus();
+  ImGui::SameLine();
+  if (button("Discard")) answer(AnswerToLeft::discard);
+  ImGui::SameLine();
+  if (button("Later", ImGuiKey_Escape)) answer(AnswerToLeft::later);
+  ImGui::EndPopup();
+}
+
+void draw_dropped(PanelContext& context, bool wanted) {
+  ViewState& state = context.state;
+  if (!begin_question("A file was dropped", wanted)) return;
   if (!state.ask_dropped) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
-  ImGui::TextUnformatted(name_of(*state.ask_dropped).c_str());
+  ImGui::TextUnformatted(file_name_of(*state.ask_dropped).c_str());
   ImGui::Spacing();
   const auto done = [&] {
     state.ask_dropped.reset();
@@ -101,8 +141,11 @@ void draw_dropped(PanelContext& context) {
 
 void draw_dialogs(PanelContext& context) {
   if (context.state.help) draw_help(context.state);
+  // one question at a time
+  const ViewState& state = context.state;
   draw_unsaved(context);
-  draw_dropped(context);
+  draw_dropped(context, state.ask_dropped && !state.ask_unsaved);
+  draw_left(context, state.ask_left && !state.ask_unsaved && !state.ask_dropped);
 }
 
 }  // namespace catena::app

@@ -27,8 +27,10 @@ bool edit_number(PanelContext& context, const NumberItem& item) {
   const bool changed = ImGui::DragScalar(item.label, ImGuiDataType_Double, &value, speed_of(item.speed, item.value),
                                          ranged ? &item.lo : nullptr, ranged ? &item.hi : nullptr, item.format);
   const std::string drag = drag_name(context.state);
-  return changed && std::isfinite(value) && value != item.value &&
-         context.edit(item.pointer, scene::text_of(value), item.pointer.substr(item.pointer.rfind('/') + 1), drag);
+  if (!changed || !std::isfinite(value) || value == item.value) return false;
+  std::vector<scene::Document::Edit> edits{{item.pointer, scene::text_of(value)}};
+  for (const std::string& pointer : item.along) edits.push_back({pointer, scene::text_of(value)});
+  return context.apply(edits, item.pointer.substr(item.pointer.rfind('/') + 1), drag);
 }
 
 bool edit_vector(PanelContext& context, const char* label, const std::string& pointer, const Vec3& value, double speed) {

@@ -15,6 +15,7 @@ struct NumberItem {
   double lo = 0, hi = 0;  ///< lo < hi: the item's range; the text may still say more
   double speed = 0;       ///< a pixel of drag; 0: by the value
   const char* format = "%.5g";
+  std::vector<std::string> along{};  ///< pointers that get the same value in the same step
 };
 /// True: edited.
 bool edit_number(PanelContext& context, const NumberItem& item);

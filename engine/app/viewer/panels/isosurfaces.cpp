@@ -22,11 +22,11 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
     moved = histogram_slider(context, "##level", context.state.look.values.of(scene, surface.field), field.scalar->min_value(),
                              field.scalar->max_value(), surface.color, level);
   moved = typed_number("level", level, "the field's value on the surface; Enter") || moved;
-  const std::vector<std::string> felt = felt_levels(scene, surface);
+  const std::vector<std::string> felt = felt_levels(scene, name_of(scene, surface.field), surface.level);
   if (!felt.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("felt");
-    tip("a link of the chain holds the hand on this surface: its level goes along");
+    tip("a link of the chain lies on this surface: its level goes along");
   }
   if (!moved) return;
   TextEdits writes{{pointer_of(surface.where) + "/level", scene::text_of(level)}};

@@ -1,0 +1,20 @@
+/// Where an eye may be: what the picture's numbers (doubles on the way to floats, whose squares are taken) still resolve. Any thread.
+#pragma once
+#include <string>
+
+#include "engine/base/vec.h"
+
+namespace catena {
+
+/// World units; degrees; the height of an orthographic picture in world units.
+inline constexpr double kMostEyeCoordinate = 1e15, kLeastFovyDeg = 1e-3, kMostFovyDeg = 179.9, kMostEyeHeight = 1e15,
+                        kLeastEyeHeight = 1e-15;
+
+/// What is wrong with an eye's place, and what was expected, as a sentence; empty: nothing. A target counts as the eye's own place
+/// where the difference of the two is rounding.
+std::string eye_problem(const Vec3& position, const Vec3& target);
+
+/// The same of an angle of view, without its subject: "is 0; degrees ... were expected".
+std::string fovy_problem(double fovy_deg);
+
+}  // namespace catena

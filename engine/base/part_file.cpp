@@ -1,0 +1,149 @@
+#include "engine/base/part_file.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace catena {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t kLongestStem = 200;  // of the output's name, in bytes: a file name holds 255
+
+Error cannot_write_part(const std::string& path, int code) { return Error{path + ": cannot write: " + std::strerror(code)}; }
+
+/// ".../flow.json.part", the beginning of all its unfinished files.
+std::string beginning_of(const std::string& path) {
+  const fs::path place(path);
+  std::string name = place.filename().string();
+  name.resize(std::min(name.size(), kLongestStem));
+  return (place.parent_path() / (name + ".part")).string();
+}
+
+/// The process that a name says; 0: none.
+pid_t process_of(std::string_view after_part) {
+  pid_t pid = 0;
+  const auto [end, error] = std::from_chars(after_part.data(), after_part.data() + after_part.size(), pid);
+  const bool whole = error == std::errc() && (end == after_part.data() + after_part.size() || *end == '-');
+  return whole && pid > 0 ? pid : 0;
+}
+
+bool runs(pid_t pid) { return ::kill(pid, 0) == 0 || errno != ESRCH; }
+
+/// What ended programs left in a folder. Looked up once a second at most: pictures of a long sequence go into one folder.
+std::vector<std::string> left_in(const fs::path& folder) {
+  static std::mutex mutex;
+  static fs::path last_folder;
+  static std::chrono::steady_clock::time_point last_time;
+  static std::vector<std::string> left;
+  const std::lock_guard lock(mutex);
+  const auto now = std::chrono::steady_clock::now();
+  if (folder == last_folder && now - last_time < std::chrono::seconds(1)) return left;
+  last_folder = folder;
+  last_time = now;
+  left.clear();
+  std::error_code code;
+  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
+    const std::string name = it->path().filename().string();
+    const auto at = name.rfind(".part");
+    const pid_t pid = at == std::string::npos ? 0 : process_of(std::string_view(name).substr(at + 5));
+    if (pid != 0 && pid != ::getpid() && !runs(pid)) left.push_back(it->path().string());
+  }
+  return left;
+}
+
+}  // namespace
+
+std::string part_name(const std::string& path) {
+  static std::mutex mutex;
+  static std::mt19937_64 random{std::random_device{}()};
+  const std::lock_guard lock(mutex);
+  char tail[64];
+  std::snprintf(tail, sizeof tail, "%d-%012llx", static_cast<int>(::getpid()),
+                static_cast<unsigned long long>(random() & 0xffffffffffffULL));
+  return beginning_of(path) + tail;
+}
+
+void remove_stale_parts(const std::string& path) {
+  const std::string beginning = beginning_of(path);
+  const fs::path folder = fs::path(path).parent_path();
+  for (const std::string& name : left_in(folder.empty() ? fs::path(".") : folder)) {
+    const std::string mine = fs::path(name).filename().string();
+    if (!mine.starts_with(fs::path(beginning).filename().string()) ||
+        process_of(mine.substr(fs::path(beginning).filename().string().size())) == 0)
+      continue;
+    // another machine or container may write into the same folder: its files are locked
+    const int descriptor = ::open(name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    struct stat about {};
+    if (::fstat(descriptor, &about) == 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+      std::error_code ignored;
+      if (S_ISREG(about.st_mode)) ::unlink(name.c_str());
+      if (S_ISDIR(about.st_mode)) fs::remove_all(name, ignored);
+    }
+    ::close(descriptor);
+  }
+}
+
+Result<PartFile> PartFile::create(const std::string& path, bool owner_only) {
+  remove_stale_parts(path);
+  struct stat old {};
+  const bool replaces = ::stat(path.c_str(), &old) == 0 && S_ISREG(old.st_mode);
+  const mode_t mode = owner_only ? 0600 : replaces ? old.st_mode & 0777 : 0666;
+  for (int attempt = 0;; ++attempt) {
+    const std::string name = part_name(path);
+    const int descriptor = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    if (descriptor < 0 && errno == EEXIST && attempt < 100) continue;
+    if (descriptor < 0) return cannot_write_part(path, errno);
+    if (replaces && !owner_only) static_cast<void>(::fchmod(descriptor, mode));
+    static_cast<void>(::flock(descriptor, LOCK_EX | LOCK_NB));
+    return PartFile(path, name, descriptor);
+  }
+}
+
+PartFile::PartFile(PartFile&& other) noexcept
+    : path_(std::move(other.path_)), name_(std::exchange(other.name_, {})), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+PartFile::~PartFile() {
+  if (!name_.empty()) ::unlink(name_.c_str());
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Outcome PartFile::commit() {
+  if (std::rename(name_.c_str(), path_.c_str()) != 0) return cannot_write_part(path_, errno);
+  name_.clear();
+  return Done{};
+}
+
+Result<bool> PartFile::commit_new() {
+  if (::link(name_.c_str(), path_.c_str()) != 0) {
+    if (errno == EEXIST) return false;
+    // a file system without links
+    struct stat about {};
+    if (::lstat(path_.c_str(), &about) == 0) return false;
+    CATENA_CHECK(commit());
+    return true;
+  }
+  ::unlink(name_.c_str());
+  name_.clear();
+  return true;
+}
+
+int PartFile::release() { return std::exchange(descriptor_, -1); }
+
+}  // namespace catena

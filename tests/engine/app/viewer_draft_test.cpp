@@ -1,0 +1,196 @@
+// Nothing that was done in the window is lost: by a kill, by a key, by the window's close button.
+#include "engine/app/viewer/draft.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "render/vk/picture.h"
+#include "tests/support/support.h"
+#include "tests/support/windows.h"
+
+namespace catena::app {
+namespace viewer_draft_test {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScene = R"({
+  // the flow
+  "fields": {"v": {"analytic": "circle"}},
+  "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}],
+  "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0]} })";
+
+std::vector<std::string> drafts_in(const std::string& folder) {
+  std::vector<std::string> found;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename().string().find(".unsaved-") != std::string::npos) found.push_back(entry.path().string());
+  return found;
+}
+
+TEST(Draft, IsWrittenWholeAndFoundOnceItsProgramHasEnded) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder / "a.json";
+  {
+    Draft draft;
+    ASSERT_TRUE(draft.keep(scene, "one"));
+    ASSERT_TRUE(draft.keep(scene, "two"));
+    const auto files = drafts_in(folder.path());
+    ASSERT_EQ(files.size(), 1u) << "one a window, and no unfinished ones";
+    EXPECT_EQ(test::read_file(files[0]), "two");
+    struct stat about {};
+    ASSERT_EQ(::stat(files[0].c_str(), &about), 0);
+    EXPECT_EQ(about.st_mode & 0777u, 0600u);
+    EXPECT_FALSE(find_left_draft(scene)) << "its program runs";
+    // another window on the same scene keeps its own
+    Draft other;
+    ASSERT_TRUE(other.keep(scene, "other"));
+    EXPECT_EQ(drafts_in(folder.path()).size(), 2u);
+    other.remove();
+    EXPECT_EQ(drafts_in(folder.path()), files);
+  }
+  const auto left = find_left_draft(scene);
+  ASSERT_TRUE(left);
+  EXPECT_EQ(left->text, "two");
+  EXPECT_FALSE(find_left_draft(folder / "b.json"));
+  remove_left_draft(*left);
+  EXPECT_FALSE(find_left_draft(scene));
+  EXPECT_TRUE(drafts_in(folder.path()).empty());
+}
+
+TEST(Draft, OfAProgramThatIsKilledTheLastTextIsLeft) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder / "a.json";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    Draft draft;
+    for (int i = 0; i < 10; ++i) static_cast<void>(draft.keep(scene, std::string(1000 * i, 'x')));
+    ::kill(::getpid(), SIGKILL);
+  }
+  ::waitpid(child, nullptr, 0);
+  const auto left = find_left_draft(scene);
+  ASSERT_TRUE(left);
+  EXPECT_EQ(left->text, std::string(9000, 'x'));
+}
+
+TEST(Draft, AnotherSceneTakesItsPlaceAndWhatCannotBeWrittenIsSaid) {
+  const test::TemporaryFolder folder;
+  Draft draft;
+  ASSERT_TRUE(draft.keep(folder / "a.json", "a"));
+  ASSERT_TRUE(draft.keep(folder / "b.json", "b"));
+  const auto files = drafts_in(folder.path());
+  ASSERT_EQ(files.size(), 1u);
+  EXPECT_NE(files[0].find("b.json.unsaved-"), std::string::npos);
+  const Outcome none = draft.keep(folder / "none/c.json", "c");
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("cannot write"), std::string::npos);
+}
+
+TEST(Draft, WhatSomebodyPutThereIsNotOffered) {
+  const test::TemporaryFolder folder;
+  const std::string scene = folder / "a.json", name = scene + ".unsaved-0123456789ab";
+  test::write_file(folder / "secret", "secret");
+  fs::create_symlink("secret", name);
+  EXPECT_FALSE(find_left_draft(scene)) << "a link";
+  fs::remove(name);
+  ASSERT_EQ(::mkfifo(name.c_str(), 0600), 0);
+  EXPECT_FALSE(find_left_draft(scene)) << "a pipe";
+  fs::remove(name);
+  test::write_file(scene + ".unsaved-0123456789aB", "x");
+  test::write_file(scene + ".unsaved-0123456789", "x");
+  EXPECT_FALSE(find_left_draft(scene)) << "other names";
+}
+
+class ViewerDraft : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!test::can_drive_windows()) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+    test::write_file(folder_ / "flow.json", kScene);
+  }
+  std::string log() const { return test::read_file(folder_ / "log"); }
+  bool logged(const std::string& text) const { return log().find(text) != std::string::npos; }
+  test::TemporaryFolder folder_;
+};
+
+// A change without panels: the moved view is saved under another name, and undone.
+constexpr const char* kChange =
+    "keys o ctrl+shift+s; sleep 0.3; xdotool type --delay 60 'copy'; keys Return; written copy.json\n"
+    "keys ctrl+z; titled 'copy.json [^ ]'\n";
+
+TEST_F(ViewerDraft, IsOfferedAfterTheProgramWasKilled) {
+  const int code =
+      test::drive_windows(folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
+                                       "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
+                                       "kill -9 $V; wait $V\n"
+                                       "cp copy.json saved.json\n"
+                                       // later: nothing changes, and it is offered again
+                                       "view copy.json --size 900x600\nsleep 0.5; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
+                                       "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
+                                       // restore, save
+                                       "view copy.json --size 900x600\nsleep 0.5; keys Return; titled 'copy.json [^ ]'\n"
+                                       "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
+                                       "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
+                                       // nothing is asked any more
+                                       "view copy.json --size 900x600\nsleep 0.5; keys ctrl+q; wait $V\nexit $?\n");
+  EXPECT_EQ(code, 0) << log();
+  for (const char* bad : {"never", "lost", "changed", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
+  EXPECT_EQ(test::read_file(folder_ / "copy.json"), kScene) << "what was undone, restored and saved";
+  EXPECT_NE(test::read_file(folder_ / "saved.json"), kScene);
+}
+
+TEST_F(ViewerDraft, IsKeptWhereAnInterruptEndsTheWindowAndGoesWhereThePersonDiscards) {
+  const int code = test::drive_windows(
+      folder_, "view flow.json --size 900x600\n" + std::string(kChange) +
+                   "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
+                   "kill -TERM $V; wait $V\nls copy.json.unsaved-* || echo 'lost'\n"
+                   // discarded by a click on the second button, or by the keyboard: right of Restore
+                   "view copy.json --size 900x600\nsleep 0.5; keys Return; titled 'copy.json [^ ]'\n"
+                   "keys ctrl+q; sleep 0.3; keys Escape ctrl+z; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
+                   "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\nexit 0\n");
+  EXPECT_EQ(code, 0) << log();
+  for (const char* bad : {"never", "lost", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
+}
+
+TEST_F(ViewerDraft, QuitAsksWhileItRecordsAndNoOtherKeyQuits) {
+  ASSERT_EQ(test::drive_window(folder_, "flow.json --size 900x600 --record run.catlog",
+                               "titled 'recording'\n"
+                               "keys q Q Escape Escape Escape; kill -0 $V && echo 'after Q'\n"
+                               "keys ctrl+q; sleep 0.3; kill -0 $V && echo 'asked'\n"
+                               "keys Escape; sleep 0.3; titled 'recording'; kill -0 $V && echo 'stayed'\n"
+                               "keys ctrl+q; sleep 0.3; keys Return"),
+            0)
+      << log();
+  for (const char* good : {"after Q", "asked", "stayed"}) EXPECT_TRUE(logged(good)) << good << "\n" << log();
+  EXPECT_FALSE(logged("never")) << log();
+  EXPECT_TRUE(test::exists(folder_ / "run.catlog"));
+}
+
+TEST_F(ViewerDraft, EscapeClosesAMenuFirst) {
+  ASSERT_EQ(test::drive_window(folder_, "flow.json --size 900x600",
+                               "xdotool mousemove 600 300; sleep 0.3; keys shift+F12; written flow-001.png\n"
+                               "xdotool mousemove 20 8 click 1; sleep 0.4; xdotool mousemove 600 300; sleep 0.3\n"
+                               "keys shift+F12; written flow-002.png\n"
+                               "keys Escape; sleep 0.4; keys shift+F12; written flow-003.png\n"
+                               "keys Escape Escape; kill -0 $V && echo 'stayed'\nkeys ctrl+q"),
+            0)
+      << log();
+  EXPECT_TRUE(logged("stayed")) << log();
+  const auto closed = render::read_png(folder_ / "flow-001.png"), open = render::read_png(folder_ / "flow-002.png"),
+             after = render::read_png(folder_ / "flow-003.png");
+  ASSERT_TRUE(closed && open && after) << log();
+  const auto differing = [&](const render::Picture& a) {
+    int count = 0;
+    for (std::uint32_t y = 24; y < 140; ++y)
+      for (std::uint32_t x = 8; x < 150; ++x) count += std::abs(a.pixel(x, y)[0] - closed->pixel(x, y)[0]) > 20;
+    return count;
+  };
+  EXPECT_GT(differing(*open), 1000) << "the menu covers the panel";
+  EXPECT_LT(differing(*after), 200);
+}
+
+}  // namespace viewer_draft_test
+}  // namespace catena::app

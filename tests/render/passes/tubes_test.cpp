@@ -1,0 +1,115 @@
+// Tubes that the vertex shader makes of rings: the picture of the triangles that add_tube makes, in a fraction of their memory.
+#include "render/passes/tubes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace tubes_test {
+
+using namespace catena::render;
+
+class TubesTest : public PictureTest {};
+
+TubeItem bent(double radius, const Vec3& middle, double turns, int count) {
+  TubeItem tube;
+  std::vector<Vec3> points;
+  std::vector<Color> colors;
+  for (int k = 0; k <= count; ++k) {
+    const double angle = 2 * std::numbers::pi * turns * (k == count && turns == 1 ? 0 : k) / count;
+    points.push_back(middle + 4.0 * Vec3(std::cos(angle), 0.3 * std::sin(2 * angle), std::sin(angle)));
+    colors.push_back({float(0.5 + 0.5 * std::cos(angle)), 0.6f, float(0.5 + 0.5 * std::sin(angle))});
+  }
+  tube.points = std::move(points);
+  tube.colors = std::move(colors);
+  tube.radius = radius;
+  tube.id = 7;
+  return tube;
+}
+
+/// An open one, a closed one, a ball, two that follow each other, a corner; of 8, 12 and 16 sides.
+std::vector<TubeItem> some_tubes() {
+  TubeItem ball, corner;
+  ball.points = {{9, 2, 9}};
+  ball.radius = 1.5;
+  ball.color = {1, 0.5f, 0.2f};
+  corner.points = {{-9, 0, -9}, {-4, 0, -9}, {-4, 0, -4}, {-9, 0, -8}};
+  corner.radius = 0.2;
+  corner.color = {0.3f, 0.9f, 0.4f};
+  return {bent(0.6, {-6, 0, 5}, 0.8, 40), bent(0.4, {5, 0, -5}, 1, 60), bent(0.1, {5, 1, 5}, 1, 30), ball, corner,
+          bent(0.05, {0, 0, 0}, 0.7, 30)};
+}
+
+/// The same as meshes.
+std::vector<MeshItem> as_meshes(const std::vector<TubeItem>& tubes) {
+  Bounds bounds;
+  for (const TubeItem& tube : tubes)
+    for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
+  std::vector<MeshItem> meshes;
+  for (const TubeItem& tube : tubes) {
+    Shape shape;
+    add_tube(shape, tube, tube_sides(tube.radius, bounds.diagonal()));
+    MeshGeometry geometry;
+    for (const MeshVertex& v : shape.vertices) {
+      geometry.vertices.push_back(v.position);
+      geometry.normals.push_back(v.normal);
+      geometry.colors.push_back(v.color);
+    }
+    geometry.triangles = shape.triangles;
+    MeshItem item;
+    item.geometry = std::make_shared<const MeshGeometry>(std::move(geometry));
+    item.smooth = true;
+    item.id = tube.id;
+    meshes.push_back(std::move(item));
+  }
+  return meshes;
+}
+
+TEST_F(TubesTest, ThePictureIsThatOfTheirTriangles) {
+  for (const bool clipped : {false, true}) {
+    FramePacket packet;
+    packet.width = 192;
+    packet.height = 144;
+    packet.view.position = {3, -30, 12};
+    packet.view.target = {0, 0, 0};
+    packet.background = {0.1f, 0.1f, 0.15f, 1};
+    // cut open: into the tubes can be seen
+    if (clipped) packet.clip = {{Vec3(0, 0.1, 0), Vec3(0.1, 1, 0)}};
+    FramePacket meshes = packet;
+    packet.tubes = some_tubes();
+    meshes.meshes = as_meshes(packet.tubes);
+    const std::string name = clipped ? "clipped" : "whole";
+    const Picture a = draw(packet, {}, name), b = draw(meshes, {}, name + "-triangles");
+    int other = 0, drawn = 0;
+    for (std::uint32_t y = 0; y < a.height; ++y)
+      for (std::uint32_t x = 0; x < a.width; ++x) {
+        int most = 0;
+        for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(a.pixel(x, y)[c] - b.pixel(x, y)[c]));
+        other += most > 3;
+        drawn += std::abs(b.pixel(x, y)[0] - 26) > 3;
+      }
+    EXPECT_GT(drawn, 1500) << name;
+    EXPECT_LE(other, drawn / 200) << name << ": at outlines a pixel may fall to the other side";
+  }
+}
+
+TEST_F(TubesTest, APointOfALineTakesLessThanAHundredBytesOfTheDevice) {
+  FramePacket packet;
+  packet.width = 32;
+  packet.height = 24;
+  packet.view.position = {0, -60, 0};
+  const auto bytes = [&](int tubes) {
+    packet.tubes.clear();
+    for (int k = 0; k < tubes; ++k) packet.tubes.push_back(bent(0.01, {0.01 * k, 0, 0}, 0.9, 1000));
+    draw(packet);
+    return renderer_->stats().gpu_bytes;
+  };
+  // beyond one piece's indices
+  const auto some = bytes(100), more = bytes(300);
+  EXPECT_LT(double(more - some) / (200 * 1000), 100) << "triangles take more than 500";
+}
+
+}  // namespace tubes_test
+}  // namespace catena::test
