@@ -11,18 +11,19 @@
 #include "engine/app/command.h"
 #include "engine/app/process_limits.h"
 #include "engine/base/clock.h"
+#include "engine/base/memory_limit.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
 
 namespace {
 int bad_input(const std::string& message) {
-  fmt::print(stderr, "catena: {}\n", one_line(message));
+  fmt::print(stderr, "catena: {}\n", printable(one_line(message)));
   return 2;
 }
 
 int machine_failed(const std::string& message) {
-  fmt::print(stderr, "catena: {}\n", one_line(message));
+  fmt::print(stderr, "catena: {}\n", printable(one_line(message)));
   return 1;
 }
 
@@ -32,6 +33,19 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
   for (const CLI::App* sub : program.get_subcommands()) command += " " + sub->get_name();
   return std::string(error.what()) + " (see " + command + " --help)";
 }
+
+// --memory MB, of every command: where its data comes from is the reader's business
+void add_memory_limit(CLI::App& program) {
+  for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    command
+        ->add_option_function<double>(
+            "--memory", [](double megabytes) { set_memory_limit(static_cast<std::uint64_t>(1e6 * megabytes)); },
+            "MB: the most memory that data may take (default: three quarters of what is free)")
+        ->check(CLI::Range(1.0, 1e9));
+  }
+}
+
+}  // namespace
 
 // Everything that allocates: the caller tells what it throws.
 int parse_and_work(int argc, char** argv) {
@@ -53,6 +67,7 @@ int parse_and_work(int argc, char** argv) {
   add_feel(program, chosen);
   add_devices(program, chosen);
   add_view(program, chosen, view_exit_code);
+  add_memory_limit(program);
 
   try {
     program.parse(argc, argv);

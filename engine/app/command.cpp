@@ -60,13 +60,13 @@ void Progress::at(double done) {
   const double part = done / total_ < 1 ? done / total_ : 1;
   if (terminal_) {
     if (now - last_ < 200'000'000 && part < 1) return;
-    fmt::print(stderr, "\r{}: {:3.0f} % ", what_, 100 * part);
+    fmt::print(stderr, "\r{}: {:3.0f} % ", printable(what_), 100 * part);
     std::fflush(stderr);
   } else {
     const int quarter = static_cast<int>(4 * part);
     if (quarter <= quarters_) return;
     quarters_ = quarter;
-    fmt::print(stderr, "{}: {:.0f} %\n", what_, 100 * part);
+    fmt::print(stderr, "{}: {:.0f} %\n", printable(what_), 100 * part);
   }
   shown_ = true;
   last_ = now;

@@ -2,11 +2,11 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 
 #include "engine/app/command.h"
 #include "engine/app/run_files.h"
+#include "engine/base/text.h"
 #include "engine/field/load.h"
 
 namespace catena::app {
@@ -39,12 +39,8 @@ Outcome import_file(const ImportOptions& o) {
     raw.type = o.type;
     request.raw = raw;
   }
-  CATENA_TRY(const field::AnyField field, field::load(request));
-  std::string name = o.name;
-  if (name.empty()) name = field.get()->name();
-  if (name.empty()) name = std::filesystem::path(o.input).stem().stem().string();
-  CATENA_CHECK(field::write_vdb(o.output, {{field, name}}));
-  fmt::print("{}: {}\n", o.output, name);
+  CATENA_TRY(const std::string name, field::import_as_vdb(request, o.output, o.name));
+  fmt::print("{}: {}\n", printable(o.output), printable(name));
   return Done{};
 }
 

@@ -8,6 +8,7 @@
 #include "engine/app/command.h"
 #include "engine/app/info_log.h"
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
 #include "engine/field/load.h"
 #include "engine/field/units.h"
 #include "engine/mesh/load.h"
@@ -44,17 +45,19 @@ void print_mapping(const field::Mapping& mapping) {
 
 Outcome describe_file(const std::string& path) {
   CATENA_TRY(const std::vector<field::GridInfo> grids, field::describe(path));
-  fmt::print("{}: {} grid{}\n", path, grids.size(), grids.size() == 1 ? "" : "s");
+  fmt::print("{}: {} grid{}\n", printable(path), grids.size(), grids.size() == 1 ? "" : "s");
   for (const field::GridInfo& g : grids) {
-    fmt::print("{} ({}{})\n", g.name.empty() ? "(no name)" : g.name, g.type, g.usable ? "" : "; not a field that Catena can show or feel");
+    fmt::print("{} ({}{})\n", g.name.empty() ? "(no name)" : printable(g.name), printable(g.type),
+               g.usable ? "" : "; not a field that Catena can show or feel");
     fmt::print("  size         {} {} {} voxels from index {} {} {}\n", g.size.x, g.size.y, g.size.z, g.lowest.x, g.lowest.y, g.lowest.z);
     print_mapping(g.mapping);
     const field::Units units = field::units_of(path, g.name);
-    if (!units.value.empty()) fmt::print("  unit         {}\n", units.value);
-    if (!units.length.empty()) fmt::print("  lengths in   {}\n", units.length);
+    if (!units.value.empty()) fmt::print("  unit         {}\n", printable(units.value));
+    if (!units.length.empty()) fmt::print("  lengths in   {}\n", printable(units.length));
     const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
     fmt::print("  world box    {} .. {}\n", text(g.mapping.world_from_index(lowest)),
-               text(g.mapping.world_from_index(lowest + Vec3(g.size.x - 1, g.size.y - 1, g.size.z - 1))));
+               text(g.mapping.world_from_index(lowest + Vec3(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1),
+                                                             static_cast<double>(g.size.z - 1)))));
     fmt::print("  active       {} voxels\n", g.stats.active_voxels);
     if (g.usable) {
       fmt::print("  {}        {} .. {}\n", g.is_vector ? "speed" : "range", to_text(g.stats.min), to_text(g.stats.max));
@@ -79,7 +82,7 @@ void print_mesh(const mesh::TriangleMesh& mesh, const char* indent) {
 
 Outcome describe_mesh(const std::string& path) {
   CATENA_TRY(const mesh::MeshPtr mesh, mesh::load_mesh(path));
-  fmt::print("{}: triangle mesh\n", path);
+  fmt::print("{}: triangle mesh\n", printable(path));
   print_mesh(*mesh, "  ");
   return Done{};
 }
@@ -90,7 +93,8 @@ Outcome describe_widgets(scene::Scene& scene) {
   scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget&) { widgets.push_back(e); });
   for (const scene::Entity e : widgets) {
     CATENA_TRY(const widget::Spec spec, scene::use_widget(scene, e));
-    fmt::print("widget {}: {} at {}", scene.world.get<scene::Name>(e).value, scene::kind_word(spec.kind), text(spec.pose.points[0]));
+    fmt::print("widget {}: {} at {}", printable(scene.world.get<scene::Name>(e).value), scene::kind_word(spec.kind),
+               text(spec.pose.points[0]));
     switch (spec.kind) {
       case widget::Kind::cutting_plane:
         fmt::print(", normal {}, sphere {}, snap {}, release {}", text(scene::normal_of(spec.pose)), to_text(spec.radius),
@@ -125,19 +129,19 @@ Outcome describe_scene(const std::string& path) {
   for (const auto& [entity, where] : fields) {
     CATENA_TRY(const field::AnyField any, scene::use_field(scene, entity, where));
     const scene::FieldSource& source = scene.world.get<scene::FieldSource>(entity);
-    fmt::print("field {}: {} {}, L = {}", scene.world.get<scene::Name>(entity).value, any.scalar ? "scalar" : "vector",
-               source.file ? source.file->path + (source.file->grid.empty() ? "" : ":" + source.file->grid) : source.analytic,
+    fmt::print("field {}: {} {}, L = {}", printable(scene.world.get<scene::Name>(entity).value), any.scalar ? "scalar" : "vector",
+               printable(source.file ? source.file->path + (source.file->grid.empty() ? "" : ":" + source.file->grid) : source.analytic),
                to_text(any.get()->length()));
     if (any.scalar) fmt::print(", values {}..{}", to_text(any.scalar->min_value()), to_text(any.scalar->max_value()));
-    if (const std::string unit = scene::unit_of(scene, entity); !unit.empty()) fmt::print(", in {}", unit);
+    if (const std::string unit = scene::unit_of(scene, entity); !unit.empty()) fmt::print(", in {}", printable(unit));
     fmt::print(", {}\n", human_bytes(static_cast<double>(any.get()->bytes())));
   }
-  if (const std::string unit = scene::unit_length(scene); !unit.empty()) fmt::print("lengths in {}\n", unit);
+  if (const std::string unit = scene::unit_length(scene); !unit.empty()) fmt::print("lengths in {}\n", printable(unit));
   std::vector<scene::Entity> meshes;
   scene.world.each<scene::MeshSource>([&](scene::Entity e, const scene::MeshSource&) { meshes.push_back(e); });
   for (const scene::Entity e : meshes) {
     CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, e));
-    fmt::print("mesh {}: {}\n", scene.world.get<scene::Name>(e).value, scene.world.get<scene::MeshSource>(e).path);
+    fmt::print("mesh {}: {}\n", printable(scene.world.get<scene::Name>(e).value), printable(scene.world.get<scene::MeshSource>(e).path));
     print_mesh(*mesh, "  ");
   }
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
 #include "haptics/servo/log/reader.h"
 
 namespace catena::app {
@@ -16,10 +17,10 @@ Outcome describe_log(const std::string& path) {
   CATENA_TRY(log::LogReader reader, log::LogReader::open(path));
   const log::LogHeader& header = reader.header();
   const auto seconds = static_cast<std::time_t>(header.started_unix_ns / 1'000'000'000);
-  fmt::print("{}: recording of {}\n", path, header.scene_path.empty() ? "a scene without a name" : header.scene_path);
-  for (const std::string& field : header.fields) fmt::print("  field        {}\n", field);
-  fmt::print("  recorded     {:%Y-%m-%d %H:%M:%S} UTC by catena {}\n", fmt::gmtime(seconds), header.catena_version);
-  fmt::print("  device       {} at {} Hz\n", header.device, to_text(header.rate_hz));
+  fmt::print("{}: recording of {}\n", printable(path), header.scene_path.empty() ? "a scene without a name" : printable(header.scene_path));
+  for (const std::string& field : header.fields) fmt::print("  field        {}\n", printable(field));
+  fmt::print("  recorded     {:%Y-%m-%d %H:%M:%S} UTC by catena {}\n", fmt::gmtime(seconds), printable(header.catena_version));
+  fmt::print("  device       {} at {} Hz\n", printable(header.device), to_text(header.rate_hz));
   std::uint64_t ticks = 0;
   double first_s = 0, last_s = 0;
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
@@ -28,7 +29,7 @@ Outcome describe_log(const std::string& path) {
     if (event == log::LogEvent::program) {
       std::string names;
       for (const std::string& name : reader.program().link_names()) names += (names.empty() ? "" : ", ") + name;
-      fmt::print("  program      from tick {}: {}{}\n", reader.program().first_tick, names.empty() ? "no links" : names,
+      fmt::print("  program      from tick {}: {}{}\n", reader.program().first_tick, names.empty() ? "no links" : printable(names),
                  reader.program().known ? "" : " (the recording does not say what they are)");
     }
     if (event != log::LogEvent::tick) continue;

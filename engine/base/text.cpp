@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 namespace catena {
@@ -80,6 +81,46 @@ std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   return text;
+}
+
+namespace {
+
+/// The length of the UTF-8 character at the start of the text, and its number; 0 where there is none.
+std::size_t utf8_character(std::string_view text, std::uint32_t& number) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
+  const std::uint32_t first = byte(0);
+  const std::size_t length = first < 0x80 ? 1 : first >> 5 == 0x6 ? 2 : first >> 4 == 0xe ? 3 : first >> 3 == 0x1e ? 4 : 0;
+  if (length == 0 || length > text.size()) return 0;
+  number = length == 1 ? first : first & (0x7fu >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if (byte(i) >> 6 != 2) return 0;
+    number = number << 6 | (byte(i) & 0x3f);
+  }
+  // neither longer than need be, nor half of a UTF-16 pair, nor beyond the last
+  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+  return number >= kLeast[length] && number <= 0x10ffff && (number < 0xd800 || number > 0xdfff) ? length : 0;
+}
+
+bool is_control(std::uint32_t c) {
+  const bool turns_writing = c == 0x61c || c == 0x200e || c == 0x200f || (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
+  return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0x2028 || c == 0x2029 || turns_writing;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    std::uint32_t number = 0;
+    const std::size_t length = utf8_character(text, number);
+    if (length == 0 || is_control(number))
+      out += '?';
+    else
+      out += text.substr(0, length);
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return out;
 }
 
 std::string joined(const std::vector<std::string_view>& words) {

@@ -25,6 +25,10 @@ std::string in_quotes(std::string_view text);
 /// One line: control characters (line ends above all) become blanks.
 std::string one_line(std::string text);
 
+/// Text as it may reach a terminal: control characters, escapes, bytes that are no UTF-8, and marks that turn the direction of writing
+/// each become '?'. Whatever else it says stays.
+std::string printable(std::string_view text);
+
 /// `a, b, c`
 std::string joined(const std::vector<std::string_view>& words);
 

@@ -1,13 +1,16 @@
 #include "engine/field/coarsen.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "engine/base/assert.h"
+#include "engine/base/memory_limit.h"
 #include "engine/base/parallel_for.h"
-#include "engine/field/convert.h"
+#include "engine/field/grid_make.h"
 
 namespace catena::field {
 namespace {
@@ -67,7 +70,7 @@ class Axis {
 /// The 8^3 coarse voxels of one leaf, those within the coarse box.
 class Leaf {
  public:
-  Leaf(const ScalarGrid& grid, const std::array<Axis, 3>& axes, const openvdb::Coord& origin) : grid_(grid) {
+  Leaf(const ScalarGrid& grid, const std::array<Axis, 3>& axes, const nanovdb::Coord& origin) : grid_(grid) {
     for (int a = 0; a < 3; ++a) {
       begin[a] = std::max(axes[a].first - origin[a], 0);
       end[a] = std::min(axes[a].last - origin[a] + 1, kLeaf);
@@ -164,11 +167,19 @@ Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
   const auto axis = [&](int a) { return Axis(int(std::lround(box.lo[a])), int(std::lround(box.hi[a])), factor); };
   const std::array<Axis, 3> axes{axis(0), axis(1), axis(2)};
 
+  // all blocks of the box are looked at: a sparse grid may reach over far more of them than it has
+  const auto down = [](int v) { return v & ~(kLeaf - 1); };
+  double block_count = 1;
+  for (const Axis& a : axes) block_count *= (down(a.last) - down(a.first)) / kLeaf + 1;
+  constexpr double kMostBlocks = 4e9;
+  const std::string what = fmt::format("grid \"{}\" at 1/{} of its resolution", grid.name(), factor);
+  if (block_count > kMostBlocks) return Error{fmt::format("{} has {:.0f} blocks, expected at most {:.0f}", what, block_count, kMostBlocks)};
+  CATENA_CHECK(ask_for_memory(what, block_count * (sizeof(nanovdb::Coord) + 1 + sizeof(float))));
+
   // the leaves: those of one value become tiles, or nothing
   const float background = grid.background();
-  openvdb::FloatTree tree(background);
-  std::vector<openvdb::Coord> origins;
-  const auto down = [](int v) { return v & ~(kLeaf - 1); };
+  std::vector<nanovdb::Coord> origins;
+  origins.reserve(static_cast<std::size_t>(block_count));
   for (int x = down(axes[0].first); x <= axes[0].last; x += kLeaf)
     for (int y = down(axes[1].first); y <= axes[1].last; y += kLeaf)
       for (int z = down(axes[2].first); z <= axes[2].last; z += kLeaf) origins.emplace_back(x, y, z);
@@ -177,36 +188,55 @@ Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
   parallel_for(origins.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) is_constant[i] = Leaf(grid, axes, origins[i]).constant(constants[i]);
   });
-  std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
+  // the box is of the active voxels: its corners are leaves, and active
+  const nanovdb::Coord lowest(axes[0].first, axes[1].first, axes[2].first), highest(axes[0].last, axes[1].last, axes[2].last);
+  const auto leaf_of = [&](const nanovdb::Coord& c) { return nanovdb::Coord(down(c[0]), down(c[1]), down(c[2])); };
+  std::vector<NanoBlock<float>> blocks;
+  std::vector<nanovdb::Coord> leaves;
+  std::vector<std::uint8_t> averaged;  // by leaf; the others hold the background, and at most a corner of the box is active
   for (std::size_t i = 0; i < origins.size(); ++i) {
-    if (is_constant[i] && constants[i] == background) continue;
+    const bool corner = origins[i] == leaf_of(lowest) || origins[i] == leaf_of(highest);
+    const bool empty = is_constant[i] && constants[i] == background;
+    if (empty && !corner) continue;
     const Leaf leaf(grid, axes, origins[i]);
     const bool whole = leaf.begin == std::array{0, 0, 0} && leaf.end == std::array{kLeaf, kLeaf, kLeaf};
-    if (is_constant[i] && whole)
-      tree.addTile(1, origins[i], constants[i], true);
-    else
-      leaves.push_back(tree.touchLeaf(origins[i]));
+    if (is_constant[i] && whole && !empty) {
+      blocks.push_back({origins[i], NanoBlock<float>::kTile, constants[i]});
+    } else {
+      blocks.push_back({origins[i], static_cast<std::uint32_t>(leaves.size()), 0.f});
+      leaves.push_back(origins[i]);
+      averaged.push_back(empty ? 0 : 1);
+    }
   }
+  CATENA_CHECK(ask_for_memory(what, static_cast<double>(leaves.size()) * sizeof(NanoTypes<float>::Leaf)));
+  NanoMemory memory = reserve_leaves<float>(leaves.size());
   parallel_for(leaves.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const openvdb::Coord origin = leaves[n]->origin();
-      Leaf leaf(grid, axes, origin);
+      auto& data = NanoBuilder<float>::leaf_of(memory.data(), n);
+      data.mBBoxMin = leaves[n];
+      std::fill_n(data.mValues, 512, background);
+      const auto activate = [&](const nanovdb::Coord& c) {
+        if (leaf_of(c) == leaves[n]) data.mValueMask.setOn(static_cast<std::uint32_t>((c[0] & 7) * 64 + (c[1] & 7) * 8 + (c[2] & 7)));
+      };
+      activate(lowest);
+      activate(highest);
+      if (!averaged[n]) continue;
+      Leaf leaf(grid, axes, leaves[n]);
       leaf.read();
       for (int x = leaf.begin[0]; x < leaf.end[0]; ++x)
         for (int y = leaf.begin[1]; y < leaf.end[1]; ++y)
           for (int z = leaf.begin[2]; z < leaf.end[2]; ++z)
-            leaves[n]->setValueOn(openvdb::Index(x * 64 + y * 8 + z), leaf.average(x, y, z));
+            data.setValue(static_cast<std::uint32_t>(x * 64 + y * 8 + z), leaf.average(x, y, z));
     }
   });
-  // the box is of the active voxels: its corners are
-  tree.setActiveState(openvdb::Coord(axes[0].first, axes[1].first, axes[2].first), true);
-  tree.setActiveState(openvdb::Coord(axes[0].last, axes[1].last, axes[2].last), true);
+  NanoBuffers buffers;
+  CATENA_TRY(buffers.values, finish_blocks<float>(std::move(memory), leaves.size(), std::move(blocks), background));
 
   const Mapping& fine = grid.mapping();
   const Mapping mapping =
       Mapping::from_linear(fine.world_from_index_linear * double(factor), fine.world_from_index(Vec3(0.5 * (factor - 1))));
   CoarseGrid coarse;
-  CATENA_TRY(coarse.grid, scalar_from_tree(grid.name(), mapping, tree, nullptr));
+  CATENA_TRY(coarse.grid, grid_from_buffers<ScalarGrid>(grid.name(), mapping, std::move(buffers)));
   coarse.domain = {{axes[0].domain_lo, axes[1].domain_lo, axes[2].domain_lo}, {axes[0].domain_hi, axes[1].domain_hi, axes[2].domain_hi}};
   return coarse;
 }

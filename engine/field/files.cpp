@@ -37,9 +37,4 @@ std::string stem_of(const std::string& path) {
   return name.substr(0, name.size() - extension_of(path).size());
 }
 
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
 }  // namespace catena::field

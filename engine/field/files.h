@@ -13,7 +13,5 @@ Result<std::uint64_t> readable_file(const std::string& path);
 std::string extension_of(const std::string& path);
 /// The file's name without folder and extension.
 std::string stem_of(const std::string& path);
-/// An exception's text on one line.
-std::string one_line(std::string text);
 
 }  // namespace catena::field

@@ -1,81 +1,90 @@
-// Grids from memory: dense leaves, then runs of one value become tiles (the background of an image costs nothing).
-#include <openvdb/tools/Prune.h>
+// Grids from buffers, and from values in memory (runs of one value become tiles: the background of an image costs nothing).
+#include "engine/field/grid_make.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "engine/base/parallel_for.h"
-#include "engine/field/convert.h"
-#include "engine/field/grid_make.h"
+#include "engine/base/assert.h"
+#include "engine/field/dense.h"
+#include "engine/field/grid_storage.h"
+#include "engine/field/nano_erode.h"
 
 namespace catena::field {
 namespace {
 
-std::size_t count_of(const Index3& size) { return static_cast<std::size_t>(size.x) * size.y * size.z; }
+Index3 index3(const nanovdb::Coord& c) { return {c[0], c[1], c[2]}; }
+Vec3 vec3(const nanovdb::Coord& c) { return {static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])}; }
 
-/// Pruning takes a NaN for equal to its neighbours, and would lose it.
-bool all_finite(std::span<const float> values) {
-  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+/// Layers of what is in memory already.
+DenseSource layers_of(const Index3& size, std::span<const float> values, std::span<const std::uint8_t> valid) {
+  const std::size_t layer = static_cast<std::size_t>(size.x) * size.y;
+  const auto copy = [layer]<class V>(std::span<const V> from, std::size_t components, int z, std::span<V> to) {
+    std::copy_n(from.data() + static_cast<std::size_t>(z) * layer * components, to.size(), to.data());
+  };
+  const std::size_t components = values.size() / (layer * static_cast<std::size_t>(size.z));
+  return {size, !valid.empty(), [=](int z, int, std::span<float> values_out, std::span<std::uint8_t> valid_out) -> Outcome {
+            copy(values, components, z, values_out);
+            copy(valid, 1, z, valid_out);
+            return Done{};
+          }};
 }
 
-/// A tree of the voxels of the box 0..size-1 for which put(voxel number, value) says so, all of them active.
-template <class Tree, class Put>
-typename Tree::Ptr dense_tree(const Index3& size, bool prune, const Put& put) {
-  using Leaf = typename Tree::LeafNodeType;
-  auto tree = std::make_shared<Tree>(openvdb::zeroVal<typename Tree::ValueType>());
-  std::vector<Leaf*> leaves;
-  for (int x = 0; x < size.x; x += 8)
-    for (int y = 0; y < size.y; y += 8)
-      for (int z = 0; z < size.z; z += 8) leaves.push_back(tree->touchLeaf(openvdb::Coord(x, y, z)));
-  parallel_for(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      const openvdb::Coord o = leaves[n]->origin();
-      for (int x = o.x(); x < std::min(o.x() + 8, size.x); ++x)
-        for (int y = o.y(); y < std::min(o.y() + 8, size.y); ++y)
-          for (int z = o.z(); z < std::min(o.z() + 8, size.z); ++z)
-            put(*leaves[n], static_cast<openvdb::Index>((x & 7) * 64 + (y & 7) * 8 + (z & 7)),
-                (static_cast<std::size_t>(z) * size.y + y) * size.x + x);
-    }
-  });
-  if (prune) openvdb::tools::prune(*tree);
-  return tree;
-}
-
-ValidMask mask_tree(const Index3& size, std::span<const std::uint8_t> valid) {
-  if (valid.empty()) return nullptr;
-  CATENA_ASSERT(valid.size() == count_of(size));
-  return dense_tree<openvdb::MaskTree>(size, true, [&](auto& leaf, openvdb::Index at, std::size_t n) {
-    if (valid[n]) leaf.setValueOn(at);
-  });
-}
+std::size_t voxel_count(const Index3& size) { return static_cast<std::size_t>(size.x) * size.y * size.z; }
 
 }  // namespace
 
-Result<std::shared_ptr<const ScalarGrid>> try_make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
-                                                               std::span<const float> values, std::span<const std::uint8_t> valid) {
-  CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && values.size() == count_of(size));
-  const auto tree = dense_tree<openvdb::FloatTree>(size, all_finite(values),
-                                                   [&](auto& leaf, openvdb::Index at, std::size_t n) { leaf.setValueOn(at, values[n]); });
-  return scalar_from_tree(std::move(name), mapping, *tree, mask_tree(size, valid));
+Error too_far(const ActiveBox& box) {
+  return Error{fmt::format("has voxels from index ({}, {}, {}) to ({}, {}, {}), expected indices within +-{}", box.lo[0], box.lo[1],
+                           box.lo[2], box.hi[0], box.hi[1], box.hi[2], kFarthestIndex)};
 }
 
-Result<std::shared_ptr<const VectorGrid>> try_make_vector_grid(std::string name, const Mapping& mapping, const Index3& size,
-                                                               std::span<const float> xyz, std::span<const std::uint8_t> valid) {
-  CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && xyz.size() == 3 * count_of(size));
-  const auto tree = dense_tree<openvdb::Vec3fTree>(size, all_finite(xyz), [&](auto& leaf, openvdb::Index at, std::size_t n) {
-    leaf.setValueOn(at, openvdb::Vec3f(xyz[3 * n], xyz[3 * n + 1], xyz[3 * n + 2]));
-  });
-  return vector_from_tree(std::move(name), mapping, *tree, mask_tree(size, valid));
+template <class Grid>
+Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Mapping& mapping, NanoBuffers buffers) {
+  using T = typename GridValue<Grid>::Type;
+  // what the grid holds
+  const auto& values = nano_grid<T>(buffers.values);
+  const NanoMask* valid = buffers.voxels.size() > 0 ? &nano_grid<nanovdb::ValueMask>(buffers.voxels) : nullptr;
+  const ActiveBox box = active_box(values);
+  if (box.empty()) return Error{"has no active voxels, expected a grid with data"};
+  if (!is_near(box)) return too_far(box);
+  const auto [stats, ranged] = stats_of(values, valid);
+  if (stats.nan_count == stats.active_voxels) return Error{"has no finite value in any active voxel"};
+  if (!ranged) return Error{"has no valid voxel with a finite value: the mask leaves nothing of it"};
+  // its parts
+  auto storage = std::make_unique<typename Grid::Storage>();
+  storage->set_box(index3(box.lo), index3(box.hi));
+  storage->values = &values;
+  if (valid) {
+    if (buffers.cells.size() == 0) {
+      CATENA_TRY(buffers.cells, erode(*valid, box, &NanoMemory::reserve, [](double bytes) { return ask_for_memory("its mask", bytes); }));
+    }
+    storage->valid_voxels = valid;
+    storage->valid_cells = &nano_grid<nanovdb::ValueMask>(buffers.cells);
+  }
+  storage->values_memory = std::move(buffers.values);
+  storage->voxels_memory = std::move(buffers.voxels);
+  storage->cells_memory = std::move(buffers.cells);
+  storage->may_be_invalid = valid || stats.nan_count > 0 || !is_finite_value(values.tree().background());
+  return std::shared_ptr<const Grid>(
+      std::make_shared<Grid>(std::move(name), mapping, Box{vec3(box.lo), vec3(box.hi)}, std::move(storage), stats));
 }
+
+template Result<std::shared_ptr<const ScalarGrid>> grid_from_buffers<ScalarGrid>(std::string, const Mapping&, NanoBuffers);
+template Result<std::shared_ptr<const VectorGrid>> grid_from_buffers<VectorGrid>(std::string, const Mapping&, NanoBuffers);
 
 std::shared_ptr<const ScalarGrid> make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
                                                    std::span<const float> values, std::span<const std::uint8_t> valid) {
-  return try_make_scalar_grid(std::move(name), mapping, size, values, valid).value();
+  CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && values.size() == voxel_count(size));
+  CATENA_ASSERT(valid.empty() || valid.size() == voxel_count(size));
+  return make_dense<ScalarGrid>(std::move(name), mapping, layers_of(size, values, valid), {}).value();
 }
 
 std::shared_ptr<const VectorGrid> make_vector_grid(std::string name, const Mapping& mapping, const Index3& size, std::span<const float> xyz,
                                                    std::span<const std::uint8_t> valid) {
-  return try_make_vector_grid(std::move(name), mapping, size, xyz, valid).value();
+  CATENA_ASSERT(size.x > 0 && size.y > 0 && size.z > 0 && xyz.size() == 3 * voxel_count(size));
+  CATENA_ASSERT(valid.empty() || valid.size() == voxel_count(size));
+  return make_dense<VectorGrid>(std::move(name), mapping, layers_of(size, xyz, valid), {}).value();
 }
 
 }  // namespace catena::field

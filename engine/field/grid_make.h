@@ -1,13 +1,38 @@
-/// Private to this room: the makers of grid.h for data from outside, which may hold nothing finite or nothing valid.
+/// Private to this room: a grid from its buffers, checked for what a field must hold.
 #pragma once
 #include "engine/base/result.h"
 #include "engine/field/grid.h"
+#include "engine/field/nano_stats.h"
 
 namespace catena::field {
 
-Result<std::shared_ptr<const ScalarGrid>> try_make_scalar_grid(std::string name, const Mapping& mapping, const Index3& size,
-                                                               std::span<const float> values, std::span<const std::uint8_t> valid = {});
-Result<std::shared_ptr<const VectorGrid>> try_make_vector_grid(std::string name, const Mapping& mapping, const Index3& size,
-                                                               std::span<const float> xyz, std::span<const std::uint8_t> valid = {});
+template <class Grid>
+struct GridValue;
+template <>
+struct GridValue<ScalarGrid> {
+  using Type = float;
+};
+template <>
+struct GridValue<VectorGrid> {
+  using Type = nanovdb::Vec3f;
+};
+
+/// Values; the valid voxels and the valid cells, both empty where there is no mask. Cells that are missing are made.
+struct NanoBuffers {
+  NanoMemory values, voxels, cells;
+};
+
+/// An error (one phrase: "has no active voxels, ...") where no voxel is active, valid or finite, or where indices are too large.
+template <class Grid>
+Result<std::shared_ptr<const Grid>> grid_from_buffers(std::string name, const Mapping& mapping, NanoBuffers buffers);
+
+/// The grid in a buffer.
+template <class T>
+const nanovdb::NanoGrid<T>& nano_grid(const NanoMemory& memory) {
+  return *reinterpret_cast<const nanovdb::NanoGrid<T>*>(memory.data());
+}
+
+/// One phrase on indices that are too large.
+Error too_far(const ActiveBox& box);
 
 }  // namespace catena::field

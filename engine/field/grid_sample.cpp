@@ -1,11 +1,11 @@
 // Any field sampled on a cube of nodes. Nodes that the field does not cover are marked invalid.
-#include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "engine/base/assert.h"
 #include "engine/base/numbers.h"
 #include "engine/base/parallel_for.h"
-#include "engine/field/grid_make.h"
+#include "engine/field/dense.h"
 
 namespace catena::field {
 namespace {
@@ -13,69 +13,52 @@ namespace {
 struct Nodes {
   Index3 size;
   Mapping mapping;
-  std::size_t layer, count;
 };
 
 Nodes nodes(int resolution, double lo, double hi) {
   CATENA_ASSERT(resolution >= 2 && lo < hi);
-  const double spacing = (hi - lo) / (resolution - 1);
-  Nodes n;
-  n.size = {resolution, resolution, resolution};
-  n.mapping = Mapping::from_linear(Mat3(spacing), Vec3(lo));
-  n.layer = static_cast<std::size_t>(resolution) * resolution;
-  n.count = n.layer * resolution;
-  return n;
+  return {{resolution, resolution, resolution}, Mapping::from_linear(Mat3((hi - lo) / (resolution - 1)), Vec3(lo))};
 }
 
-/// visit(node number, world position, cursor) for all nodes, in parallel by layers of z.
-template <class Visit>
-void for_nodes(const Nodes& n, const Visit& visit) {
-  parallel_for(static_cast<std::size_t>(n.size.z), 1, [&](std::size_t begin, std::size_t end) {
-    Cursor cursor;
-    for (std::size_t z = begin; z < end; ++z)
-      for (int y = 0; y < n.size.y; ++y)
-        for (int x = 0; x < n.size.x; ++x)
-          visit(z * n.layer + static_cast<std::size_t>(y) * n.size.x + x, n.mapping.world_from_index(Vec3(x, y, static_cast<double>(z))),
-                cursor);
-  });
+void store(const ScalarSample& s, float* out) { out[0] = static_cast<float>(s.value); }
+void store(const VectorSample& s, float* out) {
+  for (int a = 0; a < 3; ++a) out[a] = static_cast<float>(s.value[a]);
 }
 
-/// An empty mask where every node is valid.
-std::span<const std::uint8_t> mask(const std::vector<std::uint8_t>& valid) {
-  const bool all = std::find(valid.begin(), valid.end(), 0) == valid.end();
-  return all ? std::span<const std::uint8_t>{} : std::span<const std::uint8_t>(valid);
+/// The field at the nodes, in parallel by rows of x.
+template <class Field>
+DenseSource samples_of(const Field& field, const Nodes& n) {
+  constexpr std::size_t components = std::is_same_v<Field, VectorField> ? 3 : 1;
+  return {n.size, true, [&field, n](int z, int layers, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
+            const std::size_t rows = static_cast<std::size_t>(layers) * n.size.y;
+            parallel_for(rows, 8, [&](std::size_t begin, std::size_t end) {
+              Cursor cursor;
+              for (std::size_t row = begin; row < end; ++row)
+                for (int x = 0; x < n.size.x; ++x) {
+                  const double y = static_cast<double>(row % n.size.y), layer = z + static_cast<double>(row / n.size.y);
+                  const auto sample = field.sample(n.mapping.world_from_index(Vec3(x, y, layer)), cursor);
+                  const std::size_t at = row * n.size.x + x;
+                  store(sample, &values[components * at]);
+                  valid[at] = sample.inside;
+                }
+            });
+            return Done{};
+          }};
 }
 
-Result<std::shared_ptr<const ScalarGrid>> sample_scalar(const ScalarField& field, const Nodes& n) {
-  std::vector<float> values(n.count);
-  std::vector<std::uint8_t> valid(n.count);
-  for_nodes(n, [&](std::size_t at, const Vec3& world, Cursor& cursor) {
-    const ScalarSample s = field.sample(world, cursor);
-    values[at] = static_cast<float>(s.value);
-    valid[at] = s.inside;
-  });
-  return try_make_scalar_grid(field.name(), n.mapping, n.size, values, mask(valid));
-}
-
-Result<std::shared_ptr<const VectorGrid>> sample_vector(const VectorField& field, const Nodes& n) {
-  std::vector<float> values(3 * n.count);
-  std::vector<std::uint8_t> valid(n.count);
-  for_nodes(n, [&](std::size_t at, const Vec3& world, Cursor& cursor) {
-    const VectorSample s = field.sample(world, cursor);
-    for (int a = 0; a < 3; ++a) values[3 * at + a] = static_cast<float>(s.value[a]);
-    valid[at] = s.inside;
-  });
-  return try_make_vector_grid(field.name(), n.mapping, n.size, values, mask(valid));
+template <class Grid, class Field>
+Result<std::shared_ptr<const Grid>> sampled(const Field& field, const Nodes& n, const std::string& prefix = {}) {
+  return make_dense<Grid>(field.name(), n.mapping, samples_of(field, n), prefix, /*drop_full_mask=*/true);
 }
 
 }  // namespace
 
 std::shared_ptr<const ScalarGrid> sample_on_grid(const ScalarField& field, int resolution, double lo, double hi) {
-  return sample_scalar(field, nodes(resolution, lo, hi)).value();
+  return sampled<ScalarGrid>(field, nodes(resolution, lo, hi)).value();
 }
 
 std::shared_ptr<const VectorGrid> sample_on_grid(const VectorField& field, int resolution, double lo, double hi) {
-  return sample_vector(field, nodes(resolution, lo, hi)).value();
+  return sampled<VectorGrid>(field, nodes(resolution, lo, hi)).value();
 }
 
 Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, double lo, double hi) {
@@ -84,22 +67,20 @@ Result<AnyField> try_sample_on_grid(const AnyField& field, int resolution, doubl
   const double spacing = (hi - lo) / (resolution - 1);
   if (!std::isfinite(spacing) || !(lo + spacing > lo))
     return Error{what + ": the spacing is not a usable number; a smaller or larger box was expected"};
-  AnyField sampled;
+  const Nodes n = nodes(resolution, lo, hi);
+  CATENA_CHECK(ask_for_dense(what + ": the grid", n.size, field.scalar ? 1 : 3, true));
+  AnyField made;
   GridStats stats;
   if (field.scalar) {
-    auto grid = sample_scalar(*field.scalar, nodes(resolution, lo, hi));
-    if (!grid) return Error{what + ": the grid " + grid.error().message};
-    sampled.scalar = *grid;
-    stats = (*grid)->stats();
+    CATENA_TRY(made.scalar, sampled<ScalarGrid>(*field.scalar, n, what + ": the grid "));
+    stats = made.scalar->grid()->stats();
   } else {
-    auto grid = sample_vector(*field.vector, nodes(resolution, lo, hi));
-    if (!grid) return Error{what + ": the grid " + grid.error().message};
-    sampled.vector = *grid;
-    stats = (*grid)->stats();
+    CATENA_TRY(made.vector, sampled<VectorGrid>(*field.vector, n, what + ": the grid "));
+    stats = made.vector->grid()->stats();
   }
   if (stats.nan_count > 0)
     return Error{what + ": " + std::to_string(stats.nan_count) + " samples do not fit into 32-bit floats; smaller values were expected"};
-  return sampled;
+  return made;
 }
 
 }  // namespace catena::field

@@ -2,7 +2,6 @@
 /// Where there is a mask, `valid_cells` has one bit a cell: set when all eight corners of the cell with that base are valid.
 #pragma once
 #include <nanovdb/NanoVDB.h>
-#include <nanovdb/util/GridHandle.h>
 
 #include <cstring>
 #include <new>
@@ -10,15 +9,15 @@
 #include <type_traits>
 
 #include "engine/field/grid.h"
+#include "engine/field/nano_stats.h"
 
 namespace catena::field {
 
-using NanoMask = nanovdb::NanoGrid<nanovdb::ValueMask>;
 inline nanovdb::Coord coord(const Index3& i) { return {i.x, i.y, i.z}; }
 
 template <class T>
 struct GridStorage {
-  nanovdb::GridHandle<> values_handle, voxels_handle, cells_handle;
+  NanoMemory values_memory, voxels_memory, cells_memory;
   const nanovdb::NanoGrid<T>* values = nullptr;
   const NanoMask* valid_voxels = nullptr;  ///< null: no mask
   const NanoMask* valid_cells = nullptr;
@@ -26,7 +25,7 @@ struct GridStorage {
   Index3 step;      ///< 1, or 0 along an axis of one layer
   bool may_be_invalid = false;
 
-  std::size_t bytes() const { return values_handle.size() + voxels_handle.size() + cells_handle.size(); }
+  std::size_t bytes() const { return values_memory.size() + voxels_memory.size() + cells_memory.size(); }
   void set_box(const Index3& first, const Index3& final_voxel) {
     lo = first;
     step = {first.x < final_voxel.x, first.y < final_voxel.y, first.z < final_voxel.z};

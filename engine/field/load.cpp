@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 
+#include "engine/base/text.h"
 #include "engine/field/files.h"
 #include "engine/field/loaders.h"
 
@@ -28,6 +29,8 @@ Result<T> guarded(const std::string& path, const Body& body) {
   }
 }
 
+bool is_dense(const std::string& kind) { return kind == ".nii" || kind == ".nii.gz" || kind == ".raw"; }
+
 Error unknown_kind(const std::string& path) {
   return Error{fmt::format("{}: unknown kind of file, expected .vdb, .nii, .nii.gz or .raw", path)};
 }
@@ -45,8 +48,10 @@ Result<AnyField> load(const LoadRequest& request) {
     return Error{fmt::format("{}: shape, spacing, origin and type belong to .raw files only", request.path)};
   return guarded<AnyField>(request.path, [&]() -> Result<AnyField> {
     if (kind == ".vdb") return load_vdb(request);
-    if (kind == ".nii" || kind == ".nii.gz") return load_nifti(request);
-    if (kind == ".raw") return load_raw(request);
+    if (is_dense(kind)) {
+      CATENA_TRY(const DenseFile file, kind == ".raw" ? open_raw(request) : open_nifti(request));
+      return load_dense(file);
+    }
     CATENA_CHECK(readable_file(request.path));
     return unknown_kind(request.path);
   });

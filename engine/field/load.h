@@ -1,6 +1,7 @@
 /// Reading and writing of fields: .vdb (float, half, double, integer scalars; 3-vectors), .nii and .nii.gz, .raw.
-/// Every failure is one sentence that names the file, what is wrong and what was expected. Nothing else in the house
-/// includes OpenVDB or the NIfTI library.
+/// Every failure is one sentence that names the file, what is wrong and what was expected. .vdb files are read and written by programs of
+/// their own, catena-read and catena-write (engine/vdb): a damaged file ends the reader, not the program that asked for it. Nothing is
+/// allocated on the word of a header beyond what engine/base/memory_limit.h allows.
 #pragma once
 #include <optional>
 #include <string>
@@ -31,9 +32,19 @@ struct LoadRequest {
 /// Loads one grid (and its mask), nothing else of the file.
 Result<AnyField> load(const LoadRequest& request);
 
+/// Voxels an axis: a file's indices may be farther apart than an index can say.
+struct Size3 {
+  std::int64_t x = 0, y = 0, z = 0;
+  Size3() = default;
+  Size3(std::int64_t nx, std::int64_t ny, std::int64_t nz) : x(nx), y(ny), z(nz) {}
+  Size3(const Index3& n) : x(n.x), y(n.y), z(n.z) {}
+  bool operator==(const Size3&) const = default;
+};
+
 struct GridInfo {
   std::string name, type;  ///< type as the file says: float, half, vec3s, bool, ...
-  Index3 size{0, 0, 0}, lowest{0, 0, 0};
+  Size3 size;
+  Index3 lowest{0, 0, 0};
   Mapping mapping;
   GridStats stats;
   std::size_t bytes = 0;  ///< in memory, as NanoVDB
@@ -49,6 +60,10 @@ struct WriteItem {
   std::string name;
 };
 Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items);
+
+/// Reads one grid and writes it to a .vdb; raw and NIfTI files layer by layer, without a grid in this process's memory. Returns the grid's
+/// name in the output: `name`, else its own, else the file's.
+Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name);
 
 /// Counts of what was really loaded, so that a test can show that only what the scene names is.
 struct LoadCounters {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "engine/field/files.h"
-#include "engine/field/grid_make.h"
 #include "engine/field/loaders.h"
 #include "engine/field/number_type.h"
 
@@ -19,11 +18,6 @@ struct FreeImage {
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 using Image = std::unique_ptr<nifti_image, FreeImage>;
-
-struct Volume {
-  std::shared_ptr<const ScalarGrid> grid;
-  std::string type;
-};
 
 std::string_view word_of(int datatype) {
   switch (datatype) {
@@ -59,104 +53,144 @@ Mapping mapping_of(const nifti_image& image) {
   return Mapping::from_linear(j, Vec3(m.m[0][3], m.m[1][3], m.m[2][3]));
 }
 
-/// The bytes of the first volume, in the machine's order.
-Result<std::vector<std::byte>> read_bytes(const std::string& path, const nifti_image& image, std::uint64_t file_size, std::size_t bytes) {
-  const bool compressed = nifti_is_gzfile(image.iname) != 0;
-  const auto offset = static_cast<std::uint64_t>(image.iname_offset);
-  const auto short_of = [&](std::uint64_t has) {
-    return Error{fmt::format("{}: the file is cut short, expected {} bytes of voxels after its header, it has {}", path, bytes, has)};
-  };
-  // a header that promises more than the file can hold (deflate packs at most 1032 : 1)
-  constexpr std::uint64_t best_ratio = 1032;
-  const std::uint64_t most = compressed ? file_size * best_ratio : file_size;
-  if (offset > most || bytes > most - offset) return short_of(most > offset ? (compressed ? 0 : most - offset) : 0);
-  znzFile file = znzopen(image.iname, "rb", compressed);
-  if (znz_isnull(file)) return Error{fmt::format("{}: cannot be opened", path)};
-  std::vector<std::byte> data(bytes);
-  const bool placed = znzseek(file, static_cast<znz_off_t>(offset), SEEK_SET) >= 0;
-  const std::size_t got = placed ? znzread(data.data(), 1, bytes, file) : 0;
-  // one byte beyond lets the decompressor check its trailer when the volume is the whole file
-  std::byte beyond{};
-  const bool whole = image.nvox * static_cast<std::size_t>(image.nbyper) == bytes;
-  bool sound = !whole || znzread(&beyond, 1, 1, file) <= 1;
-  sound = znzclose(file) == 0 && sound;
-  if (got != bytes) return short_of(got > bytes ? 0 : got);
-  if (!sound) return Error{fmt::format("{}: the compressed file is cut short or damaged", path)};
-  if (image.swapsize > 1 && image.byteorder != nifti_short_order())
-    nifti_swap_Nbytes(bytes / static_cast<std::size_t>(image.swapsize), image.swapsize, data.data());
-  return data;
-}
+/// The voxels of the first volume, in order. The library's stream is inflated no further than the header promises.
+class NiftiLayers {
+ public:
+  NiftiLayers(const std::string& path, const nifti_image& image, const NumberType& type, bool swapped, std::uint64_t file_size)
+      : path_(path), type_(type), swapped_(swapped) {
+    if (image.scl_slope != 0 && std::isfinite(image.scl_slope) && std::isfinite(image.scl_inter)) {
+      slope_ = image.scl_slope;
+      inter_ = image.scl_inter;
+    }
+    compressed_ = nifti_is_gzfile(image.iname) != 0;
+    offset_ = static_cast<std::uint64_t>(image.iname_offset);
+    bytes_ = static_cast<std::uint64_t>(image.nx) * image.ny * image.nz * type.bytes;
+    whole_ = image.nvox * static_cast<std::size_t>(image.nbyper) == bytes_;
+    file_size_ = file_size;
+  }
 
-/// The header is looked at first: the library reports some bad ones on stderr, whatever its debug level.
-Image read_header(const std::string& path) {
+  /// A header that promises more than the file can hold is found before anything is read.
+  Outcome open(const char* name) {
+    constexpr std::uint64_t best_ratio = 1032;  // of deflate
+    const std::uint64_t most = compressed_ ? file_size_ * best_ratio : file_size_;
+    if (offset_ > most || bytes_ > most - offset_) return cut(most > offset_ ? (compressed_ ? 0 : most - offset_) : 0);
+    file_.reset(znzopen(name, "rb", compressed_));
+    if (!file_) return Error{fmt::format("{}: cannot be opened", path_)};
+    if (znzseek(file_.get(), static_cast<znz_off_t>(offset_), SEEK_SET) < 0) return cut(0);
+    return Done{};
+  }
+
+  Outcome read(std::span<float> values) {
+    constexpr std::size_t kPiece = 1 << 18;  // numbers
+    raw_.resize(kPiece * type_.bytes);
+    for (std::size_t at = 0; at < values.size(); at += kPiece) {
+      const std::size_t count = std::min(kPiece, values.size() - at), wanted = count * type_.bytes;
+      const std::size_t got = znzread(raw_.data(), 1, wanted, file_.get());
+      done_ += got <= wanted ? got : 0;
+      if (got != wanted) return cut(done_);
+      if (swapped_ && type_.bytes > 1) nifti_swap_Nbytes(count, static_cast<int>(type_.bytes), raw_.data());
+      type_.decode(raw_.data(), count, slope_, inter_, values.data() + at);
+    }
+    if (done_ < bytes_) return Done{};
+    // one byte beyond lets the decompressor check its trailer when the volume is the whole file
+    std::byte beyond{};
+    bool sound = !whole_ || znzread(&beyond, 1, 1, file_.get()) <= 1;
+    znzFile last = file_.release();
+    sound = znzclose(last) == 0 && sound;
+    if (!sound) return Error{fmt::format("{}: the compressed file is cut short or damaged", path_)};
+    return Done{};
+  }
+
+ private:
+  struct Close {
+    void operator()(znzFile file) const { znzclose(file); }
+  };
+  Error cut(std::uint64_t has) const {
+    return Error{fmt::format("{}: the file is cut short, expected {} bytes of voxels after its header, it has {}", path_, bytes_, has)};
+  }
+
+  std::string path_;
+  NumberType type_;
+  bool swapped_, compressed_ = false, whole_ = false;
+  double slope_ = 1, inter_ = 0;
+  std::uint64_t offset_ = 0, bytes_ = 0, file_size_ = 0, done_ = 0;
+  std::unique_ptr<znzptr, Close> file_;
+  std::vector<std::byte> raw_;
+};
+
+struct Header {
+  Image image;
+  bool swapped = false;
+};
+
+/// The header is looked at first: the library reports some bad ones on stderr, whatever its debug level, and takes a place of the voxels
+/// that is no number for one. Extensions, which may be of any size, are not read.
+Result<Header> read_header(const std::string& path) {
   nifti_set_debug_level(0);
+  const auto unknown = [&] { return Error{fmt::format("{}: this is not a NIfTI-1 file, or its header is damaged", path)}; };
   int swapped = 0;
   const std::unique_ptr<nifti_1_header, decltype(&std::free)> header(nifti_read_header(path.c_str(), &swapped, 0), &std::free);
-  if (!header || nifti_hdr_looks_good(header.get()) == 0) return nullptr;
+  if (!header || nifti_hdr_looks_good(header.get()) == 0) return unknown();
   const int dimensions = header->dim[0];
-  if (dimensions < 1 || dimensions > 7 || header->datatype == DT_BINARY || header->datatype == DT_UNKNOWN) return nullptr;
+  if (dimensions < 1 || dimensions > 7 || header->datatype == DT_BINARY || header->datatype == DT_UNKNOWN) return unknown();
   for (int d = 1; d <= dimensions; ++d)
-    if (header->dim[d] < 1) return nullptr;
-  return Image(nifti_image_read(path.c_str(), 0));
-}
-
-Result<Volume> read_volume(const std::string& path) {
-  // the header
-  CATENA_TRY(const std::uint64_t file_size, readable_file(path));
-  const Image image = read_header(path);
-  if (!image) return Error{fmt::format("{}: this is not a NIfTI-1 file, or its header is damaged", path)};
-  const std::string_view word = word_of(image->datatype);
-  const auto type = number_type(word);
-  if (!type)
-    return Error{fmt::format("{}: voxels of type {} are not supported, expected integers or floats (uint8 to int64, float32, float64)",
-                             path, nifti_datatype_string(image->datatype))};
-  if (image->nu > 1 || image->nv > 1 || image->nw > 1)
-    return Error{
-        fmt::format("{}: the image has {} dimensions (vectors or more), expected a scalar volume of 3, or 4 with time", path, image->ndim)};
-  if (image->nx < 1 || image->ny < 1 || image->nz < 1 || image->iname_offset < 0 || !image->iname)
-    return Error{fmt::format("{}: the header is damaged", path)};
-  const Mapping mapping = mapping_of(*image);
-  if (!is_finite(mapping.origin) || !is_finite(mapping.index_from_world(Vec3(1.0))) || !(mapping.smallest_edge() > 0))
-    return Error{fmt::format("{}: the transform of the header cannot be inverted", path)};
-
-  // the voxels of the first volume
-  const long double wanted = static_cast<long double>(image->nx) * image->ny * image->nz * static_cast<long double>(type->bytes);
-  if (wanted > 1e15L)
-    return Error{fmt::format("{}: the header asks for {} x {} x {} voxels: it is damaged", path, image->nx, image->ny, image->nz)};
-  CATENA_TRY(std::vector<std::byte> bytes, read_bytes(path, *image, file_size, static_cast<std::size_t>(wanted)));
-  const bool scaled = image->scl_slope != 0 && std::isfinite(image->scl_slope) && std::isfinite(image->scl_inter);
-  std::vector<float> values(bytes.size() / type->bytes);
-  type->decode(bytes.data(), values.size(), scaled ? image->scl_slope : 1, scaled ? image->scl_inter : 0, values.data());
-  bytes = {};
-
-  auto grid = try_make_scalar_grid(stem_of(path), mapping, {image->nx, image->ny, image->nz}, values);
-  if (!grid) return Error{path + ": the volume " + grid.error().message};
-  return Volume{*grid, image->nt > 1 ? fmt::format("{}, first of {} volumes", word, image->nt) : std::string(word)};
+    if (header->dim[d] < 1) return unknown();
+  constexpr std::int32_t kMostOffset = 1 << 28;
+  if (!(header->vox_offset >= 0 && header->vox_offset <= static_cast<float>(kMostOffset)))
+    return Error{fmt::format("{}: vox_offset is {}, expected 0 to {} bytes before the voxels", path, header->vox_offset, kMostOffset)};
+  Header read{Image(nifti_convert_nhdr2nim(*header, path.c_str())), swapped != 0};
+  if (!read.image) return unknown();
+  return read;
 }
 
 }  // namespace
 
-Result<AnyField> load_nifti(const LoadRequest& request) {
-  const std::string name = stem_of(request.path);
+Result<DenseFile> open_nifti(const LoadRequest& request) {
+  const std::string &path = request.path, name = stem_of(request.path);
   if (!request.grid.empty() && request.grid != name)
-    return Error{fmt::format("{}: there is no grid \"{}\", a NIfTI file holds one, \"{}\"", request.path, request.grid, name)};
-  if (request.valid_required) return Error{fmt::format("{}: a NIfTI file holds no mask", request.path)};
-  CATENA_TRY(Volume volume, read_volume(request.path));
-  count_file();
-  count_grid();
-  AnyField field;
-  field.scalar = volume.grid;
-  return field;
+    return Error{fmt::format("{}: there is no grid \"{}\", a NIfTI file holds one, \"{}\"", path, request.grid, name)};
+  if (request.valid_required) return Error{fmt::format("{}: a NIfTI file holds no mask", path)};
+  // the header
+  CATENA_TRY(const std::uint64_t file_size, readable_file(path));
+  CATENA_TRY(const Header header, read_header(path));
+  const nifti_image& image = *header.image;
+  const std::string_view word = word_of(image.datatype);
+  const auto type = number_type(word);
+  if (!type)
+    return Error{fmt::format("{}: voxels of type {} are not supported, expected integers or floats (uint8 to int64, float32, float64)",
+                             path, nifti_datatype_string(image.datatype))};
+  if (image.nu > 1 || image.nv > 1 || image.nw > 1)
+    return Error{
+        fmt::format("{}: the image has {} dimensions (vectors or more), expected a scalar volume of 3, or 4 with time", path, image.ndim)};
+  if (image.nx < 1 || image.ny < 1 || image.nz < 1 || image.iname_offset < 0 || !image.iname)
+    return Error{fmt::format("{}: the header is damaged", path)};
+  const Mapping mapping = mapping_of(image);
+  if (!is_finite(mapping.origin) || !is_finite(mapping.index_from_world(Vec3(1.0))) || !(mapping.smallest_edge() > 0))
+    return Error{fmt::format("{}: the transform of the header cannot be inverted", path)};
+  // the voxels of the first volume: dimensions are 16-bit numbers
+  const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size);
+  CATENA_CHECK(layers->open(image.iname));
+  DenseFile file{
+      name, image.nt > 1 ? fmt::format("{}, first of {} volumes", word, image.nt) : std::string(word), path + ": the volume ", mapping, 1,
+      {}};
+  file.source.size = {image.nx, image.ny, image.nz};
+  CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, image.nx, image.ny, image.nz), file.source.size, 1,
+                             /*masked=*/false));
+  file.source.read = [layers](int, int, std::span<float> values, std::span<std::uint8_t>) { return layers->read(values); };
+  return file;
 }
 
 Result<std::vector<GridInfo>> describe_nifti(const std::string& path) {
-  CATENA_TRY(Volume volume, read_volume(path));
-  const ScalarGrid& grid = *volume.grid;
+  LoadRequest request;
+  request.path = path;
+  CATENA_TRY(const DenseFile file, open_nifti(request));
+  CATENA_TRY(const AnyField field, load_dense(file));
+  const ScalarGrid& grid = *field.scalar->grid();
   GridInfo info;
   info.name = grid.name();
-  info.type = volume.type;
-  const Vec3 size = grid.index_box().hi;
-  info.size = {static_cast<int>(size.x) + 1, static_cast<int>(size.y) + 1, static_cast<int>(size.z) + 1};
+  info.type = file.type;
+  const Index3& size = file.source.size;
+  info.size = {size.x, size.y, size.z};
   info.mapping = grid.mapping();
   info.stats = grid.stats();
   info.bytes = grid.bytes();

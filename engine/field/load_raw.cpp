@@ -1,4 +1,4 @@
-// Bare numbers, x fastest, little-endian; the layout comes from the scene. Voxel (0, 0, 0) is at `origin`.
+// Bare numbers, x fastest, little-endian; the layout comes from the scene. Voxel (0, 0, 0) is at `origin`. Read layer by layer.
 #include <fmt/format.h>
 
 #include <bit>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/field/files.h"
-#include "engine/field/grid_make.h"
 #include "engine/field/loaders.h"
 #include "engine/field/number_type.h"
 
@@ -14,7 +13,44 @@ namespace catena::field {
 
 static_assert(std::endian::native == std::endian::little, "raw files are read as they lie");
 
-Result<AnyField> load_raw(const LoadRequest& request) {
+namespace {
+
+/// The file from its first byte to its last; layers come in order.
+class RawLayers {
+ public:
+  RawLayers(const std::string& path, const NumberType& type) : path_(path), type_(type), in_(path, std::ios::binary) {}
+
+  Outcome read(std::span<float> values) {
+    if (type_.word == "float32") {
+      in_.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size_bytes()));
+      return whole();
+    }
+    constexpr std::size_t kPiece = 1 << 18;  // numbers
+    bytes_.resize(kPiece * type_.bytes);
+    for (std::size_t at = 0; at < values.size(); at += kPiece) {
+      const std::size_t count = std::min(kPiece, values.size() - at);
+      in_.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(count * type_.bytes));
+      CATENA_CHECK(whole());
+      type_.decode(bytes_.data(), count, 1, 0, values.data() + at);
+    }
+    return Done{};
+  }
+
+ private:
+  Outcome whole() const {
+    if (!in_) return Error{fmt::format("{}: cannot be read to its end", path_)};
+    return Done{};
+  }
+
+  std::string path_;
+  NumberType type_;
+  std::ifstream in_;
+  std::vector<std::byte> bytes_;
+};
+
+}  // namespace
+
+Result<DenseFile> open_raw(const LoadRequest& request) {
   const std::string& path = request.path;
   CATENA_TRY(const std::uint64_t size, readable_file(path));
   if (!request.raw)
@@ -47,30 +83,28 @@ Result<AnyField> load_raw(const LoadRequest& request) {
   if (wanted != static_cast<long double>(size))
     return Error{fmt::format("{}: the file has {} bytes, expected {:.0f} ({} x {} x {} voxels of {} bytes)", path, size,
                              static_cast<double>(wanted), n.x, n.y, n.z, voxel_bytes)};
+  CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, static_cast<int>(components),
+                             /*masked=*/false));
 
   // the numbers
-  std::vector<std::byte> bytes(size);
-  std::ifstream in(path, std::ios::binary);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!in) return Error{fmt::format("{}: cannot be read to its end", path)};
-  std::vector<float> values(size / type->bytes);
-  type->decode(bytes.data(), values.size(), 1, 0, values.data());
-  bytes = {};
-  count_file();
-  count_grid();
   Mat3 linear(0.0);
   for (int a = 0; a < 3; ++a) linear[a][a] = raw.spacing[a];
-  const Mapping mapping = Mapping::from_linear(linear, raw.origin);
+  const auto layers = std::make_shared<RawLayers>(path, *type);
+  DenseFile file{name, raw.type, path + ": the data ", Mapping::from_linear(linear, raw.origin), static_cast<int>(components), {}};
+  file.source.size = n;
+  file.source.read = [layers](int, int, std::span<float> values, std::span<std::uint8_t>) { return layers->read(values); };
+  return file;
+}
+
+Result<AnyField> load_dense(const DenseFile& file) {
   AnyField field;
-  if (vector) {
-    auto made = try_make_vector_grid(name, mapping, n, values);
-    if (!made) return Error{path + ": the data " + made.error().message};
-    field.vector = *made;
+  if (file.components == 3) {
+    CATENA_TRY(field.vector, make_dense<VectorGrid>(file.name, file.mapping, file.source, file.prefix));
   } else {
-    auto made = try_make_scalar_grid(name, mapping, n, values);
-    if (!made) return Error{path + ": the data " + made.error().message};
-    field.scalar = *made;
+    CATENA_TRY(field.scalar, make_dense<ScalarGrid>(file.name, file.mapping, file.source, file.prefix));
   }
+  count_file();
+  count_grid();
   return field;
 }
 

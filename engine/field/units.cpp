@@ -1,7 +1,6 @@
 #include "engine/field/units.h"
 
 #include <nifti1_io.h>
-#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,9 +8,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <sstream>
 
 #include "engine/field/files.h"
+#include "engine/field/vdb_reader.h"
 
 namespace catena::field {
 namespace {
@@ -33,44 +34,30 @@ Units nifti_units(const std::string& path) {
   }
 }
 
-std::string word_of(const openvdb::MetaMap& map, std::initializer_list<const char*> keys) {
-  for (const char* key : keys)
-    if (const auto text = map.getMetadata<openvdb::StringMetadata>(key); text && is_unit(text->value())) return text->value();
-  return {};
-}
-
 Units vdb_units(const std::string& path, const std::string& grid) {
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open(/*delayLoad=*/true);
+  const std::optional<ReadReply> file = unit_words_of(path);
+  if (!file) return {};
   Units units;
-  std::string name = grid;
-  int fields = 0;
-  for (auto it = file.beginName(); it != file.endName(); ++it) {
-    if (*it == "valid") continue;
-    if (name.empty()) name = *it;
-    ++fields;
-  }
-  if (const auto map = file.getMetadata()) {
-    if (const auto text = map->getMetadata<openvdb::StringMetadata>("units")) units = units_of_text(text->value(), fields == 1);
-    if (const std::string length = word_of(*map, {"unit_length"}); !length.empty()) units.length = length;
-  }
-  if (file.hasGrid(name)) {
-    const auto about = file.readGridMetadata(name);
-    if (const std::string value = word_of(*about, {"unit", "units"}); !value.empty()) units.value = value;
-    if (const std::string length = word_of(*about, {"unit_length"}); !length.empty()) units.length = length;
+  std::vector<const GridWords*> fields;
+  for (const GridWords& words : file->words)
+    if (words.name != "valid") fields.push_back(&words);
+  // without a name: the first in the order of names
+  const auto by_name = [](const GridWords* a, const GridWords* b) { return a->name < b->name; };
+  const std::string name = grid.empty() && !fields.empty() ? (*std::ranges::min_element(fields, by_name))->name : grid;
+  units = units_of_text(file->units, fields.size() == 1);
+  if (is_unit(file->unit_length)) units.length = file->unit_length;
+  for (const GridWords& words : file->words) {
+    if (words.name != name) continue;
+    if (is_unit(words.unit)) units.value = words.unit;
+    if (is_unit(words.unit_length)) units.length = words.unit_length;
   }
   return units;
 }
 
 Units read_units(const std::string& path, const std::string& grid) {
-  try {
-    const std::string kind = extension_of(path);
-    if (kind == ".nii" || kind == ".nii.gz") return nifti_units(path);
-    if (kind == ".vdb") return vdb_units(path, grid);
-  } catch (const std::exception&) {
-    // loading the field says what is wrong with the file
-  }
+  const std::string kind = extension_of(path);
+  if (kind == ".nii" || kind == ".nii.gz") return nifti_units(path);
+  if (kind == ".vdb") return vdb_units(path, grid);
   return {};
 }
 

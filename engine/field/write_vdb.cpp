@@ -1,136 +1,171 @@
-// Writing .vdb: into a temporary file beside the target that takes its name when complete. Targets that are not regular files
-// (/dev/null, /dev/full) get the bytes directly.
-#include <openvdb/io/Archive.h>
-#include <openvdb/openvdb.h>
-
+// Writing .vdb: the nodes of grids in memory, or the layers of a file that is read meanwhile, go to the writer as they are.
 #include <fmt/format.h>
-#include <unistd.h>
+
+#include <cmath>
 #include <glm/matrix.hpp>
 
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "engine/field/convert.h"
+#include "engine/base/assert.h"
 #include "engine/field/files.h"
-#include "engine/field/load.h"
+#include "engine/field/grid_storage.h"
+#include "engine/field/loaders.h"
+#include "engine/field/nano_mask.h"
+#include "engine/field/nano_nodes.h"
+#include "engine/field/vdb_stream.h"
 
 namespace catena::field {
 namespace {
 
-/// OpenVDB's own file class does not check its stream; this one writes to ours, which throws.
-struct Writer : openvdb::io::Archive {
-  void put(std::ostream& out, const openvdb::GridCPtrVec& grids) const { write(out, grids, /*seekable=*/true); }
-};
-
-openvdb::math::Transform::Ptr transform_of(const Mapping& m) {
-  const Mat3& j = m.world_from_index_linear;
-  openvdb::Mat4d matrix = openvdb::Mat4d::identity();  // rows are the images of the axes
-  for (int a = 0; a < 3; ++a)
-    for (int c = 0; c < 3; ++c) matrix(a, c) = j[a][c];
-  for (int c = 0; c < 3; ++c) matrix(3, c) = m.origin[c];
-  return openvdb::math::Transform::createLinearTransform(matrix);
+Outcome check_volume(const std::string& path, const Mapping& mapping) {
+  // OpenVDB takes smaller voxels for flat ones
+  const double volume = std::fabs(glm::determinant(mapping.world_from_index_linear));
+  if (!(volume > 3e-15) || !std::isfinite(volume))
+    return Error{fmt::format("{}: a .vdb cannot hold voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length",
+                             path, volume)};
+  return Done{};
 }
 
-bool same_voxels(const openvdb::MaskTree& a, const openvdb::MaskTree& b) {
-  if (a.activeVoxelCount() != b.activeVoxelCount()) return false;
-  openvdb::MaskTree both(a);
-  both.topologyIntersection(b);
-  return both.activeVoxelCount() == a.activeVoxelCount();
+bool same_voxels(const NanoMask& a, const NanoMask& b) {
+  if (&a == &b) return true;
+  if (count_of(a) != count_of(b)) return false;
+  // as many, and all of the one are in the other
+  const NanoNodes<nanovdb::ValueMask> nodes = nodes_of(a);
+  const MaskView other(b);
+  for (const auto& leaf : nodes.leaves)
+    for (int x = 0; x < 8; ++x)
+      if ((leaf.mValueMask.getWord<std::uint64_t>(x) & ~other.word(leaf.mBBoxMin, x)) != 0) return false;
+  bool all = true;
+  const auto look = [&](const nanovdb::Coord& origin, std::int32_t edge, bool) { all = all && other.all(origin, edge); };
+  for (const auto& lower : nodes.lowers) for_active_tiles(lower, look);
+  for (const auto& upper : nodes.uppers) for_active_tiles(upper, look);
+  for (const auto& entry : nodes.entries)
+    if (entry.isActive()) look(entry.origin(), kUpperEdge, true);
+  return all;
 }
 
-Result<openvdb::GridCPtrVec> grids_of(const std::string& path, const std::vector<WriteItem>& items) {
-  openvdb::GridCPtrVec grids;
-  openvdb::MaskTree::Ptr mask;
+const float* numbers(const float& v) { return &v; }
+const float* numbers(const nanovdb::Vec3f& v) { return &v[0]; }
+const float* numbers(const bool&) { return nullptr; }
+bool same(const float& a, const float& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same(const nanovdb::Vec3f& a, const nanovdb::Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same(bool a, bool b) { return a == b; }
+
+template <class Leaf>
+const void* values_of(const Leaf& leaf) {
+  return leaf.mValues;
+}
+template <>
+const void* values_of(const NanoTypes<nanovdb::ValueMask>::Leaf&) {
+  return nullptr;
+}
+
+/// All that a buffer holds, but for inactive tiles of the background.
+template <class T>
+void stream_nodes(VdbStream& out, const nanovdb::NanoGrid<T>& grid) {
+  using Value = typename NanoTypes<T>::Value;
+  const NanoNodes<T> nodes = nodes_of(grid);
+  const Value background = grid.tree().background();
+  const auto tile = [&](const nanovdb::Coord& origin, std::int32_t edge, const Value& value, bool active) {
+    if (active || !same(value, background)) out.tile(origin, edge, numbers(value), active);
+  };
+  for (const auto& entry : nodes.entries)
+    if (entry.isValue()) tile(entry.origin(), kUpperEdge, entry.value, entry.state != 0);
+  for (const auto& upper : nodes.uppers)
+    for (std::uint32_t n = 0; n < kUpperEntries; ++n)
+      if (!upper.mChildMask.isOn(n)) tile(upper_coord(upper.mBBox[0], n), kLowerEdge, upper.mTable[n].value, upper.mValueMask.isOn(n));
+  for (const auto& lower : nodes.lowers)
+    for (std::uint32_t n = 0; n < kLowerEntries; ++n)
+      if (!lower.mChildMask.isOn(n)) tile(lower_coord(lower.mBBox[0], n), kLeafEdge, lower.mTable[n].value, lower.mValueMask.isOn(n));
+  for (const auto& leaf : nodes.leaves) out.leaf(leaf.mBBoxMin, leaf.mValueMask, values_of(leaf));
+  out.end_grid();
+}
+
+template <class T>
+Result<bool> stream_layers(VdbStream& out, const DenseSource& source) {
+  DenseSlab<T> slab(source);
+  bool some_finite = false;
+  T values[512];
+  for (int z = 0; z < source.size.z; z += kLeafEdge) {
+    CATENA_CHECK(slab.read(z));
+    for (std::size_t b = 0; b < slab.blocks(); ++b) {
+      T value;
+      if (slab.constant(b, value)) {
+        out.tile(slab.origin(b), kLeafEdge, numbers(value), true);
+        some_finite = true;
+        continue;
+      }
+      nanovdb::Mask<3> active;
+      std::fill_n(values, 512, T(0.f));
+      slab.gather(b, values, active);
+      out.leaf(slab.origin(b), active, values);
+      for (std::uint32_t n = 0; n < 512 && !some_finite; ++n) some_finite = active.isOn(n) && is_finite_value(values[n]);
+    }
+  }
+  out.end_grid();
+  return some_finite;
+}
+
+}  // namespace
+
+Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items) {
+  // one mask for the file
+  const NanoMask* mask = nullptr;
   const Field* masked = nullptr;
   for (const WriteItem& item : items) {
-    // OpenVDB takes smaller voxels for flat ones
-    const double volume = std::fabs(glm::determinant(item.field.get()->mapping().world_from_index_linear));
-    if (!(volume > 3e-15) || !std::isfinite(volume))
-      return Error{fmt::format(
-          "{}: a .vdb cannot hold voxels of volume {:g}; more than 3e-15 was expected: choose a smaller unit of length", path, volume)};
-    // the grid
+    CATENA_CHECK(check_volume(path, item.field.get()->mapping()));
     const ScalarGrid* scalar = item.field.scalar ? item.field.scalar->grid() : nullptr;
     const VectorGrid* vector = item.field.vector ? item.field.vector->grid() : nullptr;
     CATENA_ASSERT(scalar || vector);
-    const openvdb::GridBase::Ptr grid = scalar ? openvdb::GridBase::Ptr(open_grid(*scalar)) : openvdb::GridBase::Ptr(open_grid(*vector));
-    grid->setName(item.name);
-    grid->setTransform(transform_of(item.field.get()->mapping()));
-    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    if (vector) grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
-    if (vector) grid->setGridClass(openvdb::GRID_UNKNOWN);
-    grids.push_back(grid);
-    // its mask: one for the file
-    const auto own = scalar ? open_mask(*scalar) : open_mask(*vector);
+    const NanoMask* own = scalar ? scalar->storage().valid_voxels : vector->storage().valid_voxels;
     if (!own) continue;
     if (mask && !same_voxels(*mask, *own))
       return Error{fmt::format("{}: the grids have different masks, and a file has room for one", path)};
     mask = own;
     masked = item.field.get();
   }
-  if (mask) {
-    auto tree = std::make_shared<openvdb::BoolTree>(*mask, false, true, openvdb::TopologyCopy());
-    auto grid = openvdb::BoolGrid::create(tree);
-    grid->setName("valid");
-    grid->setTransform(transform_of(masked->mapping()));
-    grids.push_back(grid);
-  }
-  return grids;
-}
-
-void write_all(const std::string& path, const openvdb::GridCPtrVec& grids) {
-  std::ofstream out;
-  out.exceptions(std::ios::failbit | std::ios::badbit);
-  out.open(path, std::ios::binary | std::ios::trunc);
-  Writer().put(out, grids);
-  out.flush();
-  out.close();
-}
-
-}  // namespace
-
-Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items) {
-  namespace fs = std::filesystem;
-  // the target
-  std::error_code ignored;
-  const fs::path folder = fs::path(path).parent_path();
-  if (!folder.empty() && !fs::is_directory(folder, ignored))
-    return Error{fmt::format("{}: the folder {} does not exist", path, folder.string())};
-  if (fs::is_directory(path, ignored)) return Error{fmt::format("{}: this is a folder, expected the name of a file to write", path)};
-  const auto failed = [&](const std::string& why) { return Error{fmt::format("{}: cannot be written ({})", path, one_line(why))}; };
-  const auto reason = [] { return errno ? std::string(std::strerror(errno)) : std::string("the stream failed"); };
-  const bool special = fs::exists(path, ignored) && !fs::is_regular_file(path, ignored);
-  const std::string temporary = fmt::format("{}.{}.part", path, ::getpid());
-  errno = 0;
-  try {
-    openvdb::initialize();
-    CATENA_TRY(const openvdb::GridCPtrVec grids, grids_of(path, items));
-    errno = 0;
-    if (special) {
-      std::ostringstream bytes;
-      Writer().put(bytes, grids);
-      std::ofstream out(path, std::ios::binary);
-      out << bytes.str() << std::flush;
-      if (!out) return failed(reason());
-      return Done{};
+  CATENA_TRY(VdbStream out, VdbStream::open(path));
+  for (const WriteItem& item : items) {
+    const Mapping& mapping = item.field.get()->mapping();
+    if (item.field.scalar) {
+      const auto& grid = *item.field.scalar->grid()->storage().values;
+      const float background = grid.tree().background();
+      out.begin_grid(StreamKind::scalar, item.name, mapping, &background, false);
+      stream_nodes(out, grid);
+    } else {
+      const auto& grid = *item.field.vector->grid()->storage().values;
+      const nanovdb::Vec3f background = grid.tree().background();
+      out.begin_grid(StreamKind::vector, item.name, mapping, numbers(background), false);
+      stream_nodes(out, grid);
     }
-    write_all(temporary, grids);
-    fs::rename(temporary, path);
-    return Done{};
-  } catch (const std::ios_base::failure&) {
-    const std::string why = reason();
-    fs::remove(temporary, ignored);
-    return failed(why);
-  } catch (const std::bad_alloc&) {
-    fs::remove(temporary, ignored);
-    return failed("not enough memory");
-  } catch (const std::exception& e) {
-    fs::remove(temporary, ignored);
-    return failed(e.what());
   }
+  if (mask) {
+    out.begin_grid(StreamKind::mask, "valid", masked->mapping(), nullptr, false);
+    stream_nodes(out, *mask);
+  }
+  return out.finish();
+}
+
+Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name) {
+  const std::string kind = extension_of(request.path);
+  const auto name_or = [&](const std::string& own) { return !name.empty() ? name : !own.empty() ? own : stem_of(request.path); };
+  if (kind != ".raw" && kind != ".nii" && kind != ".nii.gz") {
+    CATENA_TRY(const AnyField field, load(request));
+    const std::string chosen = name_or(field.get()->name());
+    CATENA_CHECK(write_vdb(path, {{field, chosen}}));
+    return chosen;
+  }
+  CATENA_TRY(const DenseFile file, kind == ".raw" ? open_raw(request) : open_nifti(request));
+  CATENA_CHECK(check_volume(path, file.mapping));
+  CATENA_TRY(VdbStream out, VdbStream::open(path));
+  const std::string chosen = name_or(file.name);
+  const float background[3]{};
+  const bool vector = file.components == 3;
+  out.begin_grid(vector ? StreamKind::vector : StreamKind::scalar, chosen, file.mapping, background, true);
+  CATENA_TRY(const bool some_finite, vector ? stream_layers<nanovdb::Vec3f>(out, file.source) : stream_layers<float>(out, file.source));
+  if (!some_finite) return Error{file.prefix + "has no finite value in any active voxel"};
+  count_file();
+  count_grid();
+  CATENA_CHECK(out.finish());
+  return chosen;
 }
 
 }  // namespace catena::field

@@ -19,7 +19,8 @@ bool is_sane(const Order& order) {
 
 bool is_sane(const LinkState& link) {
   return is_one_of(link.status, Status::bad_probe) && are_bools(link.started, link.released, link.on) &&
-         is_one_of(link.shape.kind, widget::Shape::Kind::point) && link.evaluations >= 0 && link.evaluations <= kMostCounted;
+         is_one_of(link.shape.kind, widget::Shape::Kind::point) && link.evaluations >= 0 && link.evaluations <= kMostCounted &&
+         link.steps >= 0 && link.steps <= kMostCounted && is_one_of(link.reason, Reason::not_finite);
 }
 
 bool is_sane(const SingleProxy& single) {

@@ -316,7 +316,8 @@ class Isosurface final : public Constraint {
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
-    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell);
+    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) &&
+           haptics::is_sane(memory.scan);
   }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.

@@ -25,6 +25,9 @@ struct Scan {
   bool open, has_nearest;
 };
 
+/// Of a state from a file: see Constraint::is_sane.
+inline bool is_sane(const Scan& scan) noexcept { return are_bools(scan.open, scan.has_nearest) && scan.next >= 0 && scan.next < 1 << 20; }
+
 /// Looks along 26 directions, or along the 6 axes only, near before far, up to L from the centre. Not found: `at` is the sample
 /// nearest in value; with scan.open the budget has ended the scan, and the next call goes on.
 Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only, Scan& scan) noexcept;

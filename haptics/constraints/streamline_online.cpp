@@ -290,7 +290,8 @@ class OnlineStreamline final : public Constraint {
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const OnlineMemory& memory = memory_of<OnlineMemory>(state);
-    return is_one_of(memory.mode, Mode::at_boundary) && memory.tried >= 0 && memory.tried <= kEvaluationCap;
+    return is_one_of(memory.mode, Mode::at_incoherent) && is_one_of(memory.reason, Reason::not_finite) && memory.tried >= 0 &&
+           memory.tried <= kEvaluationCap;
   }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent at the foot of `at`; where the line is held, that point. At the proxy itself the direction is fetched anew,

@@ -93,7 +93,8 @@ struct SideMemory {
 
 /// Of a state from a file: see Constraint::is_sane.
 inline bool is_sane(const SideMemory& m) noexcept {
-  return are_bools(m.known, m.fresh, m.holding, m.settled, m.sheet) && is_one_of(m.status, Status::bad_probe);
+  return are_bools(m.known, m.fresh, m.holding, m.settled, m.sheet, m.gliding) && is_one_of(m.status, Status::bad_probe) &&
+         is_one_of(m.reason, Reason::not_finite);
 }
 
 void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/parallel_for.h"
 #include "render/mirror/half.h"
 #include "render/vk/upload.h"
@@ -124,6 +125,7 @@ class MirrorBuilder {
       : device_(device), grid_(grid), options_(options), encoder_(choose_encoder(grid, options.float32)) {}
 
   Result<GridMirror> build() {
+    CATENA_CHECK(ask());
     if (!plan()) return std::move(mirror_);
     mirror_.offset = encoder_.offset;
     mirror_.scale = encoder_.scale;
@@ -133,6 +135,7 @@ class MirrorBuilder {
   }
 
   std::optional<std::uint64_t> bytes() {
+    if (!ask()) return std::nullopt;
     if (!plan()) return 0;
     std::array<std::uint32_t, 3> values{std::uint32_t(size_.x), std::uint32_t(size_.y), std::uint32_t(size_.z)}, mask = values;
     if (mirror_.atlas) {
@@ -154,6 +157,15 @@ class MirrorBuilder {
   }
 
  private:
+  /// A sparse grid may reach over far more bricks than it has, and something is kept for each.
+  Outcome ask() const {
+    const Vec3 bricks = (grid_.index_box().hi - grid_.index_box().lo) / double(kBrick) + Vec3(2.0);
+    constexpr double kBytesABrick = 48;  // plan and slots here; the map of cells is the GPU's
+    return ask_for_memory(fmt::format("drawing the grid \"{}\", which reaches over {:.0f} x {:.0f} x {:.0f} bricks of 8^3 voxels,",
+                                      grid_.name(), bricks.x, bricks.y, bricks.z),
+                          kBytesABrick * bricks.x * bricks.y * bricks.z);
+  }
+
   /// What the grid is and how it is laid out; false where there is nothing to draw.
   bool plan() {
     const Vec3 lo = grid_.index_box().lo, hi = grid_.index_box().hi;

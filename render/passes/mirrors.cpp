@@ -78,7 +78,8 @@ Outcome Mirrors::build(Entry& entry, const field::ScalarGrid& grid, const Mirror
   }
   const auto voxels = [&] {
     const Vec3 n = grid.index_box().hi - grid.index_box().lo + Vec3(1.0);
-    return std::uint64_t(n.x * n.y * n.z) * (options.float32 ? 4 : 2);
+    constexpr double kMost = 1e18;
+    return std::uint64_t(std::min(kMost, n.x * n.y * n.z)) * (options.float32 ? 4 : 2);
   };
   entry.coarsening = {grid.name(), 1, size_words(grid), needed.value_or(voxels()), room};
   for (const int factor : {2, 4, 8}) {

@@ -1,5 +1,6 @@
 /// Deterministic mutations of a text: bytes flipped, cut, doubled, swapped; tokens dropped or taken from elsewhere.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>

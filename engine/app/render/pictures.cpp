@@ -16,6 +16,7 @@
 #include "engine/app/size_option.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
+#include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_stereo.h"
@@ -181,7 +182,7 @@ Outcome render_pictures(const RenderOptions& o) {
     CATENA_TRY(const double first, frames.draw(0, &outputs));
     stats.first_frame_ms = frames.first_ms;
     stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
-    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", coarser.words());
+    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", printable(coarser.words()));
     fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, picture.width, picture.height, what_is_drawn(packet),
                stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device);
     std::fflush(words);
@@ -209,7 +210,7 @@ Outcome render_pictures(const RenderOptions& o) {
   stats.gpu_bytes = gpu.gpu_bytes;
   stats.gpu_budget_bytes = gpu.gpu_budget;
   stats.validation_messages = gpu.validation_messages;
-  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", note);
+  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", printable(note));
   for (const std::string& text : frames.renderer->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
   if (o.stats.empty()) return outputs.commit();
   CATENA_TRY(OutputFile json, OutputFile::open(o.stats));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/app/viewer/session.h"
+#include "engine/base/text.h"
 
 namespace catena::app {
 
@@ -10,7 +11,7 @@ int view(ViewOptions options) {
   Session session(std::move(options));
   auto failure = session.open();
   if (!failure) failure = session.run();
-  if (failure) fmt::print(stderr, "catena: {}\n", failure->message);
+  if (failure) fmt::print(stderr, "catena: {}\n", printable(failure->message));
   return failure ? failure->exit_code : 0;
 }
 

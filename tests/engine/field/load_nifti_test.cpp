@@ -192,6 +192,28 @@ TEST(LoadNifti, BadFilesHaveTheirSentence) {
   }
 }
 
+TEST(LoadNifti, APlaceOfTheVoxelsThatIsNone) {
+  TemporaryFolder folder;
+  for (const float offset : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -4.f, 1e30f}) {
+    Nifti n = numbers<float>(16);
+    n.put(108, offset);
+    const auto field = load_path(n.save(folder / "a.nii"));
+    ASSERT_FALSE(field) << offset;
+    EXPECT_NE(field.error().message.find("vox_offset is"), std::string::npos) << field.error().message;
+  }
+}
+
+TEST(LoadNifti, AVolumeOfNansIsOneSentence) {
+  TemporaryFolder folder;
+  Nifti n(4, 3, 2, 16, 32);
+  for (int i = 0; i < 24; ++i) n.append(std::numeric_limits<float>::quiet_NaN());
+  const std::string path = n.save(folder / "a.nii");
+  const auto field = load_path(path);
+  ASSERT_FALSE(field);
+  EXPECT_EQ(field.error().message, path + ": the volume has no finite value in any active voxel");
+  EXPECT_FALSE(describe(path));
+}
+
 TEST(LoadNifti, ACutCompressedFileIsNoticed) {
   const std::string path = "/usr/share/mricron/templates/JHU-WhiteMatter-labels-2mm.nii.gz";
   if (!catena::test::exists(path)) GTEST_SKIP() << "package mricron-data is not installed";

@@ -258,6 +258,47 @@ TEST(LoadVdb, EveryBadGridHasItsSentence) {
   for (const GridInfo& i : *info) EXPECT_EQ(i.usable, i.name == "good") << i.name;
 }
 
+TEST(LoadVdb, VoxelsAtTheEndsOfTheIndexRange) {
+  TemporaryFolder folder;
+  auto far = numbers<openvdb::FloatGrid>("far");
+  far->tree().setValue({2147483647, 0, 0}, 1.f);
+  far->tree().setValue({-2147483647 - 1, 0, 0}, 1.f);
+  save(folder / "far.vdb", {far});
+  EXPECT_TRUE(has(error_of(request(folder / "far.vdb")), "(-2147483648, 0, 0) to (2147483647, 7, 5), expected indices within"));
+  const auto grids = describe(folder / "far.vdb");
+  ASSERT_TRUE(grids) << grids.error().message;
+  EXPECT_EQ(grids->at(0).size, Size3(4294967296, 8, 6));
+  EXPECT_FALSE(grids->at(0).usable);
+}
+
+TEST(LoadVdb, TilesOfAnyExtentCostNothing) {
+  TemporaryFolder folder;
+  auto wide = numbers<openvdb::FloatGrid>("wide");
+  for (int n = 1; n <= 8; ++n) wide->tree().addTile(3, {4096 * n, 0, 0}, 7.f, true);
+  save(folder / "wide.vdb", {wide});
+  const auto field = load(request(folder / "wide.vdb"));
+  ASSERT_TRUE(field) << field.error().message;
+  EXPECT_LT(field->get()->bytes(), 4'000'000u);
+  Cursor cursor;
+  EXPECT_EQ(field->scalar->sample(Vec3(20000.5, 2000, 2000), cursor).value, 7);
+  EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120 + 8 * (std::uint64_t{1} << 36));
+}
+
+/// A grid that has the tree of another one.
+TEST(LoadVdb, ASharedTreeIsRead) {
+  TemporaryFolder folder;
+  const auto one = numbers<openvdb::FloatGrid>("one");
+  const auto two = one->copy();
+  two->setName("two");
+  save(folder / "shared.vdb", {one, two});
+  for (const char* name : {"one", "two"}) {
+    const auto field = load(request(folder / "shared.vdb", name));
+    ASSERT_TRUE(field) << field.error().message;
+    EXPECT_EQ(field->get()->name(), name);
+    EXPECT_EQ(field->scalar->grid()->stats().active_voxels, 120u);
+  }
+}
+
 TEST(LoadVdb, SomeNansLoadAndAreCounted) {
   TemporaryFolder folder;
   openvdb::initialize();

@@ -1,14 +1,11 @@
-#include "engine/field/vdb_directory.h"
+#include "engine/vdb/vdb_directory.h"
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
+#include <cstring>
+#include <string_view>
 
-#include "engine/field/files.h"
-
-namespace catena::field {
+namespace catena::vdb {
 namespace {
 
 constexpr std::int64_t magic = 0x56444220;
@@ -17,31 +14,38 @@ constexpr std::uint32_t oldest_version = 222;  // OpenVDB 2.0 (2013)
 /// Little-endian reads that remember the first failure.
 class Reader {
  public:
-  explicit Reader(std::istream& in, std::uint64_t size) : in_(in), size_(size) {}
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
   template <class T>
   T number() {
     T v{};
-    in_.read(reinterpret_cast<char*>(&v), sizeof v);
-    return ok() ? v : T{};
+    if (const std::byte* from = take(sizeof v)) std::memcpy(&v, from, sizeof v);
+    return v;
   }
   std::string text() {
     const auto length = number<std::uint32_t>();
-    if (length > size_) in_.setstate(std::ios::failbit);
-    std::string s(ok() ? length : 0, '\0');
-    in_.read(s.data(), static_cast<std::streamsize>(s.size()));
-    return s;
+    const std::byte* from = take(length);
+    return from ? std::string(reinterpret_cast<const char*>(from), length) : std::string();
   }
-  void skip(std::uint64_t count) {
-    if (count > size_) in_.setstate(std::ios::failbit);
-    in_.seekg(static_cast<std::streamoff>(count), std::ios::cur);
-    if (ok() && static_cast<std::uint64_t>(in_.tellg()) > size_) in_.setstate(std::ios::failbit);
+  void skip(std::uint64_t count) { take(count); }
+  /// Forward only: a table that leads back has no end.
+  void seek(std::uint64_t place) {
+    ok_ = ok_ && place >= at_ && place <= bytes_.size();
+    if (ok_) at_ = place;
   }
-  void seek(std::int64_t place) { in_.seekg(place); }
-  bool ok() const { return in_.good(); }
+  std::uint64_t at() const { return at_; }
+  bool ok() const { return ok_; }
 
  private:
-  std::istream& in_;
-  std::uint64_t size_;
+  const std::byte* take(std::uint64_t count) {
+    ok_ = ok_ && count <= bytes_.size() - at_;
+    if (!ok_) return nullptr;
+    at_ += count;
+    return bytes_.data() + at_ - count;
+  }
+
+  std::span<const std::byte> bytes_;
+  std::uint64_t at_ = 0;
+  bool ok_ = true;
 };
 
 VdbEntry entry_of(std::string unique_name, std::string type) {
@@ -59,10 +63,9 @@ VdbEntry entry_of(std::string unique_name, std::string type) {
 
 }  // namespace
 
-Result<VdbDirectory> read_vdb_directory(const std::string& path) {
-  CATENA_TRY(const std::uint64_t size, readable_file(path));
-  std::ifstream in(path, std::ios::binary);
-  Reader reader(in, size);
+Result<VdbDirectory> read_vdb_directory(std::span<const std::byte> file, const std::string& path) {
+  const std::uint64_t size = file.size();
+  Reader reader(file);
   const auto cut = [&](const std::string& where) {
     return Error{fmt::format("{}: the file is cut short or damaged ({} bytes, it breaks off in {}), expected a complete .vdb file", path,
                              size, where)};
@@ -94,15 +97,18 @@ Result<VdbDirectory> read_vdb_directory(const std::string& path) {
   VdbDirectory directory;
   directory.streamed = !has_offsets;
   for (std::int32_t i = 0; i < count && has_offsets; ++i) {
+    const std::uint64_t at = reader.at();
     std::string name = reader.text(), type = reader.text();
-    reader.text();
+    const bool shares_tree = !reader.text().empty();
     const auto begin = reader.number<std::int64_t>(), blocks = reader.number<std::int64_t>(), end = reader.number<std::int64_t>();
     if (!reader.ok()) return cut(fmt::format("the entry of grid {}", i + 1));
     VdbEntry entry = entry_of(std::move(name), std::move(type));
-    if (begin <= 0 || blocks < begin || end < blocks || static_cast<std::uint64_t>(end) > size)
-      return cut(fmt::format("grid \"{}\"", entry.name));
+    const bool in_order = shares_tree ? begin <= end : begin <= blocks && blocks <= end;  // of a shared tree there are no blocks
+    if (begin <= 0 || !in_order || static_cast<std::uint64_t>(end) > size) return cut(fmt::format("grid \"{}\"", entry.name));
+    entry.at = at;
+    reader.seek(static_cast<std::uint64_t>(end));
+    if (!reader.ok()) return cut(fmt::format("grid \"{}\"", entry.name));
     directory.entries.push_back(std::move(entry));
-    reader.seek(end);
   }
   return directory;
 }
@@ -130,4 +136,4 @@ std::string list_of(const std::vector<VdbEntry>& entries) {
   return all.empty() ? "nothing" : all;
 }
 
-}  // namespace catena::field
+}  // namespace catena::vdb

@@ -1,0 +1,131 @@
+#include "engine/base/helper_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "engine/base/clock.h"
+
+namespace catena {
+namespace {
+
+constexpr int kFirstDescriptor = 3;
+/// Under the sanitizers a helper tells what they found.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kKeepsErrors = true;
+#else
+constexpr bool kKeepsErrors = false;
+#endif
+
+/// What posix_spawn is told, freed at the end.
+struct Plan {
+  posix_spawn_file_actions_t files;
+  posix_spawnattr_t attributes;
+  Plan() {
+    posix_spawn_file_actions_init(&files);
+    posix_spawnattr_init(&attributes);
+  }
+  Plan(const Plan&) = delete;
+  ~Plan() {
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&attributes);
+  }
+};
+
+}  // namespace
+
+std::string helper_path(const std::string& name) {
+  std::error_code code;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", code);
+  return (self.parent_path() / name).string();
+}
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  if (this != &other) {
+    close();
+    fd_ = other.fd_;
+    other.fd_ = -1;
+  }
+  return *this;
+}
+
+void Descriptor::close() {
+  if (fd_ >= 0) ::close(fd_);
+  fd_ = -1;
+}
+
+Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<const int> descriptors) {
+  const auto failed = [&](int code) {
+    return Error{path + ": this part of Catena cannot be started (" + std::strerror(code) + "), expected it beside the program"};
+  };
+  // the descriptors: out of the way first, so that none overwrites another
+  constexpr int kAway = 64;
+  Plan plan;
+  std::vector<Descriptor> away;
+  for (const int fd : descriptors) {
+    away.emplace_back(::fcntl(fd, F_DUPFD_CLOEXEC, kAway));
+    if (!away.back()) return failed(errno);
+  }
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (standard != STDERR_FILENO || !kKeepsErrors) posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
+  int next = kFirstDescriptor;
+  for (const Descriptor& fd : away) posix_spawn_file_actions_adddup2(&plan.files, fd.get(), next++);
+  posix_spawn_file_actions_addclosefrom_np(&plan.files, next);
+  // signals as a new program has them
+  sigset_t all, none;
+  sigfillset(&all);
+  sigemptyset(&none);
+  posix_spawnattr_setsigdefault(&plan.attributes, &all);
+  posix_spawnattr_setsigmask(&plan.attributes, &none);
+  posix_spawnattr_setflags(&plan.attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  pid_t pid = -1;
+  char* const arguments[] = {const_cast<char*>(path.c_str()), nullptr};
+  char* const environment[] = {nullptr};
+  if (const int code = posix_spawn(&pid, path.c_str(), &plan.files, &plan.attributes, arguments, environment); code != 0)
+    return failed(code);
+  return HelperProcess(pid);
+}
+
+HelperProcess::HelperProcess(HelperProcess&& other) noexcept : pid_(other.pid_) { other.pid_ = -1; }
+
+HelperProcess::~HelperProcess() {
+  if (pid_ > 0) wait(0);
+}
+
+HelperEnd HelperProcess::wait(double limit_s) {
+  const std::int64_t until = now_ns() + static_cast<std::int64_t>(1e9 * limit_s);
+  const Descriptor ended(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
+  int status = 0;
+  bool too_long = false;
+  for (;;) {
+    const pid_t waited = ::waitpid(pid_, &status, WNOHANG);
+    if (waited == pid_ || (waited < 0 && errno != EINTR)) break;
+    const std::int64_t left_ns = until - now_ns();
+    if (left_ns <= 0) {
+      too_long = true;
+      ::kill(pid_, SIGKILL);
+      while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+      }
+      break;
+    }
+    // a kernel without such descriptors is asked again and again
+    constexpr int kPollMs = 2, kLongestMs = 1000;
+    pollfd poller{ended.get(), POLLIN, 0};
+    ::poll(&poller, ended ? 1 : 0, ended ? static_cast<int>(std::min<std::int64_t>(left_ns / 1'000'000 + 1, kLongestMs)) : kPollMs);
+  }
+  pid_ = -1;
+  if (too_long) return {HelperEnd::How::too_long, SIGKILL};
+  if (WIFSIGNALED(status)) return {HelperEnd::How::killed, WTERMSIG(status)};
+  return {HelperEnd::How::exited, WIFEXITED(status) ? WEXITSTATUS(status) : 0};
+}
+
+}  // namespace catena

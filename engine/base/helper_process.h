@@ -1,0 +1,52 @@
+/// Programs of Catena that do one thing in a process of their own. They lie beside the program that starts them, get no environment and
+/// no descriptors but the ones that they are given, and die with the thread that started them (they ask for that themselves).
+#pragma once
+#include <sys/types.h>
+
+#include <span>
+#include <string>
+
+#include "engine/base/result.h"
+
+namespace catena {
+
+/// NAME in the folder of the running program.
+std::string helper_path(const std::string& name);
+
+struct HelperEnd {
+  enum class How { exited, killed, too_long } how = How::exited;
+  int code = 0;  ///< of the exit, or the signal's number
+};
+
+class HelperProcess {
+ public:
+  /// Starts the program at `path`; it finds `descriptors` as 3, 4, ... in this order. An error says why it cannot be started.
+  static Result<HelperProcess> start(const std::string& path, std::span<const int> descriptors);
+  HelperProcess(HelperProcess&& other) noexcept;
+  HelperProcess& operator=(HelperProcess&&) = delete;
+  ~HelperProcess();  ///< kills what still runs
+
+  /// Waits for its end, at most so long; then it is killed.
+  HelperEnd wait(double limit_s);
+
+ private:
+  explicit HelperProcess(pid_t pid) : pid_(pid) {}
+  pid_t pid_;
+};
+
+/// A descriptor with one owner.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  Descriptor(Descriptor&& other) noexcept : fd_(other.fd_) { other.fd_ = -1; }
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  ~Descriptor() { close(); }
+  void close();
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+}  // namespace catena

@@ -1,0 +1,40 @@
+/// How much memory data may take: the one place that decides. Whoever reads something whose size a file, a scene or a person states
+/// asks here before the memory is allocated. Any thread.
+///   with a limit (--memory MB)   allowed = limit - held         held: what the data in memory counts by HeldMemory
+///   without                      allowed = 3/4 of what is free  MemAvailable of the system, less where a control group allows less
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "engine/base/result.h"
+
+namespace catena {
+
+/// In bytes; nullopt: three quarters of what is free.
+void set_memory_limit(std::optional<std::uint64_t> bytes);
+std::uint64_t allowed_memory();
+
+/// Fine, or one line: "WHAT needs 274878 MB of memory, expected at most 15123 MB (--memory MB allows more)". `bytes` may be of any size.
+Outcome ask_for_memory(const std::string& what, double bytes);
+/// The same against a limit that was asked for earlier.
+Outcome ask_for_memory(const std::string& what, double bytes, std::uint64_t allowed);
+
+/// Counts memory as held by data, for as long as it lives.
+class HeldMemory {
+ public:
+  HeldMemory() = default;
+  explicit HeldMemory(std::uint64_t bytes);
+  ~HeldMemory();
+  HeldMemory(HeldMemory&& other) noexcept : bytes_(std::exchange(other.bytes_, 0)) {}
+  HeldMemory& operator=(HeldMemory&& other) noexcept {
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+
+ private:
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace catena

@@ -1,0 +1,62 @@
+/// Private to this room: volumes that come layer by layer. Nothing of the size of the whole stands beside the grid that is made of them.
+#pragma once
+#include <nanovdb/NanoVDB.h>
+
+#include <cmath>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/field/grid.h"
+#include "engine/field/nano_build.h"
+
+namespace catena::field {
+
+/// A box of voxels from index (0, 0, 0). `read` is asked for eight layers at a time (the last time for what is left), z rising: x fastest,
+/// then y, then z; vectors as three numbers a voxel. Its errors are whole sentences.
+struct DenseSource {
+  Index3 size;
+  bool masked = false;  ///< `valid` is asked for too: 0 or 1 a voxel
+  std::function<Outcome(int z, int layers, std::span<float> values, std::span<std::uint8_t> valid)> read;
+};
+
+inline bool is_finite_value(float v) { return std::isfinite(v); }
+inline bool is_finite_value(const nanovdb::Vec3f& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+
+/// Eight layers in memory, seen as blocks of 8^3. T: float or nanovdb::Vec3f.
+template <class T>
+class DenseSlab {
+ public:
+  explicit DenseSlab(const DenseSource& source);
+  static double bytes(const Index3& size, bool masked);
+
+  Outcome read(int z);  ///< a multiple of 8
+  std::size_t blocks() const { return static_cast<std::size_t>(across_) * along_; }
+  nanovdb::Coord origin(std::size_t block) const;
+  /// The block lies within the box and holds one finite value, the same to the bit. NaN and infinities keep their leaf.
+  bool constant(std::size_t block, T& value) const;
+  /// All voxels of the block that lie in the box, in the order of a leaf.
+  void gather(std::size_t block, T* values, nanovdb::Mask<3>& active) const;
+  void gather_valid(std::size_t block, nanovdb::Mask<3>& valid) const;
+
+ private:
+  template <class Visit>
+  void for_voxels(std::size_t block, const Visit& visit) const;
+
+  const DenseSource& source_;
+  int across_, along_, z_ = 0, layers_ = 0;  ///< blocks along x and y; layers in memory
+  std::vector<T> values_;
+  std::vector<std::uint8_t> valid_;
+};
+
+/// What is wrong with the data as a field is told as `PREFIX...`: "x.raw: the data has no finite value in any active voxel".
+/// With `drop_full_mask` a mask without a single invalid voxel is none.
+template <class Grid>
+Result<std::shared_ptr<const Grid>> make_dense(std::string name, const Mapping& mapping, const DenseSource& source,
+                                               const std::string& prefix, bool drop_full_mask = false);
+
+/// Asks for what make_dense takes at most; `what` as in ask_for_memory.
+Outcome ask_for_dense(const std::string& what, const Index3& size, int components, bool masked);
+
+}  // namespace catena::field

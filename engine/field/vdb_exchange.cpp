@@ -1,0 +1,212 @@
+#include "engine/field/vdb_exchange.h"
+
+#include <cstring>
+#include <type_traits>
+
+namespace catena::field {
+namespace {
+
+class Encoder {
+ public:
+  template <class T>
+  void number(T v) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    text_.append(reinterpret_cast<const char*>(&v), sizeof v);
+  }
+  void flag(bool v) { number<std::uint8_t>(v ? 1 : 0); }
+  void words(const std::string& s) {
+    number<std::uint64_t>(s.size());
+    text_ += s;
+  }
+  void vector(const Vec3& v) {
+    for (int a = 0; a < 3; ++a) number<double>(v[a]);
+  }
+  void mapping(const Mapping& m) {
+    for (int a = 0; a < 3; ++a) vector(m.world_from_index_linear[a]);
+    vector(m.origin);
+  }
+  void piece(const Piece& p) {
+    number(p.offset);
+    number(p.bytes);
+  }
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+/// Remembers the first read beyond the end, and gives zeros from then on.
+class Decoder {
+ public:
+  explicit Decoder(std::span<const std::byte> bytes) : left_(bytes) {}
+  template <class T>
+  T number() {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_same_v<T, bool>);
+    T v{};
+    if (left_.size() < sizeof v) {
+      ok_ = false;
+      return v;
+    }
+    std::memcpy(&v, left_.data(), sizeof v);
+    left_ = left_.subspan(sizeof v);
+    return v;
+  }
+  bool flag() { return number<std::uint8_t>() != 0; }
+  std::string words() {
+    const auto size = number<std::uint64_t>();
+    if (!ok_ || size > left_.size()) {
+      ok_ = false;
+      return {};
+    }
+    std::string s(reinterpret_cast<const char*>(left_.data()), size);
+    left_ = left_.subspan(size);
+    return s;
+  }
+  Vec3 vector() {
+    Vec3 v;
+    for (int a = 0; a < 3; ++a) v[a] = number<double>();
+    return v;
+  }
+  Mapping mapping() {
+    Mat3 linear;
+    for (int a = 0; a < 3; ++a) linear[a] = vector();
+    return Mapping::from_linear(linear, vector());
+  }
+  Piece piece() {
+    Piece p;
+    p.offset = number<std::uint64_t>();
+    p.bytes = number<std::uint64_t>();
+    return p;
+  }
+  /// A count of items of at least so many bytes each.
+  std::uint64_t count(std::size_t least_bytes) {
+    const auto n = number<std::uint64_t>();
+    if (n > left_.size() / least_bytes) ok_ = false;
+    return ok_ ? n : 0;
+  }
+  bool ok() const { return ok_; }
+  bool finished() const { return ok_ && left_.empty(); }
+
+ private:
+  std::span<const std::byte> left_;
+  bool ok_ = true;
+};
+
+void put(Encoder& e, const GridInfo& g) {
+  e.words(g.name);
+  e.words(g.type);
+  for (const std::int64_t n : {g.size.x, g.size.y, g.size.z}) e.number(n);
+  for (const std::int32_t n : {g.lowest.x, g.lowest.y, g.lowest.z}) e.number(n);
+  e.mapping(g.mapping);
+  e.number(g.stats.active_voxels);
+  e.number(g.stats.nan_count);
+  e.number(g.stats.min);
+  e.number(g.stats.max);
+  e.vector(g.stats.component_min);
+  e.vector(g.stats.component_max);
+  e.number<std::uint64_t>(g.bytes);
+  e.flag(g.usable);
+  e.flag(g.is_vector);
+}
+
+GridInfo get_info(Decoder& d) {
+  GridInfo g;
+  g.name = d.words();
+  g.type = d.words();
+  for (std::int64_t* n : {&g.size.x, &g.size.y, &g.size.z}) *n = d.number<std::int64_t>();
+  for (std::int32_t* n : {&g.lowest.x, &g.lowest.y, &g.lowest.z}) *n = d.number<std::int32_t>();
+  g.mapping = d.mapping();
+  g.stats.active_voxels = d.number<std::uint64_t>();
+  g.stats.nan_count = d.number<std::uint64_t>();
+  g.stats.min = d.number<double>();
+  g.stats.max = d.number<double>();
+  g.stats.component_min = d.vector();
+  g.stats.component_max = d.vector();
+  g.bytes = d.number<std::uint64_t>();
+  g.usable = d.flag();
+  g.is_vector = d.flag();
+  return g;
+}
+
+}  // namespace
+
+std::string encode(const ReadRequest& r) {
+  Encoder e;
+  e.number(static_cast<std::uint8_t>(r.mode));
+  e.words(r.what.path);
+  e.words(r.what.grid);
+  e.flag(r.what.valid_grid.has_value());
+  e.words(r.what.valid_grid.value_or(std::string()));
+  e.flag(r.what.valid_required);
+  e.number(r.memory_bytes);
+  e.number(r.cpu_s);
+  return e.take();
+}
+
+Result<ReadRequest> decode_request(std::span<const std::byte> bytes) {
+  Decoder d(bytes);
+  ReadRequest r;
+  const auto mode = d.number<std::uint8_t>();
+  r.what.path = d.words();
+  r.what.grid = d.words();
+  const bool has_valid = d.flag();
+  std::string valid = d.words();
+  r.what.valid_grid = has_valid ? std::optional(std::move(valid)) : std::nullopt;
+  r.what.valid_required = d.flag();
+  r.memory_bytes = d.number<std::uint64_t>();
+  r.cpu_s = d.number<std::uint64_t>();
+  if (!d.finished() || mode > static_cast<std::uint8_t>(ReadMode::units)) return Error{"the request is incomplete"};
+  r.mode = static_cast<ReadMode>(mode);
+  return r;
+}
+
+std::string encode(const ReadReply& r) {
+  Encoder e;
+  e.words(r.error);
+  e.words(r.name);
+  e.flag(r.is_vector);
+  e.flag(r.masked);
+  e.mapping(r.mapping);
+  for (const Piece& p : {r.values, r.voxels, r.cells}) e.piece(p);
+  e.number<std::uint64_t>(r.grids.size());
+  for (const GridInfo& g : r.grids) put(e, g);
+  e.words(r.units);
+  e.words(r.unit_length);
+  e.number<std::uint64_t>(r.words.size());
+  for (const GridWords& w : r.words) {
+    e.words(w.name);
+    e.words(w.unit);
+    e.words(w.unit_length);
+  }
+  e.number(r.confinement.landlock_version);
+  e.flag(r.confinement.seccomp);
+  return e.take();
+}
+
+Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
+  Decoder d(bytes);
+  ReadReply r;
+  r.error = d.words();
+  r.name = d.words();
+  r.is_vector = d.flag();
+  r.masked = d.flag();
+  r.mapping = d.mapping();
+  for (Piece* p : {&r.values, &r.voxels, &r.cells}) *p = d.piece();
+  constexpr std::size_t kLeastInfo = 16, kLeastWords = 24;
+  for (std::uint64_t n = d.count(kLeastInfo); n > 0 && d.ok(); --n) r.grids.push_back(get_info(d));
+  r.units = d.words();
+  r.unit_length = d.words();
+  for (std::uint64_t n = d.count(kLeastWords); n > 0 && d.ok(); --n) {
+    GridWords w;
+    w.name = d.words();
+    w.unit = d.words();
+    w.unit_length = d.words();
+    r.words.push_back(std::move(w));
+  }
+  r.confinement.landlock_version = d.number<std::uint32_t>();
+  r.confinement.seccomp = d.flag();
+  if (!d.finished()) return Error{"its reply is incomplete"};
+  return r;
+}
+
+}  // namespace catena::field

@@ -1,0 +1,170 @@
+#include "engine/field/vdb_reader.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include "engine/base/helper_process.h"
+#include "engine/base/text.h"
+#include "engine/field/files.h"
+
+namespace catena::field {
+namespace {
+
+bool write_at(int fd, std::uint64_t at, const void* data, std::size_t bytes) {
+  const char* from = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t n = ::pwrite(fd, from, bytes, static_cast<off_t>(at));
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    from += n;
+    at += static_cast<std::uint64_t>(n);
+    bytes -= static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
+Result<Descriptor> file_with_request(const ReadRequest& request) {
+  const std::string text = encode(request);
+  Descriptor file(::memfd_create("catena-read", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  ExchangeHead head;
+  head.offset = sizeof head;
+  head.bytes = text.size();
+  if (!file || !write_at(file.get(), 0, &head, sizeof head) || !write_at(file.get(), head.offset, text.data(), text.size()))
+    return Error{fmt::format("{}: no memory to read it into ({})", request.what.path, std::strerror(errno))};
+  return file;
+}
+
+/// What became of a reader that did not answer.
+Error end_of(const ReadRequest& request, const HelperEnd& end) {
+  const std::string& path = request.what.path;
+  const bool out_of_time = end.how == HelperEnd::How::too_long || (end.how == HelperEnd::How::killed && end.code == SIGXCPU);
+  if (out_of_time)
+    return Error{fmt::format("{}: reading it took more than {} s of processor time: the file is damaged, expected a sound .vdb file", path,
+                             request.cpu_s)};
+  if (end.how == HelperEnd::How::killed && end.code == SIGKILL)
+    return Error{fmt::format("{}: its reader was killed (by hand, or as memory ran out), expected it to end by itself", path)};
+  if (end.how == HelperEnd::How::killed && (end.code == SIGINT || end.code == SIGTERM || end.code == SIGHUP))
+    return Error{fmt::format("{}: reading it was interrupted, expected it to end by itself", path)};
+  if (end.how == HelperEnd::How::killed)
+    return Error{
+        fmt::format("{}: the file is damaged (its reader broke down: {}), expected a sound .vdb file", path, ::strsignal(end.code))};
+  return Error{fmt::format("{}: the file is damaged (its reader gave up with code {}), expected a sound .vdb file", path, end.code)};
+}
+
+Error nonsense(const std::string& path, std::string_view what) {
+  return Error{fmt::format("{}: the file is damaged (of what its reader made of it, {}), expected a sound .vdb file", path, what)};
+}
+
+/// The reader has ended: nobody can change the file any more once it is sealed.
+Result<ReaderAnswer> take_answer(const std::string& path, const Descriptor& file) {
+  struct stat status {};
+  if (::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0 || ::fstat(file.get(), &status) != 0)
+    return nonsense(path, "the memory cannot be sealed");
+  const auto bytes = static_cast<std::uint64_t>(status.st_size);
+  ExchangeHead head;
+  if (bytes < sizeof head) return nonsense(path, "the head is missing");
+  void* start = ::mmap(nullptr, bytes, PROT_READ, MAP_SHARED, file.get(), 0);
+  if (start == MAP_FAILED) return Error{fmt::format("{}: no memory to map it ({})", path, std::strerror(errno))};
+  ReaderAnswer answer;
+  answer.memory = NanoMemory::mapped(start, bytes, true);
+  std::memcpy(&head, start, sizeof head);
+  if (head.magic != kExchangeMagic || head.version != kExchangeVersion || head.from_reader != 1 || head.offset > bytes ||
+      head.bytes > bytes - head.offset)
+    return nonsense(path, "the head is not one");
+  auto reply = decode_reply({answer.memory.data() + head.offset, head.bytes});
+  if (!reply) return nonsense(path, reply.error().message);
+  answer.reply = std::move(*reply);
+  return answer;
+}
+
+// ---- the words on units, kept for as long as the file stays as it is ----
+
+struct Known {
+  std::filesystem::file_time_type at;
+  std::uintmax_t bytes = 0;
+  ReadReply words;
+};
+std::mutex known_mutex;
+std::map<std::string, Known> known_words;
+
+bool look_at(const std::string& path, Known& file) {
+  std::error_code code;
+  file.at = std::filesystem::last_write_time(path, code);
+  if (!code) file.bytes = std::filesystem::file_size(path, code);
+  return !code;
+}
+
+void keep_words(const std::string& path, const Known& before, const ReadReply& reply) {
+  Known entry = before;
+  entry.words.units = reply.units;
+  entry.words.unit_length = reply.unit_length;
+  entry.words.words = reply.words;
+  const std::scoped_lock lock(known_mutex);
+  constexpr std::size_t kMost = 256;
+  if (known_words.size() >= kMost) known_words.clear();
+  known_words[path] = std::move(entry);
+}
+
+}  // namespace
+
+ReaderSettings& reader_settings() {
+  static ReaderSettings settings;
+  return settings;
+}
+
+std::uint64_t reading_time_s(std::uint64_t file_bytes) {
+  constexpr std::uint64_t kLeast = 10, kBytesPerSecond = 2'000'000;
+  return kLeast + file_bytes / kBytesPerSecond;
+}
+
+Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
+  CATENA_TRY(const std::uint64_t size, readable_file(what.path));
+  const ReaderSettings& settings = reader_settings();
+  ReadRequest request{mode, what, allowed_memory(), settings.cpu_s > 0 ? settings.cpu_s : reading_time_s(size)};
+  Known before;
+  const bool can_keep = look_at(what.path, before);
+  // the reader does its work
+  CATENA_TRY(Descriptor file, file_with_request(request));
+  const int given[] = {file.get()};
+  const std::string program = settings.program.empty() ? helper_path("catena-read") : settings.program;
+  auto reader = HelperProcess::start(program, given);
+  if (!reader) return Error{what.path + ": cannot be read: " + reader.error().message};
+  // a reader that sleeps uses no processor time: disks may be slow, but not without end
+  constexpr double kLeastWait = 60, kWaits = 10;
+  const double wall_s = settings.wall_s > 0 ? settings.wall_s : std::max(kLeastWait, kWaits * static_cast<double>(request.cpu_s));
+  const HelperEnd end = reader->wait(wall_s);
+  if (end.how != HelperEnd::How::exited || end.code != 0) return end_of(request, end);
+  // what it wrote
+  CATENA_TRY(ReaderAnswer answer, take_answer(what.path, file));
+  constexpr std::size_t kLongestError = 2000;
+  if (!answer.reply.error.empty()) return Error{one_line(answer.reply.error.substr(0, kLongestError))};
+  if (can_keep) keep_words(what.path, before, answer.reply);
+  return answer;
+}
+
+std::optional<ReadReply> unit_words_of(const std::string& path) {
+  Known now;
+  if (!look_at(path, now)) return std::nullopt;
+  {
+    const std::scoped_lock lock(known_mutex);
+    const auto found = known_words.find(path);
+    if (found != known_words.end() && found->second.at == now.at && found->second.bytes == now.bytes) return found->second.words;
+  }
+  LoadRequest request;
+  request.path = path;
+  auto answer = ask_reader(ReadMode::units, request);
+  if (!answer) return std::nullopt;
+  return std::move(answer->reply);
+}
+
+}  // namespace catena::field

@@ -1,0 +1,50 @@
+/// A stream over bytes in memory that throws where it would be read beyond its end: OpenVDB does not notice every short read.
+#pragma once
+#include <cstddef>
+#include <cstring>
+#include <istream>
+#include <span>
+#include <stdexcept>
+#include <streambuf>
+
+namespace catena::vdb {
+
+class MemoryBuffer : public std::streambuf {
+ public:
+  explicit MemoryBuffer(std::span<const std::byte> bytes) {
+    char* start = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
+    setg(start, start, start + bytes.size());
+  }
+
+ protected:
+  int_type underflow() override { throw std::runtime_error("it ends too early"); }
+  std::streamsize xsgetn(char* to, std::streamsize count) override {
+    if (count < 0 || count > egptr() - gptr()) throw std::runtime_error("it ends too early");
+    std::memcpy(to, gptr(), static_cast<std::size_t>(count));
+    setg(eback(), gptr() + count, egptr());
+    return count;
+  }
+  pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override {
+    const off_type base = from == std::ios_base::beg ? 0 : from == std::ios_base::cur ? gptr() - eback() : egptr() - eback();
+    off_type place = 0;
+    if (__builtin_add_overflow(base, by, &place) || place < 0 || place > egptr() - eback())
+      throw std::runtime_error("it points beyond its end");
+    setg(eback(), eback() + place, egptr());
+    return place;
+  }
+  pos_type seekpos(pos_type place, std::ios_base::openmode mode) override { return seekoff(place, std::ios_base::beg, mode); }
+};
+
+/// Every failure of the stream throws.
+class MemoryStream : public std::istream {
+ public:
+  explicit MemoryStream(std::span<const std::byte> bytes) : std::istream(nullptr), buffer_(bytes) {
+    rdbuf(&buffer_);
+    exceptions(std::ios::badbit | std::ios::failbit);
+  }
+
+ private:
+  MemoryBuffer buffer_;
+};
+
+}  // namespace catena::vdb

@@ -1,0 +1,43 @@
+/// A .vdb file in memory, with its directory; its grids are read one by one. OpenVDB's own file class opens files by name, which the
+/// reader may not, and trusts what it reads; this one reads from bytes and throws where they end.
+#pragma once
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/io.h>
+#include <openvdb/openvdb.h>
+
+#include <map>
+#include <memory>
+
+#include "engine/field/vdb_exchange.h"
+#include "engine/vdb/memory_stream.h"
+#include "engine/vdb/vdb_directory.h"
+
+namespace catena::vdb {
+
+class OpenFile {
+ public:
+  /// `path` is for messages. Throws what OpenVDB throws.
+  static Result<std::unique_ptr<OpenFile>> open(std::span<const std::byte> bytes, const std::string& path);
+
+  const std::vector<VdbEntry>& entries() const { return directory_.entries; }
+  const VdbEntry* find(const std::string& name) const;
+  /// The whole grid; a grid that shares its tree with another gets that tree. Null: of a type that OpenVDB does not know.
+  openvdb::GridBase::Ptr read(const VdbEntry& entry);
+  /// What the file says of units: of itself, and of each grid. Never throws.
+  void words(field::ReadReply& reply);
+
+ private:
+  struct Archive;
+  OpenFile(std::span<const std::byte> bytes);
+  openvdb::GridBase::Ptr read_at(const VdbEntry& entry, bool metadata_only);
+  const VdbEntry* parent_of(const std::string& unique_name) const;
+
+  openvdb::io::StreamMetadata::Ptr about_;  ///< the stream borrows it
+  MemoryStream stream_;
+  std::shared_ptr<Archive> archive_;
+  openvdb::MetaMap metadata_;
+  VdbDirectory directory_;
+  std::map<std::string, openvdb::GridBase::Ptr> streamed_;  ///< by unique name: of a file without offsets
+};
+
+}  // namespace catena::vdb

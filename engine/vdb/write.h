@@ -1,0 +1,14 @@
+/// What catena-write does once it is shut in: the grids that come as a stream of blocks (engine/field/vdb_stream.h) become a .vdb file.
+#pragma once
+#include <functional>
+#include <string>
+
+namespace catena::vdb {
+
+/// Reads so many bytes from the stream; false at its end.
+using Take = std::function<bool(void* to, std::size_t bytes)>;
+
+/// Writes to the descriptor; `seekable`: it is a regular file. Empty, or why it failed.
+std::string write_grids(const Take& take, int fd, bool seekable);
+
+}  // namespace catena::vdb

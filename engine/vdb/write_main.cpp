@@ -1,0 +1,68 @@
+// The program catena-write: takes grids block by block from its descriptor 3 and writes them, as a .vdb file, to its descriptor 4.
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <vector>
+
+#include "engine/vdb/confine.h"
+#include "engine/vdb/write.h"
+
+namespace {
+
+constexpr int kLine = 3, kFile = 4;
+
+/// The stream, in large pieces.
+class Line {
+ public:
+  Line() : buffer_(1 << 20) {}
+  bool take(void* to, std::size_t bytes) {
+    char* at = static_cast<char*>(to);
+    while (bytes > 0) {
+      if (begin_ == end_ && !fill()) return false;
+      const std::size_t count = std::min(bytes, end_ - begin_);
+      std::copy_n(buffer_.data() + begin_, count, at);
+      begin_ += count;
+      at += count;
+      bytes -= count;
+    }
+    return true;
+  }
+
+ private:
+  bool fill() {
+    ssize_t n = 0;
+    do n = ::recv(kLine, buffer_.data(), buffer_.size(), 0);
+    while (n < 0 && errno == EINTR);
+    begin_ = 0;
+    end_ = n > 0 ? static_cast<std::size_t>(n) : 0;
+    return end_ > 0;
+  }
+
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0, end_ = 0;
+};
+
+}  // namespace
+
+int main() {
+  int type = 0;
+  socklen_t size = sizeof type;
+  if (::getsockopt(kLine, SOL_SOCKET, SO_TYPE, &type, &size) != 0) {
+    static constexpr char kWho[] = "catena-write: a part of catena, which starts it\n";
+    return ::write(STDERR_FILENO, kWho, sizeof kWho - 1) < 0 ? 1 : 2;
+  }
+  struct stat status {};
+  const bool seekable = ::fstat(kFile, &status) == 0 && S_ISREG(status.st_mode);
+  catena::vdb::ProcessLimits limits;
+  limits.only_memory_files = false;
+  const auto confined = catena::vdb::confine(limits);
+  Line line;
+  const std::string failure =
+      confined ? catena::vdb::write_grids([&](void* to, std::size_t bytes) { return line.take(to, bytes); }, kFile, seekable)
+               : confined.error().message;
+  if (!failure.empty() && ::send(kLine, failure.data(), failure.size(), MSG_NOSIGNAL) < 0) return 1;
+  ::_exit(0);
+}

@@ -1,0 +1,57 @@
+#include "engine/base/helper_process.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "tests/support/support.h"
+
+namespace catena {
+namespace helper_process_test {
+
+using test::TemporaryFolder;
+
+/// A script as a program.
+std::string script(const TemporaryFolder& folder, const std::string& text) {
+  const std::string path = folder / "helper";
+  test::write_file(path, "#!/bin/sh\n" + text);
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  return path;
+}
+
+TEST(HelperProcess, HasItsDescriptorsAndNothingElse) {
+  TemporaryFolder folder;
+  ::setenv("CATENA_SECRET", "told", 1);
+  const Descriptor other(::open("/dev/null", O_RDONLY));  // inherited by whoever does not close it
+  const Descriptor a(::open((folder / "a").c_str(), O_RDWR | O_CREAT, 0600)), b(::open((folder / "b").c_str(), O_RDWR | O_CREAT, 0600));
+  const int given[] = {a.get(), b.get()};
+  auto helper = HelperProcess::start(script(folder, "ls /proc/self/fd >&3; env >&4; echo gone; exit 5\n"), given);
+  ASSERT_TRUE(helper) << helper.error().message;
+  const HelperEnd end = helper->wait(30);
+  EXPECT_EQ(end.how, HelperEnd::How::exited);
+  EXPECT_EQ(end.code, 5);
+  // the script's own: 0 to 4, where ls looks, and where the shell keeps its script
+  EXPECT_LE(test::read_file(folder / "a").size(), std::string("0\n1\n2\n3\n4\n10\n5\n").size());
+  EXPECT_EQ(test::read_file(folder / "b").find("told"), std::string::npos);
+}
+
+TEST(HelperProcess, SaysHowItEnded) {
+  TemporaryFolder folder;
+  auto killed = HelperProcess::start(script(folder, "kill -SEGV $$\n"), {});
+  ASSERT_TRUE(killed);
+  const HelperEnd end = killed->wait(30);
+  EXPECT_EQ(end.how, HelperEnd::How::killed);
+  EXPECT_EQ(end.code, SIGSEGV);
+  auto slow = HelperProcess::start(script(folder, "while :; do :; done\n"), {});
+  ASSERT_TRUE(slow);
+  EXPECT_EQ(slow->wait(0.1).how, HelperEnd::How::too_long);
+  const auto absent = HelperProcess::start(folder / "absent", {});
+  ASSERT_FALSE(absent);
+  EXPECT_NE(absent.error().message.find("cannot be started"), std::string::npos);
+}
+
+}  // namespace helper_process_test
+}  // namespace catena

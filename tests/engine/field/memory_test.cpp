@@ -1,0 +1,89 @@
+/// Sizes that headers, layouts and scenes state are believed only as far as the memory limit goes.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "engine/base/memory_limit.h"
+#include "engine/field/analytic.h"
+#include "engine/field/coarsen.h"
+#include "engine/field/load.h"
+#include "tests/engine/field/field_helpers.h"
+#include "tests/support/support.h"
+
+namespace catena::field {
+namespace memory_test {
+
+using catena::test::TemporaryFolder;
+
+class Memory : public testing::Test {
+ protected:
+  Memory() { set_memory_limit(20'000'000); }
+  ~Memory() override { set_memory_limit(std::nullopt); }
+
+  void expect_refused(const std::string& message, const std::string& what) {
+    EXPECT_NE(message.find(what), std::string::npos) << message;
+    EXPECT_NE(message.find("expected at most 20 MB (--memory MB allows more)"), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+  TemporaryFolder folder_;
+};
+
+/// 512 GB on paper, and not a block on the disk.
+TEST_F(Memory, ASparseRawFile) {
+  const std::string path = folder_ / "sparse.raw";
+  catena::test::write_file(path, "");
+  std::filesystem::resize_file(path, std::uint64_t{4} << 36);
+  LoadRequest request;
+  request.path = path;
+  request.raw = RawLayout{{4096, 4096, 4096}, Vec3(1.0), Vec3(0.0), "float32"};
+  const auto field = load(request);
+  ASSERT_FALSE(field);
+  expect_refused(field.error().message, "the grid of 4096 x 4096 x 4096 voxels needs");
+  const auto imported = import_as_vdb(request, folder_ / "o.vdb", "");
+  ASSERT_FALSE(imported);
+  EXPECT_FALSE(catena::test::exists(folder_ / "o.vdb"));
+}
+
+TEST_F(Memory, ANiftiHeaderThatPromisesMuch) {
+  std::string file(352 + 4096, '\0');
+  const auto put = [&]<class T>(std::size_t at, T v) { std::memcpy(file.data() + at, &v, sizeof v); };
+  put(0, std::int32_t{348});
+  for (const auto& [at, n] : {std::pair{40, 3}, {42, 400}, {44, 400}, {46, 400}, {48, 1}, {50, 1}, {52, 1}, {54, 1}, {70, 2}, {72, 8}})
+    put(static_cast<std::size_t>(at), static_cast<std::int16_t>(n));
+  for (std::size_t d = 0; d < 8; ++d) put(76 + 4 * d, 1.f);
+  put(108, 352.f);
+  std::memcpy(file.data() + 344, "n+1", 4);
+  // a bomb, if it were compressed: 64 MB of zeros
+  catena::test::write_file(folder_ / "a.nii", file);
+  std::filesystem::resize_file(folder_ / "a.nii", 352 + 64'000'000);
+  LoadRequest request;
+  request.path = folder_ / "a.nii";
+  const auto field = load(request);
+  ASSERT_FALSE(field);
+  expect_refused(field.error().message, "the grid of 400 x 400 x 400 voxels needs");
+}
+
+TEST_F(Memory, AFieldOnTooManyNodes) {
+  const auto sphere = make_analytic("sphere");
+  ASSERT_TRUE(sphere);
+  const auto sampled = try_sample_on_grid(*sphere, 1024, -2, 2);
+  ASSERT_FALSE(sampled);
+  expect_refused(sampled.error().message, "1024 nodes an axis");
+  EXPECT_TRUE(try_sample_on_grid(*sphere, 32, -2, 2));
+}
+
+/// What is loaded counts, and counts no more when it goes.
+TEST_F(Memory, WhatIsHeldCounts) {
+  const test::Block block = test::random_block({128, 128, 64}, 1);
+  const std::uint64_t before = allowed_memory();
+  {
+    const auto grid = make_scalar_grid("g", {}, block.size, block.values);
+    EXPECT_LE(allowed_memory() + grid->bytes(), before);
+    EXPECT_GE(grid->bytes(), block.values.size() * sizeof(float));
+  }
+  EXPECT_EQ(allowed_memory(), before);
+}
+
+}  // namespace memory_test
+}  // namespace catena::field

@@ -1,0 +1,95 @@
+/// What the readers of foreign files can no longer do once they have shut themselves in: each is tried, in a process made for it.
+#include "engine/vdb/confine.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+
+#include "tests/support/support.h"
+
+namespace catena::vdb {
+namespace confine_test {
+
+/// Whether the attempt succeeds in a process, shut in or not. 2: it could not be shut in.
+int attempt(bool confined, const std::function<bool()>& act, const ProcessLimits& limits = {}) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (confined && !confine(limits)) ::_exit(2);
+    ::_exit(act() ? 1 : 0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 100 + WTERMSIG(status);
+}
+
+void expect_only_outside(const char* what, const std::function<bool()>& act) {
+  EXPECT_EQ(attempt(false, act), 1) << what;
+  EXPECT_EQ(attempt(true, act), 0) << what;
+}
+
+TEST(Confine, NoFiles) {
+  catena::test::TemporaryFolder folder;
+  const std::string path = folder / "file";
+  catena::test::write_file(path, "text");
+  expect_only_outside("read", [&] { return ::open(path.c_str(), O_RDONLY) >= 0; });
+  expect_only_outside("write", [&] { return ::open(path.c_str(), O_WRONLY) >= 0; });
+  expect_only_outside("make", [&] { return ::open((folder / "new").c_str(), O_CREAT | O_WRONLY, 0600) >= 0; });
+  expect_only_outside("rename", [&] { return ::rename(path.c_str(), path.c_str()) == 0; });
+  expect_only_outside("a folder", [&] { return ::access(folder.path().c_str(), R_OK) == 0; });
+  expect_only_outside("memory files", [] { return ::memfd_create("x", 0) >= 0; });
+}
+
+TEST(Confine, NoSocketsProgramsOrProcesses) {
+  expect_only_outside("socket", [] { return ::socket(AF_UNIX, SOCK_STREAM, 0) >= 0; });
+  expect_only_outside("network", [] { return ::socket(AF_INET, SOCK_STREAM, 0) >= 0; });
+  expect_only_outside("program", [] {
+    ::execl("/bin/sh", "sh", "-c", "exit 1", nullptr);
+    return false;
+  });
+  expect_only_outside("process", [] {
+    const pid_t child = static_cast<pid_t>(::syscall(SYS_clone, SIGCHLD, nullptr, nullptr, nullptr, nullptr));
+    if (child == 0) ::_exit(0);
+    return child > 0;
+  });
+  expect_only_outside("other processes", [] { return ::kill(::getppid(), 0) == 0; });
+}
+
+TEST(Confine, NoCodeAndNoMoreRights) {
+  expect_only_outside("code",
+                      [] { return ::mmap(nullptr, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) != MAP_FAILED; });
+  expect_only_outside("made code", [] {
+    void* place = ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return ::mprotect(place, 4096, PROT_READ | PROT_EXEC) == 0;
+  });
+  expect_only_outside("groups", [] { return ::setpgid(0, 0) == 0; });
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(Confine, TimeAndMemoryHaveLimits) {
+  ProcessLimits limits;
+  limits.memory_bytes = 16 << 20;
+  limits.cpu_s = 1;
+  const auto take = [] {
+    return ::mmap(nullptr, std::size_t{1} << 30, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) != MAP_FAILED;
+  };
+  EXPECT_EQ(attempt(false, take), 1);
+  EXPECT_EQ(attempt(true, take, limits), 0);
+  const auto spin = []() -> bool {
+    for (;;) ::getppid();
+  };
+  EXPECT_EQ(attempt(true, spin, limits), 100 + SIGXCPU);
+}
+#endif
+
+}  // namespace confine_test
+}  // namespace catena::vdb

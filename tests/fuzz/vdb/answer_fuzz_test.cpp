@@ -1,0 +1,221 @@
+/// What the reader's process hands over is foreign, too: it may have been taken over. Its answers are forged here, whole and in parts.
+///   CATENA_FUZZ_INPUTS=1000000 build/asan/test_fuzz_vdb --gtest_filter='AnswerFuzz.*'
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "engine/base/helper_process.h"
+#include "engine/field/load.h"
+#include "engine/field/nano_check.h"
+#include "engine/field/nano_erode.h"
+#include "engine/field/nano_nodes.h"
+#include "engine/field/nano_stats.h"
+#include "engine/field/vdb_reader.h"
+#include "tests/fuzz/mutate_bytes.h"
+#include "tests/fuzz/vdb/corpus.h"
+#include "tests/support/support.h"
+
+namespace catena::field {
+namespace answer_fuzz_test {
+
+using catena::test::Random;
+using catena::test::TemporaryFolder;
+
+std::uint64_t inputs_or(std::uint64_t otherwise) {
+  const char* text = std::getenv("CATENA_FUZZ_INPUTS");
+  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+/// All that an honest reader wrote about the file.
+std::string honest_answer(const std::string& path, const std::string& grid) {
+  ReadRequest request;
+  request.what.path = path;
+  request.what.grid = grid;
+  request.memory_bytes = std::uint64_t{512} << 20;
+  request.cpu_s = 30;
+  const std::string text = encode(request);
+  const Descriptor file(::memfd_create("answer", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  ExchangeHead head;
+  head.offset = sizeof head;
+  head.bytes = text.size();
+  EXPECT_EQ(::pwrite(file.get(), &head, sizeof head, 0), static_cast<ssize_t>(sizeof head));
+  EXPECT_EQ(::pwrite(file.get(), text.data(), text.size(), sizeof head), static_cast<ssize_t>(text.size()));
+  const int given[] = {file.get()};
+  auto reader = HelperProcess::start(helper_path("catena-read"), given);
+  EXPECT_TRUE(reader && reader->wait(60).code == 0);
+  std::string answer(static_cast<std::size_t>(::lseek(file.get(), 0, SEEK_END)), '\0');
+  EXPECT_EQ(::pread(file.get(), answer.data(), answer.size(), 0), static_cast<ssize_t>(answer.size()));
+  return answer;
+}
+
+ExchangeHead head_of(const std::string& answer) {
+  ExchangeHead head;
+  std::memcpy(&head, answer.data(), sizeof head);
+  return head;
+}
+
+ReadReply reply_of(const std::string& answer) {
+  const ExchangeHead head = head_of(answer);
+  const auto reply = decode_reply({reinterpret_cast<const std::byte*>(answer.data()) + head.offset, head.bytes});
+  EXPECT_TRUE(reply);
+  return reply ? *reply : ReadReply{};
+}
+
+/// Answers come from the forger, with limits that a test can wait for.
+class AnswerFuzz : public testing::Test {
+ protected:
+  AnswerFuzz() { reader_settings() = {helper_path("test_forger"), 2, 1}; }
+  ~AnswerFuzz() override { reader_settings() = {}; }
+
+  Result<AnyField> load_forged(const std::string& answer) {
+    const std::string path = folder_ / "forged.vdb";
+    catena::test::write_file(path, answer);
+    LoadRequest request;
+    request.path = path;
+    return load(request);
+  }
+  std::string error_of(const std::string& answer) {
+    const auto field = load_forged(answer);
+    EXPECT_FALSE(field);
+    return field ? std::string() : field.error().message;
+  }
+  std::string honest(const std::string& specimen, const std::string& grid) {
+    for (const auto& s : catena::test::vdb_corpus())
+      if (s.name == specimen) catena::test::write_file(folder_ / "honest.vdb", s.bytes);
+    return honest_answer(folder_ / "honest.vdb", grid);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(AnswerFuzz, AReaderThatDoesNotAnswerIsOneSentence) {
+  EXPECT_NE(error_of("HANG").find("took more than"), std::string::npos);
+  EXPECT_NE(error_of("SPIN").find("took more than"), std::string::npos);
+  EXPECT_NE(error_of("EXIT").find("gave up with code 7"), std::string::npos);
+  EXPECT_NE(error_of("ABORT").find("broke down"), std::string::npos);
+  // the request is still where the answer should be
+  EXPECT_NE(error_of("KEEP").find("cannot be sealed"), std::string::npos);
+  EXPECT_NE(error_of(std::string(1, 'x')).find("head"), std::string::npos);
+  EXPECT_NE(error_of(std::string(5000, 'x')).find("head"), std::string::npos);
+  reader_settings().program = "/nowhere/catena-read";
+  EXPECT_NE(error_of("x").find("cannot be started"), std::string::npos);
+}
+
+TEST_F(AnswerFuzz, ForgedAnswersThroughTheWholePath) {
+  const std::string answer = honest("masked", "density");
+  const auto sound = load_forged(answer);
+  ASSERT_TRUE(sound) << sound.error().message;
+  const ExchangeHead head = head_of(answer);
+  Random random{11};
+  int loaded = 0, refused = 0;
+  const std::uint64_t inputs = inputs_or(60);
+  for (std::uint64_t n = 0; n < inputs && !HasFailure(); ++n) {
+    // the head, the reply behind the buffers, or anything
+    const std::size_t part = random.below(3), first = part == 1 ? head.offset : 0, last = part == 0 ? sizeof head : answer.size();
+    const auto field = load_forged(catena::test::mutate_bytes(answer, random, 3, first, last));
+    ++(field ? loaded : refused);
+    if (!field) {
+      EXPECT_EQ(field.error().message.find('\n'), std::string::npos);
+      continue;
+    }
+    const Box box = field->scalar ? field->scalar->grid()->index_box() : field->vector->grid()->index_box();
+    Cursor cursor;
+    for (const Vec3& at : {box.lo, box.hi, 0.5 * (box.lo + box.hi)}) {
+      const Vec3 world = field->get()->mapping().world_from_index(at);
+      if (field->scalar)
+        field->scalar->sample(world, cursor);
+      else
+        field->vector->sample(world, cursor);
+    }
+  }
+  if (inputs > 1000) fmt::print("{} answers: {} loaded, {} refused\n", inputs, loaded, refused);
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(loaded, 0);
+}
+
+/// The buffer in memory of its very size: under the address sanitizer a byte beyond it is an error.
+class Exact {
+ public:
+  explicit Exact(const std::string& bytes) : size_(bytes.size()), data_(static_cast<std::byte*>(::operator new(size_, kAlignment))) {
+    std::memcpy(data_, bytes.data(), size_);
+  }
+  Exact(const Exact&) = delete;
+  ~Exact() { ::operator delete(data_, kAlignment); }
+  std::span<const std::byte> bytes() const { return {data_, size_}; }
+
+ private:
+  static constexpr std::align_val_t kAlignment{32};
+  std::size_t size_;
+  std::byte* data_;
+};
+
+/// All that the program follows in a buffer.
+template <class T>
+void walk(const nanovdb::NanoGrid<T>& grid, Random& random) {
+  const ActiveBox box = active_box(grid);
+  if (box.empty() || !is_near(box)) return;
+  if constexpr (std::is_same_v<T, nanovdb::ValueMask>) {
+    EXPECT_GT(count_of(grid), 0u);
+    const auto modest = [](double bytes) { return ask_for_memory("it", bytes, std::uint64_t{64} << 20); };
+    (void)erode(grid, box, &NanoMemory::reserve, modest);
+  } else {
+    EXPECT_GT(stats_of(grid, nullptr).stats.active_voxels, 0u);
+  }
+  const auto accessor = grid.getAccessor();
+  for (int i = 0; i < 50; ++i) {
+    nanovdb::Coord c;
+    for (int a = 0; a < 3; ++a)
+      c[a] = static_cast<int>(box.lo[a] + static_cast<std::int64_t>(random.below(static_cast<std::size_t>(box.voxels(a)))));
+    (void)accessor.getValue(c);
+    (void)accessor.isActive(c);
+  }
+}
+
+template <class T>
+void fuzz_buffer(const std::string& answer, const Piece& piece, std::uint64_t seed) {
+  const std::string whole = answer.substr(piece.offset, piece.bytes);
+  ASSERT_TRUE(check_nano<T>(Exact(whole).bytes()));
+  Random random{seed};
+  std::uint64_t passed = 0;
+  const std::uint64_t inputs = inputs_or(1500);
+  // where headers, nodes and tables are: the first and last parts of the buffer, or anywhere
+  const std::size_t edge = std::min<std::size_t>(whole.size(), 2048);
+  for (std::uint64_t n = 0; n < inputs && !testing::Test::HasFailure(); ++n) {
+    const std::size_t part = random.below(3), first = part == 1 ? whole.size() - edge : 0, last = part == 0 ? edge : whole.size();
+    const Exact buffer(catena::test::mutate_bytes(whole, random, 2, first, last));
+    if (!check_nano<T>(buffer.bytes())) continue;
+    ++passed;
+    walk(*reinterpret_cast<const nanovdb::NanoGrid<T>*>(buffer.bytes().data()), random);
+  }
+  if (inputs > 2000) fmt::print("{} buffers: {} passed the check\n", inputs, passed);
+  EXPECT_GT(passed, 0u);
+  EXPECT_LT(passed, inputs);
+}
+
+TEST_F(AnswerFuzz, BuffersOfNumbers) {
+  const std::string answer = honest("blosc", "density");
+  fuzz_buffer<float>(answer, reply_of(answer).values, 21);
+}
+
+TEST_F(AnswerFuzz, BuffersWithTiles) {
+  const std::string answer = honest("tiles", "density");
+  fuzz_buffer<float>(answer, reply_of(answer).values, 22);
+}
+
+TEST_F(AnswerFuzz, BuffersOfVectors) {
+  const std::string answer = honest("vectors", "velocity");
+  fuzz_buffer<nanovdb::Vec3f>(answer, reply_of(answer).values, 23);
+}
+
+TEST_F(AnswerFuzz, BuffersOfMasks) {
+  const std::string answer = honest("masked", "density");
+  fuzz_buffer<nanovdb::ValueMask>(answer, reply_of(answer).voxels, 24);
+  fuzz_buffer<nanovdb::ValueMask>(answer, reply_of(answer).cells, 25);
+}
+
+}  // namespace answer_fuzz_test
+}  // namespace catena::field

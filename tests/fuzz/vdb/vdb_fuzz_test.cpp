@@ -1,0 +1,163 @@
+/// Damaged .vdb files through the whole path: the reader's process, its answer, the grid, a few fetches. Longer:
+///   CATENA_FUZZ_INPUTS=100000 [CATENA_FUZZ_SEED=2] build/dev/test_fuzz_vdb --gtest_filter='VdbFuzz.Mutations'
+/// prints how they ended. CATENA_FUZZ_KEEP=FOLDER keeps the files, so that they can be tried on another build.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "engine/base/clock.h"
+#include "engine/base/memory_limit.h"
+#include "engine/field/load.h"
+#include "tests/fuzz/mutate_bytes.h"
+#include "tests/fuzz/vdb/corpus.h"
+#include "tests/support/support.h"
+
+namespace catena::field {
+namespace vdb_fuzz_test {
+
+using catena::test::Random;
+using catena::test::Specimen;
+using catena::test::TemporaryFolder;
+
+std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
+  const char* text = std::getenv(variable);
+  return text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+/// How inputs ended, by the words of their sentence.
+struct Tally {
+  std::map<std::string, int> ends;
+  std::string last;  ///< sentence
+  double longest_s = 0;
+  int inputs = 0;
+
+  void count(const std::string& message) {
+    last = message;
+    for (const char* words : {"took more than", "broke down", "gave up", "was killed", "what its reader made of it", "of memory",
+                              "cut short", "not a .vdb", "has no", "there is no", "transform"})
+      if (message.find(words) != std::string::npos) {
+        ++ends[words];
+        return;
+      }
+    ++ends["other sentences"];
+  }
+  void print() const {
+    fmt::print("{} inputs, the longest took {:.2f} s\n", inputs, longest_s);
+    for (const auto& [words, count] : ends) fmt::print("  {:7} {}\n", count, words);
+  }
+};
+
+void expect_sentence(const std::string& message, const std::string& path, Tally& tally) {
+  tally.count(message);
+  EXPECT_TRUE(message.starts_with(path + ": ")) << message;
+  EXPECT_LT(message.size(), 3000u);
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+void use(const AnyField& field, Random& random) {
+  const auto between = [&](double lo, double hi) { return lo + (hi - lo) * static_cast<double>(random.below(1001)) / 1000; };
+  Cursor cursor;
+  const Box box = field.scalar ? field.scalar->grid()->index_box() : field.vector->grid()->index_box();
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 index(between(box.lo.x, box.hi.x), between(box.lo.y, box.hi.y), between(box.lo.z, box.hi.z));
+    const Vec3 world = field.get()->mapping().world_from_index(index);
+    if (field.scalar)
+      field.scalar->sample(world, cursor);
+    else
+      field.vector->sample(world, cursor);
+  }
+  EXPECT_GT(field.get()->length(), 0);
+}
+
+/// One input through `load` and `describe`, or only the first.
+void feed(const std::string& path, const std::string& bytes, bool describe_too, Random& random, Tally& tally) {
+  catena::test::write_file(path, bytes);
+  LoadRequest request;
+  request.path = path;
+  if (bytes.find("velocity") == std::string::npos) request.grid = "density";
+  const std::int64_t start = now_ns();
+  const auto field = load(request);
+  if (field) {
+    ++tally.ends["loaded"];
+    use(*field, random);
+  } else {
+    expect_sentence(field.error().message, path, tally);
+  }
+  if (describe_too)
+    if (const auto grids = describe(path); !grids) expect_sentence(grids.error().message, path, tally);
+  tally.longest_s = std::max(tally.longest_s, 1e-9 * static_cast<double>(now_ns() - start));
+  ++tally.inputs;
+}
+
+/// These files are small: nothing of them may need more.
+class VdbFuzz : public testing::Test {
+ protected:
+  VdbFuzz() { set_memory_limit(std::uint64_t{512} << 20); }
+  ~VdbFuzz() override { set_memory_limit(std::nullopt); }
+  TemporaryFolder folder_;
+  Tally tally_;
+};
+
+TEST_F(VdbFuzz, TheCorpusIsSound) {
+  Random random{1};
+  for (const Specimen& specimen : catena::test::vdb_corpus()) {
+    feed(folder_ / "sound.vdb", specimen.bytes, true, random, tally_);
+    EXPECT_EQ(tally_.ends["loaded"], tally_.inputs) << specimen.name << ": " << tally_.last;
+  }
+}
+
+TEST_F(VdbFuzz, OneChangedByteOfACompressedFile) {
+  Random random{2};
+  const std::uint64_t stride = number_of("CATENA_FUZZ_STRIDE", 397);
+  for (const Specimen& specimen : catena::test::vdb_corpus()) {
+    if (specimen.name != "blosc" && specimen.name != "half-blosc") continue;
+    for (std::size_t at = 0; at < specimen.bytes.size() && !HasFailure(); at += stride) {
+      std::string bytes = specimen.bytes;
+      bytes[at] = static_cast<char>(bytes[at] ^ (at % 2 == 0 ? 0xff : 0x80));
+      feed(folder_ / "byte.vdb", bytes, false, random, tally_);
+    }
+  }
+  if (stride == 1) tally_.print();
+  EXPECT_GT(tally_.ends.size(), 1u);
+}
+
+TEST_F(VdbFuzz, Mutations) {
+  const std::uint64_t inputs = number_of("CATENA_FUZZ_INPUTS", 100), seed = number_of("CATENA_FUZZ_SEED", 1);
+  const char* keep = std::getenv("CATENA_FUZZ_KEEP");
+  const std::vector<Specimen> corpus = catena::test::vdb_corpus();
+  Random random{seed};
+  for (std::uint64_t n = 0; n < inputs && !HasFailure(); ++n) {
+    const Specimen& specimen = corpus[random.below(corpus.size())];
+    // half of the changes fall into the head and the tree's upper levels, where sizes are
+    const std::size_t end = random.below(2) == 0 ? std::min<std::size_t>(specimen.bytes.size(), 1200) : specimen.bytes.size();
+    const std::string bytes = catena::test::mutate_bytes(specimen.bytes, random, 3, 0, end);
+    const std::string path = keep ? fmt::format("{}/{}-{}.vdb", keep, seed, n) : folder_ / "mutated.vdb";
+    feed(path, bytes, n % 4 == 0, random, tally_);
+  }
+  if (inputs > 1000) tally_.print();
+  EXPECT_GT(tally_.ends["loaded"], 0);
+  EXPECT_LT(tally_.ends["loaded"], tally_.inputs);
+}
+
+/// The number of the root's tiles, wherever it is: without a bound OpenVDB reads billions of them beyond the file's end.
+TEST_F(VdbFuzz, AFalseNumberOfTilesIsOneSentence) {
+  Random random{3};
+  const std::string whole = catena::test::vdb_bytes({catena::test::bump<openvdb::FloatGrid>("density", 3)}, 0);
+  // one buffer, the background (0), the number of tiles (0) and of children (4)
+  const std::string counts("\1\0\0\0\0\0\0\0\0\0\0\0\4\0\0\0", 16);
+  const std::size_t at = whole.find(counts);
+  ASSERT_NE(at, std::string::npos);
+  for (const std::size_t place : {at + 8, at + 12})
+    for (const std::uint32_t count : {0x7fffffffu, 0xffffffffu, 0x10000000u, 100000u}) {
+      std::string bytes = whole;
+      std::memcpy(bytes.data() + place, &count, sizeof count);
+      feed(folder_ / "tiles.vdb", bytes, true, random, tally_);
+    }
+  EXPECT_EQ(tally_.ends["loaded"], 0);
+  EXPECT_EQ(tally_.ends["took more than"], 0);
+}
+
+}  // namespace vdb_fuzz_test
+}  // namespace catena::field
