@@ -45,8 +45,6 @@ void add_memory_limit(CLI::App& program) {
   }
 }
 
-}  // namespace
-
 // Everything that allocates: the caller tells what it throws.
 int parse_and_work(int argc, char** argv) {
   if (const Outcome ready = prepare_process(); !ready) return machine_failed(ready.error().message);

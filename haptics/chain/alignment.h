@@ -19,6 +19,12 @@ struct AlignmentState {
   Fade fade;                           ///< of torques
   Quat last{kNoRotation};              ///< the tool's orientation in the last tick
   bool engaged = false;                ///< there was a link that aligns
+  /// The rotational proxies as the last tick left them, for ticks without a pose.
+  std::array<Quat, kMaxLinks> links = [] {
+    std::array<Quat, kMaxLinks> none;
+    none.fill(kNoRotation);
+    return none;
+  }();
 };
 
 struct AlignmentStep {

@@ -2,6 +2,7 @@
 /// tick; what changes from tick to tick is in LinkState (plain data), and caches that never change a result in LinkScratch.
 /// `start` and `advance` run on the haptic thread: no allocation, lock, throw, or unbounded loop; same bits for same input.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -25,7 +26,9 @@ inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, 
 /// may lie anywhere in a grid, kCellWork more), and every evaluation of a cell's polynomial, node of a search, knot or face that is
 /// visited 1. A constraint stops before kWorkCap, with BUDGET, and goes on in the next tick.
 inline constexpr int kWorkCap = 4096, kFetchWork = 7, kCellWork = 8;
-inline constexpr double kSlipPart = 0.05;  ///< of max_force: what a proxy's slip may add to the force in one tick
+inline constexpr int kLastStep = 256;  ///< of the cap: for what is begun before it is used up
+/// Of max_force: what a proxy's slip may add to the force in one tick, so that with its probe's motion it stays below 5 %.
+inline constexpr double kSlipPart = 0.04;
 inline constexpr double kRearmPart = 0.1;  ///< of `release`: within it a link that has let go takes hold again
 
 /// What "bit for bit" means: tells -0 from 0, and a NaN is itself.
@@ -33,14 +36,14 @@ inline bool same_bits(const Vec3& a, const Vec3& b) noexcept { return std::memcm
 
 struct LinkState {
   Vec3 proxy{0.0};
-  double residual = 0;           ///< distance from the constraint, world units
-  double limit = 0;              ///< |probe - proxy| at which the link slips or lets go now, world units; 0: never
-  double dt_s = 0;               ///< since the last tick; 0 in the first
-  double stiffness_n_per_m = 0;  ///< k_i of this tick
-  std::int32_t evaluations = 0;  ///< field fetches of this tick
-  std::int32_t steps = 0;        ///< other counted work of this tick
-  std::int32_t most = kWorkCap;  ///< of this tick's work; a constraint may ask for less
-  /// How far the proxy may slip in this tick beyond what its probe moves, world units: 0.05 max_force / (k_i S).
+  double residual = 0;                       ///< distance from the constraint, world units
+  double limit = 0;                          ///< |probe - proxy| at which the link slips or lets go now, world units; 0: never
+  double dt_s = 0;                           ///< since the last tick; 0 in the first
+  double stiffness_n_per_m = 0;              ///< k_i of this tick
+  std::int32_t evaluations = 0;              ///< field fetches of this tick
+  std::int32_t steps = 0;                    ///< other counted work of this tick
+  std::int32_t most = kWorkCap - kLastStep;  ///< of this tick's work; a constraint may ask for less
+  /// How far the proxy may slip in this tick beyond what its probe moves, world units: kSlipPart max_force / (k_i S).
   double slip = std::numeric_limits<double>::infinity();
   Status status = Status::ok;
   Reason reason = Reason::none;  ///< set together with a status of critical or boundary; means nothing beside another
@@ -52,13 +55,18 @@ struct LinkState {
   alignas(16) std::array<std::byte, 1024> memory{};  ///< the constraint's own, zero at start; see memory_of
   alignas(16) std::array<std::byte, 128> outer{};    ///< of a constraint that wraps another one, zero at start
 
+  /// How far the proxy may move in a tick in which its probe moves by `moved` and is `gap` away. A gap that is more than max_force allows
+  /// gives max_force all the same: there a part of the gap turns it as little as the slip would.
+  double travel(double moved, double gap) const { return moved + std::max(slip, kSlipPart * gap); }
   bool active() const { return on && !released; }
   int work() const { return kFetchWork * evaluations + steps; }
+  /// Of `wanted` steps, how many may still be made.
+  int affordable(int wanted) const { return std::max(0, std::min(wanted, most - work())); }
   /// Less than `reserve` units are left.
   bool exhausted(int reserve = 0) const { return work() + reserve >= most; }
   void begin_tick() {
     evaluations = steps = 0;
-    most = kWorkCap;
+    most = kWorkCap - kLastStep;
   }
 };
 static_assert(std::is_trivially_copyable_v<LinkState>);

@@ -30,8 +30,9 @@ double capped(double stiffness, const Limits& limits) noexcept {
 }
 
 // One link that is on: its start, its advance, its weight (the ramp after a switch).
-void advance_link(const Link& spec, const Limits& limits, double metres_per_unit, const Vec3& incoming, bool first_tick, double dt,
-                  double ramp_step, LinkState& link, LinkScratch& scratch) noexcept {
+void advance_link(const Program& program, std::size_t i, const Vec3& incoming, bool first_tick, double dt, double ramp_step,
+                  LinkState& link, LinkScratch& scratch) noexcept {
+  const Link& spec = program.links[i];
   link.begin_tick();
   link.dt_s = dt;
   if (!link.started) {
@@ -39,9 +40,9 @@ void advance_link(const Link& spec, const Limits& limits, double metres_per_unit
   } else {
     link.stiffness_n_per_m = spec.stiffness_n_per_m.at(link.proxy, scratch.stiffness, link.evaluations);
   }
-  link.stiffness_n_per_m = capped(link.stiffness_n_per_m, limits);
-  const double newtons_per_unit = link.stiffness_n_per_m * metres_per_unit;
-  link.slip = newtons_per_unit > 0 ? kSlipPart * limits.max_force_n / newtons_per_unit : std::numeric_limits<double>::infinity();
+  link.stiffness_n_per_m = capped(link.stiffness_n_per_m, program.limits);
+  const double newtons_per_unit = link.stiffness_n_per_m * program.metres_per_unit;
+  link.slip = newtons_per_unit > 0 ? kSlipPart * program.coupling.max_force_n / newtons_per_unit : std::numeric_limits<double>::infinity();
   spec.constraint->advance(incoming, link, scratch);
   link.weight = link.weight + ramp_step < 1 ? link.weight + ramp_step : 1;
 }
@@ -89,8 +90,7 @@ Coupled chain(const Program& program, const Order& order, const Vec3& probe, dou
   for (int k = 0; k < order.count; ++k) {
     const auto i = static_cast<std::size_t>(order.links[static_cast<std::size_t>(k)]);
     LinkState& link = state.links[i];
-    advance_link(program.links[i], program.limits, program.metres_per_unit, incoming, !state.has_probe, dt, ramp_step, link,
-                 scratch.links[i]);
+    advance_link(program, i, incoming, !state.has_probe, dt, ramp_step, link, scratch.links[i]);
     out.gaps[i] = link.proxy - incoming;
     out.shares_n[i] = out.gaps[i] * (link.weight * link.stiffness_n_per_m * program.metres_per_unit);
     out.force_n += out.shares_n[i];
@@ -162,6 +162,7 @@ void hold_all(const Program& program, double t_s, ChainState& state, exchange::H
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     state.links[i].status = Status::bad_probe;
     state.links[i].begin_tick();
+    out.links[i].orientation = state.alignment.links[i];
     out.links[i].force_n = out.links[i].torque_nm = Vec3(0.0);
     out.links[i].gap = out.links[i].leaving = 0;
     out.links[i].left = state.indications[i].left;
@@ -238,6 +239,7 @@ void tick(const Program& program, const ProbeSample& probe, ChainState& state, C
   state.force_n = force;
   const Vec3 torque =
       align_links(program, order, probe.orientation, {!state.has_probe, dt, ramp_step}, state.links, scratch.links, state.alignment, out);
+  for (std::size_t i = 0; i < program.links.size(); ++i) state.alignment.links[i] = out.links[i].orientation;
   const double guard_dt = std::fmin(dt, std::fmax(0.0, probe.t_s - state.clock_t_s));
   guard(program.limits, {force, torque, probe.condition, probe.forces_on, guard_dt}, state.guard);
   const Vec3 move = state.has_probe ? probe.position - state.last_probe : Vec3(0.0);

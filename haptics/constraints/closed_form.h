@@ -25,11 +25,13 @@ class ClosedForm final : public Constraint {
     Memory& memory = memory_of<Memory>(state);
     S surface(shape_, memory.own, memory.side);
     start_on(surface, rules_.at(probe, state, scratch), probe, memory.side, state);
+    count(surface, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     Memory& memory = memory_of<Memory>(state);
     S surface(shape_, memory.own, memory.side);
     advance_on(surface, rules_.now(state, scratch), probe, memory.side, state);
+    count(surface, state);
   }
   bool primitive(const Vec3& at, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
     if (state.released || state.status == Status::no_surface) return false;
@@ -47,6 +49,9 @@ class ClosedForm final : public Constraint {
   }
 
  private:
+  static void count(const S& surface, LinkState& state) noexcept {
+    if constexpr (requires { surface.work(); }) state.steps += surface.work();
+  }
   struct Memory {
     SideMemory side;
     typename S::Memory own;

@@ -14,12 +14,13 @@ namespace {
 
 constexpr double kSearchRadius = 2;  // of L
 constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no hand's
-constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
-constexpr int kQuick = 200;          // fetches before a formula asks for the descent
-constexpr int kQuickRefusals = 8;    // in a row, likewise
-constexpr int kSight = 16;           // fetches on the line of sight
-constexpr int kForLevel = 12;        // fetches kept for the way back to the level
-constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+constexpr int kThrownWork = 1536;  // of such a tick, and of those that finish what it began
+constexpr int kQuick = 200;        // fetches before a formula asks for the descent
+constexpr int kQuickRefusals = 8;  // in a row, likewise
+constexpr int kSight = 16;         // fetches on the line of sight
+constexpr int kForLevel = 12;      // fetches kept for the way back to the level
+constexpr double kOnLevel = 1e-9;  // of L: as good as on the level, to go on from
 
 /// What the link remembers: the rules' part, the point held, the curvature learned.
 struct IsosurfaceMemory {
@@ -55,7 +56,8 @@ class LevelSurface final : public Surface {
   }
 
   Hold slide(const Vec3& probe) noexcept override {
-    const double travel = memory_.side.fresh ? norm(probe - memory_.side.probe) + field_.slip() : std::numeric_limits<double>::infinity();
+    const SideMemory& side = memory_.side;
+    const double travel = side.fresh ? field_.state().travel(norm(probe - side.probe), norm(probe - side.proxy)) : kAnywhere;
     return field_.grid() ? slide_grid(probe, travel) : slide_formula(probe, travel);
   }
 
@@ -140,6 +142,7 @@ class LevelSurface final : public Surface {
   /// From anywhere to the level, without an earlier point. A scan that runs out of budget stays open in the memory.
   Reached project(const LevelPoint& start, double radius) noexcept {
     Scan& scan = memory_.scan;
+    if (scan.nothing && same_bits(scan.probe, start.p)) return {};
     const bool goes_on = scan.open && norm(scan.probe - start.p) <= kThrown * field_.length();
     LevelPoint centre = start;
     if (!goes_on) {
@@ -161,6 +164,7 @@ class LevelSurface final : public Surface {
     }
     Reached reached = reach_by_scan(field_, centre, false, scan);
     if (!reached.found && !scan.open && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
+    scan.nothing = !reached.found && !scan.open;
     return reached.found ? closed(reached) : reached;
   }
   Reached closed(const Reached& reached) noexcept {
@@ -168,8 +172,8 @@ class LevelSurface final : public Surface {
     return reached;
   }
 
-  /// The quick iteration; then down the surface from the better end of it; where that is stuck and any sheet will do, from a fresh
-  /// projection.
+  /// The quick iteration; then down the surface from the better end of it; where that is stuck, and any sheet will do or none is
+  /// held, from a fresh projection.
   Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
     LevelPoint best = at;
     if (closest_point(field_, probe, goal(kQuick), at, curvature) == Closest::converged)
@@ -178,7 +182,7 @@ class LevelSurface final : public Surface {
     if (nearer(best, at, probe)) at = usable(best) ? best : relevelled(best);
     Closest how = Closest::stuck;
     if (usable(at)) how = descend(field_, probe, goal(kEvaluationCap), at, curvature);
-    if (!any_sheet || how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
+    if ((!any_sheet && usable(at)) || how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
 
     const Reached fresh = project(field_.at(probe), kSearchRadius * field_.length());
     if (!fresh.found) return hold_formula(at, how, probe, curvature);
@@ -316,8 +320,7 @@ class Isosurface final : public Constraint {
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
-    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) &&
-           haptics::is_sane(memory.scan);
+    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) && haptics::is_sane(memory.scan);
   }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.

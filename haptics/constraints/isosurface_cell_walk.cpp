@@ -183,10 +183,13 @@ Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, 
       }
       if (!inner) {
         // a rounding away from a face, but not on it
-        const double face = outer[axis] < 0.5 ? 0.0 : 1.0;
-        if (f[axis] == face || std::fabs(f[axis] - face) > kNearFace) return Followed::blocked;
-        f[axis] = face;
-        return Followed::landed;
+        for (int a = axis, k = 0; k < 3; ++k, a = (a + 1) % 3) {
+          const double face = f[a] < 0.5 ? 0.0 : 1.0;
+          if (piece.frame().held[static_cast<std::size_t>(a)] || f[a] == face || std::fabs(f[a] - face) > kNearFace) continue;
+          f[a] = face;
+          return Followed::landed;
+        }
+        return Followed::blocked;
       }
 
       // land on the face: false position on how far the point is outside, to the last bit; where time is short by Illinois' rule (an

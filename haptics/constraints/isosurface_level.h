@@ -42,7 +42,7 @@ class LevelField {
   bool exhausted(int reserve = 0) const noexcept { return state_.exhausted(reserve); }
   /// A tick that takes long: the rest of it need not be as exact on its way as at its end.
   bool hurried() const noexcept { return state_.work() > kWorkCap / 8; }
-  double slip() const noexcept { return state_.slip; }
+  const LinkState& state() const noexcept { return state_; }
 
   /// The nearest point of a grid's box, in index space; a formula has no walls.
   Vec3 clamped(const Vec3& world) const noexcept {

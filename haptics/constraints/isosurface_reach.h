@@ -23,10 +23,13 @@ struct Scan {
   Vec3 probe, centre, nearest;  ///< what it is made for; where it looks from; the sample nearest in value
   std::int32_t next;
   bool open, has_nearest;
+  bool nothing;  ///< has looked everywhere for `probe`
 };
 
 /// Of a state from a file: see Constraint::is_sane.
-inline bool is_sane(const Scan& scan) noexcept { return are_bools(scan.open, scan.has_nearest) && scan.next >= 0 && scan.next < 1 << 20; }
+inline bool is_sane(const Scan& scan) noexcept {
+  return are_bools(scan.open, scan.has_nearest, scan.nothing) && scan.next >= 0 && scan.next < 1 << 20;
+}
 
 /// Looks along 26 directions, or along the 6 axes only, near before far, up to L from the centre. Not found: `at` is the sample
 /// nearest in value; with scan.open the budget has ended the scan, and the next call goes on.

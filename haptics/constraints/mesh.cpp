@@ -10,7 +10,6 @@ namespace {
 constexpr double kFarthest = 1e6;  // in the mesh's own frame: a probe beyond is drawn in, towards the mesh
 constexpr double kReachOfWalk = 32;
 constexpr double kSearchRadius = 4e6;
-constexpr int kSearchNodes = 16384;  // of the closest point of all
 constexpr double kShortest = 1e-300;
 
 Vec3 own_of(const mesh::TriangleMesh& mesh, const Vec3& probe, double farthest) {
@@ -19,6 +18,14 @@ Vec3 own_of(const mesh::TriangleMesh& mesh, const Vec3& probe, double farthest) 
   const double m = max_abs(half), most = 0.5 * farthest * mesh.scale();
   if (m > most) return Vec3(half.x / m, half.y / m, half.z / m) * farthest;
   return mesh.own(probe);
+}
+
+mesh::Nearest nearest_to(const mesh::TriangleMesh& mesh, const Vec3& x, double radius, std::uint32_t hint, LinkState& state) {
+  const int most = state.affordable(kNodes);
+  int nodes = most;
+  const mesh::Nearest nearest = mesh::nearest_point(mesh, x, radius, nodes, hint);
+  state.steps += most - std::max(nodes, 0);
+  return nearest;
 }
 
 // ---- from both sides ----
@@ -30,15 +37,14 @@ struct WalkMemory {
 
 class MeshSurface final : public Surface {
  public:
-  MeshSurface(const mesh::TriangleMesh& mesh, WalkMemory& memory) : mesh_(mesh), memory_(memory) {}
+  MeshSurface(const mesh::TriangleMesh& mesh, WalkMemory& memory, LinkState& state) : mesh_(mesh), memory_(memory), state_(state) {}
 
   SideValue side(const Vec3&) noexcept override { return {0, true, false}; }
 
   Hold place(const Vec3& probe) noexcept override {
-    int nodes = kSearchNodes;
-    const mesh::Nearest nearest = mesh::nearest_point(mesh_, own(probe), kSearchRadius, nodes, memory_.at.face);
+    const mesh::Nearest nearest = nearest_to(mesh_, own(probe), kSearchRadius, memory_.at.face, state_);
     if (!nearest.found) return {};
-    return hold({nearest.at, nearest.complete});
+    return hold({nearest.at, nearest.complete, 0});
   }
   Hold slide(const Vec3& probe) noexcept override { return hold(walk_mesh(mesh_, memory_.at.face, own(probe))); }
 
@@ -47,7 +53,8 @@ class MeshSurface final : public Surface {
     double part = 2;
     std::uint32_t face = 0;
     Vec3 to = b;
-    int nodes = kNodes;
+    const int most = state_.affordable(kNodes);
+    int nodes = most;
     const bool complete = mesh_.bvh().segment(a, to, kGap, nodes, [&](std::uint32_t f) {
       const double ha = mesh_.face(f).height(a), hb = mesh_.face(f).height(b);
       if ((ha < 0) == (hb < 0)) return;
@@ -57,14 +64,14 @@ class MeshSurface final : public Surface {
       face = f;
       to = a + at * (b - a);
     });
+    state_.steps += most - std::max(nodes, 0);
     if (part > 1 || !complete) return {};
     return hold(walk_mesh(mesh_, face, own(probe)));
   }
 
   Hold near_by(const Vec3& probe, double limit) noexcept override {
-    int nodes = kNodes;
-    const mesh::Nearest nearest = mesh::nearest_point(mesh_, own(probe), limit / mesh_.scale(), nodes, memory_.at.face);
-    return nearest.found ? hold({nearest.at, nearest.complete}) : Hold{};
+    const mesh::Nearest nearest = nearest_to(mesh_, own(probe), limit / mesh_.scale(), memory_.at.face, state_);
+    return nearest.found ? hold({nearest.at, nearest.complete, 0}) : Hold{};
   }
 
   Vec3 normal() const noexcept override { return mesh_.face(memory_.at.face).normal; }
@@ -75,12 +82,14 @@ class MeshSurface final : public Surface {
   Vec3 own(const Vec3& probe) const noexcept { return own_of(mesh_, probe, kReachOfWalk); }
   Hold hold(const MeshWalk& walk) noexcept {
     memory_.at = walk.at;
+    state_.steps += walk.faces;
     const double off = std::fabs(mesh_.face(walk.at.face).height(walk.at.point));
     return {true, mesh_.world(walk.at.point), off * mesh_.scale(), walk.complete ? Status::ok : Status::budget};
   }
 
   const mesh::TriangleMesh& mesh_;
   WalkMemory& memory_;
+  LinkState& state_;
 };
 
 class TwoSidedMesh final : public Constraint {
@@ -89,12 +98,12 @@ class TwoSidedMesh final : public Constraint {
   void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     auto& memory = memory_of<WalkMemory>(state);
     memory = WalkMemory{};
-    MeshSurface surface(*mesh_, memory);
+    MeshSurface surface(*mesh_, memory, state);
     start_on(surface, rules_.at(probe, state, scratch), probe, memory.side, state);
   }
   void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
     auto& memory = memory_of<WalkMemory>(state);
-    MeshSurface surface(*mesh_, memory);
+    MeshSurface surface(*mesh_, memory, state);
     advance_on(surface, rules_.now(state, scratch), probe, memory.side, state);
   }
   bool primitive(const Vec3&, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
@@ -136,7 +145,7 @@ class OneSidedMesh final : public Constraint {
     memory = GodMemory{};
     state.released = false;
     const SideRules rules = rules_.at(probe, state, scratch);
-    if (is_free(probe, memory)) return leave(probe, 0, Status::free, memory, probe, state);
+    if (is_free(probe, memory, state)) return leave(probe, 0, Status::free, memory, probe, state);
     const Vec3 proxy = mesh_->world(memory.god.p);
     if (rules.release > 0 && norm(probe - proxy) > rules.release) {
       state.released = true;
@@ -159,13 +168,14 @@ class OneSidedMesh final : public Constraint {
 
     // let go, or moved by others: which side is the probe on now
     if (state.released || !untouched) {
-      const bool free = is_free(probe, memory);
+      const bool free = is_free(probe, memory, state);
       if (state.released && !free) return leave(probe, 0, Status::released, memory, probe, state);
       state.released = false;
       if (free) return leave(probe, 0, Status::free, memory, probe, state);
     }
 
-    const GodMove move = move_god_object(*mesh_, outside(), own_of(*mesh_, probe, kFarthest), memory.god);
+    const GodMove move = move_god_object(*mesh_, outside(), own_of(*mesh_, probe, kFarthest), state.affordable(kNodes), memory.god);
+    state.steps += move.nodes;
     if (move.reached) return leave(probe, 0, Status::free, memory, probe, state);
     const Vec3 proxy = mesh_->world(memory.god.p);
     if (release > 0 && norm(probe - proxy) >= release) {
@@ -204,12 +214,11 @@ class OneSidedMesh final : public Constraint {
   double outside() const { return rules_.free == FreeSide::above ? 1 : -1; }
 
   /// By the nearest point: on the free side, or over an open edge. Leaves the god-object there, or at the probe.
-  bool is_free(const Vec3& probe, GodMemory& memory) const noexcept {
+  bool is_free(const Vec3& probe, GodMemory& memory, LinkState& state) const noexcept {
     const Vec3 x = own_of(*mesh_, probe, kFarthest);
     memory.god = GodObject{};
     memory.god.p = x;
-    int nodes = kSearchNodes;
-    const mesh::Nearest nearest = mesh::nearest_point(*mesh_, x, kSearchRadius, nodes, memory.hint);
+    const mesh::Nearest nearest = nearest_to(*mesh_, x, kSearchRadius, memory.hint, state);
     if (!nearest.found) return true;
     memory.hint = nearest.at.face;
     const Vec3 normal = direction(mesh::normal_at(*mesh_, nearest.at)) * outside();

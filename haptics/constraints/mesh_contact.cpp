@@ -16,7 +16,9 @@ constexpr double kReach = 31;         // of one tick; the mesh is 1 long
 
 class Mover {
  public:
-  Mover(const mesh::TriangleMesh& mesh, double outside, GodObject& god) : mesh_(mesh), outside_(outside), god_(god) {}
+  Mover(const mesh::TriangleMesh& mesh, double outside, int nodes, GodObject& god)
+      : mesh_(mesh), outside_(outside), god_(god), nodes_(nodes) {}
+  int nodes_left() const noexcept { return nodes_; }
 
   GodMove run(const Vec3& x) noexcept {
     if (!enter_box(x)) return {true, true};
@@ -224,13 +226,16 @@ class Mover {
   double outside_;
   GodObject& god_;
   std::uint32_t left_ = kNone;  ///< the face that it slid off last
-  int nodes_ = kNodes;
+  int nodes_;
 };
 
 }  // namespace
 
-GodMove move_god_object(const mesh::TriangleMesh& mesh, double outside, const Vec3& x, GodObject& god) noexcept {
-  return Mover(mesh, outside, god).run(x);
+GodMove move_god_object(const mesh::TriangleMesh& mesh, double outside, const Vec3& x, int nodes, GodObject& god) noexcept {
+  Mover mover(mesh, outside, nodes, god);
+  GodMove move = mover.run(x);
+  move.nodes = nodes - mover.nodes_left();
+  return move;
 }
 
 }  // namespace catena::haptics

@@ -13,7 +13,7 @@
 namespace catena::haptics {
 
 inline constexpr double kGap = 2.5e-13;
-inline constexpr int kMoves = 32, kNodes = 8192;
+inline constexpr int kMoves = 32, kNodes = 3072;
 
 /// Zero bytes are a legal one: at the centre, touching nothing.
 struct GodObject {
@@ -27,9 +27,10 @@ struct GodObject {
 struct GodMove {
   bool reached = false;   ///< nothing is between it and the probe
   bool complete = false;  ///< false: goes on next tick
+  int nodes = 0;          ///< visited
 };
 
-/// One tick towards x. `outside`: 1 where normals point to the free side, -1 where they point away from it.
-GodMove move_god_object(const mesh::TriangleMesh& mesh, double outside, const Vec3& x, GodObject& god) noexcept;
+/// One tick towards x, with at most `nodes` nodes. `outside`: 1 where normals point to the free side, -1 where they point away from it.
+GodMove move_god_object(const mesh::TriangleMesh& mesh, double outside, const Vec3& x, int nodes, GodObject& god) noexcept;
 
 }  // namespace catena::haptics

@@ -11,7 +11,8 @@ constexpr int kSeamNodes = 64;
 MeshWalk walk_mesh(const mesh::TriangleMesh& mesh, std::uint32_t face, const Vec3& x) noexcept {
   MeshWalk walk;
   walk.at = mesh::closest_on_face(mesh, face, x);
-  int faces = 1;
+  int& faces = walk.faces;
+  faces = 1;
   while (true) {
     const mesh::Closest from = walk.at;
     const auto offer = [&](std::uint32_t f) {

@@ -13,6 +13,7 @@ inline constexpr int kFaces = 512;
 struct MeshWalk {
   mesh::Closest at;
   bool complete = false;  ///< false: goes on next tick
+  int faces = 0;          ///< looked at
 };
 
 MeshWalk walk_mesh(const mesh::TriangleMesh& mesh, std::uint32_t face, const Vec3& x) noexcept;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFirstVisits = 1024;
 constexpr int kVisits = 128;
-constexpr int kPieces = 4096;
+constexpr int kPieces = 4096, kPiecesAStep = 2, kVisitWork = 3;
 constexpr double kLeastExtent = 1e-300, kMostExtent = 1e300;
 
 struct PolylineShape {
@@ -38,6 +38,7 @@ class PolylineSurface final : public Surface {
   Hold place(const Vec3& probe) noexcept override {
     SearchState& search = memory_.search;
     shape_.tree.search(shape_.pieces, probe, search.any ? kVisits : kFirstVisits, search);
+    work_ += kVisitWork * search.visits;
     return hold(search.best, probe, search.open ? Status::budget : Status::ok);
   }
 
@@ -45,7 +46,7 @@ class PolylineSurface final : public Surface {
     if (memory_.search.open) return place(probe);
     std::uint32_t k = memory_.piece;
     int way = memory_.end == 0 ? 0 : leave_corner(k, probe);
-    for (int visited = 0; visited < kPieces; ++visited) {
+    for (int visited = 0; visited < kPieces; ++visited, work_ += visited % kPiecesAStep) {
       const int end = shape_.pieces[k].end_of(shape_.pieces[k].along(probe));
       if (way == 0) way = end;
       if (end == 0 || end != way) return hold(k, probe, Status::ok);
@@ -65,6 +66,7 @@ class PolylineSurface final : public Surface {
     return {true, found.proxy, found.residual, Status::ok};
   }
 
+  int work() const noexcept { return work_; }
   Vec3 normal() const noexcept override { return Vec3(0.0); }
   double domain_length() const noexcept override { return std::max(kSceneLength, shape_.tree.extent()); }
 
@@ -113,6 +115,7 @@ class PolylineSurface final : public Surface {
 
   const Shape& shape_;
   Memory& memory_;
+  int work_ = 0;
 };
 
 /// Consecutive equal points are one.

@@ -6,7 +6,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr std::int32_t kKnotCap = 4096;
+constexpr std::int32_t kKnotCap = 4096, kKnotsAStep = 2;
 constexpr double kFarSquared = 1e100;
 constexpr double kFar = 1e280;  ///< beyond, only the probe's direction counts, and products would overflow
 
@@ -78,7 +78,9 @@ class SelectedStreamline final : public Constraint {
   void seek(const Vec3& far_probe, LinkState& state, LinkScratch&) const noexcept override {
     const flow::NearestPlace found = nearest_.at(max_abs(far_probe) > kFarSquared ? direction(far_probe) * kFarSquared : far_probe);
     state.status = Status::ok;
-    place(memory_of<SelectedMemory>(state), found.interval, found.s, state);
+    auto& memory = memory_of<SelectedMemory>(state);
+    memory.knots = kKnotsAStep * found.work;
+    place(memory, found.interval, found.s, state);
   }
 
   bool is_sane(const LinkState& state) const noexcept override { return memory_of<SelectedMemory>(state).interval < intervals_; }
@@ -107,6 +109,7 @@ class SelectedStreamline final : public Constraint {
     return dot(x - p, derivative);
   }
   void place(SelectedMemory& memory, std::size_t k, double s, LinkState& state) const noexcept {
+    state.steps += memory.knots / kKnotsAStep;
     memory.s = s;
     memory.interval = k;
     Vec3 derivative;

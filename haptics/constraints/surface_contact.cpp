@@ -10,6 +10,7 @@ namespace {
 // lengths, times L
 constexpr double kTouch = 1e-6, kOnLevel = 1e-12, kAccepted = 1e-9, kGapSlack = 1e-13, kNearLevel = 0.02;
 constexpr int kSlideRounds = 12, kPatient = 5, kNewton = 8;
+constexpr int kPatience = 8, kFade = 20;
 constexpr int kForLevel = 12;      // fetches kept for the way back to the level
 constexpr double kLevelled = 0.1;  // e.t / |e|: below, sliding does not shorten the gap
 
@@ -74,6 +75,22 @@ bool Contact::pass(Status status) noexcept {
   return false;
 }
 
+void Contact::lose() noexcept {
+  const int failures = memory_.failures + 1;
+  if (placed_ || !memory_.fresh || failures > kPatience + kFade) return static_cast<void>(pass(Status::no_surface));
+  if (failures > kPatience) state_.weight = std::min(state_.weight, 1 - static_cast<double>(failures - kPatience) / kFade);
+  memory_.here = before_;
+  state_.proxy = before_.p;
+  state_.residual = std::fabs(before_.distance);
+  memory_.probe = probe_;
+  memory_.proxy = state_.proxy;
+  memory_.residual = state_.residual;
+  memory_.status = state_.status = Status::budget;
+  state_.limit = memory_.limit;
+  memory_.settled = false;
+  memory_.failures = failures;
+}
+
 bool Contact::begin() noexcept {
   const bool untouched = memory_.fresh && same_bits(memory_.proxy, state_.proxy);
   if (untouched && memory_.settled && same_bits(memory_.probe, probe_)) {
@@ -83,6 +100,7 @@ bool Contact::begin() noexcept {
     return false;
   }
   if (!untouched) memory_ = ContactMemory{};
+  before_ = memory_.here;
 
   if (!spec_.level) {
     if (!memory_.touching) {
@@ -201,6 +219,7 @@ void Contact::end(double limit, Status status) noexcept {
   memory_.status = status;
   memory_.fresh = true;
   memory_.settled = status != Status::budget;
+  memory_.failures = 0;
 }
 
 }  // namespace catena::haptics

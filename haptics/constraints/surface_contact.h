@@ -6,8 +6,9 @@
 ///   sliding    to |x - p| = r within 1e-13 L, on the level within 1e-12 L or its round-off; in space in closed form. Newton on
 ///              both at once, one fetch an iteration:  p += b t - l n,  l = (s - level) / |grad s|,  t = e - (e.n) n over its norm,
 ///              |e + l n - b t| = r,  e = x - p
-///   lost       where that fails (a jump to another sheet, the mask or broken voxels between) the proxy starts from x again:
-///              NO_SURFACE in that tick, the probe passed through.
+///   lost       where that fails (noise, a jump to another sheet, the mask or broken voxels between) the proxy stays where it is for
+///              kPatience + kFade ticks, BUDGET, while the next tick tries again; its weight fades in the last kFade (where the
+///              coupling has a ramp). Then it starts from x again: NO_SURFACE in that tick, the probe passed through.
 ///   broken     a field that is not finite at x: the probe passed through, CRITICAL.
 /// A resting probe gives a resting proxy bit for bit: nothing is asked while x and p keep their bits (after BUDGET it goes on).
 /// Residual: the larger of the distance from the level and |x - p| - limit. Lengths in world units. Haptic thread.
@@ -38,11 +39,13 @@ struct ContactMemory {
   double residual, limit;
   Status status;
   bool fresh, settled, touching;
+  std::int32_t failures;  ///< ticks in a row
 };
 
 /// Of a state from a file: see Constraint::is_sane.
 inline bool is_sane(const ContactMemory& m) noexcept {
-  return is_sane(m.here) && is_one_of(m.status, Status::bad_probe) && are_bools(m.fresh, m.settled, m.touching);
+  return is_sane(m.here) && is_one_of(m.status, Status::bad_probe) && are_bools(m.fresh, m.settled, m.touching) && m.failures >= 0 &&
+         m.failures <= 1000;
 }
 
 /// One tick of one link.
@@ -77,7 +80,7 @@ class Contact {
   bool slide_to(double distance) noexcept;
 
   void end(double limit, Status status) noexcept;
-  void lose() noexcept { pass(Status::no_surface); }
+  void lose() noexcept;
 
  private:
   bool pass(Status status) noexcept;
@@ -104,6 +107,7 @@ class Contact {
   Ground field_;
   field::Cursor& probe_cursor_;  ///< the probe's cell is often another one than the proxy's
   LevelPoint at_probe_;
+  LevelPoint before_;  ///< memory_.here as the tick found it
   bool placed_ = false;
 };
 

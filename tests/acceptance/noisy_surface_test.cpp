@@ -1,0 +1,120 @@
+// A slow hand on noisy data: a proxy keeps to its sheet and to its travel, so that the force never jumps; friction keeps its proxy.
+#include "tests/acceptance/chain_rig.h"
+#include "tests/acceptance/reference.h"
+
+namespace catena::acceptance {
+namespace noisy_surface_test {
+
+using haptics::tests::Random;
+using haptics::tests::Rig;
+
+constexpr double kStiffness = 800, kMetres = 0.05, kMostForce = 8, kLevel = 0.6;
+constexpr int kNodes = 96;
+#ifdef CATENA_SANITIZED
+constexpr int kTicks = 6000;
+#else
+constexpr int kTicks = 60000;
+#endif
+
+/// A ball whose every voxel is off by up to 0.05: shells, islands and holes about the level.
+std::shared_ptr<const field::ScalarGrid> noisy_ball() {
+  Random random(7);
+  const double h = 2.0 / (kNodes - 1);
+  return haptics::tests::grid_of(field::Mapping::from_linear(Mat3(h), Vec3(-1.0)), {kNodes, kNodes, kNodes},
+                                 [&](const Vec3& p) { return norm(p) + random.in(-0.05, 0.05); });
+}
+
+/// 0.2 L/s about the shell, into it and out of it.
+struct Hand {
+  Random random{11};
+  Vec3 at{0.55, 0.1, 0.1}, way{0.0, 1.0, 0.0};
+  double step;
+  explicit Hand(double length) : step(2e-4 * length) {}
+  const Vec3& next() {
+    way = direction(way + random.unit() * 0.1);
+    if (norm(at) > 0.72 || norm(at) < 0.4) way = direction(at) * (norm(at) > 0.6 ? -1.0 : 1.0);
+    return at += way * step;
+  }
+};
+
+std::shared_ptr<const Program> program_on(const std::vector<haptics::tests::ConstraintPtr>& constraints) {
+  auto program = std::make_shared<Program>(*program_of(constraints));
+  for (haptics::Link& link : program->links) link.stiffness_n_per_m = kStiffness;
+  program->metres_per_unit = kMetres;
+  program->coupling.max_force_n = kMostForce;
+  return program;
+}
+
+void follow(const std::string& side) {
+  const auto grid = noisy_ball();
+  const auto constraint = haptics::tests::isosurface(grid, kLevel, side);
+  ChainRig chain(program_on({constraint}));
+  Rig unlimited(constraint);
+  Hand hand(grid->length());
+  const double newtons_per_unit = kStiffness * kMetres, voxel = grid->longest_edge();
+  Vec3 last_probe(0.0), last_proxy(0.0), last_force(0.0), last_unlimited(0.0);
+  double worst_move = 0, worst_step = 0, worst_unlimited = 0, worst_rise = 0;
+  int held = 0, waits = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const Vec3 probe = hand.next();
+    const Vec3 force = chain.to(probe).coupling_force_n;
+    unlimited.tick(probe);
+    const double gap = norm(probe - last_proxy), dx = norm(probe - last_probe);
+    if (i > 0) {
+      // in units of what is allowed
+      const double slip = std::max(0.05 * kMostForce / newtons_per_unit, 0.05 * gap);
+      worst_move = std::max(worst_move, (norm(chain.proxy() - last_proxy) - dx) / slip);
+      worst_step = std::max(worst_step, norm(force - last_force) / (0.05 * kMostForce));
+      worst_unlimited = std::max(worst_unlimited, norm(unlimited.state.proxy - last_unlimited) / voxel);
+      if (chain.status() == Status::ok) worst_rise = std::max(worst_rise, norm(probe - chain.proxy()) - gap);
+    }
+    held += chain.status() == Status::ok;
+    waits += chain.status() == Status::budget;
+    last_probe = probe;
+    last_proxy = chain.proxy();
+    last_force = force;
+    last_unlimited = unlimited.state.proxy;
+  }
+  attained("noisy ball" + side + ": move beyond |dx|, of 0.05 max_force / (K S)", worst_move);
+  attained("noisy ball" + side + ": step of the force, of 0.05 max_force", worst_step);
+  attained("noisy ball" + side + ": ticks on the way", waits);
+  attained("noisy ball" + side + ": largest move without the limit, voxels", worst_unlimited);
+  EXPECT_GT(held, kTicks / 10);
+  EXPECT_LE(worst_move, 1);
+  EXPECT_LE(worst_step, 1);
+  EXPECT_LE(worst_rise, 1e-9);
+#ifndef CATENA_SANITIZED
+  EXPECT_GT(worst_unlimited, 3) << "the path has no jump to hold back";
+#endif
+}
+
+TEST(NoisySurface, TheProxyKeepsToItsTravelFromBothSides) { follow(""); }
+TEST(NoisySurface, TheProxyKeepsToItsTravelFromAbove) { follow(R"(, "free": "above")"); }
+TEST(NoisySurface, TheProxyKeepsToItsTravelFromBelow) { follow(R"(, "free": "below")"); }
+
+TEST(NoisySurface, FrictionKeepsItsProxyThroughAFailedReprojection) {
+  const auto grid = noisy_ball();
+  haptics::tests::Fields fields;
+  fields.named["f"].scalar = grid;
+  const auto surface = haptics::tests::isosurface(grid, kLevel);
+  const auto drag = haptics::tests::build(R"({"name": "d", "type": "drag", "threshold": 0.03, "surface": "f", "level": 0.6})", fields);
+  ChainRig chain(program_on({surface, drag}));
+  Hand hand(grid->length());
+  Status before = Status::ok;
+  int lost = 0, at_once = 0, kept = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    chain.to(hand.next());
+    const Status now = chain.status(1);
+    lost += now == Status::no_surface;
+    at_once += now == Status::no_surface && before == Status::ok;
+    kept += now == Status::budget;
+    before = now;
+  }
+  attained("noisy ball, drag: ticks with a proxy kept", kept);
+  attained("noisy ball, drag: ticks that lose it", lost);
+  EXPECT_GT(kept, 0) << "no reprojection fails on this path";
+  EXPECT_EQ(at_once, 0);
+}
+
+}  // namespace noisy_surface_test
+}  // namespace catena::acceptance
