@@ -86,9 +86,9 @@ class LevelSurface final : public Surface {
 
   /// The closest point wins over the limit where it is the closest point itself that has moved so far, as deep inside a concave
   /// surface: what is met now was no nearer before than what is held.
-  bool has_moved(const Vec3& held, const Vec3& met, double travel) const noexcept {
+  bool has_moved(const Vec3& held, const Vec3& met, const Vec3& probe) const noexcept {
     const Vec3& before = memory_.side.probe;
-    return norm(before - met) >= norm(before - held) - travel;
+    return norm(before - met) >= norm(before - held) - norm(probe - before);
   }
 
   Hold slide_grid(const Vec3& probe, double travel) noexcept {
@@ -105,7 +105,7 @@ class LevelSurface final : public Surface {
     memory_.owed = 0;
     if (!limit.passed_by(met)) {
       if (walk.status == Status::budget && std::isfinite(limit.room)) memory_.owed = limit.room - norm(met - held);
-    } else if (!walk.smooth || walk.status == Status::budget || !has_moved(held, met, travel)) {
+    } else if (!walk.smooth || walk.status == Status::budget || !has_moved(held, met, probe)) {
       cell = limit.last;
       walk = {Status::budget, Reason::none, 0, limit.normal, true};
     }
@@ -116,7 +116,7 @@ class LevelSurface final : public Surface {
     const LevelPoint from = memory_.at;
     const Curvature curvature = memory_.curvature;
     const Hold hold = settle_formula(from, probe, curvature, false);
-    if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy, travel)) return hold;
+    if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy, probe)) return hold;
 
     // so far down the surface as it may go
     const Vec3 e = probe - from.p, way = direction(e - from.n * dot(e, from.n));
@@ -239,11 +239,15 @@ class LevelSurface final : public Surface {
   bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
   /// No gradient, not finite, or so flat that the level is lost in round-off.
   bool degenerate(const LevelPoint& a) const noexcept { return !a.valid || a.plateau || a.round_off > kOnLevel * field_.length(); }
-  /// The normal jumps within 2e-9 L.
+  /// The normal jumps within 2e-9 L: on the way to the probe, or across what is then no surface.
   bool kink(const LevelPoint& a, const Vec3& probe) noexcept {
-    const Vec3 e = probe - a.p, way = direction(e - a.n * dot(a.n, e)) * (1e-9 * field_.length());
+    const Vec3 e = probe - a.p;
+    return jumps(a.p, direction(e - a.n * dot(a.n, e))) || jumps(a.p, a.n);
+  }
+  bool jumps(const Vec3& p, const Vec3& way) noexcept {
     if (field_.spent(2)) return false;
-    const LevelPoint ahead = field_.at(a.p + way), behind = field_.at(a.p - way);
+    const Vec3 step = way * (1e-9 * field_.length());
+    const LevelPoint ahead = field_.at(p + step), behind = field_.at(p - step);
     return !ahead.valid || !behind.valid || ahead.plateau || behind.plateau || dot(ahead.n, behind.n) < 0.9;
   }
   bool nearer(const LevelPoint& a, const LevelPoint& b, const Vec3& probe) const noexcept {
@@ -314,7 +318,8 @@ class Isosurface final : public Constraint {
     IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
     const SideRules rules = rules_.now(state, scratch);
     const SideMemory& side = memory.side;
-    if (side.fresh && (side.status == Status::budget || norm(probe - side.probe) > kThrown * field_->length())) state.most = kThrownWork;
+    const bool thrown = side.fresh && (side.status == Status::budget || norm(probe - side.probe) > kThrown * field_->length());
+    if (thrown && field_->grid() != nullptr) state.most = kThrownWork;
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }

@@ -11,9 +11,10 @@ constexpr double kFaceSlack = 1e-12;  // voxels: closer to a face than this is o
 constexpr double kNearFace = 1e-10;   // voxels: a step out that cannot be shortened into the cell starts on the face
 constexpr int kWalkRounds = 600;
 constexpr double kFarAway = 2;        // voxels
+constexpr double kLeastSlope = 0.87;  // of the last point's: less is a fold
 constexpr double kFlat = 0.25;        // voxels: so far off the level a straight way may end
 constexpr int kHalvings = 24;         // to find where a way passes its limit
-constexpr double kSmoothTurn = 0.87;  // cosine: a larger turn of the normal from step to step is no smooth surface
+constexpr double kSmoothTurn = 0.95;  // cosine: a larger turn of the normal from step to step is no smooth surface
 
 bool is_flat(const field::Box& box, int a) { return !(box.hi[a] > box.lo[a]); }
 
@@ -255,7 +256,7 @@ bool cross_cell(const LevelField& field, const PieceFrames& frames, const Piece&
   const PieceSample there = face.sample(exit);
   Vec3 g;
   int worst;
-  if (!there.usable || there.slope < kSmoothTurn * s.slope || std::fabs(there.distance) > kFlat * field.voxel()) return false;
+  if (!there.usable || there.slope < kLeastSlope * s.slope || std::fabs(there.distance) > kFlat * field.voxel()) return false;
   if (!face.retract(exit, Vec3(0.0), there, g) || face.outside(g, worst) > 0) return false;
   const Vec3 dp = mapping.world_from_index_linear * (g - f);
   if (!(dot(dp, probe - piece.world(f)) - 0.5 * dot(dp, dp) > 0)) return false;

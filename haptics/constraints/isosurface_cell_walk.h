@@ -33,7 +33,7 @@ struct WalkResult {
   Reason reason = Reason::none;  ///< of a status boundary or critical
   double residual = 0;           ///< off the level, world units
   Vec3 normal{0.0};
-  bool smooth = true;  ///< the normal turned by less than 30 degrees from step to step
+  bool smooth = true;  ///< the normal turned by less than 18 degrees from step to step
 };
 
 /// How far a walk may go from where it began. It is walked to its end all the same; `last` is the last point within `room`.

@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 
+#include "tests/support/program.h"
+
 namespace catena::test {
 
 namespace {
@@ -21,6 +23,8 @@ view() { "$CATENA" view "$@" & V=$!; until_ xdotool search --pid $V --name '^cat
 
 }  // namespace
 
+std::string on_display(const std::string& size) { return "sh " + source_dir() + "/tests/support/on_display.sh " + size + "x24 "; }
+
 bool can_drive_windows() {
   static const bool can = std::system("command -v Xvfb > /dev/null 2>&1 && command -v xdotool > /dev/null 2>&1") == 0;
   return can;
@@ -29,12 +33,8 @@ bool can_drive_windows() {
 int drive_windows(const TemporaryFolder& folder, const std::string& script) {
   write_file(folder / "script.sh", "cd " + folder.path() + "\nexport HOME=" + folder.path() + " XDG_STATE_HOME=" + (folder / "state") +
                                        " CATENA=" + program_path() + "\n" + kFunctions + script);
-  // the server chooses its own number: two tests at once never take the same
-  write_file(folder / "display.sh", "cd " + folder.path() +
-                                        "\nXvfb -displayfd 3 -screen 0 1000x700x24 -nolisten tcp 3> display 2> /dev/null &\nX=$!\n" +
-                                        "for i in $(seq 200); do test -s display && break; sleep 0.05; done\n" +
-                                        "export DISPLAY=:$(cat display)\nsh script.sh\nR=$?\nkill $X\nwait $X 2> /dev/null\nexit $R\n");
-  const int status = std::system(("timeout -k 5 120 sh " + (folder / "display.sh") + " > " + (folder / "log") + " 2>&1").c_str());
+  const int status = std::system(
+      ("timeout -k 5 120 " + on_display("1000x700") + "sh " + (folder / "script.sh") + " > " + (folder / "log") + " 2>&1").c_str());
   return WIFEXITED(status) && WEXITSTATUS(status) < 124 ? WEXITSTATUS(status) : -1;
 }
 

@@ -7,8 +7,10 @@
 
 namespace catena::test {
 
-/// xvfb-run and xdotool are here.
+/// Xvfb and xdotool are here.
 bool can_drive_windows();
+/// What is put before a command to run it on a virtual display of its own, for instance of 640x480.
+std::string on_display(const std::string& size);
 
 /// In `folder`, which becomes the home of the window's user; what it says goes to `folder`/log.
 ///   drive("flow.json --size 900x600", "keys ctrl+q")   runs `catena view ...`, waits for its title, plays the script, waits for its end.

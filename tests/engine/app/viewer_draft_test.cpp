@@ -108,7 +108,7 @@ TEST(Draft, WhatSomebodyPutThereIsNotOffered) {
 class ViewerDraft : public testing::Test {
  protected:
   void SetUp() override {
-    if (!test::can_drive_windows()) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+    if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
     test::write_file(folder_ / "flow.json", kScene);
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
@@ -128,14 +128,14 @@ TEST_F(ViewerDraft, IsOfferedAfterTheProgramWasKilled) {
                                        "kill -9 $V; wait $V\n"
                                        "cp copy.json saved.json\n"
                                        // later: nothing changes, and it is offered again
-                                       "view copy.json --size 900x600\nsleep 0.5; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
+                                       "view copy.json --size 900x600\nsleep 2; keys Escape ctrl+q; wait $V || echo 'bad end'\n"
                                        "cmp copy.json saved.json || echo changed\nls copy.json.unsaved-* || echo 'lost'\n"
                                        // restore, save
-                                       "view copy.json --size 900x600\nsleep 0.5; keys Return; titled 'copy.json [^ ]'\n"
+                                       "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
                                        "keys ctrl+s; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
                                        "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\n"
                                        // nothing is asked any more
-                                       "view copy.json --size 900x600\nsleep 0.5; keys ctrl+q; wait $V\nexit $?\n");
+                                       "view copy.json --size 900x600\nsleep 2; keys ctrl+q; wait $V\nexit $?\n");
   EXPECT_EQ(code, 0) << log();
   for (const char* bad : {"never", "lost", "changed", "bad end", "still there"}) EXPECT_FALSE(logged(bad)) << bad << "\n" << log();
   EXPECT_EQ(test::read_file(folder_ / "copy.json"), kScene) << "what was undone, restored and saved";
@@ -148,7 +148,7 @@ TEST_F(ViewerDraft, IsKeptWhereAnInterruptEndsTheWindowAndGoesWhereThePersonDisc
                    "until_ sh -c 'ls copy.json.unsaved-*' || echo 'never kept'\n"
                    "kill -TERM $V; wait $V\nls copy.json.unsaved-* || echo 'lost'\n"
                    // discarded by a click on the second button, or by the keyboard: right of Restore
-                   "view copy.json --size 900x600\nsleep 0.5; keys Return; titled 'copy.json [^ ]'\n"
+                   "view copy.json --size 900x600\nsleep 2; keys Return; titled 'copy.json [^ ]'\n"
                    "keys ctrl+q; sleep 0.3; keys Escape ctrl+z; titled 'copy.json  '; keys ctrl+q; wait $V || echo 'bad end'\n"
                    "ls copy.json.unsaved-* 2> /dev/null && echo 'still there'\nexit 0\n");
   EXPECT_EQ(code, 0) << log();

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "tests/support/support.h"
+#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace viewer_hand_test {
@@ -19,7 +20,7 @@ class ViewerHand : public testing::Test {
     test::write_file(folder_ / "scene.json", scene);
     test::write_file(folder_ / "script.sh", test::program_path() + " view " + (folder_ / "scene.json") + " --size 320x240 " + options);
     const int status = std::system(
-        ("timeout 120 xvfb-run -a -s '-screen 0 640x480x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
+        ("timeout 120 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
@@ -27,7 +28,7 @@ class ViewerHand : public testing::Test {
 };
 
 TEST_F(ViewerHand, WhatIsNotPluggedInLeavesTheMouseAndIsSaidInOneSentence) {
-  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(view(R"({"chain": [{"name": "p", "type": "point", "position": [0, 0, 0]}]})",
                  "--device falcon:7 --frames 2 --record " + (folder_ / "a.catlog")),
             0)
@@ -41,7 +42,7 @@ TEST_F(ViewerHand, WhatIsNotPluggedInLeavesTheMouseAndIsSaidInOneSentence) {
 }
 
 TEST_F(ViewerHand, AGridThatDoesNotFitIntoTheMemoryIsSaid) {
-  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   const std::string scene = R"({"fields": {"g": {"analytic": "gaussian", "resolution": 160}}, "volumes": [{"field": "g"}]})";
   ASSERT_EQ(view(scene, "--frames 1 --gpu-memory 8"), 0) << log();
   EXPECT_NE(log().find("resolution"), std::string::npos) << log();

@@ -16,7 +16,7 @@ constexpr const char* kScene = R"({
 class ViewerKeys : public testing::Test {
  protected:
   void SetUp() override {
-    if (!test::can_drive_windows()) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+    if (!test::can_drive_windows()) GTEST_SKIP() << "no Xvfb or no xdotool here";
     test::write_file(folder_ / "slow.json", kScene);
     test::write_file(folder_ / "Capital.json", R"({"fields": {}})");
   }

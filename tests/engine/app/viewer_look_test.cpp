@@ -11,6 +11,7 @@
 #include "engine/scene/scene.h"
 #include "render/vk/picture.h"
 #include "tests/support/support.h"
+#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace viewer_look_test {
@@ -50,7 +51,7 @@ class ViewerLook : public testing::Test {
   int on_display(const std::string& script) {
     test::write_file(folder_ / "script.sh", script);
     const int status = std::system(
-        ("timeout 120 xvfb-run -a -s '-screen 0 640x720x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
+        ("timeout 120 " + test::on_display("640x720") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
@@ -74,7 +75,7 @@ class ViewerLook : public testing::Test {
 };
 
 TEST_F(ViewerLook, ThePointerMovesAnOpacityAndALevelAndEachDragIsOneStepBack) {
-  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   test::write_file(scene_, kScene);
   ASSERT_EQ(on_display(view() + " --frames 4 --window-screenshot " + (folder_ / "w.png")), 0) << log();
   const auto window = render::read_png(folder_ / "w.png");

@@ -28,17 +28,17 @@ std::string word_of(const char* variable, const char* otherwise) {
 
 TEST(ViewerMonkey, DoesNotBringTheWindowDown) {
   const bool has_xlib = std::system("/usr/bin/python3 -c 'import Xlib' > /dev/null 2>&1") == 0;
-  if (!test::can_drive_windows() || !has_xlib) GTEST_SKIP() << "no xvfb-run or no python3-xlib here";
+  if (!test::can_drive_windows() || !has_xlib) GTEST_SKIP() << "no Xvfb or no python3-xlib here";
   const test::TemporaryFolder folder;
   test::write_file(folder / "slow.json", kDensity);
   test::write_file(folder / "Capital.json", kFlow);
   test::write_file(folder / "a.csv", "t,x,y,z\n");
   ASSERT_EQ(test::run_catena({"generate", "sphere", "-o", folder / "grid.vdb", "--resolution", "12"}).exit_code, 0);
-  const std::string command = "cd " + folder.path() + " && HOME=" + folder.path() + " XDG_STATE_HOME=" + (folder / "state") +
-                              " xvfb-run -a -s '-screen 0 1000x700x24' /usr/bin/python3 " + test::source_dir() +
-                              "/tests/monkey/monkey.py --seed " + word_of("CATENA_MONKEY_SEED", "1") + " --seconds " +
-                              word_of("CATENA_MONKEY_SECONDS", "8") + " --folder " + folder.path() + " " + test::program_path() +
-                              " slow.json Capital.json grid.vdb '' > " + (folder / "out") + " 2>&1";
+  const std::string command = "cd " + folder.path() + " && HOME=" + folder.path() + " XDG_STATE_HOME=" + (folder / "state") + " " +
+                              test::on_display("1000x700") + "/usr/bin/python3 " + test::source_dir() + "/tests/monkey/monkey.py --seed " +
+                              word_of("CATENA_MONKEY_SEED", "1") + " --seconds " + word_of("CATENA_MONKEY_SECONDS", "8") + " --folder " +
+                              folder.path() + " " + test::program_path() + " slow.json Capital.json grid.vdb '' > " + (folder / "out") +
+                              " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << test::read_file(folder / "out") << test::read_file(folder / "monkey.log");
 }
 

@@ -1,4 +1,4 @@
-// The window itself, on a virtual display (xvfb-run), with real pointer events where xdotool is there.
+// The window itself, on a virtual display (Xvfb), with real pointer events where xdotool is there.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -10,6 +10,7 @@
 
 #include "render/vk/picture.h"
 #include "tests/support/support.h"
+#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace viewer_test {
@@ -37,8 +38,7 @@ class Viewer : public testing::Test {
   std::string view() const { return test::program_path() + " view " + scene_ + " --size 320x240"; }
   int on_display(const std::string& script) {
     test::write_file(folder_ / "script.sh", script);
-    return exit_code("timeout 60 xvfb-run -a -s '-screen 0 640x480x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") +
-                     " 2>&1");
+    return exit_code("timeout 60 " + test::on_display("640x480") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1");
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
   render::Picture picture(const std::string& name) {
@@ -67,7 +67,7 @@ TEST_F(Viewer, WithoutADisplayItSaysSoInOneLine) {
 }
 
 TEST_F(Viewer, DrawsTheSceneAndTheHand) {
-  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --frames 4 --screenshot " + (folder_ / "a.png")), 0) << log();
   const render::Picture a = picture("a.png");
   ASSERT_EQ(a.width, 320u);
@@ -91,7 +91,7 @@ TEST_F(Viewer, ADeviceThatIsNotThereIsSaidBeforeAnyWindow) {
 }
 
 TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
-  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   std::ostringstream script;
   script << view() << " --device simulated --servo-stats " << (folder_ / "servo.json") << " &\n"
          << "for i in $(seq 200); do xdotool search --name 'forces off' > /dev/null 2>&1 && break; sleep 0.1; done\n"
@@ -106,7 +106,7 @@ TEST_F(Viewer, AHapticDeviceHoldsTheProbeAndItsForcesAreOffUntilF) {
 }
 
 TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
-  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --stereo side-by-side --frames 2 --screenshot " + (folder_ / "pair.png")), 0) << log();
   const render::Picture pair = picture("pair.png");
   ASSERT_EQ(pair.width, 320u);
@@ -129,7 +129,7 @@ TEST_F(Viewer, StereoFillsTheWindowAndF2GoesToTheNextMode) {
 }
 
 TEST_F(Viewer, AChangedShaderIsDrawnWithAtOnceAndABrokenOneIsSaid) {
-  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   const std::string shaders = folder_ / "shaders", compose = shaders + "/passes/compose.frag";
   std::filesystem::copy(test::source_dir() + "/shaders", shaders, std::filesystem::copy_options::recursive);
   test::write_file(folder_ / "green.frag",
@@ -164,7 +164,7 @@ TEST_F(Viewer, SaysWhatIsWrongWithQualityAndShaders) {
 }
 
 TEST_F(Viewer, TheTitleSaysTheSettingAndKeysTurnTheView) {
-  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   test::write_file(scene_, R"({
     "fields": {"f": {"analytic": "sphere"}},
     "volumes": [{"field": "f"}],
@@ -186,13 +186,13 @@ TEST_F(Viewer, TheTitleSaysTheSettingAndKeysTurnTheView) {
 }
 
 TEST_F(Viewer, DrawsForSoManySeconds) {
-  if (!has("xvfb-run")) GTEST_SKIP() << "no xvfb-run here";
+  if (!has("Xvfb")) GTEST_SKIP() << "no Xvfb here";
   ASSERT_EQ(on_display(view() + " --seconds 1 --servo-stats " + (folder_ / "servo.json")), 0) << log();
   EXPECT_NE(test::read_file(folder_ / "servo.json").find("\"device\": \"mouse\""), std::string::npos);
 }
 
 TEST_F(Viewer, DragsTurnTheViewAndMoveTheHand) {
-  if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+  if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
   const auto drive = [&](const std::string& events, const std::string& png) {
     std::ostringstream script;
     script << view() << " --screenshot " << (folder_ / png) << " &\n"

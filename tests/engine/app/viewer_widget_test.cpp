@@ -10,6 +10,7 @@
 #include "engine/base/json.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
+#include "tests/support/windows.h"
 
 namespace viewer_widget_test {
 
@@ -27,7 +28,7 @@ bool has(const std::string& program) { return std::system((program + " > /dev/nu
 class ViewerWidget : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has("command -v xvfb-run") || !has("command -v xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+    if (!has("command -v Xvfb") || !has("command -v xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
     test::write_file(folder_ / "plane.json", kScene);
     test::write_file(folder_ / "ball.json", R"({"fields": {"d": {"analytic": "sphere", "resolution": 24}},
                                                 "isosurfaces": [{"field": "d", "level": 1}]})");
@@ -42,7 +43,7 @@ class ViewerWidget : public testing::Test {
         << script << "\nwait $V\n";
     test::write_file(folder_ / "script.sh", all.str());
     const int status = std::system(
-        ("timeout 90 xvfb-run -a -s '-screen 0 800x600x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
+        ("timeout 90 " + test::on_display("800x600") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string log() const { return test::read_file(folder_ / "log"); }

@@ -10,6 +10,7 @@
 #include "engine/app/viewer/viewer.h"
 #include "render/vk/picture.h"
 #include "tests/support/support.h"
+#include "tests/support/windows.h"
 
 namespace catena::app {
 namespace viewer_window_test {
@@ -31,7 +32,7 @@ bool has(const std::string& program) { return std::system(("command -v " + progr
 class ViewerWindow : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has("xvfb-run") || !has("xdotool")) GTEST_SKIP() << "no xvfb-run or no xdotool here";
+    if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "no Xvfb or no xdotool here";
     scene_ = folder_ / "flow.json";
     test::write_file(scene_, kScene);
     test::write_file(folder_ / "ball.json", kOther);
@@ -50,7 +51,7 @@ class ViewerWindow : public testing::Test {
         << script << "\nwait $V\n";
     test::write_file(folder_ / "script.sh", all.str());
     const int status = std::system(
-        ("timeout 90 xvfb-run -a -s '-screen 0 1000x700x24' sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
+        ("timeout 90 " + test::on_display("1000x700") + "sh " + (folder_ / "script.sh") + " > " + (folder_ / "log") + " 2>&1").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string log() const { return test::read_file(folder_ / "log"); }
@@ -160,8 +161,8 @@ TEST(ViewerLost, DISABLED_InAWindow) {
 TEST_F(ViewerWindow, ADeviceThatIsLostIsStartedAgain) {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command =
-      "env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX CATENA_TEST_SCENE=" + scene_ + " timeout 90 xvfb-run -a -s '-screen 0 640x480x24' " +
-      self + " --gtest_also_run_disabled_tests --gtest_filter=ViewerLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
+      "env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX CATENA_TEST_SCENE=" + scene_ + " timeout 90 " + test::on_display("640x480") + self +
+      " --gtest_also_run_disabled_tests --gtest_filter=ViewerLost.DISABLED_InAWindow > " + (folder_ / "log") + " 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << log();
   EXPECT_NE(log().find("60 frames"), std::string::npos) << log();
   EXPECT_NE(log().find("lost and started again 4 times"), std::string::npos) << log();
