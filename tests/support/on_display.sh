@@ -1,9 +1,9 @@
 # A command on a virtual display of its own: sh on_display.sh SCREEN COMMAND...
-# The server chooses its own number, so that two tests at once never take the same (xvfb-run -a may).
+# The server chooses its own number, so that two tests at once never take the same, and stays when its last program has ended.
 screen=$1
 shift
 number=$(mktemp)
-Xvfb -displayfd 3 -screen 0 "$screen" -nolisten tcp 3> "$number" 2> /dev/null &
+Xvfb -displayfd 3 -screen 0 "$screen" -nolisten tcp -noreset 3> "$number" 2> /dev/null &
 server=$!
 for i in $(seq 200); do test -s "$number" && break; sleep 0.05; done
 DISPLAY=:$(cat "$number") "$@"

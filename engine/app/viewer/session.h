@@ -94,6 +94,7 @@ class Session {
   std::unique_ptr<Gui> gui_;
   Controls controls_;
   Pacing pacing_;
+  int screenshot_waits_ = 0;  ///< frames, for a picture of every pixel
   FrameTimes times_;
   ViewState state_;
   SceneKind kind_;

@@ -48,9 +48,12 @@ void Session::fulfil_wishes_for_files() {
   if (const auto path = std::exchange(state_.add, std::nullopt)) start_loading(*path, true);
   if (std::exchange(state_.quit, false)) leave_or_ask({true, {}});
   fulfil_wishes_for_left();
-  // a wish of before the first picture waits for it
+  // a wish of before the first picture waits for it; for a picture of every pixel, where nothing moves, too
+  constexpr int kMostWaits = 30;
   const bool there = state_.screenshot_of_window ? screen_->is_shown() : screen_->has_picture();
-  if (state_.screenshot && there) write_screenshot(*std::exchange(state_.screenshot, std::nullopt));
+  if (!state_.screenshot || !there || (pacing_.again().scale > 1 && screenshot_waits_++ < kMostWaits)) return;
+  screenshot_waits_ = 0;
+  write_screenshot(*std::exchange(state_.screenshot, std::nullopt));
 }
 
 void Session::leave(const Leaving& leaving) {
