@@ -124,9 +124,9 @@ class Rig {
     });
   }
 
+  std::vector<Packet> packets;  ///< under the port's mutex; before the bus, whose thread adds to it
   UmockdevBus bus{{.homed = true}};
   test::TemporaryFolder folder;
-  std::vector<Packet> packets;  ///< under the port's mutex
   pid_t child = 0;
   bool plugged = false;
 };
