@@ -240,7 +240,7 @@ int stand_still_at_random(Rig& rig, bool ticks_too, int times) {
       if (rig.forces[k] > 0.5 * Ticks::kForceN) ++k, ++on_its_way;
       EXPECT_EQ(rig.forces[k], 0) << i;
       while (k < rig.forces.size() && rig.forces[k] == 0) ++k;
-      EXPECT_LT(rig.forces[k], 0.2 * Ticks::kForceN) << i;
+      EXPECT_LT(rig.forces[k], 0.5 * Ticks::kForceN) << i;  // a thread that waits for the processor may miss the first steps
       for (; k + 1 < rig.forces.size(); ++k) EXPECT_GE(rig.forces[k + 1], rig.forces[k] - 0.05) << i << " " << k;
       rig.forces.clear();
     });
