@@ -190,18 +190,26 @@ TEST_F(WatchdogUsb, AStoppedProgramHoldsNoForceAndRampsInWhenItGoesOn) {
     ASSERT_TRUE(eventually([&] { return rig.bulks() > held; }));
     EXPECT_EQ(rig.last().force_n, 0);
     const std::size_t from = rig.count();
+    const std::int64_t goes_on_ns = now_ns();
     kill(rig.child, SIGCONT);
-    ASSERT_TRUE(rig.pushes());
-    rig.bus.with([&](EmulatedFalcon&) {
+    // zeros, perhaps with one packet between that was on its way at the moment of the stop, then the ramp; the end: not yet
+    bool late_packet = false;
+    const auto ramp_from = [&] {
+      const std::vector<Packet>& packets = rig.packets;
+      const auto is_zero = [&](std::size_t k) { return packets[k].force_n == 0; };
       std::size_t k = from;
-      while (k < rig.packets.size() && rig.packets[k].force_n == 0) ++k;
-      // a packet that was on its way at the moment of the stop; the next one is a zero
-      if (rig.packets[k].force_n > 1) {
-        ++on_its_way;
-        EXPECT_EQ(rig.packets[++k].force_n, 0) << i;
-        while (k < rig.packets.size() && rig.packets[k].force_n == 0) ++k;
-      }
-      EXPECT_LT(rig.packets[k].force_n, 0.5) << "the ramp from its beginning, " << i;
+      while (k < packets.size() && is_zero(k)) ++k;
+      late_packet = k + 1 < packets.size() && is_zero(k + 1);
+      if (late_packet) ++k;
+      while (k < packets.size() && is_zero(k)) ++k;
+      return k + 1 < packets.size() ? k : packets.size();
+    };
+    ASSERT_TRUE(eventually([&] { return rig.bus.with([&](EmulatedFalcon&) { return ramp_from() < rig.packets.size(); }); }));
+    rig.bus.with([&](EmulatedFalcon&) {
+      const Packet& first = rig.packets[ramp_from()];
+      on_its_way += late_packet;
+      // 8 N in 0.1 s; a program that waits for the processor may miss the first steps
+      EXPECT_LT(first.force_n, 0.5 + 80e-9 * static_cast<double>(first.ns - goes_on_ns)) << "the ramp from its beginning, " << i;
     });
   }
   keep("stopped", outlived_ms);
@@ -229,11 +237,15 @@ TEST_F(WatchdogUsb, AProgramThatEndsByItselfEndsItAndItWritesNothing) {
 TEST_F(WatchdogUsb, ASignalThatEndsTheProgramLetsGoFirst) {
   Rig rig;
   for (const int signal_number : {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGXCPU, SIGRTMAX, SIGTRAP}) {
-    rig.start();
-    ASSERT_TRUE(rig.pushes()) << rig.said();
-    kill(rig.child, SIGXFSZ);  // of a file that is too long: it ends nothing
-    kill(rig.child, signal_number);
-    const int status = rig.wait();
+    int status = 0;
+    // a program that got no processor was let go before the signal, which is not what is asked here: once more
+    for (int i = 0; i < 5 && (i == 0 || rig.said().find("has stood still") != std::string::npos); ++i) {
+      rig.start();
+      ASSERT_TRUE(rig.pushes()) << rig.said();
+      kill(rig.child, SIGXFSZ);  // of a file that is too long: it ends nothing
+      kill(rig.child, signal_number);
+      status = rig.wait();
+    }
     if (signal_number == SIGTRAP) {
       EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTRAP) << status;
     } else {

@@ -68,6 +68,10 @@ int submit(Plug& plug, UMockdevIoctlData* argument) {
   const auto length = static_cast<gsize>(urb->buffer_length);
   UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer), length, nullptr);
   static std::uint8_t nothing[1];
+  if (buffer == nullptr && length > 0) {  // the client was killed meanwhile
+    g_object_unref(data);
+    return EFAULT;
+  }
   std::uint8_t* bytes = buffer != nullptr ? buffer->data : nothing;
   // in the queue before it can be completed
   plug.held_.insert(data);
@@ -113,9 +117,17 @@ int bulk(Plug& plug, UMockdevIoctlData* argument, int& moved) {
 }  // namespace
 
 struct UmockdevBus::State {
+  /// What umockdev's thread comes through: a request of a program that outlives the bus finds it shut.
+  struct Door {
+    std::mutex mutex;
+    State* state = nullptr;
+  };
   explicit State(const EmulatedFalconOptions& options) : port(options) {}
 
-  static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, State* self) {
+  static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, Door* door) {
+    const std::scoped_lock lock(door->mutex);
+    State* self = door->state;
+    if (self == nullptr) return FALSE;
     Plug* plug = self->find(umockdev_ioctl_client_get_devnode(client));
     if (plug == nullptr) return FALSE;
     const gulong request = umockdev_ioctl_client_get_request(client);
@@ -147,6 +159,7 @@ struct UmockdevBus::State {
   EmulatedPort port;
   UMockdevTestbed* testbed = nullptr;
   UMockdevIoctlBase* handler = nullptr;
+  Door* door = nullptr;
   std::string root;
   std::mutex plugs_mutex;
   std::map<std::string, std::unique_ptr<Plug>> plugs;  ///< by device node
@@ -167,13 +180,19 @@ UmockdevBus::UmockdevBus(const EmulatedFalconOptions& options) : state_(std::mak
   state_->root = root;
   g_free(root);
   state_->handler = umockdev_ioctl_base_new();
-  g_signal_connect(state_->handler, "handle-ioctl", G_CALLBACK(&State::on_ioctl), state_.get());
+  state_->door = new State::Door{{}, state_.get()};  // deleted with the handler's last reference
+  const auto free_door = [](gpointer door, GClosure*) { delete static_cast<State::Door*>(door); };
+  g_signal_connect_data(state_->handler, "handle-ioctl", G_CALLBACK(&State::on_ioctl), state_->door, free_door, GConnectFlags{});
 }
 
 UmockdevBus::~UmockdevBus() {
   if (state_->current != nullptr) unplug();
   for (const auto& [node, plug] : state_->plugs) umockdev_testbed_detach_ioctl(state_->testbed, node.c_str(), nullptr);
-  g_object_unref(state_->testbed);  // joins umockdev's thread
+  {
+    const std::scoped_lock lock(state_->door->mutex);
+    state_->door->state = nullptr;
+  }
+  g_object_unref(state_->testbed);
   g_object_unref(state_->handler);
 }
 
