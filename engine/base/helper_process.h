@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 
 #include "engine/base/result.h"
 
@@ -43,6 +44,7 @@ class Descriptor {
   ~Descriptor() { close(); }
   void close();
   int get() const { return fd_; }
+  int release() { return std::exchange(fd_, -1); }
   explicit operator bool() const { return fd_ >= 0; }
 
  private:

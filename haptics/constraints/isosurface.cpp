@@ -1,7 +1,5 @@
 #include "haptics/constraints/isosurface.h"
 
-#include <limits>
-
 #include "haptics/constraints/isosurface_analytic.h"
 #include "haptics/constraints/isosurface_cell_walk.h"
 #include "haptics/constraints/isosurface_descent.h"
@@ -14,13 +12,12 @@ namespace {
 
 constexpr double kSearchRadius = 2;  // of L
 constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no hand's
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-constexpr int kThrownWork = 1536;  // of such a tick, and of those that finish what it began
-constexpr int kQuick = 200;        // fetches before a formula asks for the descent
-constexpr int kQuickRefusals = 8;  // in a row, likewise
-constexpr int kSight = 16;         // fetches on the line of sight
-constexpr int kForLevel = 12;      // fetches kept for the way back to the level
-constexpr double kOnLevel = 1e-9;  // of L: as good as on the level, to go on from
+constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
+constexpr int kQuick = 200;          // fetches before a formula asks for the descent
+constexpr int kQuickRefusals = 8;    // in a row, likewise
+constexpr int kSight = 16;           // fetches on the line of sight
+constexpr int kForLevel = 12;        // fetches kept for the way back to the level
+constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
 
 /// What the link remembers: the rules' part, the point held, the curvature learned.
 struct IsosurfaceMemory {
@@ -32,6 +29,10 @@ struct IsosurfaceMemory {
   Scan scan;
   double owed;  // of the way that a walk out of budget was allowed and has not gone
 };
+
+bool is_thrown(const SideMemory& side, const Vec3& probe, double length) noexcept {
+  return side.fresh && norm(probe - side.probe) > kThrown * length;
+}
 
 class LevelSurface final : public Surface {
  public:
@@ -56,8 +57,7 @@ class LevelSurface final : public Surface {
   }
 
   Hold slide(const Vec3& probe) noexcept override {
-    const SideMemory& side = memory_.side;
-    const double travel = side.fresh ? field_.state().travel(norm(probe - side.probe), norm(probe - side.proxy)) : kAnywhere;
+    const double travel = travel_of(memory_.side, probe, norm(probe - memory_.side.proxy), field_.state());
     return field_.grid() ? slide_grid(probe, travel) : slide_formula(probe, travel);
   }
 
@@ -95,12 +95,12 @@ class LevelSurface final : public Surface {
     CellPoint cell = memory_.cell;
     const Vec3 held = world_of(*field_.grid(), cell);
     // a probe that was thrown goes far along the surface first as if it were smooth
-    if (memory_.side.fresh && norm(probe - memory_.side.probe) > kThrown * field_.length()) {
+    if (is_thrown(memory_.side, probe, field_.length())) {
       const LevelPoint start = field_.at(held);
       if (start.valid && !start.plateau) cell = leap(cell, start, probe);
     }
     TravelLimit limit{held, travel + memory_.owed, false, {}, Vec3(0.0)};
-    WalkResult walk = walk_cells(field_, frames_, probe, kEvaluationCap, cell, &limit);
+    WalkResult walk = walk_cells(field_, frames_, probe, cell, &limit);
     const Vec3 met = world_of(*field_.grid(), cell);
     memory_.owed = 0;
     if (!limit.passed_by(met)) {
@@ -277,7 +277,7 @@ class LevelSurface final : public Surface {
   /// Far along the surface first, then exactly, cell by cell.
   Hold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
     cell = leap(cell, start, probe);
-    const WalkResult walk = walk_cells(field_, frames_, probe, kEvaluationCap, cell);
+    const WalkResult walk = walk_cells(field_, frames_, probe, cell);
     return hold_cell(cell, walk);
   }
 
@@ -318,8 +318,8 @@ class Isosurface final : public Constraint {
     IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
     const SideRules rules = rules_.now(state, scratch);
     const SideMemory& side = memory.side;
-    const bool thrown = side.fresh && (side.status == Status::budget || norm(probe - side.probe) > kThrown * field_->length());
-    if (thrown && field_->grid() != nullptr) state.most = kThrownWork;
+    const bool finishes = side.fresh && side.status == Status::budget;
+    if (field_->grid() != nullptr && (finishes || is_thrown(side, probe, field_->length()))) state.most = kThrownWork;
     LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
     advance_on(surface, rules, probe, memory.side, state);
   }

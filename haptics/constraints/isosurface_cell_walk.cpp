@@ -1,84 +1,17 @@
 #include "haptics/constraints/isosurface_cell_walk.h"
 
+#include "haptics/constraints/isosurface_cells.h"
+#include "haptics/constraints/isosurface_piece_move.h"
+
 namespace catena::haptics {
 namespace {
 
-constexpr double kRelease = 1e-8;     // of L: a smaller tangential descent is none
-constexpr double kConverged = 1e-10;  // of L: within a piece
-constexpr double kStill = 1e-13;      // of L: a shorter move is none
-constexpr double kAccepted = 1e-6;    // of L: what may remain where no piece moves any more
-constexpr double kFaceSlack = 1e-12;  // voxels: closer to a face than this is on it
-constexpr double kNearFace = 1e-10;   // voxels: a step out that cannot be shortened into the cell starts on the face
+constexpr double kStill = 1e-13;    // of L: a shorter move is none
+constexpr double kAccepted = 1e-6;  // of L: what may remain where no piece moves any more
 constexpr int kWalkRounds = 600;
 constexpr double kFarAway = 2;        // voxels
-constexpr double kLeastSlope = 0.87;  // of the last point's: less is a fold
-constexpr double kFlat = 0.25;        // voxels: so far off the level a straight way may end
 constexpr int kHalvings = 24;         // to find where a way passes its limit
 constexpr double kSmoothTurn = 0.95;  // cosine: a larger turn of the normal from step to step is no smooth surface
-
-bool is_flat(const field::Box& box, int a) { return !(box.hi[a] > box.lo[a]); }
-
-/// The cells fetched in this tick: each is counted once.
-class Cells {
- public:
-  Cells(LevelField& field, int most) : field_(field), grid_(*field.grid()), last_(field.evaluations() + most) {}
-
-  /// nullptr: a wall, of which `wall` then says the kind, or the budget is spent.
-  const field::ScalarCell* find(const field::Index3& base) {
-    ++field_.steps();
-    const field::Box& box = grid_.index_box();
-    const std::array<std::int32_t, 3> at{base.x, base.y, base.z};
-    for (int a = 0; a < 3; ++a) {
-      const double last = is_flat(box, a) ? box.lo[a] : box.hi[a] - 1;
-      const double b = at[static_cast<std::size_t>(a)];
-      if (b < box.lo[a] || b > last) {
-        wall = Reason::box;
-        return nullptr;
-      }
-    }
-    for (std::size_t i = 1; i <= kCells && i <= count_; ++i) {
-      const std::size_t k = (count_ - i) % kCells;
-      if (keys_[k].base == base) return usable(k);
-    }
-    if (field_.spent() || field_.evaluations() >= last_) {
-      spent_ = true;
-      return nullptr;
-    }
-    field_.count_fetch();
-    const std::size_t k = count_++ % kCells;
-    field::ScalarCell& cell = *new (slot(k)) field::ScalarCell(grid_.cell(base, field_.cursor()));
-    cell.base = base;
-    bool finite = true;
-    for (const double c : cell.corner) finite = finite && std::isfinite(c);
-    keys_[k] = {base, !cell.valid ? Reason::mask : finite ? Reason::none : Reason::not_finite};
-    return usable(k);
-  }
-  bool spent() const { return spent_; }
-  Reason wall = Reason::none;
-
- private:
-  struct Key {
-    field::Index3 base;
-    Reason wall;  ///< none: a cell to walk in
-  };
-  const field::ScalarCell* usable(std::size_t k) {
-    if (keys_[k].wall == Reason::none) return slot(k);
-    wall = keys_[k].wall;
-    return nullptr;
-  }
-  LevelField& field_;
-  const field::ScalarGrid& grid_;
-  int last_;
-  // raw bytes: most ticks need one cell, and clearing 32 would cost as much as the walk
-  static constexpr std::size_t kCells = 32;
-  field::ScalarCell* slot(std::size_t k) {
-    return std::launder(reinterpret_cast<field::ScalarCell*>(&bytes_[k * sizeof(field::ScalarCell)]));
-  }
-  alignas(field::ScalarCell) std::array<std::byte, kCells * sizeof(field::ScalarCell)> bytes_;
-  std::array<Key, kCells> keys_;  // NOLINT: set as cells come
-  std::size_t count_ = 0;
-  bool spent_ = false;
-};
 
 /// The faces through a point: which axes, and the cells on either side of them.
 struct Corner {
@@ -124,146 +57,6 @@ void for_subsets(unsigned mask, const Visit& visit) {
   } while (subset != 0);
 }
 
-enum class Followed { converged, landed, blocked };
-
-/// Moves f within one piece towards the closest point, until it converges or meets a face of the cell. `s` and `t` are the sample
-/// and the tangential part at f, on the way in, and on the way out where it converged. Steepest: by t, not by Newton's step, which
-/// on a folded piece may lead out of the cell where t leads in.
-Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, bool steepest, Vec3& f, PieceSample& s, Vec3& t) {
-  const field::Mapping& mapping = field.grid()->mapping();
-  const double length = field.length(), voxel = field.voxel();
-  const auto gain = [&](const Vec3& from, const Vec3& to) {
-    const Vec3 dp = mapping.world_from_index_linear * (to - from);
-    return dot(dp, probe - piece.world(from)) - 0.5 * dot(dp, dp);
-  };
-  for (int i = 0; i < 40 && !field.exhausted(); ++i) {
-    if (!s.usable) return Followed::blocked;
-    const double size = norm(t);
-    if (size <= std::max(kConverged * length, 1e-15 * norm(probe - piece.world(f)))) return Followed::converged;
-    Vec3 u = steepest ? t : piece.newton(f, probe, s, t);
-    const double wanted = norm(u);
-    if (wanted > 2 * voxel) u = u * (2 * voxel / wanted);
-
-    bool accepted = false;
-    for (int trial = 0; trial < 30 && !accepted && !field.exhausted(); ++trial, u = u * 0.35) {
-      Vec3 g;
-      int axis;
-      if (!piece.retract(f, u, s, g)) continue;
-      if (piece.outside(g, axis) <= 0) {
-        const double won = gain(f, g);
-        accepted = won >= 1e-4 * dot(t, u);
-        if (!accepted && size <= 1e-5 * length) {
-          const PieceSample next = piece.sample(g);
-          accepted = next.usable && norm(piece.tangential(g, probe, next)) <= 0.5 * size;
-        }
-        if (accepted) f = g;
-        continue;
-      }
-
-      // an inner end of the bracket: the first halving that stays in the cell
-      double low = 0, high = 1, v_low = 0, v_high = piece.outside(g, axis);
-      Vec3 outer = g, within = f;
-      bool inner = false;
-      const bool hurried = field.hurried();
-      const double first = hurried ? std::min(0.5, piece.part_inside(f, u)) : 0.5;
-      for (double alpha = first; alpha > 1e-14 && !field.exhausted(); alpha *= 0.5) {
-        if (!piece.retract(f, u * alpha, s, g)) continue;  // a fold: nearer by there is none
-        int worst;
-        const double v = piece.outside(g, worst);
-        if (v <= 0) {
-          low = alpha;
-          v_low = v;
-          within = g;
-          inner = true;
-          break;
-        }
-        high = alpha;
-        v_high = v;
-        axis = worst;
-        outer = g;
-      }
-      if (!inner) {
-        // a rounding away from a face, but not on it
-        for (int a = axis, k = 0; k < 3; ++k, a = (a + 1) % 3) {
-          const double face = f[a] < 0.5 ? 0.0 : 1.0;
-          if (piece.frame().held[static_cast<std::size_t>(a)] || f[a] == face || std::fabs(f[a] - face) > kNearFace) continue;
-          f[a] = face;
-          return Followed::landed;
-        }
-        return Followed::blocked;
-      }
-
-      // land on the face: false position on how far the point is outside, to the last bit; where time is short by Illinois' rule (an
-      // end is halved only where it stays twice), which needs a quarter of the steps
-      double a = v_low, b = v_high;
-      int stays = 0;
-      double along = 0;
-      for (int k = 0; k < 80 && high - low > 1e-16 * high && v_high > 1e-15 && !(hurried && v_low > -kFaceSlack) && !field.exhausted();
-           ++k) {
-        double w = k % 4 == 3 || !(a < 0) ? 0.5 : a / (a - b);
-        if (!(w > 0 && w < 1)) w = 0.5;
-        const double mid = low + (high - low) * w;
-        if (!(mid > low && mid < high) || !piece.retract(f, u * mid, s, g, along)) break;
-        if (!hurried) along = 0;
-        const double v = piece.outside(g, axis);
-        const bool replaces_low = v <= 0;
-        const double other = hurried && stays != (replaces_low ? 1 : -1) ? 1 : 0.5;
-        stays = replaces_low ? 1 : -1;
-        if (replaces_low)
-          low = mid, within = g, a = v_low = v, b *= other;
-        else
-          high = mid, b = v_high = v, outer = g, a *= other;
-      }
-      if (hurried && v_low > -kFaceSlack) outer = within, v_high = 0;
-      if (v_high > 1e-9) {
-        // a fold between: as far as the cell's level goes
-        accepted = gain(f, within) >= 1e-4 * low * dot(t, u);
-        if (accepted) f = within;
-        continue;
-      }
-      piece.outside(outer, axis);
-      for (int k = 0; k < 3; ++k) outer[k] = std::min(std::max(outer[k], 0.0), 1.0);
-      outer[axis] = outer[axis] < 0.5 ? 0.0 : 1.0;
-      if (!(gain(f, outer) > 0)) continue;
-      f = outer;
-      return Followed::landed;
-    }
-    if (!accepted) return size <= kRelease * length ? Followed::converged : Followed::blocked;
-    s = piece.sample(f);
-    t = piece.tangential(f, probe, s);
-  }
-  return Followed::converged;
-}
-
-/// Far from the probe, straight along t to the face where it leaves the cell, and on that face back to the level. False: the level
-/// bends too much for that, or the way is no way down.
-bool cross_cell(const LevelField& field, const PieceFrames& frames, const Piece& piece, const field::ScalarCell& cell, unsigned held,
-                const Vec3& probe, const PieceSample& s, const Vec3& t, Vec3& f) {
-  const field::Mapping& mapping = field.grid()->mapping();
-  const Vec3 d = piece.frame().index_step(mapping, t);
-  int axis = -1;
-  double part = 1;
-  for (int a = 0; a < 3; ++a) {
-    const double way = d[a] > 0 ? (1 - f[a]) / d[a] : d[a] < 0 ? -f[a] / d[a] : 2;
-    if (way < part) part = way, axis = a;
-  }
-  if (axis < 0) return false;
-  Vec3 exit = f + d * part;
-  for (int a = 0; a < 3; ++a) exit[a] = std::min(std::max(exit[a], 0.0), 1.0);
-  exit[axis] = d[axis] > 0 ? 1 : 0;
-
-  const Piece face(mapping, cell, field.level(), frames.of[held | 1u << axis], field.steps());
-  const PieceSample there = face.sample(exit);
-  Vec3 g;
-  int worst;
-  if (!there.usable || there.slope < kLeastSlope * s.slope || std::fabs(there.distance) > kFlat * field.voxel()) return false;
-  if (!face.retract(exit, Vec3(0.0), there, g) || face.outside(g, worst) > 0) return false;
-  const Vec3 dp = mapping.world_from_index_linear * (g - f);
-  if (!(dot(dp, probe - piece.world(f)) - 0.5 * dot(dp, dp) > 0)) return false;
-  f = g;
-  return true;
-}
-
 /// The last point of the way from..to over one piece that keeps within `limit` and is no further from the probe than `from`.
 Vec3 cut_short(const LevelField& field, const Piece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
                const Vec3& from, const Vec3& to) {
@@ -301,12 +94,11 @@ Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
   return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
 }
 
-WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, int most, CellPoint& at,
-                      TravelLimit* limit) noexcept {
+WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at, TravelLimit* limit) noexcept {
   const field::ScalarGrid& grid = *field.grid();
   const field::Mapping& mapping = grid.mapping();
   const double length = field.length();
-  Cells cells(field, most);
+  Cells cells(field);
   WalkResult result;
   std::uint64_t exhausted = 0;
   bool steepest = false;

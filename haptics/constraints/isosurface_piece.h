@@ -63,12 +63,20 @@ class Piece {
     double along = 0;
     return retract(f, step, s, out, along);
   }
-  /// How much of a step from f, a place in the cell, is in the cell, as far as the level is flat.
-  double part_inside(const Vec3& f, const Vec3& step) const noexcept {
-    const Vec3 d = frame_.index_step(mapping_, step);
+  /// How much of the index step d from f, a place in the cell, is in the cell, and the axis of the face that ends it (-1: none does).
+  double part_inside(const Vec3& f, const Vec3& d, int& axis) const noexcept {
     double part = 1;
-    for (int a = 0; a < 3; ++a) part = std::min(part, d[a] > 0 ? (1 - f[a]) / d[a] : d[a] < 0 ? -f[a] / d[a] : 1.0);
+    axis = -1;
+    for (int a = 0; a < 3; ++a) {
+      const double way = d[a] > 0 ? (1 - f[a]) / d[a] : d[a] < 0 ? -f[a] / d[a] : 1.0;
+      if (way < part) part = way, axis = a;
+    }
     return part;
+  }
+  /// By how much |x - p|^2 / 2 falls from one place of the cell to another, exact where they are close.
+  double gain(const Vec3& probe, const Vec3& from, const Vec3& to) const noexcept {
+    const Vec3 dp = mapping_.world_from_index_linear * (to - from);
+    return dot(dp, probe - world(from)) - 0.5 * dot(dp, dp);
   }
   /// By how much f is outside the cell (negative: inside), over the axes that are not held; and the worst axis.
   double outside(const Vec3& f, int& axis) const noexcept;

@@ -33,11 +33,6 @@ void leave(const Vec3& proxy, double residual, Status status, LinkState& state, 
   stop_link(state, status, reason);
 }
 
-/// How far the proxy may move in this tick.
-double travel_of(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) {
-  return memory.fresh ? state.travel(norm(probe - memory.probe), gap) : std::numeric_limits<double>::infinity();
-}
-
 void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, const LinkState& state) {
   memory.probe = probe;
   memory.proxy = state.proxy;
@@ -110,6 +105,10 @@ Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, co
 }
 
 }  // namespace
+
+double travel_of(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) noexcept {
+  return memory.fresh ? state.travel(norm(probe - memory.probe), gap) : std::numeric_limits<double>::infinity();
+}
 
 Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context) {
   SideSpec spec;

@@ -97,6 +97,9 @@ inline bool is_sane(const SideMemory& m) noexcept {
          is_one_of(m.reason, Reason::not_finite);
 }
 
+/// How far the proxy may move in this tick, `gap` from its probe; without a last tick, anywhere.
+double travel_of(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) noexcept;
+
 void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
 void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept;
 

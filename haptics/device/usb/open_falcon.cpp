@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/helper_process.h"
 #include "engine/base/numbers.h"
 #include "haptics/device/usb/falcon_image.h"
 #include "haptics/device/usb/libusb_transport.h"
@@ -45,7 +46,7 @@ Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const Dev
   if (!settings.firmware.empty()) {
     CATENA_TRY(options.firmware, read_falcon_image(settings.firmware));
   }
-  options.watchdog = watchdog_process(watchdog_program_path());
+  options.watchdog = watchdog_process(helper_path("catena-watchdog"));
   options.boot.progress = boot_progress_lines(settings.tell);
   CATENA_TRY(auto falcon, Falcon::open(std::make_unique<LibusbSource>(kFalconUsbId, static_cast<int>(*index)), std::move(options)));
   return std::unique_ptr<Device>(std::move(falcon));

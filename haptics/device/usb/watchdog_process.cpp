@@ -13,10 +13,10 @@
 #include <csignal>
 #include <cstring>
 #include <ctime>
-#include <filesystem>
 #include <new>
 
 #include "engine/base/assert.h"
+#include "engine/base/helper_process.h"
 #include "haptics/watchdog/watch.h"
 
 namespace catena::haptics::usb {
@@ -28,23 +28,6 @@ constexpr int kReadyMs = 5000, kEndMs = 1000, kFirstFree = 10;
 Error no_watchdog(const std::string& why) {
   return {"the process that lets the device go if this program dies cannot be started: " + why, true};
 }
-
-/// A descriptor that is closed at the end.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() { reset(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-  int release() { return std::exchange(fd_, -1); }
-  void reset() {
-    if (fd_ >= 0) close(std::exchange(fd_, -1));
-  }
-
- private:
-  int fd_;
-};
 
 class WatchdogProcess final : public ExternalWatchdog {
  public:
@@ -120,8 +103,8 @@ Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path,
   if (const int code = spawn(path, usb.get(), page.get(), lifeline.get(), child); code != 0)
     return no_watchdog(fmt::format("{}: {}", path, std::strerror(code)));
   // the process holds the only other end: its death is heard
-  theirs.reset();
-  lifeline.reset();
+  theirs.close();
+  lifeline.close();
   auto process = std::make_unique<WatchdogProcess>(child, ours.get());
   if (!becomes_ready(ours.release())) {
     kill(child, SIGKILL);
@@ -154,12 +137,6 @@ WatchdogMemory::~WatchdogMemory() {
 
 StartWatchdog watchdog_process(const std::string& path) {
   return [path](Transport& transport, const WatchdogMemory& memory) { return start_process(path, transport, memory); };
-}
-
-std::string watchdog_program_path() {
-  std::error_code code;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", code);
-  return code ? std::string("catena-watchdog") : (self.parent_path() / "catena-watchdog").string();
 }
 
 }  // namespace catena::haptics::usb

@@ -43,7 +43,5 @@ using StartWatchdog = std::function<Result<std::unique_ptr<ExternalWatchdog>>(Tr
 
 /// Starts the program at `path` in a session of its own; waits until it watches.
 StartWatchdog watchdog_process(const std::string& path);
-/// "catena-watchdog" beside this program.
-std::string watchdog_program_path();
 
 }  // namespace catena::haptics::usb
