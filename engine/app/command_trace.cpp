@@ -110,6 +110,7 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
     curves.reserve(seeds.size());
     Progress progress("trace", static_cast<double>(seeds.size()));
     std::size_t knots = 0;
+    const std::size_t most_knots = scene::allowed_knots();
     for (std::size_t first = 0; first < seeds.size(); first += at_once) {
       const std::span block(seeds.data() + first, std::min(at_once, seeds.size() - first));
       const auto traced = exactly ? flow::trace_each(flow, block, exact) : tracer.trace(block);
@@ -119,8 +120,7 @@ Result<Curves> trace_table(const TraceOptions& options, const flow::Flow& flow, 
         curves.push_back(*traced[i]);
         knots += curves.back()->knots().size();
       }
-      if (knots > scene::kMostKnots)
-        return Error{options.seeds + ": " + scene::too_many_knots(seeds.size(), first + block.size(), scene::kMostKnots)};
+      if (knots > most_knots) return Error{options.seeds + ": " + scene::too_many_knots(seeds.size(), first + block.size(), most_knots)};
       progress.at(static_cast<double>(first + block.size()));
     }
     return curves;
@@ -146,7 +146,7 @@ Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node
     if (!shown) shown.emplace("trace", static_cast<double>(of));
     shown->at(static_cast<double>(done));
   };
-  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step, scene::kMostKnots, progress}, node);
+  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step, scene::allowed_knots(), progress}, node);
 }
 
 Outcome trace_lines(const TraceOptions& options) {

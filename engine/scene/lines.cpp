@@ -1,7 +1,10 @@
 #include "engine/scene/lines.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/flow/evenly_spaced.h"
@@ -12,6 +15,7 @@ namespace {
 
 constexpr double kExact = 1e-9;  ///< tolerances up to it: the exact tracer
 constexpr double kPatternTolerance = 1e-7;
+constexpr std::uint64_t kMostKnots = 40'000'000;
 
 using Curves = std::vector<flow::CurvePtr>;
 
@@ -106,9 +110,12 @@ std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t most) {
 
 }  // namespace
 
+std::size_t allowed_knots() { return static_cast<std::size_t>(std::min(kMostKnots, allowed_memory() / sizeof(flow::Knot))); }
+
 std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most) {
   return "the lines of " + std::to_string(done) + " of the " + std::to_string(seeds) + " seeds have more than " + std::to_string(most) +
-         " knots together; fewer seeds, a shorter length or a greater tolerance was expected";
+         " knots together (" + to_text(std::round(1e-6 * static_cast<double>(most * sizeof(flow::Knot)))) +
+         " MB of memory); fewer seeds, a shorter length or a greater tolerance was expected";
 }
 
 Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {

@@ -14,15 +14,16 @@ namespace catena::scene {
 /// The value of "seeds": an array of places, or an object with one pattern. `trace --seeds` reads the same.
 Result<Seeds> read_seeds(const Scene& scene, const json::Node& node);
 
-/// Of all lines of one set together: 56 bytes each. More are an error, said before they fill the memory.
-inline constexpr std::size_t kMostKnots = 40'000'000;
+/// Of all lines of one set together: 40 million, or what the allowed memory (memory_limit.h) holds of them. More are an error, said
+/// before they fill the memory.
+std::size_t allowed_knots();
 
 struct LineRequest {
   flow::Flow flow;
   double length = 0;     ///< 0: 10 L each direction
   double tolerance = 0;  ///< 0: by the seeds' kind
   double step = 0;       ///< the batch tracer's longest, voxels; 0: its default
-  std::size_t most_knots = kMostKnots;
+  std::size_t most_knots = allowed_knots();
   std::function<void(std::size_t seeds, std::size_t of)> progress{};  ///< told now and then how many seeds of a pattern are done
 };
 

@@ -87,7 +87,7 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
     for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines}) {
       if (!can_show(*drawn, as)) continue;
       ++items;
-      const Outcome done = document_->set(pointer_of_new(as), new_item(name, *drawn, as, {}), word_of(as));
+      const Outcome done = document_->set(pointer_of_new(as), new_item(name, *drawn, as, {}, {}), word_of(as));
       ASSERT_TRUE(done) << name << " as " << word_of(as) << ": " << done.error().message;
     }
   }
@@ -110,6 +110,16 @@ TEST_F(EditedScene, TheFeltLevelIsTheSeenOne) {
   ASSERT_EQ(felt.size(), 2u);
   EXPECT_EQ(felt[0], std::vector<std::string>{"/chain/0/level"}) << "not the other field's, not the other level's";
   EXPECT_TRUE(felt[1].empty());
+}
+
+TEST_F(EditedScene, ANewSurfaceIsTheOneThatIsFelt) {
+  const auto drawn = scene::use_drawn_field(scene_, scene::find_field(scene_, "ball"), {});
+  ASSERT_TRUE(drawn);
+  const std::string level = felt_level(scene_, "ball");
+  EXPECT_EQ(level, "1.25") << "the first link's";
+  EXPECT_NE(new_item("ball", *drawn, ShowAs::isosurface, {}, level).find("\"level\": " + level), std::string::npos);
+  EXPECT_TRUE(felt_level(scene_, "flow").empty());
+  EXPECT_EQ(new_item("ball", *drawn, ShowAs::isosurface, {}, {}).find("1.25,"), std::string::npos) << "else of its own range";
 }
 
 }  // namespace scene_edit_test

@@ -59,7 +59,8 @@ bool can_show(const field::AnyField& field, ShowAs as) {
   return as == ShowAs::streamlines ? field.vector != nullptr : field.scalar != nullptr;
 }
 
-std::string new_item(const std::string& name, const field::AnyField& field, ShowAs as, const std::vector<float>& sorted) {
+std::string new_item(const std::string& name, const field::AnyField& field, ShowAs as, const std::vector<float>& sorted,
+                     const std::string& felt) {
   const std::string start = "{\"field\": \"" + name + "\", ";
   const Domain domain = domain_of(*field.get());
   const auto rounded = [&](double value) { return rounded_in(value, 0, domain.shortest); };
@@ -67,7 +68,7 @@ std::string new_item(const std::string& name, const field::AnyField& field, Show
     case ShowAs::volume:
       return start + "\"shade\": true}";
     case ShowAs::isosurface:
-      return start + "\"level\": " + scene::text_of(default_level(*field.scalar, sorted)) + ", \"opacity\": 1}";
+      return start + "\"level\": " + (felt.empty() ? scene::text_of(default_level(*field.scalar, sorted)) : felt) + ", \"opacity\": 1}";
     case ShowAs::slice:
       return start + "\"axis\": \"z\", \"at\": " + scene::text_of(rounded(domain.middle.z)) + ", \"color\": \"viridis\"}";
     case ShowAs::streamlines:

@@ -16,8 +16,9 @@ const char* word_of(ShowAs as);
 /// A scalar field as all but streamlines, a vector field as a slice (its magnitude) and streamlines.
 bool can_show(const field::AnyField& field, ShowAs as);
 
-/// The isosurface lies half way between the 2nd and the 98th percentile of `sorted` (or of the field's range), the slice across z through
-/// the middle of the domain, the seeds in a ball around it.
-std::string new_item(const std::string& name, const field::AnyField& field, ShowAs as, const std::vector<float>& sorted);
+/// The isosurface lies at `felt` (JSON text; empty: half way between the 2nd and the 98th percentile of `sorted`, or of the field's
+/// range), the slice across z through the middle of the domain, the seeds in a ball around it.
+std::string new_item(const std::string& name, const field::AnyField& field, ShowAs as, const std::vector<float>& sorted,
+                     const std::string& felt);
 
 }  // namespace catena::app

@@ -61,6 +61,18 @@ std::string drawn_level(const scene::Scene& scene, const std::string& field, dou
   return text;
 }
 
+std::string felt_level(const scene::Scene& scene, const std::string& field) {
+  std::string text;
+  scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    if (!text.empty() || field_of_level(link.node) != field) return;
+    const json::Node& level = *link.node.find("level");
+    if (level.kind == json::Kind::number) text = scene::text_of(level.number);
+    if (const json::Node* widget = level.find("widget"); widget != nullptr && widget->kind == json::Kind::string)
+      text = "{\"widget\": " + scene::text_of(widget->string) + "}";
+  });
+  return text;
+}
+
 std::string drawn_field(const scene::Scene& scene) {
   std::string field;
   scene.world.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {

@@ -22,6 +22,8 @@ std::vector<std::string> seen_levels(const scene::Scene& scene, const std::strin
 /// The level of the field's surface that is drawn, as JSON text: a number, or {"widget": NAME} where it follows a widget. Of several, the
 /// one that is nearest to `value`. Empty: none is drawn.
 std::string drawn_level(const scene::Scene& scene, const std::string& field, double value);
+/// The same of the links that lie on a level of the field: of several, the first one's.
+std::string felt_level(const scene::Scene& scene, const std::string& field);
 /// The field of the first surface that is drawn; empty: none is.
 std::string drawn_field(const scene::Scene& scene);
 

@@ -35,9 +35,14 @@ void draw_recording(PanelContext& context) {
     }
     ImGui::SetNextItemWidth(-1);
     const bool enter = ImGui::InputText("##file", name, sizeof name, ImGuiInputTextFlags_EnterReturnsTrue);
-    tip("the recording, .catlog; one that exists is replaced");
-    if ((ImGui::Button("Record") || enter) && name[0] != 0) context.state.record = name;
-    tip("every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
+    tip("the recording, .catlog");
+    // what is there is replaced by a click on a button that says so, never by Enter
+    std::error_code ignored;
+    const bool exists = name[0] != 0 && std::filesystem::exists(name, ignored);
+    const bool clicked = ImGui::Button(exists ? "Replace the file" : "Record");
+    if (name[0] != 0 && (clicked || (enter && !exists))) context.state.record = name;
+    tip(exists ? "a file of that name is there: the recording takes its place"
+               : "every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
     return;
   }
   const haptics::log::LogStatus status = recording.status();
