@@ -14,11 +14,7 @@ namespace falcon_fuzz_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// CATENA_FUZZ_INPUTS=1000000 for the long run
-int inputs() {
-  const char* text = std::getenv("CATENA_FUZZ_INPUTS");
-  return text != nullptr ? std::atoi(text) : 100000;
-}
+constexpr std::uint64_t kInputs = 100000;
 
 // flips, cuts, doublings, single bytes and words, of anything
 void mutate(Bytes& bytes, test::Random& random) {
@@ -77,10 +73,11 @@ std::vector<FalconFrame> by_hand(const Bytes& stream) {
 }
 
 TEST(FalconFuzz, TheFramerFindsWhatAReaderOfTheWholeStreamFinds) {
-  test::Random random{17};
-  const int n = inputs();
+  test::Inputs inputs(kInputs, 17);
+  test::Random& random = inputs.random;
   std::uint64_t found = 0, dropped = 0;
-  for (int i = 0; i < n && !HasFailure(); ++i) {
+  while (inputs.next() && !HasFailure()) {
+    const std::uint64_t i = inputs.count();
     Bytes stream;
     for (std::size_t k = 1 + random.below(4); k > 0; --k) {
       const FalconPacket bytes = encode_frame(any_frame(random));
@@ -106,15 +103,16 @@ TEST(FalconFuzz, TheFramerFindsWhatAReaderOfTheWholeStreamFinds) {
     found += got;
     dropped += framer.dropped_bytes();
   }
-  EXPECT_GT(found, static_cast<std::uint64_t>(n));
-  EXPECT_GT(dropped, static_cast<std::uint64_t>(n));
+  EXPECT_GT(found, inputs.count());
+  EXPECT_GT(dropped, inputs.count());
 }
 
 TEST(FalconFuzz, PacketsOfAnyBytesAreRefusedOrRoundTrip) {
-  test::Random random{23};
-  const int n = inputs();
-  int frames = 0, commands = 0, places = 0;
-  for (int i = 0; i < n && !HasFailure(); ++i) {
+  test::Inputs inputs(kInputs, 23);
+  test::Random& random = inputs.random;
+  std::uint64_t frames = 0, commands = 0, places = 0;
+  while (inputs.next() && !HasFailure()) {
+    const std::uint64_t i = inputs.count();
     FalconPacket good = encode_frame(any_frame(random));
     if (i % 2 == 0) good = encode_command({any_frame(random).encoders, static_cast<std::uint8_t>(random.below(16))});
     Bytes bytes(good.begin(), good.end());
@@ -142,9 +140,9 @@ TEST(FalconFuzz, PacketsOfAnyBytesAreRefusedOrRoundTrip) {
       ASSERT_TRUE(std::equal(again.begin(), again.end(), bytes.begin())) << "input " << i;
     }
   }
-  EXPECT_GT(frames, n / 50);
-  EXPECT_GT(commands, n / 50);
-  EXPECT_GT(places, 0);
+  EXPECT_GT(frames, inputs.count() / 50);
+  EXPECT_GT(commands, inputs.count() / 50);
+  EXPECT_GT(places, 0u);
 }
 
 Bytes good_image() {
@@ -163,12 +161,13 @@ Bytes good_image() {
 }
 
 TEST(FalconFuzz, ImagesAreTakenOrRefusedWithTheByteAndWhatWasExpected) {
-  test::Random random{29};
-  const int n = inputs();
+  test::Inputs inputs(kInputs, 29);
+  test::Random& random = inputs.random;
   const Bytes good = good_image();
   ASSERT_TRUE(check_falcon_image(good, "a.bin"));
-  int taken = 0;
-  for (int i = 0; i < n && !HasFailure(); ++i) {
+  std::uint64_t taken = 0;
+  while (inputs.next() && !HasFailure()) {
+    const std::uint64_t i = inputs.count();
     Bytes image = good;
     mutate(image, random);
     const auto info = check_falcon_image(image, "a.bin");
@@ -183,8 +182,8 @@ TEST(FalconFuzz, ImagesAreTakenOrRefusedWithTheByteAndWhatWasExpected) {
     ASSERT_NE(message.find("expected"), std::string::npos) << message;
     ASSERT_EQ(message.find('\n'), std::string::npos) << message;
   }
-  EXPECT_GT(taken, 0);
-  EXPECT_LT(taken, n);
+  EXPECT_GT(taken, 0u);
+  EXPECT_LT(taken, inputs.count());
 }
 
 }  // namespace falcon_fuzz_test

@@ -6,8 +6,6 @@
 namespace catena {
 namespace json_edit_fuzz_test {
 
-constexpr int kMutations = 30000;
-
 const std::string kText =
     "\xEF\xBB\xBF// a scene\r\n{\r\n  \"fields\": {\"a/b\": {\"file\": \"x.vdb\"}, \"~\": [] }, // two\r\n"
     "  \"list\": [1, /* one */ [2, 3], {\"k\": null} // end\r\n  ], \"e\": {},\r\n  \"last\":true\r\n}\r\n";
@@ -30,9 +28,10 @@ void check(const Result<std::string>& edited, const std::string& text) {
 }
 
 TEST(JsonEditFuzz, AnyTextPointerAndValue) {
-  test::Random random{5};
-  int done = 0;
-  for (int i = 0; i < kMutations && !HasFailure(); ++i) {
+  test::Inputs inputs(30000, 5);
+  test::Random& random = inputs.random;
+  std::uint64_t done = 0;
+  while (inputs.next() && !HasFailure()) {
     const std::string text = random.below(3) == 0 ? kText : test::mutate(kText, random);
     std::string pointer(kPointers[random.below(std::size(kPointers))]), value(kValues[random.below(std::size(kValues))]);
     if (random.below(4) == 0) pointer = test::mutate(pointer, random);
@@ -43,8 +42,8 @@ TEST(JsonEditFuzz, AnyTextPointerAndValue) {
     check(json::remove_value(text, "f.json", pointer), text);
     done += set ? 1 : 0;
   }
-  EXPECT_GT(done, kMutations / 20);
-  EXPECT_LT(done, kMutations);
+  EXPECT_GT(done, inputs.count() / 20);
+  EXPECT_LT(done, inputs.count());
 }
 
 TEST(JsonEditFuzz, ManyEditsOfOneText) {

@@ -1,5 +1,4 @@
 /// The reader of recordings against bytes of all kinds: no crash, no large allocation, ticks in rising order, and what is whole is read.
-/// CATENA_LOG_FUZZ=1000000 sets the number of mutated inputs, CATENA_LOG_FUZZ_SEED where they begin.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -12,11 +11,6 @@ namespace catena {
 namespace log_fuzz_test {
 
 using namespace haptics::log;
-
-int setting(const char* variable, int otherwise) {
-  const char* wanted = std::getenv(variable);
-  return wanted != nullptr ? std::atoi(wanted) : otherwise;
-}
 
 struct Counts {
   int opened = 0, clean = 0, damaged = 0, gaps = 0;
@@ -73,10 +67,10 @@ TEST(LogFuzz, TheSeedIsWhole) {
 
 TEST(LogFuzz, Mutations) {
   const std::string seed = test::small_log(52);
-  test::Random random{static_cast<std::uint64_t>(setting("CATENA_LOG_FUZZ_SEED", 11))};
+  test::Inputs inputs(20000, 11);
+  test::Random& random = inputs.random;
   Counts counts;
-  const int inputs = setting("CATENA_LOG_FUZZ", 20000);
-  for (int i = 0; i < inputs && !HasFailure(); ++i) {
+  while (inputs.next() && !HasFailure()) {
     std::string bytes = random.below(3) == 0 ? test::mutate(seed, random) : test::change_in_place(seed, random);
     if (random.below(2) == 0) test::seal(bytes);
     // a copy of its own size: a read past the end is seen
@@ -84,10 +78,11 @@ TEST(LogFuzz, Mutations) {
     read_through({exact.data(), exact.size()}, counts);
     if (HasFailure()) test::write_file("log_fuzz_failure.catlog", bytes);
   }
-  EXPECT_GT(counts.opened, inputs / 4);
-  EXPECT_LT(counts.opened, inputs);
-  EXPECT_GT(counts.damaged, inputs / 20);
-  EXPECT_GT(counts.clean, inputs / 20);
+  const auto of_all = static_cast<std::int64_t>(inputs.count());
+  EXPECT_GT(counts.opened, of_all / 4);
+  EXPECT_LT(counts.opened, of_all);
+  EXPECT_GT(counts.damaged, of_all / 20);
+  EXPECT_GT(counts.clean, of_all / 20);
   EXPECT_GT(counts.gaps, 0);
 }
 

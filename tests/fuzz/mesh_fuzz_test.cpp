@@ -7,7 +7,6 @@
 namespace catena {
 namespace mesh_fuzz_test {
 
-constexpr int kMutations = 20000;
 const std::string kObj =
     "# a\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 1 1 0\nv 0 1 \\\n 0\nvt 0 0\nvn 0 0 1\ng part\nf 1 2 3 4\nf 1/1 2/1/1 3//1\nf -1 -2 -3\n";
 const std::string kBinary = test::binary_stl(test::box_soup()), kText = test::text_stl(test::box_soup());
@@ -55,17 +54,18 @@ TEST(MeshFuzz, EveryTruncationAndEveryByteTurned) {
 }
 
 TEST(MeshFuzz, Mutations) {
-  test::Random random{4};
-  int read = 0;
-  for (int i = 0; i < kMutations && !HasFailure(); ++i) {
+  test::Inputs inputs(20000, 4);
+  test::Random& random = inputs.random;
+  std::uint64_t read = 0;
+  while (inputs.next() && !HasFailure()) {
     read += obj(test::mutate(kObj, random)) ? 1 : 0;
-    if (i % 4 == 0) {
+    if (inputs.count() % 4 == 0) {
       read += stl(test::mutate(kText, random)) ? 1 : 0;
       read += stl(test::mutate(kBinary, random)) ? 1 : 0;
     }
   }
-  EXPECT_GT(read, 0);
-  EXPECT_LT(read, 3 * kMutations / 2);
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, 3 * inputs.count() / 2);
 }
 
 TEST(MeshFuzz, LongTexts) {

@@ -1,7 +1,9 @@
 /// Deterministic mutations of a text: bytes flipped, cut, doubled, swapped; tokens dropped or taken from elsewhere.
 #pragma once
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -17,6 +19,38 @@ struct Random {
     return z ^ (z >> 31);
   }
   std::size_t below(std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(next() % n); }
+};
+
+/// The inputs of a fuzz test: so many; outside CI so many as CATENA_FUZZ_INPUTS says, or for CATENA_FUZZ_SECONDS. CATENA_FUZZ_SEED: others.
+class Inputs {
+ public:
+  Inputs(std::uint64_t most, std::uint64_t seed) : random{seed}, most_(number("CATENA_FUZZ_INPUTS", most)) {
+    random.state += 1000003 * number("CATENA_FUZZ_SEED", 0);
+    if (const std::uint64_t seconds = number("CATENA_FUZZ_SECONDS", 0); seconds > 0) {
+      timed_ = true;
+      until_ = Clock::now() + std::chrono::seconds(seconds);
+    }
+  }
+  /// Whether there is another one.
+  bool next() {
+    if (timed_ ? Clock::now() >= until_ : count_ >= most_) return false;
+    ++count_;
+    return true;
+  }
+  std::uint64_t count() const { return count_; }
+  /// For a log of long runs.
+  bool is_long() const { return timed_ || std::getenv("CATENA_FUZZ_INPUTS") != nullptr; }
+  Random random;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static std::uint64_t number(const char* variable, std::uint64_t otherwise) {
+    const char* text = std::getenv(variable);
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+  }
+  std::uint64_t most_, count_ = 0;
+  bool timed_ = false;
+  Clock::time_point until_;
 };
 
 inline constexpr std::string_view kSpice[] = {"{",         "}",    "[",      "]",       ",",     ":",    "\"",

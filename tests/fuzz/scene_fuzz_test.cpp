@@ -10,8 +10,6 @@
 namespace catena {
 namespace scene_fuzz_test {
 
-constexpr int kMutations = 20000;
-
 const std::string kScene = R"({ // a scene that touches every reader
   "fields": {"density": {"analytic": "sphere", "scale": 1.5, "resolution": 4, "box": [-1, 1]}, "swirl": {"analytic": "circle"},
              "wind": {"analytic": "uniform", "direction": [0, 0, 1]}, "wall": {"analytic": "left-ventricle", "part": "fibre"}},
@@ -102,16 +100,16 @@ TEST(SceneFuzz, EveryByteTurned) {
 }
 
 TEST(SceneFuzz, Mutations) {
-  test::Random random{1};
-  int read = 0;
-  for (int i = 0; i < kMutations && !HasFailure(); ++i) read += check(test::mutate(kScene, random), false) ? 1 : 0;
-  EXPECT_GT(read, 0);
-  EXPECT_LT(read, kMutations);
+  test::Inputs inputs(20000, 1);
+  std::uint64_t read = 0;
+  while (inputs.next() && !HasFailure()) read += check(test::mutate(kScene, inputs.random), false) ? 1 : 0;
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, inputs.count());
 }
 
 TEST(SceneFuzz, MutatedChainsAreExtracted) {
-  test::Random random{2};
-  for (int i = 0; i < kMutations / 10 && !HasFailure(); ++i) check(test::mutate(i % 2 ? kHand : kScene, random), true);
+  test::Inputs inputs(2000, 2);
+  while (inputs.next() && !HasFailure()) check(test::mutate(inputs.count() % 2 == 0 ? kHand : kScene, inputs.random), true);
 }
 
 /// Completed, driven and measured as well: all of it is a value or one line.
@@ -140,11 +138,11 @@ TEST(SceneFuzz, EveryTruncationOfWidgets) {
 
 TEST(SceneFuzz, MutatedWidgetsAreDriven) {
   ASSERT_TRUE(drive(kWidgets));
-  test::Random random{3};
-  int driven = 0;
-  for (int i = 0; i < kMutations / 10 && !HasFailure(); ++i) driven += drive(test::mutate(kWidgets, random)) ? 1 : 0;
-  EXPECT_GT(driven, 0);
-  EXPECT_LT(driven, kMutations / 10);
+  test::Inputs inputs(2000, 3);
+  std::uint64_t driven = 0;
+  while (inputs.next() && !HasFailure()) driven += drive(test::mutate(kWidgets, inputs.random)) ? 1 : 0;
+  EXPECT_GT(driven, 0u);
+  EXPECT_LT(driven, inputs.count());
 }
 
 TEST(SceneFuzz, DeepAndLongTexts) {

@@ -11,8 +11,6 @@
 namespace catena {
 namespace transfer_fuzz_test {
 
-constexpr int kMutations = 20000;
-
 const std::string kOwn[] = {
     R"({ /* bone */ "color": [[-1000, 0.2, 0.1, 0.1], [200, 0.9, 0.8, 0.7], [3000, 1, 1, 1]], "opacity": [[200, 0], [400, 0.2], [1e3, 0.9]],
          "opacity_unit": 1.5, "gradient_opacity": [[0, 0], [50, 0.5], [300, 1]] })",
@@ -68,12 +66,13 @@ TEST(TransferFuzz, EveryTruncationAndByteTurned) {
 }
 
 TEST(TransferFuzz, Mutations) {
-  test::Random random{4};
-  int read = 0;
-  for (int i = 0; i < kMutations && !HasFailure(); ++i)
-    read += check(test::mutate(i % 2 ? kOwn[random.below(2)] : kParaView[random.below(2)], random)) ? 1 : 0;
-  EXPECT_GT(read, 0);
-  EXPECT_LT(read, kMutations);
+  test::Inputs inputs(20000, 4);
+  test::Random& random = inputs.random;
+  std::uint64_t read = 0;
+  while (inputs.next() && !HasFailure())
+    read += check(test::mutate(inputs.count() % 2 == 0 ? kOwn[random.below(2)] : kParaView[random.below(2)], random)) ? 1 : 0;
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, inputs.count());
 }
 
 /// Any range beside any file: laid anew, or one line.

@@ -1,5 +1,4 @@
 /// What the reader's process hands over is foreign, too: it may have been taken over. Its answers are forged here, whole and in parts.
-///   CATENA_FUZZ_INPUTS=1000000 build/asan/test_fuzz_vdb --gtest_filter='AnswerFuzz.*'
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -25,11 +24,6 @@ namespace answer_fuzz_test {
 
 using catena::test::Random;
 using catena::test::TemporaryFolder;
-
-std::uint64_t inputs_or(std::uint64_t otherwise) {
-  const char* text = std::getenv("CATENA_FUZZ_INPUTS");
-  return text ? std::strtoull(text, nullptr, 10) : otherwise;
-}
 
 /// All that an honest reader wrote about the file.
 std::string honest_answer(const std::string& path, const std::string& grid) {
@@ -110,10 +104,10 @@ TEST_F(AnswerFuzz, ForgedAnswersThroughTheWholePath) {
   const auto sound = load_forged(answer);
   ASSERT_TRUE(sound) << sound.error().message;
   const ExchangeHead head = head_of(answer);
-  Random random{11};
+  catena::test::Inputs inputs(60, 11);
+  Random& random = inputs.random;
   int loaded = 0, refused = 0;
-  const std::uint64_t inputs = inputs_or(60);
-  for (std::uint64_t n = 0; n < inputs && !HasFailure(); ++n) {
+  while (inputs.next() && !HasFailure()) {
     // the head, the reply behind the buffers, or anything
     const std::size_t part = random.below(3), first = part == 1 ? head.offset : 0, last = part == 0 ? sizeof head : answer.size();
     const auto field = load_forged(catena::test::mutate_bytes(answer, random, 3, first, last));
@@ -132,7 +126,7 @@ TEST_F(AnswerFuzz, ForgedAnswersThroughTheWholePath) {
         field->vector->sample(world, cursor);
     }
   }
-  if (inputs > 1000) fmt::print("{} answers: {} loaded, {} refused\n", inputs, loaded, refused);
+  if (inputs.is_long()) fmt::print("{} answers: {} loaded, {} refused\n", inputs.count(), loaded, refused);
   EXPECT_GT(refused, 0);
   EXPECT_GT(loaded, 0);
 }
@@ -179,21 +173,21 @@ template <class T>
 void fuzz_buffer(const std::string& answer, const Piece& piece, std::uint64_t seed) {
   const std::string whole = answer.substr(piece.offset, piece.bytes);
   ASSERT_TRUE(check_nano<T>(Exact(whole).bytes()));
-  Random random{seed};
+  catena::test::Inputs inputs(1500, seed);
+  Random& random = inputs.random;
   std::uint64_t passed = 0;
-  const std::uint64_t inputs = inputs_or(1500);
   // where headers, nodes and tables are: the first and last parts of the buffer, or anywhere
   const std::size_t edge = std::min<std::size_t>(whole.size(), 2048);
-  for (std::uint64_t n = 0; n < inputs && !testing::Test::HasFailure(); ++n) {
+  while (inputs.next() && !testing::Test::HasFailure()) {
     const std::size_t part = random.below(3), first = part == 1 ? whole.size() - edge : 0, last = part == 0 ? edge : whole.size();
     const Exact buffer(catena::test::mutate_bytes(whole, random, 2, first, last));
     if (!check_nano<T>(buffer.bytes())) continue;
     ++passed;
     walk(*reinterpret_cast<const nanovdb::NanoGrid<T>*>(buffer.bytes().data()), random);
   }
-  if (inputs > 2000) fmt::print("{} buffers: {} passed the check\n", inputs, passed);
+  if (inputs.is_long()) fmt::print("{} buffers: {} passed the check\n", inputs.count(), passed);
   EXPECT_GT(passed, 0u);
-  EXPECT_LT(passed, inputs);
+  EXPECT_LT(passed, inputs.count());
 }
 
 TEST_F(AnswerFuzz, BuffersOfNumbers) {

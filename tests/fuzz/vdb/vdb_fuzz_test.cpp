@@ -1,5 +1,5 @@
 /// Damaged .vdb files through the whole path: the reader's process, its answer, the grid, a few fetches. Longer:
-///   CATENA_FUZZ_INPUTS=100000 [CATENA_FUZZ_SEED=2] build/dev/test_fuzz_vdb --gtest_filter='VdbFuzz.Mutations'
+///   CATENA_FUZZ_INPUTS=100000 build/dev/test_fuzz_vdb --gtest_filter='VdbFuzz.Mutations'
 /// prints how they ended. CATENA_FUZZ_KEEP=FOLDER keeps the files, so that they can be tried on another build.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -124,19 +124,19 @@ TEST_F(VdbFuzz, OneChangedByteOfACompressedFile) {
 }
 
 TEST_F(VdbFuzz, Mutations) {
-  const std::uint64_t inputs = number_of("CATENA_FUZZ_INPUTS", 100), seed = number_of("CATENA_FUZZ_SEED", 1);
+  catena::test::Inputs inputs(100, 1);
+  Random& random = inputs.random;
   const char* keep = std::getenv("CATENA_FUZZ_KEEP");
   const std::vector<Specimen> corpus = catena::test::vdb_corpus();
-  Random random{seed};
-  for (std::uint64_t n = 0; n < inputs && !HasFailure(); ++n) {
+  while (inputs.next() && !HasFailure()) {
     const Specimen& specimen = corpus[random.below(corpus.size())];
     // half of the changes fall into the head and the tree's upper levels, where sizes are
     const std::size_t end = random.below(2) == 0 ? std::min<std::size_t>(specimen.bytes.size(), 1200) : specimen.bytes.size();
     const std::string bytes = catena::test::mutate_bytes(specimen.bytes, random, 3, 0, end);
-    const std::string path = keep ? fmt::format("{}/{}-{}.vdb", keep, seed, n) : folder_ / "mutated.vdb";
-    feed(path, bytes, n % 4 == 0, random, tally_);
+    const std::string path = keep ? fmt::format("{}/{}.vdb", keep, inputs.count()) : folder_ / "mutated.vdb";
+    feed(path, bytes, inputs.count() % 4 == 0, random, tally_);
   }
-  if (inputs > 1000) tally_.print();
+  if (inputs.is_long()) tally_.print();
   EXPECT_GT(tally_.ends["loaded"], 0);
   EXPECT_LT(tally_.ends["loaded"], tally_.inputs);
 }
