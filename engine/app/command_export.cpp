@@ -36,10 +36,8 @@ std::string recorded_header(const LinkColumns& columns) {
       "coupling_x,coupling_y,coupling_z,torque_x,torque_y,torque_z,observer_energy,dissipated,"
       "missed_deadlines,period_us,compute_us,device_us";
   for (const std::string& name : columns.names())
-    line += fmt::format(
-        ",{0}_orientation_w,{0}_orientation_x,{0}_orientation_y,{0}_orientation_z,{0}_torque_x,{0}_torque_y,{0}_torque_z,"
-        "{0}_booked",
-        name);
+    line += fmt::format(",{0}_orientation_w,{0}_orientation_x,{0}_orientation_y,{0}_orientation_z,{0}_torque_x,{0}_torque_y,{0}_torque_z",
+                        name);
   return line + "\n";
 }
 
@@ -60,13 +58,12 @@ void append_recorded(std::string& line, const LinkColumns& columns, const log::L
   for (const double v : {state.period_us, state.compute_us, state.device_us}) number(v);
   for (std::size_t c = 0; c < columns.names().size(); ++c) {
     if (columns.link(c) < 0) {
-      line += ",,,,,,,,";
+      line += ",,,,,,,";
       continue;
     }
     const exchange::LinkReport& link = state.links[static_cast<std::size_t>(columns.link(c))];
     append_quat(line, link.orientation);
     append_vector(line, link.torque_nm);
-    number(link.booked_j);
   }
   line += '\n';
 }

@@ -135,8 +135,8 @@ Outcome feel(const FeelOptions& options) {
   haptics::Servo servo(*hand.device, program, servo_options);
   CATENA_CHECK(servo.start());
   for (const std::string& note : servo.report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
-  fmt::print("{} at {:g} Hz, forces {}{}\n", hand.device->capabilities().name, servo_options.rate_hz, options.forces,
-             options.seconds > 0 ? "" : "; Ctrl-C ends");
+  fmt::print("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", hand.device->capabilities().name, servo_options.rate_hz,
+             options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends");
   std::fflush(stdout);
   StatusLine line(*program);
   wait(servo, *hand.device, recording, options, interrupt, line);

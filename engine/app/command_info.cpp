@@ -19,6 +19,7 @@
 #include "haptics/constraints/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
+#include "render/frame/camera.h"
 
 namespace catena::app {
 
@@ -55,9 +56,10 @@ Outcome describe_file(const std::string& path) {
     if (!units.value.empty()) fmt::print("  unit         {}\n", printable(units.value));
     if (!units.length.empty()) fmt::print("  lengths in   {}\n", printable(units.length));
     const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
-    fmt::print("  world box    {} .. {}\n", text(g.mapping.world_from_index(lowest)),
-               text(g.mapping.world_from_index(lowest + Vec3(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1),
-                                                             static_cast<double>(g.size.z - 1)))));
+    const Vec3 edges(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1), static_cast<double>(g.size.z - 1));
+    render::Bounds box;
+    for (int i = 0; i < 8; ++i) box.add(g.mapping.world_from_index(lowest + edges * Vec3(i & 1, i >> 1 & 1, i >> 2)));
+    fmt::print("  world box    {} .. {}\n", text(box.lo), text(box.hi));
     fmt::print("  active       {} voxels\n", g.stats.active_voxels);
     if (g.usable) {
       fmt::print("  {}        {} .. {}\n", g.is_vector ? "speed" : "range", to_text(g.stats.min), to_text(g.stats.max));
@@ -153,6 +155,11 @@ Outcome describe_scene(const std::string& path) {
   CATENA_CHECK(describe_widgets(scene));
   fmt::print("coupling: {} N/m, {} N s/m, at most {} N\n", to_text(program->coupling.stiffness_n_per_m),
              to_text(program->coupling.damping_ns_per_m), to_text(program->coupling.max_force_n));
+  if (scene.workspace.given)
+    fmt::print("workspace: 1 world unit is {} m of the hand\n", to_text(scene.workspace.metres_per_unit));
+  else
+    fmt::print(
+        "workspace: not stated; replay takes 1 world unit for 1 m of the hand, view and feel fit the data into the device's reach\n");
   fmt::print("drawn: {} volumes, {} isosurfaces, {} meshes, {} streamline sets\n", scene.world.count<scene::Volume>(),
              scene.world.count<scene::Isosurface>(), scene.world.count<scene::SurfaceMesh>(), scene.world.count<scene::StreamlineSet>());
   return Done{};

@@ -146,7 +146,7 @@ Bounds data_bounds(const FramePacket& packet) {
   return bounds;
 }
 
-Bounds packet_bounds(const FramePacket& packet) {
+Bounds drawn_bounds(const FramePacket& packet) {
   Bounds bounds = data_bounds(packet);
   for (const TubeItem& tube : packet.tubes)
     for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
@@ -154,6 +154,11 @@ Bounds packet_bounds(const FramePacket& packet) {
     bounds.add(arrow.base, arrow.radius);
     bounds.add(arrow.tip);
   }
+  return bounds;
+}
+
+Bounds packet_bounds(const FramePacket& packet) {
+  Bounds bounds = drawn_bounds(packet);
   for (const IndicatorItem& indicator : packet.indicators)
     for (const Vec3& p : indicator.tube.points) bounds.add(p, indicator.arrow.radius);
   for (const CursorItem& cursor : packet.cursors) {
@@ -182,7 +187,9 @@ Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std:
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
-  CATENA_CHECK(extract_aids(scene, packet_bounds(packet), packet));
+  // the box, its axes and the ground stay where the data are while the hand goes elsewhere
+  const Bounds drawn = drawn_bounds(packet);
+  CATENA_CHECK(extract_aids(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet));
   CATENA_CHECK(extract_widgets(scene, data_bounds(packet), packet));
   set_eyes(packet, scene.stereo);
   CATENA_CHECK(check_eyes(packet, scene.stereo));

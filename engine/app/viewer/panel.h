@@ -28,6 +28,13 @@ struct Message {
   std::int64_t at_ns = 0;
 };
 
+/// Numbers of the document that are being typed: taken when the person is done.
+struct TypedNumbers {
+  std::string pointer;
+  Vec3 numbers{0.0};  ///< of a single one the first
+  int frame = 0;      ///< when they were last typed at
+};
+
 /// What goes on once it is decided what becomes of unsaved changes.
 struct Leaving {
   bool quit = false;
@@ -73,7 +80,8 @@ struct ViewState {
   bool pointer_on_picture = false;      ///< and not on a panel
   bool pointer_seen = false;            ///< it has moved over the window
   bool pointer_pressed = false;         ///< a button is down
-  int next_drag = 0;                    ///< numbers drags: edits of one drag are one step of undo
+  TypedNumbers typed;
+  int next_drag = 0;  ///< numbers drags: edits of one drag are one step of undo
   LookState look;
 
   void say(std::string text, bool is_error = false);

@@ -17,6 +17,21 @@ std::string drag_name(ViewState& state) {
   return "drag " + std::to_string(state.next_drag);
 }
 
+/// True: `now` is to be taken. While digits are typed nothing is: a surface that follows each of them would jump under the hand.
+bool is_settled(ViewState& state, const std::string& pointer, bool changed, const Vec3& before, Vec3& now) {
+  TypedNumbers& typed = state.typed;
+  const int frame = ImGui::GetFrameCount();
+  const bool mine = typed.pointer == pointer && typed.frame >= frame - 1;
+  if (ImGui::IsItemActive() && ImGui::GetIO().WantTextInput) {
+    if (!changed && !mine) return false;
+    typed = {pointer, changed ? now : typed.numbers, frame};
+    return false;
+  }
+  if (mine && !changed) now = typed.numbers;
+  if (mine) typed = {};
+  return (mine || changed) && is_finite(now) && now != before;
+}
+
 float speed_of(double speed, double value) { return static_cast<float>(speed > 0 ? speed : std::max(1e-6, 0.005 * std::abs(value))); }
 
 }  // namespace
@@ -27,9 +42,10 @@ bool edit_number(PanelContext& context, const NumberItem& item) {
   const bool changed = ImGui::DragScalar(item.label, ImGuiDataType_Double, &value, speed_of(item.speed, item.value),
                                          ranged ? &item.lo : nullptr, ranged ? &item.hi : nullptr, item.format);
   const std::string drag = drag_name(context.state);
-  if (!changed || !std::isfinite(value) || value == item.value) return false;
-  std::vector<scene::Document::Edit> edits{{item.pointer, scene::text_of(value)}};
-  for (const std::string& pointer : item.along) edits.push_back({pointer, scene::text_of(value)});
+  Vec3 now(value, 0, 0);
+  if (!is_settled(context.state, item.pointer, changed, Vec3(item.value, 0, 0), now)) return false;
+  std::vector<scene::Document::Edit> edits{{item.pointer, scene::text_of(now.x)}};
+  for (const std::string& pointer : item.along) edits.push_back({pointer, scene::text_of(now.x)});
   return context.apply(edits, item.pointer.substr(item.pointer.rfind('/') + 1), drag);
 }
 
@@ -38,8 +54,8 @@ bool edit_vector(PanelContext& context, const char* label, const std::string& po
   const bool changed =
       ImGui::DragScalarN(label, ImGuiDataType_Double, numbers, 3, speed_of(speed, max_abs(value)), nullptr, nullptr, "%.4g");
   const std::string drag = drag_name(context.state);
-  const Vec3 now(numbers[0], numbers[1], numbers[2]);
-  return changed && is_finite(now) && now != value &&
+  Vec3 now(numbers[0], numbers[1], numbers[2]);
+  return is_settled(context.state, pointer, changed, value, now) &&
          context.edit(pointer, scene::text_of(now), pointer.substr(pointer.rfind('/') + 1), drag);
 }
 
