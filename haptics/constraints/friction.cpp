@@ -84,11 +84,21 @@ class FrictionTick {
       sliding = sliding || gap > tau;
       if (!sliding || std::fabs(gap - tau) <= 1e-13 * length_) return true;
       complete = true;
+      const Vec3 before = contact_.proxy();
       if (!contact_.slide_to(tau)) return false;
       arrive(heading_at(contact_.here()));
-      if (!memory_.heading.known() || memory_.blocked != 0 || contact_.spent(kForStep)) return true;
+      if (!memory_.heading.known() || ending_ != Status::ok) return true;
+      // not there along the line again: the next tick goes on
+      complete = is_even(tau) || norm(contact_.proxy() - before) <= kAlong * length_;
+      if (memory_.blocked != 0 || contact_.spent(kForStep)) return true;
     }
     return true;
+  }
+  /// Whether e has no more along the line than the threshold allows.
+  bool is_even(double tau) const noexcept {
+    const Vec3 e = contact_.gap();
+    const double f = memory_.heading.t.factor, excess = std::fabs(dot(e, memory_.heading.t.d)) - tau * (1 - f) / f;
+    return !(excess > std::max(kAlong * length_, 4e-16 * norm(e)));
   }
 
   /// Follows the streamline until |e.d| <= b. True: it moved.

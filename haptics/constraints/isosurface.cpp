@@ -86,9 +86,9 @@ class LevelSurface final : public Surface {
 
   /// The closest point wins over the limit where it is the closest point itself that has moved so far, as deep inside a concave
   /// surface: what is met now was no nearer before than what is held.
-  bool has_moved(const Vec3& held, const Vec3& met, const Vec3& probe) const noexcept {
+  bool has_moved(const Vec3& held, const Vec3& met) const noexcept {
     const Vec3& before = memory_.side.probe;
-    return norm(before - met) >= norm(before - held) - norm(probe - before);
+    return norm(before - met) >= norm(before - held) - kOnLevel * field_.length();
   }
 
   Hold slide_grid(const Vec3& probe, double travel) noexcept {
@@ -105,7 +105,7 @@ class LevelSurface final : public Surface {
     memory_.owed = 0;
     if (!limit.passed_by(met)) {
       if (walk.status == Status::budget && std::isfinite(limit.room)) memory_.owed = limit.room - norm(met - held);
-    } else if (!walk.smooth || walk.status == Status::budget || !has_moved(held, met, probe)) {
+    } else if (!walk.smooth || walk.status == Status::budget || !has_moved(held, met)) {
       cell = limit.last;
       walk = {Status::budget, Reason::none, 0, limit.normal, true};
     }
@@ -116,7 +116,7 @@ class LevelSurface final : public Surface {
     const LevelPoint from = memory_.at;
     const Curvature curvature = memory_.curvature;
     const Hold hold = settle_formula(from, probe, curvature, false);
-    if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy, probe)) return hold;
+    if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) return hold;
 
     // so far down the surface as it may go
     const Vec3 e = probe - from.p, way = direction(e - from.n * dot(e, from.n));

@@ -40,9 +40,7 @@ class Cells {
     const std::size_t k = count_++ % kCells;
     field::ScalarCell& cell = *new (slot(k)) field::ScalarCell(grid_.cell(base, field_.cursor()));
     cell.base = base;
-    bool finite = true;
-    for (const double c : cell.corner) finite = finite && std::isfinite(c);
-    keys_[k] = {base, !cell.valid ? Reason::mask : finite ? Reason::none : Reason::not_finite};
+    keys_[k] = {base, wall_of(cell)};
     return usable(k);
   }
   bool spent() const { return spent_; }
@@ -53,6 +51,11 @@ class Cells {
     field::Index3 base;
     Reason wall;  ///< none: a cell to walk in
   };
+  static Reason wall_of(const field::ScalarCell& cell) {
+    for (const double c : cell.corner)
+      if (!std::isfinite(c)) return Reason::not_finite;
+    return cell.valid ? Reason::none : Reason::mask;
+  }
   const field::ScalarCell* usable(std::size_t k) {
     if (keys_[k].wall == Reason::none) return slot(k);
     wall = keys_[k].wall;

@@ -272,6 +272,44 @@ TEST(Friction, TheLineEndsWhereTheFieldDoes) {
   EXPECT_NEAR(rig.state.proxy.x, 0.5, 1e-8);
 }
 
+// The normal of a sampled surface jumps at every face, and the line turns there: OK is said only where e has nothing more along it, or at
+// a corner that is the closest point. Before, the rounds ran out with a third of the threshold left along the line, and it was OK.
+TEST(Friction, OnACreasedSurfaceItIsNotThereUntilItIs) {
+  Random random(3);
+  const auto bumps = grid_of(field::Mapping::from_linear(Mat3(2.0 / 19), Vec3(-1.0)), {20, 20, 20},
+                             [](const Vec3& p) { return norm(p) + 0.12 * std::sin(6 * p.x) * std::sin(5 * p.y + 1) * std::sin(7 * p.z); });
+  const auto v = vectors("abc");
+  const double length = bumps->length();
+  Rig surface(isosurface(bumps, 0.65));
+  Rig rig(build(friction(0.06, kOnS + "0.65"), fields_of(v, bumps)));
+  Vec3 probe(0.6, 0.1, 0.2), velocity = random.unit();
+  int ok = 0, early = 0, waits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    velocity = direction(velocity + random.unit() * 0.1);
+    if (norm(probe) > 0.75 || norm(probe) < 0.5) velocity = direction(probe) * (norm(probe) > 0.6 ? -1.0 : 1.0);
+    probe = probe + velocity * 5e-4;
+    surface.tick(probe);
+    rig.tick(surface.state.proxy);
+    waits += rig.state.status == Status::budget;
+    if (rig.state.status != Status::ok) continue;
+    ++ok;
+    const auto tangent = [&](const Vec3& p) {
+      field::Cursor at_v, at_s;
+      const Vec3 w = v->sample(p, at_v).value, n = direction(bumps->sample(p, at_s).gradient);
+      return direction(w - n * dot(w, n));
+    };
+    const Vec3 p = rig.state.proxy, e = surface.state.proxy - p, d = tangent(p);
+    const double left = dot(e, d);
+    if (std::fabs(left) <= 1e-7 * length) continue;
+    // a corner: a little further, and e points back
+    const Vec3 further = p + d * (left > 0 ? 2e-6 : -2e-6) * length;
+    early += left * dot(surface.state.proxy - further, tangent(further)) > 0;
+  }
+  EXPECT_GT(ok, 18000);
+  EXPECT_EQ(early, 0);
+  EXPECT_LT(waits, 600);
+}
+
 TEST(Friction, RefusesBadKeys) {
   const Fields fields = fields_of(vectors("circle"), analytic("sphere"));
   const auto refused = [&](const std::string& text, const std::string& what) {
