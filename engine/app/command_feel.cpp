@@ -19,6 +19,7 @@
 #include "engine/app/number_option.h"
 #include "engine/app/run_files.h"
 #include "engine/base/clock.h"
+#include "engine/base/tell.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
 
@@ -45,6 +46,11 @@ Result<render::Bounds> bounds_of(scene::Scene& scene) {
   return bounds;
 }
 
+constexpr int kPatienceMs = 500;  // with a terminal that takes nothing, once the device is off
+
+/// From here on a hand may be held: nothing waits for a terminal.
+void tell_out(std::string_view text, int wait_ms = 0) { catena::tell(STDOUT_FILENO, text, wait_ms); }
+
 /// "1000 Hz  curve OK  surface FREE  0.53 N  ON  0 missed", once a second on a terminal.
 class StatusLine {
  public:
@@ -57,8 +63,7 @@ class StatusLine {
       line += fmt::format("  {} {}", program_.links[i].name, exchange::status_word(state.links[i].status));
     line += fmt::format("  {:.2f} N  {}", norm(state.force_n), exchange::force_state_word(state.force_state));
     if (state.condition != exchange::Condition::normal) line += fmt::format("  {}", exchange::condition_word(state.condition));
-    fmt::print("\r{}  {} missed\033[K", line, state.missed_deadlines);
-    std::fflush(stdout);
+    tell_out(fmt::format("\r{}  {} missed\033[K", line, state.missed_deadlines));
     shown_ = true;
   }
   /// What the device asks of the person, when it changes; not only on a terminal.
@@ -69,11 +74,10 @@ class StatusLine {
   }
   void say(const std::string& text) {
     end();
-    fmt::print("{}\n", text);
-    std::fflush(stdout);
+    tell_out(text + "\n");
   }
   void end() {
-    if (shown_) fmt::print("\n");
+    if (shown_) tell_out("\n");
     shown_ = false;
   }
 
@@ -134,17 +138,16 @@ Outcome feel(const FeelOptions& options) {
   servo_options.sink = recording.sink();
   haptics::Servo servo(*hand.device, program, servo_options);
   CATENA_CHECK(servo.start());
-  for (const std::string& note : servo.report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
-  fmt::print("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", hand.device->capabilities().name, servo_options.rate_hz,
-             options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends");
-  std::fflush(stdout);
+  for (const std::string& note : servo.report().realtime.notes) tell(STDERR_FILENO, fmt::format("catena: {}\n", note));
+  tell_out(fmt::format("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", hand.device->capabilities().name,
+                       servo_options.rate_hz, options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends"));
   StatusLine line(*program);
   wait(servo, *hand.device, recording, options, interrupt, line);
   servo.stop();
   line.end();
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
-  fmt::print("{}", haptics::servo_summary(servo.report(), hand.device->capabilities().name));
+  tell_out(haptics::servo_summary(servo.report(), hand.device->capabilities().name), kPatienceMs);
   return interrupt.outcome();
 }
 

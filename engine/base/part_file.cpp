@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::size_t kDigits = 12;
 constexpr std::size_t kLongestStem = 200;  // of the output's name, in bytes: a file name holds 255
 
 Error cannot_write_part(const std::string& path, int code) { return Error{path + ": cannot write: " + std::strerror(code)}; }
@@ -35,12 +37,13 @@ std::string beginning_of(const std::string& path) {
   return (place.parent_path() / (name + ".part")).string();
 }
 
-/// The process that a name says; 0: none.
+/// The process that a name says, "<pid>-<12 hexadecimal digits>" and no other; 0: none, it is somebody else's file.
 pid_t process_of(std::string_view after_part) {
   pid_t pid = 0;
-  const auto [end, error] = std::from_chars(after_part.data(), after_part.data() + after_part.size(), pid);
-  const bool whole = error == std::errc() && (end == after_part.data() + after_part.size() || *end == '-');
-  return whole && pid > 0 ? pid : 0;
+  const char* last = after_part.data() + after_part.size();
+  const auto [end, error] = std::from_chars(after_part.data(), last, pid);
+  if (error != std::errc() || pid <= 0 || static_cast<std::size_t>(last - end) != 1 + kDigits || *end != '-') return 0;
+  return std::all_of(end + 1, last, [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }) ? pid : 0;
 }
 
 bool runs(pid_t pid) { return ::kill(pid, 0) == 0 || errno != ESRCH; }

@@ -8,7 +8,7 @@
 /// through it step by step, is held on the sheet's near face until it comes back, or is 0.02 L away, or released.
 /// Travel: no hold ends or begins with a step of the force. In one tick the proxy moves at most |dx| + slip (constraint.h), but for
 /// release: a hold that ends far from its probe in another way glides to it so fast, BUDGET; one that begins far from its probe takes
-/// hold with the ramp of a link that is switched on.
+/// hold with the ramp of a link that is switched on (the coupling's ramp_s; 0: at once).
 /// Haptic thread: no allocation, lock, or throw. Lengths in world units.
 #pragma once
 #include "haptics/chain/parameter.h"

@@ -92,6 +92,35 @@ TEST(NoisySurface, TheProxyKeepsToItsTravelFromBothSides) { follow(""); }
 TEST(NoisySurface, TheProxyKeepsToItsTravelFromAbove) { follow(R"(, "free": "above")"); }
 TEST(NoisySurface, TheProxyKeepsToItsTravelFromBelow) { follow(R"(, "free": "below")"); }
 
+// A hand between two sheets of a gyroid: what is held stops being the closest point of its own sheet, and the next one lies far along it.
+// A place that was nearer to the last probe already is no closest point that has moved, however short the hand's step: it is walked to.
+TEST(NoisySurface, OnlyTheClosestPointItselfMayOutrunTheTravel) {
+  const auto grid = haptics::tests::grid_of(field::Mapping::from_linear(Mat3(2.0 / 47), Vec3(-1.0)), {48, 48, 48}, [](const Vec3& p) {
+    const Vec3 q = p * 6.0;
+    return std::sin(q.x) * std::cos(q.y) + std::sin(q.y) * std::cos(q.z) + std::sin(q.z) * std::cos(q.x);
+  });
+  ChainRig chain(program_on({haptics::tests::isosurface(grid, 0)}));
+  Hand hand(grid->length());
+  Vec3 last_probe(0.0), last_proxy(0.0);
+  int jumps = 0, moved = 0;
+  for (int i = 0; i < kTicks; ++i) {
+    const Vec3 probe = hand.next();
+    chain.to(probe);
+    if (i > 0) {
+      const double gap = norm(probe - last_proxy), slip = std::max(0.05 * kMostForce / (kStiffness * kMetres), 0.05 * gap);
+      if (norm(chain.proxy() - last_proxy) > norm(probe - last_probe) + slip) {
+        const bool was_nearer = norm(last_probe - chain.proxy()) < norm(last_probe - last_proxy) - 1e-8 * grid->length();
+        ++(was_nearer ? jumps : moved);
+      }
+    }
+    last_probe = probe;
+    last_proxy = chain.proxy();
+  }
+  attained("gyroid: moves of the closest point itself beyond the travel", moved);
+  EXPECT_EQ(jumps, 0);
+  EXPECT_LT(moved, kTicks / 1000);
+}
+
 TEST(NoisySurface, FrictionKeepsItsProxyThroughAFailedReprojection) {
   const auto grid = noisy_ball();
   haptics::tests::Fields fields;

@@ -1,9 +1,11 @@
 #include "engine/app/hand/open_hand.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "engine/app/hand/hand_setup.h"
 #include "engine/base/output_file.h"
+#include "engine/base/tell.h"
 #include "haptics/device/registry.h"
 #include "haptics/extract/extract.h"
 #include "haptics/servo/limits_for.h"
@@ -25,7 +27,7 @@ Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, s
   }
   if (rate_hz) hand.settings.rate_hz = *rate_hz;
   if (!firmware.empty()) hand.settings.firmware = firmware;
-  hand.settings.tell = [](const std::string& news) { fmt::print(stderr, "catena: {}\n", news); };
+  hand.settings.tell = [](const std::string& news) { tell(STDERR_FILENO, fmt::format("catena: {}\n", news)); };
   CATENA_TRY(hand.device, haptics::open_device(wanted, hand.settings));
   hand.limits = haptics::limits_for(hand.device->capabilities(), hand.settings);
   return hand;

@@ -1,10 +1,12 @@
 #include "engine/app/viewer/hand_host.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 
 #include "engine/app/hand/hand_setup.h"
+#include "engine/base/tell.h"
 #include "engine/scene/systems.h"
 #include "haptics/extract/extract.h"
 
@@ -166,7 +168,7 @@ Outcome HandHost::start() {
   CATENA_CHECK(servo_->start());
   if (!hand_.note.empty()) fmt::print(stderr, "catena: {}\n", hand_.note);
   if (is_mouse()) return Done{};
-  for (const std::string& note : servo_->report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
+  for (const std::string& note : servo_->report().realtime.notes) tell(STDERR_FILENO, fmt::format("catena: {}\n", note));
   say_forces();
   return Done{};
 }
@@ -216,9 +218,8 @@ void HandHost::set_forces(bool on) {
 }
 
 void HandHost::say_forces() const {
-  fmt::print("{}: forces {} (F turns them {})\n", hand_.device->capabilities().name, servo_->forces() ? "on" : "off",
-             servo_->forces() ? "off" : "on");
-  std::fflush(stdout);
+  tell(STDOUT_FILENO, fmt::format("{}: forces {} (F turns them {})\n", hand_.device->capabilities().name, servo_->forces() ? "on" : "off",
+                                  servo_->forces() ? "off" : "on"));
 }
 
 }  // namespace catena::app

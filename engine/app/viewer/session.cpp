@@ -1,6 +1,7 @@
 #include "engine/app/viewer/session.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include "engine/app/viewer/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
 #include "render/extract/extract.h"
@@ -222,8 +224,8 @@ std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
            std::any_of(packet->volumes.begin(), packet->volumes.end(), shaded)};
   if (times_.count() == 0) {
     const render::RenderStats stats = screen_->renderer().stats();
-    for (const std::string& note : stats.notes) fmt::print(stderr, "catena: {}\n", printable(note));
-    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", printable(coarser.words()));
+    for (const std::string& note : stats.notes) tell(STDERR_FILENO, fmt::format("catena: {}\n", printable(note)));
+    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(STDERR_FILENO, printable(coarser.words()) + "\n");
   }
   shown_ = std::move(*packet);
   picked_stale_ = true;

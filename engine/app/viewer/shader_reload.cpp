@@ -1,9 +1,11 @@
 #include "engine/app/viewer/shader_reload.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 
+#include "engine/base/tell.h"
 #include "render/passes/embedded_shaders.h"
 
 namespace catena::app {
@@ -11,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kLookNs = 250'000'000;
 
-void say(const std::string& text) { fmt::print(stderr, "catena: {}\n", text); }
+void say(const std::string& text) { tell(STDERR_FILENO, fmt::format("catena: {}\n", text)); }
 
 }  // namespace
 

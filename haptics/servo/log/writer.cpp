@@ -1,6 +1,7 @@
 #include "haptics/servo/log/writer.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -15,6 +16,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "engine/base/start_thread.h"
+#include "engine/base/tell.h"
 #include "haptics/servo/log/ring.h"
 #include "haptics/servo/log/tick_blocks.h"
 
@@ -144,7 +146,7 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
 LogWriter::LogWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 LogWriter::~LogWriter() {
-  if (const Outcome done = finish(); !done) fmt::print(stderr, "{}\n", done.error().message);
+  if (const Outcome done = finish(); !done) tell(STDERR_FILENO, done.error().message + "\n");
 }
 
 void LogWriter::add_program(const Program& program, std::optional<std::string> scene_text) {

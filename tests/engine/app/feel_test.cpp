@@ -1,7 +1,14 @@
 /// `catena feel` from the outside.
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <future>
+#include <thread>
 
 #include "engine/base/json.h"
 #include "tests/support/program.h"
@@ -90,6 +97,56 @@ TEST_F(Feel, CtrlCEndsItCleanly) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(test::exists(folder_ / "stats.json"));
   EXPECT_NE(run.out.find("ticks in"), std::string::npos) << run.out;
+}
+
+/// On a terminal that is stopped after a moment: the exit code, -1 where it had to be killed.
+int run_on_stopped_terminal(const std::vector<std::string>& words, int signal_number) {
+  int terminal = -1;
+  const pid_t child = ::forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    std::vector<char*> arguments;
+    std::string program = test::program_path();
+    std::vector<std::string> all = words;
+    arguments.push_back(program.data());
+    for (std::string& word : all) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    ::execv(program.c_str(), arguments.data());
+    ::_exit(127);
+  }
+  const auto sleep_ms = [](int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); };
+  sleep_ms(1300);  // the status line comes once a second
+  const char stop = 'S' - '@';
+  EXPECT_EQ(::write(terminal, &stop, 1), 1);
+  sleep_ms(1200);
+  if (signal_number != 0) ::kill(child, signal_number);
+  int status = 0;
+  for (int i = 0; i < 300; ++i) {
+    if (::waitpid(child, &status, WNOHANG) == child) {
+      ::close(terminal);
+      return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    }
+    sleep_ms(100);
+  }
+  ::kill(child, SIGKILL);
+  ::close(terminal);
+  ::waitpid(child, &status, 0);
+  return -1;
+}
+
+// before, its line of state waited for the terminal, and with it the time, the signals and the end, while the force went on
+TEST_F(Feel, AStoppedTerminalHoldsNothingUp) {
+  test::write_file(folder_ / "s.json", std::string(kScene) + "}");
+  const auto words = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"feel", folder_ / "s.json", "--device", "emulated-falcon", "--forces", "on"});
+    return more;
+  };
+  const auto soon = words({"--seconds", "3", "--stats", folder_ / "stats.json"}), late = words({"--seconds", "600"}), later = late;
+  auto in_time = std::async(std::launch::async, [&] { return run_on_stopped_terminal(soon, 0); });
+  auto asked = std::async(std::launch::async, [&] { return run_on_stopped_terminal(late, SIGTERM); });
+  EXPECT_EQ(run_on_stopped_terminal(later, SIGINT), 0);
+  EXPECT_EQ(asked.get(), 0);
+  EXPECT_EQ(in_time.get(), 0);
+  EXPECT_TRUE(test::exists(folder_ / "stats.json"));
 }
 
 TEST_F(Feel, BadInputIsOneLine) {

@@ -79,15 +79,19 @@ TEST(OutputFile, TwoForOnePlaceDoNotShareAnUnfinishedFile) {
 TEST(OutputFile, WhatEndedProgramsLeftIsRemovedAndNothingElse) {
   const test::TemporaryFolder folder;
   const std::string path = folder / "a.txt", dead = std::to_string(ended_process());
-  const std::string old_kind = path + ".part" + dead, new_kind = path + ".part" + dead + "-0123456789ab";
+  // a number is no name of this program's: "split" makes such names
+  const std::string number = path + ".part" + dead, ours = path + ".part" + dead + "-0123456789ab", longer = ours + "c",
+                    capitals = path + ".part" + dead + "-0123456789AB", folder_of_numbers = number + "0";
   const std::string locked = path + ".part" + dead + "-ba9876543210", others = (folder / "b.txt") + ".part" + dead,
                     words = path + ".partition", alive = path + ".part" + std::to_string(::getppid());
-  for (const std::string& name : {old_kind, new_kind, locked, others, words, alive}) test::write_file(name, "x");
+  for (const std::string& name : {number, ours, longer, capitals, locked, others, words, alive}) test::write_file(name, "x");
+  fs::create_directory(folder_of_numbers);
+  test::write_file(folder_of_numbers + "/inside", "x");
   const int lock = ::open(locked.c_str(), O_RDONLY);
   ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
   ASSERT_TRUE(write_to(path, "new"));
-  EXPECT_FALSE(test::exists(old_kind));
-  EXPECT_FALSE(test::exists(new_kind));
+  EXPECT_FALSE(test::exists(ours));
+  for (const std::string& name : {number, longer, capitals, folder_of_numbers + "/inside"}) EXPECT_TRUE(test::exists(name)) << name;
   EXPECT_TRUE(test::exists(locked)) << "another machine writes it";
   EXPECT_TRUE(test::exists(others));
   EXPECT_TRUE(test::exists(words));

@@ -302,7 +302,7 @@ TEST(Friction, OnACreasedSurfaceItIsNotThereUntilItIs) {
     const double left = dot(e, d);
     if (std::fabs(left) <= 1e-7 * length) continue;
     // a corner: a little further, and e points back
-    const Vec3 further = p + d * (left > 0 ? 2e-6 : -2e-6) * length;
+    const Vec3 further = p + d * (left > 0 ? 1e-5 : -1e-5) * length;
     early += left * dot(surface.state.proxy - further, tangent(further)) > 0;
   }
   EXPECT_GT(ok, 18000);

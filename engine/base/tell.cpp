@@ -1,0 +1,46 @@
+#include "engine/base/tell.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+
+namespace catena {
+
+void tell(int descriptor, std::string_view text, int wait_ms) noexcept {
+  struct stat about {};
+  if (::fstat(descriptor, &about) != 0) return;
+  // what others that print left in their buffer comes first, where that does not wait either
+  pollfd ready{descriptor, POLLOUT, 0};
+  if (::poll(&ready, 1, wait_ms) != 1) return;
+  std::fflush(descriptor == STDERR_FILENO ? stderr : stdout);
+
+  // a description of its own: O_NONBLOCK on the shared one would reach the shell
+  const bool waits = S_ISCHR(about.st_mode) || S_ISFIFO(about.st_mode);
+  int own = -1;
+  if (waits) {
+    char name[32];
+    std::snprintf(name, sizeof name, "/proc/self/fd/%d", descriptor);
+    own = ::open(name, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  }
+  const int to = own >= 0 ? own : descriptor;
+  while (!text.empty()) {
+    const ssize_t n =
+        S_ISSOCK(about.st_mode) ? ::send(to, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL) : ::write(to, text.data(), text.size());
+    if (n > 0) {
+      text.remove_prefix(static_cast<std::size_t>(n));
+      continue;
+    }
+    if (n < 0 && errno == EINTR) continue;
+    pollfd again{to, POLLOUT, 0};
+    if (n < 0 && errno == EAGAIN && wait_ms > 0 && ::poll(&again, 1, wait_ms) == 1 && (again.revents & POLLOUT) != 0) continue;
+    break;
+  }
+  if (own >= 0) ::close(own);
+}
+
+}  // namespace catena
