@@ -109,7 +109,7 @@ const Recorded kRecorded[] = {
     {"chain", kChain, 0x70cf14c60ae6a356},
     {"shapes", kShapes, 0x421d00521f36a7bf},
     {"friction", kFriction, 0xef3f6de4e6c46cdd},
-    {"anisotropic", kAnisotropic, 0xdea16f9fe395d521},
+    {"anisotropic", kAnisotropic, 0x533a99e56006ca8c},
     {"driven", kDriven, 0xd0a43b6f85a41ff2},
     {"modes", kModes, 0x1ce35714656c99ab},
     {"mesh", kMesh, 0x38bd92e22a245e8a},
