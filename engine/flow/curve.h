@@ -9,7 +9,7 @@
 #include "engine/base/reason.h"
 #include "engine/base/result.h"
 #include "engine/base/vec.h"
-#include "engine/flow/advect.h"
+#include "engine/flow/flow.h"
 
 namespace catena::flow {
 

@@ -2,7 +2,7 @@
 /// of the step gives the next step's first stage, and closes the error estimate of the embedded pairs (weights e = b - b^).
 ///   euler; rk2 midpoint; rk3 Kutta; rk4 classical; rkf34 Fehlberg 3(4); dp54 Dormand-Prince 5(4).
 #pragma once
-#include "engine/flow/advect.h"
+#include "engine/flow/flow.h"
 
 namespace catena::flow {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-#include "engine/flow/advect.h"
+#include "engine/flow/flow.h"
 
 namespace catena::flow {
 

@@ -1,5 +1,6 @@
 #include "haptics/constraints/isosurface.h"
 
+#include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface_analytic.h"
 #include "haptics/constraints/isosurface_cell_walk.h"
 #include "haptics/constraints/isosurface_descent.h"
@@ -119,7 +120,7 @@ class LevelSurface final : public Surface {
     if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) return hold;
 
     // so far down the surface as it may go
-    const Vec3 e = probe - from.p, way = direction(e - from.n * dot(e, from.n));
+    const Vec3 e = probe - from.p, way = direction(equation::tangential(e, from.n));
     LevelPoint at = from;
     for (double step = travel; step > 0.1 * travel && !field_.spent(kForLevel); step *= 0.5) {
       const LevelPoint ahead = relevelled(field_.at(from.p + way * step));
@@ -242,7 +243,7 @@ class LevelSurface final : public Surface {
   /// The normal jumps within 2e-9 L: on the way to the probe, or across what is then no surface.
   bool kink(const LevelPoint& a, const Vec3& probe) noexcept {
     const Vec3 e = probe - a.p;
-    return jumps(a.p, direction(e - a.n * dot(a.n, e))) || jumps(a.p, a.n);
+    return jumps(a.p, direction(equation::tangential(e, a.n))) || jumps(a.p, a.n);
   }
   bool jumps(const Vec3& p, const Vec3& way) noexcept {
     if (field_.spent(2)) return false;
@@ -264,7 +265,7 @@ class LevelSurface final : public Surface {
   CellPoint leap(const CellPoint& cell, const LevelPoint& start, const Vec3& probe) noexcept {
     const double voxel = field_.voxel();
     const Vec3 e = probe - start.p;
-    if (start.valid && !start.plateau && norm(e - start.n * dot(start.n, e)) > 2 * voxel) {
+    if (start.valid && !start.plateau && norm(equation::tangential(e, start.n)) > 2 * voxel) {
       LevelPoint at = start;
       Curvature curvature;
       closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
@@ -338,7 +339,7 @@ class Isosurface final : public Constraint {
         stop_link(state, Status::critical, here.finite ? Reason::zero : Reason::not_finite);
       return false;
     }
-    out = {Primitive::Kind::plane, here.p - here.n * here.distance, here.n};
+    out = {Primitive::Kind::plane, equation::newton_to_level(here.p, here.n, here.distance), here.n};
     return true;
   }
   double domain_length() const noexcept override { return field_->length(); }

@@ -1,5 +1,7 @@
 #include "haptics/constraints/isosurface_analytic.h"
 
+#include "haptics/constraints/equations.h"
+
 namespace catena::haptics {
 namespace {
 
@@ -9,7 +11,7 @@ constexpr int kSlow = 12;  // steps
 }  // namespace
 
 void learn_curvature(const LevelPoint& from, const LevelPoint& to, double length, Curvature& b) noexcept {
-  const auto on_plane = [&](const Vec3& v) { return v - to.n * dot(to.n, v); };
+  const auto on_plane = [&](const Vec3& v) { return equation::tangential(v, to.n); };
   const Vec3 sigma = on_plane(to.p - from.p), y = on_plane(to.n - from.n);
   const Vec3 r = on_plane(y - b.times(sigma));
   const double step = norm(sigma), rs = dot(r, sigma);
@@ -110,7 +112,7 @@ Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& g
         const Vec3 change = (a.p - c.p) + c.n * c.distance - a.n * a.distance;
         const Vec3 sum = e + e2 + a.n * a.distance + c.n * c.distance;
         const double merit = 0.5 * dot(change, sum) + 0.5 * (c.distance - a.distance) * (c.distance + a.distance);
-        const double next = norm(e2 - c.n * dot(c.n, e2));
+        const double next = norm(equation::tangential(e2, c.n));
         const bool level_halved = std::fabs(a.distance) > level_goal && std::fabs(c.distance) <= 0.5 * std::fabs(a.distance) &&
                                   norm(e2) <= norm(e) + 1.1 * std::fabs(a.distance);
         const bool close =

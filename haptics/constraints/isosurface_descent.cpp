@@ -1,5 +1,7 @@
 #include "haptics/constraints/isosurface_descent.h"
 
+#include "haptics/constraints/equations.h"
+
 namespace catena::haptics {
 namespace {
 
@@ -73,7 +75,7 @@ Closest descend(LevelField& field, const Vec3& probe, const ClosestGoal& goal, L
       const Vec3 e2 = probe - c.p;
       const Vec3 change = (a.p - c.p) + c.n * c.distance - a.n * a.distance;
       const double fall = -0.5 * dot(change, e + e2 + a.n * a.distance + c.n * c.distance);
-      const double next = norm(e2 - c.n * dot(c.n, e2));
+      const double next = norm(equation::tangential(e2, c.n));
       ratio = fall / promised;
       const bool near = convex && tangential <= 1e-2 * length && next <= 0.7 * tangential && size <= 0.01 * length;
       const bool level_only = tangential <= goal.tangential && std::fabs(c.distance) <= 0.5 * std::fabs(a.distance);

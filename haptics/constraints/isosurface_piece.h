@@ -1,6 +1,7 @@
 /// One piece of a sampled level set: a trilinear cell with some of its axes held. See isosurface_cell_walk.h.
 #pragma once
 #include "engine/field/grid.h"
+#include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface_level.h"
 
 namespace catena::haptics {
@@ -110,7 +111,7 @@ inline PieceSample Piece::sample(const Vec3& f) const noexcept {
 inline Vec3 Piece::tangential(const Vec3& f, const Vec3& probe, const PieceSample& s) const noexcept {
   if (frame_.count < 2) return Vec3(0.0);
   const Vec3 e = frame_.on_span(probe - world(f));
-  return e - s.n * dot(s.n, e);
+  return equation::tangential(e, s.n);
 }
 
 }  // namespace catena::haptics

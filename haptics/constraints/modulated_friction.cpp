@@ -2,6 +2,7 @@
 
 #include "engine/field/magnitude.h"
 #include "engine/flow/direction.h"
+#include "haptics/constraints/equations.h"
 #include "haptics/constraints/read_field.h"
 #include "haptics/constraints/read_parameter.h"
 #include "haptics/constraints/safe_direction.h"
@@ -41,8 +42,8 @@ class ModulatedFriction final : public Constraint {
     if (contact.placed_anew()) memory.angle = angle(contact.here(), memory, state, scratch);
     const double least = spec_.least.at(before, scratch.parameter, state.evaluations);
     const double most = spec_.most.at(before, scratch.parameter, state.evaluations);
-    const double u = memory.angle, part = spec_.printed ? 1 - u : std::fabs(u);
-    const double tau = safe_threshold((1 - part) * least + part * most);
+    const double u = memory.angle, hard = spec_.printed ? 1 - u : std::fabs(u);
+    const double tau = safe_threshold(equation::drag_threshold(hard, least, most));
     if (norm(contact.gap()) > tau) {
       if (!contact.slide_to(tau)) return contact.lose();
       memory.angle = angle(contact.here(), memory, state, scratch);
@@ -75,7 +76,7 @@ class ModulatedFriction final : public Constraint {
     if (!inside || !at.finite) return 0;
     const SafeDirection field = safe_direction(v, spec_.largest_speed);
     const SafeDirection surface = safe_direction(at.n * at.slope, spec_.largest_slope);
-    const double u = field.factor * surface.factor * dot(field.d, surface.d);
+    const double u = equation::cosine(field.d, field.factor, surface.d, surface.factor);
     return std::min(std::max(spec_.line ? std::fabs(u) : u, -1.0), 1.0);
   }
 

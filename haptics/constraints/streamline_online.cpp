@@ -3,6 +3,7 @@
 #include "engine/flow/direction.h"
 #include "engine/flow/hermite.h"
 #include "engine/flow/zero.h"
+#include "haptics/constraints/equations.h"
 #include "haptics/constraints/streamline_cells.h"
 
 namespace catena::haptics {
@@ -72,9 +73,9 @@ class OnlineTick {
  private:
   // Eqs. 1-2 as printed
   void linear() noexcept {
-    const double g = dot(x_ - state_.proxy, memory_.t);
-    if (g == 0) return;
-    const Vec3 next = state_.proxy + g * memory_.t;
+    const double dt = equation::way_to_foot(x_ - state_.proxy, memory_.t);
+    if (dt == 0) return;
+    const Vec3 next = equation::linear_step(state_.proxy, memory_.t, dt);
     Vec3 u;
     ++state_.evaluations;
     const Stop stop = flow::direction_at(flow_, next, memory_.t, cursor_, u);
@@ -121,8 +122,8 @@ class OnlineTick {
     memory_.way = way * memory_.t;
   }
 
-  /// From the proxy over way * h; through cells h may become shorter.
-  flow::Step try_step(double way, double& h) noexcept {
+  /// f_V of Eq. 3 in arc length: from the proxy over way * h; through cells h may become shorter.
+  flow::Step advect(double way, double& h) noexcept {
     if (flow_.line && flow_.field->is_grid()) {
       if (!cells_) cells_.emplace(flow_, cursor_);
       const flow::Step step = cells_->step(tableau_, state_.proxy, memory_.t, way, h);
@@ -158,6 +159,7 @@ class OnlineTick {
     return true;
   }
 
+  /// Eq. 3 until the residual of Eq. 2 vanishes, safeguarded: Newton with the curvature, trust radius, bracket, descent.
   void march() noexcept {
     double limit = memory_.trust;  // longest step from here that may still do
     double bad = -1;               // distance ahead at which a step was seen to fail, while > 0
@@ -165,7 +167,7 @@ class OnlineTick {
     int halvings = 0;  // steps taken since, where it failed outside
     for (int i = 0; i < 2 * kEvaluationCap; ++i) {
       const Vec3 e = x_ - state_.proxy;
-      const double g = dot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
+      const double g = equation::way_to_foot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
       state_.residual = std::fabs(g);
       if (!(std::fabs(g) > kConverged * length_)) return;
       if (way != bad_way) bad = -1;
@@ -175,7 +177,7 @@ class OnlineTick {
       h = std::min(std::min(h, limit), kLongestStep * length_);
       if (bad > 0) h = std::min(h, halvings >= kHalvings ? bad : std::max(0.5 * bad, kSmallest * length_));
       if (!affordable()) return;
-      flow::Step step = try_step(way, h);
+      flow::Step step = advect(way, h);
 
       if (step.stop == Stop::outside) {
         if (!has_entry_) remember_entry(way);
@@ -215,7 +217,7 @@ class OnlineTick {
         const flow::Hermite piece(state_.proxy, step.displacement, way * h, memory_.t, step.last);
         const double theta = piece.foot(x_, way * h * g, way * h * g_end);
         h *= theta;
-        step = try_step(way, h);
+        step = advect(way, h);
         if (step.stop != Stop::none) {
           limit = 0.5 * h;
           continue;
@@ -251,7 +253,7 @@ class OnlineTick {
 
   void accept(const flow::Step& step, double h, double grown) noexcept {
     if (std::fabs(h) > 1e-9 * length_) memory_.curvature = (step.last - memory_.t) / h;
-    state_.proxy += step.displacement;
+    state_.proxy += step.displacement;  // Eq. 3
     memory_.t = step.last;
     memory_.trust = std::min(std::max(memory_.trust, grown), kLongestStep * length_);
     if (norm(memory_.curvature) * kCalm * length_ > 1) return;

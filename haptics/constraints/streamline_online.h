@@ -10,7 +10,7 @@
 #include <memory>
 #include <optional>
 
-#include "engine/flow/advect.h"
+#include "engine/flow/flow.h"
 #include "haptics/chain/constraint.h"
 
 namespace catena::haptics {

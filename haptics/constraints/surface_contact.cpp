@@ -1,6 +1,7 @@
 #include "haptics/constraints/surface_contact.h"
 
 #include "engine/field/grid.h"
+#include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface_reach.h"
 #include "haptics/constraints/read_field.h"
 
@@ -150,7 +151,7 @@ LevelPoint Contact::look(const Vec3& wanted, bool on_level) noexcept {
 bool Contact::relevel(LevelPoint& a) noexcept {
   for (int i = 0; i < kNewton && !this->on_level(a); ++i) {
     LevelPoint b;
-    fetch(*field_, a.p - a.n * a.distance, b);
+    fetch(*field_, equation::newton_to_level(a.p, a.n, a.distance), b);
     if (!usable(b) || std::fabs(b.distance) > 0.5 * std::fabs(a.distance)) break;
     a = b;
   }

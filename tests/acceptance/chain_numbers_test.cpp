@@ -3,6 +3,7 @@
 
 #include "tests/acceptance/chain_rig.h"
 #include "tests/acceptance/reference.h"
+#include "tests/engine/flow/advect.h"
 #include "tests/engine/flow/fields.h"
 
 namespace catena::acceptance {

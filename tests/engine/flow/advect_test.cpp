@@ -1,4 +1,4 @@
-#include "engine/flow/advect.h"
+#include "engine/flow/flow.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <random>
 
 #include "engine/flow/tableau.h"
+#include "tests/engine/flow/advect.h"
 #include "tests/engine/flow/fields.h"
 
 namespace catena::flow {

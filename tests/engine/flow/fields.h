@@ -4,7 +4,7 @@
 
 #include "engine/field/analytic.h"
 #include "engine/field/grid.h"
-#include "engine/flow/advect.h"
+#include "engine/flow/flow.h"
 
 namespace catena::test {
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "engine/base/allocation_guard.h"
+#include "tests/engine/flow/advect.h"
 #include "tests/haptics/constraints/streamline_fixture.h"
 
 namespace catena::haptics {

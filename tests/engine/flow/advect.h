@@ -1,15 +1,22 @@
-#include "engine/flow/advect.h"
-
+/// The advection function f_V of Eqs. 3-4 in the field's own time, as the paper prints it: one call carries p along V for a signed dt.
+///   f_V(p, -dt) equals f_-V(p, dt) bit for bit (Eq. 4): every method only ever forms products h * v.
+/// The program itself integrates in arc length (engine/flow/direction.h); this tests its methods in another parameter.
+/// The embedded pairs choose their own sub-steps: the estimated error of each is <= tolerance * L.
+#pragma once
 #include "engine/flow/direction.h"
+#include "engine/flow/flow.h"
 
 namespace catena::flow {
 
-namespace {
-
-constexpr const char* kWords[] = {"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"};
+struct Advected {
+  Vec3 displacement{0.0};  ///< f_V(p, dt); the paper adds it to p
+  int evaluations = 0;
+  bool inside = true;    ///< false: a stage left the domain; the displacement stops before it
+  bool complete = true;  ///< false: the evaluation cap was reached first
+};
 
 /// The velocity itself (not its direction): the rate of Eq. 3 in the field's own time.
-struct Velocity {
+struct AdvectedVelocity {
   const Flow& flow;
   field::Cursor& cursor;
   Vec3 reference{0.0};
@@ -29,23 +36,15 @@ struct Velocity {
   }
 };
 
-}  // namespace
-
-std::optional<Method> method_from_word(std::string_view word) {
-  for (int i = 0; i < 7; ++i)
-    if (word == kWords[i]) return static_cast<Method>(i);
-  return std::nullopt;
-}
-
-const char* method_word(Method method) { return kWords[static_cast<int>(method)]; }
-
-Advected advect(const Flow& flow, const Vec3& p, double dt, Method method, double tolerance_length, field::Cursor& cursor, int cap) {
+/// f_V(p, dt) in the field's own time. `linear` and `euler` take one step; fixed methods one step; pairs as many as needed.
+inline Advected advect(const Flow& flow, const Vec3& p, double dt, Method method, double tolerance_length, field::Cursor& cursor,
+                       int cap = 100000) {
   Advected out;
   const Tableau& tableau = tableau_of(method);
   const double length = flow.field->length();
 
   // the first stage
-  Velocity velocity{flow, cursor};
+  AdvectedVelocity velocity{flow, cursor};
   if (flow.line) {
     const Stop stop = seed_direction(flow, p, cursor, velocity.reference);
     out.evaluations = 1;
