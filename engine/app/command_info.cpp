@@ -16,7 +16,7 @@
 #include "engine/scene/ruler.h"
 #include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
-#include "haptics/constraints/modes.h"
+#include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
 #include "render/frame/camera.h"

@@ -1,7 +1,7 @@
 #include "haptics/constraints/widget_link.h"
 
-#include "haptics/constraints/plane_surface.h"
-#include "haptics/constraints/sphere_surface.h"
+#include "haptics/constraints/shapes/plane_surface.h"
+#include "haptics/constraints/shapes/sphere_surface.h"
 
 namespace catena::haptics {
 namespace {

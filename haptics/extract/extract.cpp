@@ -4,7 +4,7 @@
 #include <atomic>
 #include <string>
 
-#include "haptics/constraints/modes.h"
+#include "haptics/constraints/presets/modes.h"
 #include "haptics/extract/make_link.h"
 #include "haptics/extract/widgets.h"
 

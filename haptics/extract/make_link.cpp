@@ -5,7 +5,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/base/numbers.h"
-#include "haptics/constraints/read_parameter.h"
+#include "haptics/constraints/rules/read_parameter.h"
 
 namespace catena::haptics {
 

@@ -4,7 +4,7 @@
 // step that knows nothing of cells is itself 1e-10 to 2e-7 L off, for its error estimate does not see a face pass: both are stated,
 // and the bound is on the distance from the same method at 1e-17, in long double.
 #include "engine/field/load.h"
-#include "haptics/constraints/streamline_selected.h"
+#include "haptics/constraints/streamline/selected.h"
 #include "tests/acceptance/chain_rig.h"
 #include "tests/acceptance/reference.h"
 #include "tests/support/support.h"

@@ -1,6 +1,6 @@
 // Acceptance numbers 5, 6, 7 and 10: the projector onto a streamline, on line and selected, and what happens at critical points.
-#include "haptics/constraints/streamline_online.h"
-#include "haptics/constraints/streamline_selected.h"
+#include "haptics/constraints/streamline/online.h"
+#include "haptics/constraints/streamline/selected.h"
 #include "tests/acceptance/chain_rig.h"
 #include "tests/acceptance/reference.h"
 #include "tests/engine/flow/fields.h"

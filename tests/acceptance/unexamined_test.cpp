@@ -2,8 +2,8 @@
 // the middle of a step, a NaN met on the way. Each test says first what is right.
 #include <limits>
 
-#include "haptics/constraints/streamline_online.h"
-#include "haptics/constraints/streamline_selected.h"
+#include "haptics/constraints/streamline/online.h"
+#include "haptics/constraints/streamline/selected.h"
 #include "tests/acceptance/chain_rig.h"
 #include "tests/acceptance/reference.h"
 #include "tests/engine/flow/fields.h"

@@ -1,6 +1,6 @@
 /// The anisotropic friction mode (three links) on 256^3 grids, and each of its links alone: quantiles of a tick and of the
 /// evaluations a link as counters, beside the hand-written floor, one value + gradient fetch on the same walk.
-#include "haptics/constraints/modes.h"
+#include "haptics/constraints/presets/modes.h"
 #include "tests/bench/chain_bench.h"
 
 namespace friction_bench {

@@ -5,7 +5,7 @@
 
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/scene/write_values.h"
-#include "haptics/constraints/modes.h"
+#include "haptics/constraints/presets/modes.h"
 
 namespace catena::app {
 

@@ -1,6 +1,6 @@
 /// A hand that stays on a surface, for the friction links: the proxies of an isosurface link along a random walk.
 #pragma once
-#include "haptics/constraints/isosurface_level.h"
+#include "haptics/constraints/isosurface/level.h"
 #include "tests/haptics/constraints/rig.h"
 
 namespace catena::haptics::tests {

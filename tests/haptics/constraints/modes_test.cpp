@@ -1,4 +1,4 @@
-#include "haptics/constraints/modes.h"
+#include "haptics/constraints/presets/modes.h"
 
 #include "tests/haptics/constraints/rig.h"
 

@@ -1,4 +1,4 @@
-#include "haptics/constraints/polyline_search.h"
+#include "haptics/constraints/shapes/polyline_search.h"
 
 #include "tests/haptics/constraints/rig.h"
 

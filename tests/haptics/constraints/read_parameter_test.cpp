@@ -1,4 +1,4 @@
-#include "haptics/constraints/read_parameter.h"
+#include "haptics/constraints/rules/read_parameter.h"
 
 #include "tests/haptics/constraints/rig.h"
 

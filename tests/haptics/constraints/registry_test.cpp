@@ -1,6 +1,6 @@
 #include <set>
 
-#include "haptics/constraints/modes.h"
+#include "haptics/constraints/presets/modes.h"
 #include "tests/haptics/constraints/rig.h"
 
 namespace catena::haptics::tests {

@@ -1,7 +1,7 @@
-#include "haptics/constraints/snap.h"
+#include "haptics/constraints/rules/snap.h"
 
 #include "engine/base/allocation_guard.h"
-#include "haptics/constraints/streamline_selected.h"
+#include "haptics/constraints/streamline/selected.h"
 #include "tests/haptics/constraints/rig.h"
 
 namespace catena::haptics::tests {

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "haptics/constraints/streamline.h"
+#include "haptics/constraints/streamline/streamline.h"
 #include "tests/engine/flow/fields.h"
 
 namespace catena::test {

@@ -1,4 +1,4 @@
-#include "haptics/constraints/streamline_online.h"
+#include "haptics/constraints/streamline/online.h"
 
 #include <cstring>
 #include <limits>

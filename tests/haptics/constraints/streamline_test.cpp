@@ -1,10 +1,10 @@
-#include "haptics/constraints/streamline.h"
+#include "haptics/constraints/streamline/streamline.h"
 
 #include <cstring>
 #include <random>
 
 #include "engine/base/allocation_guard.h"
-#include "haptics/constraints/streamline_selected.h"
+#include "haptics/constraints/streamline/selected.h"
 #include "tests/haptics/constraints/streamline_fixture.h"
 
 namespace catena::haptics {

@@ -1,5 +1,5 @@
 // Friction on surfaces that are hostile: noise, broken voxels, masks, thin sheets, jumps from sheet to sheet.
-#include "haptics/constraints/surface_contact.h"
+#include "haptics/constraints/friction/contact.h"
 
 #include <limits>
 

@@ -1,0 +1,226 @@
+#include "haptics/constraints/friction/contact.h"
+
+#include "engine/field/grid.h"
+#include "haptics/constraints/equations.h"
+#include "haptics/constraints/isosurface/reach.h"
+#include "haptics/constraints/rules/read_field.h"
+
+namespace catena::haptics {
+namespace {
+
+// lengths, times L
+constexpr double kTouch = 1e-6, kOnLevel = 1e-12, kAccepted = 1e-9, kGapSlack = 1e-13, kNearLevel = 0.02;
+constexpr int kSlideRounds = 12, kPatient = 5, kNewton = 8;
+constexpr int kPatience = 8, kFade = 20;
+constexpr int kForLevel = 12;      // fetches kept for the way back to the level
+constexpr double kLevelled = 0.1;  // e.t / |e|: below, sliding does not shorten the gap
+
+bool usable(const LevelPoint& a) { return a.valid && !a.plateau; }
+
+/// LevelField::at with one division, in place (a copy would wait for its stores); the same up to rounding.
+void fetch(LevelField& field, const Vec3& world, LevelPoint& out) noexcept {
+  const Vec3 p = field.clamped(world);
+  out = LevelPoint{};
+  out.p = p;
+  if (field.spent()) return;
+  field.count_fetch();
+  const field::ScalarGrid* grid = field.grid();
+  const field::ScalarSample sample = grid ? grid->sample(out.p, field.cursor()) : field.field().sample(out.p, field.cursor());
+  out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
+  out.valid = out.finite && (sample.inside || grid == nullptr);
+  if (!out.finite) return;
+  out.slope = norm(sample.gradient);
+  out.sigma = sample.value - field.level();
+  if (out.slope > 1e-280 && out.slope < 1e280) {
+    const double by = 1 / out.slope;
+    out.n = sample.gradient * by;
+    out.distance = out.sigma * by;
+    out.round_off = 4e-16 * (std::fabs(sample.value) + std::fabs(field.level())) * by + 4e-16 * max_abs(out.p);
+  } else {
+    out.n = direction(sample.gradient);
+    out.distance = out.sigma / out.slope;
+    out.round_off = 4e-16 * (std::fabs(sample.value) + std::fabs(field.level())) / out.slope + 4e-16 * max_abs(out.p);
+  }
+  out.plateau = !(out.slope > 0) || !std::isfinite(out.distance) || !std::isfinite(out.round_off);
+  if (out.plateau) out.distance = out.round_off = 0, out.n = Vec3(0.0);
+}
+
+}  // namespace
+
+Result<ContactSpec> read_contact(const json::Node& link, SurfaceKey rule, const BuildContext& context) {
+  ContactSpec spec;
+  const json::Node *surface = link.find("surface"), *level = link.find("level");
+  if (surface == nullptr && rule != SurfaceKey::required) {
+    if (level != nullptr) return json::error_at(*level, "\"level\" has no \"surface\"; a scalar field was expected beside it");
+    return spec;
+  }
+  CATENA_TRY(spec.surface, require_scalar_field(link, "surface", "\"surface\"", context));
+  spec.length = spec.surface->length();
+  if (level == nullptr && rule == SurfaceKey::optional_with_level)
+    return json::error_at(*surface, "\"surface\" has no \"level\"; the field's value on the surface was expected");
+  if (level != nullptr) {
+    CATENA_TRY(spec.level, require_level(link, "surface", *spec.surface));
+  }
+  return spec;
+}
+
+bool Contact::on_level(const LevelPoint& a) const noexcept { return std::fabs(a.distance) <= std::max(kOnLevel * length(), a.round_off); }
+
+bool Contact::pass(Status status) noexcept {
+  memory_ = ContactMemory{};
+  memory_.probe = memory_.proxy = state_.proxy = probe_;
+  memory_.status = state_.status = status;
+  memory_.fresh = true;
+  memory_.settled = true;
+  state_.residual = state_.limit = 0;
+  return false;
+}
+
+void Contact::lose() noexcept {
+  const int failures = memory_.failures + 1;
+  if (placed_ || !memory_.fresh || failures > kPatience + kFade) return static_cast<void>(pass(Status::no_surface));
+  if (failures > kPatience) state_.weight = std::min(state_.weight, 1 - static_cast<double>(failures - kPatience) / kFade);
+  memory_.here = before_;
+  state_.proxy = before_.p;
+  state_.residual = std::fabs(before_.distance);
+  memory_.probe = probe_;
+  memory_.proxy = state_.proxy;
+  memory_.residual = state_.residual;
+  memory_.status = state_.status = Status::budget;
+  state_.limit = memory_.limit;
+  memory_.settled = false;
+  memory_.failures = failures;
+}
+
+bool Contact::begin() noexcept {
+  const bool untouched = memory_.fresh && same_bits(memory_.proxy, state_.proxy);
+  if (untouched && memory_.settled && same_bits(memory_.probe, probe_)) {
+    state_.residual = memory_.residual;
+    state_.limit = memory_.limit;
+    state_.status = memory_.status;
+    return false;
+  }
+  if (!untouched) memory_ = ContactMemory{};
+  before_ = memory_.here;
+
+  if (!spec_.level) {
+    if (!memory_.touching) {
+      memory_.here = look(state_.proxy, false);
+      memory_.touching = placed_ = true;
+    }
+    return true;
+  }
+
+  // is the incoming probe on the level?
+  LevelField near_probe(*spec_.surface, *spec_.level, probe_cursor_, state_);
+  fetch(near_probe, probe_, at_probe_);
+  if (!at_probe_.finite) {
+    state_.reason = Reason::not_finite;
+    return pass(Status::critical);
+  }
+  const double off = norm(at_probe_.p - probe_) + std::fabs(at_probe_.distance);
+  if (at_probe_.plateau || !(off <= std::max(kTouch * length(), at_probe_.round_off))) return pass(Status::free);
+  if (memory_.touching) return true;
+  LevelPoint start = at_probe_;
+  if (std::fabs(start.distance) > kAccepted * length() && !relevel(start)) return pass(Status::no_surface);
+  memory_.here = start;
+  memory_.touching = placed_ = true;
+  return true;
+}
+
+LevelPoint Contact::look(const Vec3& wanted, bool on_level) noexcept {
+  LevelPoint a;
+  if (!spec_.surface) {
+    a.p = wanted;
+    a.valid = a.finite = is_finite(wanted);
+    return a;
+  }
+  fetch(*field_, wanted, a);
+  if (!spec_.level) {
+    a.p = wanted;
+    a.distance = 0;
+    a.valid = is_finite(wanted);
+  } else if (on_level && !(usable(a) && relevel(a))) {
+    a.valid = false;
+  } else {
+    a.valid = usable(a);
+  }
+  return a;
+}
+
+bool Contact::relevel(LevelPoint& a) noexcept {
+  for (int i = 0; i < kNewton && !this->on_level(a); ++i) {
+    LevelPoint b;
+    fetch(*field_, equation::newton_to_level(a.p, a.n, a.distance), b);
+    if (!usable(b) || std::fabs(b.distance) > 0.5 * std::fabs(a.distance)) break;
+    a = b;
+  }
+  if (std::fabs(a.distance) <= std::max(kAccepted * length(), a.round_off)) return true;
+  const Reached reached = reach_along_gradient(*field_, a, a.n, kNearLevel * length(), kForLevel);
+  if (!reached.found || !usable(reached.at)) return false;
+  a = reached.at;
+  return true;
+}
+
+bool Contact::drag(double tau) noexcept { return !(norm(gap()) > tau) || slide_to(tau); }
+
+bool Contact::slide_to(double distance) noexcept {
+  const Vec3 e0 = gap();
+  if (!spec_.level) {
+    memory_.here = look(is_finite(e0) ? probe_ - direction(e0) * distance : probe_, false);
+    return memory_.here.valid;
+  }
+  const double slack = std::max(kGapSlack * length(), 1e-15 * max_abs(probe_));
+  if (distance <= slack) {
+    memory_.here = at_probe_;
+    return std::fabs(at_probe_.distance) <= kAccepted * length() || relevel(memory_.here);
+  }
+
+  // both conditions at once, from the proxy; from the chord where that is far
+  const bool near = usable(memory_.here) && norm(e0) - distance <= 0.5 * distance;
+  LevelPoint a = memory_.here;
+  if (!near) fetch(*field_, probe_ - direction(e0) * distance, a);
+  for (int i = 0; i < kSlideRounds && usable(a) && !spent(kForLevel); ++i) {
+    const Vec3 e = probe_ - a.p;
+    const double gap = norm(e), across = dot(e, a.n);
+    if (this->on_level(a) && std::fabs(gap - distance) <= slack) {
+      memory_.here = a;
+      return true;
+    }
+    const Vec3 tangential = e - a.n * across;
+    const double along = norm(tangential);
+    // |e + l n - b t| = r
+    double b = 0;
+    if (along > kLevelled * gap) {
+      const double level_gap = norm(e + a.n * a.distance), c = (level_gap - distance) * (level_gap + distance);
+      const double rest = along * along - c;
+      b = rest > 0 ? c / (along + std::sqrt(rest)) : along;
+      b = std::min(std::max(b, -0.5 * gap), gap);
+    }
+    if (i >= kPatient) b *= 0.5;
+    fetch(*field_, a.p + tangential * (along > 0 ? b / along : 0.0) - a.n * a.distance, a);
+  }
+
+  // a crease, or a sheet that bends away: on the level at least, and not further off than before
+  if (!usable(a) || !relevel(a) || norm(probe_ - a.p) > norm(e0)) return false;
+  memory_.here = a;
+  return true;
+}
+
+void Contact::end(double limit, Status status) noexcept {
+  const double excess = norm(gap()) - limit;
+  state_.proxy = memory_.here.p;
+  state_.residual = std::max(std::fabs(memory_.here.distance), excess > 0 ? excess : 0.0);
+  state_.limit = limit;
+  state_.status = status;
+  memory_.probe = probe_;
+  memory_.proxy = state_.proxy;
+  memory_.residual = state_.residual;
+  memory_.limit = limit;
+  memory_.status = status;
+  memory_.fresh = true;
+  memory_.settled = status != Status::budget;
+  memory_.failures = 0;
+}
+
+}  // namespace catena::haptics

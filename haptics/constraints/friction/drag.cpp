@@ -1,0 +1,37 @@
+#include "haptics/constraints/friction/drag.h"
+
+#include "haptics/constraints/friction/contact_drag.h"
+#include "haptics/constraints/rules/read_parameter.h"
+
+namespace catena::haptics {
+namespace {
+
+class Drag final : public ContactDrag {
+ public:
+  Drag(Parameter threshold, ContactSpec contact) : ContactDrag(std::move(contact)), threshold_(std::move(threshold)) {}
+
+ private:
+  double threshold(const Vec3& p, LinkState& state, LinkScratch& scratch) const noexcept override {
+    return threshold_.at(p, scratch.parameter, state.evaluations);
+  }
+  Parameter threshold_;
+};
+
+Result<std::shared_ptr<const Constraint>> build_drag(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(Parameter threshold, require_parameter(link, "threshold", json::Range::not_negative, context));
+  CATENA_TRY(ContactSpec contact, read_contact(link, SurfaceKey::optional_with_level, context));
+  return std::shared_ptr<const Constraint>(std::make_shared<Drag>(std::move(threshold), std::move(contact)));
+}
+
+}  // namespace
+
+ConstraintType drag_constraint() {
+  return {"drag",
+          "section 3",
+          {{"threshold", "parameter", true, "the proxy stays within this distance of the probe, world units", kNotNegativeSchema},
+           kSurfaceKey,
+           kLevelKey},
+          build_drag};
+}
+
+}  // namespace catena::haptics

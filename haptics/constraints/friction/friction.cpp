@@ -1,0 +1,308 @@
+#include "haptics/constraints/friction/friction.h"
+
+#include "engine/field/magnitude.h"
+#include "engine/flow/direction.h"
+#include "haptics/constraints/friction/contact.h"
+#include "haptics/constraints/friction/safe_direction.h"
+#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/rules/read_parameter.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kAlong = 1e-8, kLongest = 0.1, kShortest = 5e-7;  // of L: slack of e.d, steps
+constexpr double kTurn = 0.02, kBent = 0.3;                        // of the tangent, of the normal over half a step
+constexpr double kCorner = 0.5, kCornerError = 1e-6;               // a sharp turn, if it costs less than that times L
+constexpr double kShort = 1e-3;                                    // of L: so short that the surface may have a crease
+constexpr double kStraight = 1e-14;                                // of L: an error that needs no midpoint
+constexpr double kThreshold = 0.005;                               // of L: default
+constexpr int kTrials = 32, kSlipRounds = 8;
+constexpr int kForStep = 40;  // fetches that a step and a slide may need
+
+struct FrictionSpec {
+  field::VectorFieldPtr field;
+  bool line = false;
+  double largest = 0;  ///< X
+  Parameter threshold;
+  ContactSpec contact;
+};
+
+/// The tangential field at a place.
+struct Heading {
+  SafeDirection t;
+  Status status = Status::ok;
+  Reason reason = Reason::none;  ///< of a status that ends the line
+  bool known() const { return t.factor > 0; }
+};
+
+struct FrictionMemory {
+  ContactMemory contact;
+  Heading heading;  ///< at the proxy
+  Vec3 side;        ///< the last direction: the axis of a line field is turned to it
+  double rate;      ///< -d(e.d)/ds of the last step: 1 - kappa N.e
+  double bend;      ///< |dd/ds| of the last step, along the surface
+  double arch;      ///< |dn/ds| of it
+  int blocked;      ///< the line ends here towards this sign of d
+};
+
+/// One tick of one link.
+class FrictionTick {
+ public:
+  FrictionTick(const FrictionSpec& spec, const Vec3& probe, LinkState& state, LinkScratch& scratch)
+      : spec_(spec),
+        state_(state),
+        scratch_(scratch),
+        memory_(memory_of<FrictionMemory>(state)),
+        contact_(spec.contact, probe, memory_.contact, state, scratch),
+        length_(spec.contact.length) {}
+
+  void run() noexcept {
+    if (!contact_.begin()) return;
+    const double tau = safe_threshold(spec_.threshold.at(contact_.proxy(), scratch_.parameter, state_.evaluations));
+    if (contact_.placed_anew() || memory_.heading.status == Status::budget) arrive(heading_at(contact_.here()));
+    bool lost = false, complete = true;
+    if (memory_.heading.known()) {
+      lost = !slip(tau, complete);
+    } else if (norm(contact_.gap()) > tau) {
+      lost = !contact_.slide_to(tau);
+      if (!lost) arrive(heading_at(contact_.here()));
+    }
+    if (lost) return contact_.lose();
+    if (ending_ == Status::ok) state_.reason = memory_.heading.reason;
+    contact_.end(tau, !complete ? Status::budget : ending_ != Status::ok ? ending_ : memory_.heading.status);
+  }
+
+ private:
+  /// Along the streamline, across it, until neither moves.
+  bool slip(double tau, bool& complete) noexcept {
+    bool sliding = false;
+    for (int round = 0; round < kSlipRounds; ++round) {
+      const bool moved = follow(tau, complete);
+      if (round > 0 && !moved) return true;
+      const double gap = norm(contact_.gap());
+      // once it slides, |e| = tau is kept from both sides
+      sliding = sliding || gap > tau;
+      if (!sliding || std::fabs(gap - tau) <= 1e-13 * length_) return true;
+      complete = true;
+      const Vec3 before = contact_.proxy();
+      if (!contact_.slide_to(tau)) return false;
+      arrive(heading_at(contact_.here()));
+      if (!memory_.heading.known() || ending_ != Status::ok) return true;
+      // not there along the line again: the next tick goes on
+      complete = is_even(tau) || norm(contact_.proxy() - before) <= kAlong * length_;
+      if (memory_.blocked != 0 || contact_.spent(kForStep)) return true;
+    }
+    return true;
+  }
+  /// Whether e has no more along the line than the threshold allows.
+  bool is_even(double tau) const noexcept {
+    const Vec3 e = contact_.gap();
+    const double f = memory_.heading.t.factor, excess = std::fabs(dot(e, memory_.heading.t.d)) - tau * (1 - f) / f;
+    return !(excess > std::max(kAlong * length_, 4e-16 * norm(e)));
+  }
+
+  /// Follows the streamline until |e.d| <= b. True: it moved.
+  bool follow(double tau, bool& complete) noexcept {
+    bool moved = false;
+    Reach reach;
+    const int blocked = memory_.blocked;
+    memory_.blocked = 0;
+    while (memory_.heading.known()) {
+      const Vec3 d = memory_.heading.t.d, e = contact_.gap(), p = contact_.proxy();
+      const double g = dot(e, d), f = memory_.heading.t.factor;
+      const double excess = std::fabs(g) - tau * (1 - f) / f;
+      complete = true;
+      if (!(excess > std::max(kAlong * length_, 4e-16 * norm(e)))) return moved;
+      complete = false;
+      if (trials_++ >= kTrials || contact_.spent(kForStep)) return moved;
+      const double rate = memory_.rate > 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;
+      // where the line ended in the last tick, near before far
+      if (!moved && reach.longest == 0) reach.longest = (blocked == (g > 0 ? 1 : -1) ? 4 * kShortest : kLongest) * length_;
+      const double even = memory_.bend > 0 ? std::max(1.8 * kTurn / memory_.bend, 4 * kShortest * length_) : reach.longest;
+      const double size = std::min(std::min(excess / rate, even), reach.longest), h = g > 0 ? size : -size;
+
+      // the direction half way
+      Vec3 middle = d;
+      const double bent = memory_.bend + memory_.arch;
+      const bool straight = memory_.bend > 0 && bent * h * h <= 8 * kStraight * length_;
+      const bool learned = bent * bent * h * h * (size + norm(p - last_.from)) <= 4 * kStraight * length_;
+      if (!straight && last_.known && learned) {
+        middle = d + last_.turn * (0.5 * h);
+      } else if (!straight) {
+        const LevelPoint halfway = contact_.look(p + d * (0.5 * h), false);
+        const Heading half = heading_at(halfway);
+        const double turn = turn_to(halfway, half, size);
+        if (turn > most_turn(kTurn, size)) {
+          if (!refuse(reach, turn, size)) return stop_at(half, h, complete, moved);
+          continue;
+        }
+        middle = half.t.d;
+      }
+
+      // the step
+      const LevelPoint to = contact_.look(p + middle * h, true);
+      const Heading there = heading_at(to);
+      const double turn = to.valid ? turn_to(to, there, size) : 2;
+      if (turn > most_turn(3 * kTurn, size)) {
+        if (!refuse(reach, turn, size)) return stop_at(there, h, complete, moved);
+        continue;
+      }
+      const Vec3 e2 = contact_.probe() - to.p;
+      const double g2 = dot(e2, there.t.d), slope = (g - g2) / h, beyond = (g > 0 ? g - g2 : g2 - g) - excess;
+      const bool nearer = std::fabs(g2) <= 0.5 * std::fabs(g) || norm(e2) < norm(e);
+      memory_.bend = turn / size;
+      memory_.arch = norm(to.n - contact_.here().n) / size;
+      if (!nearer || beyond > 0.25 * excess) {
+        if (slope > rate) memory_.rate = slope;
+        // a corner of the line may be the closest point
+        if (++reach.overshoots > 1) reach.corner = size;
+        if ((turn > 3 * kTurn && beyond > 0) || !refuse(reach, 0, size)) {
+          memory_.blocked = h > 0 ? 1 : -1;
+          complete = true;
+          return moved;
+        }
+        continue;
+      }
+      memory_.rate = slope;
+      last_ = {true, p, (there.t.d - d) * (1 / h)};
+      contact_.move_to(to);
+      arrive(there);
+      accept(reach, size);
+      moved = true;
+    }
+    return moved;
+  }
+
+  /// How far a step may go, world units; and where a corner of the line is known to lie, ahead of the proxy.
+  struct Reach {
+    double longest = 0;
+    double corner = 0;   ///< within this distance; 0: none known
+    double turn = 0;     ///< refused last
+    int overshoots = 0;  ///< of the closest point
+  };
+
+  /// By how much the line turns from the proxy to `to`, seen along the surface; 2 where it ends.
+  double turn_to(const LevelPoint& to, const Heading& there, double size) const noexcept {
+    if (!there.known() || (size > kShort * length_ && norm(to.n - contact_.here().n) > kBent)) return 2;
+    const Vec3& here = memory_.heading.t.d;
+    const Vec3 flat = here - to.n * dot(here, to.n);
+    const double size_of_it = norm(flat);
+    return size_of_it > 0 ? norm(there.t.d - flat * (1 / size_of_it)) : 2;
+  }
+  /// What a step may turn: a corner is crossed where that costs little.
+  double most_turn(double smooth, double size) const noexcept { return std::max(smooth, std::min(kCorner, kCornerError * length_ / size)); }
+  /// Half the step; a turn that does not lessen with it is a corner. False: too short to go on.
+  bool refuse(Reach& reach, double turn, double size) const noexcept {
+    if (reach.corner > 0 || (reach.turn > 0 && turn > 0.9 * reach.turn)) reach.corner = size;
+    reach.turn = turn;
+    reach.longest = 0.5 * size;
+    return reach.longest > kShortest * length_;
+  }
+  void accept(Reach& reach, double size) const noexcept {
+    reach.turn = 0;
+    reach.longest = std::min(4 * reach.longest, kLongest * length_);
+    if (!(reach.corner > 0)) return;
+    reach.corner -= size;
+    if (reach.corner > kShortest * length_) reach.longest = std::min(reach.corner, std::max(0.5 * reach.corner, kCornerError * length_));
+  }
+
+  /// The line ends here: hold.
+  bool stop_at(const Heading& why, double step, bool& complete, bool moved) noexcept {
+    memory_.blocked = step > 0 ? 1 : -1;
+    complete = true;
+    ending_ = why.status != Status::ok ? why.status : Status::critical;
+    state_.reason = why.status != Status::ok ? why.reason : why.known() ? Reason::incoherent : Reason::zero;
+    return moved;
+  }
+
+  void arrive(const Heading& heading) noexcept {
+    memory_.heading = heading;
+    if (heading.known()) memory_.side = heading.t.d;
+  }
+
+  Heading heading_at(const LevelPoint& at) noexcept {
+    if (contact_.spent(2)) return {{}, Status::budget};
+    field::Cursor& cursor = scratch_.cursors[1];
+    if (!at.valid && !(contact_.has_normal() && at.finite)) return boundary_at(at.p, cursor);
+    ++state_.evaluations;
+    if (spec_.line) {
+      const field::LineSample line = spec_.field->sample_line(at.p, cursor);
+      if (!line.inside) return boundary_at(at.p, cursor);
+      Vec3 d;
+      if (flow::axis_direction(line, 0, memory_.side, d) == flow::Stop::incoherent) return {{}, Status::critical, Reason::incoherent};
+      return {safe_direction(line.speed * d, spec_.largest, at.n), Status::ok};
+    }
+    const field::VectorSample v = spec_.field->sample(at.p, cursor);
+    if (!is_finite(v.value)) return {{}, Status::critical, Reason::not_finite};
+    if (!v.inside) return boundary_at(at.p, cursor);
+    return {safe_direction(v.value, spec_.largest, at.n), Status::ok};
+  }
+
+  /// The line ends here because the vector field does, or the surface.
+  Heading boundary_at(const Vec3& place, field::Cursor& cursor) const noexcept {
+    const Reason reason = spec_.field->why_outside(place, cursor);
+    return {{}, Status::boundary, reason != Reason::none ? reason : spec_.contact.surface->why_outside(place, scratch_.cursors[0])};
+  }
+
+  const FrictionSpec& spec_;
+  LinkState& state_;
+  LinkScratch& scratch_;
+  FrictionMemory& memory_;
+  Contact contact_;
+  double length_;
+  /// The last step of this tick: where from, and dd/ds. A short step goes on with that.
+  struct {
+    bool known = false;
+    Vec3 from{0.0}, turn{0.0};
+  } last_;
+  int trials_ = 0;              ///< of steps along the line, in this tick
+  Status ending_ = Status::ok;  ///< why the line ends, if it does
+};
+
+class Friction final : public Constraint {
+ public:
+  explicit Friction(FrictionSpec spec) : spec_(std::move(spec)) {}
+  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+    memory_of<FrictionMemory>(state) = FrictionMemory{};
+    state.proxy = probe;
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    FrictionTick(spec_, probe, state, scratch).run();
+  }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const FrictionMemory& memory = memory_of<FrictionMemory>(state);
+    return haptics::is_sane(memory.contact) && is_one_of(memory.heading.status, Status::bad_probe);
+  }
+  double domain_length() const noexcept override { return spec_.contact.length; }
+
+ private:
+  FrictionSpec spec_;
+};
+
+Result<std::shared_ptr<const Constraint>> build_friction(const json::Node& link, const BuildContext& context) {
+  FrictionSpec spec;
+  CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "friction", context));
+  spec.field = field;
+  spec.largest = field::largest_magnitude(*field);
+  CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
+  spec.line = kind == 1;
+  CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::optional, context));
+  if (!spec.contact.surface) spec.contact.length = field->length();
+  CATENA_TRY(spec.threshold, get_parameter(link, "threshold", kThreshold * spec.contact.length, json::Range::not_negative, context));
+  return std::shared_ptr<const Constraint>(std::make_shared<Friction>(std::move(spec)));
+}
+
+}  // namespace
+
+ConstraintType friction_constraint() {
+  return {"friction",
+          "section 6.1",
+          {{"field", "string", true, "a vector field of the scene: free along it, friction across"},
+           {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
+           {"threshold", "parameter", false, "the proxy slips across at this distance, world units; default 0.005 L", kNotNegativeSchema},
+           kSurfaceKey,
+           kLevelKey},
+          build_friction};
+}
+
+}  // namespace catena::haptics

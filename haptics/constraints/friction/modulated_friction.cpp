@@ -1,0 +1,119 @@
+#include "haptics/constraints/friction/modulated_friction.h"
+
+#include "engine/field/magnitude.h"
+#include "engine/flow/direction.h"
+#include "haptics/constraints/equations.h"
+#include "haptics/constraints/friction/contact.h"
+#include "haptics/constraints/friction/safe_direction.h"
+#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/rules/read_parameter.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kLeast = 0.001, kMost = 0.01;  // of L: defaults
+
+struct ModulatedFrictionSpec {
+  field::VectorFieldPtr field;
+  bool line = false, printed = false;
+  double largest_speed = 0, largest_slope = 0;  ///< X of v and of grad s
+  Parameter least, most;                        ///< tau_min, tau_max
+  ContactSpec contact;
+};
+
+struct ModulatedFrictionMemory {
+  ContactMemory contact;
+  double angle;  ///< u at the proxy
+};
+
+class ModulatedFriction final : public Constraint {
+ public:
+  explicit ModulatedFriction(ModulatedFrictionSpec spec) : spec_(std::move(spec)) {}
+
+  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept override {
+    memory_of<ModulatedFrictionMemory>(state) = ModulatedFrictionMemory{};
+    state.proxy = probe;
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    ModulatedFrictionMemory& memory = memory_of<ModulatedFrictionMemory>(state);
+    Contact contact(spec_.contact, probe, memory.contact, state, scratch);
+    if (!contact.begin()) return;
+    const Vec3 before = contact.proxy();
+    if (contact.placed_anew()) memory.angle = angle(contact.here(), memory, state, scratch);
+    const double least = spec_.least.at(before, scratch.parameter, state.evaluations);
+    const double most = spec_.most.at(before, scratch.parameter, state.evaluations);
+    const double u = memory.angle, hard = spec_.printed ? 1 - u : std::fabs(u);
+    const double tau = safe_threshold(equation::drag_threshold(hard, least, most));
+    if (norm(contact.gap()) > tau) {
+      if (!contact.slide_to(tau)) return contact.lose();
+      memory.angle = angle(contact.here(), memory, state, scratch);
+    }
+    contact.end(tau, Status::ok);
+  }
+  bool is_sane(const LinkState& state) const noexcept override {
+    return haptics::is_sane(memory_of<ModulatedFrictionMemory>(state).contact);
+  }
+  double domain_length() const noexcept override { return spec_.contact.length; }
+
+ private:
+  /// u of Eqs. 8-9.
+  double angle(const LevelPoint& at, ModulatedFrictionMemory& memory, LinkState& state, LinkScratch& scratch) const noexcept {
+    if (state.evaluations + 2 >= kEvaluationCap) return memory.angle;
+    field::Cursor& cursor = scratch.cursors[1];
+    ++state.evaluations;
+    Vec3 v;
+    bool inside;
+    if (spec_.line) {
+      const field::LineSample line = spec_.field->sample_line(at.p, cursor);
+      inside = line.inside;
+      if (flow::axis_direction(line, 0, Vec3(0.0), v) == flow::Stop::incoherent) return 0;
+      v *= line.speed;
+    } else {
+      const field::VectorSample sample = spec_.field->sample(at.p, cursor);
+      inside = sample.inside;
+      v = sample.value;
+    }
+    if (!inside || !at.finite) return 0;
+    const SafeDirection field = safe_direction(v, spec_.largest_speed);
+    const SafeDirection surface = safe_direction(at.n * at.slope, spec_.largest_slope);
+    const double u = equation::cosine(field.d, field.factor, surface.d, surface.factor);
+    return std::min(std::max(spec_.line ? std::fabs(u) : u, -1.0), 1.0);
+  }
+
+  ModulatedFrictionSpec spec_;
+};
+
+Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::Node& link, const BuildContext& context) {
+  ModulatedFrictionSpec spec;
+  CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "modulated_friction", context));
+  spec.field = field;
+  CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
+  spec.line = kind == 1;
+  CATENA_TRY(const int law, json::get_choice(link, "law", 0, {"safe", "printed"}));
+  spec.printed = law == 1;
+  CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::required, context));
+  const double length = spec.contact.length;
+  CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::Range::not_negative, context));
+  CATENA_TRY(spec.most, get_parameter(link, "tau_max", kMost * length, json::Range::not_negative, context));
+  spec.largest_speed = field::largest_magnitude(*field);
+  spec.largest_slope = field::largest_gradient(*spec.contact.surface);
+  return std::shared_ptr<const Constraint>(std::make_shared<ModulatedFriction>(std::move(spec)));
+}
+
+}  // namespace
+
+ConstraintType modulated_friction_constraint() {
+  return {
+      "modulated_friction",
+      "section 6.1, Eqs. 7-9",
+      {{"field", "string", true, "a vector field of the scene: its angle to the surface sets the threshold"},
+       {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
+       {"surface", "string", true, "a scalar field: its gradient is the normal"},
+       kLevelKey,
+       {"tau_min", "parameter", false, "the threshold where the field is tangential, world units; default 0.001 L", kNotNegativeSchema},
+       {"tau_max", "parameter", false, "the threshold where the field is normal, world units; default 0.01 L", kNotNegativeSchema},
+       {"law", "string", false, "safe: harder the more normal the field; printed: Eq. 7 to the letter", R"("enum": ["safe", "printed"])"}},
+      build_modulated_friction};
+}
+
+}  // namespace catena::haptics

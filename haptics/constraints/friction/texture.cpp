@@ -1,0 +1,54 @@
+#include "haptics/constraints/friction/texture.h"
+
+#include <fmt/format.h>
+
+#include "haptics/constraints/friction/contact_drag.h"
+#include "haptics/constraints/rules/read_parameter.h"
+
+namespace catena::haptics {
+namespace {
+
+/// -1 at whole t, 1 halfway between.
+double triangle(double t) {
+  const double part = t - std::floor(t);
+  return std::isfinite(part) ? 1 - 4 * std::fabs(part - 0.5) : 0;
+}
+
+class Texture final : public ContactDrag {
+ public:
+  Texture(Parameter threshold, double amplitude, double wavelength, ContactSpec contact)
+      : ContactDrag(std::move(contact)), threshold_(std::move(threshold)), amplitude_(amplitude), wavelength_(wavelength) {}
+
+ private:
+  double threshold(const Vec3& p, LinkState& state, LinkScratch& scratch) const noexcept override {
+    const double wave = (triangle(p.x / wavelength_) + triangle(p.y / wavelength_) + triangle(p.z / wavelength_)) / 3;
+    return threshold_.at(p, scratch.parameter, state.evaluations) * (1 + amplitude_ * wave);
+  }
+  Parameter threshold_;
+  double amplitude_, wavelength_;
+};
+
+Result<std::shared_ptr<const Constraint>> build_texture(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(Parameter threshold, require_parameter(link, "threshold", json::Range::not_negative, context));
+  CATENA_TRY(const double amplitude, json::get_number(link, "amplitude", 0.5, json::Range::not_negative));
+  if (amplitude > 1)
+    return json::error_at(*link.find("amplitude"), fmt::format("\"amplitude\" is {}; a number from 0 to 1 was expected", amplitude));
+  CATENA_TRY(const double wavelength, json::require_number(link, "wavelength", json::Range::positive));
+  CATENA_TRY(ContactSpec contact, read_contact(link, SurfaceKey::optional_with_level, context));
+  return std::shared_ptr<const Constraint>(std::make_shared<Texture>(std::move(threshold), amplitude, wavelength, std::move(contact)));
+}
+
+}  // namespace
+
+ConstraintType texture_constraint() {
+  return {"texture",
+          "section 3",
+          {{"threshold", "parameter", true, "the mean distance at which the proxy slips, world units", kNotNegativeSchema},
+           {"amplitude", "number", false, "of the modulation, a part of the threshold", R"("minimum": 0, "maximum": 1)"},
+           {"wavelength", "number", true, "of the modulation, world units", kPositiveSchema},
+           kSurfaceKey,
+           kLevelKey},
+          build_texture};
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,41 @@
+/// The closest point of a smooth level set to the probe x, one fetch an iteration.
+///   n = grad s / |grad s|, l = (s - level) / |grad s|, e = x - p, delta = n.e, t = e - delta n
+///   (I + delta B) u = t on the tangent plane (|eigenvalues| >= 0.1, less after 12 steps), |u| <= D;  p+ = p + u + (-l - u'Bu / 2) n
+/// B, the surface's curvature, is learned by SR1 from step to step and from tick to tick; after three refusals it is measured
+/// with two more fetches.
+/// Accepted: n.n+ > 0.3 and (Armijo on |e + l n|^2 / 2 + l^2 / 2, or |l| halved), else u *= 0.35. Haptic thread.
+#pragma once
+#include "haptics/constraints/isosurface/level.h"
+
+namespace catena::haptics {
+
+/// Symmetric; zero bytes: flat. dn = B dp.
+struct Curvature {
+  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+  Vec3 times(const Vec3& v) const {
+    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
+  }
+};
+
+struct ClosestGoal {
+  double tangential = 0;  ///< stop at |t|, world units
+  double off_level = 0;   ///< and |l|
+  int most = 128;         ///< fetches
+  int refusals = 24;      ///< in a row: stuck
+};
+
+enum class Closest { converged, stuck, spent };
+
+/// Moves `at` (valid, not a plateau) to the closest point; `at` is the best point found whatever comes back.
+Closest closest_point(LevelField& field, const Vec3& probe, const ClosestGoal& goal, LevelPoint& at, Curvature& curvature) noexcept;
+
+/// SR1 update of b from one accepted step, on the tangent plane of its end.
+void learn_curvature(const LevelPoint& from, const LevelPoint& to, double length, Curvature& b) noexcept;
+
+/// The curvature at a point by two more fetches, where learning it is too slow.
+Curvature measure_curvature(LevelField& field, const LevelPoint& at) noexcept;
+
+/// M u = t in two dimensions, eigenvalues taken as |.| >= least: always a descent direction.
+void solve_tangent(double m11, double m12, double m22, double t1, double t2, double least, double& u1, double& u2) noexcept;
+
+}  // namespace catena::haptics

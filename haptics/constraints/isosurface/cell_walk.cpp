@@ -1,0 +1,223 @@
+#include "haptics/constraints/isosurface/cell_walk.h"
+
+#include "haptics/constraints/isosurface/cells.h"
+#include "haptics/constraints/isosurface/piece_move.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kStill = 1e-13;    // of L: a shorter move is none
+constexpr double kAccepted = 1e-6;  // of L: what may remain where no piece moves any more
+constexpr int kWalkRounds = 600;
+constexpr double kFarAway = 2;        // voxels
+constexpr int kHalvings = 24;         // to find where a way passes its limit
+constexpr double kSmoothTurn = 0.95;  // cosine: a larger turn of the normal from step to step is no smooth surface
+
+/// The faces through a point: which axes, and the cells on either side of them.
+struct Corner {
+  unsigned flat = 0, faces = 0;  // bit masks of axes
+  CellPoint at;
+
+  Corner(const field::Box& box, const CellPoint& point) : at(point) {
+    for (int a = 0; a < 3; ++a) {
+      if (is_flat(box, a))
+        flat |= 1u << a;
+      else if (at.f[a] == 0 || at.f[a] == 1)
+        faces |= 1u << a;
+    }
+  }
+  /// Bit a of `upper`: the cell that has the point on its lower face a (f = 0).
+  CellPoint seen_from(unsigned upper) const {
+    CellPoint out = at;
+    std::array<std::int32_t*, 3> base{&out.base.x, &out.base.y, &out.base.z};
+    for (int a = 0; a < 3; ++a) {
+      if (!(faces >> a & 1u)) continue;
+      const bool is_upper = out.f[a] == 0, wanted = (upper >> a & 1u) != 0;
+      if (is_upper == wanted) continue;
+      *base[static_cast<std::size_t>(a)] += wanted ? 1 : -1;
+      out.f[a] = wanted ? 0 : 1;
+    }
+    return out;
+  }
+  unsigned upper() const {
+    unsigned bits = 0;
+    for (int a = 0; a < 3; ++a)
+      if ((faces >> a & 1u) && at.f[a] == 0) bits |= 1u << a;
+    return bits;
+  }
+};
+
+/// The empty set first, then every subset of `mask`, rising.
+template <class Visit>
+void for_subsets(unsigned mask, const Visit& visit) {
+  unsigned subset = 0;
+  do {
+    visit(subset);
+    subset = (subset - mask) & mask;
+  } while (subset != 0);
+}
+
+/// The last point of the way from..to over one piece that keeps within `limit` and is no further from the probe than `from`.
+Vec3 cut_short(const LevelField& field, const Piece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
+               const Vec3& from, const Vec3& to) {
+  const Vec3 chord = field.grid()->mapping().world_from_index_linear * (to - from), along = chord - s.n * dot(s.n, chord);
+  const double most = norm(probe - piece.world(from));
+  Vec3 kept = from, g;
+  double low = 0, high = 1;
+  for (int i = 0; i < kHalvings && !field.exhausted(); ++i) {
+    const double mid = 0.5 * (low + high);
+    int axis;
+    const bool fits = piece.retract(from, along * mid, s, g) && piece.outside(g, axis) <= 0 && !limit.passed_by(piece.world(g)) &&
+                      norm(probe - piece.world(g)) <= most;
+    (fits ? low : high) = mid;
+    if (fits) kept = g;
+  }
+  return kept;
+}
+
+}  // namespace
+
+CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept {
+  const Vec3 index = grid.mapping().index_from_world(world);
+  CellPoint out;
+  out.base = grid.base_of(index);
+  const Vec3 base(out.base.x, out.base.y, out.base.z);
+  for (int a = 0; a < 3; ++a) out.f[a] = is_flat(grid.index_box(), a) ? 0 : std::min(std::max(index[a] - base[a], 0.0), 1.0);
+  for (int a = 0; a < 3; ++a) {
+    if (out.f[a] < kFaceSlack) out.f[a] = 0;
+    if (out.f[a] > 1 - kFaceSlack) out.f[a] = 1;
+  }
+  return out;
+}
+
+Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
+  return grid.mapping().world_from_index({at.base.x + at.f.x, at.base.y + at.f.y, at.base.z + at.f.z});
+}
+
+WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at, TravelLimit* limit) noexcept {
+  const field::ScalarGrid& grid = *field.grid();
+  const field::Mapping& mapping = grid.mapping();
+  const double length = field.length();
+  Cells cells(field);
+  WalkResult result;
+  std::uint64_t exhausted = 0;
+  bool steepest = false;
+  Reason wall = Reason::none;
+  double remaining = 0;
+  Vec3 last_normal(0.0);
+  const auto turn_to = [&](const Vec3& n) {
+    if (max_abs(last_normal) > 0 && dot(n, last_normal) < kSmoothTurn) result.smooth = false;
+    last_normal = n;
+  };
+
+  for (int round = 0; round < kWalkRounds; ++round) {
+    // every piece that meets the point: the steepest feasible descent
+    const Corner corner(grid.index_box(), at);
+    const unsigned own = corner.upper();
+    struct {
+      double size;
+      unsigned upper, held;
+      const field::ScalarCell* cell;
+      PieceSample s;
+      Vec3 t;
+    } best{kRelease * length, 0, 0, nullptr, {}, Vec3(0.0)};
+    bool usable = false, pulled = false, found = false;
+    remaining = 0;
+    for_subsets(corner.faces, [&](unsigned flip) {
+      const unsigned upper = own ^ flip;
+      const CellPoint here = corner.seen_from(upper);
+      const field::ScalarCell* cell = cells.find(here.base);
+      if (!cell) return;
+      found = true;
+      for_subsets(corner.faces, [&](unsigned held) {
+        const Piece piece(mapping, *cell, field.level(), frames.of[held | corner.flat], field.steps());
+        const PieceSample s = piece.sample(here.f);
+        if (!s.usable) return;
+        if (!usable || (flip == 0 && held == 0)) {
+          result.residual = std::fabs(s.distance);
+          result.normal = s.n;
+        }
+        usable = true;
+        const Vec3 t = piece.tangential(here.f, probe, s);
+        const double size = norm(t);
+        if (!(size > kRelease * length)) return;
+        const Vec3 d = piece.frame().index_step(mapping, t);
+        bool feasible = true;
+        for (int a = 0; a < 3; ++a) {
+          if (!(corner.faces >> a & 1u) || (held >> a & 1u)) continue;
+          if (here.f[a] == 0 ? d[a] >= 0 : d[a] <= 0) continue;
+          feasible = false;
+          // pulled across a face with nothing behind it
+          if (held == 0 && size > 1e-7 * length && !cells.find(corner.seen_from(upper ^ (1u << a)).base)) {
+            pulled = true;
+            wall = cells.wall;
+          }
+        }
+        if (!feasible) return;
+        remaining = std::max(remaining, size);
+        if (size > best.size && !(exhausted >> (upper * 8 + held) & 1u)) best = {size, upper, held, cell, s, t};
+      });
+    });
+    if (cells.spent() || field.exhausted()) {
+      result.status = Status::budget;
+      return result;
+    }
+    if (!usable) {
+      result.status = Status::critical;
+      result.reason = found ? Reason::zero : cells.wall;
+      return result;
+    }
+    turn_to(result.normal);
+    if (!best.cell) {
+      const bool stuck = remaining > kAccepted * length;
+      if (stuck && !steepest) {
+        steepest = true;
+        exhausted = 0;
+        continue;
+      }
+      result.status = stuck ? Status::budget : pulled ? Status::boundary : Status::ok;
+      result.reason = wall;
+      return result;
+    }
+
+    // follow it
+    CellPoint next = corner.seen_from(best.upper);
+    best.cell = cells.find(next.base);  // the others of the round may have taken its place
+    if (!best.cell) {
+      result.status = Status::budget;
+      return result;
+    }
+    const Vec3 before = next.f;
+    const PieceSample start = best.s;
+    const Piece piece(mapping, *best.cell, field.level(), frames.of[best.held | corner.flat], field.steps());
+    const bool crossed = best.size > kFarAway * field.voxel() &&
+                         cross_cell(field, frames, piece, *best.cell, best.held | corner.flat, probe, best.s, best.t, next.f);
+    const Followed how = crossed ? Followed::landed : follow(field, piece, probe, steepest, next.f, best.s, best.t);
+    if (limit != nullptr && !limit->passed && limit->passed_by(piece.world(next.f))) {
+      limit->passed = true;
+      limit->last = next;
+      limit->last.f = cut_short(field, piece, probe, *limit, start, before, next.f);
+      limit->normal = start.n;
+    }
+    const unsigned faces = Corner(grid.index_box(), next).faces;
+    if (how == Followed::converged && faces == 0 && norm(best.t) <= kRelease * length) {
+      // within the cell no other piece meets the point
+      at = next;
+      turn_to(best.s.n);
+      result.status = Status::ok;
+      result.residual = std::fabs(best.s.distance);
+      result.normal = best.s.n;
+      return result;
+    }
+    const bool moved = norm(mapping.world_from_index_linear * (next.f - before)) > kStill * length;
+    const bool snapped = !moved && faces != corner.faces;
+    if (moved || snapped) exhausted = 0;
+    if (moved) steepest = false;
+    if ((!moved && !snapped) || how == Followed::blocked) exhausted |= std::uint64_t{1} << (best.upper * 8 + best.held);
+    at = next;
+  }
+  result.status = Status::budget;
+  return result;
+}
+
+}  // namespace catena::haptics

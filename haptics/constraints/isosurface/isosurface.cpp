@@ -1,0 +1,373 @@
+#include "haptics/constraints/isosurface/isosurface.h"
+
+#include "haptics/constraints/equations.h"
+#include "haptics/constraints/isosurface/analytic.h"
+#include "haptics/constraints/isosurface/cell_walk.h"
+#include "haptics/constraints/isosurface/descent.h"
+#include "haptics/constraints/isosurface/reach.h"
+#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/rules/surface_side.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kSearchRadius = 2;  // of L
+constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no hand's
+constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
+constexpr int kQuick = 200;          // fetches before a formula asks for the descent
+constexpr int kQuickRefusals = 8;    // in a row, likewise
+constexpr int kSight = 16;           // fetches on the line of sight
+constexpr int kForLevel = 12;        // fetches kept for the way back to the level
+constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on from
+
+/// What the link remembers: the rules' part, the point held, the curvature learned.
+struct IsosurfaceMemory {
+  SideMemory side;
+  LevelPoint at;        // formulas: the point held
+  Curvature curvature;  // formulas
+  CellPoint cell;       // grids: the point held
+  Vec3 normal;
+  Scan scan;
+  double owed;  // of the way that a walk out of budget was allowed and has not gone
+};
+
+bool is_thrown(const SideMemory& side, const Vec3& probe, double length) noexcept {
+  return side.fresh && norm(probe - side.probe) > kThrown * length;
+}
+
+class LevelSurface final : public Surface {
+ public:
+  LevelSurface(const LevelField& field, const PieceFrames& frames, IsosurfaceMemory& memory)
+      : field_(field), frames_(frames), memory_(memory) {}
+
+  SideValue side(const Vec3& at) noexcept override {
+    here_ = field_.at(at);
+    have_here_ = true;
+    asked_ = at;
+    return {here_.sigma, here_.valid, !here_.finite};
+  }
+
+  Hold place(const Vec3& probe) noexcept override {
+    const LevelPoint start = look(probe);
+    const Reached reached = project(start, kSearchRadius * field_.length());
+    if (!reached.found) return {false, probe, 0, memory_.scan.open ? Status::budget : Status::no_surface, Reason::none};
+    const Hold hold = settle(reached.at, probe, Curvature{});
+    // further away than the field says: something nearer may be in sight
+    const bool far = norm(probe - hold.proxy) > 1.05 * std::fabs(start.distance);
+    return field_.grid() || !far ? hold : settle_in_sight(start, hold);
+  }
+
+  Hold slide(const Vec3& probe) noexcept override {
+    const double travel = travel_of(memory_.side, probe, norm(probe - memory_.side.proxy), field_.state());
+    return field_.grid() ? slide_grid(probe, travel) : slide_formula(probe, travel);
+  }
+
+  Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
+    const LevelPoint end = look(probe);
+    const Reached reached = reach_on_segment(field_, field_.at(from), end);
+    return reached.found ? settle(reached.at, probe, Curvature{}) : Hold{};
+  }
+
+  Hold near_by(const Vec3& probe, double limit) noexcept override {
+    const Reached reached = reach_along_gradient(field_, look(probe), Vec3(0.0), 1.25 * limit);
+    if (!reached.found) return {};
+    const IsosurfaceMemory before = memory_;
+    Hold hold = settle(reached.at, probe, Curvature{});
+    if (hold.found && norm(hold.proxy - probe) <= limit) return hold;
+    memory_ = before;
+    return {};
+  }
+
+  Vec3 normal() const noexcept override { return memory_.normal; }
+  double march_step() const noexcept override { return field_.march_step(); }
+  double domain_length() const noexcept override { return field_.length(); }
+
+ private:
+  LevelPoint look(const Vec3& probe) noexcept { return have_here_ && same_bits(asked_, probe) ? here_ : field_.at(probe); }
+
+  /// The closest point wins over the limit where it is the closest point itself that has moved so far, as deep inside a concave
+  /// surface: what is met now was no nearer before than what is held.
+  bool has_moved(const Vec3& held, const Vec3& met) const noexcept {
+    const Vec3& before = memory_.side.probe;
+    return norm(before - met) >= norm(before - held) - kOnLevel * field_.length();
+  }
+
+  Hold slide_grid(const Vec3& probe, double travel) noexcept {
+    CellPoint cell = memory_.cell;
+    const Vec3 held = world_of(*field_.grid(), cell);
+    // a probe that was thrown goes far along the surface first as if it were smooth
+    if (is_thrown(memory_.side, probe, field_.length())) {
+      const LevelPoint start = field_.at(held);
+      if (start.valid && !start.plateau) cell = leap(cell, start, probe);
+    }
+    TravelLimit limit{held, travel + memory_.owed, false, {}, Vec3(0.0)};
+    WalkResult walk = walk_cells(field_, frames_, probe, cell, &limit);
+    const Vec3 met = world_of(*field_.grid(), cell);
+    memory_.owed = 0;
+    if (!limit.passed_by(met)) {
+      if (walk.status == Status::budget && std::isfinite(limit.room)) memory_.owed = limit.room - norm(met - held);
+    } else if (!walk.smooth || walk.status == Status::budget || !has_moved(held, met)) {
+      cell = limit.last;
+      walk = {Status::budget, Reason::none, 0, limit.normal, true};
+    }
+    return hold_cell(cell, walk);
+  }
+
+  Hold slide_formula(const Vec3& probe, double travel) noexcept {
+    const LevelPoint from = memory_.at;
+    const Curvature curvature = memory_.curvature;
+    const Hold hold = settle_formula(from, probe, curvature, false);
+    if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) return hold;
+
+    // so far down the surface as it may go
+    const Vec3 e = probe - from.p, way = direction(equation::tangential(e, from.n));
+    LevelPoint at = from;
+    for (double step = travel; step > 0.1 * travel && !field_.spent(kForLevel); step *= 0.5) {
+      const LevelPoint ahead = relevelled(field_.at(from.p + way * step));
+      if (!usable(ahead) || norm(ahead.p - from.p) > travel || !(norm(probe - ahead.p) < norm(e))) continue;
+      at = ahead;
+      break;
+    }
+    memory_.at = at;
+    memory_.curvature = curvature;
+    memory_.normal = at.n;
+    return {true, at.p, std::fabs(at.distance), Status::budget, Reason::none};
+  }
+
+  /// From a point on the level to the closest point.
+  Hold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
+    if (!field_.grid()) return settle_formula(start, probe, curvature, true);
+    return settle_grid(cell_point(*field_.grid(), start.p), start, probe);
+  }
+
+  /// From anywhere to the level, without an earlier point. A scan that runs out of budget stays open in the memory.
+  Reached project(const LevelPoint& start, double radius) noexcept {
+    Scan& scan = memory_.scan;
+    if (scan.nothing && same_bits(scan.probe, start.p)) return {};
+    const bool goes_on = scan.open && norm(scan.probe - start.p) <= kThrown * field_.length();
+    LevelPoint centre = start;
+    if (!goes_on) {
+      const Reached reached = reach_along_gradient(field_, start, Vec3(0.0), radius);
+      if (reached.found) return closed(reached);
+      if (!field_.grid()) {
+        Scan near{};
+        const Reached by_axes = reach_by_scan(field_, start, true, near);
+        if (by_axes.found) return by_axes;
+      }
+      // where the march ended it may be much closer to the level
+      const bool closer = start.valid && reached.at.valid && std::fabs(reached.at.sigma) < std::fabs(start.sigma);
+      if (closer) centre = reached.at;
+      scan = Scan{};
+      scan.probe = start.p;
+      scan.centre = centre.p;
+    } else if (!same_bits(scan.centre, start.p)) {
+      centre = field_.at(scan.centre);
+    }
+    Reached reached = reach_by_scan(field_, centre, false, scan);
+    if (!reached.found && !scan.open && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
+    scan.nothing = !reached.found && !scan.open;
+    return reached.found ? closed(reached) : reached;
+  }
+  Reached closed(const Reached& reached) noexcept {
+    memory_.scan = Scan{};
+    return reached;
+  }
+
+  /// The quick iteration; then down the surface from the better end of it; where that is stuck, and any sheet will do or none is
+  /// held, from a fresh projection.
+  Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
+    LevelPoint best = at;
+    if (closest_point(field_, probe, goal(kQuick), at, curvature) == Closest::converged)
+      return hold_formula(at, Closest::converged, probe, curvature);
+    at = relevelled(at);
+    if (nearer(best, at, probe)) at = usable(best) ? best : relevelled(best);
+    Closest how = Closest::stuck;
+    if (usable(at)) how = descend(field_, probe, goal(kEvaluationCap), at, curvature);
+    if ((!any_sheet && usable(at)) || how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
+
+    const Reached fresh = project(field_.at(probe), kSearchRadius * field_.length());
+    if (!fresh.found) return hold_formula(at, how, probe, curvature);
+    best = fresh.at;
+    Curvature other;
+    const Closest again = descend(field_, probe, goal(kEvaluationCap), best, other);
+    best = relevelled(best);
+    if (!nearer(best, at, probe)) return hold_formula(at, how, probe, curvature);
+    return hold_formula(best, again, probe, other);
+  }
+
+  /// From a point between the probe and what is held, if the level is met there.
+  Hold settle_in_sight(const LevelPoint& probe, const Hold& hold) noexcept {
+    const LevelPoint before = memory_.at;
+    if (field_.spent(kSight + 4 * kForLevel)) return hold;
+    LevelPoint a = probe;
+    for (int i = 1; i < kSight; ++i) {
+      const LevelPoint b = field_.at(probe.p + (hold.proxy - probe.p) * (i * (1.0 / kSight)));
+      if (a.valid && b.valid && (a.sigma < 0) != (b.sigma < 0)) {
+        const Reached root = root_between(field_, a, b);
+        if (!root.found) return hold;
+        LevelPoint at = root.at;
+        Curvature curvature;
+        const Closest how = descend(field_, probe.p, goal(kEvaluationCap), at, curvature);
+        if (nearer(at, before, probe.p)) return hold_formula(at, how, probe.p, curvature);
+        return hold;
+      }
+      a = b;
+    }
+    return hold;
+  }
+
+  Hold hold_formula(LevelPoint at, Closest how, const Vec3& probe, const Curvature& curvature) noexcept {
+    Status status = Status::ok;
+    Reason reason = Reason::none;
+    if (how != Closest::converged) {
+      at = relevelled(at);
+      // not there yet is no reason to give up: only where the surface itself does
+      const bool idle = how == Closest::stuck || norm(at.p - memory_.at.p) <= 1e-12 * field_.length();
+      const bool broken = degenerate(at);
+      status = broken || (idle && usable(at) && kink(at, probe)) ? Status::critical : Status::budget;
+      reason = !broken ? Reason::incoherent : at.finite ? Reason::zero : Reason::not_finite;
+    }
+    memory_.at = at;
+    memory_.curvature = curvature;
+    memory_.normal = at.n;
+    return {true, at.p, std::fabs(at.distance), status, reason};
+  }
+
+  ClosestGoal goal(int most) noexcept {
+    return {1e-8 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
+            kQuickRefusals};
+  }
+  bool usable(const LevelPoint& a) const noexcept { return a.valid && !a.plateau && std::fabs(a.distance) <= kOnLevel * field_.length(); }
+  /// No gradient, not finite, or so flat that the level is lost in round-off.
+  bool degenerate(const LevelPoint& a) const noexcept { return !a.valid || a.plateau || a.round_off > kOnLevel * field_.length(); }
+  /// The normal jumps within 2e-9 L: on the way to the probe, or across what is then no surface.
+  bool kink(const LevelPoint& a, const Vec3& probe) noexcept {
+    const Vec3 e = probe - a.p;
+    return jumps(a.p, direction(equation::tangential(e, a.n))) || jumps(a.p, a.n);
+  }
+  bool jumps(const Vec3& p, const Vec3& way) noexcept {
+    if (field_.spent(2)) return false;
+    const Vec3 step = way * (1e-9 * field_.length());
+    const LevelPoint ahead = field_.at(p + step), behind = field_.at(p - step);
+    return !ahead.valid || !behind.valid || ahead.plateau || behind.plateau || dot(ahead.n, behind.n) < 0.9;
+  }
+  bool nearer(const LevelPoint& a, const LevelPoint& b, const Vec3& probe) const noexcept {
+    if (usable(a) != usable(b)) return usable(a);
+    return usable(a) ? norm(probe - a.p) < norm(probe - b.p) : std::fabs(a.distance) < std::fabs(b.distance);
+  }
+  LevelPoint relevelled(const LevelPoint& a) noexcept {
+    if (std::fabs(a.distance) <= 1e-11 * field_.length() || !a.valid || a.plateau) return a;
+    const Reached reached = reach_along_gradient(field_, a, a.n, field_.length(), 0);
+    return reached.found ? reached.at : a;
+  }
+
+  /// Towards the closest point as if the surface were smooth; `cell` where that leads to nothing nearer.
+  CellPoint leap(const CellPoint& cell, const LevelPoint& start, const Vec3& probe) noexcept {
+    const double voxel = field_.voxel();
+    const Vec3 e = probe - start.p;
+    if (start.valid && !start.plateau && norm(equation::tangential(e, start.n)) > 2 * voxel) {
+      LevelPoint at = start;
+      Curvature curvature;
+      closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
+      const Reached reached = reach_along_gradient(field_, at, at.n, 2 * voxel);
+      if (reached.found && reached.at.valid && norm(probe - reached.at.p) < norm(e)) return cell_point(*field_.grid(), reached.at.p);
+    }
+    return cell;
+  }
+
+  /// Far along the surface first, then exactly, cell by cell.
+  Hold settle_grid(CellPoint cell, const LevelPoint& start, const Vec3& probe) noexcept {
+    cell = leap(cell, start, probe);
+    const WalkResult walk = walk_cells(field_, frames_, probe, cell);
+    return hold_cell(cell, walk);
+  }
+
+  Hold hold_cell(const CellPoint& cell, const WalkResult& walk) noexcept {
+    memory_.cell = cell;
+    memory_.normal = walk.normal;
+    return {true, world_of(*field_.grid(), cell), walk.residual, walk.status, walk.reason};
+  }
+
+  LevelField field_;
+  const PieceFrames& frames_;
+  IsosurfaceMemory& memory_;
+  LevelPoint here_;
+  Vec3 asked_{0.0};
+  bool have_here_ = false;
+};
+
+class Isosurface final : public Constraint {
+ public:
+  Isosurface(field::ScalarFieldPtr field, double level, const SideSpec& rules)
+      : field_(std::move(field)), level_(level), rules_(rules), frames_(field_->mapping()) {}
+
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    memory_of<IsosurfaceMemory>(state).scan = Scan{};
+    seek(probe, state, scratch);
+  }
+  /// As start, but a search that ran out of budget goes on.
+  void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    const Scan scan = memory.scan;
+    memory = IsosurfaceMemory{};
+    memory.scan = scan;
+    const SideRules rules = rules_.at(probe, state, scratch);
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
+    start_on(surface, rules, probe, memory.side, state);
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    const SideRules rules = rules_.now(state, scratch);
+    const SideMemory& side = memory.side;
+    const bool finishes = side.fresh && side.status == Status::budget;
+    if (field_->grid() != nullptr && (finishes || is_thrown(side, probe, field_->length()))) state.most = kThrownWork;
+    LevelSurface surface(LevelField(*field_, level_, scratch.cursors[0], state), frames_, memory);
+    advance_on(surface, rules, probe, memory.side, state);
+  }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
+    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) && haptics::is_sane(memory.scan);
+  }
+  bool has_primitive() const noexcept override { return true; }
+  /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.
+  bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
+    const LevelPoint here = LevelField(*field_, level_, scratch.cursors[0], state).at(at);
+    if (!here.valid || here.plateau) {
+      if (here.finite && !here.valid)
+        stop_link(state, Status::boundary, Reason::mask);
+      else
+        stop_link(state, Status::critical, here.finite ? Reason::zero : Reason::not_finite);
+      return false;
+    }
+    out = {Primitive::Kind::plane, equation::newton_to_level(here.p, here.n, here.distance), here.n};
+    return true;
+  }
+  double domain_length() const noexcept override { return field_->length(); }
+
+ private:
+  field::ScalarFieldPtr field_;
+  double level_;
+  SideSpec rules_;
+  PieceFrames frames_;
+};
+
+Result<std::shared_ptr<const Constraint>> build_isosurface(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "an isosurface", context));
+  CATENA_TRY(const double level, require_level(link, "field", *field));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
+  return std::shared_ptr<const Constraint>(std::make_shared<Isosurface>(field, level, rules));
+}
+
+}  // namespace
+
+ConstraintType isosurface_constraint() {
+  return {"isosurface",
+          "Eqs. 5-6",
+          {{"field", "string", true, "a scalar field of the scene"},
+           {"level", "number", true, "the field's value on the surface"},
+           {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema}},
+          build_isosurface,
+          true};
+}
+
+}  // namespace catena::haptics

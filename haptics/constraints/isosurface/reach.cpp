@@ -1,0 +1,128 @@
+#include "haptics/constraints/isosurface/reach.h"
+
+#include <array>
+
+namespace catena::haptics {
+namespace {
+
+constexpr int kMarchSteps = 64;
+constexpr int kSegmentSteps = 64;
+constexpr int kReserve = 32;  // fetches that a scan leaves for what follows
+
+bool opposite(double a, double b) { return (a <= 0 && b >= 0) || (a >= 0 && b <= 0); }
+
+bool on_level(const LevelField& field, const LevelPoint& a) {
+  return a.sigma == 0 || (!a.plateau && std::fabs(a.distance) <= std::max(1e-13 * field.length(), a.round_off));
+}
+
+}  // namespace
+
+Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept {
+  if (!a.valid || !b.valid) return {};
+  if (on_level(field, a)) return {!a.plateau, a};
+  if (on_level(field, b)) return {!b.plateau, b};
+  double fa = a.sigma, fb = b.sigma;
+  int same_side = 0;
+  for (int i = 0; i < 80 && !field.spent(); ++i) {
+    // Illinois; plain halves where it lags on a steep profile
+    double w = fa / (fa - fb);
+    if (i % 4 == 3) w = 0.5;
+    if (!(w > 0 && w < 1)) w = 0.5;
+    const LevelPoint c = field.at(a.p + (b.p - a.p) * w);
+    if (!c.valid) return {};
+    if (on_level(field, c)) return {!c.plateau, c};
+    const bool replaces_b = opposite(fa, c.sigma);
+    if (replaces_b) {
+      b = c;
+      fb = c.sigma;
+      if (same_side == 1) fa *= 0.5;
+      same_side = 1;
+    } else {
+      a = c;
+      fa = c.sigma;
+      if (same_side == -1) fb *= 0.5;
+      same_side = -1;
+    }
+    if (norm(b.p - a.p) <= 1e-15 * field.length() + 2.3e-16 * max_abs(a.p)) break;
+  }
+  const LevelPoint& best = std::fabs(a.sigma) <= std::fabs(b.sigma) ? a : b;
+  return {!best.plateau && !field.spent(), best};
+}
+
+Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius, int reserve) noexcept {
+  LevelPoint a = start;
+  Vec3 last_normal = normal;
+  double longest = field.voxel() > 0 ? std::max(0.02 * field.length(), field.voxel()) : 0.05 * field.length();
+  double path = 0;
+  int stalls = 0;
+  for (int i = 0; i < kMarchSteps && a.valid && !field.spent(reserve) && path < radius; ++i) {
+    if (on_level(field, a)) return {!a.plateau, a};
+    if (!a.plateau) last_normal = a.n;
+    if (!(max_abs(last_normal) > 0)) return {false, a};
+    const double step = std::min(a.plateau ? longest : std::min(std::fabs(a.distance), longest), radius - path);
+    const LevelPoint b = field.at(a.p - last_normal * (a.sigma > 0 ? step : -step));
+    if (!b.valid) return {false, a};
+    if (opposite(a.sigma, b.sigma)) return root_between(field, a, b);
+    if ((std::fabs(b.sigma) > std::fabs(a.sigma) || dot(a.n, b.n) < 0)) {
+      // over a ridge or a valley: shorter steps
+      if (++stalls > 8) return {false, a};
+      longest = std::max(0.5 * step, field.march_step());
+    }
+    path += step;
+    if (i >= 8) longest = std::min(longest * 1.5, 0.25 * field.length());
+    a = b;
+  }
+  return {a.valid && !a.plateau && on_level(field, a), a};
+}
+
+Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only, Scan& scan) noexcept {
+  constexpr int kDirections = 27;
+  constexpr std::array<double, 8> kRadii{1.0 / 64, 1.0 / 35, 1.0 / 20, 1.0 / 11, 1.0 / 6, 0.3, 0.55, 1.0};
+  std::array<LevelPoint, kDirections> last;
+  std::array<bool, kDirections> known{};
+  LevelPoint nearest;
+  if (scan.has_nearest) nearest = field.at(scan.nearest);
+  for (constexpr int end = kDirections * static_cast<int>(kRadii.size()); scan.next < end; ++scan.next) {
+    const int k = scan.next % kDirections, ring = scan.next / kDirections;
+    const Vec3 towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    if (k == 13 || (axes_only && dot(towards, towards) > 1)) continue;
+    const Vec3 d = direction(towards);
+    const auto on_ring = [&](int r) { return centre.p + d * (kRadii[static_cast<std::size_t>(r)] * field.length()); };
+    const Vec3 wanted = on_ring(ring);
+    if (max_abs(field.clamped(wanted) - wanted) > 0) continue;
+    if (field.spent(kReserve)) break;
+    LevelPoint& before = last[static_cast<std::size_t>(k)];
+    // where a scan is taken up again, the ring before
+    if (!known[static_cast<std::size_t>(k)]) before = ring == 0 ? centre : field.at(on_ring(ring - 1));
+    known[static_cast<std::size_t>(k)] = true;
+    const LevelPoint here = field.at(wanted);
+    if (here.valid && before.valid && opposite(here.sigma, before.sigma)) {
+      const Reached root = root_between(field, before, here);
+      if (root.found) return root;
+      if (field.spent()) break;
+    }
+    before = here;
+    if (here.valid && !here.plateau && (!nearest.valid || std::fabs(here.sigma) < std::fabs(nearest.sigma))) nearest = here;
+  }
+  scan.has_nearest = nearest.valid;
+  scan.nearest = nearest.p;
+  scan.open = scan.next < kDirections * static_cast<int>(kRadii.size());
+  return {false, nearest};
+}
+
+Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept {
+  const double length = norm(to.p - from.p);
+  const double count = std::min(std::max(std::floor(length / field.march_step()) + 1.0, 1.0), static_cast<double>(kSegmentSteps));
+  LevelPoint a = from;
+  for (double i = 1; i <= count && !field.spent(); ++i) {
+    const LevelPoint b = i == count ? to : field.at(from.p + (to.p - from.p) * (i / count));
+    if (a.valid && b.valid && opposite(a.sigma, b.sigma)) {
+      const Reached root = root_between(field, a, b);
+      if (root.found) return root;
+    }
+    a = b;
+  }
+  return {};
+}
+
+}  // namespace catena::haptics

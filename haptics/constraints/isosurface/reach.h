@@ -1,0 +1,41 @@
+/// From any point to the level: march along the gradient (steps of at most r_max), bracket the sign change, Illinois inside
+/// the bracket, keep the last good normal on plateaus; where that fails, scan 26 directions outwards.
+/// Lengths in world units, every fetch counted. Haptic thread.
+#pragma once
+#include "haptics/constraints/isosurface/level.h"
+
+namespace catena::haptics {
+
+struct Reached {
+  bool found = false;
+  LevelPoint at;
+};
+
+/// The level between a and b, where sigma has opposite signs (or is zero in one).
+Reached root_between(LevelField& field, LevelPoint a, LevelPoint b) noexcept;
+
+/// Marches from `start` at most `radius` far. `normal`: the last good one, for plateaus; zero if there is none.
+/// `reserve`: fetches left to others. Not found: `at` is where the march ended, if it is valid.
+Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const Vec3& normal, double radius, int reserve = 32) noexcept;
+
+/// How far a scan has come that takes more than one tick. Zero bytes: not begun.
+struct Scan {
+  Vec3 probe, centre, nearest;  ///< what it is made for; where it looks from; the sample nearest in value
+  std::int32_t next;
+  bool open, has_nearest;
+  bool nothing;  ///< has looked everywhere for `probe`
+};
+
+/// Of a state from a file: see Constraint::is_sane.
+inline bool is_sane(const Scan& scan) noexcept {
+  return are_bools(scan.open, scan.has_nearest, scan.nothing) && scan.next >= 0 && scan.next < 1 << 20;
+}
+
+/// Looks along 26 directions, or along the 6 axes only, near before far, up to L from the centre. Not found: `at` is the sample
+/// nearest in value; with scan.open the budget has ended the scan, and the next call goes on.
+Reached reach_by_scan(LevelField& field, const LevelPoint& centre, bool axes_only, Scan& scan) noexcept;
+
+/// The first crossing of the segment from..to, seen with steps of march_step (at most 64).
+Reached reach_on_segment(LevelField& field, const LevelPoint& from, const LevelPoint& to) noexcept;
+
+}  // namespace catena::haptics

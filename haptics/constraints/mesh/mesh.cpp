@@ -1,0 +1,265 @@
+#include "haptics/constraints/mesh/mesh.h"
+
+#include "haptics/constraints/mesh/contact.h"
+#include "haptics/constraints/mesh/walk.h"
+#include "haptics/constraints/rules/surface_side.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kFarthest = 1e6;  // in the mesh's own frame: a probe beyond is drawn in, towards the mesh
+constexpr double kReachOfWalk = 32;
+constexpr double kSearchRadius = 4e6;
+constexpr double kShortest = 1e-300;
+
+Vec3 own_of(const mesh::TriangleMesh& mesh, const Vec3& probe, double farthest) {
+  // halves, so that no difference overflows
+  const Vec3 half = probe * 0.5 - mesh.world(Vec3(0.0)) * 0.5;
+  const double m = max_abs(half), most = 0.5 * farthest * mesh.scale();
+  if (m > most) return Vec3(half.x / m, half.y / m, half.z / m) * farthest;
+  return mesh.own(probe);
+}
+
+mesh::Nearest nearest_to(const mesh::TriangleMesh& mesh, const Vec3& x, double radius, std::uint32_t hint, LinkState& state) {
+  const int most = state.affordable(kNodes);
+  int nodes = most;
+  const mesh::Nearest nearest = mesh::nearest_point(mesh, x, radius, nodes, hint);
+  state.steps += most - std::max(nodes, 0);
+  return nearest;
+}
+
+// ---- from both sides ----
+
+struct WalkMemory {
+  SideMemory side;
+  mesh::Closest at;
+};
+
+class MeshSurface final : public Surface {
+ public:
+  MeshSurface(const mesh::TriangleMesh& mesh, WalkMemory& memory, LinkState& state) : mesh_(mesh), memory_(memory), state_(state) {}
+
+  SideValue side(const Vec3&) noexcept override { return {0, true, false}; }
+
+  Hold place(const Vec3& probe) noexcept override {
+    const mesh::Nearest nearest = nearest_to(mesh_, own(probe), kSearchRadius, memory_.at.face, state_);
+    if (!nearest.found) return {};
+    return hold({nearest.at, nearest.complete, 0});
+  }
+  Hold slide(const Vec3& probe) noexcept override { return hold(walk_mesh(mesh_, memory_.at.face, own(probe))); }
+
+  Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
+    const Vec3 a = own_of(mesh_, from, kFarthest), b = own_of(mesh_, probe, kFarthest);
+    double part = 2;
+    std::uint32_t face = 0;
+    Vec3 to = b;
+    const int most = state_.affordable(kNodes);
+    int nodes = most;
+    const bool complete = mesh_.bvh().segment(a, to, kGap, nodes, [&](std::uint32_t f) {
+      const double ha = mesh_.face(f).height(a), hb = mesh_.face(f).height(b);
+      if ((ha < 0) == (hb < 0)) return;
+      const double at = ha / (ha - hb);
+      if (!(at < part) || !mesh_.face(f).covers(a + at * (b - a), kGap)) return;
+      part = at;
+      face = f;
+      to = a + at * (b - a);
+    });
+    state_.steps += most - std::max(nodes, 0);
+    if (part > 1 || !complete) return {};
+    return hold(walk_mesh(mesh_, face, own(probe)));
+  }
+
+  Hold near_by(const Vec3& probe, double limit) noexcept override {
+    const mesh::Nearest nearest = nearest_to(mesh_, own(probe), limit / mesh_.scale(), memory_.at.face, state_);
+    return nearest.found ? hold({nearest.at, nearest.complete, 0}) : Hold{};
+  }
+
+  Vec3 normal() const noexcept override { return mesh_.face(memory_.at.face).normal; }
+  double march_step() const noexcept override { return kShortest; }  // every step may pass through a sheet
+  double domain_length() const noexcept override { return mesh_.length(); }
+
+ private:
+  Vec3 own(const Vec3& probe) const noexcept { return own_of(mesh_, probe, kReachOfWalk); }
+  Hold hold(const MeshWalk& walk) noexcept {
+    memory_.at = walk.at;
+    state_.steps += walk.faces;
+    const double off = std::fabs(mesh_.face(walk.at.face).height(walk.at.point));
+    return {true, mesh_.world(walk.at.point), off * mesh_.scale(), walk.complete ? Status::ok : Status::budget};
+  }
+
+  const mesh::TriangleMesh& mesh_;
+  WalkMemory& memory_;
+  LinkState& state_;
+};
+
+class TwoSidedMesh final : public Constraint {
+ public:
+  TwoSidedMesh(mesh::MeshPtr mesh, const SideSpec& rules) : mesh_(std::move(mesh)), rules_(rules) {}
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    auto& memory = memory_of<WalkMemory>(state);
+    memory = WalkMemory{};
+    MeshSurface surface(*mesh_, memory, state);
+    start_on(surface, rules_.at(probe, state, scratch), probe, memory.side, state);
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    auto& memory = memory_of<WalkMemory>(state);
+    MeshSurface surface(*mesh_, memory, state);
+    advance_on(surface, rules_.now(state, scratch), probe, memory.side, state);
+  }
+  bool primitive(const Vec3&, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
+    const auto& memory = memory_of<WalkMemory>(state);
+    if (!memory.side.holding) return false;
+    out = {Primitive::Kind::plane, state.proxy, mesh_->face(memory.at.face).normal};
+    return true;
+  }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const auto& memory = memory_of<WalkMemory>(state);
+    return haptics::is_sane(memory.side) && memory.at.face < mesh_->triangles().size();
+  }
+  bool has_primitive() const noexcept override { return true; }
+  double domain_length() const noexcept override { return mesh_->length(); }
+
+ private:
+  mesh::MeshPtr mesh_;
+  SideSpec rules_;
+};
+
+// ---- from one side ----
+
+struct GodMemory {
+  GodObject god;
+  Vec3 probe, proxy;
+  double residual;
+  std::uint32_t hint;  ///< a face that was near
+  Status status;
+  bool fresh;    ///< the rest means something
+  bool settled;  ///< nothing to gain from another tick at the same probe
+};
+
+class OneSidedMesh final : public Constraint {
+ public:
+  OneSidedMesh(mesh::MeshPtr mesh, const SideSpec& rules) : mesh_(std::move(mesh)), rules_(rules) {}
+
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    auto& memory = memory_of<GodMemory>(state);
+    memory = GodMemory{};
+    state.released = false;
+    const SideRules rules = rules_.at(probe, state, scratch);
+    if (is_free(probe, memory, state)) return leave(probe, 0, Status::free, memory, probe, state);
+    const Vec3 proxy = mesh_->world(memory.god.p);
+    if (rules.release > 0 && norm(probe - proxy) > rules.release) {
+      state.released = true;
+      return leave(probe, 0, Status::released, memory, probe, state);
+    }
+    leave(proxy, 0, Status::budget, memory, probe, state);
+  }
+
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    auto& memory = memory_of<GodMemory>(state);
+    const double release = rules_.now(state, scratch).release;
+    state.limit = release;
+    const bool untouched = memory.fresh && same_bits(memory.proxy, state.proxy);
+    if (untouched && memory.settled && same_bits(memory.probe, probe)) {
+      state.proxy = memory.proxy;
+      state.residual = memory.residual;
+      state.status = memory.status;
+      return;
+    }
+
+    // let go, or moved by others: which side is the probe on now
+    if (state.released || !untouched) {
+      const bool free = is_free(probe, memory, state);
+      if (state.released && !free) return leave(probe, 0, Status::released, memory, probe, state);
+      state.released = false;
+      if (free) return leave(probe, 0, Status::free, memory, probe, state);
+    }
+
+    const GodMove move = move_god_object(*mesh_, outside(), own_of(*mesh_, probe, kFarthest), state.affordable(kNodes), memory.god);
+    state.steps += move.nodes;
+    if (move.reached) return leave(probe, 0, Status::free, memory, probe, state);
+    const Vec3 proxy = mesh_->world(memory.god.p);
+    if (release > 0 && norm(probe - proxy) >= release) {
+      state.released = true;
+      return leave(probe, 0, Status::released, memory, probe, state);
+    }
+    const double residual = memory.god.count > 0 ? std::fabs(mesh_->face(memory.god.faces[0]).height(memory.god.p)) * mesh_->scale() : 0;
+    leave(proxy, residual, move.complete ? Status::ok : Status::budget, memory, probe, state);
+  }
+
+  bool primitive(const Vec3&, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
+    const auto& memory = memory_of<GodMemory>(state);
+    const GodObject& god = memory.god;
+    if (state.released || memory.status == Status::free || god.binding == 0) return false;
+    if (god.binding == 1) {
+      out = {Primitive::Kind::plane, state.proxy, god.normals[0]};
+    } else if (god.binding == 2) {
+      out = {Primitive::Kind::line, state.proxy, direction(cross(god.normals[0], god.normals[1]))};
+    } else {
+      out = {Primitive::Kind::point, state.proxy, Vec3(0.0)};
+    }
+    return true;
+  }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const auto& memory = memory_of<GodMemory>(state);
+    const std::size_t faces = mesh_->triangles().size();
+    for (const std::uint32_t face : memory.god.faces)
+      if (face >= faces) return false;
+    return memory.god.count >= 0 && memory.god.count <= GodObject::kMost && memory.god.binding >= 0 && memory.god.binding <= 3 &&
+           memory.hint < faces && is_one_of(memory.status, Status::bad_probe) && are_bools(memory.fresh, memory.settled);
+  }
+  bool has_primitive() const noexcept override { return true; }
+  double domain_length() const noexcept override { return mesh_->length(); }
+
+ private:
+  double outside() const { return rules_.free == FreeSide::above ? 1 : -1; }
+
+  /// By the nearest point: on the free side, or over an open edge. Leaves the god-object there, or at the probe.
+  bool is_free(const Vec3& probe, GodMemory& memory, LinkState& state) const noexcept {
+    const Vec3 x = own_of(*mesh_, probe, kFarthest);
+    memory.god = GodObject{};
+    memory.god.p = x;
+    const mesh::Nearest nearest = nearest_to(*mesh_, x, kSearchRadius, memory.hint, state);
+    if (!nearest.found) return true;
+    memory.hint = nearest.at.face;
+    const Vec3 normal = direction(mesh::normal_at(*mesh_, nearest.at)) * outside();
+    if (mesh::on_border(*mesh_, nearest.at) || dot(normal, x - nearest.at.point) >= 0) return true;
+    memory.god.p = nearest.at.point + kGap * normal;
+    memory.god.faces[0] = nearest.at.face;
+    memory.god.count = 1;
+    return false;
+  }
+
+  void leave(const Vec3& proxy, double residual, Status status, GodMemory& memory, const Vec3& probe, LinkState& state) const noexcept {
+    if (status == Status::free || status == Status::released) memory.god.binding = memory.god.count = 0;
+    state.proxy = memory.proxy = proxy;
+    state.residual = memory.residual = residual;
+    state.status = memory.status = status;
+    memory.probe = probe;
+    memory.fresh = true;
+    memory.settled = status != Status::budget;
+  }
+
+  mesh::MeshPtr mesh_;
+  SideSpec rules_;
+};
+
+Result<std::shared_ptr<const Constraint>> build_mesh(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(const std::string name, json::require_string(link, "mesh"));
+  CATENA_TRY(mesh::MeshPtr mesh, context.mesh(*link.find("mesh"), name));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
+  if (rules.free == FreeSide::none) return std::shared_ptr<const Constraint>(std::make_shared<TwoSidedMesh>(std::move(mesh), rules));
+  return std::shared_ptr<const Constraint>(std::make_shared<OneSidedMesh>(std::move(mesh), rules));
+}
+
+}  // namespace
+
+ConstraintType mesh_constraint() {
+  return {"mesh",
+          "section 3; god-object",
+          {{"mesh", "string", true, "name of a triangle mesh of the scene"},
+           {"free", "string", false, "the side where the hand moves freely: above is where the normals point to, outside", kFreeSchema}},
+          build_mesh,
+          true};
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,120 @@
+#include "haptics/constraints/rules/snap.h"
+
+#include <fmt/format.h>
+
+#include "haptics/constraints/rules/read_parameter.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kReleasePart = 2, kMostSnap = 0.9;
+
+constexpr int kMostBeforeSearch = 64;  // fetches: with more already spent, the search waits for the next tick
+
+struct SnapMemory {
+  Vec3 hidden{0.0};  ///< the constraint's proxy while apart
+  bool apart;
+};
+
+struct Distances {
+  double snap, release;
+};
+
+class Snap final : public Constraint {
+ public:
+  Snap(std::shared_ptr<const Constraint> inner, const SnapSpec& spec) : inner_(std::move(inner)), spec_(spec) {}
+
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    SnapMemory& memory = outer_of<SnapMemory>(state);
+    memory = SnapMemory{};
+    memory.apart = spec_.has_snap;
+    if (!memory.apart) return inner_->start(probe, state, scratch);
+    state.proxy = memory.hidden = probe;
+    state.released = true;
+    state.status = Status::released;
+  }
+
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    SnapMemory& memory = outer_of<SnapMemory>(state);
+    const Distances distances = at_last_proxy(state, scratch);
+    state.released = false;
+    state.limit = 0;
+    if (!memory.apart) {
+      inner_->advance(probe, state, scratch);
+      const bool stays = state.status != Status::no_surface && !(norm(probe - state.proxy) >= distances.release);
+      if (stays) return settle(memory, distances, state);
+      memory.hidden = state.proxy;
+    }
+
+    // apart: where is the feature, and is it within reach; a search out of budget has found nothing
+    const bool lets_go = !memory.apart;
+    state.proxy = memory.hidden;
+    const bool affordable = state.evaluations <= (lets_go ? kMostBeforeSearch : kEvaluationCap - 1);
+    if (affordable) inner_->seek(probe, state, scratch);
+    const bool searched = affordable && state.evaluations < kEvaluationCap && state.status != Status::budget;
+    if (searched && norm(probe - state.proxy) <= distances.snap) {
+      inner_->advance(probe, state, scratch);
+      if (!(norm(probe - state.proxy) >= distances.release)) return settle(memory, distances, state);
+    }
+    memory.hidden = state.proxy;
+    memory.apart = true;
+    state.proxy = probe;
+    state.residual = 0;
+    state.limit = distances.release;
+    state.released = searched;
+    state.status = state.released ? Status::released : Status::budget;
+  }
+
+  bool primitive(const Vec3& at, LinkState& state, LinkScratch& scratch, Primitive& out) const noexcept override {
+    return !outer_of<SnapMemory>(state).apart && inner_->primitive(at, state, scratch, out);
+  }
+  bool is_sane(const LinkState& state) const noexcept override {
+    return are_bools(outer_of<SnapMemory>(state).apart) && inner_->is_sane(state);
+  }
+  bool has_primitive() const noexcept override { return inner_->has_primitive(); }
+  bool is_source() const noexcept override { return inner_->is_source(); }
+  double domain_length() const noexcept override { return inner_->domain_length(); }
+
+ private:
+  Distances at_last_proxy(LinkState& state, LinkScratch& scratch) const noexcept {
+    const auto ask = [&](const Parameter& parameter) { return parameter.at(state.proxy, scratch.parameter, state.evaluations); };
+    const double snap = spec_.has_snap ? ask(spec_.snap) : 0;
+    const double release = spec_.has_release ? ask(spec_.release) : kReleasePart * snap;
+    return {spec_.has_snap ? std::fmin(snap, kMostSnap * release) : kRearmPart * release, release};
+  }
+
+  /// Held: what the constraint says. Without a feature it is apart, but says so itself.
+  static void settle(SnapMemory& memory, const Distances& distances, LinkState& state) noexcept {
+    memory.apart = state.status == Status::no_surface;
+    memory.hidden = state.proxy;
+    state.released = state.status == Status::released;
+    if (!(state.limit > 0 && state.limit < distances.release)) state.limit = distances.release;
+  }
+
+  std::shared_ptr<const Constraint> inner_;
+  SnapSpec spec_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Constraint> make_snap(std::shared_ptr<const Constraint> inner, const SnapSpec& spec) {
+  CATENA_ASSERT(inner && (spec.has_snap || spec.has_release));
+  return std::make_shared<Snap>(std::move(inner), spec);
+}
+
+Result<std::shared_ptr<const Constraint>> wrap_snap(const json::Node& link, bool releases_itself, std::shared_ptr<const Constraint> inner,
+                                                    const BuildContext& context) {
+  SnapSpec spec;
+  spec.has_snap = link.find("snap") != nullptr;
+  spec.has_release = link.find("release") != nullptr;
+  if (!spec.has_snap && (releases_itself || !spec.has_release)) return inner;
+  CATENA_TRY(spec.snap, get_parameter(link, "snap", 0.0, json::Range::positive, context));
+  CATENA_TRY(spec.release, get_parameter(link, "release", 0.0, json::Range::positive, context));
+  const bool both = spec.has_snap && spec.has_release && spec.snap.is_constant() && spec.release.is_constant();
+  if (both && !(spec.release.least() > spec.snap.most()))
+    return json::error_at(*link.find("release"), fmt::format("\"release\" is {}; a number > \"snap\", which is {}, was expected",
+                                                             spec.release.least(), spec.snap.most()));
+  return make_snap(std::move(inner), spec);
+}
+
+}  // namespace catena::haptics

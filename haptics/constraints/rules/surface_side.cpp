@@ -1,0 +1,221 @@
+#include "haptics/constraints/rules/surface_side.h"
+
+#include <limits>
+
+#include "haptics/constraints/rules/read_parameter.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kHandStep = 0.02;  // of L: longest step, and deepest hold, for thin sheets
+constexpr double kThrough = 1e-6;   // of L: closer than this to the face, a probe on the free side has come out of it
+
+bool is_free(const SideRules& rules, double value) {
+  return rules.free == FreeSide::above ? value >= 0 : rules.free == FreeSide::below ? value <= 0 : false;
+}
+
+/// True when the probe lies behind the held point, seen from the free side.
+bool is_behind(const Surface& surface, const SideRules& rules, const Vec3& probe, const Vec3& proxy) {
+  const double above = dot(surface.normal(), probe - proxy);
+  return rules.free == FreeSide::above ? above < 0 : above > 0;
+}
+
+/// Passes the probe through where the field is not finite.
+void leave_broken(const Vec3& probe, LinkState& state) {
+  state.proxy = probe;
+  state.residual = 0;
+  stop_link(state, Status::critical, Reason::not_finite);
+}
+
+void leave(const Vec3& proxy, double residual, Status status, LinkState& state, Reason reason = Reason::none) {
+  state.proxy = proxy;
+  state.residual = residual;
+  stop_link(state, status, reason);
+}
+
+void remember(const Vec3& probe, const SideValue& side, SideMemory& memory, const LinkState& state) {
+  memory.probe = probe;
+  memory.proxy = state.proxy;
+  memory.value = side.value;
+  memory.known = side.known;
+  memory.residual = state.residual;
+  memory.status = state.status;
+  memory.reason = state.reason;
+  memory.fresh = true;
+  memory.settled = state.status != Status::budget;
+}
+
+/// Puts the proxy on what was found, lets go if that is too far, passes the probe through if nothing was.
+void take(const Hold& hold, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
+  if (!hold.found || !is_finite(hold.proxy)) {
+    memory.holding = memory.sheet = false;
+    if (hold.found)
+      leave_broken(probe, state);
+    else
+      leave(probe, 0, hold.status == Status::budget ? Status::budget : Status::no_surface, state);
+    return;
+  }
+  if (rules.release > 0 && norm(probe - hold.proxy) >= rules.release) {
+    memory.holding = memory.sheet = false;
+    state.released = true;
+    leave(probe, 0, Status::released, state);
+    return;
+  }
+  // a sheet taken hold of from afar pulls by the ramp
+  if (!memory.holding && norm(probe - hold.proxy) > travel_of(memory, probe, 0, state)) state.weight = 0;
+  memory.holding = true;
+  leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
+}
+
+/// One step of the way to the probe from a sheet that holds no more. True: it is there.
+bool glide(const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) {
+  const Vec3 way = probe - memory.proxy;
+  const double far = norm(way), travel = travel_of(memory, probe, far, state);
+  if (!(far > travel)) {
+    memory.gliding = false;
+    return true;
+  }
+  memory.holding = memory.sheet = false;
+  if (rules.release > 0 && far >= rules.release) {
+    memory.gliding = false;
+    state.released = true;
+    leave(probe, 0, Status::released, state);
+  } else {
+    memory.gliding = true;
+    leave(memory.proxy + way * (travel / far), 0, Status::budget, state);
+  }
+  return false;
+}
+
+/// A thin sheet between the probe, on the free side, and where it came from: the held point on its near face, if any.
+Hold catch_sheet(Surface& surface, const SideRules& rules, const Vec3& probe, const SideMemory& memory) {
+  const double reach = kHandStep * surface.domain_length();
+  Hold hold;
+  if (memory.holding) {
+    // caught before, or pushed through within the sheet
+    const bool pushed = surface.follows_through() || (surface.march_step() > 0 && norm(probe - memory.probe) <= reach);
+    if (memory.sheet || pushed) hold = surface.slide(probe);
+    if (!memory.sheet && norm(probe - hold.proxy) <= kThrough * surface.domain_length()) hold.found = false;
+  } else if (memory.fresh && memory.status == Status::free && memory.known && surface.march_step() > 0) {
+    const double step = norm(probe - memory.probe);
+    if (step > surface.march_step() && step <= reach) hold = surface.cross(memory.probe, probe);
+  }
+  if (hold.found && (norm(probe - hold.proxy) > reach || !is_behind(surface, rules, probe, hold.proxy))) hold.found = false;
+  return hold;
+}
+
+}  // namespace
+
+double travel_of(const SideMemory& memory, const Vec3& probe, double gap, const LinkState& state) noexcept {
+  return memory.fresh ? state.travel(norm(probe - memory.probe), gap) : std::numeric_limits<double>::infinity();
+}
+
+Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context) {
+  SideSpec spec;
+  if (has_sides) {
+    CATENA_TRY(const int side, json::get_choice(link, "free", 0, {"none", "above", "below"}));
+    spec.free = static_cast<FreeSide>(side);
+  }
+  if (link.find("snap") != nullptr) return spec;  // snap.h lets go
+  CATENA_TRY(spec.release, get_parameter(link, "release", 0.0, json::Range::positive, context));
+  return spec;
+}
+
+void start_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
+  memory = SideMemory{};
+  state.released = false;
+  SideValue side;
+  leave(probe, 0, Status::free, state);
+  if (rules.free != FreeSide::none) {
+    side = surface.side(probe);
+    if (!side.known || is_free(rules, side.value)) return;
+  }
+  const Hold hold = surface.place(probe);
+  if (!hold.found && hold.status == Status::budget) state.status = Status::budget;
+  if (!hold.found || !is_finite(hold.proxy)) return;
+  if (rules.free != FreeSide::none && rules.release > 0 && norm(probe - hold.proxy) > rules.release) {
+    state.released = true;
+    return;
+  }
+  memory.holding = true;
+  leave(hold.proxy, hold.residual, hold.status, state, hold.reason);
+}
+
+void advance_on(Surface& surface, const SideRules& rules, const Vec3& probe, SideMemory& memory, LinkState& state) noexcept {
+  state.limit = rules.release;
+  // a resting probe, or a proxy that somebody else has moved meanwhile
+  const bool untouched = !memory.fresh || same_bits(memory.proxy, state.proxy);
+  if (memory.fresh && untouched && memory.settled && same_bits(memory.probe, probe)) {
+    leave(memory.proxy, memory.residual, memory.status, state, memory.reason);
+    return;
+  }
+  if (!untouched) {
+    const bool released = state.released;
+    memory = SideMemory{};
+    state.released = released;
+  }
+
+  // on which side, and does a released link take hold again
+  const bool one_sided = rules.free != FreeSide::none;
+  SideValue side;
+  if (one_sided || state.released) side = surface.side(probe);
+  const bool free = one_sided && side.known && is_free(rules, side.value);
+  Hold hold;
+  bool have_hold = false;
+  if (state.released) {
+    if (!one_sided) {
+      const bool both = memory.fresh && memory.known && side.known;
+      const bool far = memory.fresh && surface.march_step() > 0 && norm(probe - memory.probe) > surface.march_step();
+      if (both && ((memory.value < 0) != (side.value < 0) || far)) hold = surface.cross(memory.probe, probe);
+      if (!hold.found) hold = surface.near_by(probe, kRearmPart * rules.release);
+      have_hold = hold.found;
+    }
+    if (!free && !have_hold) {
+      leave(probe, 0, Status::released, state);
+      remember(probe, side, memory, state);
+      return;
+    }
+    state.released = memory.holding = memory.sheet = false;
+  }
+
+  if (memory.gliding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
+
+  // free motion, but not through a thin sheet
+  if (free) {
+    hold = catch_sheet(surface, rules, probe, memory);
+    memory.sheet = hold.found;
+    if (!hold.found) {
+      if (memory.holding && !glide(rules, probe, memory, state)) return remember(probe, side, memory, state);
+      memory.holding = false;
+      leave(probe, 0, Status::free, state);
+      remember(probe, side, memory, state);
+      return;
+    }
+    have_hold = true;
+  }
+
+  // nothing is known of the side here: what is held stays held, what is free stays free
+  if (one_sided && !side.known && !memory.holding) {
+    if (side.broken)
+      leave_broken(probe, state);
+    else
+      leave(probe, 0, Status::free, state);
+    remember(probe, side, memory, state);
+    return;
+  }
+
+  // hold
+  if (!have_hold) {
+    if (memory.holding) {
+      hold = surface.slide(probe);
+    } else {
+      if (one_sided && memory.fresh) hold = surface.cross(memory.probe, probe);
+      if (!hold.found) hold = surface.place(probe);
+    }
+  }
+  take(hold, rules, probe, memory, state);
+  if (state.released && !side.known) side = surface.side(probe);
+  remember(probe, side, memory, state);
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,97 @@
+/// A constraint whose closest point is a formula: the rules of surface_side.h around a shape that is plain data. No field fetch.
+///   ClosedForm<S>  S: a Surface made in every tick from (const S::Shape&, S::Memory&, const SideMemory&), with
+///                  bool primitive(at, out). S::Memory is kept from tick to tick (plain data, zero at start); static
+///                  bool is_sane(shape, memory): of memory from a file, see Constraint::is_sane.
+///   Feature<S>     a Surface without sides and memory: Shape gives closest(probe), primitive(at) and length().
+/// `seek` is `start` with the memory kept. A primitive is given on the free side too, but none where the link has let go.
+/// Haptic thread: no allocation, lock, or throw.
+#pragma once
+#include "haptics/constraints/rules/surface_side.h"
+
+namespace catena::haptics {
+
+inline constexpr double kSceneLength = 4;  ///< L where no field says otherwise: the box -2..2
+
+template <class S>
+class ClosedForm final : public Constraint {
+ public:
+  ClosedForm(typename S::Shape shape, const SideSpec& rules) : shape_(std::move(shape)), rules_(rules) {}
+
+  void start(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    memory_of<Memory>(state) = Memory{};
+    seek(probe, state, scratch);
+  }
+  void seek(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    Memory& memory = memory_of<Memory>(state);
+    S surface(shape_, memory.own, memory.side);
+    start_on(surface, rules_.at(probe, state, scratch), probe, memory.side, state);
+    count(surface, state);
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept override {
+    Memory& memory = memory_of<Memory>(state);
+    S surface(shape_, memory.own, memory.side);
+    advance_on(surface, rules_.now(state, scratch), probe, memory.side, state);
+    count(surface, state);
+  }
+  bool primitive(const Vec3& at, LinkState& state, LinkScratch&, Primitive& out) const noexcept override {
+    if (state.released || state.status == Status::no_surface) return false;
+    Memory copy = memory_of<Memory>(state);
+    return S(shape_, copy.own, copy.side).primitive(at, out);
+  }
+  bool has_primitive() const noexcept override { return true; }
+  bool is_sane(const LinkState& state) const noexcept override {
+    const Memory& memory = memory_of<Memory>(state);
+    return haptics::is_sane(memory.side) && S::is_sane(shape_, memory.own);
+  }
+  double domain_length() const noexcept override {
+    Memory none{};
+    return S(shape_, none.own, none.side).domain_length();
+  }
+
+ private:
+  static void count(const S& surface, LinkState& state) noexcept {
+    if constexpr (requires { surface.work(); }) state.steps += surface.work();
+  }
+  struct Memory {
+    SideMemory side;
+    typename S::Memory own;
+  };
+  typename S::Shape shape_;
+  SideSpec rules_;
+};
+
+struct NoMemory {};
+
+template <class ShapeType>
+class Feature final : public Surface {
+ public:
+  using Shape = ShapeType;
+  using Memory = NoMemory;
+  Feature(const Shape& shape, Memory&, const SideMemory&) : shape_(shape) {}
+  static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
+
+  SideValue side(const Vec3&) noexcept override { return {}; }
+  Hold place(const Vec3& probe) noexcept override { return shape_.closest(probe); }
+  Hold slide(const Vec3& probe) noexcept override { return shape_.closest(probe); }
+  Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
+  Hold near_by(const Vec3& probe, double limit) noexcept override {
+    const Hold hold = shape_.closest(probe);
+    return norm(probe - hold.proxy) <= limit ? hold : Hold{};
+  }
+  Vec3 normal() const noexcept override { return Vec3(0.0); }
+  double domain_length() const noexcept override { return shape_.length(); }
+  bool primitive(const Vec3& at, Primitive& out) const noexcept {
+    out = shape_.primitive(at);
+    return true;
+  }
+
+ private:
+  const Shape& shape_;
+};
+
+template <class S>
+std::shared_ptr<const Constraint> make_closed_form(typename S::Shape shape, const SideSpec& rules) {
+  return std::make_shared<ClosedForm<S>>(std::move(shape), rules);
+}
+
+}  // namespace catena::haptics

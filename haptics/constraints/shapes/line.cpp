@@ -1,0 +1,41 @@
+#include "haptics/constraints/shapes/line.h"
+
+#include "haptics/constraints/shapes/closed_form.h"
+
+namespace catena::haptics {
+namespace {
+
+struct LineShape {
+  Vec3 point, axis;  // axis: unit
+
+  Hold closest(const Vec3& probe) const noexcept {
+    const double s = dot(axis, probe - point);
+    const Vec3 proxy = point + axis * s, away = proxy - point;
+    return {true, proxy, norm(away - axis * dot(axis, away)), Status::ok};
+  }
+  Primitive primitive(const Vec3& at) const noexcept { return {Primitive::Kind::line, closest(at).proxy, axis}; }
+  double length() const noexcept { return kSceneLength; }
+};
+
+Result<std::shared_ptr<const Constraint>> build_line(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(const Vec3 point, json::require_vec3(link, "point"));
+  CATENA_TRY(const Vec3 given, json::require_vec3(link, "direction"));
+  const Vec3 axis = direction(given);
+  if (!(max_abs(axis) > 0))
+    return json::error_at(*link.find("direction"), "\"direction\" is zero; a vector of non-zero length was expected");
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
+  return make_closed_form<Feature<LineShape>>({point, axis}, rules);
+}
+
+}  // namespace
+
+ConstraintType line_constraint() {
+  return {"line",
+          "section 3",
+          {{"point", "array", true, "a point of the line, world units", kVec3Schema},
+           {"direction", "array", true, "its direction, any length but zero", kVec3Schema}},
+          build_line,
+          true};
+}
+
+}  // namespace catena::haptics

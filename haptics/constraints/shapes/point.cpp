@@ -1,0 +1,27 @@
+#include "haptics/constraints/shapes/point.h"
+
+#include "haptics/constraints/shapes/closed_form.h"
+
+namespace catena::haptics {
+namespace {
+
+struct PointShape {
+  Vec3 position;
+  Hold closest(const Vec3&) const noexcept { return {true, position, 0, Status::ok}; }
+  Primitive primitive(const Vec3&) const noexcept { return {Primitive::Kind::point, position, Vec3(0.0)}; }
+  double length() const noexcept { return kSceneLength; }
+};
+
+Result<std::shared_ptr<const Constraint>> build_point(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(const Vec3 position, json::require_vec3(link, "position"));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
+  return make_closed_form<Feature<PointShape>>({position}, rules);
+}
+
+}  // namespace
+
+ConstraintType point_constraint() {
+  return {"point", "section 3", {{"position", "array", true, "the point, world units", kVec3Schema}}, build_point, true};
+}
+
+}  // namespace catena::haptics
