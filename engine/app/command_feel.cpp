@@ -36,8 +36,8 @@ struct FeelOptions {
 };
 
 /// The bounds that `view` fits its workspace to; not needed where the scene states its own.
-Result<render::Bounds> bounds_of(scene::Scene& scene) {
-  render::Bounds bounds;
+Result<Bounds> bounds_of(scene::Scene& scene) {
+  Bounds bounds;
   if (scene.workspace.given) return bounds;
   CATENA_TRY([[maybe_unused]] const auto felt, haptics::extract_program(scene));
   CATENA_TRY(const render::FramePacket packet, render::extract_frame(scene, 4, 3));
@@ -127,7 +127,7 @@ Outcome feel(const FeelOptions& options) {
   const Interrupt interrupt;
   const CrashGuard crash_guard(*hand.device);
   if (!hand.note.empty()) fmt::print(stderr, "catena: {}\n", hand.note);
-  CATENA_TRY(const render::Bounds bounds, bounds_of(scene));
+  CATENA_TRY(const Bounds bounds, bounds_of(scene));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, program_for(scene, hand, bounds));
 
   haptics::ServoOptions servo_options;

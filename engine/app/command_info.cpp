@@ -57,8 +57,8 @@ Outcome describe_file(const std::string& path) {
     if (!units.length.empty()) fmt::print("  lengths in   {}\n", printable(units.length));
     const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
     const Vec3 edges(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1), static_cast<double>(g.size.z - 1));
-    render::Bounds box;
-    for (int i = 0; i < 8; ++i) box.add(g.mapping.world_from_index(lowest + edges * Vec3(i & 1, i >> 1 & 1, i >> 2)));
+    Bounds box;
+    for (int i = 0; i < 8; ++i) box.add(g.mapping.world_from_index(Bounds{lowest, lowest + edges}.corner(i)));
     fmt::print("  world box    {} .. {}\n", text(box.lo), text(box.hi));
     fmt::print("  active       {} voxels\n", g.stats.active_voxels);
     if (g.usable) {

@@ -13,6 +13,7 @@
 #include "engine/field/cell.h"
 #include "engine/field/line_axis.h"
 #include "engine/field/mapping.h"
+#include "engine/geometry/bounds.h"
 
 namespace catena::field {
 
@@ -50,6 +51,8 @@ class Field {
   std::uint64_t version() const { return version_; }  ///< unique in the process; the key of mirrors
   const Mapping& mapping() const { return mapping_; }
   const Box& index_box() const { return index_box_; }    ///< of voxel centres; analytic: the box -2..2
+  Vec3 corner(int i) const;                              ///< of the domain, world: i + 2 j + 4 k by index
+  Bounds world_bounds() const;                           ///< of all eight
   double length() const { return length_; }              ///< L: the longest edge of the domain box, world units; analytic: 4
   double longest_edge() const { return longest_edge_; }  ///< of a voxel, world units
   virtual bool is_grid() const noexcept { return false; }

@@ -74,10 +74,7 @@ std::vector<Vec3> seeds_on_isosurface(const field::ScalarField& field, double le
   const field::Mapping& mapping = field.mapping();
   const Vec3 centre = mapping.world_from_index(0.5 * (box.lo + box.hi));
   double radius = 0;
-  for (int c = 0; c < 8; ++c) {
-    const Vec3 corner((c & 1) ? box.hi.x : box.lo.x, (c & 2) ? box.hi.y : box.lo.y, (c & 4) ? box.hi.z : box.lo.z);
-    radius = std::max(radius, norm(mapping.world_from_index(corner) - centre));
-  }
+  for (int c = 0; c < 8; ++c) radius = std::max(radius, norm(field.corner(c) - centre));
   const double step = field.is_grid() ? 0.5 * mapping.smallest_edge() : field.length() / 128;
 
   std::vector<Vec3> seeds;

@@ -9,9 +9,8 @@ namespace {
 std::string triple(const Vec3& v) { return "(" + to_text(v.x) + ", " + to_text(v.y) + ", " + to_text(v.z) + ")"; }
 
 std::string domain_text(const field::Field& field) {
-  const field::Box& box = field.index_box();
-  const Vec3 a = field.mapping().world_from_index(box.lo), b = field.mapping().world_from_index(box.hi);
-  return triple(a) + " to " + triple(b);
+  const Bounds box = field.world_bounds();
+  return triple(box.lo) + " to " + triple(box.hi);
 }
 
 Error no_direction(const Flow& flow, const Vec3& seed, Stop stop) {

@@ -22,16 +22,6 @@ namespace {
 constexpr double kCursorShare = 0.008;  // fitted glyph radius by the diagonal of what is drawn
 constexpr double kCursorOverTube = 2;
 
-Bounds domain_bounds(const field::Field& field) {
-  Bounds bounds;
-  const field::Box& box = field.index_box();
-  Bounds index;
-  index.add(box.lo);
-  index.add(box.hi);
-  for (int i = 0; i < 8; ++i) bounds.add(field.mapping().world_from_index(index.corner(i)));
-  return bounds;
-}
-
 /// The scalar grid that the eye sees of a field.
 Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene, scene::Entity field, const json::Node& where,
                                                             const char* what) {
@@ -99,7 +89,7 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
   if (drawn.empty()) {
     // nothing but the cursor: its size follows the fields and meshes that the hand feels
     scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
-      if (const field::Field* field = source.loaded.get()) drawn.add(domain_bounds(*field));
+      if (const field::Field* field = source.loaded.get()) drawn.add(field->world_bounds());
     });
     scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
       if (!source.loaded) return;
@@ -138,9 +128,9 @@ void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) 
 
 Bounds data_bounds(const FramePacket& packet) {
   Bounds bounds;
-  for (const VolumeItem& volume : packet.volumes) bounds.add(domain_bounds(*volume.grid));
-  for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(domain_bounds(*surface.grid));
-  for (const SliceItem& slice : packet.slices) bounds.add(domain_bounds(*slice.grid));
+  for (const VolumeItem& volume : packet.volumes) bounds.add(volume.grid->world_bounds());
+  for (const IsosurfaceItem& surface : packet.isosurfaces) bounds.add(surface.grid->world_bounds());
+  for (const SliceItem& slice : packet.slices) bounds.add(slice.grid->world_bounds());
   for (const MeshItem& mesh : packet.meshes)
     for (const Vec3& p : mesh.geometry->vertices) bounds.add(p);
   return bounds;

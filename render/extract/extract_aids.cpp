@@ -33,10 +33,7 @@ Result<Corners> corners_of(scene::Scene& scene, scene::Entity named, const json:
   }
   CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, named, where));
   const field::Field* field = any.scalar ? static_cast<const field::Field*>(any.scalar.get()) : any.vector.get();
-  Bounds index;
-  index.add(field->index_box().lo);
-  index.add(field->index_box().hi);
-  for (int i = 0; i < 8; ++i) corners[i] = field->mapping().world_from_index(index.corner(i));
+  for (int i = 0; i < 8; ++i) corners[i] = field->corner(i);
   return corners;
 }
 

@@ -78,12 +78,10 @@ Result<std::shared_ptr<const field::ScalarGrid>> sliced_grid(scene::Scene& scene
 
 /// Whether the plane meets the domain.
 bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
-  const field::Box& box = grid.index_box();
   const Vec3 normal = direction(slice.normal);
   double least = HUGE_VAL, most = -HUGE_VAL;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 corner{(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z};
-    const double distance = dot(normal, grid.mapping().world_from_index(corner) - slice.point);
+    const double distance = dot(normal, grid.corner(i) - slice.point);
     least = std::min(least, distance);
     most = std::max(most, distance);
   }

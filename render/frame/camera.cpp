@@ -46,20 +46,6 @@ void set_depth_range(Camera& camera, const Bounds& bounds, double fallback_dista
 
 }  // namespace
 
-void Bounds::add(const Vec3& p, double radius) {
-  if (!is_finite(p)) return;
-  for (int i = 0; i < 3; ++i) {
-    lo[i] = std::min(lo[i], p[i] - radius);
-    hi[i] = std::max(hi[i], p[i] + radius);
-  }
-}
-
-void Bounds::add(const Bounds& other) {
-  if (other.empty()) return;
-  add(other.lo);
-  add(other.hi);
-}
-
 double frustum_aspect(const View& view, double width_px, double height_px) {
   if (view.aspect > 0) return view.aspect;
   const Window& w = view.window;

@@ -10,23 +10,12 @@
 #include <limits>
 #include <optional>
 
+#include "engine/geometry/bounds.h"
 #include "render/frame/frame_packet.h"
 
 namespace catena::render {
 
 using Mat4 = glm::dmat4;
-
-/// A box along the world's axes; empty until something finite is added.
-struct Bounds {
-  Vec3 lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
-
-  bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
-  Vec3 centre() const { return 0.5 * lo + 0.5 * hi; }
-  double diagonal() const { return empty() ? 0 : norm(hi - lo); }
-  Vec3 corner(int i) const { return {(i & 1) ? hi.x : lo.x, (i & 2) ? hi.y : lo.y, (i & 4) ? hi.z : lo.z}; }
-  void add(const Vec3& p, double radius = 0);
-  void add(const Bounds& other);
-};
 
 struct Camera {
   Vec3 position{0.0};

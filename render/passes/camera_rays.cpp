@@ -145,13 +145,4 @@ shared::ClipData CameraRays::plane(const ClipPlane& plane) const {
   return clip_data;
 }
 
-Bounds grid_bounds(const field::ScalarGrid& grid) {
-  const field::Box& box = grid.index_box();
-  Bounds bounds;
-  for (int i = 0; i < 8; ++i)
-    bounds.add(
-        grid.mapping().world_from_index({(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z}));
-  return bounds;
-}
-
 }  // namespace catena::render

@@ -30,7 +30,4 @@ struct CameraRays {
   shared::ClipData plane(const ClipPlane& plane) const;
 };
 
-/// The corners of a grid's domain.
-Bounds grid_bounds(const field::ScalarGrid& grid);
-
 }  // namespace catena::render

@@ -29,11 +29,7 @@ VkRect2D covered_area(std::span<const Vec3> points, const Camera& camera) {
 VkRect2D covered_area(std::span<const field::ScalarGrid* const> grids, const Camera& camera) {
   std::vector<Vec3> corners;
   for (const field::ScalarGrid* grid : grids)
-    for (int i = 0; i < 8; ++i) {
-      const field::Box& box = grid->index_box();
-      const Vec3 index{(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z};
-      corners.push_back(grid->mapping().world_from_index(index));
-    }
+    for (int i = 0; i < 8; ++i) corners.push_back(grid->corner(i));
   return covered_area(corners, camera);
 }
 

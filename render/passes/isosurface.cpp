@@ -127,7 +127,7 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
 
 Bounds IsosurfacePass::bounds() const {
   Bounds all;
-  for (const Surface& surface : surfaces_) all.add(grid_bounds(*surface.item.grid));
+  for (const Surface& surface : surfaces_) all.add(surface.item.grid->world_bounds());
   return all;
 }
 

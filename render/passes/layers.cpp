@@ -119,7 +119,7 @@ Outcome LayersPass::prepare(Frame& frame) {
 Bounds LayersPass::bounds() const {
   Bounds all;
   for (const TranslucentMesh& mesh : meshes_) all.add(mesh.triangles.bounds());
-  for (const Slice& slice : slices_) all.add(grid_bounds(slice.grid()));
+  for (const Slice& slice : slices_) all.add(slice.grid().world_bounds());
   return all;
 }
 

@@ -140,7 +140,7 @@ Outcome RaycastPass::prepare(Frame& frame) {
 
 Bounds RaycastPass::bounds() const {
   Bounds all;
-  for (const field::ScalarGrid* grid : grids_) all.add(grid_bounds(*grid));
+  for (const field::ScalarGrid* grid : grids_) all.add(grid->world_bounds());
   return all;
 }
 

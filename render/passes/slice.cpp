@@ -137,7 +137,7 @@ class SlicePass final : public Pass {
   Outcome prepare(Frame& frame) override { return prepare_slices(frame, slices_, is_opaque); }
   Bounds bounds() const override {
     Bounds all;
-    for (const Slice& slice : slices_) all.add(grid_bounds(slice.grid()));
+    for (const Slice& slice : slices_) all.add(slice.grid().world_bounds());
     return all;
   }
   Outcome record(vk::Commands& commands, Frame& frame) override {

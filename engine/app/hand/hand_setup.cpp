@@ -4,20 +4,20 @@
 
 namespace catena::app {
 
-void fit_workspace(scene::Scene& scene, const render::Bounds& bounds, double reach_m, const Vec3& centre_m) {
+void fit_workspace(scene::Scene& scene, const Bounds& bounds, double reach_m, const Vec3& centre_m) {
   if (!scene.coupling.ramp_s) scene.coupling.ramp_s = 0.02;
   if (scene.workspace.given) {
     scene.workspace.origin -= scene.workspace.rotation * centre_m / scene.workspace.metres_per_unit;
     return;
   }
   if (bounds.empty()) return;
-  const double edge = max_abs(bounds.hi - bounds.lo);
+  const double edge = bounds.longest_edge();
   if (!(edge > 0)) return;
   scene.workspace.metres_per_unit = reach_m / edge;
   scene.workspace.origin = bounds.centre() - scene.workspace.rotation * centre_m * (edge / reach_m);
 }
 
-Vec3 first_probe(const scene::Scene& scene, const render::Bounds& bounds) {
+Vec3 first_probe(const scene::Scene& scene, const Bounds& bounds) {
   if (scene.cursor && scene.world.has<scene::Cursor>(scene.cursor)) {
     const scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
     if (cursor.visible && is_finite(cursor.probe)) return cursor.probe;
@@ -35,15 +35,10 @@ Vec3 device_from_world(const scene::Workspace& workspace, const Vec3& world) {
   return ((world - workspace.origin) * workspace.rotation) * workspace.metres_per_unit;  // v * R = R^T v
 }
 
-render::Bounds loaded_bounds(const scene::Scene& scene) {
-  render::Bounds bounds;
+Bounds loaded_bounds(const scene::Scene& scene) {
+  Bounds bounds;
   scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
-    const field::Field* field = source.loaded.get();
-    if (field == nullptr) return;
-    render::Bounds index;
-    index.add(field->index_box().lo);
-    index.add(field->index_box().hi);
-    for (int i = 0; i < 8; ++i) bounds.add(field->mapping().world_from_index(index.corner(i)));
+    if (const field::Field* field = source.loaded.get()) bounds.add(field->world_bounds());
   });
   return bounds;
 }

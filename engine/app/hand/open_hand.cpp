@@ -33,7 +33,7 @@ Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, s
   return hand;
 }
 
-Result<std::shared_ptr<const haptics::Program>> program_for(scene::Scene& scene, const OpenHand& hand, const render::Bounds& bounds) {
+Result<std::shared_ptr<const haptics::Program>> program_for(scene::Scene& scene, const OpenHand& hand, const Bounds& bounds) {
   const haptics::DeviceCapabilities& device = hand.device->capabilities();
   fit_workspace(scene, bounds, device.workspace_m, device.workspace_centre_m);
   return haptics::extract_program(scene, hand.limits);

@@ -29,7 +29,7 @@ Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, s
                            const std::string& firmware = {});
 
 /// Fits the workspace to the device's reach and builds the program. `bounds`: of what is drawn and felt.
-Result<std::shared_ptr<const haptics::Program>> program_for(scene::Scene& scene, const OpenHand& hand, const render::Bounds& bounds);
+Result<std::shared_ptr<const haptics::Program>> program_for(scene::Scene& scene, const OpenHand& hand, const Bounds& bounds);
 
 /// The command line's --realtime and --cpu.
 struct RealtimeChoice {

@@ -31,7 +31,7 @@ Result<CameraMotion> CameraMotion::make(const RenderOptions& o) {
   return motion;
 }
 
-render::View CameraMotion::at(const render::View& base, const render::Bounds& bounds, double aspect, int frame) const {
+render::View CameraMotion::at(const render::View& base, const Bounds& bounds, double aspect, int frame) const {
   render::View view = base;
   if (path_) view = path_->at(view, path_->start_s() + (frames_ > 1 ? path_->duration_s() * frame / (frames_ - 1) : 0));
   if (towards_eye_) {

@@ -16,7 +16,7 @@ class CameraMotion {
   /// --frames, or what --camera's duration at --fps comes to, or 1.
   int frames() const { return frames_; }
   /// Of frame 0 .. frames() - 1. `base`: the scene's view; `bounds`: of all that is drawn.
-  render::View at(const render::View& base, const render::Bounds& bounds, double aspect, int frame) const;
+  render::View at(const render::View& base, const Bounds& bounds, double aspect, int frame) const;
 
  private:
   std::optional<render::CameraPath> path_;

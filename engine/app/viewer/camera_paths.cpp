@@ -26,7 +26,7 @@ T settle(T& v, const T& w, double dt_s) {
 
 void fly(render::View& view, Flight& flight, const FlyKeys& keys, double scene_size, double speed, double dt_s) {
   if (!(dt_s > 0)) return;
-  const render::Camera camera = render::make_camera(view, 1, 1, render::Bounds());
+  const render::Camera camera = render::make_camera(view, 1, 1, Bounds());
   const auto along = [](bool plus, bool minus) { return (plus ? 1.0 : 0.0) - (minus ? 1.0 : 0.0); };
   const double pace = kFlySizesPerS * scene_size * speed * (keys.fast ? kFast : 1);
   const double ahead = along(keys.forward, keys.back);

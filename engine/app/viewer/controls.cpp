@@ -23,7 +23,7 @@ Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
 }
 
 render::Camera camera_of(const render::View& view, const Input& input) {
-  return render::make_camera(view, std::max(1.0, input.width), std::max(1.0, input.height), render::Bounds());
+  return render::make_camera(view, std::max(1.0, input.width), std::max(1.0, input.height), Bounds());
 }
 
 void pan(render::View& view, const Input& input) {

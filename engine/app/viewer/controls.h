@@ -40,7 +40,7 @@ struct Input {
 
 struct Controls {
   render::View view, home;  ///< home: what R goes back to
-  render::Bounds bounds;    ///< of all that is drawn; empty: nothing can be fitted
+  Bounds bounds;            ///< of all that is drawn; empty: nothing can be fitted
   Vec3 hand{0.0};           ///< world units
   std::uint32_t buttons = 0;
   bool hand_mode = false;

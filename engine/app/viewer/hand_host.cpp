@@ -98,7 +98,7 @@ void HandHost::make_servo() {
   servo_ = std::make_unique<haptics::Servo>(*hand_.device, program_, servo);
 }
 
-Outcome HandHost::prepare(scene::Scene& scene, const render::Bounds& bounds, const RecordedScene& text) {
+Outcome HandHost::prepare(scene::Scene& scene, const Bounds& bounds, const RecordedScene& text) {
   stated_ = scene.workspace;
   CATENA_TRY(program_, program_for(scene, hand_, bounds));
   first_probe_ = app::first_probe(scene, bounds);
@@ -109,7 +109,7 @@ Outcome HandHost::prepare(scene::Scene& scene, const render::Bounds& bounds, con
   return Done{};
 }
 
-Outcome HandHost::take_over(scene::Scene& scene, const render::Bounds& bounds) {
+Outcome HandHost::take_over(scene::Scene& scene, const Bounds& bounds) {
   const scene::Workspace stated = scene.workspace;
   CATENA_TRY(program_, program_for(scene, hand_, bounds));
   const Outcome recorded = stop_recording();
@@ -121,7 +121,7 @@ Outcome HandHost::take_over(scene::Scene& scene, const render::Bounds& bounds) {
   return recorded;
 }
 
-Outcome HandHost::switch_device(scene::Scene& scene, const std::string& name, const render::Bounds& bounds) {
+Outcome HandHost::switch_device(scene::Scene& scene, const std::string& name, const Bounds& bounds) {
   CATENA_TRY(OpenHand hand, open(scene, name));
   const scene::Workspace fitted = scene.workspace;
   scene.workspace = stated_;

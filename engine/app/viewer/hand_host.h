@@ -38,9 +38,9 @@ class HandHost {
   /// One line for the person, from opening the device; empty: nothing.
   const std::string& note() const { return hand_.note; }
   /// Fits the workspace, makes the program and the servo. `bounds`: of what is drawn and felt; `text`: the scene's, for the recording.
-  Outcome prepare(scene::Scene& scene, const render::Bounds& bounds, const RecordedScene& text);
+  Outcome prepare(scene::Scene& scene, const Bounds& bounds, const RecordedScene& text);
   /// Another scene, while the servo runs: as prepare, with the device and the servo that there are. Ends a recording.
-  Outcome take_over(scene::Scene& scene, const render::Bounds& bounds);
+  Outcome take_over(scene::Scene& scene, const Bounds& bounds);
   Outcome start();
   void stop();
   /// Stops, writes what is asked for.
@@ -53,7 +53,7 @@ class HandHost {
   Outcome publish(scene::Scene& scene, const std::string& text);
 
   /// Another device from now on, by its name; its forces are off. An error leaves the one that there is. Ends a recording.
-  Outcome switch_device(scene::Scene& scene, const std::string& name, const render::Bounds& bounds);
+  Outcome switch_device(scene::Scene& scene, const std::string& name, const Bounds& bounds);
 
   /// Every tick from the next one on. An error: nothing is recorded.
   Outcome record(const std::string& path, RecordedScene scene);

@@ -10,7 +10,7 @@ namespace catena::app {
 
 std::vector<std::string> widget_types() { return {"cutting_plane", "seed", "rake", "isolevel", "box", "ruler"}; }
 
-Result<std::string> new_widget(const scene::Scene& scene, const std::string& type, const render::Bounds& bounds) {
+Result<std::string> new_widget(const scene::Scene& scene, const std::string& type, const Bounds& bounds) {
   using scene::text_of;
   std::vector<std::string> taken;
   scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget&) { taken.push_back(scene.world.get<scene::Name>(e).value); });

@@ -11,6 +11,6 @@ namespace catena::app {
 /// "cutting_plane", "seed", ...
 std::vector<std::string> widget_types();
 /// An error where the scene has no field that an isolevel could stand on.
-Result<std::string> new_widget(const scene::Scene& scene, const std::string& type, const render::Bounds& bounds);
+Result<std::string> new_widget(const scene::Scene& scene, const std::string& type, const Bounds& bounds);
 
 }  // namespace catena::app

@@ -155,7 +155,7 @@ std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const 
 }
 
 std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, double y, double depth, std::uint32_t id) {
-  const render::Camera camera = render::make_camera(packet.view, packet.width, packet.height, render::Bounds());
+  const render::Camera camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
   const render::Ray ray = render::ray_through(camera, x, y);
   const bool opaque = std::isfinite(depth);
   const Vec3 behind = opaque ? render::unproject(camera, x, y, depth) : Vec3(0.0);

@@ -40,7 +40,7 @@ class SceneHost {
   void touch() { changed_ = true; }
 
   /// All that is drawn and felt; set by who extracts.
-  render::Bounds bounds;
+  Bounds bounds;
 
  private:
   SceneHost(scene::Document document, std::function<Outcome(scene::Scene&)> adjust)

@@ -22,7 +22,7 @@ Result<LoadedScene> load_scene(SceneHost host, std::uint32_t width, std::uint32_
   // the program loads what is felt, the packet what is drawn
   CATENA_CHECK(HandHost::load(scene));
   CATENA_TRY(render::FramePacket packet, render::extract_frame(scene, width, height));
-  render::Bounds bounds = render::packet_bounds(packet);
+  Bounds bounds = render::packet_bounds(packet);
   bounds.add(loaded_bounds(scene));
   if (!scene.camera.given && packet.volumes.empty() && packet.isosurfaces.empty() && packet.tubes.empty())
     packet.view = render::fit_view(bounds, static_cast<double>(width) / height);

@@ -15,7 +15,7 @@ namespace catena::app {
 struct LoadedScene {
   SceneHost host;
   render::FramePacket packet;  ///< of the size asked for
-  render::Bounds bounds;       ///< of all that is drawn and felt
+  Bounds bounds;               ///< of all that is drawn and felt
 };
 
 /// The work itself; any thread, the scene is its own. Errors: one line.

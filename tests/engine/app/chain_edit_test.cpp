@@ -202,7 +202,7 @@ TEST(ChainEdit, AnEditThatCannotBeFeltChangesNothing) {
 
 TEST(NewWidget, EveryTypeIsReadAndHasANameOfItsOwn) {
   Fixture f;
-  render::Bounds bounds;
+  Bounds bounds;
   bounds.add(Vec3(-1.0));
   bounds.add(Vec3(1.0));
   for (const std::string& type : widget_types())

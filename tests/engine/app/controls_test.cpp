@@ -210,7 +210,7 @@ TEST(Controls, AHandBehindTheEyeComesBackIntoThePicture) {
 TEST(HandSetup, TheWorkspaceFillsTheDevicesReach) {
   auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
   ASSERT_TRUE(scene);
-  render::Bounds bounds;
+  Bounds bounds;
   bounds.add(Vec3(10.0, 0.0, 0.0));
   bounds.add(Vec3(50.0, 4.0, 2.0));
   fit_workspace(*scene, bounds, 0.2);
@@ -223,7 +223,7 @@ TEST(HandSetup, TheWorkspaceFillsTheDevicesReach) {
 TEST(HandSetup, TheMiddleOfTheDevicesReachIsTheMiddleOfTheScene) {
   auto scene = scene::parse_scene(R"({"fields": {}, "chain": []})", "test.json");
   ASSERT_TRUE(scene);
-  render::Bounds bounds;
+  Bounds bounds;
   bounds.add(Vec3(10.0, 0.0, 0.0));
   bounds.add(Vec3(50.0, 4.0, 2.0));
   const Vec3 centre_m{0.0, 0.01, 0.12};
@@ -235,7 +235,7 @@ TEST(HandSetup, AGivenWorkspaceAndRampStay) {
   auto scene =
       scene::parse_scene(R"({"fields": {}, "chain": [], "workspace": {"metres_per_unit": 3}, "coupling": {"ramp_s": 0.5}})", "test.json");
   ASSERT_TRUE(scene);
-  render::Bounds bounds;
+  Bounds bounds;
   bounds.add(Vec3(0.0), 1);
   fit_workspace(*scene, bounds, 0.2);
   EXPECT_EQ(scene->workspace.metres_per_unit, 3);

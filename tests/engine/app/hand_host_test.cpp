@@ -70,7 +70,7 @@ struct Rig {
   }
 
   test::TemporaryFolder folder;
-  render::Bounds bounds;
+  Bounds bounds;
   std::optional<SceneHost> host;
   HandHost hand;
 };

@@ -105,7 +105,7 @@ TEST(Pick, DepthsBecomePlacesOfASphereAndAPlane) {
   packet.height = 120;
   packet.view.position = {0, -5, 2};
   packet.view.target = {0, 0, 0};
-  const render::Camera camera = render::make_camera(packet.view, 160, 120, render::Bounds());
+  const render::Camera camera = render::make_camera(packet.view, 160, 120, Bounds());
   for (const auto& [x, y] : {std::pair{80.5, 60.5}, std::pair{95.5, 50.5}, std::pair{70.5, 72.5}}) {
     const render::Ray ray = render::ray_through(camera, x, y);
     // |o + t d| = 1

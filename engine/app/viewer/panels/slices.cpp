@@ -10,28 +10,13 @@ namespace catena::app {
 
 namespace {
 
-struct WorldBox {
-  Vec3 lo{HUGE_VAL}, hi{-HUGE_VAL};
-};
-
-WorldBox box_of(const field::Field& field) {
-  const field::Box& box = field.index_box();
-  WorldBox world;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 corner{(i & 1) ? box.hi.x : box.lo.x, (i & 2) ? box.hi.y : box.lo.y, (i & 4) ? box.hi.z : box.lo.z};
-    const Vec3 p = field.mapping().world_from_index(corner);
-    for (int k = 0; k < 3; ++k) world.lo[k] = std::min(world.lo[k], p[k]), world.hi[k] = std::max(world.hi[k], p[k]);
-  }
-  return world;
-}
-
 void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& field) {
   const std::string pointer = pointer_of(slice.where);
   if (slice.where.find("widget") != nullptr) {
     ImGui::TextDisabled("the plane follows a widget");
     return;
   }
-  const WorldBox box = box_of(field);
+  const Bounds box = field.world_bounds();
   const json::Node* axis = slice.where.find("axis");
   const bool free = axis == nullptr;
   int which = free ? 3 : axis->string == "x" ? 0 : axis->string == "y" ? 1 : 2;
