@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "engine/base/memory_limit.h"
+
 namespace catena {
 
 namespace {
@@ -51,6 +53,7 @@ Result<std::string> read_text(const std::string& path, std::string_view expected
   if (!S_ISREG(about.st_mode)) return failed(kind_of_place(about.st_mode));
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size > most_bytes) return too_large(size);
+  CATENA_CHECK(ask_for_text_memory(one_line(path), static_cast<double>(size)));
   std::string text;
   text.reserve(size);
   char buffer[1 << 16];
