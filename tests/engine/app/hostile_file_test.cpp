@@ -65,6 +65,20 @@ TEST(HostileFile, EscapesInNamesReachNoTerminal) {
   }
 }
 
+// before: a bug was said, and the program aborted
+TEST(HostileFile, AMagnitudeBeyondAllFloatsIsOneSentence) {
+  const test::TemporaryFolder folder;
+  const auto made =
+      test::run_catena({"generate", "circle", "-o", folder / "c.vdb", "--resolution", "4", "--scale", "1.6e38", "--box", "2", "2.1"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  test::write_file(folder / "s.json", R"({"fields": {"f": {"file": "c.vdb", "grid": "circle"}},
+    "slices": [{"field": "f", "axis": "x", "at": 2.05}]})");
+  const auto run = test::run_catena({"render", folder / "s.json", "-o", folder / "o.png", "--size", "24x24"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_NE(run.err.find("s.json:2: the magnitude of \"f\" has no finite value"), std::string::npos) << run.err;
+}
+
 TEST(HostileFile, TheMemoryLimitIsKeptByEveryCommand) {
   const test::TemporaryFolder folder;
   write_raw(folder / "a.raw");
