@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "engine/app/command.h"
+#include "engine/app/number_option.h"
 #include "engine/app/process_limits.h"
 #include "engine/base/clock.h"
 #include "engine/base/memory_limit.h"
@@ -66,6 +67,7 @@ int parse_and_work(int argc, char** argv) {
   add_devices(program, chosen);
   add_view(program, chosen, view_exit_code);
   add_memory_limit(program);
+  for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) refuse_empty_numbers(*command);
 
   try {
     program.parse(argc, argv);
