@@ -19,6 +19,8 @@
 #include "engine/app/number_option.h"
 #include "engine/app/run_files.h"
 #include "engine/base/clock.h"
+#include "engine/base/tell.h"
+#include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
 
@@ -57,7 +59,7 @@ class StatusLine {
       line += fmt::format("  {} {}", program_.links[i].name, exchange::status_word(state.links[i].status));
     line += fmt::format("  {:.2f} N  {}", norm(state.force_n), exchange::force_state_word(state.force_state));
     if (state.condition != exchange::Condition::normal) line += fmt::format("  {}", exchange::condition_word(state.condition));
-    fmt::print("\r{}  {} missed\033[K", line, state.missed_deadlines);
+    fmt::print("\r{}  {} missed\033[K", printable(line), state.missed_deadlines);
     std::fflush(stdout);
     shown_ = true;
   }
@@ -69,7 +71,7 @@ class StatusLine {
   }
   void say(const std::string& text) {
     end();
-    fmt::print("{}\n", text);
+    fmt::print("{}\n", printable(text));
     std::fflush(stdout);
   }
   void end() {
@@ -122,7 +124,7 @@ Outcome feel(const FeelOptions& options) {
   // from here on: while it opens there is no force, and Ctrl-C ends at once
   const Interrupt interrupt;
   const CrashGuard crash_guard(*hand.device);
-  if (!hand.note.empty()) fmt::print(stderr, "catena: {}\n", hand.note);
+  if (!hand.note.empty()) tell_from_catena(hand.note);
   CATENA_TRY(const render::Bounds bounds, bounds_of(scene));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, program_for(scene, hand, bounds));
 
@@ -134,9 +136,9 @@ Outcome feel(const FeelOptions& options) {
   servo_options.sink = recording.sink();
   haptics::Servo servo(*hand.device, program, servo_options);
   CATENA_CHECK(servo.start());
-  for (const std::string& note : servo.report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
-  fmt::print("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", hand.device->capabilities().name, servo_options.rate_hz,
-             options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends");
+  for (const std::string& note : servo.report().realtime.notes) tell_from_catena(note);
+  fmt::print("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", printable(hand.device->capabilities().name),
+             servo_options.rate_hz, options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends");
   std::fflush(stdout);
   StatusLine line(*program);
   wait(servo, *hand.device, recording, options, interrupt, line);
@@ -144,7 +146,7 @@ Outcome feel(const FeelOptions& options) {
   line.end();
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
-  fmt::print("{}", haptics::servo_summary(servo.report(), hand.device->capabilities().name));
+  fmt::print("{}", haptics::servo_summary(servo.report(), printable(hand.device->capabilities().name)));
   return interrupt.outcome();
 }
 

@@ -5,6 +5,8 @@
 #include <cstdio>
 
 #include "engine/app/hand/hand_setup.h"
+#include "engine/base/tell.h"
+#include "engine/base/text.h"
 #include "engine/scene/systems.h"
 #include "haptics/extract/extract.h"
 
@@ -164,9 +166,9 @@ Outcome HandHost::stop_recording() {
 Outcome HandHost::start() {
   if (!is_mouse()) crash_guard_.emplace(*hand_.device);
   CATENA_CHECK(servo_->start());
-  if (!hand_.note.empty()) fmt::print(stderr, "catena: {}\n", hand_.note);
+  if (!hand_.note.empty()) tell_from_catena(hand_.note);
   if (is_mouse()) return Done{};
-  for (const std::string& note : servo_->report().realtime.notes) fmt::print(stderr, "catena: {}\n", note);
+  for (const std::string& note : servo_->report().realtime.notes) tell_from_catena(note);
   say_forces();
   return Done{};
 }
@@ -216,7 +218,7 @@ void HandHost::set_forces(bool on) {
 }
 
 void HandHost::say_forces() const {
-  fmt::print("{}: forces {} (F turns them {})\n", hand_.device->capabilities().name, servo_->forces() ? "on" : "off",
+  fmt::print("{}: forces {} (F turns them {})\n", printable(hand_.device->capabilities().name), servo_->forces() ? "on" : "off",
              servo_->forces() ? "off" : "on");
   std::fflush(stdout);
 }

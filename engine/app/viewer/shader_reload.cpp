@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "engine/base/tell.h"
 #include "render/passes/embedded_shaders.h"
 
 namespace catena::app {
@@ -11,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kLookNs = 250'000'000;
 
-void say(const std::string& text) { fmt::print(stderr, "catena: {}\n", text); }
+void say(const std::string& text) { tell_from_catena(text); }
 
 }  // namespace
 

@@ -15,6 +15,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "engine/base/start_thread.h"
+#include "engine/base/tell.h"
 #include "haptics/servo/log/ring.h"
 #include "haptics/servo/log/tick_blocks.h"
 
@@ -144,7 +145,7 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
 LogWriter::LogWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 LogWriter::~LogWriter() {
-  if (const Outcome done = finish(); !done) fmt::print(stderr, "{}\n", done.error().message);
+  if (const Outcome done = finish(); !done) tell(done.error().message);
 }
 
 void LogWriter::add_program(const Program& program, std::optional<std::string> scene_text) {

@@ -65,6 +65,28 @@ TEST(HostileFile, EscapesInNamesReachNoTerminal) {
   }
 }
 
+// before: raw escapes on standard output
+TEST(HostileFile, EscapesInNamesOfFilesReachNoTerminal) {
+  const test::TemporaryFolder folder;
+  const std::string evil = folder / "a\033[31mPWN\033[0m";
+  test::write_file(folder / "s.json", R"({"fields": {"v": {"analytic": "circle"}, "s": {"analytic": "sphere"}},
+    "isosurfaces": [{"field": "s", "level": 1}], "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}]})");
+  const std::vector<std::vector<std::string>> runs = {
+      {"feel", folder / "s.json", "--device", "simulated", "--seconds", "0.05", "--record", evil + ".catlog"},
+      {"replay", "--log", evil + ".catlog"},
+      {"export", evil + ".catlog", "-o", folder / "e.csv"},
+      {"info", evil + ".catlog"},
+      {"generate", "sphere", "-o", evil + ".vdb", "--resolution", "8"},
+      {"info", evil + ".vdb"},
+      {"render", folder / "s.json", "--size", "16x16", "-o", evil + ".png"},
+      {"tradeoff", "--figure", "3", "-o", evil + ".d"}};
+  for (const std::vector<std::string>& arguments : runs) {
+    const auto run = test::run_catena(arguments);
+    EXPECT_EQ(run.exit_code, 0) << arguments[0] << ": " << run.err;
+    EXPECT_EQ((run.out + run.err).find('\033'), std::string::npos) << arguments[0] << ": " << run.out << run.err;
+  }
+}
+
 // before: a bug was said, and the program aborted
 TEST(HostileFile, AMagnitudeBeyondAllFloatsIsOneSentence) {
   const test::TemporaryFolder folder;
