@@ -40,6 +40,7 @@ class ProcessLimits : public testing::Test {
               err_fd = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     dup2(out_fd, 1);
     dup2(err_fd, 2);
+    closefrom(3);
     for (const Limit& limit : limits) {
       const rlimit both{limit.most, limit.most};
       setrlimit(limit.what, &both);
