@@ -9,21 +9,24 @@
 #include <system_error>
 
 #include "engine/app/command.h"
+#include "engine/app/lost_output.h"
+#include "engine/app/number_option.h"
 #include "engine/app/process_limits.h"
 #include "engine/base/clock.h"
 #include "engine/base/memory_limit.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
 
 namespace {
 int bad_input(const std::string& message) {
-  fmt::print(stderr, "catena: {}\n", printable(one_line(message)));
+  tell_from_catena(message);
   return 2;
 }
 
 int machine_failed(const std::string& message) {
-  fmt::print(stderr, "catena: {}\n", printable(one_line(message)));
+  tell_from_catena(message);
   return 1;
 }
 
@@ -66,6 +69,7 @@ int parse_and_work(int argc, char** argv) {
   add_devices(program, chosen);
   add_view(program, chosen, view_exit_code);
   add_memory_limit(program);
+  for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) refuse_empty_numbers(*command);
 
   try {
     program.parse(argc, argv);
@@ -80,8 +84,8 @@ int parse_and_work(int argc, char** argv) {
 
 }  // namespace
 
-int run(int argc, char** argv) {
-  ms_since_process_start();
+// What it throws is told here.
+static int guarded(int argc, char** argv) {
   try {
     return parse_and_work(argc, argv);
   } catch (const MachineFailure& failure) {
@@ -89,11 +93,18 @@ int run(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fputs("catena: out of memory\n", stderr);
   } catch (const std::system_error& error) {
+    if (std::ferror(stdout) != 0) return 0;  // the output is lost: that is said at the end
     return machine_failed(fmt::format("this machine does not give what is needed: {}", error.what()));
   } catch (const std::exception& error) {
     return machine_failed(fmt::format("ended by an error that nothing handles: {}", error.what()));
   }
   return 1;
+}
+
+int run(int argc, char** argv) {
+  ms_since_process_start();
+  keep_standard_descriptors();
+  return exit_code_after_output(guarded(argc, argv));
 }
 
 }  // namespace catena::app

@@ -3,9 +3,11 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "engine/base/clock.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
@@ -51,7 +53,7 @@ Progress::Progress(std::string what, double total)
     : what_(std::move(what)), total_(total), start_(now_ns()), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (shown_ && terminal_) fmt::print(stderr, "\n");
+  if (shown_ && terminal_) std::fputs("\n", stderr);
 }
 
 void Progress::at(double done) {
@@ -60,13 +62,13 @@ void Progress::at(double done) {
   const double part = done / total_ < 1 ? done / total_ : 1;
   if (terminal_) {
     if (now - last_ < 200'000'000 && part < 1) return;
-    fmt::print(stderr, "\r{}: {:3.0f} % ", printable(what_), 100 * part);
+    std::fputs(fmt::format("\r{}: {:3.0f} % ", printable(what_), 100 * part).c_str(), stderr);
     std::fflush(stderr);
   } else {
     const int quarter = static_cast<int>(4 * part);
     if (quarter <= quarters_) return;
     quarters_ = quarter;
-    fmt::print(stderr, "{}: {:.0f} %\n", printable(what_), 100 * part);
+    tell(fmt::format("{}: {:.0f} %", what_, 100 * part));
   }
   shown_ = true;
   last_ = now;

@@ -10,6 +10,8 @@
 #include "engine/app/hand/interrupt.h"
 #include "engine/base/json_text.h"
 #include "engine/base/numbers.h"
+#include "engine/base/tell.h"
+#include "engine/base/text.h"
 #include "haptics/device/registry.h"
 
 namespace catena::app {
@@ -47,8 +49,8 @@ void list(bool json) {
           i == 0 ? "" : ",", json_string(info.name), info.present, json_string(info.detail), c.has_orientation, to_text(c.max_force_n),
           to_text(c.max_torque_nm), c.buttons, to_text(c.workspace_m), json_string(how_to_open(info)));
     } else {
-      fmt::print("{:<22} {:<8} {}\n{:<32}{}; {}\n", info.name, info.present ? "here" : "not here", info.detail, "", abilities(c),
-                 how_to_open(info));
+      fmt::print("{:<22} {:<8} {}\n{:<32}{}; {}\n", printable(info.name), info.present ? "here" : "not here", printable(info.detail), "",
+                 abilities(c), printable(how_to_open(info)));
     }
   }
   if (json) fmt::print("\n]\n");
@@ -56,7 +58,7 @@ void list(bool json) {
 
 void print_check(const haptics::Device& device, const std::string& name, const DeviceCheck& check) {
   const haptics::DeviceCapabilities& c = device.capabilities();
-  fmt::print("{}: {}\n", name, c.name);
+  fmt::print("{}: {}\n", printable(name), printable(c.name));
   fmt::print("  can          {}; {} button{}; a workspace of {} m\n", abilities(c), c.buttons, c.buttons == 1 ? "" : "s",
              to_text(c.workspace_m));
   if (check.reads == 0) return;
@@ -85,7 +87,7 @@ Outcome test(const DevicesOptions& options) {
   haptics::DeviceSettings settings;
   settings.type = haptics::device_type_of(options.name);
   settings.firmware = options.firmware;
-  settings.tell = [](const std::string& news) { fmt::print(stderr, "{}\n", news); };
+  settings.tell = [](const std::string& news) { tell(news); };
   auto opened = haptics::open_device(options.name, settings);
   if (!opened) throw MachineFailure{options.name + ": " + opened.error().message};
   haptics::Device& device = **opened;
@@ -98,7 +100,7 @@ Outcome test(const DevicesOptions& options) {
   check_options.stop = &interrupt.flag();
   check_options.tell = settings.tell;
   if (options.forces && device.capabilities().max_force_n > 0)
-    fmt::print(stderr, "{}: pushes of up to 1 N follow; hold the grip, Ctrl-C stops\n", options.name);
+    tell(options.name + ": pushes of up to 1 N follow; hold the grip, Ctrl-C stops");
   const DeviceCheck check = check_device(device, check_options, paced(check_options.rate_hz));
   device.stop();
   CATENA_CHECK(interrupt.outcome());

@@ -10,6 +10,8 @@
 #include "engine/app/run_files.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
+#include "engine/base/tell.h"
+#include "engine/base/text.h"
 #include "haptics/servo/log/reader.h"
 
 namespace catena::app {
@@ -89,7 +91,7 @@ Outcome export_log(const ExportOptions& options) {
   std::uint64_t count = 0;
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
     if (event == log::LogEvent::program) columns.bind(reader.program().link_names());
-    if (event == log::LogEvent::gap) fmt::print(stderr, "{}: {}\n", options.log, reader.gap().text());
+    if (event == log::LogEvent::gap) tell(options.log + ": " + reader.gap().text());
     if (event != log::LogEvent::tick) continue;
     ++count;
     line.clear();
@@ -104,7 +106,7 @@ Outcome export_log(const ExportOptions& options) {
   std::vector<OutputFile*> written{&ticks};
   if (details) written.push_back(&*details);
   CATENA_CHECK(commit_all(written));
-  fmt::print("{}: {} ticks; {}\n", options.log, count, reader.ending());
+  fmt::print("{}: {} ticks; {}\n", printable(options.log), count, printable(reader.ending()));
   return Done{};
 }
 

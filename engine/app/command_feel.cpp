@@ -20,6 +20,7 @@
 #include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
+#include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
 
@@ -49,7 +50,7 @@ Result<Bounds> bounds_of(scene::Scene& scene) {
 constexpr int kPatienceMs = 500;  // with a terminal that takes nothing, once the device is off
 
 /// From here on a hand may be held: nothing waits for a terminal.
-void tell_out(std::string_view text, int wait_ms = 0) { catena::tell(STDOUT_FILENO, text, wait_ms); }
+void print_out(std::string_view text, int wait_ms = 0) { print_now(STDOUT_FILENO, text, wait_ms); }
 
 /// "1000 Hz  curve OK  surface FREE  0.53 N  ON  0 missed", once a second on a terminal.
 class StatusLine {
@@ -63,7 +64,7 @@ class StatusLine {
       line += fmt::format("  {} {}", program_.links[i].name, exchange::status_word(state.links[i].status));
     line += fmt::format("  {:.2f} N  {}", norm(state.force_n), exchange::force_state_word(state.force_state));
     if (state.condition != exchange::Condition::normal) line += fmt::format("  {}", exchange::condition_word(state.condition));
-    tell_out(fmt::format("\r{}  {} missed\033[K", line, state.missed_deadlines));
+    print_out(fmt::format("\r{}  {} missed\033[K", printable(line), state.missed_deadlines));
     shown_ = true;
   }
   /// What the device asks of the person, when it changes; not only on a terminal.
@@ -74,10 +75,10 @@ class StatusLine {
   }
   void say(const std::string& text) {
     end();
-    tell_out(text + "\n");
+    print_out(printable(text) + "\n");
   }
   void end() {
-    if (shown_) tell_out("\n");
+    if (shown_) print_out("\n");
     shown_ = false;
   }
 
@@ -126,7 +127,7 @@ Outcome feel(const FeelOptions& options) {
   // from here on: while it opens there is no force, and Ctrl-C ends at once
   const Interrupt interrupt;
   const CrashGuard crash_guard(*hand.device);
-  if (!hand.note.empty()) fmt::print(stderr, "catena: {}\n", hand.note);
+  if (!hand.note.empty()) tell_from_catena(hand.note);
   CATENA_TRY(const Bounds bounds, bounds_of(scene));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, program_for(scene, hand, bounds));
 
@@ -138,16 +139,16 @@ Outcome feel(const FeelOptions& options) {
   servo_options.sink = recording.sink();
   haptics::Servo servo(*hand.device, program, servo_options);
   CATENA_CHECK(servo.start());
-  for (const std::string& note : servo.report().realtime.notes) tell(STDERR_FILENO, fmt::format("catena: {}\n", note));
-  tell_out(fmt::format("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", hand.device->capabilities().name,
-                       servo_options.rate_hz, options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends"));
+  for (const std::string& note : servo.report().realtime.notes) tell_from_catena(note);
+  print_out(fmt::format("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", printable(hand.device->capabilities().name),
+                        servo_options.rate_hz, options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends"));
   StatusLine line(*program);
   wait(servo, *hand.device, recording, options, interrupt, line);
   servo.stop();
   line.end();
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
-  tell_out(haptics::servo_summary(servo.report(), hand.device->capabilities().name), kPatienceMs);
+  print_out(haptics::servo_summary(servo.report(), printable(hand.device->capabilities().name)), kPatienceMs);
   return interrupt.outcome();
 }
 

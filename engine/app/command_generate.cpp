@@ -65,7 +65,7 @@ Outcome generate(const GenerateOptions& o) {
   }
   CATENA_CHECK(field::write_vdb(o.output, items));
   fmt::print("{}:", printable(o.output));
-  for (const field::WriteItem& item : items) fmt::print(" {}", item.name);
+  for (const field::WriteItem& item : items) fmt::print(" {}", printable(item.name));
   fmt::print(", {0} x {0} x {0} nodes, spacing {1}\n", o.resolution, to_text((o.box[1] - o.box[0]) / (o.resolution - 1)));
   return Done{};
 }

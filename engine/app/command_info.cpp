@@ -113,7 +113,7 @@ Outcome describe_widgets(scene::Scene& scene) {
         CATENA_TRY(const scene::RulerMeasure measure, scene::use_ruler(scene, e));
         constexpr const char* ways[] = {"straight", "along a streamline", "along an isosurface", "along a mesh"};
         fmt::print(" .. {}, {} {}{}", text(spec.pose.points[1]), to_text(measure.length), ways[static_cast<int>(measure.how)],
-                   measure.note.empty() ? "" : " (" + measure.note + ")");
+                   measure.note.empty() ? "" : " (" + printable(measure.note) + ")");
         break;
       }
       case widget::Kind::seed:
@@ -150,7 +150,7 @@ Outcome describe_scene(const std::string& path) {
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     const haptics::ConstraintType* type = haptics::find_constraint(link.type);
     const haptics::ReadyMode* mode = haptics::find_ready_mode(link.type);
-    fmt::print("link {}: {} ({})\n", link.name, link.type, type ? type->paper : mode ? mode->paper : "");
+    fmt::print("link {}: {} ({})\n", printable(link.name), printable(link.type), type ? type->paper : mode ? mode->paper : "");
   });
   CATENA_CHECK(describe_widgets(scene));
   fmt::print("coupling: {} N/m, {} N s/m, at most {} N\n", to_text(program->coupling.stiffness_n_per_m),

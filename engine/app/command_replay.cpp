@@ -14,6 +14,7 @@
 #include "engine/app/widget_csv.h"
 #include "engine/base/csv_paths.h"
 #include "engine/base/output_file.h"
+#include "engine/base/text.h"
 #include "haptics/device/registry.h"
 #include "haptics/extract/extract.h"
 #include "haptics/servo/limits_for.h"
@@ -43,7 +44,7 @@ struct Felt {
                1e-3 * stats.tick_ns_p50, 1e-3 * stats.tick_ns_p99, max_force_n,
                stats.ticks > 0 ? mean_force_n / static_cast<double>(stats.ticks) : 0.0);
     for (std::size_t i = 0; i < program.links.size(); ++i) {
-      fmt::print("  {}: up to {:.4g} from its probe;", program.links[i].name, max_gap[i]);
+      fmt::print("  {}: up to {:.4g} from its probe;", printable(program.links[i].name), max_gap[i]);
       for (const auto& [word, count] : statuses[i]) fmt::print(" {} {}", word, count);
       fmt::print("\n");
     }

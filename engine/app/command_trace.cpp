@@ -11,6 +11,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/lines_file.h"
+#include "engine/app/number_option.h"
 #include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 #include "engine/base/csv_paths.h"
@@ -215,7 +216,7 @@ void add_trace(CLI::App& program, Work& chosen) {
       ->required();
   command->add_option("-o,--output", options->output, "lines: .vtp, or CSV: line,s,x,y,z,tx,ty,tz")->required();
   command->add_option("--length", options->length, "longest arc length in each direction, world units (default: 10 L)")
-      ->check(CLI::PositiveNumber);
+      ->check(number_above_zero());
   command
       ->add_option("--tolerance", options->tolerance,
                    "of a step, times L: above 1e-9 lines are traced many at once, with knots a step apart (default: 1e-10; patterns 1e-7)")
@@ -227,7 +228,7 @@ void add_trace(CLI::App& program, Work& chosen) {
   command->add_option("--kind", options->kind, "vector, or line where v and -v are the same")
       ->check(CLI::IsMember({"vector", "line"}))
       ->capture_default_str();
-  command->add_option("--min-speed", options->min_speed, "speeds at or below this end a line")->check(CLI::NonNegativeNumber);
+  command->add_option("--min-speed", options->min_speed, "speeds at or below this end a line")->check(number_at_least(0));
   command->callback([&chosen, options] { chosen = [options] { return trace_lines(*options); }; });
 }
 

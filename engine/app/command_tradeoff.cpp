@@ -6,6 +6,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/figures.h"
+#include "engine/base/text.h"
 
 namespace catena::app {
 
@@ -23,7 +24,7 @@ Outcome tradeoff(const TradeoffOptions& options) {
   CATENA_TRY(ResultFolder folder, ResultFolder::open(options.output));
   CATENA_CHECK(options.figure == "2" ? figure2(folder) : options.figure == "3" ? figure3(folder) : figure_stiffness(folder));
   CATENA_CHECK(folder.commit());
-  fmt::print("{}:", options.output);
+  fmt::print("{}:", printable(options.output));
   for (const std::string& name : folder.names()) fmt::print(" {}", name);
   fmt::print("\n");
   return Done{};

@@ -98,7 +98,7 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
       ->check(number_between(1, 1e9));
   command->add_option("--shaders", options->shaders, "the folder of shaders to draw with, watched: what changes there is compiled at once");
   add_stereo_options(*command, options->stereo);
-  command->add_option("--frames", options->frames, "quit after so many frames")->check(CLI::NonNegativeNumber);
+  command->add_option("--frames", options->frames, "quit after so many frames")->check(number_between(0, std::numeric_limits<int>::max()));
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
   command->add_option("--window-screenshot", options->window_screenshot, "the same with the panels over it, .png");

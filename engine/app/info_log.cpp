@@ -24,7 +24,7 @@ Outcome describe_log(const std::string& path) {
   std::uint64_t ticks = 0;
   double first_s = 0, last_s = 0;
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
-    if (event == log::LogEvent::gap) fmt::print("  gap          {}\n", reader.gap().text());
+    if (event == log::LogEvent::gap) fmt::print("  gap          {}\n", printable(reader.gap().text()));
     if (event == log::LogEvent::state) fmt::print("  begins       after tick {}, with the state of that moment\n", reader.state().tick);
     if (event == log::LogEvent::program) {
       std::string names;
@@ -39,7 +39,7 @@ Outcome describe_log(const std::string& path) {
     if (std::isfinite(t_s)) last_s = t_s;
   }
   fmt::print("  ticks        {} in {} s\n", ticks, to_text(last_s - first_s));
-  fmt::print("  end          {}\n", reader.ending());
+  fmt::print("  end          {}\n", printable(reader.ending()));
   return Done{};
 }
 

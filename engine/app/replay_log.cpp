@@ -8,6 +8,7 @@
 #include "engine/app/tick_csv.h"
 #include "engine/app/widget_csv.h"
 #include "engine/base/output_file.h"
+#include "engine/base/text.h"
 #include "haptics/servo/log/log_replay.h"
 
 namespace catena::app {
@@ -39,8 +40,8 @@ Outcome verdict(const ReplayOptions& options, const log::LogReader& reader, cons
   if (result.differing > 0)
     throw MachineFailure{fmt::format("{}: first differs at tick {}: {} ({} of {} ticks differ)", options.log, result.first_differing,
                                      result.difference, result.differing, result.stats.ticks)};
-  fmt::print("{}: {} ticks, all equal to the bit; {}\n", options.log, result.stats.ticks,
-             result.stopped.empty() ? reader.ending() : "then the recording has a hole");
+  fmt::print("{}: {} ticks, all equal to the bit; {}\n", printable(options.log), result.stats.ticks,
+             result.stopped.empty() ? printable(reader.ending()) : "then the recording has a hole");
   if (!result.stopped.empty()) throw MachineFailure{fmt::format("{}: {}; what follows cannot be run again", options.log, result.stopped)};
   return Done{};
 }

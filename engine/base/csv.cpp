@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 
@@ -102,6 +103,8 @@ Result<Table> parse_csv(std::string_view text, const std::string& file, const st
   }
   table.values.resize(table.columns.size());
   const auto rows = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
+  CATENA_CHECK(ask_for_text_memory(one_line(file + ": a table of " + std::to_string(rows) + " rows"),
+                                   static_cast<double>(text.size() + rows * names.size() * sizeof(double))));
   for (auto& column : table.values) column.reserve(rows);
 
   for (int line = 2; !last_line; ++line) {

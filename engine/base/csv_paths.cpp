@@ -1,9 +1,12 @@
 #include "engine/base/csv_paths.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/csv.h"
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
 
 namespace catena {
 namespace {
@@ -28,7 +31,15 @@ Vec3 position_of(const Table& table, std::size_t first_column, std::size_t row) 
   return {table.values[first_column][row], table.values[first_column + 1][row], table.values[first_column + 2][row]};
 }
 
+/// Beside the table, and later without it beside what becomes of each row: a sample for the tick and the figures of that tick.
+Outcome ask_for_rows(const Table& table, std::size_t row_bytes) {
+  constexpr std::size_t kLater = 128;
+  return ask_for_text_memory(one_line(table.file + ": a table of " + std::to_string(table.rows()) + " rows"),
+                             static_cast<double>(table.rows() * (row_bytes + std::max(kLater, table.columns.size() * sizeof(double)))));
+}
+
 Result<std::vector<ProbeRow>> probe_rows(const Table& table) {
+  CATENA_CHECK(ask_for_rows(table, sizeof(ProbeRow)));
   const std::vector<double>& t = table.values[0];
   const std::vector<double>* buttons = table.find("buttons");
   std::vector<ProbeRow> rows(table.rows());
@@ -47,7 +58,8 @@ Result<std::vector<ProbeRow>> probe_rows(const Table& table) {
   return rows;
 }
 
-std::vector<Vec3> seed_rows(const Table& table) {
+Result<std::vector<Vec3>> seed_rows(const Table& table) {
+  CATENA_CHECK(ask_for_rows(table, sizeof(Vec3)));
   std::vector<Vec3> seeds(table.rows());
   for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i] = position_of(table, 0, i);
   return seeds;

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
+#include "engine/base/too_many_files.h"
 
 namespace catena {
 namespace {
@@ -41,7 +43,16 @@ struct Plan {
   }
 };
 
+constexpr int kAway = 64;  ///< where descriptors wait for their places
+
 }  // namespace
+
+std::string too_few_descriptors() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  return "at most " + std::to_string(limit.rlim_cur) + " files may be open at a time (ulimit -n), expected at least " +
+         std::to_string(2 * kAway);
+}
 
 std::string helper_path(const std::string& name) {
   std::error_code code;
@@ -65,10 +76,14 @@ void Descriptor::close() {
 
 Result<HelperProcess> HelperProcess::start(const std::string& path, std::span<const int> descriptors) {
   const auto failed = [&](int code) {
+    if (code == EINVAL || too_many_files(code))
+      return Error{path + ": this part of Catena cannot be started: " + too_few_descriptors(), true};
+    if (code == EAGAIN || code == ENOMEM)
+      return Error{
+          path + ": this part of Catena cannot be started (" + std::strerror(code) + "): this machine does not give what is needed", true};
     return Error{path + ": this part of Catena cannot be started (" + std::strerror(code) + "), expected it beside the program"};
   };
   // the descriptors: out of the way first, so that none overwrites another
-  constexpr int kAway = 64;
   Plan plan;
   std::vector<Descriptor> away;
   for (const int fd : descriptors) {

@@ -14,6 +14,9 @@ namespace catena {
 /// NAME in the folder of the running program.
 std::string helper_path(const std::string& name);
 
+/// "at most 6 files may be open at a time (ulimit -n), expected at least 128": for an error of the machine.
+std::string too_few_descriptors();
+
 struct HelperEnd {
   enum class How { exited, killed, too_long } how = How::exited;
   int code = 0;  ///< of the exit, or the signal's number
@@ -21,7 +24,8 @@ struct HelperEnd {
 
 class HelperProcess {
  public:
-  /// Starts the program at `path`; it finds `descriptors` as 3, 4, ... in this order. An error says why it cannot be started.
+  /// Starts the program at `path`; it finds `descriptors` as 3, 4, ... in this order. An error says why it cannot be started: an error of
+  /// the machine where it gives too few descriptors, processes or memory.
   static Result<HelperProcess> start(const std::string& path, std::span<const int> descriptors);
   HelperProcess(HelperProcess&& other) noexcept;
   HelperProcess& operator=(HelperProcess&&) = delete;

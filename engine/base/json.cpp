@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <utility>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 
@@ -13,6 +15,7 @@ namespace catena::json {
 namespace {
 
 constexpr int kDeepest = 64;
+constexpr std::size_t kLongestLabel = 24;  ///< of what an item's label begins with
 
 /// Turns offsets into 1-based line numbers; CR, LF and CRLF each end a line.
 class Lines {
@@ -32,26 +35,62 @@ Error error_on_line(const std::string& file, int line, const std::string& what) 
   return Error{one_line(at.empty() ? what : at + ": " + what)};
 }
 
-/// The offset at which brackets nest deeper than kDeepest, or npos. Strings and comments are skipped.
-std::size_t too_deep_at(std::string_view text) {
+/// What is known of a text before it is parsed. Strings and comments are skipped.
+struct Shape {
+  std::size_t too_deep_at = std::string_view::npos;                    ///< where brackets nest deeper than kDeepest
+  std::size_t values = 0, containers = 0, objects = 0, line_ends = 0;  ///< of sound JSON: all values; objects and arrays among them
+};
+
+Shape shape_of(std::string_view text) {
+  Shape shape;
   int depth = 0;
+  bool in_word = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    const bool was_in_word = std::exchange(in_word, false);
     if (c == '"') {
+      ++shape.values;
       for (++i; i < text.size() && text[i] != '"'; ++i)
         if (text[i] == '\\') ++i;
     } else if (c == '/' && text.substr(i, 2) == "//") {
       i = std::min(text.find_first_of("\r\n", i), text.size());
+      ++shape.line_ends;
     } else if (c == '/' && text.substr(i, 2) == "/*") {
       const std::size_t end = text.find("*/", i + 2);
+      const std::string_view comment = text.substr(i, end == std::string_view::npos ? end : end - i);
+      shape.line_ends +=
+          static_cast<std::size_t>(std::count_if(comment.begin(), comment.end(), [](char e) { return e == '\n' || e == '\r'; }));
       i = end == std::string_view::npos ? text.size() : end + 1;
     } else if (c == '{' || c == '[') {
-      if (++depth > kDeepest) return i;
+      if (++depth > kDeepest) {
+        shape.too_deep_at = i;
+        return shape;
+      }
+      ++shape.values;
+      ++shape.containers;
+      if (c == '{') ++shape.objects;
     } else if (c == '}' || c == ']') {
       --depth;
+    } else if (c == '\n' || c == '\r') {
+      ++shape.line_ends;
+    } else if (c == ':' && shape.values > 0) {
+      --shape.values;  // the string before it was a key
+    } else if (c != ',' && c != ' ' && c != '\t') {
+      in_word = true;
+      if (!was_in_word) ++shape.values;
     }
   }
-  return std::string_view::npos;
+  return shape;
+}
+
+/// What parsing takes beside the text: each value as the library keeps it (a node of a map) and as a Node with its label; words, keys and
+/// labels of the text; the ends of its lines, in lists that grow. Copies that readers keep take the place of the library's part; what they
+/// make of an object is about a kilobyte.
+double bytes_to_parse(std::string_view text, const Shape& shape) {
+  constexpr double kMapNode = sizeof(Json::Value) + 64, kContainer = 64, kObject = 1024, kLabel = 48, kLineEnd = 2 * 24;
+  return static_cast<double>(shape.values) * (kMapNode + sizeof(Node) + kLabel) + static_cast<double>(shape.containers) * kContainer +
+         static_cast<double>(shape.objects) * kObject + 4 * static_cast<double>(text.size()) +
+         static_cast<double>(shape.line_ends) * kLineEnd;
 }
 
 /// -?(0|[1-9][0-9]*)(.[0-9]+)?([eE][+-]?[0-9]+)?
@@ -135,7 +174,7 @@ class Converter {
         node.kind = Kind::array;
         node.items.reserve(value.size());
         for (Json::ArrayIndex i = 0; i < value.size(); ++i) {
-          CATENA_TRY(Node item, convert(value[i], node.label + "[" + std::to_string(i) + "]"));
+          CATENA_TRY(Node item, convert(value[i], node.label.substr(0, kLongestLabel) + "[" + std::to_string(i) + "]"));
           node.items.push_back(std::move(item));
         }
         break;
@@ -143,8 +182,10 @@ class Converter {
         node.kind = Kind::object;
         // jsoncpp sorts members by key; their offsets give the order of the file back
         std::vector<Json::Value::const_iterator> order;
+        order.reserve(value.size());
         for (auto it = value.begin(); it != value.end(); ++it) order.push_back(it);
         std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a->getOffsetStart() < b->getOffsetStart(); });
+        node.members.reserve(order.size());
         for (const auto& it : order) {
           CATENA_TRY(Node member, convert(*it, it.name()));
           node.members.emplace_back(it.name(), std::move(member));
@@ -187,8 +228,10 @@ bool same_value(const Node& a, const Node& b) {
 Result<Node> parse(std::string_view text, const std::string& file) {
   const std::size_t whole = text.size();
   text = without_bom(text);
+  const Shape shape = shape_of(text);
+  CATENA_CHECK(ask_for_text_memory(one_line(file), bytes_to_parse(text, shape)));
   const Lines lines(text);
-  if (const std::size_t at = too_deep_at(text); at != std::string_view::npos)
+  if (const std::size_t at = shape.too_deep_at; at != std::string_view::npos)
     return error_on_line(file, lines.at(at), "nests too deep; at most " + std::to_string(kDeepest) + " levels were expected");
   if (const std::size_t at = text.find('\0'); at != std::string_view::npos)
     return error_on_line(file, lines.at(at), "holds a zero byte; JSON text was expected");

@@ -52,6 +52,12 @@ Outcome ask_for_memory(const std::string& what, double bytes, std::uint64_t allo
 
 Outcome ask_for_memory(const std::string& what, double bytes) { return ask_for_memory(what, bytes, allowed_memory()); }
 
+Outcome ask_for_text_memory(const std::string& what, double bytes) {
+  constexpr double kAlwaysAllowed = 1e6;
+  if (bytes <= kAlwaysAllowed) return Done{};
+  return ask_for_memory(what, bytes);
+}
+
 HeldMemory::HeldMemory(std::uint64_t bytes) : bytes_(bytes) { held_bytes += bytes; }
 HeldMemory::~HeldMemory() { held_bytes -= bytes_; }
 

@@ -21,6 +21,10 @@ Outcome ask_for_memory(const std::string& what, double bytes);
 /// The same against a limit that was asked for earlier.
 Outcome ask_for_memory(const std::string& what, double bytes, std::uint64_t allowed);
 
+/// The same for texts and what is read from them: less than 1 MB is never refused, so that a scene can be read and edited beside data that
+/// fill the limit.
+Outcome ask_for_text_memory(const std::string& what, double bytes);
+
 /// Counts memory as held by data, for as long as it lives.
 class HeldMemory {
  public:

@@ -8,12 +8,16 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/base/too_many_files.h"
+
 namespace catena {
 
 namespace fs = std::filesystem;
 
 namespace {
-Error cannot_write(const std::string& path, int code) { return Error{path + ": cannot write: " + std::strerror(code)}; }
+Error cannot_write(const std::string& path, int code) {
+  return Error{path + ": cannot write: " + std::strerror(code), too_many_files(code)};
+}
 
 bool written_directly(const std::string& path) {
   std::error_code ignored;

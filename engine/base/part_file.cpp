@@ -18,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/too_many_files.h"
+
 namespace catena {
 
 namespace fs = std::filesystem;
@@ -27,7 +29,9 @@ namespace {
 constexpr std::size_t kDigits = 12;
 constexpr std::size_t kLongestStem = 200;  // of the output's name, in bytes: a file name holds 255
 
-Error cannot_write_part(const std::string& path, int code) { return Error{path + ": cannot write: " + std::strerror(code)}; }
+Error cannot_write_part(const std::string& path, int code) {
+  return Error{path + ": cannot write: " + std::strerror(code), too_many_files(code)};
+}
 
 /// ".../flow.json.part", the beginning of all its unfinished files.
 std::string beginning_of(const std::string& path) {

@@ -8,10 +8,30 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <string>
+
+#include "engine/base/text.h"
 
 namespace catena {
 
-void tell(int descriptor, std::string_view text, int wait_ms) noexcept {
+namespace {
+
+constexpr int kPatienceMs = 500;
+
+void tell_line(std::string_view before, std::string_view line) noexcept {
+  try {
+    print_now(STDERR_FILENO, std::string(before) + printable(one_line(std::string(line))) + "\n", kPatienceMs);
+  } catch (...) {
+    print_now(STDERR_FILENO, "catena: out of memory\n", kPatienceMs);
+  }
+}
+
+}  // namespace
+
+void tell(std::string_view line) noexcept { tell_line({}, line); }
+void tell_from_catena(std::string_view line) noexcept { tell_line("catena: ", line); }
+
+void print_now(int descriptor, std::string_view text, int wait_ms) noexcept {
   struct stat about {};
   if (::fstat(descriptor, &about) != 0) return;
   // what others that print left in their buffer comes first, where that does not wait either

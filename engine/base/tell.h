@@ -1,12 +1,18 @@
-/// Words that hold nobody up. A terminal that a person has stopped (Ctrl-S), a frozen remote session or a pipe that nobody reads makes a
-/// print wait for as long as it likes; whoever holds a device, or looks for signals, must not wait. Any thread.
+/// What a person at the terminal is told beside the work. Nothing here throws or holds anybody up: a terminal that a person has stopped
+/// (Ctrl-S), a frozen remote session or a pipe that nobody reads makes a print wait for as long as it likes, and whoever holds a device,
+/// or looks for signals, must not wait. What is not taken in time, or by nobody (a closed descriptor, a full disk), is dropped: it changes
+/// neither the work nor its exit code. Any thread.
 #pragma once
 #include <string_view>
 
 namespace catena {
 
-/// Writes the text to standard output (1) or standard error (2) as far as it is taken within `wait_ms`; the rest is dropped. Files take
-/// all of it.
-void tell(int descriptor, std::string_view text, int wait_ms = 0) noexcept;
+/// One line on standard error, filtered for a terminal.
+void tell(std::string_view line) noexcept;
+/// The same after "catena: ".
+void tell_from_catena(std::string_view line) noexcept;
+
+/// Writes the text, as it is, to standard output (1) or standard error (2), as far as it is taken within `wait_ms`. Files take all of it.
+void print_now(int descriptor, std::string_view text, int wait_ms = 0) noexcept;
 
 }  // namespace catena

@@ -9,6 +9,9 @@
 #include <cstdint>
 #include <cstring>
 
+#include "engine/base/memory_limit.h"
+#include "engine/base/too_many_files.h"
+
 namespace catena {
 
 namespace {
@@ -44,13 +47,19 @@ Result<std::string> read_text(const std::string& path, std::string_view expected
   // a pipe without a writer is opened at once, and then refused
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (descriptor < 0 && errno == ENXIO) return failed("is a socket or a device");
-  if (descriptor < 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
+  if (descriptor < 0) {
+    const int why = errno;
+    Error error = failed("cannot be read: " + std::string(std::strerror(why)));
+    error.machine = too_many_files(why);
+    return error;
+  }
   const Closer closer{descriptor};
   struct stat about {};
   if (::fstat(descriptor, &about) != 0) return failed("cannot be read: " + std::string(std::strerror(errno)));
   if (!S_ISREG(about.st_mode)) return failed(kind_of_place(about.st_mode));
   const auto size = static_cast<std::uint64_t>(about.st_size);
   if (size > most_bytes) return too_large(size);
+  CATENA_CHECK(ask_for_text_memory(one_line(path), static_cast<double>(size)));
   std::string text;
   text.reserve(size);
   char buffer[1 << 16];

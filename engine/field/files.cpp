@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/base/too_many_files.h"
+
 namespace catena::field {
 
 Result<std::uint64_t> readable_file(const std::string& path) {
@@ -18,7 +20,10 @@ Result<std::uint64_t> readable_file(const std::string& path) {
   if (!std::filesystem::is_regular_file(status)) return Error{fmt::format("{}: this is not a regular file", path)};
   const std::uint64_t size = std::filesystem::file_size(path, error);
   errno = 0;
-  if (error || !std::ifstream(path, std::ios::binary)) return Error{fmt::format("{}: cannot be opened ({})", path, std::strerror(errno))};
+  if (error || !std::ifstream(path, std::ios::binary)) {
+    const int why = errno;
+    return Error{fmt::format("{}: cannot be opened ({})", path, std::strerror(why)), too_many_files(why)};
+  }
   if (size == 0) return Error{fmt::format("{}: the file is empty", path)};
   return size;
 }

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "engine/base/parallel_for.h"
+#include "engine/field/dense.h"
 #include "engine/field/grid.h"
 
 namespace catena::field {
@@ -38,6 +39,26 @@ double largest(const Field& field, const Size& size) {
   return most;
 }
 
+/// The corners of the cells that count, in layers z .. z + layers - 1 of the box; a cell between such corners counts too, as all its
+/// corners are valid.
+void mark_corners(const VectorGrid& grid, const Index3& size, int z, int layers, std::span<std::uint8_t> valid) {
+  std::fill(valid.begin(), valid.end(), std::uint8_t{0});
+  const std::size_t plane = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  const Box& box = grid.index_box();
+  Cursor cursor;
+  for (int base = std::max(0, z - 1); base < z + layers && base + 1 < size.z; ++base)
+    for (int y = 0; y + 1 < size.y; ++y)
+      for (int x = 0; x + 1 < size.x; ++x) {
+        if (!grid.sample(grid.mapping().world_from_index(box.lo + Vec3(x + 0.5, y + 0.5, base + 0.5)), cursor).inside) continue;
+        for (int i = 0; i < 8; ++i) {
+          const int layer = base + (i >> 2) - z;
+          if (layer < 0 || layer >= layers) continue;
+          valid[static_cast<std::size_t>(layer) * plane + static_cast<std::size_t>(y + ((i >> 1) & 1)) * static_cast<std::size_t>(size.x) +
+                static_cast<std::size_t>(x + (i & 1))] = 1;
+        }
+      }
+}
+
 }  // namespace
 
 double largest_magnitude(const VectorField& field) {
@@ -50,6 +71,32 @@ double largest_gradient(const ScalarField& field) {
     const ScalarSample sample = field.sample(world, cursor);
     return sample.inside ? norm(sample.gradient) : 0.0;
   });
+}
+
+Result<std::shared_ptr<const ScalarGrid>> magnitude_grid(const VectorGrid& grid, const std::string& what) {
+  const Box& box = grid.index_box();
+  const Index3 origin{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
+  const Index3 size{static_cast<int>(box.hi.x - box.lo.x) + 1, static_cast<int>(box.hi.y - box.lo.y) + 1,
+                    static_cast<int>(box.hi.z - box.lo.z) + 1};
+  CATENA_CHECK(ask_for_dense(what, size, 1, grid.has_mask()));
+
+  // layer by layer
+  const std::size_t plane = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  std::vector<float> xyz(3 * plane);
+  const auto read = [&](int z, int layers, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
+    for (int layer = 0; layer < layers; ++layer) {
+      grid.read_block({origin.x, origin.y, origin.z + z + layer}, {size.x, size.y, 1}, xyz);
+      for (std::size_t i = 0; i < plane; ++i)
+        values[static_cast<std::size_t>(layer) * plane + i] = static_cast<float>(norm(Vec3(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2])));
+    }
+    if (!valid.empty()) mark_corners(grid, size, z, layers, valid);
+    return Done{};
+  };
+  Mapping mapping = grid.mapping();
+  mapping.origin = mapping.world_from_index(box.lo);
+  auto made = make_dense<ScalarGrid>(grid.name(), mapping, {size, grid.has_mask(), read}, what + " ");
+  if (!made) return Error{made.error().message + "; magnitudes that fit into 32-bit floats were expected"};
+  return made;
 }
 
 }  // namespace catena::field

@@ -36,11 +36,12 @@ bool write_at(int fd, std::uint64_t at, const void* data, std::size_t bytes) {
 Result<Descriptor> file_with_request(const ReadRequest& request) {
   const std::string text = encode(request);
   Descriptor file(::memfd_create("catena-read", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (!file && errno == EMFILE) return Error{request.what.path + ": cannot be read: " + too_few_descriptors(), true};
   ExchangeHead head;
   head.offset = sizeof head;
   head.bytes = text.size();
   if (!file || !write_at(file.get(), 0, &head, sizeof head) || !write_at(file.get(), head.offset, text.data(), text.size()))
-    return Error{fmt::format("{}: no memory to read it into ({})", request.what.path, std::strerror(errno))};
+    return Error{fmt::format("{}: no memory to read it into ({})", request.what.path, std::strerror(errno)), true};
   return file;
 }
 
@@ -138,7 +139,7 @@ Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
   const int given[] = {file.get()};
   const std::string program = settings.program.empty() ? helper_path("catena-read") : settings.program;
   auto reader = HelperProcess::start(program, given);
-  if (!reader) return Error{what.path + ": cannot be read: " + reader.error().message};
+  if (!reader) return Error{what.path + ": cannot be read: " + reader.error().message, reader.error().machine};
   // a reader that sleeps uses no processor time: disks may be slow, but not without end
   constexpr double kLeastWait = 60, kWaits = 10;
   const double wall_s = settings.wall_s > 0 ? settings.wall_s : std::max(kLeastWait, kWaits * static_cast<double>(request.cpu_s));

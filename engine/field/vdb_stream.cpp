@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kBuffer = 1 << 20;
 
-Error cannot_write(const std::string& path, const std::string& why) {
-  return Error{fmt::format("{}: cannot be written ({})", path, one_line(why))};
+Error cannot_write(const std::string& path, const std::string& why, bool machine = false) {
+  return Error{fmt::format("{}: cannot be written ({})", path, one_line(why)), machine};
 }
 
 }  // namespace
@@ -35,11 +35,11 @@ Result<VdbStream> VdbStream::open(const std::string& path) {
   if (fs::is_directory(path, ignored)) return Error{fmt::format("{}: this is a folder, expected the name of a file to write", path)};
   CATENA_TRY(OutputFile file, OutputFile::open(path));
   int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return cannot_write(path, std::strerror(errno));
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return cannot_write(path, std::strerror(errno), true);
   Descriptor near(ends[0]), far(ends[1]);
   const int given[] = {far.get(), ::fileno(file.stream())};
   auto writer = HelperProcess::start(helper_path("catena-write"), given);
-  if (!writer) return cannot_write(path, writer.error().message);
+  if (!writer) return cannot_write(path, writer.error().message, writer.error().machine);
   return VdbStream(path, std::move(file), std::move(*writer), std::move(near));
 }
 

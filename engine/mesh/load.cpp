@@ -17,6 +17,12 @@ bool ends_with(std::string_view path, std::string_view lower_case) {
   return true;
 }
 
+/// The text is gone when the mesh is made.
+Result<Soup> read_soup(const std::string& path) {
+  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (.stl or .obj)", kMostBytes));
+  return ends_with(path, ".stl") ? parse_stl(bytes, path) : parse_obj(bytes, path);
+}
+
 }  // namespace
 
 bool is_mesh_file(std::string_view path) { return ends_with(path, ".stl") || ends_with(path, ".obj"); }
@@ -24,8 +30,7 @@ bool is_mesh_file(std::string_view path) { return ends_with(path, ".stl") || end
 Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement) {
   const auto failed = [&](const std::string& what) { return Error{one_line(path + ": " + what)}; };
   if (!is_mesh_file(path)) return failed("has an unknown kind; a .stl or .obj file was expected");
-  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (.stl or .obj)", kMostBytes));
-  CATENA_TRY(Soup soup, ends_with(path, ".stl") ? parse_stl(bytes, path) : parse_obj(bytes, path));
+  CATENA_TRY(Soup soup, read_soup(path));
   for (Vec3& v : soup.vertices) {
     v = v * placement.scale + placement.offset;
     if (!is_finite(v)) return failed("a scaled vertex is not finite; a smaller scale was expected");

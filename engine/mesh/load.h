@@ -1,7 +1,8 @@
 /// Reads triangle meshes: STL (binary and ASCII) and OBJ. Corners are joined as they lie; stored normals, colours, texture
 /// coordinates, groups and materials are not used: the outside is where the corners run counter-clockwise.
 /// OBJ polygons become fans. Refused, with one line "FILE: place: what; what was expected": numbers that are not finite, indices of
-/// vertices that are not there, a file that ends too early or is longer than it says, more than kMostTriangles. Off the tick.
+/// vertices that are not there, a file that ends too early or is longer than it says, more than kMostTriangles, more
+/// than the memory that is allowed (engine/base/memory_limit.h). Off the tick.
 #pragma once
 #include <string_view>
 

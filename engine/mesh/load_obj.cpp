@@ -5,6 +5,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/mesh/grow.h"
 #include "engine/mesh/load.h"
 
 namespace catena::mesh {
@@ -78,6 +79,7 @@ struct ObjReader {
     }
     if (soup.vertices.size() >= kMostVertices)
       return failed("too many vertices; at most " + std::to_string(kMostVertices) + " were expected");
+    CATENA_CHECK(grow(soup.vertices, static_cast<double>(text.size()) + bytes_of(soup.triangles), name, "vertices"));
     soup.vertices.push_back(v);
     return Done{};
   }
@@ -105,6 +107,7 @@ struct ObjReader {
       if (corners > 2) {
         if (soup.triangles.size() >= kMostTriangles)
           return failed("too many triangles; at most " + std::to_string(kMostTriangles) + " were expected");
+        CATENA_CHECK(grow(soup.triangles, static_cast<double>(text.size()) + bytes_of(soup.vertices), name, "triangles"));
         soup.triangles.push_back({first, last, v});
       }
       last = v;

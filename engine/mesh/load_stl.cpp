@@ -6,6 +6,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/mesh/grow.h"
 #include "engine/mesh/load.h"
 
 namespace catena::mesh {
@@ -49,6 +50,7 @@ bool is_word(std::string_view word, std::string_view lower_case) {
 
 struct TextReader {
   const std::string& name;
+  double text_bytes;
   Words words;
 
   Error failed(std::string_view found, std::string_view expected) const {
@@ -89,8 +91,10 @@ struct TextReader {
         CATENA_CHECK(expect("outer"));
         CATENA_CHECK(expect("loop"));
         const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+        CATENA_CHECK(grow(soup.triangles, text_bytes + bytes_of(soup.vertices), name, "triangles"));
         for (int i = 0; i < 3; ++i) {
           CATENA_TRY(const Vec3 v, corner());
+          CATENA_CHECK(grow(soup.vertices, text_bytes + bytes_of(soup.triangles), name, "corners"));
           soup.vertices.push_back(v);
         }
         CATENA_CHECK(expect("endloop"));
@@ -106,6 +110,8 @@ struct TextReader {
 
 Result<Soup> read_binary(std::string_view bytes, std::size_t count, const std::string& name) {
   Soup soup;
+  CATENA_CHECK(ask_for_text_memory(fmt::format("{}: a mesh of {} triangles", name, count),
+                                   static_cast<double>(bytes.size() + count * (3 * sizeof(Vec3) + sizeof(Triangle)))));
   soup.vertices.reserve(3 * count);
   soup.triangles.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -140,7 +146,7 @@ Result<Soup> parse_stl(std::string_view bytes, const std::string& name) {
   if (bytes.size() >= kHeader) std::memcpy(&count, bytes.data() + 80, sizeof count);
   const std::uint64_t wanted = kHeader + std::uint64_t{kRecord} * count;
   const bool fits = bytes.size() >= kHeader && wanted == bytes.size();
-  if (!fits && looks_like_text(bytes)) return TextReader{name, Words(without_bom(bytes))}.read();
+  if (!fits && looks_like_text(bytes)) return TextReader{name, static_cast<double>(bytes.size()), Words(without_bom(bytes))}.read();
   if (bytes.size() < kHeader)
     return Error{one_line(name + ": has " + std::to_string(bytes.size()) +
                           " bytes and does not begin with \"solid\"; a binary STL of at least 84 bytes, or a text, was expected")};

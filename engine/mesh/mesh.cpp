@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 
@@ -58,6 +59,30 @@ void compact(std::vector<Vec3>& vertices, std::vector<Triangle>& triangles) {
     for (std::uint32_t& v : t) v = renamed[v];
 }
 
+double bytes_of_soup(const Soup& soup) {
+  return static_cast<double>(soup.vertices.capacity() * sizeof(Vec3) + soup.triangles.capacity() * sizeof(Triangle));
+}
+
+/// What welding takes beside the soup: two lists of vertices, then the triangles that are kept.
+double bytes_to_weld(const Soup& soup) {
+  return static_cast<double>(2 * soup.vertices.size() * sizeof(std::uint32_t) + soup.triangles.size() * sizeof(Triangle));
+}
+
+/// What the rest takes beside that: the vertices in its own frame, their normals, fans and borders; the faces with their neighbours, the
+/// hierarchy (a node for every two faces), and the greater of what making it (boxes, centres, orders) and finding edges takes for a while.
+double bytes_to_build(std::size_t vertices, std::size_t triangles) {
+  constexpr double kVertex = 2 * sizeof(Vec3) + 2 * sizeof(std::uint32_t) + 1;
+  constexpr double kHierarchy = sizeof(BvhNode) / 2.0, kBoxes = sizeof(FaceBox) + sizeof(Vec3) + 2 * sizeof(std::uint32_t), kEdges = 3 * 20;
+  constexpr double kTriangle = 2 * sizeof(Triangle) + sizeof(Face) + 3 * sizeof(std::uint32_t) + kHierarchy + kBoxes + kEdges;
+  return static_cast<double>(vertices) * kVertex + static_cast<double>(triangles) * kTriangle;
+}
+
+/// A mesh, and what it counts as held.
+struct HeldMesh {
+  TriangleMesh mesh;
+  HeldMemory memory;
+};
+
 }  // namespace
 
 Result<MeshPtr> make_mesh(Soup soup, const std::string& name) {
@@ -67,7 +92,8 @@ Result<MeshPtr> make_mesh(Soup soup, const std::string& name) {
       if (v >= soup.vertices.size()) return failed("a triangle names a vertex that is not there; a whole mesh was expected");
   for (const Vec3& v : soup.vertices)
     if (!is_finite(v)) return failed("a vertex is not finite; finite numbers were expected");
-  auto self = std::make_shared<TriangleMesh>();
+  const auto held = std::make_shared<HeldMesh>();
+  TriangleMesh* const self = &held->mesh;
   self->name_ = name;
   self->version_ = next_version.fetch_add(1);
 
@@ -96,6 +122,8 @@ Result<MeshPtr> make_mesh(Soup soup, const std::string& name) {
   }
 
   // weld, drop what has no area
+  const std::string what = one_line(name + ": a mesh of " + std::to_string(soup.triangles.size()) + " triangles");
+  CATENA_CHECK(ask_for_text_memory(what, bytes_of_soup(soup) + bytes_to_weld(soup)));
   weld(soup);
   std::vector<Triangle> kept;
   kept.reserve(soup.triangles.size());
@@ -107,6 +135,9 @@ Result<MeshPtr> make_mesh(Soup soup, const std::string& name) {
   self->dropped_ = soup.triangles.size() - kept.size();
   if (kept.empty()) return failed("all " + std::to_string(self->dropped_) + " triangles have no area; a surface was expected");
   compact(soup.vertices, kept);
+  soup.triangles = {};
+  CATENA_CHECK(ask_for_text_memory(what, bytes_of_soup(soup) + static_cast<double>(kept.capacity() * sizeof(Triangle)) +
+                                             bytes_to_build(soup.vertices.size(), kept.size())));
   self->vertices_ = std::move(soup.vertices);
   self->lowest_ = Vec3(INFINITY);
   self->highest_ = Vec3(-INFINITY);
@@ -132,7 +163,8 @@ Result<MeshPtr> make_mesh(Soup soup, const std::string& name) {
   for (const std::uint32_t f : order) self->triangles_.push_back(kept[f]);
   self->measure_faces();
   self->connect();
-  return MeshPtr(std::move(self));
+  held->memory = HeldMemory(self->bytes());
+  return MeshPtr(held, self);
 }
 
 void TriangleMesh::measure_faces() {

@@ -52,7 +52,9 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
   auto loaded = load_source(source);
   if (!loaded) {
     const json::Node& place = source.where.line > 0 ? source.where : where;
-    return json::error_at(place, "field " + in_quotes(scene.world.get<Name>(field).value) + ": " + loaded.error().message);
+    Error error = json::error_at(place, "field " + in_quotes(scene.world.get<Name>(field).value) + ": " + loaded.error().message);
+    error.machine = loaded.error().machine;
+    return error;
   }
   source.loaded = *loaded;
   return source.loaded;

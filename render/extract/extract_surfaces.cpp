@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/assert.h"
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/field/magnitude.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
 #include "render/extract/extract_lines.h"
@@ -22,6 +24,15 @@ struct PlainMesh {
   std::shared_ptr<const MeshGeometry> geometry;
   std::uint64_t version = 0, field_version = 0;
 };
+
+/// The triangles as plain data take memory beside the mesh.
+Outcome ask_for_copy(const mesh::TriangleMesh& mesh, const scene::SurfaceMesh& surface) {
+  const std::size_t vertex = sizeof(Vec3) * (surface.smooth ? 3 : 1) + (surface.color_by ? sizeof(Color) + sizeof(double) : 0);
+  auto asked = ask_for_text_memory("drawing the mesh " + in_quotes(mesh.name()),
+                                   static_cast<double>(mesh.vertices().size() * vertex + mesh.triangles().size() * sizeof(mesh::Triangle)));
+  if (!asked) return json::error_at(surface.where, asked.error().message);
+  return Done{};
+}
 
 std::vector<Color> vertex_colors(const mesh::TriangleMesh& mesh, const field::AnyField& shown, const scene::SurfaceColors& by) {
   std::vector<double> values;
@@ -71,7 +82,9 @@ Result<std::shared_ptr<const field::ScalarGrid>> sliced_grid(scene::Scene& scene
       return json::error_at(member_or(scene.world.get<scene::Slice>(e).where, "field"),
                             "\"" + name_of(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
                                 " voxels; a vector field of at most " + to_text(kMostVoxels) + " was expected for a slice");
-    plain = {magnitude_grid(grid), grid.version()};
+    auto made = field::magnitude_grid(grid, "the magnitude of \"" + name_of(scene, field) + "\"");
+    if (!made) return json::error_at(member_or(scene.world.get<scene::Slice>(e).where, "field"), made.error().message);
+    plain = {*made, grid.version()};
   }
   return plain.grid;
 }
@@ -104,6 +117,7 @@ Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
     if (!scene.world.has<PlainMesh>(e)) scene.world.emplace<PlainMesh>(e);
     PlainMesh& plain = scene.world.get<PlainMesh>(e);
     if (plain.version != mesh->version() || plain.field_version != field_version) {
+      CATENA_CHECK(ask_for_copy(*mesh, surface));
       auto geometry = std::make_shared<MeshGeometry>();
       geometry->vertices = mesh->vertices();
       geometry->triangles.reserve(3 * mesh->triangles().size());
@@ -166,38 +180,6 @@ Outcome extract_slices(scene::Scene& scene, FramePacket& packet) {
     packet.slices.push_back(std::move(item));
   }
   return Done{};
-}
-
-std::shared_ptr<const field::ScalarGrid> magnitude_grid(const field::VectorGrid& grid) {
-  const field::Box& box = grid.index_box();
-  const field::Index3 origin{int(box.lo.x), int(box.lo.y), int(box.lo.z)};
-  const field::Index3 size{int(box.hi.x - box.lo.x) + 1, int(box.hi.y - box.lo.y) + 1, int(box.hi.z - box.lo.z) + 1};
-  const std::size_t plane = std::size_t(size.x) * std::size_t(size.y), count = plane * std::size_t(size.z);
-
-  // plane by plane
-  std::vector<float> values(count), xyz(3 * plane);
-  for (int z = 0; z < size.z; ++z) {
-    grid.read_block({origin.x, origin.y, origin.z + z}, {size.x, size.y, 1}, xyz);
-    for (std::size_t i = 0; i < plane; ++i)
-      values[std::size_t(z) * plane + i] = static_cast<float>(norm(Vec3(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2])));
-  }
-
-  // the corners of the cells that count; a cell between such corners counts too, as all its corners are valid
-  std::vector<std::uint8_t> valid;
-  if (grid.has_mask()) {
-    valid.assign(count, 0);
-    field::Cursor cursor;
-    for (int z = 0; z + 1 < size.z; ++z)
-      for (int y = 0; y + 1 < size.y; ++y)
-        for (int x = 0; x + 1 < size.x; ++x) {
-          if (!grid.sample(grid.mapping().world_from_index(box.lo + Vec3(x + 0.5, y + 0.5, z + 0.5)), cursor).inside) continue;
-          for (int i = 0; i < 8; ++i)
-            valid[std::size_t(z + (i >> 2)) * plane + std::size_t(y + ((i >> 1) & 1)) * std::size_t(size.x) + std::size_t(x + (i & 1))] = 1;
-        }
-  }
-  field::Mapping mapping = grid.mapping();
-  mapping.origin = mapping.world_from_index(box.lo);
-  return field::make_scalar_grid(grid.name(), mapping, size, values, valid);
 }
 
 }  // namespace catena::render

@@ -18,7 +18,4 @@ Outcome extract_slices(scene::Scene& scene, FramePacket& packet);
 /// Levels within lo..hi: those listed, `count` of them at equal distances with the ends left out, or all multiples of `spacing`.
 Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contours, double lo, double hi);
 
-/// |v| at the voxels, NaN where v is; cells that the vector grid excludes are excluded.
-std::shared_ptr<const field::ScalarGrid> magnitude_grid(const field::VectorGrid& grid);
-
 }  // namespace catena::render

@@ -64,4 +64,6 @@ Outcome Interrupt::outcome() const {
   return Error{fmt::format("ended by {}; the device is off", word_of_signal(by)), true};
 }
 
+bool ended_by_broken_pipe() { return first_signal == SIGPIPE; }
+
 }  // namespace catena::app

@@ -34,4 +34,7 @@ class Interrupt {
   std::vector<Before> before_;
 };
 
+/// The work was asked to end because the reader of its output has gone.
+bool ended_by_broken_pipe();
+
 }  // namespace catena::app

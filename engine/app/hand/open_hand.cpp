@@ -27,7 +27,7 @@ Result<OpenHand> open_hand(const scene::Scene& scene, const std::string& name, s
   }
   if (rate_hz) hand.settings.rate_hz = *rate_hz;
   if (!firmware.empty()) hand.settings.firmware = firmware;
-  hand.settings.tell = [](const std::string& news) { tell(STDERR_FILENO, fmt::format("catena: {}\n", news)); };
+  hand.settings.tell = [](const std::string& news) { tell_from_catena(news); };
   CATENA_TRY(hand.device, haptics::open_device(wanted, hand.settings));
   hand.limits = haptics::limits_for(hand.device->capabilities(), hand.settings);
   return hand;

@@ -16,6 +16,7 @@
 #include "engine/app/size_option.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
@@ -32,6 +33,13 @@ template <class T>
 T machine(Result<T> result) {
   if (!result) throw MachineFailure{result.error().message};
   return std::move(*result);
+}
+
+/// A line about the picture: on standard output, or beside a picture that goes there.
+void say(std::FILE* to, const std::string& line) {
+  if (to == stderr) return tell(line);
+  std::fputs((printable(line) + "\n").c_str(), to);
+  std::fflush(to);
 }
 
 /// Draws frames of one scene and hands their bands on.
@@ -165,8 +173,8 @@ Outcome render_pictures(const RenderOptions& o) {
     const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
     frames.settings = choice.settings;
     stats.estimated_rmse = choice.estimated_rmse;
-    fmt::print(words, "quality {}: {}, error about {:.2f}/255{}\n", quality, describe(frames.settings), choice.estimated_rmse,
-               choice.reached ? "" : " (nothing reached the goal: the nearest was taken)");
+    say(words, fmt::format("quality {}: {}, error about {:.2f}/255{}", quality, describe(frames.settings), choice.estimated_rmse,
+                           choice.reached ? "" : " (nothing reached the goal: the nearest was taken)"));
   }
   stats.quality_mode = wanted.goal ? quality + ": " + describe(frames.settings) : quality;
   stats.tiles = frames.plan.count();
@@ -182,10 +190,9 @@ Outcome render_pictures(const RenderOptions& o) {
     CATENA_TRY(const double first, frames.draw(0, &outputs));
     stats.first_frame_ms = frames.first_ms;
     stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
-    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) fmt::print(stderr, "{}\n", printable(coarser.words()));
-    fmt::print(words, "{}: {}x{}, {}{}, on {}\n", o.output, picture.width, picture.height, what_is_drawn(packet),
-               stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device);
-    std::fflush(words);
+    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
+    say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, what_is_drawn(packet),
+                           stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
     // a frame of many tiles has warmed up by itself
     const bool timed = !o.stats.empty() && stats.tiles == 1;
     for (int k = 1; k < kUnreportedFrames && timed; ++k) CATENA_CHECK(frames.draw(0, nullptr));
@@ -200,7 +207,7 @@ Outcome render_pictures(const RenderOptions& o) {
     frames.progress = nullptr;
   }
   if (!o.stats.empty() || motion.frames() > 1)
-    fmt::print(words, "frame {:.1f} ms (median of {})\n", stats.median_ms(), stats.frame_ms.size());
+    say(words, fmt::format("frame {:.1f} ms (median of {})", stats.median_ms(), stats.frame_ms.size()));
 
   CATENA_CHECK(outputs.finish());
   stats.encode_ms = outputs.ms_a_frame();
@@ -210,8 +217,8 @@ Outcome render_pictures(const RenderOptions& o) {
   stats.gpu_bytes = gpu.gpu_bytes;
   stats.gpu_budget_bytes = gpu.gpu_budget;
   stats.validation_messages = gpu.validation_messages;
-  for (const std::string& note : gpu.notes) fmt::print(stderr, "catena: {}\n", printable(note));
-  for (const std::string& text : frames.renderer->validation_texts()) fmt::print(stderr, "validation: {}\n", text);
+  for (const std::string& note : gpu.notes) tell_from_catena(note);
+  for (const std::string& text : frames.renderer->validation_texts()) tell("validation: " + text);
   if (o.stats.empty()) return outputs.commit();
   CATENA_TRY(OutputFile json, OutputFile::open(o.stats));
   json.write(stats.json());

@@ -13,6 +13,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/part_file.h"
+#include "engine/base/text.h"
 
 namespace catena::app {
 
@@ -97,7 +98,7 @@ Outcome ResultFolder::plot(const std::string& script, const std::vector<std::str
   const int code = run_gnuplot(staging_, script);
   if (code != 0) {
     fmt::print("no plots: gnuplot {}; the tables are complete, `gnuplot {}` in {} draws them\n",
-               code == kMissing ? "is not installed" : "failed", script, path_);
+               code == kMissing ? "is not installed" : "failed", script, printable(path_));
     return Done{};
   }
   for (const std::string& name : plots) {

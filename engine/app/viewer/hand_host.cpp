@@ -7,6 +7,7 @@
 
 #include "engine/app/hand/hand_setup.h"
 #include "engine/base/tell.h"
+#include "engine/base/text.h"
 #include "engine/scene/systems.h"
 #include "haptics/extract/extract.h"
 
@@ -166,9 +167,9 @@ Outcome HandHost::stop_recording() {
 Outcome HandHost::start() {
   if (!is_mouse()) crash_guard_.emplace(*hand_.device);
   CATENA_CHECK(servo_->start());
-  if (!hand_.note.empty()) fmt::print(stderr, "catena: {}\n", hand_.note);
+  if (!hand_.note.empty()) tell_from_catena(hand_.note);
   if (is_mouse()) return Done{};
-  for (const std::string& note : servo_->report().realtime.notes) tell(STDERR_FILENO, fmt::format("catena: {}\n", note));
+  for (const std::string& note : servo_->report().realtime.notes) tell_from_catena(note);
   say_forces();
   return Done{};
 }
@@ -218,8 +219,8 @@ void HandHost::set_forces(bool on) {
 }
 
 void HandHost::say_forces() const {
-  tell(STDOUT_FILENO, fmt::format("{}: forces {} (F turns them {})\n", hand_.device->capabilities().name, servo_->forces() ? "on" : "off",
-                                  servo_->forces() ? "off" : "on"));
+  print_now(STDOUT_FILENO, fmt::format("{}: forces {} (F turns them {})\n", printable(hand_.device->capabilities().name),
+                                       servo_->forces() ? "on" : "off", servo_->forces() ? "off" : "on"));
 }
 
 }  // namespace catena::app

@@ -224,8 +224,8 @@ std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
            std::any_of(packet->volumes.begin(), packet->volumes.end(), shaded)};
   if (times_.count() == 0) {
     const render::RenderStats stats = screen_->renderer().stats();
-    for (const std::string& note : stats.notes) tell(STDERR_FILENO, fmt::format("catena: {}\n", printable(note)));
-    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(STDERR_FILENO, printable(coarser.words()) + "\n");
+    for (const std::string& note : stats.notes) tell_from_catena(note);
+    for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
   }
   shown_ = std::move(*packet);
   picked_stale_ = true;
@@ -300,7 +300,8 @@ void Session::update_title() {
 
 void Session::say_goodbye() const {
   const exchange::HapticState& felt = hand_.felt();
-  fmt::print("{} frames, {:.1f} ms median, on {}\n", times_.count(), 1e-3 * times_.draw().p50_us, screen_->renderer().stats().device);
+  fmt::print("{} frames, {:.1f} ms median, on {}\n", times_.count(), 1e-3 * times_.draw().p50_us,
+             printable(screen_->renderer().stats().device));
   if (screen_->recoveries() > 0)
     fmt::print("the graphics device was lost and started again {} time{}\n", screen_->recoveries(), screen_->recoveries() == 1 ? "" : "s");
   fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", felt.probe.x, felt.probe.y, felt.probe.z,

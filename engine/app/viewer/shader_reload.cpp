@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kLookNs = 250'000'000;
 
-void say(const std::string& text) { tell(STDERR_FILENO, fmt::format("catena: {}\n", text)); }
+void say(const std::string& text) { tell_from_catena(text); }
 
 }  // namespace
 

@@ -1,9 +1,7 @@
 #include "engine/app/viewer/viewer.h"
 
-#include <fmt/format.h>
-
 #include "engine/app/viewer/session.h"
-#include "engine/base/text.h"
+#include "engine/base/tell.h"
 
 namespace catena::app {
 
@@ -11,7 +9,7 @@ int view(ViewOptions options) {
   Session session(std::move(options));
   auto failure = session.open();
   if (!failure) failure = session.run();
-  if (failure) fmt::print(stderr, "catena: {}\n", printable(failure->message));
+  if (failure) tell_from_catena(failure->message);
   return failure ? failure->exit_code : 0;
 }
 

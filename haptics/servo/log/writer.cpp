@@ -146,7 +146,7 @@ Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogH
 LogWriter::LogWriter(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 LogWriter::~LogWriter() {
-  if (const Outcome done = finish(); !done) tell(STDERR_FILENO, done.error().message + "\n");
+  if (const Outcome done = finish(); !done) tell(done.error().message);
 }
 
 void LogWriter::add_program(const Program& program, std::optional<std::string> scene_text) {

@@ -212,4 +212,20 @@ TEST_F(BadArguments, TraceRenderInfo) {
   refused({}, {}, {});
 }
 
+// before: an abort, or 0 that nobody meant, or a bound of 309 digits
+TEST_F(BadArguments, AnEmptyNumberIsRefusedByEveryOption) {
+  const std::string s = folder_ / "s.json", seeds = folder_ / "seeds.csv", o = folder_ / "o.csv", png = folder_ / "o.png";
+  const std::string empty = "the value is empty; a number was expected";
+  for (const char* option : {"--bits", "--antialias", "--tile", "--frames", "--fps", "--orbit", "--zoom", "--phase", "--gpu-memory",
+                             "--eye-separation", "--memory"})
+    refused({"render", s, "-o", png, "--size", "16x16", option, ""}, png, {option, empty});
+  for (const char* option : {"--length", "--tolerance", "--step", "--min-speed", "--repeat"})
+    refused({"trace", s, "--field", "v", "--seeds", seeds, "-o", o, option, ""}, o, {option, empty});
+  refused({"view", s, "--frames", ""}, {}, {"--frames", empty});
+  refused({"view", s, "--frames", "-1"}, {}, {"--frames", "a finite number from 0 to 2147483647 was expected"});
+  refused({"trace", s, "--field", "v", "--seeds", seeds, "-o", o, "--length", "0"}, o,
+          {"--length", "a finite number above 0 was expected"});
+  refused({"feel", s, "--seconds", ""}, {}, {"--seconds", empty});
+}
+
 }  // namespace bad_input_test

@@ -40,6 +40,7 @@ class ProcessLimits : public testing::Test {
               err_fd = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     dup2(out_fd, 1);
     dup2(err_fd, 2);
+    closefrom(3);
     for (const Limit& limit : limits) {
       const rlimit both{limit.most, limit.most};
       setrlimit(limit.what, &both);
@@ -97,6 +98,23 @@ TEST_F(ProcessLimits, ProcessorTimeThatIsUsedUpIsAnErrorOfTheMachine) {
   EXPECT_EQ(wait(child), 1) << err_;
   EXPECT_NE(err_.find("catena: ended by SIGXCPU (CPU time limit exceeded); the device is off\n"), std::string::npos) << err_;
   expect_one_sentence();
+}
+
+// before: exit code 2, and the helper was said to be missing
+TEST_F(ProcessLimits, FewDescriptorsAreALimitOfTheMachine) {
+  const std::string grid = folder_ / "g.vdb", uses = folder_ / "u.json";
+  ASSERT_EQ(run({"generate", "sphere", "-o", grid, "--resolution", "8"}, {}), 0) << err_;
+  test::write_file(uses, R"({"fields": {"s": {"file": "g.vdb"}}, "isosurfaces": [{"field": "s", "level": 1}]})");
+  for (const rlim_t files : {6, 40})
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"info", grid}, {"info", uses}, {"generate", "sphere", "-o", folder_ / "o.vdb", "--resolution", "8"}}) {
+      EXPECT_EQ(run(arguments, {{RLIMIT_NOFILE, files}}), 1) << arguments[1] << ": " << err_;
+      expect_one_sentence();
+      if (arguments[0] == "info") {
+        EXPECT_NE(err_.find("at most " + std::to_string(files) + " files may be open at a time (ulimit -n)"), std::string::npos) << err_;
+      }
+    }
+  EXPECT_FALSE(test::exists(folder_ / "o.vdb"));
 }
 
 #ifndef __SANITIZE_ADDRESS__

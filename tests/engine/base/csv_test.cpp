@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/csv_paths.h"
+#include "engine/base/memory_limit.h"
 #include "tests/support/support.h"
 
 namespace catena {
@@ -106,6 +107,19 @@ TEST(Csv, ManyRowsKeepTheirValues) {
   ASSERT_TRUE(rows);
   ASSERT_EQ(rows->size(), 200000u);
   EXPECT_EQ(rows->back().position.z, 399998.0);
+}
+
+// before: 527 MB for 3 million rows, whatever was allowed
+TEST(Csv, RowsAskForTheirMemory) {
+  std::string text = "t,x,y,z\n";
+  for (int i = 0; i < 10000; ++i) text += std::to_string(i) + ",0,0,0\n";
+  set_memory_limit(1000000);
+  const auto path = parse_probe_path(text, "p.csv");
+  for (int i = 0; i < 30000; ++i) text += std::to_string(10000 + i) + ",0,0,0\n";
+  const auto longer = parse_probe_path(text, "p.csv");
+  set_memory_limit(std::nullopt);
+  expect_error(path, {"p.csv: a table of 10000 rows needs 3 MB of memory, expected at most 1 MB"});
+  expect_error(longer, {"p.csv: a table of 40000 rows needs 2 MB of memory, expected at most 1 MB"});
 }
 
 }  // namespace csv_test

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -51,6 +52,23 @@ TEST(HelperProcess, SaysHowItEnded) {
   const auto absent = HelperProcess::start(folder / "absent", {});
   ASSERT_FALSE(absent);
   EXPECT_NE(absent.error().message.find("cannot be started"), std::string::npos);
+}
+
+// before: "(Invalid argument), expected it beside the program", as if it were not there
+TEST(HelperProcess, TooFewDescriptorsAreALimitOfTheMachine) {
+  const Descriptor file(::open("/dev/null", O_RDONLY));
+  const int given[] = {file.get()};
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = 32;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  const auto started = HelperProcess::start("/bin/true", given);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  ASSERT_FALSE(started);
+  EXPECT_TRUE(started.error().machine);
+  EXPECT_EQ(started.error().message,
+            "/bin/true: this part of Catena cannot be started: at most 32 files may be open at a time (ulimit -n), expected at least 128");
 }
 
 }  // namespace helper_process_test

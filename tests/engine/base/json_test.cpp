@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/memory_limit.h"
 #include "tests/support/support.h"
 
 namespace catena::json {
@@ -119,6 +120,38 @@ TEST(Json, FilesThatCannotBeRead) {
   expect_parts(message(folder.path()), {"is a folder", "expected"});
   test::write_file(folder / "a.json", "{}");
   EXPECT_TRUE(read(folder / "a.json"));
+}
+
+class JsonMemory : public testing::Test {
+ protected:
+  JsonMemory() { set_memory_limit(1000000); }
+  ~JsonMemory() override { set_memory_limit(std::nullopt); }
+};
+
+// before: each of these took a hundred times its length, whatever was allowed
+TEST_F(JsonMemory, ManyValuesAreAskedForBeforeTheyAreParsed) {
+  for (const std::string& item : {std::string("[]"), std::string("{}"), std::string("1"), std::string("\"\""), std::string("null")}) {
+    std::string text = "{\"x\": [" + item;
+    for (int i = 0; i < 20000; ++i) text += "," + item;
+    EXPECT_NE(error_of(text + "]}").find("MB of memory, expected at most 1 MB"), std::string::npos) << item;
+  }
+}
+
+TEST_F(JsonMemory, OrdinaryTextsAreParsedWhateverIsAllowed) {
+  const HeldMemory held(1000000);
+  std::string text = "{ // a comment, with [brackets], words: and \"strings\"\n";
+  for (int i = 0; i < 200; ++i) text += "\"key" + std::to_string(i) + "\": [1, 2.5, {\"name\": \"a, [b] {c}\"}], /* [[[ */\n";
+  EXPECT_EQ(error_of(text + "\"last\": null}"), "no error");
+}
+
+// before: each item's label began with the whole key
+TEST(Json, ALongKeyIsNotRepeatedInEachItem) {
+  const auto node = parse("{\"" + std::string(1000000, 'k') + "\": [[1, 2], 3]}", "scene.json");
+  ASSERT_TRUE(node);
+  const Node& list = node->members[0].second;
+  EXPECT_EQ(list.label.size(), 1000000u);
+  EXPECT_EQ(list.items[1].label, std::string(24, 'k') + "[1]");
+  EXPECT_LT(list.items[0].items[1].label.size(), 31u);
 }
 
 }  // namespace json_test

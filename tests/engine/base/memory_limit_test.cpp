@@ -44,5 +44,13 @@ TEST_F(MemoryLimit, TheSentence) {
   EXPECT_TRUE(ask_for_memory("it", 2000000));
 }
 
+TEST_F(MemoryLimit, SmallTextsAreNeverRefused) {
+  set_memory_limit(1000000);
+  HeldMemory held(1000000);
+  EXPECT_FALSE(ask_for_memory("it", 1000));
+  EXPECT_TRUE(ask_for_text_memory("it", 1000000));
+  EXPECT_FALSE(ask_for_text_memory("it", 1000001));
+}
+
 }  // namespace memory_limit_test
 }  // namespace catena

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "engine/base/memory_limit.h"
 #include "engine/field/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 
@@ -56,6 +57,33 @@ TEST(Magnitude, SkipsWhatIsNotFinite) {
 TEST(Magnitude, OfAFlatGridIsZero) {
   const std::vector<float> values(27, 4.0F);
   EXPECT_EQ(largest_gradient(*make_scalar_grid("g", Mapping{}, {3, 3, 3}, values)), 0);
+}
+
+TEST(Magnitude, AsAGridIsTheLengthAtEachVoxel) {
+  const std::vector<float> xyz{3, 4, 0, 0, 0, 2, 1, 2, 2, 0, -5, 12, 0, 0, 0, 6, 8, 0, 1, 0, 0, 0, 1, 0};
+  const auto made = magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "it");
+  ASSERT_TRUE(made) << made.error().message;
+  std::vector<float> values(8);
+  (*made)->read_block({0, 0, 0}, {2, 2, 2}, values);
+  EXPECT_EQ(values, (std::vector<float>{5, 2, 3, 13, 0, 10, 1, 1}));
+}
+
+// before: a bug was said, and the program aborted
+TEST(Magnitude, BeyondAllFloatsIsAnError) {
+  const std::vector<float> xyz(24, 3e38F);
+  const auto made = magnitude_grid(*make_vector_grid("v", Mapping{}, {2, 2, 2}, xyz), "the magnitude of \"v\"");
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().message,
+            "the magnitude of \"v\" has no finite value in any active voxel; magnitudes that fit into 32-bit floats were expected");
+}
+
+TEST(Magnitude, AsAGridAsksForItsMemory) {
+  const auto grid = make_vector_grid("v", Mapping{}, {64, 64, 64}, std::vector<float>(3 * 64 * 64 * 64, 1.0F));
+  set_memory_limit(900000);
+  const auto made = magnitude_grid(*grid, "it");
+  set_memory_limit(std::nullopt);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("it needs 2 MB of memory, expected at most 0 MB"), std::string::npos) << made.error().message;
 }
 
 }  // namespace magnitude_test

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/memory_limit.h"
 #include "tests/support/mesh_shapes.h"
 #include "tests/support/support.h"
 
@@ -120,6 +121,30 @@ TEST(LoadMesh, FilesPlacementAndFaults) {
   EXPECT_FALSE(load_mesh(folder / "box.ply"));
   write_file(folder / "empty.obj", "# nothing\n");
   EXPECT_EQ(load_mesh(folder / "empty.obj").error().message, (folder / "empty.obj") + ": holds no triangle; at least one was expected");
+}
+
+// before: 1.45 GB for 3 million triangles, whatever was allowed
+TEST(Mesh, AsksForItsMemoryAndHoldsIt) {
+  const Soup ball = sphere_soup(64);
+  const std::string stl = binary_stl(ball), text = text_stl(ball);
+  std::string obj;
+  for (int i = 0; i < 20000; ++i) obj += "v 0 0 " + std::to_string(i) + "\n";
+  set_memory_limit(1000000);
+  for (const std::string& message :
+       {message_of(parse_stl(stl, "a.stl")), message_of(parse_stl(text, "a.stl")), message_of(parse_obj(obj, "a.obj"))})
+    EXPECT_NE(message.find("MB of memory, expected at most 1 MB"), std::string::npos) << message;
+  const auto made = make_mesh(ball, "ball");
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("ball: a mesh of " + std::to_string(ball.triangles.size()) + " triangles needs"), std::string::npos)
+      << made.error().message;
+  set_memory_limit(100000000);
+  {
+    const auto held = make_mesh(ball, "ball");
+    ASSERT_TRUE(held);
+    EXPECT_EQ(allowed_memory(), 100000000 - (*held)->bytes());
+  }
+  EXPECT_EQ(allowed_memory(), 100000000u);
+  set_memory_limit(std::nullopt);
 }
 
 }  // namespace load_test

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/field/grid.h"
+#include "engine/field/magnitude.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_surfaces.h"
 #include "tests/support/support.h"
@@ -71,8 +72,8 @@ TEST(ExtractSlices, TheMagnitudesKeepMaskPlaceAndHoles) {
       }
   const auto mapping = field::Mapping::from_linear(Mat3(0.5), {10, 20, 30});
   const auto grid = field::make_vector_grid("v", mapping, {6, 5, 4}, xyz, valid);
-  const auto magnitude = magnitude_grid(*grid);
-  const auto whole = magnitude_grid(*field::make_vector_grid("v", mapping, {6, 5, 4}, xyz));
+  const auto magnitude = *field::magnitude_grid(*grid, "v");
+  const auto whole = *field::magnitude_grid(*field::make_vector_grid("v", mapping, {6, 5, 4}, xyz), "v");
   field::Cursor one, two, three;
   for (int z = 0; z < 3; ++z)
     for (int y = 0; y < 4; ++y)
