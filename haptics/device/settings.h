@@ -1,6 +1,6 @@
 /// What a person may say about a device: the scene's "device" object, or options of the command line. Off the tick.
 ///   {"type": "falcon", "max_force": 6, "stiffness_cap": "safe", "axes": ["x", "-z", "y"], "clutch_button": 2, ...}
-/// `catena info --schema` does not list these keys; haptics/device/README.md does.
+/// `catena info --schema` does not list these keys; docs/scene.md does.
 #pragma once
 #include <array>
 #include <functional>

@@ -300,12 +300,13 @@ TEST(Replay, ADeviceOfTheSceneLimitsTheForce) {
   EXPECT_NE(bad.err.find("slew"), std::string::npos) << bad.err;
 }
 
-// Every example of the hand's two references runs as it stands.
-TEST(Replay, TheExamplesOfTheReferencesRun) {
+// Every scene that the documents show runs as it stands.
+TEST(Replay, TheExamplesOfTheDocumentsRun) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "p.csv", "t,x,y,z,buttons\n0,0.5,0.01,0,0\n0.001,0.49,0.05,-0.01,1\n0.002,0.45,0.1,-0.02,0\n");
-  const std::string hand = test::source_dir() + "/haptics/";
-  const std::string text = test::read_file(hand + "README.md") + test::read_file(hand + "device/README.md");
+  std::string text;
+  for (const char* page : {"README.md", "docs/scene.md", "docs/haptics.md", "docs/devices.md"})
+    text += test::read_file(test::source_dir() + "/" + page);
   int examples = 0;
   for (std::size_t at = text.find("```json\n"); at != std::string::npos; at = text.find("```json\n", at + 1), ++examples) {
     const std::size_t begin = at + 8;
@@ -313,7 +314,7 @@ TEST(Replay, TheExamplesOfTheReferencesRun) {
     const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
-  EXPECT_EQ(examples, 4);
+  EXPECT_EQ(examples, 6);
 }
 
 TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {

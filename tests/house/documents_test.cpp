@@ -1,0 +1,135 @@
+/// The documents: every relative link leads to a file and to a heading, every file of the tree that they name is there, every Suite.Case
+/// that they name is a test, and README says the scene that assets/scenes/first.json holds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/support.h"
+
+namespace documents_test {
+
+namespace fs = std::filesystem;
+namespace test = catena::test;
+
+/// Every .md file of the tree, relative to its root.
+std::vector<std::string> documents() {
+  std::vector<std::string> found;
+  for (auto it = fs::recursive_directory_iterator(test::source_dir()); it != fs::recursive_directory_iterator(); ++it) {
+    const std::string name = it->path().filename().string();
+    if (it->is_directory() && (name.starts_with(".") || (it.depth() == 0 && (name == "build" || name == "out")))) {
+      it.disable_recursion_pending();
+    } else if (name.ends_with(".md")) {
+      found.push_back(fs::relative(it->path(), test::source_dir()).string());
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::string contents(const std::string& document) { return test::read_file(test::source_dir() + "/" + document); }
+
+/// The part in groups 1 of all matches.
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::regex expression(pattern);
+  std::vector<std::string> found;
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), expression); it != std::sregex_iterator(); ++it) found.push_back((*it)[1]);
+  return found;
+}
+
+/// "## The scene's `device`" is linked to as "the-scenes-device".
+std::string anchor_of(const std::string& heading) {
+  std::string anchor;
+  for (const char c : heading) {
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_') anchor += static_cast<char>(std::tolower(c));
+    if (c == ' ') anchor += '-';
+  }
+  return anchor;
+}
+
+std::set<std::string> anchors_of(const std::string& document) {
+  std::set<std::string> anchors;
+  std::istringstream in(contents(document));
+  for (std::string line; std::getline(in, line);)
+    if (const auto text = line.find_first_not_of('#'); line.starts_with("#") && text != std::string::npos && line[text] == ' ')
+      anchors.insert(anchor_of(line.substr(text + 1)));
+  return anchors;
+}
+
+TEST(Documents, EveryLinkLeadsSomewhere) {
+  int checked = 0;
+  for (const std::string& document : documents())
+    for (const std::string& link : matches(contents(document), R"(\]\(([^)\s]+)\))")) {
+      if (link.starts_with("http")) continue;
+      const auto hash = link.find('#');
+      const std::string file = link.substr(0, hash);
+      const std::string to = file.empty() ? document : (fs::path(document).parent_path() / file).lexically_normal().string();
+      ++checked;
+      ASSERT_TRUE(fs::exists(test::source_dir() + "/" + to)) << document << " links to " << link;
+      if (hash != std::string::npos && to.ends_with(".md"))
+        EXPECT_TRUE(anchors_of(to).contains(link.substr(hash + 1))) << document << " links to " << link;
+    }
+  EXPECT_GT(checked, 40);
+}
+
+TEST(Documents, EveryPageIsReachedFromTheReadme) {
+  std::set<std::string> reached, open{"README.md"};
+  while (!open.empty()) {
+    const std::string page = *open.begin();
+    open.erase(open.begin());
+    if (!reached.insert(page).second) continue;
+    for (const std::string& link : matches(contents(page), R"(\]\(([^)#\s]+\.md)[^)]*\))"))
+      open.insert((fs::path(page).parent_path() / link).lexically_normal().string());
+  }
+  for (const std::string& document : documents())
+    if (document.starts_with("docs/")) EXPECT_TRUE(reached.contains(document)) << document;
+}
+
+TEST(Documents, EveryFileThatTheyNameIsThere) {
+  int checked = 0;
+  for (const std::string& document : documents())
+    for (const std::string& path : matches(contents(document), R"(`((?:engine|haptics|render|shaders|tests|assets)/[\w./-]+)`)")) {
+      if (path.find("NAME") != std::string::npos) continue;
+      ++checked;
+      EXPECT_TRUE(fs::exists(test::source_dir() + "/" + path)) << document << " names " << path;
+    }
+  EXPECT_GT(checked, 40);
+}
+
+TEST(Documents, EveryTestThatTheyNameIsOne) {
+  std::string cases;  // " Suite.Case" of every test
+  for (const auto& entry : fs::recursive_directory_iterator(test::source_dir() + "/tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = test::read_file(entry.path().string());
+    for (auto at = text.find("\nTEST"); at != std::string::npos; at = text.find("\nTEST", at + 1)) {
+      const auto begin = text.find('(', at), comma = text.find(',', begin), end = text.find(')', begin);
+      if (end == std::string::npos || comma > end) continue;
+      cases += ' ' + text.substr(begin + 1, comma - begin - 1) + '.' + text.substr(comma + 2, end - comma - 2);
+    }
+  }
+  int checked = 0;
+  for (const std::string& document : documents())
+    for (std::string name : matches(contents(document), R"(`([A-Z]\w+\.[A-Z]\w*\*?|[A-Z]\w+\.\*)`)")) {
+      if (name == "Suite.Case" || name == "NumberN.*") continue;  // how such names are made
+      ++checked;
+      const bool all = name.ends_with("*");
+      if (all) name.pop_back();
+      EXPECT_NE((cases + ' ').find(' ' + name + (all ? "" : " ")), std::string::npos) << document << " names " << name;
+    }
+  EXPECT_GT(checked, 20);
+}
+
+TEST(Documents, TheReadmeIsShortAndShowsTheFirstScene) {
+  const std::string readme = contents("README.md");
+  EXPECT_LE(std::count(readme.begin(), readme.end(), '\n'), 85);
+  EXPECT_NE(readme.find("```json\n" + contents("assets/scenes/first.json") + "```"), std::string::npos);
+}
+
+}  // namespace documents_test
