@@ -73,8 +73,8 @@ TEST(Documents, EveryLinkLeadsSomewhere) {
       const std::string to = file.empty() ? document : (fs::path(document).parent_path() / file).lexically_normal().string();
       ++checked;
       ASSERT_TRUE(fs::exists(test::source_dir() + "/" + to)) << document << " links to " << link;
-      if (hash != std::string::npos && to.ends_with(".md"))
-        EXPECT_TRUE(anchors_of(to).contains(link.substr(hash + 1))) << document << " links to " << link;
+      if (hash == std::string::npos || !to.ends_with(".md")) continue;
+      EXPECT_TRUE(anchors_of(to).contains(link.substr(hash + 1))) << document << " links to " << link;
     }
   EXPECT_GT(checked, 40);
 }
@@ -89,7 +89,7 @@ TEST(Documents, EveryPageIsReachedFromTheReadme) {
       open.insert((fs::path(page).parent_path() / link).lexically_normal().string());
   }
   for (const std::string& document : documents())
-    if (document.starts_with("docs/")) EXPECT_TRUE(reached.contains(document)) << document;
+    EXPECT_TRUE(reached.contains(document) || !document.starts_with("docs/")) << document;
 }
 
 TEST(Documents, EveryFileThatTheyNameIsThere) {
