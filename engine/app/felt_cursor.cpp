@@ -1,7 +1,5 @@
 #include "engine/app/felt_cursor.h"
 
-#include <memory>
-
 #include "engine/app/probe_samples.h"
 #include "engine/scene/systems.h"
 
@@ -16,25 +14,33 @@ std::vector<haptics::ProbeSample> resting_at(const Vec3& probe) {
 }
 }  // namespace
 
-Outcome place_cursor(scene::Scene& scene, const haptics::Program& program, const std::string& probe_csv) {
-  std::vector<haptics::ProbeSample> path;
+Result<FeltPath> FeltPath::make(const scene::Scene& scene, std::shared_ptr<const haptics::Program> program, const std::string& probe_csv) {
+  FeltPath felt;
+  felt.program_ = std::move(program);
   if (!probe_csv.empty()) {
     CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(probe_csv));
-    path = probe_samples(rows);
+    felt.path_ = probe_samples(rows);
   } else if (scene.cursor && scene.world.has<scene::Cursor>(scene.cursor) && scene.world.get<scene::Cursor>(scene.cursor).visible) {
-    path = resting_at(scene.world.get<scene::Cursor>(scene.cursor).probe);
-  } else {
-    return Done{};
+    felt.path_ = resting_at(scene.world.get<scene::Cursor>(scene.cursor).probe);
   }
-  auto state = std::make_unique<haptics::ChainState>();
-  auto scratch = std::make_unique<haptics::ChainScratch>();
-  exchange::HapticState last;
-  for (const haptics::ProbeSample& probe : path) haptics::tick(program, probe, *state, *scratch, last);
-  scene::update_cursor(scene, last);
+  return felt;
+}
+
+void FeltPath::show(scene::Scene& scene, double share) {
+  if (empty()) return;
+  const double until = path_.front().t_s + share * (path_.back().t_s - path_.front().t_s);
+  std::size_t wanted = 1;
+  while (wanted < path_.size() && (share >= 1 || path_[wanted].t_s <= until)) ++wanted;
+  if (!state_ || wanted < done_) {
+    state_ = std::make_unique<haptics::ChainState>();
+    scratch_ = std::make_unique<haptics::ChainScratch>();
+    done_ = 0;
+  }
+  for (; done_ < wanted; ++done_) haptics::tick(*program_, path_[done_], *state_, *scratch_, last_);
+  scene::update_cursor(scene, last_);
   scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
   cursor.names.clear();
-  for (const haptics::Link& link : program.links) cursor.names.push_back(link.name);
-  return Done{};
+  for (const haptics::Link& link : program_->links) cursor.names.push_back(link.name);
 }
 
 }  // namespace catena::app

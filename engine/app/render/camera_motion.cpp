@@ -7,7 +7,7 @@
 
 namespace catena::app {
 
-Result<CameraMotion> CameraMotion::make(const RenderOptions& o) {
+Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
   CameraMotion motion;
   if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
   if (!(std::fabs(o.elevation_deg) <= 90)) return Error{"--elevation: expected an angle from -90 to 90 degrees"};
@@ -24,9 +24,10 @@ Result<CameraMotion> CameraMotion::make(const RenderOptions& o) {
   motion.orbit_deg_ = o.orbit_deg;
   motion.elevation_deg_ = o.elevation_deg;
   motion.zoom_ = o.zoom;
-  const double by_path = motion.path_ ? motion.path_->duration_s() * o.fps + 1 : 1;
+  const double by_path = std::max(motion.path_ ? motion.path_->duration_s() : 0.0, hand_s) * o.fps + 1;
   if (o.frames == 0 && by_path > kMostFrames)
-    return Error{o.camera + ": at " + std::to_string(o.fps) + " frames a second there are more than 100000: expected --frames N"};
+    return Error{(o.camera.empty() ? o.probe : o.camera) + ": at " + std::to_string(o.fps) +
+                 " frames a second there are more than 100000: expected --frames N"};
   motion.frames_ = o.frames > 0 ? o.frames : std::max(1, static_cast<int>(std::lround(by_path)));
   return motion;
 }

@@ -12,8 +12,9 @@ namespace catena::app {
 class CameraMotion {
  public:
   /// Checks the words and numbers of the options and reads the path.
-  static Result<CameraMotion> make(const RenderOptions& options);
-  /// --frames, or what --camera's duration at --fps comes to, or 1.
+  /// `hand_s`: the duration of the hand's path where it is played, else 0.
+  static Result<CameraMotion> make(const RenderOptions& options, double hand_s);
+  /// --frames, or what the duration of --camera or of the hand's path comes to at --fps, or 1.
   int frames() const { return frames_; }
   /// Of frame 0 .. frames() - 1. `base`: the scene's view; `bounds`: of all that is drawn.
   render::View at(const render::View& base, const Bounds& bounds, double aspect, int frame) const;

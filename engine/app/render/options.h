@@ -23,6 +23,7 @@ struct RenderOptions {
   // frames
   int frames = 0;  ///< 0: not given
   double fps = 25, phase = 0;
+  bool play = false;  ///< the hand goes along the probe path over the frames
   // the camera
   std::string camera, view;
   bool fit = false;

@@ -15,6 +15,7 @@
 #include "engine/app/render/quality_words.h"
 #include "engine/app/size_option.h"
 #include "engine/base/clock.h"
+#include "engine/base/csv_paths.h"
 #include "engine/base/output_file.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
@@ -45,14 +46,18 @@ void say(std::FILE* to, const std::string& line) {
 /// Draws frames of one scene and hands their bands on.
 class Frames {
  public:
-  Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, Size size)
-      : scene_(scene), options_(options), motion_(motion), size_(size) {}
+  Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, FeltPath& hand, Size size)
+      : scene_(scene), options_(options), motion_(motion), hand_(hand), size_(size) {}
 
   Result<render::FramePacket> packet(int frame) {
     scene_.phase = options_.phase + static_cast<double>(frame) / motion_.frames();
+    hand_.show(scene_, options_.play && motion_.frames() > 1 ? static_cast<double>(frame) / (motion_.frames() - 1) : 1);
     CATENA_TRY(render::FramePacket packet, render::extract_frame(scene_, size_.width, size_.height));
-    const render::View view =
-        motion_.at(packet.view, render::packet_bounds(packet), static_cast<double>(size_.width) / size_.height, frame);
+    // the eye stays where it is while the hand moves
+    if (!first_view_) first_view_ = packet.view, first_bounds_ = render::packet_bounds(packet);
+    const bool moves = options_.play;
+    const render::View view = motion_.at(moves ? *first_view_ : packet.view, moves ? first_bounds_ : render::packet_bounds(packet),
+                                         static_cast<double>(size_.width) / size_.height, frame);
     render::set_view(scene_, view, packet);
     return packet;
   }
@@ -95,7 +100,10 @@ class Frames {
   scene::Scene& scene_;
   const RenderOptions& options_;
   const CameraMotion& motion_;
+  FeltPath& hand_;
   Size size_;
+  std::optional<render::View> first_view_;
+  Bounds first_bounds_;
   std::optional<Interrupt> interrupt_;  // while it draws
   double tiles_done_ = 0;
   std::function<Outcome(const render::Band&)> nothing_;
@@ -129,7 +137,13 @@ Result<Size> picture_size(const RenderOptions& o, const scene::Stereo& stereo, c
 Outcome render_pictures(const RenderOptions& o) {
   CATENA_TRY(const Size size, parse_size(o.size, kMostTiledPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
-  CATENA_TRY(const CameraMotion motion, CameraMotion::make(o));
+  if (o.play && o.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
+  double hand_s = 0;
+  if (o.play) {
+    CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(o.probe));
+    hand_s = rows.back().t_s - rows.front().t_s;
+  }
+  CATENA_TRY(const CameraMotion motion, CameraMotion::make(o, hand_s));
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
@@ -147,8 +161,8 @@ Outcome render_pictures(const RenderOptions& o) {
 
   // the chain is checked with the picture: one scene, two senses
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
-  CATENA_CHECK(place_cursor(scene, *program, o.probe));
-  Frames frames(scene, o, motion, size);
+  CATENA_TRY(FeltPath hand, FeltPath::make(scene, program, o.probe));
+  Frames frames(scene, o, motion, hand, size);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};

@@ -196,6 +196,28 @@ TEST(Render, AnOrbitNumbersItsPictures) {
   EXPECT_NE(test::read_file(folder / "turn_00.png"), test::read_file(folder / "turn_02.png"));
 }
 
+TEST(Render, TheHandGoesAlongItsPathOverTheFrames) {
+  const test::TemporaryFolder folder;
+  const std::string scene = test::source_dir() + "/assets/scenes/hand.json", probe = test::source_dir() + "/assets/probes/hand.csv";
+  const auto render = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", scene, "--size", "96x80", "--quality", "draft"});
+    return test::run_catena(more);
+  };
+  // three frames: the beginning, the middle, and the end, where a still picture has the hand
+  ASSERT_EQ(render({"--probe", probe, "--play", "--frames", "3", "-o", folder / "p_%d.png"}).exit_code, 0);
+  ASSERT_EQ(render({"--probe", probe, "-o", folder / "still.png"}).exit_code, 0);
+  EXPECT_EQ(test::read_file(folder / "p_2.png"), test::read_file(folder / "still.png"));
+  EXPECT_NE(test::read_file(folder / "p_0.png"), test::read_file(folder / "p_1.png"));
+  EXPECT_NE(test::read_file(folder / "p_1.png"), test::read_file(folder / "p_2.png"));
+  // without a number: its 6 s at 0.5 frames a second, both ends
+  ASSERT_EQ(render({"--probe", probe, "--play", "--fps", "0.5", "-o", folder / "q_%d.png"}).exit_code, 0);
+  EXPECT_TRUE(test::exists(folder / "q_3.png"));
+  EXPECT_FALSE(test::exists(folder / "q_4.png"));
+  const auto bad = render({"--play", "-o", folder / "bad.png"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_NE(bad.err.find("--probe PATH.csv was expected"), std::string::npos) << bad.err;
+}
+
 TEST(Render, AFieldCanBeReplacedFromTheCommandLine) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(program({"generate", "sphere", "-o", folder / "a.vdb", "--resolution", "16"}).exit_code, 0);
