@@ -18,10 +18,10 @@
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
 #include "render/frame/ui_items.h"
+#include "render/image/picture.h"
 #include "render/passes/coarsening.h"
 #include "render/passes/render_settings.h"
 #include "render/vk/device.h"
-#include "render/vk/picture.h"
 
 namespace catena::render {
 

@@ -14,8 +14,8 @@
 #include "engine/base/clock.h"
 #include "engine/base/quantile.h"
 #include "engine/field/grid.h"
+#include "render/image/picture.h"
 #include "render/passes/renderer.h"
-#include "render/vk/picture.h"
 
 namespace {
 

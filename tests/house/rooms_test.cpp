@@ -157,7 +157,7 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   only_in("vulkan/", {"render/", "engine/app/viewer/"});
   only_in("GLFW/", {"engine/app/viewer/"});
   only_in("seccomp.h", {"engine/vdb/"});
-  only_in("png.h", {"render/vk/"});
+  only_in("png.h", {"render/image/"});
   only_in("ft2build.h", {"render/text/"});
   only_in("fontconfig/", {"render/text/"});
   only_in("CLI/", {"engine/app/"});

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "engine/app/render/video_writer.h"
-#include "render/vk/exr_writer.h"
-#include "render/vk/png_writer.h"
+#include "render/image/exr_writer.h"
+#include "render/image/png_writer.h"
 
 namespace catena::app {
 namespace {

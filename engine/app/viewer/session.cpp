@@ -15,8 +15,8 @@
 #include "engine/scene/hidden.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_stereo.h"
+#include "render/image/picture.h"
 #include "render/passes/quality.h"
-#include "render/vk/picture.h"
 
 namespace catena::app {
 

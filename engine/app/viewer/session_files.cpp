@@ -8,7 +8,7 @@
 #include "engine/app/viewer/session.h"
 #include "engine/base/clock.h"
 #include "engine/scene/write_values.h"
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 
 namespace catena::app {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/scene/color_maps.h"
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 

@@ -1,7 +1,7 @@
 /// "projection" and "color_by" through the program.
 #include <gtest/gtest.h>
 
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 

@@ -7,7 +7,7 @@
 
 #include "engine/base/json.h"
 #include "engine/base/vec.h"
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "engine/app/render/video_writer.h"
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
 

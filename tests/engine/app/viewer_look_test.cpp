@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "engine/scene/scene.h"
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "engine/app/viewer/viewer.h"
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
 

@@ -1,4 +1,4 @@
-#include "render/vk/exr_writer.h"
+#include "render/image/exr_writer.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

@@ -1,4 +1,4 @@
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <limits>
 
-#include "render/vk/exr_writer.h"
-#include "render/vk/png_writer.h"
+#include "render/image/exr_writer.h"
+#include "render/image/png_writer.h"
 #include "tests/render/support/read_files.h"
 #include "tests/support/support.h"
 

@@ -1,4 +1,4 @@
-#include "render/vk/png_writer.h"
+#include "render/image/png_writer.h"
 
 #include <png.h>
 

@@ -1,10 +1,10 @@
-#include "render/vk/picture.h"
+#include "render/image/picture.h"
 
 #include <fmt/format.h>
 #include <png.h>
 
 #include "engine/base/assert.h"
-#include "render/vk/png_writer.h"
+#include "render/image/png_writer.h"
 
 namespace catena::render {
 namespace {
