@@ -7,6 +7,7 @@
 #include "engine/app/command.h"
 #include "engine/app/run_files.h"
 #include "engine/base/text.h"
+#include "engine/field/formats.h"
 #include "engine/field/load.h"
 
 namespace catena::app {
@@ -26,11 +27,12 @@ Outcome import_file(const ImportOptions& o) {
   files.writes("-o", o.output);
   CATENA_CHECK(files.check());
   if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
-  if (!o.input.ends_with(".raw") && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
+  const bool raw_file = field::needs_layout(o.input);
+  if (!raw_file && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
   field::LoadRequest request;
   request.path = o.input;
   request.grid = o.grid;
-  if (o.input.ends_with(".raw")) {
+  if (raw_file) {
     if (o.shape.empty()) return Error{o.input + ": a .raw file needs --shape NX NY NZ"};
     field::RawLayout raw;
     raw.shape = {o.shape[0], o.shape[1], o.shape[2]};
@@ -49,7 +51,7 @@ Outcome import_file(const ImportOptions& o) {
 void add_import(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App* command = program.add_subcommand("import", "convert a data file to .vdb");
-  command->add_option("IN", options->input, ".nii, .nii.gz, .raw or .vdb")->required();
+  command->add_option("IN", options->input, field::field_file_words())->required();
   command->add_option("-o,--output", options->output, "the grid, .vdb")->required();
   command->add_option("--grid", options->grid, "which grid of a .vdb");
   command->add_option("--name", options->name, "the grid's name in the output");

@@ -9,6 +9,7 @@
 #include "engine/app/info_log.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/formats.h"
 #include "engine/field/load.h"
 #include "engine/field/units.h"
 #include "engine/mesh/load.h"
@@ -172,7 +173,8 @@ void add_info(CLI::App& program, Work& chosen) {
   auto schema = std::make_shared<bool>(false), maps = std::make_shared<bool>(false);
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
   command->add_option("FILE", *path,
-                      "a data file (.vdb .nii .nii.gz), a triangle mesh (.stl .obj), a scene (.json) or a recording (.catlog)");
+                      "a data file (" + joined(field::field_endings(true)) + "), a triangle mesh (" + joined(mesh::mesh_endings()) +
+                          "), a scene (.json) or a recording (.catlog)");
   command->add_flag("--schema", *schema, "print the JSON Schema of a scene's chain instead");
   command->add_flag("--colormaps", *maps, "list the colour maps instead");
   command->callback([&chosen, path, schema, maps] {

@@ -132,6 +132,19 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string alternatives(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) text.append(i == 0 ? "" : i + 1 < words.size() ? ", " : " or ").append(words[i]);
+  return text;
+}
+
+bool has_ending(std::string_view name, std::string_view lower_case) {
+  if (name.size() < lower_case.size()) return false;
+  name.remove_prefix(name.size() - lower_case.size());
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::equal(name.begin(), name.end(), lower_case.begin(), [&](char a, char b) { return lower(a) == b; });
+}
+
 std::string joined(const std::vector<std::string_view>& words) {
   std::string out;
   for (std::string_view word : words) out.append(out.empty() ? "" : ", ").append(word);

@@ -31,6 +31,11 @@ std::string printable(std::string_view text);
 
 /// `a, b, c`
 std::string joined(const std::vector<std::string_view>& words);
+/// `a, b or c`
+std::string alternatives(const std::vector<std::string_view>& words);
+
+/// Whether a name ends so, any case; `lower_case` is.
+bool has_ending(std::string_view name, std::string_view lower_case);
 
 /// ` (did you mean "stiffness"?)` where one of `words` is near, else nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& words);

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "engine/base/too_many_files.h"
+#include "engine/field/loaders.h"
 
 namespace catena::field {
 
@@ -28,18 +29,10 @@ Result<std::uint64_t> readable_file(const std::string& path) {
   return size;
 }
 
-std::string extension_of(const std::string& path) {
-  std::string name = std::filesystem::path(path).filename().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
-  if (name.ends_with(".nii.gz")) return ".nii.gz";
-  const auto dot = name.rfind('.');
-  return dot == std::string::npos ? "" : name.substr(dot);
-}
-
 std::string stem_of(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
-  return name.substr(0, name.size() - extension_of(path).size());
+  std::string_view ending;
+  return name.substr(0, format_of(name, &ending) != nullptr ? name.size() - ending.size() : name.rfind('.'));
 }
 
 }  // namespace catena::field

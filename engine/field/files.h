@@ -9,8 +9,6 @@ namespace catena::field {
 
 /// The size of a regular file that can be opened; else an error that names it.
 Result<std::uint64_t> readable_file(const std::string& path);
-/// Lower-case: ".vdb", ".nii", ".nii.gz", ".raw", or what there is.
-std::string extension_of(const std::string& path);
 /// The file's name without folder and extension.
 std::string stem_of(const std::string& path);
 

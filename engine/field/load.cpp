@@ -8,6 +8,7 @@
 
 #include "engine/base/text.h"
 #include "engine/field/files.h"
+#include "engine/field/formats.h"
 #include "engine/field/loaders.h"
 
 namespace catena::field {
@@ -29,10 +30,8 @@ Result<T> guarded(const std::string& path, const Body& body) {
   }
 }
 
-bool is_dense(const std::string& kind) { return kind == ".nii" || kind == ".nii.gz" || kind == ".raw"; }
-
 Error unknown_kind(const std::string& path) {
-  return Error{fmt::format("{}: unknown kind of file, expected .vdb, .nii, .nii.gz or .raw", path)};
+  return Error{fmt::format("{}: unknown kind of file, expected {}", path, field_file_words())};
 }
 
 }  // namespace
@@ -43,28 +42,25 @@ void count_mask() { ++masks; }
 LoadCounters load_counters() { return {files, grids, masks}; }
 
 Result<AnyField> load(const LoadRequest& request) {
-  const std::string kind = extension_of(request.path);
-  if (request.raw && kind != ".raw")
+  const FileFormat* format = format_of(request.path);
+  if (request.raw && (format == nullptr || !format->needs_layout))
     return Error{fmt::format("{}: shape, spacing, origin and type belong to .raw files only", request.path)};
   return guarded<AnyField>(request.path, [&]() -> Result<AnyField> {
-    if (kind == ".vdb") return load_vdb(request);
-    if (is_dense(kind)) {
-      CATENA_TRY(const DenseFile file, kind == ".raw" ? open_raw(request) : open_nifti(request));
-      return load_dense(file);
+    if (format == nullptr) {
+      CATENA_CHECK(readable_file(request.path));
+      return unknown_kind(request.path);
     }
-    CATENA_CHECK(readable_file(request.path));
-    return unknown_kind(request.path);
+    if (format->load != nullptr) return format->load(request);
+    CATENA_TRY(const DenseFile file, format->open(request));
+    return load_dense(file);
   });
 }
 
 Result<std::vector<GridInfo>> describe(const std::string& path) {
-  const std::string kind = extension_of(path);
+  const FileFormat* format = format_of(path);
   return guarded<std::vector<GridInfo>>(path, [&]() -> Result<std::vector<GridInfo>> {
-    if (kind == ".vdb") return describe_vdb(path);
-    if (kind == ".nii" || kind == ".nii.gz") return describe_nifti(path);
+    if (format != nullptr) return format->describe(path);
     CATENA_CHECK(readable_file(path));
-    if (kind == ".raw")
-      return Error{fmt::format("{}: a .raw file says nothing about itself; name it in a scene with shape, spacing, origin and type", path)};
     return unknown_kind(path);
   });
 }

@@ -145,7 +145,7 @@ Result<Header> read_header(const std::string& path) {
 
 }  // namespace
 
-Result<DenseFile> open_nifti(const LoadRequest& request) {
+static Result<DenseFile> open_nifti(const LoadRequest& request) {
   const std::string &path = request.path, name = stem_of(request.path);
   if (!request.grid.empty() && request.grid != name)
     return Error{fmt::format("{}: there is no grid \"{}\", a NIfTI file holds one, \"{}\"", path, request.grid, name)};
@@ -180,7 +180,7 @@ Result<DenseFile> open_nifti(const LoadRequest& request) {
   return file;
 }
 
-Result<std::vector<GridInfo>> describe_nifti(const std::string& path) {
+static Result<std::vector<GridInfo>> describe_nifti(const std::string& path) {
   LoadRequest request;
   request.path = path;
   CATENA_TRY(const DenseFile file, open_nifti(request));
@@ -197,5 +197,7 @@ Result<std::vector<GridInfo>> describe_nifti(const std::string& path) {
   info.usable = true;
   return std::vector<GridInfo>{info};
 }
+
+FileFormat nifti_format() { return {.endings = {".nii", ".nii.gz"}, .open = open_nifti, .describe = describe_nifti, .units = nifti_units}; }
 
 }  // namespace catena::field

@@ -50,7 +50,7 @@ class RawLayers {
 
 }  // namespace
 
-Result<DenseFile> open_raw(const LoadRequest& request) {
+static Result<DenseFile> open_raw(const LoadRequest& request) {
   const std::string& path = request.path;
   CATENA_TRY(const std::uint64_t size, readable_file(path));
   if (!request.raw)
@@ -107,5 +107,14 @@ Result<AnyField> load_dense(const DenseFile& file) {
   count_grid();
   return field;
 }
+
+static Result<std::vector<GridInfo>> describe_raw(const std::string& path) {
+  CATENA_CHECK(readable_file(path));
+  return Error{
+      path +
+      ": a .raw file says nothing about itself; name it in a scene with shape, spacing, origin and type, or give import its --shape"};
+}
+
+FileFormat raw_format() { return {.endings = {".raw"}, .needs_layout = true, .open = open_raw, .describe = describe_raw}; }
 
 }  // namespace catena::field

@@ -54,7 +54,7 @@ Result<std::shared_ptr<const Grid>> grid_of(const std::string& path, const Reade
 
 }  // namespace
 
-Result<AnyField> load_vdb(const LoadRequest& request) {
+static Result<AnyField> load_vdb(const LoadRequest& request) {
   CATENA_TRY(const ReaderAnswer answer, ask_reader(ReadMode::load, request));
   AnyField field;
   if (answer.reply.is_vector) {
@@ -65,7 +65,7 @@ Result<AnyField> load_vdb(const LoadRequest& request) {
   return field;
 }
 
-Result<std::vector<GridInfo>> describe_vdb(const std::string& path) {
+static Result<std::vector<GridInfo>> describe_vdb(const std::string& path) {
   LoadRequest request;
   request.path = path;
   CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
@@ -75,5 +75,7 @@ Result<std::vector<GridInfo>> describe_vdb(const std::string& path) {
   }
   return std::move(answer.reply.grids);
 }
+
+FileFormat vdb_format() { return {.endings = {".vdb"}, .load = load_vdb, .describe = describe_vdb, .units = vdb_units}; }
 
 }  // namespace catena::field

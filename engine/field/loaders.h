@@ -2,11 +2,9 @@
 #pragma once
 #include "engine/field/dense.h"
 #include "engine/field/load.h"
+#include "engine/field/units.h"
 
 namespace catena::field {
-
-Result<AnyField> load_vdb(const LoadRequest& request);
-Result<std::vector<GridInfo>> describe_vdb(const std::string& path);
 
 /// A file that holds one box of numbers, opened: its layout is checked and fits into the memory that is allowed.
 struct DenseFile {
@@ -17,10 +15,26 @@ struct DenseFile {
   int components = 1;  ///< 1 or 3
   DenseSource source;  ///< keeps the file open
 };
-Result<DenseFile> open_raw(const LoadRequest& request);
-Result<DenseFile> open_nifti(const LoadRequest& request);
 Result<AnyField> load_dense(const DenseFile& file);
-Result<std::vector<GridInfo>> describe_nifti(const std::string& path);
+
+/// One row of the registry of formats (formats.cpp).
+struct FileFormat {
+  std::vector<std::string_view> endings;  ///< of names, lower-case
+  bool needs_layout = false;              ///< the file says nothing about itself: LoadRequest::raw goes with it
+  /// Either a box of numbers is opened, or one grid of the file is loaded.
+  Result<DenseFile> (*open)(const LoadRequest& request) = nullptr;
+  Result<AnyField> (*load)(const LoadRequest& request) = nullptr;
+  Result<std::vector<GridInfo>> (*describe)(const std::string& path) = nullptr;
+  Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< nullptr: the format has none
+};
+FileFormat vdb_format();
+FileFormat nifti_format();
+FileFormat raw_format();
+/// nullptr: none. `ending`: which of its endings.
+const FileFormat* format_of(std::string_view path, std::string_view* ending = nullptr);
+
+Units nifti_units(const std::string& path, const std::string& grid);
+Units vdb_units(const std::string& path, const std::string& grid);
 
 void count_file();
 void count_grid();

@@ -11,13 +11,11 @@
 #include <optional>
 #include <sstream>
 
-#include "engine/field/files.h"
+#include "engine/field/loaders.h"
 #include "engine/field/vdb_reader.h"
 
 namespace catena::field {
-namespace {
-
-Units nifti_units(const std::string& path) {
+Units nifti_units(const std::string& path, const std::string&) {
   nifti_set_debug_level(0);
   int swapped = 0;
   const std::unique_ptr<nifti_1_header, decltype(&std::free)> header(nifti_read_header(path.c_str(), &swapped, 0), &std::free);
@@ -53,15 +51,6 @@ Units vdb_units(const std::string& path, const std::string& grid) {
   }
   return units;
 }
-
-Units read_units(const std::string& path, const std::string& grid) {
-  const std::string kind = extension_of(path);
-  if (kind == ".nii" || kind == ".nii.gz") return nifti_units(path);
-  if (kind == ".vdb") return vdb_units(path, grid);
-  return {};
-}
-
-}  // namespace
 
 bool is_unit(const std::string& word) {
   if (word.empty() || word.size() > 24 || word == "none" || word == "unknown" || word == "0") return false;
@@ -103,7 +92,8 @@ Units units_of(const std::string& path, const std::string& grid) {
   if (found != known.end() && found->second.at == at) return found->second.units;
   constexpr std::size_t kMost = 256;
   if (known.size() >= kMost) known.clear();
-  Units units = read_units(path, grid);
+  const FileFormat* format = format_of(path);
+  Units units = format != nullptr && format->units != nullptr ? format->units(path, grid) : Units{};
   known[{path, grid}] = {at, units};
   return units;
 }

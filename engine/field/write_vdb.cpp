@@ -145,15 +145,15 @@ Outcome write_vdb(const std::string& path, const std::vector<WriteItem>& items) 
 }
 
 Result<std::string> import_as_vdb(const LoadRequest& request, const std::string& path, const std::string& name) {
-  const std::string kind = extension_of(request.path);
+  const FileFormat* format = format_of(request.path);
   const auto name_or = [&](const std::string& own) { return !name.empty() ? name : !own.empty() ? own : stem_of(request.path); };
-  if (kind != ".raw" && kind != ".nii" && kind != ".nii.gz") {
+  if (format == nullptr || format->open == nullptr) {
     CATENA_TRY(const AnyField field, load(request));
     const std::string chosen = name_or(field.get()->name());
     CATENA_CHECK(write_vdb(path, {{field, chosen}}));
     return chosen;
   }
-  CATENA_TRY(const DenseFile file, kind == ".raw" ? open_raw(request) : open_nifti(request));
+  CATENA_TRY(const DenseFile file, format->open(request));
   CATENA_CHECK(check_volume(path, file.mapping));
   CATENA_TRY(VdbStream out, VdbStream::open(path));
   const std::string chosen = name_or(file.name);

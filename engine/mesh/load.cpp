@@ -7,29 +7,41 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;
 
-bool ends_with(std::string_view path, std::string_view lower_case) {
-  if (path.size() < lower_case.size()) return false;
-  path.remove_prefix(path.size() - lower_case.size());
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const char c = path[i] >= 'A' && path[i] <= 'Z' ? static_cast<char>(path[i] - 'A' + 'a') : path[i];
-    if (c != lower_case[i]) return false;
-  }
-  return true;
+/// The registry: one line a format.
+struct Format {
+  std::string_view ending;
+  Result<Soup> (*parse)(std::string_view bytes, const std::string& name);
+};
+constexpr Format kFormats[] = {{".stl", parse_stl}, {".obj", parse_obj}};
+
+const Format* format_of(std::string_view path) {
+  for (const Format& format : kFormats)
+    if (has_ending(path, format.ending)) return &format;
+  return nullptr;
 }
 
 /// The text is gone when the mesh is made.
 Result<Soup> read_soup(const std::string& path) {
-  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (.stl or .obj)", kMostBytes));
-  return ends_with(path, ".stl") ? parse_stl(bytes, path) : parse_obj(bytes, path);
+  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (" + alternatives(mesh_endings()) + ")", kMostBytes));
+  return format_of(path)->parse(bytes, path);
 }
 
 }  // namespace
 
-bool is_mesh_file(std::string_view path) { return ends_with(path, ".stl") || ends_with(path, ".obj"); }
+bool is_mesh_file(std::string_view path) { return format_of(path) != nullptr; }
+
+const std::vector<std::string_view>& mesh_endings() {
+  static const std::vector<std::string_view> endings = [] {
+    std::vector<std::string_view> all;
+    for (const Format& format : kFormats) all.push_back(format.ending);
+    return all;
+  }();
+  return endings;
+}
 
 Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement) {
   const auto failed = [&](const std::string& what) { return Error{one_line(path + ": " + what)}; };
-  if (!is_mesh_file(path)) return failed("has an unknown kind; a .stl or .obj file was expected");
+  if (!is_mesh_file(path)) return failed("has an unknown kind; a " + alternatives(mesh_endings()) + " file was expected");
   CATENA_TRY(Soup soup, read_soup(path));
   for (Vec3& v : soup.vertices) {
     v = v * placement.scale + placement.offset;

@@ -12,7 +12,8 @@ namespace catena::mesh {
 
 inline constexpr std::size_t kMostTriangles = 20'000'000;
 
-bool is_mesh_file(std::string_view path);  ///< by its ending: .stl, .obj (any case)
+bool is_mesh_file(std::string_view path);  ///< by its ending, any case
+const std::vector<std::string_view>& mesh_endings();
 
 /// world = scale * file + offset
 struct Placement {

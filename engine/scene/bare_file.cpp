@@ -6,6 +6,7 @@
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/field/formats.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/transfer.h"
@@ -145,7 +146,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
     bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}]\n}\n";
     return bare;
   }
-  if (path.ends_with(".raw"))
+  if (field::needs_layout(path))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
   bare.request.path = path;
   bare.request.grid = grid;

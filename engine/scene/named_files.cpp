@@ -5,6 +5,7 @@
 
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
+#include "engine/field/formats.h"
 #include "engine/scene/read_parts.h"
 
 namespace catena::scene {
@@ -51,8 +52,6 @@ std::string name_from(const std::string& file, const fs::path& folder) {
   return same_file((folder / name).string(), file) ? name : fs::absolute(file, code).lexically_normal().string();
 }
 
-bool is_raw(const std::string& file) { return file.ends_with(".raw"); }
-
 /// The text with an override in it: what apply_override makes of the field, said by the field.
 Result<std::string> with_override(std::string text, const std::string& path, const FieldOverride& with) {
   const std::string name = fs::path(with.file).is_absolute() ? with.file : name_from(with.file, folder_of(path));
@@ -60,8 +59,8 @@ Result<std::string> with_override(std::string text, const std::string& path, con
   const std::string pointer = "/fields/" + json::pointer_step(with.name);
   const json::Node* field = json::find_value(root, pointer);
   const json::Node* file = field == nullptr ? nullptr : field->find("file");
-  const bool raw = file != nullptr && is_raw(file->string);
-  if (file == nullptr || (raw && !is_raw(name))) {
+  const bool raw = file != nullptr && field::needs_layout(file->string);
+  if (file == nullptr || (raw && !field::needs_layout(name))) {
     const std::string grid = with.grid.empty() ? "" : ", \"grid\": " + json::string_text(with.grid);
     return json::set_value(text, path, pointer, "{\"file\": " + json::string_text(name) + grid + "}");
   }

@@ -3,6 +3,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/formats.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/units.h"
 
@@ -14,17 +15,13 @@ using field::LoadRequest;
 
 constexpr int kMostNodes = 1024;  // an axis, of a sampled analytic field
 
-bool is_raw(const std::string& path) { return path.ends_with(".raw"); }
-bool is_readable_kind(const std::string& path) {
-  return path.ends_with(".vdb") || path.ends_with(".nii") || path.ends_with(".nii.gz") || is_raw(path);
-}
-
 /// Empty where `path` is a file that can be loaded, else what is wrong and what was expected.
 std::string file_fault(const std::string& path) {
   std::error_code code;
-  if (!is_readable_kind(path)) return in_quotes(path) + " has an unknown kind; a .vdb, .nii, .nii.gz or .raw file was expected";
-  if (!fs::exists(path, code)) return in_quotes(path) + " does not exist; a .vdb, .nii, .nii.gz or .raw file was expected";
-  if (!fs::is_regular_file(path, code)) return in_quotes(path) + " is not a file; a .vdb, .nii, .nii.gz or .raw file was expected";
+  const std::string wanted = "; a " + field::field_file_words() + " file was expected";
+  if (!field::is_field_file(path)) return in_quotes(path) + " has an unknown kind" + wanted;
+  if (!fs::exists(path, code)) return in_quotes(path) + " does not exist" + wanted;
+  if (!fs::is_regular_file(path, code)) return in_quotes(path) + " is not a file" + wanted;
   return {};
 }
 
@@ -54,7 +51,7 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
   CATENA_TRY(const std::string file, json::require_string(node, "file"));
   LoadRequest request;
   request.path = resolved_path(scene_path, file);
-  if (is_raw(file)) {
+  if (field::needs_layout(file)) {
     CATENA_CHECK(json::only_keys(node, {"file", "shape", "spacing", "origin", "type", "unit"}));
     CATENA_TRY(request.raw, read_raw_layout(node));
   } else {
@@ -151,9 +148,9 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
   }
   FieldSource& source = scene.world.get<FieldSource>(entity);
   LoadRequest request = source.file.value_or(LoadRequest{});
-  if (is_raw(with.file) && !request.raw)
+  if (field::needs_layout(with.file) && !request.raw)
     return failed("the shape of a .raw file is not known; a field of the scene that states it was expected");
-  if (!is_raw(with.file)) request.raw.reset();
+  if (!field::needs_layout(with.file)) request.raw.reset();
   request.path = with.file;
   request.valid_required = false;
   source.grid_is_a_wish = with.grid.empty();

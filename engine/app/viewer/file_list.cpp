@@ -7,6 +7,8 @@
 #include <filesystem>
 
 #include "engine/base/text.h"
+#include "engine/field/formats.h"
+#include "engine/mesh/load.h"
 
 namespace catena::app {
 
@@ -21,12 +23,17 @@ std::string lower(std::string text) {
 
 }  // namespace
 
-bool is_scene_name(const std::string& path) { return lower(path).ends_with(".json"); }
+bool is_scene_name(const std::string& path) { return has_ending(path, ".json"); }
+
+std::vector<std::string_view> openable_endings() {
+  std::vector<std::string_view> endings{".json"};
+  for (const std::string_view ending : field::field_endings(true)) endings.push_back(ending);
+  for (const std::string_view ending : mesh::mesh_endings()) endings.push_back(ending);
+  return endings;
+}
 
 bool is_openable(const std::string& path) {
-  const std::string name = lower(path);
-  constexpr const char* kKinds[] = {".json", ".vdb", ".nii", ".nii.gz", ".stl", ".obj"};
-  return std::ranges::any_of(kKinds, [&](const char* kind) { return name.ends_with(kind); });
+  return std::ranges::any_of(openable_endings(), [&](std::string_view ending) { return has_ending(path, ending); });
 }
 
 Result<std::vector<FileEntry>> list_folder(const std::string& folder, bool scenes_only) {
@@ -98,9 +105,9 @@ std::string free_name(const std::string& folder, const std::string& stem, const 
 
 std::string stem_of_path(const std::string& path) {
   std::string name = fs::path(path).filename().string();
-  for (const char* kind : {".nii.gz", ".json", ".vdb", ".nii", ".stl", ".obj"})
-    if (lower(name).ends_with(kind)) {
-      name.erase(name.size() - std::string_view(kind).size());
+  for (const std::string_view ending : openable_endings())
+    if (has_ending(name, ending)) {
+      name.erase(name.size() - ending.size());
       break;
     }
   return name.empty() ? "catena" : name;

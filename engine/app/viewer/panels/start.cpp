@@ -3,7 +3,9 @@
 
 #include <filesystem>
 
+#include "engine/app/viewer/file_list.h"
 #include "engine/app/viewer/panel.h"
+#include "engine/base/text.h"
 
 namespace catena::app {
 
@@ -30,7 +32,7 @@ void draw_start(PanelContext& context) {
                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                       ImGuiWindowFlags_NoFocusOnAppearing;
   if (ImGui::Begin("##start", nullptr, kFlags)) {
-    ImGui::TextUnformatted("Drop a file here: a scene, or a .vdb, .nii, .stl or .obj");
+    ImGui::TextUnformatted(("Drop a file here: " + alternatives(openable_endings())).c_str());
     ImGui::Spacing();
     if (ImGui::Button("Open...  (Ctrl+O)")) state.ask_open = true;
     if (!state.recent.empty()) {
