@@ -100,6 +100,7 @@ TEST_F(ProcessLimits, ProcessorTimeThatIsUsedUpIsAnErrorOfTheMachine) {
   expect_one_sentence();
 }
 
+#ifndef __SANITIZE_ADDRESS__  // whose checks need descriptors of their own
 // before: exit code 2, and the helper was said to be missing
 TEST_F(ProcessLimits, FewDescriptorsAreALimitOfTheMachine) {
   const std::string grid = folder_ / "g.vdb", uses = folder_ / "u.json";
@@ -117,7 +118,6 @@ TEST_F(ProcessLimits, FewDescriptorsAreALimitOfTheMachine) {
   EXPECT_FALSE(test::exists(folder_ / "o.vdb"));
 }
 
-#ifndef __SANITIZE_ADDRESS__
 // from next to nothing to enough: what a thread, a field or the servo cannot get is a sentence
 TEST_F(ProcessLimits, LittleMemoryIsOneSentence) {
   int ended = 0, enough = 0;
