@@ -38,8 +38,9 @@ std::string property(const Key& key) {
     return fmt::format(
         R"("{}": {{"description": "{}", "oneOf": [{{"type": "array", "minItems": 3, "maxItems": 9}}, {{"type": "object", "required": ["axis", "angle_deg"], "properties": {{"axis": {{"type": "array", {}}}, "angle_deg": {{"type": "number"}}}}, "additionalProperties": false}}]}})",
         key.name, key.help, kVec3Schema);
-  return fmt::format(R"("{}": {{"type": "{}", "description": "{}"{}{}}})", key.name, key.type, key.help, key.schema.empty() ? "" : ", ",
-                     key.schema);
+  const bool named = key.type == "scalar_field" || key.type == "vector_field" || key.type == "mesh";
+  return fmt::format(R"("{}": {{"type": "{}", "description": "{}"{}{}}})", key.name, named ? "string" : key.type, key.help,
+                     key.schema.empty() ? "" : ", ", key.schema);
 }
 
 /// Of a constraint, or of a ready-made mode.

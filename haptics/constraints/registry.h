@@ -25,10 +25,13 @@ struct BuildContext {
 
 struct Key {
   std::string_view name;
-  std::string_view type;  ///< JSON Schema: number, string, boolean, array; "parameter": a number or a map over a field; "rotation"
+  /// JSON Schema: number, string, boolean, array; "parameter": a number or a map over a field; "rotation"; the name of a part of the
+  /// scene: "scalar_field", "vector_field", "mesh".
+  std::string_view type;
   bool required;
   std::string_view help;
   std::string_view schema = {};  ///< more JSON Schema of the value, such as a range: `"exclusiveMinimum": 0`
+  bool stated = false;           ///< a new link states it though it need not: without it the link means little
 };
 
 inline constexpr std::string_view kVec3Schema = R"("items": {"type": "number"}, "minItems": 3, "maxItems": 3)";

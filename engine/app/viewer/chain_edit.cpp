@@ -23,21 +23,18 @@ std::vector<std::string> words_of(std::string_view schema) {
   return words;
 }
 
-/// Whether the field that a key names has vectors: friction and curves follow those, surfaces and gradients do not.
-bool wants_vectors(std::string_view type) { return type != "isosurface" && type != "gradient_force"; }
-
-LinkKey key_of(const haptics::Key& key, std::string_view type) {
-  LinkKey out{std::string(key.name), std::string(key.help), Kind::other, key.required, false, {}};
+LinkKey key_of(const haptics::Key& key) {
+  LinkKey out{std::string(key.name), std::string(key.help), Kind::other, key.required, false, {}, key.stated};
   out.positive = key.schema.find("inimum\": 0") != std::string_view::npos;
   if (key.type == "number" || key.type == "parameter") out.kind = Kind::number;
   if (key.type == "boolean") out.kind = Kind::boolean;
   if (key.type == "array" && key.schema.starts_with("\"items\": {\"type\": \"number\"")) out.kind = Kind::vector;
+  if (key.type == "scalar_field") out.kind = Kind::scalar_field;
+  if (key.type == "vector_field") out.kind = Kind::vector_field;
+  if (key.type == "mesh") out.kind = Kind::mesh;
   if (key.type != "string") return out;
   out.words = words_of(key.schema);
   if (!out.words.empty()) out.kind = Kind::choice;
-  if (key.name == "field") out.kind = wants_vectors(type) ? Kind::vector_field : Kind::scalar_field;
-  if (key.name == "surface") out.kind = Kind::scalar_field;
-  if (key.name == "mesh") out.kind = Kind::mesh;
   return out;
 }
 
@@ -105,9 +102,9 @@ std::vector<LinkKey> keys_of(std::string_view type) {
   const haptics::ConstraintType* constraint = haptics::find_constraint(type);
   const haptics::ReadyMode* mode = haptics::find_ready_mode(type);
   if (constraint == nullptr && mode == nullptr) return out;
-  for (const haptics::Key& key : constraint != nullptr ? constraint->keys : mode->keys) out.push_back(key_of(key, type));
+  for (const haptics::Key& key : constraint != nullptr ? constraint->keys : mode->keys) out.push_back(key_of(key));
   for (const haptics::Key& key : haptics::common_keys())
-    if (key.name == "stiffness" || key.name == "snap" || key.name == "release") out.push_back(key_of(key, type));
+    if (key.name == "stiffness" || key.name == "snap" || key.name == "release") out.push_back(key_of(key));
   return out;
 }
 
@@ -207,9 +204,7 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
   link.kind = json::Kind::object;
   std::string text = "\"name\": " + scene::text_of(name) + ", \"type\": " + scene::text_of(type);
   for (const LinkKey& key : keys_of(type)) {
-    // what is optional, but means little without
-    const bool wanted = key.required || (type == "streamline" && key.name == "seed") || (type == "viscosity" && key.name == "time");
-    if (!wanted) continue;
+    if (!key.required && !key.stated) continue;
     const std::string value = first_value(scene, key, link, probe, length);
     if (value.empty())
       return Error{"a " + std::string(type) + " needs a " +

@@ -30,6 +30,7 @@ struct LinkKey {
   Kind kind = Kind::other;
   bool required = false, positive = false;
   std::vector<std::string> words;  ///< of a choice
+  bool stated = false;             ///< a new link states it though it need not
 };
 /// The keys of a type in the registry's order, with stiffness, snap and release; empty for an unknown type.
 std::vector<LinkKey> keys_of(std::string_view type);

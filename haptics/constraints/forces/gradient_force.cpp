@@ -59,7 +59,7 @@ Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node&
 ConstraintType gradient_force_constraint() {
   return {"gradient_force",
           "a volume mode beside the paper's",
-          {{"field", "string", true, "a scalar field of the scene"},
+          {{"field", "scalar_field", true, "a scalar field of the scene"},
            {"displacement", "parameter", true, "the largest distance of the proxy from the probe, world units", kNotNegativeSchema},
            {"towards", "string", true, "which way the hand is drawn", R"("enum": ["high", "low"])"}},
           build_gradient_force};

@@ -58,7 +58,7 @@ Result<std::shared_ptr<const Constraint>> build_viscosity(const json::Node& link
 ConstraintType viscosity_constraint() {
   return {"viscosity",
           "a volume mode beside the paper's",
-          {{"time", "parameter", false, "relaxation time, s: the force is stiffness x time x velocity", kNotNegativeSchema},
+          {{"time", "parameter", false, "relaxation time, s: the force is stiffness x time x velocity", kNotNegativeSchema, true},
            {"coefficient", "parameter", false, "instead of time: N s/m", kNotNegativeSchema}},
           build_viscosity};
 }

@@ -29,7 +29,7 @@ struct ContactSpec {
 enum class SurfaceKey { optional_with_level, optional, required };
 /// Reads `surface` and `level`.
 Result<ContactSpec> read_contact(const json::Node& link, SurfaceKey rule, const BuildContext& context);
-inline constexpr Key kSurfaceKey{"surface", "string", false, "a scalar field: friction acts on its level, tangentially"};
+inline constexpr Key kSurfaceKey{"surface", "scalar_field", false, "a scalar field: friction acts on its level, tangentially"};
 inline constexpr Key kLevelKey{"level", "number", false, "the value of `surface` on which probe and proxy lie"};
 
 /// Zero bytes: nothing is known.

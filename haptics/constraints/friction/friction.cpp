@@ -297,7 +297,7 @@ Result<std::shared_ptr<const Constraint>> build_friction(const json::Node& link,
 ConstraintType friction_constraint() {
   return {"friction",
           "section 6.1",
-          {{"field", "string", true, "a vector field of the scene: free along it, friction across"},
+          {{"field", "vector_field", true, "a vector field of the scene: free along it, friction across"},
            {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
            {"threshold", "parameter", false, "the proxy slips across at this distance, world units; default 0.005 L", kNotNegativeSchema},
            kSurfaceKey,

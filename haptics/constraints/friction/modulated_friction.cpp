@@ -106,9 +106,9 @@ ConstraintType modulated_friction_constraint() {
   return {
       "modulated_friction",
       "section 6.1, Eqs. 7-9",
-      {{"field", "string", true, "a vector field of the scene: its angle to the surface sets the threshold"},
+      {{"field", "vector_field", true, "a vector field of the scene: its angle to the surface sets the threshold"},
        {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
-       {"surface", "string", true, "a scalar field: its gradient is the normal"},
+       {"surface", "scalar_field", true, "a scalar field: its gradient is the normal"},
        kLevelKey,
        {"tau_min", "parameter", false, "the threshold where the field is tangential, world units; default 0.001 L", kNotNegativeSchema},
        {"tau_max", "parameter", false, "the threshold where the field is normal, world units; default 0.01 L", kNotNegativeSchema},

@@ -363,7 +363,7 @@ Result<std::shared_ptr<const Constraint>> build_isosurface(const json::Node& lin
 ConstraintType isosurface_constraint() {
   return {"isosurface",
           "Eqs. 5-6",
-          {{"field", "string", true, "a scalar field of the scene"},
+          {{"field", "scalar_field", true, "a scalar field of the scene"},
            {"level", "number", true, "the field's value on the surface"},
            {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema}},
           build_isosurface,

@@ -5,7 +5,7 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kAtRest = 1e-14;        // moves shorter than this are none
+constexpr double kAtRest = 1e-14;       // moves shorter than this are none
 constexpr double kSlack = 2e-14;        // of a face's outline: closes the seams
 constexpr double kBehind = 4 * kGap;    // so far behind a face it still holds: heals what rounding did
 constexpr double kTouching = 8 * kGap;  // height and outline of a face that is touched; shorter moves leave none

@@ -256,7 +256,7 @@ Result<std::shared_ptr<const Constraint>> build_mesh(const json::Node& link, con
 ConstraintType mesh_constraint() {
   return {"mesh",
           "section 3; god-object",
-          {{"mesh", "string", true, "name of a triangle mesh of the scene"},
+          {{"mesh", "mesh", true, "name of a triangle mesh of the scene"},
            {"free", "string", false, "the side where the hand moves freely: above is where the normals point to, outside", kFreeSchema}},
           build_mesh,
           true};

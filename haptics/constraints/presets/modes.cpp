@@ -9,9 +9,9 @@ ReadyMode anisotropic_friction() {
   return {
       "anisotropic_friction",
       "section 6.1, Eqs. 7-9",
-      {{"surface", "string", true, "a scalar field of the scene"},
+      {{"surface", "scalar_field", true, "a scalar field of the scene"},
        {"level", "number", true, "the field's value on the surface"},
-       {"field", "string", true, "a vector field of the scene: easy along it, hard across"},
+       {"field", "vector_field", true, "a vector field of the scene: easy along it, hard across"},
        {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
        {"threshold", "parameter", false, "across the field, world units; default 0.005 L", kNotNegativeSchema},
        {"tau_min", "parameter", false, "along the field where it is tangential, world units; default 0.001 L", kNotNegativeSchema},

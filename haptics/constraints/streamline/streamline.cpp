@@ -75,8 +75,8 @@ ConstraintType streamline_constraint() {
   return {
       "streamline",
       "section 4, Eqs. 1-4",
-      {{"field", "string", true, "a vector field of the scene"},
-       {"seed", "array", false, "a place on the line, world units; without it the probe where the link is switched on", kVec3Schema},
+      {{"field", "vector_field", true, "a vector field of the scene"},
+       {"seed", "array", false, "a place on the line, world units; without it the probe where the link is switched on", kVec3Schema, true},
        {"follow", "string", false, "selected: on the traced curve (default with a seed); online: integrated every tick", kFollowSchema},
        {"method", "string", false,
         "of online following, which it implies; default rkf34, of sampled line fields dp54; linear is Eqs. 1-2 as printed", kMethodSchema},

@@ -270,7 +270,7 @@ Result<std::shared_ptr<const Constraint>> build_vortex_core(const json::Node& li
 ConstraintType vortex_core_constraint() {
   return {"vortex_core",
           "a volume mode beside the paper's",
-          {{"field", "string", true, "a vector field of the scene"},
+          {{"field", "vector_field", true, "a vector field of the scene"},
            {"radius", "number", false, "of the tube where the hand moves freely, world units; default 0: on the core", kNotNegativeSchema},
            {"search", "number", false, "longest distance of the core from the probe, world units; default: 0.1 of the domain",
             kPositiveSchema}},
