@@ -1,4 +1,4 @@
-/// `render --stats`: the figures of DESIGN.md, and where they come from.
+/// `render --stats`: the figures of a picture, and where they come from.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,4 +1,4 @@
-// What the numerics list as "not yet examined by anyone": thin sheets, a probe tangential to the isosurface, leaving the grid in
+// What nobody had examined before: thin sheets, a probe tangential to the isosurface, leaving the grid in
 // the middle of a step, a NaN met on the way. Each test says first what is right.
 #include <limits>
 

@@ -1,4 +1,4 @@
-/// Isotropic drag: the proxy stays until the probe pulls it.                              (paper, section 3; NUMERICS: drag)
+/// Isotropic drag: the proxy stays until the probe pulls it.                              (paper, section 3)
 ///   |x - p| <= tau: p stays, bit for bit;   else p <- x - tau (x - p) / |x - p|, so that |x - p| = tau
 /// Norm-based: the same in all directions. In a loop of amplitude A it takes 4 K tau (A - tau) from the hand.
 /// Keys: `threshold` (tau, world units, may follow a field: asked at the proxy before it moves); `surface` and `level`: on a

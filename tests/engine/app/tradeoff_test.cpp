@@ -1,4 +1,4 @@
-/// `catena tradeoff --figure N` from the outside: the figures of NUMERICS and the manners of the command.
+/// `catena tradeoff --figure N` from the outside: the figures of the paper and the manners of the command.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Acceptance 8 of the numerics (figures printed when they fail), then the rules of sides, release and the domain's edge.
+// Number 8 of the acceptance tests (figures printed when they fail), then the rules of sides, release and the domain's edge.
 #include "tests/haptics/constraints/rig.h"
 
 namespace catena::haptics::tests {

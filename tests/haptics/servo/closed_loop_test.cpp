@@ -1,4 +1,4 @@
-// The loop closed through a simulated mechanism: the linear limits of NUMERICS, the passive limit, and what the controller
+// The loop closed through a simulated mechanism: the derived linear limits, the passive limit, and what the controller
 // makes of springs above it. Unpaced and deterministic.
 #include <gtest/gtest.h>
 
@@ -122,7 +122,7 @@ double bisect(double lo, double hi, double relative, const F& stable) {
 }
 
 struct Limit {
-  double damping, without_delay, with_delay;  ///< NUMERICS
+  double damping, without_delay, with_delay;  ///< derived
 };
 
 TEST(ClosedLoopTest, TheLargestStableStiffnessIsTheOneOfTheTable) {
