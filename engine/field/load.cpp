@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <new>
 
@@ -30,6 +31,13 @@ Result<T> guarded(const std::string& path, const Body& body) {
   }
 }
 
+/// Each number of a transform may be finite, and the box not.
+bool has_finite_box(const Field& field) {
+  bool finite = std::isfinite(field.length());
+  for (int i = 0; i < 8; ++i) finite = finite && is_finite(field.corner(i));
+  return finite;
+}
+
 Error unknown_kind(const std::string& path) {
   return Error{fmt::format("{}: unknown kind of file, expected {}", path, field_file_words())};
 }
@@ -50,9 +58,16 @@ Result<AnyField> load(const LoadRequest& request) {
       CATENA_CHECK(readable_file(request.path));
       return unknown_kind(request.path);
     }
-    if (format->load != nullptr) return format->load(request);
-    CATENA_TRY(const DenseFile file, format->open(request));
-    return load_dense(file);
+    Result<AnyField> field = Error{};
+    if (format->load != nullptr) {
+      field = format->load(request);
+    } else {
+      CATENA_TRY(const DenseFile file, format->open(request));
+      field = load_dense(file);
+    }
+    if (field && !has_finite_box(*field->get()))
+      return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
+    return field;
   });
 }
 

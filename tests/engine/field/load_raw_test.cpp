@@ -58,6 +58,21 @@ TEST(LoadRaw, ReadsVectors) {
   EXPECT_EQ(field->vector->sample(Vec3(-9.5, 0, 5), cursor).value, Vec3(3, 4, 5));
 }
 
+// before: a field whose length was infinite (found in a damaged .vdb); each number of the transform is finite
+TEST(LoadRaw, ABoxBeyondAllNumbersIsOneSentence) {
+  const TemporaryFolder folder;
+  catena::test::write_file(folder / "a.raw", std::string(4 * 4 * 2 * 2, '\x3f'));
+  LoadRequest r;
+  r.path = folder / "a.raw";
+  r.raw = RawLayout{};
+  r.raw->shape = {4, 2, 2};
+  r.raw->spacing = Vec3(1e308, 1, 1);
+  const auto field = load(r);
+  ASSERT_FALSE(field);
+  EXPECT_EQ(field.error().message.find('\n'), std::string::npos);
+  EXPECT_NE(field.error().message.find("finite"), std::string::npos) << field.error().message;
+}
+
 TEST(LoadRaw, TheSizeMustFitExactly) {
   TemporaryFolder folder;
   for (const int count : {23, 25}) {
