@@ -64,6 +64,8 @@ class Device {
   virtual void write(const DeviceOutput& output) noexcept = 0;
   /// Zero force now and until resume(), whatever is written. Any thread (the servo's watchdog; the servo at its end).
   virtual void stop() noexcept {}
+  /// After stop(): the hand has been told to hold no force, and has confirmed it. Safe in a signal handler.
+  virtual bool at_rest() const noexcept { return true; }
   /// What is written counts again. Haptic thread: before the servo's first tick, and in the first normal tick after a stop; the
   /// guard starts that tick's force at zero.
   virtual void resume() noexcept {}

@@ -29,6 +29,7 @@ class HandMap final : public Device {
   void write(const DeviceOutput& output) noexcept override;
   std::string status_text() const override { return device_->status_text(); }
   void stop() noexcept override { device_->stop(); }
+  bool at_rest() const noexcept override { return device_->at_rest(); }
   void resume() noexcept override { device_->resume(); }
 
  private:

@@ -35,6 +35,7 @@ class SimulatedTool final : public Device {
   void write(const DeviceOutput& output) noexcept override;
   std::string status_text() const override { return position_->status_text(); }
   void stop() noexcept override { position_->stop(); }
+  bool at_rest() const noexcept override { return position_->at_rest(); }
   void resume() noexcept override { position_->resume(); }
 
   const Quat& orientation() const { return orientation_; }

@@ -12,6 +12,7 @@ namespace catena::app {
 namespace {
 
 constexpr std::size_t kStackBytes = 64 * 1024;
+constexpr int kMostWaitMs = 1000;
 
 std::atomic<haptics::Device*> held{nullptr};
 static_assert(std::atomic<haptics::Device*>::is_always_lock_free, "a signal handler reads it");
@@ -19,29 +20,35 @@ static_assert(std::atomic<haptics::Device*>::is_always_lock_free, "a signal hand
 const char* line_of(int signal_number) {
   switch (signal_number) {
     case SIGSEGV:
-      return "catena: ended by SIGSEGV (a bug, or a stack that is full); the device is off\n";
+      return "catena: ended by SIGSEGV (a bug, or a stack that is full)";
     case SIGBUS:
-      return "catena: ended by SIGBUS (a file that was cut while it was read, or a bug); the device is off\n";
+      return "catena: ended by SIGBUS (a file that was cut while it was read, or a bug)";
     case SIGFPE:
-      return "catena: ended by SIGFPE (a bug); the device is off\n";
+      return "catena: ended by SIGFPE (a bug)";
     case SIGILL:
-      return "catena: ended by SIGILL (a bug, or another kind of processor); the device is off\n";
+      return "catena: ended by SIGILL (a bug, or another kind of processor)";
     case SIGSYS:
-      return "catena: ended by SIGSYS (a system call that is not allowed here); the device is off\n";
+      return "catena: ended by SIGSYS (a system call that is not allowed here)";
     case SIGTRAP:
-      return "catena: ended by SIGTRAP; the device is off\n";
+      return "catena: ended by SIGTRAP";
     case SIGQUIT:
-      return "catena: ended by SIGQUIT; the device is off\n";
+      return "catena: ended by SIGQUIT";
     default:
       return "";  // SIGABRT: who aborts has said why
   }
 }
 
+void say(const char* words) { [[maybe_unused]] const auto written = write(STDERR_FILENO, words, std::strlen(words)); }
+
 void on_crash(int signal_number) {
   const int error = errno;
-  if (let_go()) {
+  if (const LetGo done = let_go(); done != LetGo::nobody) {
     const char* line = line_of(signal_number);
-    [[maybe_unused]] const auto written = write(STDERR_FILENO, line, std::strlen(line));
+    say(line);
+    if (done == LetGo::unconfirmed)
+      say(*line == 0 ? "catena: the device has not confirmed that it is off\n" : "; the device has not confirmed that it is off\n");
+    else if (*line != 0)
+      say("; the device is off\n");
   }
   std::signal(signal_number, SIG_DFL);
   std::raise(signal_number);  // as soon as this handler returns
@@ -50,14 +57,16 @@ void on_crash(int signal_number) {
 
 }  // namespace
 
-bool let_go() noexcept {
+LetGo let_go() noexcept {
   haptics::Device* device = held.exchange(nullptr);
-  if (device == nullptr) return false;
+  if (device == nullptr) return LetGo::nobody;
   device->stop();
-  timespec left{.tv_sec = 0, .tv_nsec = 50'000'000};
-  while (nanosleep(&left, &left) != 0 && errno == EINTR) {
+  for (int waited_ms = 0; waited_ms < kMostWaitMs; ++waited_ms) {
+    if (device->at_rest()) return LetGo::off;
+    const timespec nap{.tv_sec = 0, .tv_nsec = 1'000'000};
+    nanosleep(&nap, nullptr);
   }
-  return true;
+  return LetGo::unconfirmed;
 }
 
 CrashGuard::CrashGuard(haptics::Device& device) : stack_(kStackBytes) {

@@ -1,8 +1,8 @@
 /// A program that crashes lets the hand go first: SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGABRT (assertions) and SIGQUIT
-/// stop the device, wait 50 ms for its I/O thread to send the zero, say so in one line, and then do what they would have done.
-/// The handler runs on the thread that crashed, the others go on: it stores atomics, writes, sleeps, raises. Device::stop() must be safe
-/// in it. The thread that makes the guard has a second stack for it, so that a full one is covered there; on others it is not.
-/// Not covered: SIGKILL, a power cut, a crash of the device's own I/O thread. One at a time.
+/// stop the device, wait until it has confirmed its zero (at most 1 s), say in one line whether it has, and then do what they would have
+/// done. The handler runs on the thread that crashed, the others go on: it stores atomics, writes, sleeps, raises. Device::stop() and
+/// at_rest() are safe in it. The thread that makes the guard has a second stack for it, so that a full one is covered there; on others it
+/// is not. Not covered: SIGKILL, a power cut, a crash of the device's own I/O thread. One at a time.
 #pragma once
 #include <array>
 #include <csignal>
@@ -26,8 +26,13 @@ class CrashGuard {
   stack_t stack_before_{};
 };
 
+enum class LetGo : unsigned char {
+  nobody,      ///< no guard holds a device
+  off,         ///< the device holds no force
+  unconfirmed  ///< it was told so, but has not answered; a device with a watchdog process is left to it
+};
+
 /// Stops the device that a guard holds, if any, and waits for its zero: for who ends the process otherwise. Safe in a signal handler.
-/// True: there was one.
-bool let_go() noexcept;
+LetGo let_go() noexcept;
 
 }  // namespace catena::app

@@ -216,6 +216,7 @@ bool Falcon::send(FalconSession& session, bool forces) noexcept {
   if (!session.send(orders_.front().force_n, forces)) return false;
   const bool late = 1e-9 * static_cast<double>(options_.clock() - began) > options_.command_timeout_s;
   if (forces && (late || (page != nullptr && page->holder.load(std::memory_order_acquire) == watchdog::Holder::watchdog))) session.let_go();
+  at_rest_.store(session.at_rest());
   if (page != nullptr && session.at_rest()) page->pushing.store(0, std::memory_order_release);
   return true;
 }
@@ -258,6 +259,7 @@ void Falcon::serve() noexcept {
   auto cycle = FalconSession::Cycle::frame;
   while (!quit_ && cycle != FalconSession::Cycle::gone && silent < options_.lost_after) {
     const bool held = taken_away(session, ftdi), fresh = fresh_order();
+    at_rest_.store(false);
     const bool forces = watched(session) && !held && fresh && !stopped_ && orders_.front().seen_takeovers == takeovers_;
     cycle = send(session, forces) ? session.receive() : FalconSession::Cycle::gone;
     if (cycle == FalconSession::Cycle::frame) {
@@ -273,6 +275,7 @@ void Falcon::serve() noexcept {
     }
   }
   session.leave();
+  at_rest_.store(session.at_rest() || cycle == FalconSession::Cycle::gone);
   // a device that has not acknowledged its zero is left to the watchdog
   if (watchdog_ && (session.at_rest() || cycle == FalconSession::Cycle::gone)) watchdog_->quit();
   watchdog_.reset();

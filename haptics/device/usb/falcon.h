@@ -67,6 +67,7 @@ class Falcon final : public Device {
   DeviceInput read() noexcept override;
   void write(const DeviceOutput& output) noexcept override;
   void stop() noexcept override { stopped_.store(true); }
+  bool at_rest() const noexcept override { return at_rest_.load(); }
   void resume() noexcept override;
 
   std::string status_text() const override;
@@ -102,6 +103,7 @@ class Falcon final : public Device {
   std::atomic<std::uint64_t> takeovers_{0}, watchdog_restarts_{0};
   std::atomic<bool> unwatched_{false};
   std::atomic<bool> stopped_{false}, quit_{false}, realtime_{false};
+  std::atomic<bool> at_rest_{true};  ///< cleared before stopped_ is read: who stops and then finds it set waits for nothing
   std::atomic<FalconState> state_{FalconState::booting};
   std::atomic<int> boot_try_{0}, boot_percent_{0};
   std::atomic<std::uint8_t> homed_{0};

@@ -28,8 +28,11 @@ class Last final : public Device {
     constexpr char kText[] = "let go\n";
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kText, sizeof kText - 1);
   }
+  bool at_rest() const noexcept override { return asked_++ >= asks_until_rest_; }
+  int asks_until_rest_ = 0;
 
  private:
+  mutable int asked_ = 0;
   DeviceCapabilities capabilities_;
 };
 
@@ -54,6 +57,17 @@ TEST_F(CrashGuardDeathTest, EveryCrashLetsGoAndEndsAsItWould) {
     };
     EXPECT_EXIT(crash(), testing::KilledBySignal(signal_number), "let go") << signal_number;
   }
+}
+
+// before, 50 ms were waited, and "the device is off" was said of one whose thread had not had the processor yet
+TEST_F(CrashGuardDeathTest, TheDeviceIsOffWhenItHasConfirmedIt) {
+  const auto crash = [&](int asks) {
+    device.asks_until_rest_ = asks;
+    const app::CrashGuard guard(device);
+    std::raise(SIGTRAP);
+  };
+  EXPECT_EXIT(crash(200), testing::KilledBySignal(SIGTRAP), "let go\ncatena: ended by SIGTRAP; the device is off\n$");
+  EXPECT_EXIT(crash(1 << 20), testing::KilledBySignal(SIGTRAP), "ended by SIGTRAP; the device has not confirmed that it is off\n$");
 }
 
 TEST_F(CrashGuardDeathTest, AfterItsEndNobodyIsStopped) {
