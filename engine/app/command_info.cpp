@@ -20,7 +20,6 @@
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
-#include "render/frame/camera.h"
 
 namespace catena::app {
 
@@ -58,8 +57,7 @@ Outcome describe_file(const std::string& path) {
     if (!units.length.empty()) fmt::print("  lengths in   {}\n", printable(units.length));
     const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
     const Vec3 edges(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1), static_cast<double>(g.size.z - 1));
-    Bounds box;
-    for (int i = 0; i < 8; ++i) box.add(g.mapping.world_from_index(Bounds{lowest, lowest + edges}.corner(i)));
+    const Bounds box = field::world_bounds(g.mapping, {lowest, lowest + edges});
     fmt::print("  world box    {} .. {}\n", text(box.lo), text(box.hi));
     fmt::print("  active       {} voxels\n", g.stats.active_voxels);
     if (g.usable) {

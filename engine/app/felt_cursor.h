@@ -10,18 +10,22 @@
 
 namespace catena::app {
 
+using HandPath = std::vector<haptics::ProbeSample>;
+Result<HandPath> read_hand_path(const std::string& probe_csv);
+/// Rest at the scene's own cursor, if it has one and shows it, else empty.
+HandPath resting_path(const scene::Scene& scene);
+
 /// Runs the chain along a path, tick by tick, as far as a picture wants it.
 class FeltPath {
  public:
-  /// `probe_csv`, or, if empty, rest at the scene's own cursor, if it has one and shows it; without either the path is empty.
-  static Result<FeltPath> make(const scene::Scene& scene, std::shared_ptr<const haptics::Program> program, const std::string& probe_csv);
-  bool empty() const { return path_.empty(); }
-  /// Writes the tick at that share of the path's time, 0 to 1, into the scene's cursor and widgets. An earlier one than before begins anew.
+  FeltPath(std::shared_ptr<const haptics::Program> program, HandPath path) : program_(std::move(program)), path_(std::move(path)) {}
+  /// Writes the tick at that share of the path's time, 0 to 1, into the scene's cursor. An earlier one than before begins anew. An empty
+  /// path leaves the cursor as it is.
   void show(scene::Scene& scene, double share);
 
  private:
   std::shared_ptr<const haptics::Program> program_;
-  std::vector<haptics::ProbeSample> path_;
+  HandPath path_;
   std::size_t done_ = 0;  ///< ticks that were run
   std::unique_ptr<haptics::ChainState> state_;
   std::unique_ptr<haptics::ChainScratch> scratch_;

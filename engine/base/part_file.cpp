@@ -81,7 +81,7 @@ std::string part_name(const std::string& path) {
   static std::mt19937_64 random{std::random_device{}()};
   const std::lock_guard lock(mutex);
   char tail[64];
-  std::snprintf(tail, sizeof tail, "%d-%012llx", static_cast<int>(::getpid()),
+  std::snprintf(tail, sizeof tail, "%d-%0*llx", static_cast<int>(::getpid()), static_cast<int>(kDigits),
                 static_cast<unsigned long long>(random() & 0xffffffffffffULL));
   return beginning_of(path) + tail;
 }

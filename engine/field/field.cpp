@@ -21,14 +21,6 @@ void Field::set_domain(std::string name, const Mapping& mapping, const Box& inde
   }
 }
 
-Vec3 Field::corner(int i) const { return mapping_.world_from_index(Bounds{index_box_.lo, index_box_.hi}.corner(i)); }
-
-Bounds Field::world_bounds() const {
-  Bounds bounds;
-  for (int i = 0; i < 8; ++i) bounds.add(corner(i));
-  return bounds;
-}
-
 Reason Field::why_outside(const Vec3& world, Cursor&) const noexcept { return is_finite(world) ? Reason::mask : Reason::not_finite; }
 
 LineSample VectorField::sample_line(const Vec3& world, Cursor& cursor) const noexcept {

@@ -13,7 +13,6 @@
 #include "engine/field/cell.h"
 #include "engine/field/line_axis.h"
 #include "engine/field/mapping.h"
-#include "engine/geometry/bounds.h"
 
 namespace catena::field {
 
@@ -50,9 +49,9 @@ class Field {
   const std::string& name() const { return name_; }   ///< the grid's or the formula's name
   std::uint64_t version() const { return version_; }  ///< unique in the process; the key of mirrors
   const Mapping& mapping() const { return mapping_; }
-  const Box& index_box() const { return index_box_; }    ///< of voxel centres; analytic: the box -2..2
-  Vec3 corner(int i) const;                              ///< of the domain, world: i + 2 j + 4 k by index
-  Bounds world_bounds() const;                           ///< of all eight
+  const Box& index_box() const { return index_box_; }                                ///< of voxel centres; analytic: the box -2..2
+  Vec3 corner(int i) const { return world_corner(mapping_, index_box_, i); }         ///< of the domain, world: i + 2 j + 4 k by index
+  Bounds world_bounds() const { return field::world_bounds(mapping_, index_box_); }  ///< of all eight
   double length() const { return length_; }              ///< L: the longest edge of the domain box, world units; analytic: 4
   double longest_edge() const { return longest_edge_; }  ///< of a voxel, world units
   virtual bool is_grid() const noexcept { return false; }

@@ -1,6 +1,5 @@
 #include "engine/field/formats.h"
 
-#include <algorithm>
 #include <array>
 
 #include "engine/base/text.h"
@@ -41,6 +40,6 @@ std::vector<std::string_view> field_endings(bool bare) {
   return out;
 }
 
-std::string field_file_words(bool bare) { return alternatives(field_endings(bare)); }
+std::string field_file_words() { return alternatives(field_endings()); }
 
 }  // namespace catena::field

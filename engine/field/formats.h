@@ -14,6 +14,6 @@ bool needs_layout(std::string_view path);
 /// ".vdb", ".nii", ..; `bare`: of those that say their layout, which can be opened without a scene.
 std::vector<std::string_view> field_endings(bool bare = false);
 /// ".vdb, .nii, .nii.gz or .raw", for a sentence.
-std::string field_file_words(bool bare = false);
+std::string field_file_words();
 
 }  // namespace catena::field

@@ -25,4 +25,12 @@ double Mapping::smallest_edge() const {
   return std::min(std::min(norm(j[0]), norm(j[1])), norm(j[2]));
 }
 
+Vec3 world_corner(const Mapping& mapping, const Box& box, int i) { return mapping.world_from_index(Bounds{box.lo, box.hi}.corner(i)); }
+
+Bounds world_bounds(const Mapping& mapping, const Box& box) {
+  Bounds bounds;
+  for (int i = 0; i < 8; ++i) bounds.add(world_corner(mapping, box, i));
+  return bounds;
+}
+
 }  // namespace catena::field

@@ -2,6 +2,7 @@
 /// shears and negative origins are all just J. Analytic fields have J = 1, origin = 0.
 #pragma once
 #include "engine/base/vec.h"
+#include "engine/geometry/bounds.h"
 
 namespace catena::field {
 
@@ -27,5 +28,9 @@ struct Box {
            p.z <= hi.z + slack;
   }
 };
+
+/// Of a box that may lie obliquely in the world: corner i + 2 j + 4 k by index, and what encloses all eight.
+Vec3 world_corner(const Mapping& mapping, const Box& box, int i);
+Bounds world_bounds(const Mapping& mapping, const Box& box);
 
 }  // namespace catena::field

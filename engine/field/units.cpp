@@ -15,6 +15,7 @@
 #include "engine/field/vdb_reader.h"
 
 namespace catena::field {
+
 Units nifti_units(const std::string& path, const std::string&) {
   nifti_set_debug_level(0);
   int swapped = 0;

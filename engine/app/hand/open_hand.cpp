@@ -1,7 +1,6 @@
 #include "engine/app/hand/open_hand.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "engine/app/hand/hand_setup.h"
 #include "engine/base/output_file.h"

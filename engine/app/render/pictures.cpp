@@ -15,7 +15,6 @@
 #include "engine/app/render/quality_words.h"
 #include "engine/app/size_option.h"
 #include "engine/base/clock.h"
-#include "engine/base/csv_paths.h"
 #include "engine/base/output_file.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
@@ -54,10 +53,8 @@ class Frames {
     hand_.show(scene_, options_.play && motion_.frames() > 1 ? static_cast<double>(frame) / (motion_.frames() - 1) : 1);
     CATENA_TRY(render::FramePacket packet, render::extract_frame(scene_, size_.width, size_.height));
     // the eye stays where it is while the hand moves
-    if (!first_view_) first_view_ = packet.view, first_bounds_ = render::packet_bounds(packet);
-    const bool moves = options_.play;
-    const render::View view = motion_.at(moves ? *first_view_ : packet.view, moves ? first_bounds_ : render::packet_bounds(packet),
-                                         static_cast<double>(size_.width) / size_.height, frame);
+    if (!base_view_ || !options_.play) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
+    const render::View view = motion_.at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
     render::set_view(scene_, view, packet);
     return packet;
   }
@@ -102,8 +99,8 @@ class Frames {
   const CameraMotion& motion_;
   FeltPath& hand_;
   Size size_;
-  std::optional<render::View> first_view_;
-  Bounds first_bounds_;
+  std::optional<render::View> base_view_;
+  Bounds base_bounds_;
   std::optional<Interrupt> interrupt_;  // while it draws
   double tiles_done_ = 0;
   std::function<Outcome(const render::Band&)> nothing_;
@@ -138,12 +135,11 @@ Outcome render_pictures(const RenderOptions& o) {
   CATENA_TRY(const Size size, parse_size(o.size, kMostTiledPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   if (o.play && o.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
-  double hand_s = 0;
+  HandPath path;
   if (o.play) {
-    CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(o.probe));
-    hand_s = rows.back().t_s - rows.front().t_s;
+    CATENA_TRY(path, read_hand_path(o.probe));
   }
-  CATENA_TRY(const CameraMotion motion, CameraMotion::make(o, hand_s));
+  CATENA_TRY(const CameraMotion motion, CameraMotion::make(o, o.play ? path.back().t_s - path.front().t_s : 0));
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
@@ -161,7 +157,12 @@ Outcome render_pictures(const RenderOptions& o) {
 
   // the chain is checked with the picture: one scene, two senses
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
-  CATENA_TRY(FeltPath hand, FeltPath::make(scene, program, o.probe));
+  if (o.probe.empty()) {
+    path = resting_path(scene);
+  } else if (!o.play) {
+    CATENA_TRY(path, read_hand_path(o.probe));
+  }
+  FeltPath hand(program, std::move(path));
   Frames frames(scene, o, motion, hand, size);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
   if (!o.ids.empty() && packet.objects.size() > 65535)

@@ -25,10 +25,13 @@ std::string lower(std::string text) {
 
 bool is_scene_name(const std::string& path) { return has_ending(path, ".json"); }
 
-std::vector<std::string_view> openable_endings() {
-  std::vector<std::string_view> endings{".json"};
-  for (const std::string_view ending : field::field_endings(true)) endings.push_back(ending);
-  for (const std::string_view ending : mesh::mesh_endings()) endings.push_back(ending);
+const std::vector<std::string_view>& openable_endings() {
+  static const std::vector<std::string_view> endings = [] {
+    std::vector<std::string_view> all{".json"};
+    for (const std::string_view ending : field::field_endings(true)) all.push_back(ending);
+    for (const std::string_view ending : mesh::mesh_endings()) all.push_back(ending);
+    return all;
+  }();
   return endings;
 }
 

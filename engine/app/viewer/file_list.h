@@ -18,7 +18,7 @@ bool is_openable(const std::string& path);
 /// A scene, by its name.
 bool is_scene_name(const std::string& path);
 /// ".json", and the endings of the data files and meshes that say their own layout.
-std::vector<std::string_view> openable_endings();
+const std::vector<std::string_view>& openable_endings();
 
 /// Folders first, then the files that Catena opens, each by name; hidden ones are left out. At most kMostEntries.
 inline constexpr std::size_t kMostEntries = 5000;

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
-
 #include "engine/app/hand/hand_setup.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"

@@ -1,7 +1,6 @@
 #include "engine/app/viewer/session.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>

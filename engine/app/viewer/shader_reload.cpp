@@ -1,7 +1,6 @@
 #include "engine/app/viewer/shader_reload.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 
@@ -12,8 +11,6 @@ namespace catena::app {
 namespace {
 
 constexpr std::int64_t kLookNs = 250'000'000;
-
-void say(const std::string& text) { tell_from_catena(text); }
 
 }  // namespace
 
@@ -28,11 +25,11 @@ bool ShaderReload::poll(render::Renderer& renderer, std::int64_t now_ns) {
   if (looked_ns_ && now_ns - *looked_ns_ < kLookNs) return false;
   looked_ns_ = now_ns;
   render::ShaderNews news = watch_.poll();
-  for (const std::string& error : news.errors) say(error);
+  for (const std::string& error : news.errors) tell_from_catena(error);
   bool any = false;
   for (render::ChangedShader& shader : news.changed) {
     const auto replaced = renderer.replace_shader(shader.name, std::move(shader.words));
-    if (!replaced) say(replaced.error().message);
+    if (!replaced) tell_from_catena(replaced.error().message);
     if (!replaced || !*replaced) continue;
     fmt::print("{}: taken from the file\n", shader.name);
     any = true;
@@ -44,7 +41,7 @@ bool ShaderReload::poll(render::Renderer& renderer, std::int64_t now_ns) {
 
 bool ShaderReload::give_up(render::Renderer& renderer, const std::string& why) {
   if (!replaced_) return false;
-  say(why + "; the shaders of the program are back");
+  tell_from_catena(why + "; the shaders of the program are back");
   renderer.restore_shaders();
   replaced_ = false;
   return true;

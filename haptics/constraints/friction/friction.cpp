@@ -89,17 +89,17 @@ class FrictionTick {
       arrive(heading_at(contact_.here()));
       if (!memory_.heading.known() || ending_ != Status::ok) return true;
       // not there along the line again: the next tick goes on
-      complete = is_even(tau) || norm(contact_.proxy() - before) <= kAlong * length_;
+      complete = is_even(excess_along(tau)) || norm(contact_.proxy() - before) <= kAlong * length_;
       if (memory_.blocked != 0 || contact_.spent(kForStep)) return true;
     }
     return true;
   }
-  /// Whether e has no more along the line than the threshold allows.
-  bool is_even(double tau) const noexcept {
-    const Vec3 e = contact_.gap();
-    const double f = memory_.heading.t.factor, excess = std::fabs(dot(e, memory_.heading.t.d)) - tau * (1 - f) / f;
-    return !(excess > std::max(kAlong * length_, 4e-16 * norm(e)));
+  /// What e has along the line beyond what the threshold allows.
+  double excess_along(double tau) const noexcept {
+    const double f = memory_.heading.t.factor;
+    return std::fabs(dot(contact_.gap(), memory_.heading.t.d)) - tau * (1 - f) / f;
   }
+  bool is_even(double excess) const noexcept { return !(excess > std::max(kAlong * length_, 4e-16 * norm(contact_.gap()))); }
 
   /// Follows the streamline until |e.d| <= b. True: it moved.
   bool follow(double tau, bool& complete) noexcept {
@@ -109,10 +109,9 @@ class FrictionTick {
     memory_.blocked = 0;
     while (memory_.heading.known()) {
       const Vec3 d = memory_.heading.t.d, e = contact_.gap(), p = contact_.proxy();
-      const double g = dot(e, d), f = memory_.heading.t.factor;
-      const double excess = std::fabs(g) - tau * (1 - f) / f;
+      const double g = dot(e, d), excess = excess_along(tau);
       complete = true;
-      if (!(excess > std::max(kAlong * length_, 4e-16 * norm(e)))) return moved;
+      if (is_even(excess)) return moved;
       complete = false;
       if (trials_++ >= kTrials || contact_.spent(kForStep)) return moved;
       const double rate = memory_.rate > 0 ? std::min(std::max(memory_.rate, 0.1), 10.0) : 1;

@@ -1,5 +1,6 @@
 #include "haptics/constraints/isosurface/cell_walk.h"
 
+#include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface/cells.h"
 #include "haptics/constraints/isosurface/piece_move.h"
 
@@ -60,7 +61,7 @@ void for_subsets(unsigned mask, const Visit& visit) {
 /// The last point of the way from..to over one piece that keeps within `limit` and is no further from the probe than `from`.
 Vec3 cut_short(const LevelField& field, const Piece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
                const Vec3& from, const Vec3& to) {
-  const Vec3 chord = field.grid()->mapping().world_from_index_linear * (to - from), along = chord - s.n * dot(s.n, chord);
+  const Vec3 chord = field.grid()->mapping().world_from_index_linear * (to - from), along = equation::tangential(chord, s.n);
   const double most = norm(probe - piece.world(from));
   Vec3 kept = from, g;
   double low = 0, high = 1;

@@ -50,8 +50,7 @@ struct TravelLimit {
 CellPoint cell_point(const field::ScalarGrid& grid, const Vec3& world) noexcept;
 Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept;
 
-/// Moves `at` (on the level to 1e-9 L or so) to the local closest point to the probe. `frames`: the
-/// grid's.
+/// Moves `at` (on the level to 1e-9 L or so) to the local closest point to the probe. `frames`: the grid's.
 WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at,
                       TravelLimit* limit = nullptr) noexcept;
 

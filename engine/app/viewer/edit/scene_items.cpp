@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/app/viewer/chain_edit.h"
 #include "engine/app/viewer/edit/pointers.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/write_values.h"
@@ -65,10 +66,7 @@ std::string felt_level(const scene::Scene& scene, const std::string& field) {
   std::string text;
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     if (!text.empty() || field_of_level(link.node) != field) return;
-    const json::Node& level = *link.node.find("level");
-    if (level.kind == json::Kind::number) text = scene::text_of(level.number);
-    if (const json::Node* widget = level.find("widget"); widget != nullptr && widget->kind == json::Kind::string)
-      text = "{\"widget\": " + scene::text_of(widget->string) + "}";
+    text = json_of(*link.node.find("level"));
   });
   return text;
 }

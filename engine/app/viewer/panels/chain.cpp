@@ -57,8 +57,7 @@ void draw_live(const exchange::LinkReport& link, const std::string& name, double
 
 /// The length of everything, for keys that begin as a part of it.
 double length_of(const PanelContext& context) {
-  const Bounds& b = context.scene.bounds;
-  const double edge = b.empty() ? 0 : b.longest_edge();
+  const double edge = context.scene.bounds.longest_edge();
   return edge > 0 ? edge : 4;
 }
 
