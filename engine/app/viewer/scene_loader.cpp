@@ -3,6 +3,7 @@
 #include "engine/app/hand/hand_setup.h"
 #include "engine/app/viewer/hand_host.h"
 #include "engine/base/start_thread.h"
+#include "engine/scene/prepare.h"
 #include "render/extract/extract.h"
 
 namespace catena::app {
@@ -21,9 +22,8 @@ Result<LoadedScene> load_scene(SceneHost host, std::uint32_t width, std::uint32_
   scene::Scene& scene = host.scene();
   // the program loads what is felt, the packet what is drawn
   CATENA_CHECK(HandHost::load(scene));
-  CATENA_TRY(render::FramePacket packet, render::extract_frame(scene, width, height));
-  Bounds bounds = render::packet_bounds(packet);
-  bounds.add(loaded_bounds(scene));
+  CATENA_TRY(render::FramePacket packet, render::make_frame(scene, width, height));
+  const Bounds bounds = scene::prepared_bounds(scene);
   if (!scene.camera.given && packet.volumes.empty() && packet.isosurfaces.empty() && packet.tubes.empty())
     packet.view = render::fit_view(bounds, static_cast<double>(width) / height);
   host.bounds = bounds;

@@ -66,7 +66,7 @@ std::optional<Failure> Session::draw_without_window(const std::string& why) {
     scene::Scene& scene = scene_->scene();
     const auto eye = render::view_size(render::packing_of(scene.stereo), render::views_of(scene.stereo), options_.width, options_.height);
     CATENA_TRY(const render::FramePacket packet,
-               render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height)));
+               render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height)));
     render::vk::DeviceOptions device;
     device.memory_budget_bytes = options_.gpu_memory;
     CATENA_TRY(const std::unique_ptr<render::Renderer> renderer, render::Renderer::create(device));
@@ -196,7 +196,7 @@ std::optional<Failure> Session::draw(const NextPicture& next, bool for_file) {
   const auto eye = render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width / scale),
                                      std::max(kLeastPixels, height / scale));
   std::int64_t start = now_ns();
-  auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
+  auto packet = render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) {
     // at the start it is the scene's fault; later an edit's, and the last picture stands
     if (times_.count() == 0) return Failure{2, packet.error().message};
@@ -246,7 +246,7 @@ std::optional<Failure> Session::estimate() {
   const render::Packing packing = render::packing_of(scene.stereo);
   const auto eye =
       render::view_size(packing, render::views_of(scene.stereo), std::max(kLeastPixels, width), std::max(kLeastPixels, height));
-  auto packet = render::extract_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
+  auto packet = render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
   if (!packet) return std::nullopt;  // said where it was drawn
   const auto error = render::estimate_rmse(screen_->renderer(), *packet, pacing_.again().settings);
   if (!error) return Failure{1, error.error().message};
