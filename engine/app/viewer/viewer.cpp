@@ -1,6 +1,6 @@
 #include "engine/app/viewer/viewer.h"
 
-#include "engine/app/viewer/session.h"
+#include "engine/app/viewer/shell/session.h"
 #include "engine/base/tell.h"
 
 namespace catena::app {

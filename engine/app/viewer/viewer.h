@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/app/render/quality_words.h"
-#include "engine/app/viewer/hand_host.h"
+#include "engine/app/viewer/shell/hand_host.h"
 #include "engine/scene/document.h"
 #include "render/vk/device.h"
 

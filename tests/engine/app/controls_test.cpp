@@ -1,4 +1,4 @@
-#include "engine/app/viewer/controls.h"
+#include "engine/app/viewer/shell/controls.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/app/viewer/keys.h"
+#include "engine/app/viewer/shell/keys.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "engine/app/viewer/controls.h"
+#include "engine/app/viewer/shell/controls.h"
 
 namespace catena::app {
 namespace keys_test {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/app/viewer/chain_edit.h"
+#include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/app/viewer/panels/edit_items.h"
 #include "engine/scene/write_values.h"
 

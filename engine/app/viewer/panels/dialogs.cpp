@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 

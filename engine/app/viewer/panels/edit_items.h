@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 

@@ -5,8 +5,8 @@
 #include <array>
 #include <filesystem>
 
-#include "engine/app/viewer/file_list.h"
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/shell/file_list.h"
 
 namespace catena::app {
 

@@ -9,7 +9,7 @@
 
 #include "engine/app/viewer/edit/pointers.h"
 #include "engine/app/viewer/edit/transfer_edit.h"
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {

@@ -1,7 +1,7 @@
 // The bar at the top.
 #include <imgui.h>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "engine/app/viewer/file_list.h"
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/text.h"
 
 namespace catena::app {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 #include "engine/base/clock.h"
 
 namespace catena::app {

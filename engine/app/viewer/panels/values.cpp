@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 #include "engine/scene/units.h"
 
 namespace catena::app {
