@@ -30,8 +30,6 @@ const FieldValue* find(const PlaceValues& place, const std::string& name) {
   return found == place.fields.end() ? nullptr : &*found;
 }
 
-}  // namespace
-
 void draw_values(PanelContext& context) {
   const ViewState& state = context.state;
   const std::array<const PlaceValues*, 3> places{&state.pointer, &state.probe, &state.proxy};
@@ -61,5 +59,9 @@ void draw_values(PanelContext& context) {
   for (const PlaceValues* place : places) cell(place->object, place->object);
   ImGui::EndTable();
 }
+
+}  // namespace
+
+Panel values_panel() { return {"Values", false, draw_values}; }
 
 }  // namespace catena::app

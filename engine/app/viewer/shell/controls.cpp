@@ -48,10 +48,8 @@ void move_hand(Controls& controls, const Input& input) {
 }
 
 /// Along an axis, all in the picture; the angle and the projection stay.
-void look_along(Controls& controls, const Input& input) {
-  constexpr std::string_view kAlong[2][3] = {{"+x", "+y", "+z"}, {"-x", "-y", "-z"}};
-  const std::string_view words = kAlong[input.shift ? 1 : 0][*input.axis];
-  auto view = render::axis_view(controls.bounds, input.width / input.height, words, controls.view.fovy_deg);
+void look_along(Controls& controls, std::string_view axis, double aspect) {
+  auto view = render::axis_view(controls.bounds, aspect, axis, controls.view.fovy_deg);
   view->orthographic = controls.view.orthographic;
   controls.view = *view;
 }
@@ -111,7 +109,6 @@ Changed apply(Controls& controls, const Input& input) {
   Changed changed;
   const render::View view_before = controls.view;
   const Vec3 hand_before = controls.hand;
-  if (input.toggle_hand) controls.hand_mode = !controls.hand_mode;
   const bool moved = input.dx != 0 || input.dy != 0, wheeled = input.wheel != 0;
   const bool hand = controls.hand_mode || input.control || input.right;
   const bool navigates = input.middle || (input.left && input.shift);
@@ -140,55 +137,46 @@ Changed apply(Controls& controls, const Input& input) {
     zoom(controls.view, std::pow(kZoomPerNotch, input.wheel));
     changed.view = true;
   }
-  const bool fits = !controls.bounds.empty();
-  if (input.axis && fits) look_along(controls, input);
-  if (input.fit && fits) controls.view = render::fitted(controls.view, controls.bounds, input.width / input.height);
-  if (input.toggle_projection) toggle_projection(controls.view);
-  if (input.reset_view) controls.view = controls.home;
-  changed.view = changed.view || (fits && (input.axis || input.fit)) || input.toggle_projection || input.reset_view;
   // neither eye nor hand leaves the world
   if (!is_possible(controls.view)) controls.view = view_before;
   if (!is_finite(controls.hand) || max_abs(controls.hand) > kMostEyeCoordinate) controls.hand = hand_before;
   return changed;
 }
 
-const std::vector<KeyHelp>& key_list() {
-  static const std::vector<KeyHelp> keys = {
-      {"The eye", "left drag", "orbit"},
-      {"The eye", "middle, shift+left", "pan"},
-      {"The eye", "wheel", "zoom"},
-      {"The eye", "1, 2, 3", "look along +x, +y, +z, at all that is drawn; with shift along -x, -y, -z"},
-      {"The eye", "A, Home", "all that is drawn into the picture, from the same direction"},
-      {"The eye", "O", "orthographic or perspective"},
-      {"The eye", "R", "the first view again"},
-      {"The eye", "T", "turntable, until T or the mouse"},
-      {"The eye", "V", "fly: W S A D or arrows, E up, Q down, shift faster, left drag looks about, wheel: pace; V or Esc ends it"},
-      {"The hand", "right drag, control", "move the hand in the picture's plane (wheel: depth)"},
-      {"The hand", "H", "hand mode: the mouse is the hand, the left button its button 1"},
-      {"The hand", "space", "the hand's button 1"},
-      {"The hand", "F", "a haptic device's forces on and off (off at first)"},
-      {"The hand", "device button 1", "takes hold of widgets, selects; what the scene's \"on\" says"},
-      {"The scene", "Ctrl+O", "open; a file can be dropped on the window as well"},
-      {"The scene", "Ctrl+S, Ctrl+Shift+S", "save (with the view, if it was moved), save as"},
-      {"The scene", "Ctrl+Z, Ctrl+Y", "undo, redo"},
-      {"The scene", "P", "the pulses along streamlines stand or run"},
-      {"The window", "Tab", "panels"},
-      {"The window", "F2", "the next stereo mode"},
-      {"The window", "F11", "full screen"},
-      {"The window", "F12, Shift+F12", "write the picture, the window, as SCENE-001.png"},
-      {"The window", "F1, ?", "these keys"},
-      {"The window", "Esc", "closes or cancels what is open, ends flying, hand mode, full screen"},
-      {"The window", "Ctrl+Q", "quit"}};
-  return keys;
+bool apply(Controls& controls, Action action, double aspect) {
+  const render::View before = controls.view;
+  const bool fits = !controls.bounds.empty();
+  switch (action) {
+    case Action::along_x:
+    case Action::along_y:
+    case Action::along_z:
+    case Action::against_x:
+    case Action::against_y:
+    case Action::against_z:
+      if (!fits) return false;
+      look_along(controls, menu_words(action), aspect);
+      break;
+    case Action::fit:
+      if (!fits) return false;
+      controls.view = render::fitted(controls.view, controls.bounds, aspect);
+      break;
+    case Action::projection:
+      toggle_projection(controls.view);
+      break;
+    case Action::first_view:
+      controls.view = controls.home;
+      break;
+    default:
+      return false;
+  }
+  if (!is_possible(controls.view)) controls.view = before;
+  return true;
 }
 
-std::string key_help() {
-  std::string text;
-  for (const KeyHelp& key : key_list()) {
-    const std::string keys = key.keys;
-    text += keys + std::string(keys.size() < 21 ? 21 - keys.size() : 1, ' ') + key.does + "\n";
-  }
-  return text;
+bool takes_hold(const Input& input) { return input.left || input.middle || input.wheel != 0; }
+
+bool takes_hold(Action action) {
+  return action == Action::fit || action == Action::first_view || (action >= Action::along_x && action <= Action::against_z);
 }
 
 }  // namespace catena::app

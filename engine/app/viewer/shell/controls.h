@@ -8,16 +8,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "engine/app/viewer/shell/keys.h"
+#include "engine/app/viewer/shell/commands.h"
 #include "render/frame/camera.h"
 
 namespace catena::app {
-
-/// What a key asks of the program as a whole.
-enum class Command { undo, redo, open, save, save_as, quit, screenshot, window_screenshot, full_screen, toggle_panels, turntable, fly };
 
 /// A piece of input: what begins it, a stroke or a button, and the motion until the next such thing. Coordinates of the window, or of the
 /// picture's area in it (y down); differences since the last piece.
@@ -27,14 +23,8 @@ struct Input {
   double dx = 0, dy = 0, wheel = 0;
   bool left = false, middle = false, right = false;  ///< held
   bool shift = false, control = false, space = false;
-  std::optional<KeyEvent> key;  ///< with which the piece begins
-  // what the key asks for (keys.h)
-  bool toggle_hand = false, toggle_forces = false, reset_view = false, next_stereo = false, help = false;
-  bool fit = false, toggle_projection = false, toggle_pulses = false;
-  std::optional<int> axis;  ///< 0, 1, 2: look along x, y, z; with shift the other way
-  bool escape = false;      ///< what is open above all goes
-  bool damaged = false;     ///< the window system lost the picture
-  std::vector<Command> commands{};
+  std::optional<KeyEvent> key;         ///< with which the piece begins
+  bool damaged = false;                ///< the window system lost the picture
   std::vector<std::string> dropped{};  ///< files
 };
 
@@ -51,7 +41,8 @@ struct Controls {
   std::optional<Vec3> held{};
   static constexpr double kDepthPixels = 60;
   bool fly = false;
-  double fly_speed = 1;  ///< times kFlySizesPerS
+  double fly_speed = 1;    ///< times kFlySizesPerS
+  bool turntable = false;  ///< the eye turns by itself
 };
 
 /// What an input changed.
@@ -61,6 +52,12 @@ struct Changed {
 };
 
 Changed apply(Controls& controls, const Input& input);
+/// What a command of the eye makes of the view, in a picture of that width / height; true: the view is another. Those of all other
+/// commands, and those that need something to look at where there is nothing, change nothing.
+bool apply(Controls& controls, Action action, double aspect);
+/// Whoever takes hold of the view ends the turntable.
+bool takes_hold(const Input& input);
+bool takes_hold(Action action);
 
 /// What is left of the mouse's motion in hand mode: the part against the force counts less, down to a quarter at the greatest force. Out of
 /// the thing that pushes, and along it, the hand goes with the mouse.
@@ -73,13 +70,5 @@ void zoom(render::View& view, double factor);
 
 /// Between perspective and orthographic, with the same size of things in the target's plane.
 void toggle_projection(render::View& view);
-
-/// One thing that a key or a button does.
-struct KeyHelp {
-  const char *section, *keys, *does;
-};
-const std::vector<KeyHelp>& key_list();
-/// The same for the terminal.
-std::string key_help();
 
 }  // namespace catena::app

@@ -1,7 +1,6 @@
 /// The hand in the window: the device that holds the probe (a haptic one, else the mouse), its servo, its recording, and the program that
-/// the servo runs. The frame never waits for the servo, nor the servo for the frame. Frame thread.
-/// What holds the probe in the window, and the servo that runs its program: the device may be another one, the program newer, a
-/// recording may begin and end, all while the servo runs. Frame thread.
+/// the servo runs. The device may be another one, the program newer, a recording may begin and end, all while the servo runs. The frame
+/// never waits for the servo, nor the servo for the frame. Frame thread.
 #pragma once
 #include <memory>
 #include <optional>
@@ -77,6 +76,7 @@ class HandHost {
   const haptics::Servo& servo() const { return *servo_; }
   const Recording& recording() const { return recording_; }
   const std::vector<std::string>& fields() const { return options_.fields; }
+  const std::string& firmware() const { return options_.firmware; }
 
  private:
   Result<OpenHand> open(const scene::Scene& scene, const std::string& name) const;

@@ -1,12 +1,10 @@
-/// What the keyboard did, as plain data: which stroke is a command of the program, and which strokes the interface may be told at once.
-/// Frame thread.
+/// What the keyboard did, as plain data, and which strokes the interface may be told at once. What a stroke asks of the program is in
+/// commands.h. Frame thread.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 namespace catena::app {
-
-struct Input;
 
 struct KeyEvent {
   enum class What : std::uint8_t { press, release, repeat, character, focus_gained, focus_lost };
@@ -16,10 +14,6 @@ struct KeyEvent {
   bool shift = false, control = false, alt = false;  ///< held
   std::uint32_t character = 0;                       ///< Unicode
 };
-
-/// Writes into `input` what the stroke asks of the program when it is no text for the interface. `fly`: letters and arrows fly, and are no
-/// commands.
-void interpret(const KeyEvent& event, bool fly, Input& input);
 
 /// A key that is held repeats as the person's system says; as presses and releases: none but for a key that moves or removes text, so that
 /// a Return that is held answers one question and not the next.
