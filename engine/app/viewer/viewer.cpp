@@ -50,6 +50,7 @@ Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHos
 std::optional<Failure> show(const ViewOptions& options) {
   auto scene = read_scene(options);
   if (!scene) return Failure{2, scene.error().message};
+  std::optional<Interrupt> interrupt;
   HandHost hand(options.hand);
   if (auto opened = hand.open_device(scene->scene()); !opened) return Failure{2, opened.error().message};
   std::optional<ShaderReload> reload;
@@ -60,7 +61,7 @@ std::optional<Failure> show(const ViewOptions& options) {
   }
   auto window = Window::create(options.width, options.height, "catena");
   if (!window) return draw_without_window(options, *scene, hand, window.error().message);
-  Session session(options, *scene, hand, **window, std::move(reload));
+  Session session(options, *scene, hand, **window, std::move(reload), interrupt);
   if (auto failure = session.open()) return failure;
   return session.run();
 }

@@ -1,4 +1,4 @@
-/// `catena view`: a window that shows the scene while the hand (by default the mouse) feels it.
+/// `catena view` opens a window that shows the scene while the hand (by default the mouse) feels it.
 /// Any other device has its forces off until F turns them on; the mouse cannot push: its force is only drawn.
 /// The servo thread runs the haptic program; the frame takes its newest state and never waits for it.
 #pragma once

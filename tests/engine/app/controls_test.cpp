@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/app/hand/hand_setup.h"
+#include "engine/app/viewer/shell/commands.h"
 #include "engine/base/eye_limits.h"
 
 namespace catena::app {

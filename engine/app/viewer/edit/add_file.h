@@ -1,5 +1,5 @@
-/// A data file that joins an open scene: what its own scene would hold (a field and a volume or lines, or a mesh), as edits of the
-/// open one's text. Pure, any thread.
+/// This file makes a data file join an open scene: what the file's own scene would hold (a field and a volume or lines, or a mesh) becomes
+/// edits of the open one's text. Pure, any thread.
 #pragma once
 #include <string>
 #include <utility>

@@ -1,4 +1,5 @@
-/// A widget to begin with, as JSON text for "/widgets/-": in the middle of all that is there, a quarter of its size. Frame thread.
+/// These functions make a widget to begin with, as JSON text for "/widgets/-": it stands in the middle of all that is there and has a
+/// quarter of its size. Frame thread.
 #pragma once
 #include <string>
 #include <vector>

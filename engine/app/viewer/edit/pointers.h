@@ -1,4 +1,4 @@
-/// Where things stand in the scene's text (RFC 6901), and their text. Pure, any thread.
+/// These functions say where things stand in the scene's text (RFC 6901), and what their text is. Pure, any thread.
 #pragma once
 #include <string>
 #include <vector>

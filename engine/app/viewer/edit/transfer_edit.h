@@ -1,6 +1,6 @@
-/// From a volume as it is drawn to one whose transfer function stands in the scene as points, looking the same, and the edits of the
-/// scene's text that make it what the hand wants. Where the points came from a file, extinctions or the histogram, the first edit states
-/// them all.
+/// This file leads from a volume as it is drawn to one whose transfer function stands in the scene as points and looks the same, and has
+/// the edits of the scene's text that make it what the hand wants. Where the points came from a file, extinctions or the histogram, the
+/// first edit states them all.
 ///   alpha = 1 - exp(-sigma u), u the opacity unit; a volume without opacities gets that at which the thickest point has alpha 0.6
 /// Pure, any thread.
 #pragma once

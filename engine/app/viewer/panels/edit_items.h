@@ -1,5 +1,5 @@
-/// Numbers, colours and choices of the scene as items of the interface: what the person makes of one is an edit of the scene at `pointer`.
-/// While an item is dragged its edits are one step of undo. A slider of a new key is one line in its panel:
+/// These functions draw numbers, colours and choices of the scene as items of the interface; what the person makes of one is an edit of the
+/// scene at `pointer`. While an item is dragged its edits are one step of undo. A slider of a new key is one line in its panel:
 ///   edit_slider(context.edits, "radius", line.radius, 0, 5, pointer + "/radius");
 /// Frame thread, between Gui::begin and end.
 #pragma once

@@ -1,5 +1,5 @@
-/// Parts that the panels of the scene's look share beside the plain items of edit_items.h: colours of values, histograms. Frame thread,
-/// between Gui::begin and end.
+/// This file has the parts that the panels of the scene's look share beside the plain items of edit_items.h: the colours of values, and
+/// histograms. Frame thread, between Gui::begin and end.
 #pragma once
 #include <imgui.h>
 

@@ -1,4 +1,4 @@
-/// What the panels of the scene's look remember from frame to frame. Frame thread.
+/// LookState is what the panels of the scene's look remember from frame to frame. Frame thread.
 #pragma once
 #include <map>
 #include <optional>

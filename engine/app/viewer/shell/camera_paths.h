@@ -1,5 +1,5 @@
-/// How the eye moves by itself or by held keys: flight and turntable. Pure functions of the time that has passed, so that fast and slow
-/// pictures show the same path. World units, seconds, radians; any thread.
+/// These functions move the eye by itself or by held keys: flight and turntable. They are pure functions of the time that has passed, so
+/// that fast and slow pictures show the same path. World units, seconds, radians; any thread.
 #pragma once
 #include "render/frame/camera.h"
 

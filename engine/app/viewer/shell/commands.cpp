@@ -89,6 +89,21 @@ constexpr CommandRow kCommandRows[] = {
     {Action::quit, "Quit", with_control(GLFW_KEY_Q), kNoStroke, kWindow, "quit"},
 };
 
+constexpr bool may_meet(Held a, Held b) { return a == b || a == Held::any || b == Held::any; }
+constexpr bool may_meet(const Stroke& a, const Stroke& b) {
+  return a.key != 0 && a.key == b.key && may_meet(a.control, b.control) && may_meet(a.shift, b.shift);
+}
+/// Every action has one row, and every stroke asks for one action.
+constexpr bool is_sound() {
+  for (int i = 0; i <= static_cast<int>(Action::forces); ++i)
+    if (std::ranges::count(kCommandRows, std::optional(static_cast<Action>(i)), &CommandRow::action) != 1) return false;
+  for (const CommandRow& a : kCommandRows)
+    for (const CommandRow& b : kCommandRows)
+      if (&a != &b && (may_meet(a.stroke, b.stroke) || may_meet(a.stroke, b.other) || may_meet(a.other, b.other))) return false;
+  return true;
+}
+static_assert(is_sound());
+
 const CommandRow& row_of(Action action) { return *std::ranges::find(kCommandRows, std::optional(action), &CommandRow::action); }
 
 bool is(const Stroke& stroke, const KeyEvent& event) {

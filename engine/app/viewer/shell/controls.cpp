@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/app/viewer/shell/camera_paths.h"
+#include "engine/app/viewer/shell/commands.h"
 #include "engine/base/eye_limits.h"
 #include "render/frame/camera_moves.h"
 

@@ -1,4 +1,4 @@
-/// What mouse and keys do, apart from any window: plain input in, a new view and a new place of the hand out.
+/// Controls say what mouse and keys do, apart from any window: plain input goes in, a new view and a new place of the hand come out.
 ///   orbit: left drag     pan: middle drag, or shift and left drag     zoom: wheel
 ///   hand:  right drag, or control held, or hand mode (H): motion on the plane through the probe parallel to the picture,
 ///          wheel for depth; in hand mode the left button (anywhere the space bar) is the device's button 1
@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/viewer/shell/commands.h"
+#include "engine/app/viewer/shell/keys.h"
 #include "render/frame/camera.h"
 
 namespace catena::app {
+
+enum class Action : std::uint8_t;  // commands.h
 
 /// A piece of input: what begins it, a stroke or a button, and the motion until the next such thing. Coordinates of the window, or of the
 /// picture's area in it (y down); differences since the last piece.

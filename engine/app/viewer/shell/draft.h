@@ -1,4 +1,4 @@
-/// Unsaved work: the scene's text as it is now, kept in a file beside the scene while it has changes that are not saved, so that it
+/// Draft keeps unsaved work: the scene's text as it is now, in a file beside the scene while it has changes that are not saved, so that it
 /// outlives a program that is killed. SCENE.json.unsaved-<12 hex digits> is written whole or not at all, is its owner's alone, and is
 /// locked (flock) while its program runs: what is found unlocked was left by one that has ended. Frame thread.
 #pragma once

@@ -1,4 +1,4 @@
-/// The eye: where commands, held keys and the turntable bring the view, which the scene's camera follows. Frame thread.
+/// Eye moves the view as commands, held keys and the turntable say, and the scene's camera with it. Frame thread.
 #pragma once
 #include "engine/app/viewer/shell/camera_paths.h"
 #include "engine/app/viewer/shell/scene_loader.h"

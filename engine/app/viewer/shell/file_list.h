@@ -1,4 +1,5 @@
-/// What the Open dialog shows, and names of files that are not there yet. Only what the person may read; never throws. Frame thread.
+/// This file lists what the Open dialog shows, and finds names of files that are not there yet. It shows only what the person may read, and
+/// never throws. Frame thread.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-/// How long pictures took, for the panel and for --frame-stats: fixed size however long the session.
+/// FrameTimes records how long pictures took, for the panel and for --frame-stats; its size is fixed however long the session is.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,4 +1,5 @@
-/// Dear ImGui on the window: events in, triangles out. Nothing else in the house but the panels includes it. Frame thread; one at a time.
+/// Gui is Dear ImGui on the window: events go in, triangles come out. Nothing else but the panels includes ImGui. Frame thread; one at a
+/// time.
 #pragma once
 #include <functional>
 #include <memory>

@@ -1,6 +1,6 @@
-/// The hand in the window: the device that holds the probe (a haptic one, else the mouse), its servo, its recording, and the program that
-/// the servo runs. The device may be another one, the program newer, a recording may begin and end, all while the servo runs. The frame
-/// never waits for the servo, nor the servo for the frame. Frame thread.
+/// HandHost is the hand in the window: it has the device that holds the probe (a haptic one, else the mouse), its servo, its recording, and
+/// the program that the servo runs. The device may be another one, the program newer, a recording may begin and end, all while the servo
+/// runs. The frame never waits for the servo, nor the servo for the frame. Frame thread.
 #pragma once
 #include <memory>
 #include <optional>

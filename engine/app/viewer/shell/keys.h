@@ -1,5 +1,5 @@
-/// What the keyboard did, as plain data, and which strokes the interface may be told at once. What a stroke asks of the program is in
-/// commands.h. Frame thread.
+/// This file describes what the keyboard did, as plain data, and says which strokes the interface may be told at once. What a stroke asks
+/// of the program is in commands.h. Frame thread.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,5 @@
-/// Where the window shows what: the picture lies beside the panels, not under them. Window coordinates, y down. Pure, any thread.
+/// These functions say where the window shows what: the picture lies beside the panels, not under them. Window coordinates, y down. Pure,
+/// any thread.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,5 +1,5 @@
-/// Which picture a window shows next: one that comes in time while something moves, better ones while nothing does. Pure logic: no window,
-/// no clock.
+/// Pacing says which picture a window shows next: one that comes in time while something moves, better ones while nothing does. It is pure
+/// logic, without window and clock.
 ///   moves:  the best setting whose expected time fits the budget (time=MS: MS, else kBudgetMs); where even the cheapest takes
 ///           longer, fewer pixels
 ///   still:  time=MS: quarter -> half -> every pixel; error=E: the same until a picture's estimated error is at most E;

@@ -1,4 +1,4 @@
-/// What the pointer shows: the nearest opaque thing, or within volumes the place where their colour comes from.
+/// These functions say what the pointer shows: the nearest opaque thing, or within volumes the place where their colour comes from.
 ///   a ray through a volume: a(t) = 1 - exp(-integral of sigma), of all volumes together; the place is the first t with a(t) >= 0.5, and
 ///   where it never gets there the t of the largest contribution, the largest d a/dt. A projection (maximum, minimum): the place of its
 ///   value. Where all that a ray meets stays below kFaint there is nothing. A solid thing shows through volumes short of a(t) = 0.5.

@@ -1,5 +1,5 @@
-/// The picture in the window: where it lies, how it is drawn and shown with the interface over it, what is under the pointer, and its way
-/// to a file. Frame thread.
+/// PictureView is the picture in the window: it says where the picture lies, draws it, shows it with the interface over it, looks up what
+/// is under the pointer, and writes it to files. Frame thread.
 #pragma once
 #include <array>
 #include <functional>

@@ -1,4 +1,4 @@
-/// The scene's phase as time goes by: pulses run along streamlines while somebody looks. Pure logic: the time is told.
+/// PulseClock moves the scene's phase as time goes by: pulses run along streamlines while somebody looks. Pure logic: the time is told.
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,6 @@
-/// The scenes and data files that were opened last, kept from run to run in $XDG_STATE_HOME/catena/recent.json (else
-/// ~/.local/state/catena/recent.json): {"files": [PATH, ...]}, the newest first. A convenience that never fails the program: where there
-/// is no home, nothing can be written or the file is none of ours, the list is empty or stays as it was. Frame thread.
+/// RecentFiles has the scenes and data files that were opened last, kept from run to run in $XDG_STATE_HOME/catena/recent.json (else
+/// ~/.local/state/catena/recent.json): {"files": [PATH, ...]}, the newest first. It never fails the program: where there is no home,
+/// nothing can be written or the file is none of ours, the list is empty or stays as it was. Frame thread.
 #pragma once
 #include <string>
 #include <vector>

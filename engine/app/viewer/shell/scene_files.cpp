@@ -40,15 +40,12 @@ SceneFiles::SceneFiles(Shared& shared, Eye& eye, PictureView& picture)
   shared_.state.untitled = shared.options.source.empty();
 }
 
-void SceneFiles::show_first(const LoadedScene& loaded) { show(loaded); }
-
 void SceneFiles::begin() {
   shared_.state.recent = recent_.shown();
   if (const std::string& source = shared_.options.source; !source.empty()) remember(source);
   look_for_left();
 }
 
-/// The scene has just become the one that is shown. From now on an edit counts if the hand can feel what it makes.
 void SceneFiles::show(const LoadedScene& loaded) {
   shared_.scene.bounds = loaded.bounds;
   eye_.look_at(loaded);

@@ -1,4 +1,4 @@
-/// The scene's way in and out: opening, adding, saving, leaving, and what is kept of unsaved work. What takes long runs beside the window;
+/// SceneFiles opens, adds to, saves and leaves the scene, and keeps what is not saved. What takes long runs beside the window;
 /// what fails is said in one line and leaves all as it was. Frame thread.
 #pragma once
 #include <optional>
@@ -22,8 +22,8 @@ class SceneFiles {
  public:
   SceneFiles(Shared& shared, Eye& eye, PictureView& picture);
 
-  /// The first scene is shown.
-  void show_first(const LoadedScene& loaded);
+  /// The scene has just become the one that is shown. From now on an edit counts if the hand can feel what it makes.
+  void show(const LoadedScene& loaded);
   /// The list of recent files begins, and what an earlier run left unsaved is offered.
   void begin();
 
@@ -51,7 +51,6 @@ class SceneFiles {
   void leave(const Leaving& leaving);
   bool write(const std::string& path);
   void start_loading(const std::string& path, bool adds);
-  void show(const LoadedScene& loaded);
   void replace_scene(LoadedScene loaded, const std::string& path);
   void add_to_scene(LoadedScene loaded, const std::string& path);
   void look_for_left();

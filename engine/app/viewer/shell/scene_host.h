@@ -1,5 +1,5 @@
-/// The scene that the window shows, with the text that it is read from. Edits go to the text; the scene is then read again and takes
-/// over what was loaded, what the hand did, and where the eye stands. Frame thread.
+/// SceneHost has the scene that the window shows, with the text that it is read from. Edits go to the text; the scene is then read again
+/// and takes over what was loaded, what the hand did, and where the eye stands. Frame thread.
 #pragma once
 #include <functional>
 #include <optional>

@@ -1,5 +1,5 @@
-/// Opens a scene or a data file beside the window: reads it, loads what it draws and feels, makes its first packet. The window goes on
-/// meanwhile. One at a time; what is under way when the loader goes is waited for.
+/// SceneLoader opens a scene or a data file beside the window: it reads it, loads what it draws and feels, and makes its first packet. The
+/// window goes on meanwhile. One at a time; what is under way when the loader goes is waited for.
 #pragma once
 #include <atomic>
 #include <optional>

@@ -1,5 +1,5 @@
-/// The window's picture: window, renderer, swapchain. A device that is lost is made again, once for every lost picture; a window that
-/// changes its size gets a new swapchain; a minimised one is not drawn to. Frame thread.
+/// Screen brings pictures into the window by its renderer and its swapchain. A device that is lost is made again, once for every lost
+/// picture; a window that changes its size gets a new swapchain; a minimised one is not drawn to. Frame thread.
 #pragma once
 #include <memory>
 #include <optional>

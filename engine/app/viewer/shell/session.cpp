@@ -26,12 +26,14 @@ double s_since(std::int64_t ns) { return 1e-3 * ms_since(ns); }
 
 }  // namespace
 
-Session::Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, Window& window, std::optional<ShaderReload> reload)
+Session::Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, Window& window, std::optional<ShaderReload> reload,
+                 std::optional<Interrupt>& interrupt)
     : gui_(window),
       shared_{options, scene, hand, window, gui_},
       eye_(shared_),
       picture_(shared_, std::move(reload)),
-      files_(shared_, eye_, picture_) {}
+      files_(shared_, eye_, picture_),
+      interrupt_(interrupt) {}
 
 Session::~Session() { shared_.hand.stop(); }
 
@@ -53,7 +55,7 @@ std::optional<Failure> Session::open() {
   const auto loaded =
       load_first(shared_.scene, hand, static_cast<std::uint32_t>(state.area.width), static_cast<std::uint32_t>(state.area.height));
   if (!loaded) return Failure{2, loaded.error().message};
-  files_.show_first(*loaded);
+  files_.show(*loaded);
   look_for_pulses();
   if (auto failure = picture_.open()) return failure;
   files_.begin();
@@ -152,7 +154,7 @@ std::optional<Failure> Session::run() {
     minimised = picture_.is_minimised();
     if (minimised) {
       picture_.damage();
-      carry_out();  // it can be closed all the same
+      frame.fulfil();  // it can be closed all the same
       continue;
     }
     const bool flies = shared_.controls.fly && !gui_.wants_keys();

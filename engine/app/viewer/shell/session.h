@@ -1,5 +1,5 @@
-/// One open window, again and again: input -> newest haptic state -> picture -> interface. The loop itself, the strokes and the commands;
-/// files are in scene_files.h, the picture in picture_view.h, the eye in eye.h. Frame thread.
+/// Session is the loop of one open window, again and again: input -> newest haptic state -> picture -> interface. It reads strokes and
+/// carries out commands; files are in scene_files.h, the picture in picture_view.h, the eye in eye.h. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
@@ -16,8 +16,9 @@ namespace catena::app {
 
 class Session {
  public:
-  /// `hand` has its device; `scene` is read, and not loaded yet.
-  Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, Window& window, std::optional<ShaderReload> reload);
+  /// `hand` has its device; `scene` is read, and not loaded yet. `interrupt` is made where a device needs it, and outlives the hand.
+  Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, Window& window, std::optional<ShaderReload> reload,
+          std::optional<Interrupt>& interrupt);
   ~Session();  ///< the hand is let go first
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -38,11 +39,13 @@ class Session {
   std::optional<Failure> finish();
   void tell_figures();
 
-  // session_input.cpp: strokes, the pointer, commands
+  // session_input.cpp
   Changed take_input(double wait_s);
   Changed take_piece(Input piece);
   Input routed(Input input);
   Gui::Frame interface_frame();
+
+  // session_commands.cpp
   void carry_out();
   void carry_out(const Command& command);
   void act(Action action);
@@ -53,7 +56,7 @@ class Session {
   Eye eye_;
   PictureView picture_;
   SceneFiles files_;
-  std::optional<Interrupt> interrupt_;
+  std::optional<Interrupt>& interrupt_;
   WidgetEdits widget_edits_;
   PulseClock pulses_;
   bool has_pulses_ = false, pulses_run_ = true;

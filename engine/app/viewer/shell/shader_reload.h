@@ -1,5 +1,5 @@
-/// `--shaders DIR`: what changes there is drawn with, without starting anew. What does not compile is said in one line, and the last
-/// shader that did stays. Frame thread.
+/// ShaderReload is `--shaders DIR`: what changes there is drawn with, without starting anew. What does not compile is said in one line, and
+/// the last shader that did stays. Frame thread.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
-/// What loop (session.h), files (scene_files.h), picture (picture_view.h) and eye (eye.h) share, and the panels read. Each of them owns
-/// its own state beside it. Frame thread.
+/// Shared is what loop (session.h), files (scene_files.h), picture (picture_view.h) and eye (eye.h) work on together, and what the panels
+/// read. Each of them owns its own state beside it. Frame thread.
 #pragma once
 #include <string>
 

@@ -1,4 +1,4 @@
-/// What the fields of the scene are at a place: every field that is loaded, by its name, with its unit. Frame thread.
+/// These functions say what the fields of the scene are at a place: every field that is loaded, by its name, with its unit. Frame thread.
 #pragma once
 #include <optional>
 #include <string>

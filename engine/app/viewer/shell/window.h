@@ -1,5 +1,5 @@
-/// A window by GLFW: input as plain data, and the factory of its Vulkan surface. Nothing else in the house includes GLFW.
-/// Frame thread (the process's main thread) only.
+/// Window is a window by GLFW: it gives input as plain data, and the factory of its Vulkan surface. GLFW's functions are called here and by
+/// ImGui's backend (gui.cpp) alone. Frame thread (the process's main thread) only.
 #pragma once
 #include <cstdint>
 #include <memory>
