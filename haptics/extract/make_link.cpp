@@ -97,7 +97,7 @@ Result<json::Node> node_for_baseline(const json::Node& from, Combination combina
   const ConstraintType* type = find_constraint(from.find("type")->string);
   if (type == nullptr) return node;
   const auto has = [&](std::string_view key) {
-    return std::any_of(type->keys.begin(), type->keys.end(), [&](const Key& k) { return k.name == key; });
+    return std::any_of(type->keys.begin(), type->keys.end(), [&](const schema::Key& k) { return k.name == key; });
   };
   if (const json::Node* snap = from.find("snap"))
     return json::error_at(*snap, "\"snap\" needs a proxy of the link's own; \"method\": \"chain\" was expected in \"coupling\"");

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/link_feature.h"
 #include "engine/scene/scene.h"
 
 namespace catena::app {
@@ -10,8 +11,7 @@ namespace catena::app {
 std::string name_of(const scene::Scene& scene, scene::Entity entity);
 std::vector<std::string> field_names(const scene::Scene& scene);
 
-/// The field on a level of which a link lies ("surface", or "field" where it has none); empty: the link has no level.
-std::string field_of_level(const json::Node& link);
+using scene::field_of_level;
 
 /// Pointers to the levels of all links of the chain that lie on the surface `field` = `level`, of whatever type (isosurface, friction,
 /// texture): the same field, the same number.

@@ -22,7 +22,7 @@ constexpr int kQuestionMark = '?';
 
 struct CommandRow {
   std::optional<Action> action{};  ///< none: what the pointer, or the device, does
-  const char* menu = nullptr;      ///< nullptr: it is in no menu
+  const char* menu = nullptr;      ///< nullptr: it is in no menu; of an axis, as render::axis_view takes it
   Stroke stroke{}, other{};        ///< either asks for it
   const char* section = nullptr;   ///< of the list of keys; nullptr: on the line of the row above
   const char* does = nullptr;      ///< nullptr: the list does not name it
