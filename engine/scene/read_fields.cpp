@@ -34,10 +34,15 @@ Key unit_key() {
       .by_default("the file's");
 }
 
-Key file_key() { return schema::file("file", "The file with the data.").required(); }
+Key file_key(bool with_layout) {
+  std::vector<std::string_view> endings;
+  for (const std::string_view ending : field::field_endings())
+    if (field::needs_layout(ending) == with_layout) endings.push_back(ending);
+  return schema::file("file", "The file with the data: " + alternatives(endings) + ".").required();
+}
 
 Keys grid_keys() {
-  return {file_key(), schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
+  return {file_key(false), schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
           schema::any_of("valid", {schema::text("", ""), schema::null()},
                          "The BoolGrid that masks the field; null for none. The default one may be missing.")
               .by_default("`\"valid\"`"),
@@ -50,7 +55,7 @@ using LayoutTable = schema::Table<field::RawLayout, const std::string>;
 const LayoutTable& layout_table() {
   static const auto table = [] {
     LayoutTable t;
-    t.beside(file_key());
+    t.beside(file_key(true));
     t.hand(schema::vec3("shape", "voxels", "Voxels along x, y and z.").within(2, 65536).required(),
            [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
              const json::Node* shape = node.find("shape");

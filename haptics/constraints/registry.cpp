@@ -11,6 +11,7 @@
 #include "haptics/constraints/isosurface/isosurface.h"
 #include "haptics/constraints/mesh/mesh.h"
 #include "haptics/constraints/presets/modes.h"
+#include "haptics/constraints/rules/link_keys.h"
 #include "haptics/constraints/rules/snap.h"
 #include "haptics/constraints/shapes/box.h"
 #include "haptics/constraints/shapes/line.h"
@@ -77,31 +78,10 @@ const schema::Keys& common_keys() {
           .positive()
           .or_field()
           .by_default("2 `snap`, or never"),
-      schema::object(
-          "on",
-          {schema::integer("button", "", "The link is on while this button is held.", 1, 32),
-           schema::boolean("toggle", "Each press of the button turns the link on or off.").by_default("false"),
-           schema::number("force_above", "N", "Or: it goes on when the last tick's force is above this.").positive(),
-           schema::number("force_below", "N", "And off when the force is at most this.").not_negative().by_default("`force_above`")},
-          "Its switch.")
-          .by_default("always on"),
+      switch_key(),
       schema::boolean("enabled", "False: off, whatever the switch says.").by_default("true"),
-      schema::object("indicate",
-                     {schema::word("cue", {"none", "detent", "vibration"}, "A detent is one pulse.").by_default("`none`"),
-                      schema::number("at", "world", "The gap that counts as leaving.").positive().by_default("where it slips or lets go"),
-                      schema::number("from", "", "A vibration begins at this part of `at`.").within(0, 1).by_default("0.8"),
-                      schema::number("amplitude", "N", "Force of the cue.").not_negative().by_default("0.5"),
-                      schema::number("frequency", "Hz", "Of a vibration.").positive().by_default("150"),
-                      schema::number("duration", "s", "Of a detent.").positive().by_default("0.02")},
-                     "How the hand is told that it leaves the feature.")
-          .by_default("no cue"),
-      schema::object("align",
-                     {schema::direction("axis", "The axis in the tool's frame.").by_default("[0, 0, 1]"),
-                      schema::number("stiffness", "N m/rad", "Of the turn.").not_negative().by_default("the coupling's"),
-                      schema::word("sign", {"either", "same"}, "`either`: the nearer of the axis's two ends; `same`: the direction counts.")
-                          .by_default("`either`")},
-                     "Turns the tool's axis onto a surface's normal or a curve's tangent; with `coupling.method` `chain` only.")
-          .by_default("none")};
+      indication_key(),
+      align_key()};
   return keys;
 }
 

@@ -31,6 +31,7 @@ struct ConstraintType {
   schema::Keys keys;  ///< its own keys, beside common_keys()
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
   bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
+  bool has_axis = true;          ///< a normal or a tangent, which "align" may turn the tool onto; false for a place
 };
 
 const std::vector<ConstraintType>& registry();

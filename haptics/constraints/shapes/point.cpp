@@ -22,7 +22,8 @@ Result<std::shared_ptr<const Constraint>> build_point(const json::Node& link, co
 
 ConstraintType point_constraint() {
   return {"point", "Holds the proxy at a point.", "section 3", {schema::vec3("position", "world", "The point.").required()}, build_point,
-          true};
+          true,
+          false};
 }
 
 }  // namespace catena::haptics

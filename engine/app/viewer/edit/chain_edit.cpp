@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/app/viewer/edit/scene_items.h"
+#include "engine/scene/link_feature.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/presets/modes.h"
 
@@ -131,11 +132,9 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
       return along(key.name == "to" ? 0.1 : 0);
     case Kind::number: {
       if (key.name == "level") {
-        for (const char* holder : {"surface", "field"}) {
-          const json::Node* name = link.find(holder);
-          if (name == nullptr) continue;
+        if (const json::Node* name = link.find(scene::level_field_key(link)); name != nullptr) {
           const field::AnyField field = use(scene, name->string, false);
-          if (!field.scalar) continue;
+          if (!field.scalar) return {};
           field::Cursor cursor;
           // what is felt is what is seen
           const std::string seen = drawn_level(scene, name->string, field.scalar->sample(probe, cursor).value);
@@ -228,8 +227,7 @@ std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow
 std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const std::string& name,
                                                  const Vec3& probe) {
   std::vector<scene::Document::Edit> edits{{row.pointer(key.name), scene::text_of(name)}};
-  const json::Node* holder = row.node.find("surface") != nullptr ? row.node.find("surface") : row.node.find("field");
-  if (field_of_level(row.node).empty() || holder != row.node.find(key.name)) return edits;
+  if (scene::field_of_level(row.node).empty() || key.name != scene::level_field_key(row.node)) return edits;
   // another surface has another level
   json::Node link = row.node;
   for (auto& [member, value] : link.members)
@@ -242,7 +240,7 @@ std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const Chai
 }
 
 std::vector<std::string> levels_along(const scene::Scene& scene, const ChainRow& row) {
-  const std::string field = field_of_level(row.node);
+  const std::string field = scene::field_of_level(row.node);
   if (field.empty() || row.node.find("level")->kind != json::Kind::number) return {};
   const double level = row.node.find("level")->number;
   std::vector<std::string> along = seen_levels(scene, field, level);

@@ -3,15 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/link_feature.h"
 #include "engine/scene/scene.h"
 
 namespace catena::app {
 
 std::string name_of(const scene::Scene& scene, scene::Entity entity);
 std::vector<std::string> field_names(const scene::Scene& scene);
-
-using scene::field_of_level;
 
 /// Pointers to the levels of all links of the chain that lie on the surface `field` = `level`, of whatever type (isosurface, friction,
 /// texture): the same field, the same number.
