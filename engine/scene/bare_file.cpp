@@ -98,7 +98,7 @@ std::string streamlines_text(const std::string& field, const field::VectorField&
                              const NamedColors& colors) {
   std::string text = "  \"streamlines\": [\n    {\"field\": " + field;
   const bool colored = !colors.map.empty() || colors.range;
-  text += colored ? ", \"color_by\": \"speed\"" + color_members(colors) : ", \"color\": " + text_of(kLineColor);
+  text += colored ? ", \"color_by\": {\"quantity\": \"speed\"" + color_members(colors) + "}" : ", \"color\": " + text_of(kLineColor);
   text +=
       ", \"length\": " + text_of(kLengthShare * flow.length()) + ", \"tolerance\": " + text_of(kDrawnTolerance) + ",\n     \"seeds\": [";
   for (std::size_t i = 0; i < seeds.size(); ++i)

@@ -77,7 +77,7 @@ std::string new_item(const std::string& name, const field::AnyField& field, Show
   const Vec3 middle{rounded(domain.middle.x), rounded(domain.middle.y), rounded(domain.middle.z)};
   return start + "\"seeds\": {\"sphere\": {\"center\": " + scene::text_of(middle) +
          ", \"radius\": " + scene::text_of(rounded(kBall * domain.shortest)) + ", \"count\": " + std::to_string(kSeeds) +
-         ", \"inside\": true}}, \"color_by\": \"speed\", \"color\": \"viridis\"}";
+         ", \"inside\": true}}, \"color_by\": {\"quantity\": \"speed\", \"color\": \"viridis\"}}";
 }
 
 }  // namespace catena::app

@@ -84,6 +84,41 @@ void edit_color(Edits& edits, const char* label, const scene::Rgb& color, const 
     edits.drag(pointer, scene::text_of(scene::Rgb{rgb[0], rgb[1], rgb[2]}), label[0] == '#' ? "colour" : label);
 }
 
+namespace {
+
+/// What the item states, or else the default.
+json::Node value_of(const json::Node& item, const schema::Key& key) {
+  if (const json::Node* stated = item.find(key.name)) return *stated;
+  auto usual = json::parse(key.fallback, key.name);
+  return usual ? *usual : json::Node();
+}
+
+void edit_plain_key(Edits& edits, const schema::Key& key, const json::Node& value, const std::string& pointer) {
+  const std::string label = key.name == "clip" ? "cut by the clip planes" : key.name;
+  if (key.form == schema::Form::boolean && value.kind == json::Kind::boolean) {
+    edit_boolean(edits, label.c_str(), value.boolean, pointer);
+  } else if (key.form == schema::Form::number && key.limits.lo && key.limits.hi && value.kind == json::Kind::number) {
+    edit_slider(edits, label.c_str(), value.number, *key.limits.lo, *key.limits.hi, pointer, "%.2f");
+  } else if (key.form == schema::Form::word && value.kind == json::Kind::string) {
+    std::string chosen = value.string;
+    if (choose(label.c_str(), key.words, chosen)) edits.set(pointer, scene::text_of(chosen), label);
+  } else {
+    return;
+  }
+  short_tip(key.help);
+}
+
+}  // namespace
+
+void edit_plain_keys(Edits& edits, const std::string& part, const json::Node& item, const std::vector<std::string_view>& but) {
+  for (const schema::Component& component : scene::scene_components()) {
+    if (component.name != part) continue;
+    for (const schema::Key& key : component.keys)
+      if (key.name != "visible" && std::find(but.begin(), but.end(), key.name) == but.end())
+        edit_plain_key(edits, key, value_of(item, key), pointer_of(item) + "/" + key.name);
+  }
+}
+
 void edit_number(Edits& edits, const NumberItem& item) {
   double value = item.value;
   const bool ranged = item.lo < item.hi;

@@ -1,5 +1,6 @@
 /// These functions draw numbers, colours and choices of the scene as items of the interface; what the person makes of one is an edit of the
-/// scene at `pointer`. While an item is dragged its edits are one step of undo. A slider of a new key is one line in its panel:
+/// scene at `pointer`. While an item is dragged its edits are one step of undo. A new key that is a yes or no, a word, or a number between
+/// two ends needs no line in its panel: edit_plain_keys draws whatever the component's description has. Another slider is one line:
 ///   edit_slider(context.edits, "radius", line.radius, 0, 5, pointer + "/radius");
 /// Frame thread, between Gui::begin and end.
 #pragma once
@@ -20,6 +21,10 @@ void edit_slider(Edits& edits, const char* label, double value, double lo, doubl
                  const char* format = "%.3g");
 void edit_share(Edits& edits, const char* label, double value, const std::string& pointer);  ///< 0..1
 void edit_color(Edits& edits, const char* label, const scene::Rgb& color, const std::string& pointer);
+
+/// The keys of a part of the scene ("slices") that are a boolean, a word, or a number within two bounds, for one item of it, with their
+/// sentences as tips. Those of `but` are drawn by the panel itself.
+void edit_plain_keys(Edits& edits, const std::string& part, const json::Node& item, const std::vector<std::string_view>& but = {});
 
 /// A number that is dragged or typed.
 struct NumberItem {

@@ -41,11 +41,11 @@ void draw_isosurfaces(PanelContext& context) {
     if (!begin_item(edits, surface.where, !is_hidden(scene.world, e), "isosurface", name_of(scene, surface.field))) return;
     const std::string pointer = pointer_of(surface.where);
     draw_level(context, edits, surface);
-    edit_share(edits, "opacity", surface.opacity, pointer + "/opacity");
     if (surface.color_by)
       ImGui::TextDisabled("coloured by %s", name_of(scene, surface.color_by->field).c_str());
     else
       edit_color(edits, "colour", surface.color, pointer + "/color");
+    edit_plain_keys(edits, "isosurfaces", surface.where);
     end_item();
   });
 }

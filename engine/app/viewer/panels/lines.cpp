@@ -10,7 +10,7 @@ namespace catena::app {
 
 namespace {
 
-/// "color_by" and "color" go together: a colour alone, or a map of values.
+/// A colour alone, or the colours of values.
 void choose_what(Edits& edits, const scene::Scene& scene, const scene::StreamlineSet& set) {
   const std::string now = !set.color_by                                            ? "one colour"
                           : set.color_by->what == scene::ColorBy::What::speed      ? "speed"
@@ -22,15 +22,17 @@ void choose_what(Edits& edits, const scene::Scene& scene, const scene::Streamlin
   for (const std::string& choice : choices) {
     if (!ImGui::Selectable(choice.c_str(), choice == now) || choice == now) continue;
     const std::string pointer = pointer_of(set.where);
-    // values of another kind lie elsewhere: a stated range or table goes
+    // as a word with keys beside it, as it was written once: those go; a stated range or table lies elsewhere for other values
     TextEdits change{{pointer + "/range", std::nullopt}, {pointer + "/transfer", std::nullopt}};
     if (choice == "one colour") {
       change.push_back({pointer + "/color_by", std::nullopt});
       change.push_back({pointer + "/color", scene::text_of(set.color)});
     } else {
-      change.push_back({pointer + "/color_by", scene::text_of(choice)});
-      const bool named = set.color_by && !set.color_by->named.map.empty();
-      change.push_back({pointer + "/color", scene::text_of(named ? set.color_by->named.map : std::string(scene::kDefaultLineMap))});
+      const bool named = set.color_by && !set.color_by->named.map.empty(), quantity = choice == "speed" || choice == "arc_length";
+      const std::string map = named ? set.color_by->named.map : std::string(scene::kDefaultLineMap);
+      if (set.color_by) change.push_back({pointer + "/color", std::nullopt});
+      change.push_back({pointer + "/color_by", std::string(quantity ? "{\"quantity\": " : "{\"field\": ") + scene::text_of(choice) +
+                                                   ", \"color\": " + scene::text_of(map) + "}"});
     }
     edits.set(change, "colours");
   }
@@ -45,7 +47,7 @@ void draw_lines(PanelContext& context) {
     const std::string pointer = pointer_of(set.where);
     choose_what(edits, scene, set);
     if (set.color_by)
-      edit_color_scale(edits, set.where, set.color_by->colors, set.color_by->named, "viridis");
+      edit_color_scale(edits, set.where, *set.color_by);
     else
       edit_color(edits, "colour", set.color, pointer + "/color");
 
@@ -62,6 +64,7 @@ void draw_lines(PanelContext& context) {
         edits.remove(pointer + "/radius", "radius");
     }
     short_tip("of the tubes, world units; at the left end: fitted to the domain");
+    edit_plain_keys(edits, "streamlines", set.where, {"tolerance"});
     end_item();
   });
 }

@@ -43,12 +43,15 @@ std::optional<std::string> choose_map(const std::string& now, const char* otherw
   return chosen;
 }
 
-void edit_color_scale(Edits& edits, const json::Node& item, const std::vector<scene::TransferFunction::ColorPoint>& table,
-                      const scene::NamedColors& named, std::string_view fallback) {
-  const std::string pointer = pointer_of(item);
-  const bool file = item.find("transfer") != nullptr;
+void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by) {
+  const auto& table = by.colors;
+  const scene::NamedColors& named = by.named;
+  // the item has the keys itself, or its "color_by" has them
+  const std::string pointer = pointer_of(item) + (by.where.label == "color_by" ? "/color_by" : "");
+  const bool file = by.where.find("transfer") != nullptr;
   ImGui::PushID("scale");
-  if (const auto map = choose_map(table.empty() && named.map.empty() ? std::string(fallback) : named.map, file ? "of a file" : "a table")) {
+  if (const auto map = choose_map(table.empty() && named.map.empty() ? std::string(scene::kDefaultLineMap) : named.map,
+                                  file ? "of a file" : "a table")) {
     TextEdits change{{pointer + "/color", scene::text_of(*map)}};
     if (file) change.insert(change.begin(), {{pointer + "/transfer", std::nullopt}, {pointer + "/range", std::nullopt}});
     edits.set(change, "colours");

@@ -16,8 +16,7 @@
 namespace catena::app {
 
 /// The colours of an item that colours by values: a map's name, reversed or not, its range.
-void edit_color_scale(Edits& edits, const json::Node& item, const std::vector<scene::TransferFunction::ColorPoint>& table,
-                      const scene::NamedColors& named, std::string_view fallback);
+void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by);
 /// A combo of the maps' names. The name chosen, "_r" with it.
 std::optional<std::string> choose_map(const std::string& now, const char* otherwise);
 

@@ -98,9 +98,9 @@ void draw_slices(PanelContext& context) {
     const scene::FieldSource& source = scene.world.get<scene::FieldSource>(slice.shown.field);
     const field::Field* field = source.drawn.get() != nullptr ? source.drawn.get() : source.loaded.get();
     if (field != nullptr) draw_plane(edits, slice, *field);
-    edit_color_scale(edits, slice.where, slice.shown.colors, slice.shown.named, "viridis");
-    edit_share(edits, "opacity", slice.opacity, pointer_of(slice.where) + "/opacity");
+    edit_color_scale(edits, slice.where, slice.shown);
     draw_contours(edits, slice);
+    edit_plain_keys(edits, "slices", slice.where, {"axis"});
     end_item();
   });
 }
