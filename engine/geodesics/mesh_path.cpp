@@ -1,19 +1,18 @@
-#include "engine/mesh/mesh_path.h"
+#include "engine/geodesics/geodesics.h"
 
 #include <queue>
 #include <unordered_map>
 
-#include "engine/base/shorten_path.h"
 #include "engine/mesh/closest.h"
 
-namespace catena::mesh {
+namespace catena::geodesics {
 namespace {
 
 constexpr int kBudget = 20'000;  // nodes of the hierarchy a look-up
 constexpr double kFar = 1e3;     // own frame: the mesh is within 1/2
 
 /// Vertices from a corner of one face to a corner of another; empty: there is no way.
-std::vector<Vec3> way_along_edges(const TriangleMesh& mesh, const Closest& from, const Closest& to, const Vec3& goal) {
+std::vector<Vec3> way_along_edges(const mesh::TriangleMesh& mesh, const mesh::Closest& from, const mesh::Closest& to, const Vec3& goal) {
   struct Visited {
     double distance = 0;
     std::uint32_t before = 0;
@@ -28,7 +27,7 @@ std::vector<Vec3> way_along_edges(const TriangleMesh& mesh, const Closest& from,
     all[v] = {norm(place(v) - start), v, false};
     queue.push({all[v].distance + norm(goal - place(v)), v});
   }
-  const Triangle& goals = mesh.triangles()[to.face];
+  const mesh::Triangle& goals = mesh.triangles()[to.face];
   while (!queue.empty() && all.size() < kMostVisited) {
     const std::uint32_t v = queue.top().second;
     queue.pop();
@@ -56,13 +55,13 @@ std::vector<Vec3> way_along_edges(const TriangleMesh& mesh, const Closest& from,
 
 }  // namespace
 
-std::vector<Vec3> path_on_mesh(const TriangleMesh& mesh, const Vec3& from, const Vec3& to) {
+std::vector<Vec3> path_on_mesh(const mesh::TriangleMesh& mesh, const Vec3& from, const Vec3& to) {
   const auto nearest = [&](const Vec3& world, std::uint32_t hint) {
     int budget = kBudget;
-    return nearest_point(mesh, mesh.own(world), kFar, budget, hint);
+    return mesh::nearest_point(mesh, mesh.own(world), kFar, budget, hint);
   };
   if (!is_finite(from) || !is_finite(to)) return {};
-  const Nearest first = nearest(from, 0), last = nearest(to, 0);
+  const mesh::Nearest first = nearest(from, 0), last = nearest(to, 0);
   if (!first.found || !last.found) return {};
   const Vec3 a = mesh.world(first.at.point), b = mesh.world(last.at.point);
   std::vector<Vec3> path;
@@ -74,7 +73,7 @@ std::vector<Vec3> path_on_mesh(const TriangleMesh& mesh, const Vec3& from, const
   path.push_back(b);
   std::uint32_t hint = first.at.face;
   return shorten_path(std::move(path), [&](Vec3& p) {
-    const Nearest near = nearest(p, hint);
+    const mesh::Nearest near = nearest(p, hint);
     if (!near.found) return false;
     hint = near.at.face;
     p = mesh.world(near.at.point);
@@ -82,4 +81,4 @@ std::vector<Vec3> path_on_mesh(const TriangleMesh& mesh, const Vec3& from, const
   });
 }
 
-}  // namespace catena::mesh
+}  // namespace catena::geodesics

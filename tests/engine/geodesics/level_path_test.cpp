@@ -1,4 +1,4 @@
-#include "engine/flow/level_path.h"
+#include "engine/geodesics/geodesics.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,10 @@
 #include <numeric>
 #include <queue>
 
-#include "engine/base/shorten_path.h"
 #include "engine/field/analytic.h"
 #include "engine/field/grid.h"
 
-namespace catena::flow {
+namespace catena::geodesics {
 namespace level_path_test {
 
 constexpr double kPi = std::numbers::pi;
@@ -112,4 +111,4 @@ TEST(LevelPath, OnAPlaneStraight) {
 }
 
 }  // namespace level_path_test
-}  // namespace catena::flow
+}  // namespace catena::geodesics

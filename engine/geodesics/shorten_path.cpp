@@ -1,10 +1,10 @@
-#include "engine/base/shorten_path.h"
+#include "engine/geodesics/geodesics.h"
 
 #include <numbers>
 
 #include "engine/base/assert.h"
 
-namespace catena {
+namespace catena::geodesics {
 namespace {
 
 constexpr int kMostSweeps = 400;
@@ -81,4 +81,4 @@ std::vector<Vec3> shorten_path(std::vector<Vec3> path, const PutOnSurface& put_o
   return path;
 }
 
-}  // namespace catena
+}  // namespace catena::geodesics

@@ -1,8 +1,8 @@
-#include "engine/base/shorten_path.h"
+#include "engine/geodesics/geodesics.h"
 
 #include <gtest/gtest.h>
 
-namespace catena {
+namespace catena::geodesics {
 namespace shorten_path_test {
 
 TEST(ShortenPath, ADetourInThePlaneBecomesStraight) {
@@ -39,4 +39,4 @@ TEST(ShortenPath, WhereNothingCanBePutNothingMoves) {
 }
 
 }  // namespace shorten_path_test
-}  // namespace catena
+}  // namespace catena::geodesics

@@ -1,13 +1,11 @@
-#include "engine/flow/level_path.h"
+#include "engine/geodesics/geodesics.h"
 
 #include <array>
 #include <limits>
 #include <queue>
 #include <utility>
 
-#include "engine/base/shorten_path.h"
-
-namespace catena::flow {
+namespace catena::geodesics {
 namespace {
 
 constexpr int kMostCells = 64;     // an axis
@@ -199,4 +197,4 @@ std::vector<Vec3> path_on_level(const field::ScalarField& field, double level, c
   return shorten_path(std::move(path), [&](Vec3& p) { return reach_level(field, level, longest, cursor, p); });
 }
 
-}  // namespace catena::flow
+}  // namespace catena::geodesics
