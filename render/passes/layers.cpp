@@ -6,6 +6,7 @@
 #include "render/passes/mesh.h"
 #include "render/passes/slice.h"
 #include "render/passes/triangles.h"
+#include "render/vk/upload.h"
 
 namespace catena::render {
 namespace {
@@ -138,7 +139,7 @@ Result<const vk::Pipeline*> LayersPass::mesh_pipeline(vk::Device& device, std::u
 
 Outcome LayersPass::draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const Peel& peel) {
   if (mesh.triangles.empty()) return Done{};
-  CATENA_CHECK(write_uniform(frame.device, mesh.layer_data, layer_data(frame.rays, mesh.item.opacity)));
+  CATENA_CHECK(vk::write_uniform(frame.device, mesh.layer_data, layer_data(frame.rays, mesh.item.opacity)));
   CATENA_TRY(const vk::Pipeline* pipe, mesh_pipeline(frame.device, peel.mode, peel.opaque_depth != nullptr));
   CATENA_TRY(const vk::Binding binding, mesh.triangles.frame_binding(frame.device, frame.rays));
   std::vector<vk::Binding> bindings{binding};

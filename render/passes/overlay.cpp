@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/passes/grid_bindings.h"
 #include "render/passes/overlay/furniture.h"
+#include "render/raycast/bound_grids.h"
 #include "render/vk/upload.h"
 
 namespace catena::render {
@@ -141,7 +141,7 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
   data.half_size = {0.5f * float(extent.width), 0.5f * float(extent.height)};
   data.depth_slack = float(kSlackShare * frame.rays.depth_far);
   data.has_depth = hides;
-  CATENA_CHECK(write_uniform(frame.device, uniform_, data));
+  CATENA_CHECK(vk::write_uniform(frame.device, uniform_, data));
 
   // the shapes, in order
   if (hides) commands.use(targets.opaque_depth, vk::kShaderRead);

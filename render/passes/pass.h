@@ -7,20 +7,14 @@
 #include <memory>
 
 #include "render/frame/frame_packet.h"
-#include "render/passes/camera_rays.h"
-#include "render/passes/mirrors.h"
-#include "render/passes/render_settings.h"
+#include "render/mirror/mirrors.h"
 #include "render/passes/targets.h"
+#include "render/raycast/camera_rays.h"
+#include "render/raycast/ray_scene.h"
+#include "render/raycast/render_settings.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
-
-/// Something translucent that triangles drew, to be blended with what rays meet, in order: premultiplied colours, and the depth t
-/// (shaders/shared/frame.h, R32_SFLOAT) of each; NO_DEPTH: nothing at this pixel. Of the picture's size.
-struct Layer {
-  vk::Image* color = nullptr;
-  vk::Image* depth = nullptr;
-};
 
 /// One picture while it is made: what its passes share.
 struct Frame {

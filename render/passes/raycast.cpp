@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "render/passes/covered_area.h"
 #include "render/passes/layers.h"
+#include "render/raycast/camera_rays.h"
 
 namespace catena::render {
 namespace {
@@ -80,7 +80,7 @@ bool RaycastPass::prepare_fast(Frame& frame) {
     prepared = Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, settings.most_bytes >> 20)};
   } else {
     if (!fast_pass_) {
-      auto created = FastVolumePass::create(frame.device);
+      auto created = FastVolumeRaycast::create(frame.device);
       if (created)
         fast_pass_.emplace(std::move(*created));
       else
@@ -128,12 +128,12 @@ Outcome RaycastPass::prepare(Frame& frame) {
   if (!any_) return Done{};
   if (projected_) {
     if (!projection_pass_) {
-      CATENA_TRY(projection_pass_, ProjectionPass::create(frame.device));
+      CATENA_TRY(projection_pass_, ProjectionRaycast::create(frame.device));
     }
     return projection_pass_->prepare(*volumes.front().item, volumes.front().mirror);
   }
   if (!exact_pass_) {
-    CATENA_TRY(exact_pass_, VolumePass::create(frame.device));
+    CATENA_TRY(exact_pass_, VolumeRaycast::create(frame.device));
   }
   return exact_pass_->prepare(volumes, surfaces);
 }

@@ -4,10 +4,10 @@
 #pragma once
 #include <optional>
 
-#include "render/passes/fast_volume.h"
 #include "render/passes/pass.h"
-#include "render/passes/projection.h"
-#include "render/passes/volume.h"
+#include "render/raycast/fast_volume.h"
+#include "render/raycast/projection.h"
+#include "render/raycast/volume.h"
 
 namespace catena::render {
 
@@ -43,9 +43,9 @@ class RaycastPass final : public Pass {
   /// The volumes, or the one that is projected; into the target that is begun.
   Outcome record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area);
 
-  std::optional<VolumePass> exact_pass_;
-  std::optional<ProjectionPass> projection_pass_;
-  std::optional<FastVolumePass> fast_pass_;
+  std::optional<VolumeRaycast> exact_pass_;
+  std::optional<ProjectionRaycast> projection_pass_;
+  std::optional<FastVolumeRaycast> fast_pass_;
   const VolumeItem* fast_ = nullptr;  ///< of this frame
   Refused refused_;
   bool wanted_fast_ = false;

@@ -78,8 +78,8 @@ struct Renderer::Parts {
   std::array<std::unique_ptr<Pass>, std::size(kPasses)> passes;
   double gone_build_ms = 0;  ///< of passes that have gone
   TargetSet drawn = 0;       ///< by the last picture
-  std::optional<PackPass> pack;
-  std::optional<UiPass> ui;
+  std::optional<EyePacker> pack;
+  std::optional<WindowPainter> ui;
   bool packed = false;                            ///< the last picture is made of several views
   std::uint32_t view_width = 0, view_height = 0;  ///< of one view; its depth and ids
   double reference_depth = 0;

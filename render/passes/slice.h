@@ -7,8 +7,8 @@
 #pragma once
 #include <map>
 
-#include "render/passes/grid_bindings.h"
 #include "render/passes/peel.h"
+#include "render/raycast/bound_grids.h"
 
 namespace catena::render {
 

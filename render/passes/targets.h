@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "render/raycast/ray_scene.h"
 #include "render/vk/commands.h"
 #include "render/vk/resources.h"
 
@@ -20,7 +21,6 @@ inline constexpr VkFormat kOpaqueFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kDepthValueFormat = VK_FORMAT_R32_SFLOAT;  ///< depth t of shared/frame.h
 inline constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT;            ///< the object's id, 0: none
 inline constexpr VkFormat kDepthBufferFormat = VK_FORMAT_D32_SFLOAT;
-inline constexpr VkFormat kVolumeFormat = VK_FORMAT_R32G32B32A32_SFLOAT;        ///< premultiplied
 inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;            ///< straight alpha
 inline constexpr VkFormat kFloatPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< the same, not rounded
 

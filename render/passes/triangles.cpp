@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "render/passes/grid_bindings.h"
 #include "render/passes/targets.h"
+#include "render/raycast/bound_grids.h"
 #include "render/vk/upload.h"
 
 namespace catena::render {
@@ -41,7 +41,7 @@ Outcome Triangles::upload(vk::Device& device, const Shape& shape) {
 }
 
 Result<vk::Binding> Triangles::frame_binding(vk::Device& device, const CameraRays& rays) {
-  CATENA_CHECK(write_uniform(device, uniform_, rays.mesh(origin_)));
+  CATENA_CHECK(vk::write_uniform(device, uniform_, rays.mesh(origin_)));
   return vk::Binding{0, vk::Resource::uniform, &uniform_, nullptr, nullptr};
 }
 

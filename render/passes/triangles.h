@@ -1,7 +1,7 @@
 /// Lit triangles into the opaque targets: what meshes, streamlines and the cursor have in common.
 #pragma once
-#include "render/passes/camera_rays.h"
 #include "render/passes/shapes.h"
+#include "render/raycast/camera_rays.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

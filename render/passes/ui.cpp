@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "render/passes/grid_bindings.h"
+#include "render/raycast/bound_grids.h"
 #include "render/vk/upload.h"
 #include "shaders/shared/ui.h"
 
@@ -69,7 +69,7 @@ bool indices_lead_inside(const UiItems& items) {
 }  // namespace
 
 /// An image of the window's size; what does not depend on the items.
-Outcome UiPass::fit(std::uint32_t width, std::uint32_t height) {
+Outcome WindowPainter::fit(std::uint32_t width, std::uint32_t height) {
   const std::uint32_t most = device_->info().limits.maxImageDimension2D;
   if (width == 0 || height == 0 || width > most || height > most)
     return Error{fmt::format("a window of {} x {} pixels cannot be painted, expected 1 to {} each way", width, height, most)};
@@ -82,10 +82,10 @@ Outcome UiPass::fit(std::uint32_t width, std::uint32_t height) {
     window_ = vk::Image();  // the old one's memory first
     CATENA_TRY(window_, vk::Image::create(*device_, info));
   }
-  return write_uniform(*device_, uniform_, shared::UiData{{0.5f * float(width), 0.5f * float(height)}});
+  return vk::write_uniform(*device_, uniform_, shared::UiData{{0.5f * float(width), 0.5f * float(height)}});
 }
 
-Outcome UiPass::keep(const std::shared_ptr<const UiTexture>& texture) {
+Outcome WindowPainter::keep(const std::shared_ptr<const UiTexture>& texture) {
   Texture& kept = textures_[texture];
   kept.used = paints_;
   if (kept.image) return Done{};
@@ -100,7 +100,7 @@ Outcome UiPass::keep(const std::shared_ptr<const UiTexture>& texture) {
   });
 }
 
-Outcome UiPass::upload(const UiItems& items) {
+Outcome WindowPainter::upload(const UiItems& items) {
   CATENA_ASSERT(indices_lead_inside(items));
   if (!pipeline_) {
     vk::GraphicsInfo info;
@@ -124,7 +124,7 @@ Outcome UiPass::upload(const UiItems& items) {
   return Done{};
 }
 
-void UiPass::record(vk::Commands& commands, const UiItems& items) {
+void WindowPainter::record(vk::Commands& commands, const UiItems& items) {
   const vk::ColorTarget into{&window_, std::nullopt};
   commands.begin_pass({&into, 1}, {});
   const Texture* bound = nullptr;
@@ -145,7 +145,7 @@ void UiPass::record(vk::Commands& commands, const UiItems& items) {
   commands.end_pass();
 }
 
-Outcome UiPass::paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items) {
+Outcome WindowPainter::paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items) {
   ++paints_;
   CATENA_CHECK(fit(width, height));
   CATENA_CHECK(upload(items));

@@ -1,5 +1,6 @@
-/// Uploads through staging memory. They wait for their own end: what is uploaded changes seldom.
+/// Bytes to the device: through staging memory what changes seldom (these uploads wait for their own end), mapped what changes each frame.
 #pragma once
+#include <cstring>
 #include <functional>
 
 #include "render/vk/commands.h"
@@ -13,5 +14,15 @@ Outcome upload_planes(Device& device, Image& image, std::uint32_t granule,
 
 /// A device buffer with these bytes (at least one).
 Result<Buffer> upload_buffer(Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
+
+/// A uniform buffer that the host writes each frame.
+template <class Data>
+Outcome write_uniform(Device& device, Buffer& buffer, const Data& data) {
+  if (!buffer) {
+    CATENA_TRY(buffer, Buffer::create(device, sizeof(Data), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Memory::upload));
+  }
+  std::memcpy(buffer.bytes().data(), &data, sizeof(Data));
+  return Done{};
+}
 
 }  // namespace catena::render::vk

@@ -1,5 +1,5 @@
 // One packed volume along a ray: segments between samples s0, s1 with slopes d0, d1 along the ray; the value at the middle by the
-// Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half from the pre-integrated table (render/passes/preintegrated.h). A segment
+// Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half from the pre-integrated table (render/raycast/preintegrated.h). A segment
 // within a cube of plain bricks (render/mirror/plain_map.h) is as long as the ray's way through it.
 layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by gradients made beforehand
 layout(constant_id = 1) const uint SKIPS = 0;

@@ -1,4 +1,4 @@
-#include "render/passes/bands.h"
+#include "render/quality/bands.h"
 
 #include <algorithm>
 #include <cmath>

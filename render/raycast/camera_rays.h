@@ -1,6 +1,10 @@
 /// From a packet's view to the numbers of shaders/shared/frame.h: everything that can lose digits is done in double precision
 /// here; shaders get rays in each grid's own index space, with depths counted from the scene and not from a distant eye.
 #pragma once
+#include <vulkan/vulkan.h>
+
+#include <span>
+
 #include "engine/field/grid.h"
 #include "render/frame/camera.h"
 #include "render/mirror/grid_mirror.h"
@@ -29,5 +33,12 @@ struct CameraRays {
   /// The signed distance from a plane along a pixel's ray.
   shared::ClipData plane(const ClipPlane& plane) const;
 };
+
+/// The pixels that the box around world points (its corners) can cover; the whole picture when one of them is behind the eye. No
+/// points: none.
+VkRect2D covered_area(std::span<const Vec3> points, const Camera& camera);
+
+/// The pixels that the grids' domains can cover; the whole picture when a corner is behind the eye.
+VkRect2D covered_area(std::span<const field::ScalarGrid* const> grids, const Camera& camera);
 
 }  // namespace catena::render

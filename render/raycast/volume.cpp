@@ -1,8 +1,7 @@
-#include "render/passes/volume.h"
+#include "render/raycast/volume.h"
 
 #include <algorithm>
 
-#include "render/passes/targets.h"
 #include "render/vk/upload.h"
 
 namespace catena::render {
@@ -38,14 +37,14 @@ bool is_plain_where_its_value_is(const VolumeItem& item) { return !item.shade &&
 
 }  // namespace
 
-Result<VolumePass> VolumePass::create(vk::Device& device) {
-  VolumePass self;
+Result<VolumeRaycast> VolumeRaycast::create(vk::Device& device) {
+  VolumeRaycast self;
   self.device_ = &device;
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
   return self;
 }
 
-Result<const vk::Pipeline*> VolumePass::pipeline(const Kind& kind) {
+Result<const vk::Pipeline*> VolumeRaycast::pipeline(const Kind& kind) {
   vk::Pipeline& pipeline = pipelines_[kind];
   if (pipeline) return &pipeline;
   vk::GraphicsInfo info;
@@ -70,7 +69,7 @@ Result<const vk::Pipeline*> VolumePass::pipeline(const Kind& kind) {
   return &pipeline;
 }
 
-Result<bool> VolumePass::update_volume(Volume& volume, const Mirrored<VolumeItem>& next) {
+Result<bool> VolumeRaycast::update_volume(Volume& volume, const Mirrored<VolumeItem>& next) {
   const bool plain = is_plain_where_its_value_is(*next.item);
   const bool fresh =
       volume.mirror != next.mirror || !same(volume.item.transfer, next.item->transfer) || plain != is_plain_where_its_value_is(volume.item);
@@ -85,7 +84,8 @@ Result<bool> VolumePass::update_volume(Volume& volume, const Mirrored<VolumeItem
   return true;
 }
 
-Result<bool> VolumePass::update_colors(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces) {
+Result<bool> VolumeRaycast::update_colors(std::span<const Mirrored<VolumeItem>> volumes,
+                                          std::span<const Mirrored<IsosurfaceItem>> surfaces) {
   std::size_t count = 0;
   bool changed = false;
   const auto update = [&](const auto& next, std::size_t owner) -> Outcome {
@@ -104,7 +104,7 @@ Result<bool> VolumePass::update_colors(std::span<const Mirrored<VolumeItem>> vol
   return changed;
 }
 
-Outcome VolumePass::upload_tables() {
+Outcome VolumeRaycast::upload_tables() {
   std::vector<glm::vec4> entries;
   const auto append = [&](const std::vector<glm::vec4>& more) {
     const auto start = std::uint32_t(entries.size());
@@ -121,7 +121,7 @@ Outcome VolumePass::upload_tables() {
   return Done{};
 }
 
-Outcome VolumePass::prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces) {
+Outcome VolumeRaycast::prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces) {
   CATENA_ASSERT(volumes.size() <= MAX_VOLUMES && surfaces.size() <= MAX_SURFACES);
   bool changed = volumes.size() != volumes_.size() || !tables_;
   volumes_.resize(volumes.size());
@@ -139,7 +139,7 @@ Outcome VolumePass::prepare(std::span<const Mirrored<VolumeItem>> volumes, std::
   return changed || recoloured ? upload_tables() : Done{};
 }
 
-shared::GridData VolumePass::volume_data(const CameraRays& rays, const Volume& volume) const {
+shared::GridData VolumeRaycast::volume_data(const CameraRays& rays, const Volume& volume) const {
   shared::GridData grid = rays.grid(*volume.mirror, volume.item.grid->mapping());
   grid.id = volume.item.id;
   grid.clipped = volume.item.clipped;
@@ -153,7 +153,7 @@ shared::GridData VolumePass::volume_data(const CameraRays& rays, const Volume& v
   return grid;
 }
 
-std::vector<vk::Binding> VolumePass::bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) const {
+std::vector<vk::Binding> VolumeRaycast::bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) const {
   std::vector<vk::Binding> list{{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                 {2, vk::Resource::texture, nullptr, scene.opaque_depth ? scene.opaque_depth : scene.none, nullptr}};
   if (!kind.layers_alone()) list.push_back({1, vk::Resource::buffer, &tables_, nullptr, nullptr});
@@ -167,8 +167,8 @@ std::vector<vk::Binding> VolumePass::bindings(const Kind& kind, std::span<const 
   return list;
 }
 
-Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
-                           const RayScene& scene) {
+Outcome VolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                              const RayScene& scene) {
   // volumes, surfaces, the grids that colour them
   shared::FrameData data = rays.frame();
   data.termination = float(settings.termination);
@@ -202,7 +202,7 @@ Outcome VolumePass::record(vk::Commands& commands, const CameraRays& rays, const
     bound.push_back(colors.grid.bound());
   }
   data.step_world = float(settings.step_voxels * edge);
-  CATENA_CHECK(write_uniform(*device_, uniform_, data));
+  CATENA_CHECK(vk::write_uniform(*device_, uniform_, data));
 
   for (std::size_t i = 0; i < bound.size(); ++i) kind.flags |= bound[i].flags() << (4 * i);
   CATENA_TRY(const vk::Pipeline* pipe, pipeline(kind));

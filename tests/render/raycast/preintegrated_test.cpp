@@ -1,4 +1,4 @@
-#include "render/passes/preintegrated.h"
+#include "render/raycast/preintegrated.h"
 
 #include <gtest/gtest.h>
 

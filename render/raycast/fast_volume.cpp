@@ -1,13 +1,12 @@
-#include "render/passes/fast_volume.h"
+#include "render/raycast/fast_volume.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "engine/base/clock.h"
-#include "render/passes/grid_bindings.h"
-#include "render/passes/targets.h"
-#include "render/passes/upsample.h"
+#include "render/raycast/bound_grids.h"
+#include "render/raycast/upsample.h"
 #include "render/vk/upload.h"
 #include "shaders/shared/fast_volume.h"
 
@@ -73,8 +72,8 @@ bool same_look(const VolumeItem& a, const VolumeItem& b) {
 
 }  // namespace
 
-Result<FastVolumePass> FastVolumePass::create(vk::Device& device) {
-  FastVolumePass self;
+Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
+  FastVolumeRaycast self;
   self.device_ = &device;
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
   vk::ImageInfo info;
@@ -86,7 +85,7 @@ Result<FastVolumePass> FastVolumePass::create(vk::Device& device) {
   return self;
 }
 
-Outcome FastVolumePass::prepare(const VolumeItem& item, const FastSettings& settings) {
+Outcome FastVolumeRaycast::prepare(const VolumeItem& item, const FastSettings& settings) {
   const std::int64_t start = now_ns();
   const bool other_grid = !packed_.words || version_ != item.grid->version();
   const bool other_look = other_grid || !same_look(item_, item);
@@ -121,13 +120,13 @@ Outcome FastVolumePass::prepare(const VolumeItem& item, const FastSettings& sett
   return Done{};
 }
 
-Outcome FastVolumePass::ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target) {
+Outcome FastVolumeRaycast::ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target) {
   const std::uint32_t width = lattice_size(target.width, spacing), height = lattice_size(target.height, spacing);
   if (spacing > 1) CATENA_CHECK(fit(*device_, level.color, kLatticeFormat, width, height));
   return fit(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock);
 }
 
-Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles) {
+Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles) {
   vk::Pipeline& pipeline = pipelines_[{constants, tiles}];
   if (!pipeline) {
     vk::GraphicsInfo info;
@@ -145,7 +144,7 @@ Result<const vk::Pipeline*> FastVolumePass::pipeline(const std::array<std::uint3
   return &pipeline;
 }
 
-Outcome FastVolumePass::mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth) {
+Outcome FastVolumeRaycast::mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth) {
   if (!tile_pipeline_) {
     vk::GraphicsInfo info;
     info.vertex = kFastVolumeVertexShader;
@@ -167,7 +166,7 @@ Outcome FastVolumePass::mark_opaque(vk::Commands& commands, const vk::Image& opa
   return Done{};
 }
 
-Outcome FastVolumePass::mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque) {
+Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque) {
   vk::Pipeline& pipe = mark_pipelines_[opaque];
   if (!pipe) {
     vk::GraphicsInfo info;
@@ -193,7 +192,7 @@ Outcome FastVolumePass::mark(vk::Commands& commands, Level& level, vk::Image& co
 }
 
 /// The frame's data; grid 0 counts from the volume's first voxel.
-Outcome FastVolumePass::write_frame(const CameraRays& rays, const FastSettings& settings) {
+Outcome FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
   GridMirror place;
   place.origin = packed_.origin;
   place.box_hi = Vec3(packed_.size.x - 1, packed_.size.y - 1, packed_.size.z - 1);
@@ -203,10 +202,10 @@ Outcome FastVolumePass::write_frame(const CameraRays& rays, const FastSettings& 
   frame.grids[0].clipped = item_.clipped;
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * item_.grid->mapping().smallest_edge());
-  return write_uniform(*device_, frame_, frame);
+  return vk::write_uniform(*device_, frame_, frame);
 }
 
-Outcome FastVolumePass::draw(vk::Commands& commands, Level& level, const Draw& draw) {
+Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw& draw) {
   CATENA_TRY(const vk::Pipeline* pipe,
              pipeline({draw.shading, draw.skips && map_.leaping > kLeapAbove, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                        (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u)},
@@ -236,7 +235,7 @@ Outcome FastVolumePass::draw(vk::Commands& commands, Level& level, const Draw& d
   return Done{};
 }
 
-Outcome FastVolumePass::interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area) {
+Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area) {
   if (!interpolate_pipeline_) {
     vk::ComputeInfo info;
     info.shader = kFastVolumeInterpolateShader;
@@ -247,7 +246,7 @@ Outcome FastVolumePass::interpolate(vk::Commands& commands, vk::Image& half, vk:
   commands.begin_pass({&empty, 1}, {});
   commands.end_pass();
   const UpsampleGroups groups = upsample_groups(area, target.info().extent);
-  CATENA_CHECK(write_uniform(*device_, interpolate_data_, groups.data));
+  CATENA_CHECK(vk::write_uniform(*device_, interpolate_data_, groups.data));
   commands.use(half, vk::kFragmentRead);
   commands.use(target, vk::kComputeWrite);
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &interpolate_data_, nullptr, nullptr},
@@ -258,8 +257,8 @@ Outcome FastVolumePass::interpolate(vk::Commands& commands, vk::Image& half, vk:
   return Done{};
 }
 
-Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
-                               const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none) {
+Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
+                                  const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none) {
   CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
   CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
   CATENA_CHECK(write_frame(rays, settings));
@@ -278,7 +277,7 @@ Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, c
     const VkExtent3D from = coarser ? coarser->info().extent : VkExtent3D{1, 1, 1};
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
     const shared::LatticeData data{float(spacing), apron, float(refine_255 / 255), from.width, from.height, gradient_unit()};
-    CATENA_CHECK(write_uniform(*device_, level.data, data));
+    CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
     } else {
@@ -297,13 +296,13 @@ Outcome FastVolumePass::record(vk::Commands& commands, const CameraRays& rays, c
   return Done{};
 }
 
-Outcome FastVolumePass::record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
-                                     vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none) {
+Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
+                                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none) {
   CATENA_ASSERT(target.info().format == kVolumeFormat);
   CATENA_CHECK(write_frame(rays, settings));
   CATENA_CHECK(fit(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
-  CATENA_CHECK(write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1, gradient_unit()}));
+  CATENA_CHECK(vk::write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1, gradient_unit()}));
   const VkExtent3D& extent = target.info().extent;
   return draw(
       commands, probe_,

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/passes/render_settings.h"
+#include "render/raycast/render_settings.h"
 
 namespace catena::render {
 

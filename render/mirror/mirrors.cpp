@@ -1,4 +1,4 @@
-#include "render/passes/mirrors.h"
+#include "render/mirror/mirrors.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "render/passes/projection.h"
+#include "render/raycast/projection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,14 +36,14 @@ std::vector<std::uint8_t> bounds_of_bricks(const GridMirror& mirror, const Brick
 
 }  // namespace
 
-Result<ProjectionPass> ProjectionPass::create(vk::Device& device) {
-  ProjectionPass self;
+Result<ProjectionRaycast> ProjectionRaycast::create(vk::Device& device) {
+  ProjectionRaycast self;
   self.device_ = &device;
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
   return self;
 }
 
-Outcome ProjectionPass::prepare(const VolumeItem& item, std::shared_ptr<const GridMirror> mirror) {
+Outcome ProjectionRaycast::prepare(const VolumeItem& item, std::shared_ptr<const GridMirror> mirror) {
   const TransferTable &have = item_.transfer, &next = item.transfer;
   const bool same_bounds = map_.image && mirror_ == mirror && item_.projection == item.projection;
   const bool same =
@@ -62,8 +62,8 @@ Outcome ProjectionPass::prepare(const VolumeItem& item, std::shared_ptr<const Gr
   return Done{};
 }
 
-Outcome ProjectionPass::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
-                               const RayScene& scene) {
+Outcome ProjectionRaycast::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                                  const RayScene& scene) {
   const field::Mapping& mapping = item_.grid->mapping();
   shared::FrameData data = rays.frame();
   data.step_world = float(settings.step_voxels * mapping.smallest_edge());
@@ -73,7 +73,7 @@ Outcome ProjectionPass::record(vk::Commands& commands, const CameraRays& rays, c
   set_table(grid, lut_, 0);
   grid.factor_lo = bounds_.least;
   grid.factor_per_gradient = (bounds_.greatest - bounds_.least) / kBoundCodes;
-  CATENA_CHECK(write_uniform(*device_, uniform_, data));
+  CATENA_CHECK(vk::write_uniform(*device_, uniform_, data));
 
   const BoundGrid bound{mirror_, &map_, false, false};
   const std::uint32_t kind = item_.projection == Projection::maximum ? 1 : item_.projection == Projection::minimum ? 2 : 3;

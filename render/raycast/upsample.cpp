@@ -1,6 +1,7 @@
-#include "render/passes/upsample.h"
+#include "render/raycast/upsample.h"
 
-#include "render/passes/grid_bindings.h"
+#include "render/raycast/bound_grids.h"
+#include "render/vk/upload.h"
 #include "shaders/shared/fast_volume.h"
 
 namespace catena::render {
@@ -27,40 +28,40 @@ UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture) 
   return groups;
 }
 
-Outcome UpsamplePass::record(vk::Commands& commands, vk::Image& half_lattice, Targets& targets, const std::array<float, 4>& background,
-                             bool opaque, const VkRect2D& area) {
-  vk::Pipeline& pipeline = pipelines_[opaque];
+Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
+                          const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture) {
+  vk::Pipeline& pipeline = pipelines_[opaque ? 1 : 0];
   if (!pipeline) {
     vk::ComputeInfo info;
     info.shader = kUpsampleShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}, {3, vk::Resource::storage_image}};
-    info.constants = {opaque};
+    info.constants = {opaque ? 1u : 0u};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
-  const VkExtent3D& size = targets.picture.info().extent;
+  const VkExtent3D& size = picture.info().extent;
   VkRect2D pixels = area;
   if (opaque) {
     pixels = {{0, 0}, {size.width, size.height}};
-    commands.use(targets.opaque_color, vk::kFragmentRead);
+    commands.use(*opaque, vk::kFragmentRead);
   } else {
     // beyond the area there is the background
     const bool seen = background[3] > 0;
-    const vk::ColorTarget target{&targets.picture, seen ? background : std::array<float, 4>{0, 0, 0, 0}};
+    const vk::ColorTarget target{&picture, seen ? background : std::array<float, 4>{0, 0, 0, 0}};
     commands.begin_pass({&target, 1}, {});
     commands.end_pass();
   }
   UpsampleGroups groups = upsample_groups(pixels, size);
   groups.data.background = {background[0], background[1], background[2], background[3]};
-  CATENA_CHECK(write_uniform(*device_, uniform_, groups.data));
+  CATENA_CHECK(vk::write_uniform(*device_, uniform_, groups.data));
   commands.use(half_lattice, vk::kFragmentRead);
-  commands.use(targets.picture, vk::kComputeWrite);
+  commands.use(picture, vk::kComputeWrite);
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
-                                  {1, vk::Resource::texture, nullptr, opaque ? &targets.opaque_color : &targets.none, nullptr},
+                                  {1, vk::Resource::texture, nullptr, opaque ? opaque : &none, nullptr},
                                   {2, vk::Resource::texture, nullptr, &half_lattice, nullptr},
-                                  {3, vk::Resource::storage_image, nullptr, &targets.picture, nullptr}};
+                                  {3, vk::Resource::storage_image, nullptr, &picture, nullptr}};
   commands.bind(pipeline, bindings);
   if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
-  commands.use(targets.picture, vk::kTransferRead);
+  commands.use(picture, vk::kTransferRead);
   return Done{};
 }
 

@@ -1,10 +1,10 @@
-#include "render/passes/preintegrated.h"
+#include "render/raycast/preintegrated.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "render/passes/transfer_lut.h"
+#include "render/raycast/transfer_lut.h"
 
 namespace catena::render {
 namespace {

@@ -5,36 +5,14 @@
 #include <compare>
 #include <map>
 
-#include "render/passes/color_grid.h"
-#include "render/passes/isosurface.h"
-#include "render/passes/pass.h"
+#include "render/raycast/bound_grids.h"
+#include "render/raycast/ray_scene.h"
 
 namespace catena::render {
 
-struct RaySettings {
-  double step_voxels = 1;
-  double termination = 1.0 / 512;
-  bool skip = true;
-  bool jitter = false;
-};
-
-/// What a picture's rays meet beside grids.
-struct RayScene {
-  const vk::Image* opaque_depth = nullptr;  ///< null: nothing opaque
-  std::span<const Layer> layers{};
-  const vk::Image* none = nullptr;  ///< bound where there is nothing
-};
-
-/// An item with the mirror of its grid, and of the grid that colours it, if there is one.
-template <class Item>
-struct Mirrored {
-  const Item* item = nullptr;
-  std::shared_ptr<const GridMirror> mirror, colors;
-};
-
-class VolumePass {
+class VolumeRaycast {
  public:
-  static Result<VolumePass> create(vk::Device& device);
+  static Result<VolumeRaycast> create(vk::Device& device);
   Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
   /// Within a pass over the volume target.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
@@ -65,7 +43,7 @@ class VolumePass {
     bool layers_alone() const { return volumes == 0 && surfaces == 0; }
     std::uint32_t grid_slots() const { return layers_alone() ? 0 : single() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS; }
   };
-  VolumePass() = default;
+  VolumeRaycast() = default;
   Result<bool> update_volume(Volume& volume, const Mirrored<VolumeItem>& next);
   Result<bool> update_colors(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
   Outcome upload_tables();

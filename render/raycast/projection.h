@@ -7,19 +7,19 @@
 #include <array>
 #include <map>
 
-#include "render/passes/volume.h"
+#include "render/raycast/volume.h"
 
 namespace catena::render {
 
-class ProjectionPass {
+class ProjectionRaycast {
  public:
-  static Result<ProjectionPass> create(vk::Device& device);
+  static Result<ProjectionRaycast> create(vk::Device& device);
   Outcome prepare(const VolumeItem& item, std::shared_ptr<const GridMirror> mirror);
   /// Within a pass over the volume target.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
 
  private:
-  ProjectionPass() = default;
+  ProjectionRaycast() = default;
   vk::Device* device_ = nullptr;
   vk::Sampler linear_;
   std::map<std::array<std::uint32_t, 3>, vk::Pipeline> pipelines_;

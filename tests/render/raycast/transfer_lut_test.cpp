@@ -1,4 +1,4 @@
-#include "render/passes/transfer_lut.h"
+#include "render/raycast/transfer_lut.h"
 
 #include <gtest/gtest.h>
 

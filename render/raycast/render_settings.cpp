@@ -1,4 +1,4 @@
-#include "render/passes/render_settings.h"
+#include "render/raycast/render_settings.h"
 
 namespace catena::render {
 

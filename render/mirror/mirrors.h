@@ -4,13 +4,23 @@
 #pragma once
 #include <map>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <vector>
 
 #include "render/mirror/grid_mirror.h"
-#include "render/passes/coarsening.h"
 
 namespace catena::render {
+
+/// A grid that is drawn at less than its resolution because the whole does not fit into the memory budget.
+struct MirrorCoarsening {
+  std::string grid;
+  int factor = 1;                                  ///< 2, 4, 8
+  std::string size;                                ///< of the grid: "256^3", "512 x 512 x 90"
+  std::uint64_t needed_bytes = 0, left_bytes = 0;  ///< of the whole grid; of the budget, when it was mirrored
+  /// "density: 256^3 needs 67 MB of GPU memory, 40 MB are left: drawn at half resolution"
+  std::string words() const;
+};
 
 class Mirrors {
  public:

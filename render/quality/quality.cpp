@@ -1,4 +1,4 @@
-#include "render/passes/quality.h"
+#include "render/quality/quality.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "engine/base/clock.h"
-#include "render/passes/refinement.h"
+#include "render/quality/refinement.h"
 
 namespace catena::render {
 namespace {

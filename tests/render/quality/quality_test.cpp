@@ -1,7 +1,7 @@
 /// The estimate against the truth, and goals that are reached.
-#include "render/passes/quality.h"
+#include "render/quality/quality.h"
 
-#include "render/passes/refinement.h"
+#include "render/quality/refinement.h"
 
 #include <cmath>
 

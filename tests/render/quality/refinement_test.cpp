@@ -1,5 +1,5 @@
 /// The ladder, the times expected of it, and the pictures that a viewer is told to draw.
-#include "render/passes/refinement.h"
+#include "render/quality/refinement.h"
 
 #include <gtest/gtest.h>
 

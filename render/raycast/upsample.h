@@ -1,8 +1,7 @@
 /// From a volume on every 2nd pixel to the finished picture, over opaque over background: compose.h for the fast raycast.
 #pragma once
-#include <map>
+#include <array>
 
-#include "render/passes/targets.h"
 #include "render/vk/commands.h"
 #include "shaders/shared/fast_volume.h"
 
@@ -15,12 +14,13 @@ struct UpsampleGroups {
 };
 UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture);
 
-class UpsamplePass {
+class Upsampler {
  public:
-  explicit UpsamplePass(vk::Device& device) : device_(&device) {}
-  /// `area`: the pixels that the volume may cover. Moves the images to their layouts.
-  Outcome record(vk::Commands& commands, vk::Image& half_lattice, Targets& targets, const std::array<float, 4>& background, bool opaque,
-                 const VkRect2D& area);
+  explicit Upsampler(vk::Device& device) : device_(&device) {}
+  /// Into `picture`. `opaque` null: there is nothing opaque, `none` is bound instead. `area`: the pixels that the volume may cover. Moves
+  /// the images to their layouts.
+  Outcome record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
+                 const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture);
 
  private:
   vk::Device* device_;

@@ -1,4 +1,4 @@
-#include "render/passes/refinement.h"
+#include "render/quality/refinement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,22 +1,23 @@
-/// One volume, fast, with an error that is measured and not assumed (render/passes/quality.h): packed words, pre-integrated
+/// One volume, fast, with an error that is measured and not assumed (render/quality/quality.h): packed words, pre-integrated
 /// table, Hermite midpoints, leaps over plain bricks; rays on a lattice of every 4th, 2nd or every pixel, refined where the fourth
 /// difference of the picture says that interpolation would err.   lattice -> marks -> finer lattice -> .. -> every pixel
-/// Volumes that it cannot draw (several at once, masked cells, too many voxels) belong to VolumePass. Frame thread only.
+/// Volumes that it cannot draw (several at once, masked cells, too many voxels) belong to VolumeRaycast. Frame thread only.
 #pragma once
 #include <map>
 
 #include "render/mirror/gradient_volume.h"
 #include "render/mirror/plain_map.h"
-#include "render/passes/camera_rays.h"
-#include "render/passes/fast_settings.h"
-#include "render/passes/preintegrated.h"
+#include "render/raycast/camera_rays.h"
+#include "render/raycast/preintegrated.h"
+#include "render/raycast/ray_scene.h"
+#include "render/raycast/render_settings.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
 
-class FastVolumePass {
+class FastVolumeRaycast {
  public:
-  static Result<FastVolumePass> create(vk::Device& device);
+  static Result<FastVolumeRaycast> create(vk::Device& device);
   /// Packs the volume, its table and its map, if they are new. `item.grid` can_be_packed.
   Outcome prepare(const VolumeItem& item, const FastSettings& settings);
   /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;
@@ -27,7 +28,7 @@ class FastVolumePass {
   /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
   Outcome record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
-  /// Every 2nd pixel, for UpsamplePass.
+  /// Every 2nd pixel, for Upsampler.
   vk::Image& half() { return half_.color; }
   double build_ms() const { return build_ms_; }
 
@@ -37,7 +38,7 @@ class FastVolumePass {
     vk::Image color, marks;
     vk::Buffer data;
   };
-  FastVolumePass() = default;
+  FastVolumeRaycast() = default;
   Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
   Result<const vk::Pipeline*> pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const { return item_.shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
