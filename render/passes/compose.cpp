@@ -1,7 +1,6 @@
-#include "render/passes/compose.h"
-
 #include <map>
 
+#include "render/passes/passes.h"
 #include "render/raycast/bound_grids.h"
 #include "render/raycast/upsample.h"
 #include "render/vk/upload.h"
@@ -65,6 +64,6 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
 
 }  // namespace
 
-const PassEntry kComposePass{"compose", [](const Frame&) { return true; }, ComposePass::create};
+const PassEntry kComposePass{"compose", [](const Frame&) { return true; }, ComposePass::create, target::picture};
 
 }  // namespace catena::render

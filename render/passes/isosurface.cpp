@@ -1,11 +1,9 @@
-#include "render/passes/isosurface.h"
-
 #include <algorithm>
 #include <map>
 
 #include "render/mirror/cell_map.h"
-#include "render/passes/targets.h"
-#include "render/raycast/camera_rays.h"
+#include "render/passes/passes.h"
+#include "render/raycast/bound_grids.h"
 #include "render/vk/upload.h"
 
 namespace catena::render {

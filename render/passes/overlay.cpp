@@ -1,9 +1,8 @@
-#include "render/passes/overlay.h"
-
 #include <algorithm>
 #include <cstring>
 
 #include "render/passes/overlay/furniture.h"
+#include "render/passes/passes.h"
 #include "render/raycast/bound_grids.h"
 #include "render/vk/upload.h"
 
@@ -177,6 +176,7 @@ Outcome OverlayPass::record(vk::Commands& commands, Frame& frame) {
 
 }  // namespace
 
-const PassEntry kOverlayPass{"overlay", [](const Frame& frame) { return !frame.packet.overlay.empty(); }, OverlayPass::create};
+const PassEntry kOverlayPass{"overlay", [](const Frame& frame) { return !frame.packet.overlay.empty(); }, OverlayPass::create,
+                             target::picture};
 
 }  // namespace catena::render

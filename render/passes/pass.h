@@ -2,7 +2,7 @@
 /// the passes in order and derives clears, barriers and groups from the declarations. A pass is created when a packet first wants
 /// it; a scene without streamlines has no streamline pass.
 ///   wanted -> prepare (uploads, pipelines) -> bounds (they fix near, far and the rays) -> record
-/// Frame thread only. To add one: a class here beside its shader, and a line in the list of renderer.cpp.
+/// Frame thread only. To add one: a class here beside its shader, a line in passes.h and one in the list of renderer.cpp.
 #pragma once
 #include <memory>
 
@@ -41,6 +41,18 @@ struct PassUse {
   bool own_scope = false;  ///< begins and ends its rendering itself; else the renderer does, for all neighbours with equal targets
 };
 
+/// Rays of a pass, some of them alone: what the error of a picture is measured with.
+class RayProbe {
+ public:
+  /// The rays of every `spacing`-th pixel, into `target` (kVolumeFormat).
+  virtual Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
+  /// The fast raycast was tried with this packet's volume and had no memory for it.
+  virtual bool has_refused(const FramePacket& packet) const = 0;
+
+ protected:
+  ~RayProbe() = default;
+};
+
 class Pass {
  public:
   virtual ~Pass() = default;
@@ -52,6 +64,8 @@ class Pass {
   virtual Outcome record(vk::Commands& commands, Frame& frame) = 0;
   /// Milliseconds spent so far on images made from grids, beside the mirrors.
   virtual double build_ms() const { return 0; }
+  /// Null: it casts no rays that others are blended with.
+  virtual RayProbe* probe() { return nullptr; }
   /// What the last picture lacks, or was drawn otherwise than asked, and why, one sentence; empty: nothing.
   virtual std::string note() const { return {}; }
 };
@@ -61,6 +75,9 @@ struct PassEntry {
   const char* name;
   bool (*wanted)(const Frame& frame);
   Result<std::unique_ptr<Pass>> (*create)(vk::Device& device);
+  // what the mirrors of grids leave room for, where it is wanted
+  TargetSet reserves = target::opaque;
+  std::uint64_t reserved_pixel_bytes = 0;  ///< for images of its own
 };
 
 }  // namespace catena::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/passes/passes.h"
 #include "render/raycast/camera_rays.h"
 #include "render/vk/upload.h"
 

@@ -1,10 +1,8 @@
-#include "render/passes/surface_color.h"
-
 #include <algorithm>
 #include <map>
 
+#include "render/passes/passes.h"
 #include "render/raycast/bound_grids.h"
-#include "render/raycast/camera_rays.h"
 #include "render/vk/upload.h"
 
 namespace catena::render {

@@ -75,24 +75,4 @@ Outcome TriangleDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tri
   return Done{};
 }
 
-bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
-
-bool same(const MeshItem& a, const MeshItem& b) {
-  const bool alike =
-      a.geometry == b.geometry ||
-      (a.geometry && b.geometry && a.geometry->vertices == b.geometry->vertices && a.geometry->triangles == b.geometry->triangles &&
-       a.geometry->normals == b.geometry->normals && all_same(a.geometry->colors, b.geometry->colors));
-  return alike && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped && a.opacity == b.opacity && a.smooth == b.smooth &&
-         a.edges == b.edges;
-}
-
-bool same(const TubeItem& a, const TubeItem& b) {
-  return a.radius == b.radius && same(a.color, b.color) && a.points == b.points &&
-         (a.colors.is_same(b.colors) || all_same(a.colors, b.colors)) && a.id == b.id && a.clipped == b.clipped;
-}
-
-bool same(const ArrowItem& a, const ArrowItem& b) {
-  return a.base == b.base && a.tip == b.tip && a.radius == b.radius && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
-}
-
 }  // namespace catena::render

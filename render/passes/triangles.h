@@ -39,13 +39,4 @@ class TriangleDrawer {
   vk::Pipeline pipeline_;
 };
 
-bool same(const Color& a, const Color& b);
-bool same(const MeshItem& a, const MeshItem& b);
-bool same(const TubeItem& a, const TubeItem& b);
-bool same(const ArrowItem& a, const ArrowItem& b);
-template <class Items>
-bool all_same(const Items& a, const Items& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return same(x, y); });
-}
-
 }  // namespace catena::render

@@ -1,5 +1,5 @@
 /// Text and flat shapes over the picture, against places and colours worked out apart. Pixels of text are only counted, never compared.
-#include "render/passes/overlay.h"
+#include "render/passes/passes.h"
 
 #include <gtest/gtest.h>
 
