@@ -3,7 +3,7 @@
 #include <queue>
 #include <unordered_map>
 
-#include "engine/mesh/closest.h"
+#include "engine/mesh/mesh.h"
 
 namespace catena::geodesics {
 namespace {

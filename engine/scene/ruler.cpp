@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
-#include "engine/flow/nearest.h"
+#include "engine/flow/curve.h"
 #include "engine/geodesics/geodesics.h"
 
 namespace catena::scene {

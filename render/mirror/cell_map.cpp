@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "engine/base/parallel_for.h"
-#include "render/mirror/brick_distances.h"
+#include "render/mirror/brick_map.h"
 #include "render/mirror/half.h"
 #include "render/vk/upload.h"
 

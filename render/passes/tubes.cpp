@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/passes/targets.h"
+#include "render/passes/pass.h"
 #include "render/raycast/bound_grids.h"
 #include "render/vk/upload.h"
 #include "shaders/shared/tube.h"

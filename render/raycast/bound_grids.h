@@ -7,7 +7,7 @@
 
 #include "render/mirror/brick_map.h"
 #include "render/raycast/camera_rays.h"
-#include "render/raycast/transfer_lut.h"
+#include "render/raycast/transfer_tables.h"
 #include "render/vk/commands.h"
 #include "shaders/shared/frame.h"
 

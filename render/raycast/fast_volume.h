@@ -5,12 +5,12 @@
 #pragma once
 #include <map>
 
-#include "render/mirror/gradient_volume.h"
-#include "render/mirror/plain_map.h"
+#include "render/mirror/brick_map.h"
+#include "render/mirror/packed_volume.h"
 #include "render/raycast/camera_rays.h"
-#include "render/raycast/preintegrated.h"
 #include "render/raycast/ray_scene.h"
 #include "render/raycast/render_settings.h"
+#include "render/raycast/transfer_tables.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

@@ -1,4 +1,4 @@
-#include "render/raycast/preintegrated.h"
+#include "render/raycast/transfer_tables.h"
 
 #include <gtest/gtest.h>
 

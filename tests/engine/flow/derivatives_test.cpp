@@ -1,4 +1,4 @@
-#include "engine/flow/velocity_gradient.h"
+#include "engine/flow/derivatives.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include "tests/engine/flow/fields.h"
 
 namespace catena::flow {
-namespace velocity_gradient_test {
+namespace derivatives_test {
 
 Mat3 shear() { return Mat3(Vec3(0.3, -1, 0.2), Vec3(2, 0.1, -0.5), Vec3(0.7, 0.4, -0.4)); }  // columns dv/dx_j
 Vec3 linear(const Vec3& p) { return Vec3(0.5, -0.2, 1) + shear() * p; }
@@ -89,5 +89,5 @@ TEST(VelocityGradient, IsUnknownOutsideAndWhereNotFinite) {
   EXPECT_EQ(velocity_gradient(*still, {0, 0, 0}, cursor, evaluations).scale, 0);
 }
 
-}  // namespace velocity_gradient_test
+}  // namespace derivatives_test
 }  // namespace catena::flow

@@ -1,4 +1,4 @@
-#include "render/raycast/transfer_lut.h"
+#include "render/raycast/transfer_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace catena::test {
-namespace transfer_lut_test {
+namespace transfer_tables_test {
 
 using namespace catena::render;
 
@@ -87,5 +87,5 @@ TEST(TransferLut, FactorsAreHeldBeyondTheirEnds) {
   EXPECT_EQ(make_factor_lut({{2, 0.5}}).entries.front().x, 0.5f);
 }
 
-}  // namespace transfer_lut_test
+}  // namespace transfer_tables_test
 }  // namespace catena::test
