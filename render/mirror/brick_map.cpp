@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 

@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "engine/base/parallel_for.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 

@@ -1,9 +1,8 @@
 #include <map>
 
 #include "render/passes/passes.h"
-#include "render/raycast/bound_grids.h"
-#include "render/raycast/upsample.h"
-#include "render/vk/upload.h"
+#include "render/raycast/fast_volume.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

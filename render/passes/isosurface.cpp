@@ -4,7 +4,7 @@
 #include "render/mirror/cell_map.h"
 #include "render/passes/passes.h"
 #include "render/raycast/bound_grids.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

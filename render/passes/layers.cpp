@@ -4,7 +4,7 @@
 #include "render/passes/passes.h"
 #include "render/passes/slice.h"
 #include "render/passes/triangles.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

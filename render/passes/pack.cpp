@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "render/raycast/bound_grids.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

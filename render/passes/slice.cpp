@@ -4,7 +4,7 @@
 
 #include "render/passes/passes.h"
 #include "render/raycast/camera_rays.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

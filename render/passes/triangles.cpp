@@ -4,8 +4,7 @@
 #include <cstddef>
 
 #include "render/passes/pass.h"
-#include "render/raycast/bound_grids.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

@@ -7,8 +7,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "render/raycast/bound_grids.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 #include "shaders/shared/ui.h"
 
 namespace catena::render {
@@ -21,17 +20,6 @@ constexpr std::uint32_t kUiFragmentShader[] = {
 #include "spirv/ui.frag.inc"
 };
 constexpr VkFormat kWindowFormat = VK_FORMAT_R8G8B8A8_UNORM;
-
-/// Host memory with these items; with room for twice as many where it must grow.
-template <class T>
-Outcome write_items(vk::Device& device, vk::Buffer& buffer, const std::vector<T>& items, VkBufferUsageFlags usage) {
-  const std::size_t bytes = std::max<std::size_t>(1, items.size()) * sizeof(T);
-  if (!buffer || buffer.size() < bytes) {
-    CATENA_TRY(buffer, vk::Buffer::create(device, 2 * bytes, usage, vk::Memory::upload));
-  }
-  if (!items.empty()) std::memcpy(buffer.bytes().data(), items.data(), items.size() * sizeof(T));
-  return Done{};
-}
 
 /// The first pixel whose centre lies at or beyond `edge`, at most `count`. Not a number: 0.
 std::uint32_t first_beyond(float edge, std::uint32_t count) {
@@ -117,8 +105,8 @@ Outcome WindowPainter::upload(const UiItems& items) {
     CATENA_TRY(linear_, vk::Sampler::create(*device_, vk::Filter::linear));
     white_ = std::make_shared<const UiTexture>(UiTexture{1, 1, {255, 255, 255, 255}});
   }
-  CATENA_CHECK(write_items(*device_, vertices_, items.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
-  CATENA_CHECK(write_items(*device_, indices_, items.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+  CATENA_CHECK(vk::write_items(*device_, vertices_, items.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+  CATENA_CHECK(vk::write_items(*device_, indices_, items.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
   for (const UiDraw& draw : items.draws) CATENA_CHECK(keep(draw.texture ? draw.texture : white_));
   std::erase_if(textures_, [&](const auto& entry) { return entry.second.used + kTextureRest < paints_; });
   return Done{};

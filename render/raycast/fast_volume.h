@@ -3,6 +3,7 @@
 /// difference of the picture says that interpolation would err.   lattice -> marks -> finer lattice -> .. -> every pixel
 /// Volumes that it cannot draw (several at once, masked cells, too many voxels) belong to VolumeRaycast. Frame thread only.
 #pragma once
+#include <array>
 #include <map>
 
 #include "render/mirror/brick_map.h"
@@ -12,6 +13,7 @@
 #include "render/raycast/render_settings.h"
 #include "render/raycast/transfer_tables.h"
 #include "render/vk/commands.h"
+#include "shaders/shared/fast_volume.h"
 
 namespace catena::render {
 
@@ -79,6 +81,29 @@ class FastVolumeRaycast {
   vk::Buffer interpolate_data_;
   vk::Image opaque_tiles_;
   double build_ms_ = 0;
+};
+
+/// One invocation a lattice point: what upsample.comp and interpolate.comp need for the pixels of an area.
+struct UpsampleGroups {
+  shared::UpsampleData data{};
+  std::uint32_t x = 0, y = 0;
+};
+UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture);
+
+/// From a volume on every 2nd pixel to the finished picture, over opaque over background: what the pass `compose` does for the fast
+/// raycast.
+class Upsampler {
+ public:
+  explicit Upsampler(vk::Device& device) : device_(&device) {}
+  /// Into `picture`. `opaque` null: there is nothing opaque, `none` is bound instead. `area`: the pixels that the volume may cover. Moves
+  /// the images to their layouts.
+  Outcome record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
+                 const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture);
+
+ private:
+  vk::Device* device_;
+  std::array<vk::Pipeline, 2> pipelines_;  // without and with something opaque
+  vk::Buffer uniform_;
 };
 
 }  // namespace catena::render

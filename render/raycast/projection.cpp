@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

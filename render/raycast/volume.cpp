@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/passes/overlay/furniture.h"
+#include "render/passes/overlay/canvas.h"
 #include "render/passes/passes.h"
-#include "render/raycast/bound_grids.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -26,17 +25,6 @@ constexpr VkFormat kOverlayFormat = VK_FORMAT_R8G8B8A8_UNORM;  // premultiplied
 constexpr vk::Use kComputeBoth{VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
                                VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT};
 constexpr double kSlackShare = 1e-3;  // of the distance: a label on a surface is not behind it
-
-/// Host memory with these items, larger than before only if it must be.
-template <class T>
-Outcome write_items(vk::Device& device, vk::Buffer& buffer, const std::vector<T>& items) {
-  const std::size_t bytes = std::max<std::size_t>(1, items.size()) * sizeof(T);
-  if (!buffer || buffer.size() < bytes) {
-    CATENA_TRY(buffer, vk::Buffer::create(device, 2 * bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vk::Memory::upload));
-  }
-  if (!items.empty()) std::memcpy(buffer.bytes().data(), items.data(), items.size() * sizeof(T));
-  return Done{};
-}
 
 class OverlayPass final : public Pass {
  public:
@@ -125,8 +113,8 @@ Outcome OverlayPass::lay_out(Frame& frame) {
   draw_texts(canvas, overlay);
   const std::vector<shared::OverlayShape>& shapes = canvas.finish();
   count_ = std::uint32_t(shapes.size());
-  CATENA_CHECK(write_items(frame.device, shapes_, shapes));
-  CATENA_CHECK(write_items(frame.device, stops_, canvas.stops()));
+  CATENA_CHECK(vk::write_items(frame.device, shapes_, shapes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  CATENA_CHECK(vk::write_items(frame.device, stops_, canvas.stops(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
   return upload_atlas(frame.device);
 }
 

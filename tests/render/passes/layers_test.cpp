@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "render/passes/passes.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {

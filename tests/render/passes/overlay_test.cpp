@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "render/passes/overlay/furniture.h"
+#include "render/passes/overlay/canvas.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {

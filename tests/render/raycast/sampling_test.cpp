@@ -5,7 +5,6 @@
 
 #include "render/mirror/brick_map.h"
 #include "render/vk/commands.h"
-#include "render/vk/upload.h"
 #include "shaders/shared/frame.h"
 #include "tests/render/support/device_fixture.h"
 #include "tests/render/support/frames.h"
