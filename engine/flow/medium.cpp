@@ -92,7 +92,8 @@ Stop CellMedium::seed(const Vec3& place, Vec3& u) {
   return rate(q, w, u);
 }
 
-Stop CellMedium::rate(const Vec3& q, Vec3& w, Vec3& u) const {
+// flat, as direction_at (flow.cpp)
+[[gnu::flatten]] Stop CellMedium::rate(const Vec3& q, Vec3& w, Vec3& u) const {
   const Vec3 f = q - lo_;
   const auto& c = polynomial_;
   if (flow_.line) {
