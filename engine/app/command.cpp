@@ -32,11 +32,24 @@ Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std:
   return overrides;
 }
 
+namespace {
+
+/// The first of them; a scene may write the same thing a hundred times.
+void tell_notes(const std::vector<std::string>& notes) {
+  if (notes.empty()) return;
+  const std::string more = notes.size() > 1 ? " (and " + std::to_string(notes.size() - 1) + " more)" : "";
+  tell_from_catena("note: " + notes.front() + more);
+}
+
+}  // namespace
+
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors) {
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, field_overrides(field_options));
   if (is_scene_file(path)) {
     if (!colors.map.empty() || colors.range) return Error{path + ": --colormap and --range go with a data file; a scene says its colours"};
-    return scene::read_scene(path, overrides);
+    auto scene = scene::read_scene(path, overrides);
+    if (scene) tell_notes(scene->notes);
+    return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
   return scene::scene_for_file(path, {}, colors);

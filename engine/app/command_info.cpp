@@ -7,6 +7,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/info_log.h"
+#include "engine/app/scene_schema.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
@@ -17,6 +18,7 @@
 #include "engine/scene/ruler.h"
 #include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
+#include "engine/schema/markdown.h"
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/extract/extract.h"
@@ -164,27 +166,44 @@ Outcome describe_scene(const std::string& path) {
   return Done{};
 }
 
+Outcome print_keys(const std::string& part) {
+  const std::vector<schema::Component> all = scene_description();
+  std::vector<std::string_view> names;
+  for (const schema::Component& component : all) {
+    names.push_back(component.name);
+    if (component.name != part) continue;
+    fmt::print("{}\n", component.help);
+    for (const auto& [name, table] : schema::markdown_tables(component)) fmt::print("\n{}\n{}", name, table);
+    return Done{};
+  }
+  return Error{"info: --keys: " + in_quotes(part) + " is no part of a scene; one of " + joined(names) + " was expected" +
+               suggestion(part, names)};
+}
+
 }  // namespace
 
 void add_info(CLI::App& program, Work& chosen) {
   auto path = std::make_shared<std::string>();
   auto schema = std::make_shared<bool>(false), maps = std::make_shared<bool>(false);
+  auto part = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
   command->add_option("FILE", *path,
                       "a data file (" + joined(field::field_endings(true)) + "), a triangle mesh (" + joined(mesh::mesh_endings()) +
                           "), a scene (.json) or a recording (.catlog)");
-  command->add_flag("--schema", *schema, "print the JSON Schema of a scene's chain instead");
+  command->add_flag("--schema", *schema, "print the JSON Schema of scenes instead, for an editor");
+  command->add_option("--keys", *part, "list the keys of a part of a scene instead: volumes, chain, camera, ...");
   command->add_flag("--colormaps", *maps, "list the colour maps instead");
-  command->callback([&chosen, path, schema, maps] {
-    chosen = [path, schema, maps]() -> Outcome {
+  command->callback([&chosen, path, schema, maps, part] {
+    chosen = [path, schema, maps, part]() -> Outcome {
       if (*maps) {
         for (const std::string_view name : scene::color_map_names()) fmt::print("{}\n{}_r\n", name, name);
         return Done{};
       }
       if (*schema) {
-        fmt::print("{}\n", haptics::chain_schema());
+        fmt::print("{}", scene_schema());
         return Done{};
       }
+      if (!part->empty()) return print_keys(*part);
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
       if (is_log_file(*path)) return describe_log(*path);
       if (mesh::is_mesh_file(*path)) return describe_mesh(*path);

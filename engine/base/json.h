@@ -58,7 +58,7 @@ Result<bool> get_boolean(const Node& object, std::string_view key, bool fallback
 Result<std::string> require_string(const Node& object, std::string_view key);
 Result<std::string> get_string(const Node& object, std::string_view key, std::string fallback);
 /// One word out of `words`; the index into it.
-Result<int> get_choice(const Node& object, std::string_view key, int fallback, std::initializer_list<std::string_view> words);
+Result<int> get_choice(const Node& object, std::string_view key, int fallback, const std::vector<std::string_view>& words);
 Result<Vec3> require_vec3(const Node& object, std::string_view key);
 Result<Vec3> get_vec3(const Node& object, std::string_view key, const Vec3& fallback);
 Result<std::optional<Vec3>> get_optional_vec3(const Node& object, std::string_view key);

@@ -127,14 +127,13 @@ Result<std::string> get_string(const Node& object, std::string_view key, std::st
   return object.find(key) == nullptr ? Result<std::string>(std::move(fallback)) : require_string(object, key);
 }
 
-Result<int> get_choice(const Node& object, std::string_view key, int fallback, std::initializer_list<std::string_view> words) {
+Result<int> get_choice(const Node& object, std::string_view key, int fallback, const std::vector<std::string_view>& words) {
   const Node* node = object.find(key);
   if (node == nullptr) return fallback;
-  const std::vector<std::string_view> list(words);
   if (node->kind == Kind::string)
-    for (std::size_t i = 0; i < list.size(); ++i)
-      if (node->string == list[i]) return static_cast<int>(i);
-  return unlike(*node, key, "one of " + joined(list));
+    for (std::size_t i = 0; i < words.size(); ++i)
+      if (node->string == words[i]) return static_cast<int>(i);
+  return unlike(*node, key, "one of " + joined(words));
 }
 
 // ---- vectors and tables ----

@@ -1,7 +1,5 @@
 #include "engine/field/formats.h"
 
-#include <array>
-
 #include "engine/base/text.h"
 #include "engine/field/loaders.h"
 
@@ -9,12 +7,14 @@ namespace catena::field {
 
 namespace {
 
-const auto& registry() {
-  static const std::array formats{vdb_format(), nifti_format(), raw_format()};
+std::vector<FileFormat>& registry() {
+  static std::vector<FileFormat> formats{vdb_format(), nifti_format(), raw_format()};
   return formats;
 }
 
 }  // namespace
+
+void add_format(FileFormat format) { registry().push_back(std::move(format)); }
 
 const FileFormat* format_of(std::string_view path, std::string_view* ending) {
   for (const FileFormat& format : registry())

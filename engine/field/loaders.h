@@ -1,4 +1,4 @@
-/// Private to this room: one reader a format, and the counters they keep.
+/// For who reads a format: this room, and programs that bring one of their own. One reader a format, and the counters they keep.
 #pragma once
 #include "engine/field/dense.h"
 #include "engine/field/load.h"
@@ -27,6 +27,8 @@ struct FileFormat {
   Result<std::vector<GridInfo>> (*describe)(const std::string& path) = nullptr;
   Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< nullptr: the format has none
 };
+/// One more, at start-up, before anything reads a file.
+void add_format(FileFormat format);
 FileFormat vdb_format();
 FileFormat nifti_format();
 FileFormat raw_format();

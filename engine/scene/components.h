@@ -69,12 +69,14 @@ struct TransferFunction {
   std::string file;                             ///< that it was read from; empty: the scene's own
 };
 
-/// Colours by another scalar field at the same place of the world.
-struct FieldColors {
-  Entity field;
+/// Colours that follow values. The one shape of "color_by", and what a slice shows of its own field.
+struct ColorBy {
+  enum class What { field, speed, arc_length };
+  What what = What::field;  ///< lines alone know the other two
+  Entity field;             ///< at the same place of the world: a scalar, or the magnitude of a vector
   json::Node where;
-  std::vector<TransferFunction::ColorPoint> colors;
-  NamedColors named{};  ///< viridis, all values, where it does not say
+  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
+  NamedColors named{};                               ///< viridis, all values (lines, surfaces: the drawn ones), where it does not say
 };
 
 struct Volume {
@@ -86,7 +88,7 @@ struct Volume {
   bool shade = false;
   bool clipped = true;  ///< the clip planes count
   Projection projection = Projection::composite;
-  std::optional<FieldColors> color_by{};  ///< composite only
+  std::optional<ColorBy> color_by{};  ///< composite only
 };
 
 struct Isosurface {
@@ -97,7 +99,7 @@ struct Isosurface {
   Rgb color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
   bool clipped = true;  ///< the clip planes count
-  std::optional<FieldColors> color_by{};
+  std::optional<ColorBy> color_by{};
 };
 
 /// A triangle mesh of the scene: where it comes from, and the mesh itself once something has asked for it.
@@ -106,13 +108,6 @@ struct MeshSource {
   std::string path;
   mesh::Placement placement;  ///< world = scale * file + offset
   mesh::MeshPtr loaded;       ///< felt and drawn: one object
-};
-
-/// A field's values on a surface.
-struct SurfaceColors {
-  Entity field;                                      ///< a scalar, or the magnitude of a vector
-  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
-  NamedColors named{};                               ///< viridis, the values that are drawn, where it does not say
 };
 
 /// A mesh that is drawn.
@@ -124,12 +119,12 @@ struct SurfaceMesh {
   double opacity = 1;
   bool smooth = false;  ///< "shading": the felt mesh is flat
   bool edges = false;
-  std::optional<SurfaceColors> color_by;
+  std::optional<ColorBy> color_by;
 };
 
 /// A plane through a field, coloured by its values, with lines of constant value.
 struct Slice {
-  SurfaceColors shown;
+  ColorBy shown;
   json::Node where;
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
   Entity widget{};  ///< the cutting plane that the plane follows
@@ -173,15 +168,7 @@ struct Seeds {
   int count = 1;                       ///< of the points along a rake
 };
 
-/// Tubes that show values along the lines.
-struct ColorBy {
-  enum class What { field, speed, arc_length };
-  What what = What::speed;
-  Entity field;                                      ///< a scalar, or the magnitude of a vector
-  std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
-  NamedColors named{};                               ///< viridis, the values that are drawn, where it does not say
-};
-
+/// Tubes along streamlines.
 struct StreamlineSet {
   Entity field;
   json::Node where;

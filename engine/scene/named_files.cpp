@@ -18,23 +18,33 @@ void add_string(const json::Node& object, std::string_view key, std::vector<cons
   if (node != nullptr && node->kind == json::Kind::string && !node->string.empty()) names.push_back(node);
 }
 
-/// "transfer" at any depth.
-void add_transfers(const json::Node& node, std::vector<const json::Node*>& names) {
-  add_string(node, "transfer", names);
-  for (const json::Node& item : node.items) add_transfers(item, names);
-  for (const auto& [key, member] : node.members) add_transfers(member, names);
+/// Every string of `object` whose key names a file, by the keys' roles; in lists and objects of it, too.
+void add_files(const json::Node& object, const schema::Keys& keys, std::vector<const json::Node*>& names) {
+  for (const schema::Key& key : keys) {
+    if (key.role == schema::Role::file) add_string(object, key.name, names);
+    const json::Node* value = object.find(key.name);
+    if (value != nullptr && key.form == schema::Form::object) add_files(*value, *key.inner, names);
+  }
 }
 
 /// The values that name files, in the text's order.
 std::vector<const json::Node*> file_names(const json::Node& root) {
   std::vector<const json::Node*> names;
-  if (const json::Node* fields = root.find("fields"))
-    for (const auto& [name, field] : fields->members) add_string(field, "file", names);
-  if (const json::Node* meshes = root.find("meshes"))
-    for (const json::Node& mesh : meshes->items) add_string(mesh, "file", names);
+  for (const schema::Component& component : scene_components()) {
+    const json::Node* part = root.find(component.name);
+    if (part == nullptr) continue;
+    schema::Keys keys = component.keys;
+    for (const schema::Variant& variant : component.variants)
+      for (const schema::Key& key : variant.keys)
+        if (schema::find(keys, key.name) == nullptr) keys.push_back(key);
+    add_files(*part, keys, names);
+    for (const json::Node& item : part->items) add_files(item, keys, names);
+    if (component.shape == schema::Component::Shape::map)
+      for (const auto& [name, item] : part->members) add_files(item, keys, names);
+    for (const json::Node& item : part->items)  // beside "color_by" as a word
+      if (schema::find(keys, "transfer") == nullptr && schema::find(keys, "color_by") != nullptr) add_string(item, "transfer", names);
+  }
   if (const json::Node* device = root.find("device")) add_string(*device, "firmware", names);
-  for (const char* key : {"volumes", "isosurfaces", "meshes", "slices", "streamlines"})
-    if (const json::Node* part = root.find(key)) add_transfers(*part, names);
   std::sort(names.begin(), names.end(), [](const json::Node* a, const json::Node* b) { return a->begin < b->begin; });
   return names;
 }

@@ -1,121 +1,140 @@
-/// Help for the eye: "bounding_box", "axes", "ground", "fog": true or an object; "lights": a list.
+/// What shows where things stand: "bounding_box", "axes", "ground", "fog": true, false or an object; "lights": a list.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/scene_keys.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::scene {
 namespace {
 
-/// Whether the aid is wanted; `false` leaves it out.
-Result<bool> is_wanted(const json::Node& node, std::string_view what) {
-  if (node.kind == json::Kind::boolean) return node.boolean;
-  if (node.kind == json::Kind::object) return true;
-  return json::error_at(node, in_quotes(what) + " is neither true, false nor an object; one of them was expected");
+using schema::Component;
+
+/// Reads an annotation that is true (all as it is by default), false (none) or an object.
+template <class T>
+Outcome read_on_off(Scene& scene, const json::Node& node, const Table<T>& table, std::optional<T>& out) {
+  if (node.kind == json::Kind::boolean && !node.boolean) return Done{};
+  if (node.kind != json::Kind::boolean && node.kind != json::Kind::object)
+    return json::error_at(node, in_quotes(node.label) + " is neither true, false nor an object; one of them was expected");
+  T made;
+  if constexpr (requires { made.where; }) made.where = node;
+  if (node.kind == json::Kind::object) CATENA_CHECK(table.read(scene, node, made));
+  out = std::move(made);
+  return Done{};
 }
 
-Outcome read_field_if_named(Scene& scene, const json::Node& node, Entity& field) {
-  if (node.find("field") == nullptr) return Done{};
-  CATENA_TRY(field, read_field_name(scene, node));
-  return Done{};
+const Table<BoundingBox>& bounding_box_table() {
+  static const auto table = [] {
+    Table<BoundingBox> t;
+    bind_field(t, schema::named("field", Role::any_field, "Whose box.").by_default("all that is drawn"), &BoundingBox::field);
+    t.bind(schema::color("color", "Of its edges."), &BoundingBox::color);
+    t.bind(schema::number("radius", "world", "Of its edges.").positive().by_default("fitted"), &BoundingBox::radius);
+    return t;
+  }();
+  return table;
+}
+
+const Table<Axes>& axes_table() {
+  static const auto table = [] {
+    Table<Axes> t;
+    bind_field(t, schema::named("field", Role::any_field, "Along whose box.").by_default("all that is drawn"), &Axes::field);
+    t.bind(schema::color("color", "Of the axes."), &Axes::color);
+    t.bind(schema::integer("ticks", "", "About so many along an axis.", 2, 50), &Axes::ticks);
+    t.bind(schema::number("radius", "world", "Of the axes.").positive().by_default("fitted"), &Axes::radius);
+    t.bind(schema::texts("names", "Of the axes x, y and z.").items(3, 3), &Axes::names);
+    return t;
+  }();
+  return table;
+}
+
+const Table<Ground>& ground_table() {
+  static const auto table = [] {
+    Table<Ground> t;
+    t.bind(schema::number("at", "world", "Its z.").by_default("just below what is drawn"), &Ground::at);
+    t.bind(schema::number("size", "world", "Edge of the ground.").positive().by_default("fitted"), &Ground::size);
+    t.bind(schema::number("tile", "world", "Edge of a tile; at most 1000 tiles each way.").positive().by_default("fitted"), &Ground::tile);
+    t.bind(
+        schema::color("color", "Of every other tile."), [](auto& ground) -> auto& { return ground.colors[0]; });
+    t.bind(
+        schema::color("second_color", "Of the tiles between."), [](auto& ground) -> auto& { return ground.colors[1]; });
+    t.check([](Scene&, const json::Node& node, Ground& ground) -> Outcome {
+      if (!(ground.size > 0 && ground.tile > 0 && ground.size / ground.tile > 1000)) return Done{};
+      return json::error_at(*node.find("tile"), "\"tile\" is " + to_text(ground.tile) + " on a ground of " + to_text(ground.size) +
+                                                    "; at most 1000 tiles each way were expected");
+    });
+    return t;
+  }();
+  return table;
+}
+
+const Table<Fog>& fog_table() {
+  static const auto table = [] {
+    Table<Fog> t;
+    t.bind(schema::color("color", "What far things turn to.").by_default("the background's"), &Fog::color);
+    t.bind(schema::number("start", "world", "View depth from which the fog thickens.").not_negative().by_default("the nearest thing"),
+           &Fog::start);
+    t.bind(schema::number("end", "world", "View depth at which it is thickest.").positive().by_default("the farthest thing"), &Fog::end);
+    t.bind(schema::number("most", "", "Share of the fog at its end.").within(0, 1), &Fog::most);
+    t.check([](Scene&, const json::Node& node, Fog& fog) -> Outcome {
+      if (!fog.start || !fog.end || *fog.start < *fog.end) return Done{};
+      return json::error_at(*node.find("end"), "\"end\" of the fog is not beyond its \"start\"; a greater view depth was expected");
+    });
+    return t;
+  }();
+  return table;
+}
+
+const Table<Light>& light_table() {
+  static const auto table = [] {
+    Table<Light> t;
+    t.bind(schema::direction("direction", "Towards the light.").required(), &Light::direction);
+    t.bind(schema::color("color", "Its colour."), &Light::color);
+    t.bind(schema::number("intensity", "", "Its strength.").not_negative(), &Light::intensity);
+    const Key fixed =
+        schema::word("fixed_to", {"scene", "camera"}, "What it goes with; a camera's light is given as right, up, towards the eye.");
+    t.bind(fixed, &Light::with_camera);
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_lights(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    if (scene.lights.size() == kMostLights)
+      return json::error_at(item, "there are more than " + std::to_string(kMostLights) + " lights; that many at most were expected");
+    Light light;
+    CATENA_CHECK(light_table().read(scene, item, light));
+    scene.lights.push_back(light);
+    return Done{};
+  });
 }
 
 }  // namespace
 
-Outcome read_bounding_box(Scene& scene, const json::Node& node) {
-  CATENA_TRY(const bool wanted, is_wanted(node, "bounding_box"));
-  if (!wanted) return Done{};
-  BoundingBox box;
-  box.where = node;
-  if (node.kind == json::Kind::object) {
-    CATENA_CHECK(json::only_keys(node, {"field", "color", "radius"}));
-    CATENA_CHECK(read_field_if_named(scene, node, box.field));
-    CATENA_TRY(box.color, read_color(node, "color", box.color));
-    CATENA_TRY(box.radius, json::get_number(node, "radius", 0, json::Range::positive));
-  }
-  scene.bounding_box = std::move(box);
-  return Done{};
+Part bounding_box_part() {
+  return {{"bounding_box", "The edges of a box.", Component::Shape::on_off, bounding_box_table().keys()},
+          [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, bounding_box_table(), scene.bounding_box); }};
 }
 
-Outcome read_axes(Scene& scene, const json::Node& node) {
-  CATENA_TRY(const bool wanted, is_wanted(node, "axes"));
-  if (!wanted) return Done{};
-  Axes axes;
-  axes.where = node;
-  if (node.kind == json::Kind::object) {
-    CATENA_CHECK(json::only_keys(node, {"field", "names", "color", "ticks", "radius"}));
-    CATENA_CHECK(read_field_if_named(scene, node, axes.field));
-    CATENA_TRY(axes.color, read_color(node, "color", axes.color));
-    CATENA_TRY(axes.ticks, json::get_integer(node, "ticks", axes.ticks, 2, 50));
-    CATENA_TRY(axes.radius, json::get_number(node, "radius", 0, json::Range::positive));
-    if (const json::Node* names = node.find("names")) {
-      if (names->kind != json::Kind::array || names->items.size() != 3)
-        return json::error_at(*names, "\"names\" is no list of three; three names, of x, y and z, were expected");
-      for (std::size_t i = 0; i < 3; ++i) {
-        CATENA_TRY(axes.names[i], json::as_string(names->items[i], "names"));
-      }
-    }
-  }
-  scene.axes = std::move(axes);
-  return Done{};
+Part axes_part() {
+  return {{"axes", "Three edges of a box with ticks and numbers.", Component::Shape::on_off, axes_table().keys()},
+          [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, axes_table(), scene.axes); }};
 }
 
-Outcome read_ground(Scene& scene, const json::Node& node) {
-  CATENA_TRY(const bool wanted, is_wanted(node, "ground"));
-  if (!wanted) return Done{};
-  Ground ground;
-  if (node.kind == json::Kind::object) {
-    CATENA_CHECK(json::only_keys(node, {"at", "size", "tile", "color", "second_color"}));
-    CATENA_TRY(ground.at, json::get_optional_number(node, "at"));
-    CATENA_TRY(ground.size, json::get_number(node, "size", 0, json::Range::positive));
-    CATENA_TRY(ground.tile, json::get_number(node, "tile", 0, json::Range::positive));
-    if (ground.size > 0 && ground.tile > 0 && ground.size / ground.tile > 1000)
-      return json::error_at(*node.find("tile"), "\"tile\" is " + to_text(ground.tile) + " on a ground of " + to_text(ground.size) +
-                                                    "; at most 1000 tiles each way were expected");
-    CATENA_TRY(ground.colors[0], read_color(node, "color", ground.colors[0]));
-    CATENA_TRY(ground.colors[1], read_color(node, "second_color", ground.colors[1]));
-  }
-  scene.ground = ground;
-  return Done{};
+Part ground_part() {
+  return {{"ground", "A checkerboard across z.", Component::Shape::on_off, ground_table().keys()},
+          [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, ground_table(), scene.ground); }};
 }
 
-Outcome read_fog(Scene& scene, const json::Node& node) {
-  CATENA_TRY(const bool wanted, is_wanted(node, "fog"));
-  if (!wanted) return Done{};
-  Fog fog;
-  if (node.kind == json::Kind::object) {
-    CATENA_CHECK(json::only_keys(node, {"color", "start", "end", "most"}));
-    if (node.find("color") != nullptr) {
-      CATENA_TRY(fog.color, read_color(node, "color", {}));
-    }
-    CATENA_TRY(fog.start, json::get_optional_number(node, "start", json::Range::not_negative));
-    CATENA_TRY(fog.end, json::get_optional_number(node, "end", json::Range::positive));
-    if (fog.start && fog.end && !(*fog.start < *fog.end))
-      return json::error_at(*node.find("end"), "\"end\" of the fog is not beyond its \"start\"; a greater view depth was expected");
-    CATENA_TRY(fog.most, json::get_number(node, "most", fog.most, json::Range::not_negative));
-    if (fog.most > 1) return json::error_at(*node.find("most"), "\"most\" is " + to_text(fog.most) + "; a share from 0 to 1 was expected");
-  }
-  scene.fog = fog;
-  return Done{};
+Part fog_part() {
+  return {{"fog", "Depth cue: colours turn to the fog's with their depth.", Component::Shape::on_off, fog_table().keys()},
+          [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, fog_table(), scene.fog); }};
 }
 
-Outcome read_lights(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::array) return json::error_at(node, "\"lights\" is no array; an array of objects was expected");
-  for (const json::Node& item : node.items) {
-    CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(item, {"direction", "color", "intensity", "fixed_to"}));
-    if (scene.lights.size() == kMostLights)
-      return json::error_at(item, "there are more than " + std::to_string(kMostLights) + " lights; that many at most were expected");
-    Light light;
-    CATENA_TRY(light.direction, json::require_vec3(item, "direction"));
-    if (max_abs(light.direction) == 0)
-      return json::error_at(*item.find("direction"), "\"direction\" is zero; a vector other than [0, 0, 0] was expected");
-    CATENA_TRY(light.color, read_color(item, "color", light.color));
-    CATENA_TRY(light.intensity, json::get_number(item, "intensity", 1, json::Range::not_negative));
-    CATENA_TRY(const int fixed, json::get_choice(item, "fixed_to", 0, {"scene", "camera"}));
-    light.with_camera = fixed == 1;
-    scene.lights.push_back(light);
-  }
-  return Done{};
+Part lights_part() {
+  return {list_of("lights", "Lights from far away. Without one the scene has a headlight.", light_table(), static_cast<int>(kMostLights)),
+          read_lights};
 }
+
+std::string text_of(const Light& light) { return light_table().write({}, light); }
 
 }  // namespace catena::scene

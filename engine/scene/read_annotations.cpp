@@ -1,11 +1,12 @@
+/// What is written over the picture: "scalar_bars", "labels", "title", "orientation_marker", "status", "overlay".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/scene_keys.h"
 
 namespace catena::scene {
 namespace {
 
-constexpr double kMostPoints = 576;
+constexpr double kMostPoints = 576;  // the picture's shorter side has as many
 
 /// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
@@ -80,18 +81,116 @@ bool is_format(std::string_view text) {
   return k < text.size() && (text[k] == 'e' || text[k] == 'f' || text[k] == 'g') && text.find('%', k) == std::string_view::npos;
 }
 
-Result<double> read_points(const json::Node& object, std::string_view key, double fallback) {
-  CATENA_TRY(const double size, json::get_number(object, key, fallback, json::Range::positive));
-  if (size > kMostPoints)
-    return json::error_at(*object.find(key),
-                          in_quotes(key) + " is " + to_text(size) + "; points were expected, of which the picture's shorter side has 576");
-  return size;
+const Table<ScalarBar>& scalar_bar_table() {
+  static const auto table = [] {
+    Table<ScalarBar> t;
+    const auto index = [](const char* key, const char* of) {
+      return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000).ranged("an index");
+    };
+    t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"),
+             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the four.")},
+            [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
+              CATENA_TRY(bar.shown, read_shown(scene, item));
+              return Done{};
+            });
+    t.bind(schema::text("title", "Over the bar.").by_default("the name of what is shown"), &ScalarBar::title);
+    t.bind(schema::word("position", {"right", "left", "bottom", "top"}, "Where in the picture."), &ScalarBar::side);
+    t.bind(schema::integer("ticks", "", "About so many.", 2, 50), &ScalarBar::ticks);
+    t.bind(schema::text("format", "One number, such as `%.2f` or `%g K`.").by_default("as needed"), &ScalarBar::format);
+    t.check([](Scene&, const json::Node& item, ScalarBar& bar) -> Outcome {
+      const json::Node* format = item.find("format");
+      if (format == nullptr || is_format(bar.format)) return Done{};
+      return json::error_at(*format,
+                            "\"format\" is " + in_quotes(bar.format) + "; one number like \"%.2f\", \"%.3e\" or \"%g K\" was expected");
+    });
+    return t;
+  }();
+  return table;
 }
 
-Result<std::optional<Rgb>> read_optional_color(const json::Node& object) {
-  if (object.find("color") == nullptr) return std::optional<Rgb>();
-  CATENA_TRY(const Rgb color, read_color(object, "color", {}));
-  return std::optional<Rgb>(color);
+/// A size in points.
+Key points_key(const std::string& name, const std::string& help) {
+  return schema::number(name, "points", help).limited({0.0, kMostPoints, true});
+}
+
+const Table<Label>& label_table() {
+  static const auto table = [] {
+    Table<Label> t;
+    t.bind(schema::vec3("at", "world", "Its place.").required(), &Label::at);
+    t.bind(schema::text("text", "What it says.").required(), &Label::text);
+    t.bind(schema::color("color", "Of the text.").by_default("readable"), &Label::color);
+    t.bind(points_key("size", "Of the text."), &Label::size_pt);
+    t.bind(schema::boolean("dot", "A dot at the place."), &Label::dot);
+    t.bind(schema::boolean("hidden_behind", "Left out where an opaque surface stands before it."), &Label::hidden_behind);
+    return t;
+  }();
+  return table;
+}
+
+const Table<OrientationMarker>& orientation_marker_table() {
+  static const auto table = [] {
+    Table<OrientationMarker> t;
+    t.bind(schema::word("position", {"bottom-left", "bottom-right", "top-left", "top-right"}, "Its corner."), &OrientationMarker::corner);
+    t.bind(points_key("size", "Of the marker."), &OrientationMarker::size_pt);
+    t.bind(schema::texts("names", "Of the axes x, y and z.").items(3, 3), &OrientationMarker::names);
+    return t;
+  }();
+  return table;
+}
+
+/// What all text has in common.
+const Table<Annotations>& overlay_table() {
+  static const auto table = [] {
+    Table<Annotations> t;
+    t.bind(schema::text("font", "Of all text.").by_default("DejaVu Sans"), &Annotations::font);
+    t.bind(schema::number("scale", "", "Of all text.").limited({0.0, 20.0, true}), &Annotations::scale);
+    t.bind(schema::color("color", "Of all text.").by_default("readable"), &Annotations::color);
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_scalar_bars(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    ScalarBar bar;
+    bar.where = item;
+    CATENA_CHECK(scalar_bar_table().read(scene, item, bar));
+    scene.annotations.scalar_bars.push_back(std::move(bar));
+    return Done{};
+  });
+}
+
+Outcome read_labels(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    CATENA_CHECK(label_table().read(scene, item, scene.annotations.labels.emplace_back()));
+    return Done{};
+  });
+}
+
+Outcome read_orientation_marker(Scene& scene, const json::Node& node) {
+  if (node.kind == json::Kind::boolean && !node.boolean) return Done{};
+  OrientationMarker marker;
+  if (node.kind != json::Kind::boolean && node.kind != json::Kind::object)
+    return json::error_at(node, "\"orientation_marker\" is neither; true, false or an object was expected");
+  if (node.kind == json::Kind::object) CATENA_CHECK(orientation_marker_table().read(scene, node, marker));
+  scene.annotations.orientation_marker = std::move(marker);
+  return Done{};
+}
+
+Outcome read_status(Scene& scene, const json::Node& node) {
+  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"status\" is no switch; true or false was expected");
+  scene.annotations.status = node.boolean;
+  return Done{};
+}
+
+Outcome read_title(Scene& scene, const json::Node& node) {
+  CATENA_TRY(scene.annotations.title, json::as_string(node, "title"));
+  return Done{};
+}
+
+Outcome read_overlay(Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::expect_object(node, "overlay"));
+  return overlay_table().read(scene, node, scene.annotations);
 }
 
 }  // namespace
@@ -109,91 +208,34 @@ std::optional<ScalarBar> first_scalar_bar(const World& world) {
   return bar;
 }
 
-Outcome read_scalar_bars(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::array) return json::error_at(node, "\"scalar_bars\" is no array; an array of objects was expected");
-  for (const json::Node& item : node.items) {
-    CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(item, {"volume", "slice", "streamlines", "field", "title", "position", "ticks", "format"}));
-    ScalarBar bar;
-    bar.where = item;
-    CATENA_TRY(bar.shown, read_shown(scene, item));
-    if (item.find("title")) {
-      CATENA_TRY(bar.title, json::require_string(item, "title"));
-    }
-    CATENA_TRY(const int side, json::get_choice(item, "position", 0, {"right", "left", "bottom", "top"}));
-    bar.side = static_cast<PictureSide>(side);
-    CATENA_TRY(bar.ticks, json::get_integer(item, "ticks", bar.ticks, 2, 50));
-    CATENA_TRY(bar.format, json::get_string(item, "format", ""));
-    if (item.find("format") && !is_format(bar.format))
-      return json::error_at(*item.find("format"),
-                            "\"format\" is " + in_quotes(bar.format) + "; one number like \"%.2f\", \"%.3e\" or \"%g K\" was expected");
-    scene.annotations.scalar_bars.push_back(std::move(bar));
-  }
-  return Done{};
+Part scalar_bars_part() {
+  return {list_of("scalar_bars", "Colours with their values, beside the picture.", scalar_bar_table()), read_scalar_bars};
 }
 
-Outcome read_labels(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::array) return json::error_at(node, "\"labels\" is no array; an array of objects was expected");
-  for (const json::Node& item : node.items) {
-    CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(item, {"at", "text", "color", "size", "dot", "hidden_behind"}));
-    Label label;
-    CATENA_TRY(label.at, json::require_vec3(item, "at"));
-    CATENA_TRY(label.text, json::require_string(item, "text"));
-    CATENA_TRY(label.color, read_optional_color(item));
-    CATENA_TRY(label.size_pt, read_points(item, "size", label.size_pt));
-    CATENA_TRY(label.dot, json::get_boolean(item, "dot", label.dot));
-    CATENA_TRY(label.hidden_behind, json::get_boolean(item, "hidden_behind", label.hidden_behind));
-    scene.annotations.labels.push_back(std::move(label));
-  }
-  return Done{};
+Part labels_part() { return {list_of("labels", "Words at places of the scene.", label_table()), read_labels}; }
+
+Part title_part() {
+  return {{"title", "At the top of the picture.", schema::Component::Shape::value, {schema::text("title", "At the top of the picture.")}},
+          read_title};
 }
 
-Outcome read_title(Scene& scene, const json::Node& node) {
-  CATENA_TRY(scene.annotations.title, json::as_string(node, "title"));
-  return Done{};
+Part orientation_marker_part() {
+  return {{"orientation_marker", "Three arrows in a corner: which way x, y and z point.", schema::Component::Shape::on_off,
+           orientation_marker_table().keys()},
+          read_orientation_marker};
 }
 
-Outcome read_orientation_marker(Scene& scene, const json::Node& node) {
-  if (node.kind == json::Kind::boolean) {
-    if (node.boolean) scene.annotations.orientation_marker.emplace();
-    return Done{};
-  }
-  if (node.kind != json::Kind::object)
-    return json::error_at(node, "\"orientation_marker\" is neither; true, false or an object was expected");
-  CATENA_CHECK(json::only_keys(node, {"position", "size", "names"}));
-  OrientationMarker marker;
-  CATENA_TRY(const int corner, json::get_choice(node, "position", 0, {"bottom-left", "bottom-right", "top-left", "top-right"}));
-  marker.corner = static_cast<PictureCorner>(corner);
-  CATENA_TRY(marker.size_pt, read_points(node, "size", marker.size_pt));
-  if (const json::Node* names = node.find("names")) {
-    if (names->kind != json::Kind::array || names->items.size() != 3)
-      return json::error_at(*names, "\"names\" is no list of three; the names of x, y and z were expected");
-    for (std::size_t i = 0; i < 3; ++i) {
-      CATENA_TRY(marker.names[i], json::as_string(names->items[i], "names"));
-    }
-  }
-  scene.annotations.orientation_marker = std::move(marker);
-  return Done{};
+Part status_part() {
+  return {{"status",
+           "The force, and the status of every link.",
+           schema::Component::Shape::value,
+           {schema::boolean("status", "Writes the force, and the status of every link, over the picture.").by_default("false")}},
+          read_status};
 }
 
-Outcome read_status(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"status\" is no switch; true or false was expected");
-  scene.annotations.status = node.boolean;
-  return Done{};
-}
-
-/// What all text has in common.
-Outcome read_overlay(Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "overlay"));
-  CATENA_CHECK(json::only_keys(node, {"font", "scale", "color"}));
-  Annotations& all = scene.annotations;
-  CATENA_TRY(all.font, json::get_string(node, "font", all.font));
-  CATENA_TRY(all.scale, json::get_number(node, "scale", all.scale, json::Range::positive));
-  if (all.scale > 20)
-    return json::error_at(*node.find("scale"), "\"scale\" is " + to_text(all.scale) + "; a factor of at most 20 was expected");
-  CATENA_TRY(all.color, read_optional_color(node));
-  return Done{};
+Part overlay_part() {
+  return {{"overlay", "What all text over the picture has in common.", schema::Component::Shape::object, overlay_table().keys()},
+          read_overlay};
 }
 
 }  // namespace catena::scene

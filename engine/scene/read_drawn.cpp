@@ -1,66 +1,218 @@
+/// What is drawn: "volumes", "isosurfaces", "meshes", and the "cursor".
 #include <filesystem>
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/read_look.h"
 #include "engine/scene/read_transfer.h"
 
 namespace catena::scene {
 namespace {
 
-Result<Rgb> get_color(const json::Node& object, std::string_view key, const Rgb& fallback) {
-  const json::Node* node = object.find(key);
-  if (node == nullptr) return fallback;
-  CATENA_TRY(const Vec3 c, json::as_vec3(*node, key));
-  return as_color(c, *node, key);
-}
-
 /// Empty where `path` is a mesh file that is there.
 std::string mesh_fault(const std::string& path) {
   std::error_code code;
-  if (!mesh::is_mesh_file(path)) return in_quotes(path) + " has an unknown kind; a .stl or .obj file was expected";
-  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist; a .stl or .obj file was expected";
-  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file; a .stl or .obj file was expected";
+  const std::string wanted = "; a " + alternatives(mesh::mesh_endings()) + " file was expected";
+  if (!mesh::is_mesh_file(path)) return in_quotes(path) + " has an unknown kind" + wanted;
+  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist" + wanted;
+  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file" + wanted;
   return {};
 }
 
-/// "color", or "color_by": a field's name, and the colours of read_transfer.h.
-Outcome read_mesh_color(const Scene& scene, const json::Node& item, SurfaceMesh& surface) {
-  if (item.find("color_by") == nullptr) {
-    for (const char* key : {"range", "transfer"})
-      if (const json::Node* node = item.find(key))
-        return json::error_at(*node, in_quotes(key) + " is given, but nothing says of what; \"color_by\": a field was expected beside it");
-    CATENA_TRY(surface.color, get_color(item, "color", surface.color));
-    return Done{};
-  }
-  surface.color_by.emplace();
-  CATENA_TRY(surface.color_by->field, read_field_name(scene, item, "color_by"));
-  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
-  surface.color_by->colors = std::move(scale.colors);
-  surface.color_by->named = std::move(scale.named);
+const Table<Volume>& volume_table() {
+  static const auto table = [] {
+    Table<Volume> t;
+    bind_field(t, schema::named("field", Role::scalar_field, "A scalar field.").required(), &Volume::field);
+    t.group(
+        transfer_keys(),
+        [](Scene& scene, const json::Node& item, Volume& volume) -> Outcome {
+          CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
+          return Done{};
+        },
+        [](const Scene&, const Volume& v) { return transfer_members(v.transfer); });
+    t.bind(schema::boolean("shade", "Lit by the gradient."), &Volume::shade);
+    t.bind(clip_key(), &Volume::clipped);
+    t.beside(visible_key());
+    t.bind(schema::word("projection", {"composite", "maximum", "minimum", "average"}, "What a ray makes of its values."),
+           &Volume::projection);
+    t.hand(
+        color_by_key(ColorSubjects::rays),
+        [](Scene& scene, const json::Node& item, Volume& v) { return read_color_by(scene, item, ColorSubjects::rays, v.color_by); },
+        [](const Scene& scene, const Volume& v) { return v.color_by ? write_color_by(scene, *v.color_by) : std::string(); });
+    t.check([](Scene&, const json::Node& item, Volume& volume) -> Outcome {
+      if (volume.projection == Volume::Projection::composite) return Done{};
+      const std::string beside =
+          " beside the projection " + in_quotes(item.find("projection")->string) + "; \"composite\" was expected with it";
+      if (volume.color_by) return json::error_at(volume.color_by->where, "\"color_by\" stands" + beside);
+      if (volume.transfer.gradient_factors.empty()) return Done{};
+      return json::error_at(*item.find("projection"), "an opacity by the gradient stands" + beside);
+    });
+    return t;
+  }();
+  return table;
+}
+
+const Table<Isosurface>& isosurface_table() {
+  static const auto table = [] {
+    Table<Isosurface> t;
+    bind_field(t, schema::named("field", Role::scalar_field, "A scalar field.").required(), &Isosurface::field);
+    const Key level = schema::number("level", "value", "The value on the surface, or an isolevel widget whose value it follows.")
+                          .required()
+                          .ranged("in the field's range")
+                          .as(Role::level)
+                          .or_widget();
+    t.hand(
+        level,
+        [](Scene& scene, const json::Node& item, Isosurface& surface) -> Outcome {
+          if (const json::Node* node = item.find("level"); node != nullptr && node->kind == json::Kind::object) {
+            CATENA_CHECK(json::only_keys(*node, {"widget"}));
+            CATENA_TRY(surface.level_from, read_widget_name(scene, *node, {widget::Kind::isolevel}, "an isolevel"));
+          } else {
+            CATENA_TRY(surface.level, json::require_number(item, "level"));
+          }
+          return Done{};
+        },
+        [](const Scene& scene, const Isosurface& s) {
+          return s.level_from ? "{\"widget\": " + schema::write_value(scene.world.get<Name>(s.level_from).value) + "}"
+                              : schema::write_value(s.level);
+        });
+    t.bind(schema::color("color", "Its colour."), &Isosurface::color);
+    t.bind(opacity_key("Of one side."), &Isosurface::opacity);
+    t.bind(clip_key(), &Isosurface::clipped);
+    t.beside(visible_key());
+    t.hand(
+        color_by_key(ColorSubjects::rays),
+        [](Scene& scene, const json::Node& item, Isosurface& s) { return read_color_by(scene, item, ColorSubjects::rays, s.color_by); },
+        [](const Scene& scene, const Isosurface& s) { return s.color_by ? write_color_by(scene, *s.color_by) : std::string(); });
+    return t;
+  }();
+  return table;
+}
+
+/// An item of "meshes": the file, which is felt and drawn, and how it is drawn.
+struct MeshItem {
+  std::string name, file;
+  MeshSource source;
+  SurfaceMesh surface;
+  bool drawn = true;
+};
+
+Outcome read_mesh_name(Scene& scene, const json::Node& item, MeshItem& mesh) {
+  CATENA_TRY(mesh.name, json::require_string(item, "name"));
+  const json::Node& node = *item.find("name");
+  if (!is_name(mesh.name))
+    return json::error_at(node, "mesh name " + in_quotes(mesh.name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+  if (find_mesh(scene, mesh.name))
+    return json::error_at(node, "a second mesh is called " + in_quotes(mesh.name) + "; a name of its own was expected");
   return Done{};
 }
 
-/// Calls read(item) for each object of an array.
-template <class Read>
-Outcome each_item(const json::Node& node, std::string_view what, Read&& read) {
-  if (node.kind != json::Kind::array) return json::error_at(node, in_quotes(what) + " is no array; an array of objects was expected");
-  for (const json::Node& item : node.items) {
-    CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(read(item));
-  }
+Outcome read_mesh_file(Scene& scene, const json::Node& item, MeshItem& mesh) {
+  CATENA_TRY(mesh.file, json::require_string(item, "file"));
+  mesh.source.path = resolved_path(scene.path, mesh.file);
+  if (const std::string fault = mesh_fault(mesh.source.path); !fault.empty())
+    return json::error_at(*item.find("file"), "mesh " + in_quotes(mesh.name) + ": file " + fault);
   return Done{};
+}
+
+/// "color", or "color_by".
+Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
+  SurfaceMesh& surface = mesh.surface;
+  CATENA_CHECK(read_color_by(scene, item, ColorSubjects::surfaces, surface.color_by));
+  const json::Node* by = item.find("color_by");
+  if (by != nullptr && by->kind == json::Kind::string) return Done{};
+  for (const char* key : {"range", "transfer"})
+    if (const json::Node* node = item.find(key))
+      return json::error_at(*node, in_quotes(key) + " is given, but nothing says of what; \"color_by\": a field was expected beside it");
+  CATENA_TRY(surface.color, read_color(item, "color", surface.color));
+  return Done{};
+}
+
+const Table<MeshItem>& mesh_table() {
+  static const auto table = [] {
+    Table<MeshItem> t;
+    t.hand(schema::text("name", "By which a link names it.").required(), read_mesh_name,
+           [](const Scene&, const MeshItem& m) { return schema::write_value(m.name); });
+    t.hand(schema::file("file", "The file: " + alternatives(mesh::mesh_endings()) + ".").required(), read_mesh_file,
+           [](const Scene&, const MeshItem& m) { return schema::write_value(m.file); });
+    t.bind(
+        schema::number("scale", "", "World units per unit of the file.").positive(),
+        [](auto& m) -> auto& { return m.source.placement.scale; });
+    t.bind(
+        schema::vec3("offset", "world", "Added after the scale."), [](auto& m) -> auto& { return m.source.placement.offset; });
+    t.bind(schema::boolean("drawn", "False: it is only felt."), &MeshItem::drawn);
+    t.hand(schema::color("color", "Its colour, without `color_by`.").by_default(write_value(SurfaceMesh{}.color)), read_mesh_color,
+           [](const Scene&, const MeshItem& m) { return write_value(m.surface.color); });
+    t.beside(color_by_key(ColorSubjects::surfaces), [](const Scene& scene, const MeshItem& m) {
+      return m.surface.color_by ? write_color_by(scene, *m.surface.color_by) : std::string();
+    });
+    t.bind(
+        opacity_key("Of one side."), [](auto& m) -> auto& { return m.surface.opacity; });
+    t.bind(
+        schema::word("shading", {"flat", "smooth"}, "How it is lit; the hand feels it flat."),
+        [](auto& m) -> auto& { return m.surface.smooth; });
+    t.bind(
+        schema::boolean("edges", "Draws the triangles' edges."), [](auto& m) -> auto& { return m.surface.edges; });
+    t.bind(
+        clip_key(), [](auto& m) -> auto& { return m.surface.clipped; });
+    t.beside(visible_key());
+    t.formerly("range").formerly("transfer");  // beside "color_by" as a word
+    return t;
+  }();
+  return table;
+}
+
+const Table<Cursor>& cursor_table() {
+  static const auto table = [] {
+    Table<Cursor> t;
+    t.hand(
+        schema::vec3("probe", "world", "Where the hand stands in a still picture."),
+        [](Scene&, const json::Node& node, Cursor& cursor) -> Outcome {
+          CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
+          if (probe) cursor.probe = *probe;
+          cursor.visible = cursor.visible || probe;
+          return Done{};
+        },
+        [](const Scene&, const Cursor& c) { return c.visible ? schema::write_value(c.probe) : std::string(); });
+    t.bind(schema::number("size", "world", "Radius of its ball.").positive().by_default("fitted"), &Cursor::size);
+    return t;
+  }();
+  return table;
+}
+
+template <class T>
+Outcome read_items(Scene& scene, const json::Node& node, const Table<T>& table) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    T made;
+    made.where = item;
+    CATENA_CHECK(table.read(scene, item, made));
+    const Entity e = scene.world.create();
+    scene.world.emplace<T>(e, std::move(made));
+    return read_visible(scene, e, item);
+  });
+}
+
+Outcome read_meshes(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    MeshItem mesh;
+    mesh.source.where = mesh.surface.where = item;
+    CATENA_CHECK(mesh_table().read(scene, item, mesh));
+    mesh.surface.mesh = scene.world.create();
+    scene.world.emplace<Name>(mesh.surface.mesh, {mesh.name});
+    scene.world.emplace<MeshSource>(mesh.surface.mesh, std::move(mesh.source));
+    const Entity e = scene.world.create();
+    if (mesh.drawn) scene.world.emplace<SurfaceMesh>(e, std::move(mesh.surface));
+    return read_visible(scene, e, item);
+  });
+}
+
+Outcome read_cursor(Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::expect_object(node, "cursor"));
+  return cursor_table().read(scene, node, scene.world.get<Cursor>(scene.cursor));
 }
 
 }  // namespace
-
-Result<double> read_opacity(const json::Node& object, double fallback) {
-  CATENA_TRY(const double opacity, json::get_number(object, "opacity", fallback, json::Range::not_negative));
-  if (opacity > 1)
-    return json::error_at(*object.find("opacity"), "\"opacity\" is " + to_text(opacity) + "; a number from 0 to 1 was expected");
-  return opacity;
-}
 
 Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what) {
   for (int i = 0; i < 3; ++i)
@@ -69,7 +221,12 @@ Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view wha
   return Rgb{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
 }
 
-Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback) { return get_color(object, key, fallback); }
+Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback) {
+  const json::Node* node = object.find(key);
+  if (node == nullptr) return fallback;
+  CATENA_TRY(const Vec3 c, json::as_vec3(*node, key));
+  return as_color(c, *node, key);
+}
 
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
   CATENA_TRY(const std::string name, json::require_string(object, key));
@@ -80,94 +237,22 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
                                                ", one of \"fields\" was expected" + suggestion(name, names));
 }
 
-Outcome read_volumes(Scene& scene, const json::Node& node) {
-  return each_item(node, "volumes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "color", "range", "transfer", "opacity", "opacity_unit", "extinction", "gradient_opacity",
-                                        "shade", "clip", "visible", "projection", "color_by"}));
-    Volume volume;
-    volume.where = item;
-    CATENA_TRY(volume.field, read_field_name(scene, item));
-    CATENA_TRY(volume.transfer, read_transfer(scene.path, item));
-    CATENA_TRY(volume.shade, json::get_boolean(item, "shade", false));
-    CATENA_TRY(volume.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(volume.color_by, read_field_colors(scene, item));
-    CATENA_CHECK(read_projection(volume, item));
-    const Entity e = scene.world.create();
-    scene.world.emplace<Volume>(e, std::move(volume));
-    return read_visible(scene, e, item);
-  });
+Part volumes_part() {
+  return {list_of("volumes", "Volumes seen through. At most four.", volume_table()),
+          [](Scene& scene, const json::Node& node) { return read_items(scene, node, volume_table()); }};
 }
 
-Outcome read_isosurfaces(Scene& scene, const json::Node& node) {
-  return each_item(node, "isosurfaces", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"field", "level", "color", "opacity", "clip", "visible", "color_by"}));
-    Isosurface surface;
-    surface.where = item;
-    CATENA_TRY(surface.field, read_field_name(scene, item));
-    CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(surface.color_by, read_field_colors(scene, item));
-    if (const json::Node* level = item.find("level"); level != nullptr && level->kind == json::Kind::object) {
-      CATENA_CHECK(json::only_keys(*level, {"widget"}));
-      CATENA_TRY(surface.level_from, read_widget_name(scene, *level, {widget::Kind::isolevel}, "an isolevel"));
-    } else {
-      CATENA_TRY(surface.level, json::require_number(item, "level"));
-    }
-    CATENA_TRY(surface.color, get_color(item, "color", surface.color));
-    CATENA_TRY(surface.opacity, read_opacity(item, surface.opacity));
-    const Entity e = scene.world.create();
-    scene.world.emplace<Isosurface>(e, std::move(surface));
-    return read_visible(scene, e, item);
-  });
+Part isosurfaces_part() {
+  return {list_of("isosurfaces", "Surfaces on which a scalar field has one value. At most eight translucent ones.", isosurface_table()),
+          [](Scene& scene, const json::Node& node) { return read_items(scene, node, isosurface_table()); }};
 }
 
-Outcome read_meshes(Scene& scene, const json::Node& node) {
-  return each_item(node, "meshes", [&](const json::Node& item) -> Outcome {
-    CATENA_CHECK(json::only_keys(item, {"name", "file", "scale", "offset", "drawn", "color", "color_by", "range", "transfer", "opacity",
-                                        "shading", "edges", "clip", "visible"}));
-    CATENA_TRY(const std::string name, json::require_string(item, "name"));
-    if (!is_name(name))
-      return json::error_at(*item.find("name"),
-                            "mesh name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
-    if (find_mesh(scene, name))
-      return json::error_at(*item.find("name"), "a second mesh is called " + in_quotes(name) + "; a name of its own was expected");
-    MeshSource source;
-    source.where = item;
-    CATENA_TRY(const std::string file, json::require_string(item, "file"));
-    source.path = resolved_path(scene.path, file);
-    if (const std::string fault = mesh_fault(source.path); !fault.empty())
-      return json::error_at(*item.find("file"), "mesh " + in_quotes(name) + ": file " + fault);
-    CATENA_TRY(source.placement.scale, json::get_number(item, "scale", 1, json::Range::positive));
-    CATENA_TRY(source.placement.offset, json::get_vec3(item, "offset", source.placement.offset));
-    SurfaceMesh surface;
-    surface.where = item;
-    CATENA_CHECK(read_mesh_color(scene, item, surface));
-    CATENA_TRY(surface.opacity, read_opacity(item, surface.opacity));
-    CATENA_TRY(const int shading, json::get_choice(item, "shading", 0, {"flat", "smooth"}));
-    surface.smooth = shading == 1;
-    CATENA_TRY(surface.edges, json::get_boolean(item, "edges", false));
-    CATENA_TRY(surface.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(const bool drawn, json::get_boolean(item, "drawn", true));
-    surface.mesh = scene.world.create();
-    scene.world.emplace<Name>(surface.mesh, {name});
-    scene.world.emplace<MeshSource>(surface.mesh, std::move(source));
-    const Entity e = scene.world.create();
-    if (drawn) scene.world.emplace<SurfaceMesh>(e, std::move(surface));
-    return read_visible(scene, e, item);
-  });
-}
+Part meshes_part() { return {list_of("meshes", "Triangle meshes, which are drawn and felt.", mesh_table()), read_meshes}; }
 
-/// Where the glyph stands in a still picture; a device or a replay moves it.
-Outcome read_cursor(Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "cursor"));
-  CATENA_CHECK(json::only_keys(node, {"probe", "size"}));
-  Cursor& cursor = scene.world.get<Cursor>(scene.cursor);
-  CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
-  if (probe) {
-    cursor.probe = *probe;
-    cursor.visible = true;
-  }
-  CATENA_TRY(cursor.size, json::get_number(node, "size", 0, json::Range::positive));
-  return Done{};
+Part cursor_part() {
+  return {
+      {"cursor", "The hand in a still picture; a device or a replay moves it.", schema::Component::Shape::object, cursor_table().keys()},
+      read_cursor};
 }
 
 }  // namespace catena::scene

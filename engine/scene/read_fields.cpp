@@ -1,10 +1,11 @@
+/// "fields": grids from files, and formulas.
 #include <algorithm>
 #include <filesystem>
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/scene_keys.h"
 #include "engine/scene/units.h"
 
 namespace catena::scene {
@@ -27,24 +28,66 @@ std::string file_fault(const std::string& path) {
 
 // ---- fields from files ----
 
-Result<field::RawLayout> read_raw_layout(const json::Node& node) {
-  field::RawLayout layout;
-  const json::Node* shape = node.find("shape");
-  if (shape == nullptr) return json::error_at(node, "key \"shape\" is missing; a .raw file was expected to state [nx, ny, nz]");
-  CATENA_TRY(const Vec3 size, json::as_vec3(*shape, "shape"));
-  for (int i = 0; i < 3; ++i)
-    if (!(size[i] >= 2 && size[i] <= 65536 && std::floor(size[i]) == size[i]))
-      return json::error_at(*shape, "\"shape\" holds " + to_text(size[i]) + "; three whole numbers from 2 to 65536 were expected");
-  layout.shape = {static_cast<int>(size.x), static_cast<int>(size.y), static_cast<int>(size.z)};
-  CATENA_TRY(layout.spacing, json::get_vec3(node, "spacing", layout.spacing));
-  if (!(layout.spacing.x > 0 && layout.spacing.y > 0 && layout.spacing.z > 0))
-    return json::error_at(*node.find("spacing"), "\"spacing\" is not positive; three finite numbers > 0 were expected");
-  CATENA_TRY(layout.origin, json::get_vec3(node, "origin", layout.origin));
-  const std::initializer_list<std::string_view> types = {"float32", "float64", "uint8", "int8",     "uint16",
-                                                         "int16",   "uint32",  "int32", "float32x3"};
-  CATENA_TRY(const int type, json::get_choice(node, "type", 0, types));
-  layout.type = types.begin()[type];
-  return layout;
+Key unit_key() {
+  return schema::text("unit", "The word shown after values, such as `\"m/s\"`; it changes no number.")
+      .items(0, 24)
+      .by_default("the file's");
+}
+
+Key file_key(bool with_layout) {
+  std::vector<std::string_view> endings;
+  for (const std::string_view ending : field::field_endings())
+    if (field::needs_layout(ending) == with_layout) endings.push_back(ending);
+  return schema::file("file", "The file with the data: " + alternatives(endings) + ".").required();
+}
+
+Keys grid_keys() {
+  return {file_key(false), schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
+          schema::any_of("valid", {schema::text("", ""), schema::null()},
+                         "The BoolGrid that masks the field; null for none. The default one may be missing.")
+              .by_default("`\"valid\"`"),
+          unit_key()};
+}
+
+/// What a file without a header says of itself in the scene.
+using LayoutTable = schema::Table<field::RawLayout, const std::string>;
+
+const LayoutTable& layout_table() {
+  static const auto table = [] {
+    LayoutTable t;
+    t.beside(file_key(true));
+    t.hand(schema::vec3("shape", "voxels", "Voxels along x, y and z.").within(2, 65536).required(),
+           [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
+             const json::Node* shape = node.find("shape");
+             if (shape == nullptr) return json::error_at(node, "key \"shape\" is missing; a .raw file was expected to state [nx, ny, nz]");
+             CATENA_TRY(const Vec3 size, json::as_vec3(*shape, "shape"));
+             for (int i = 0; i < 3; ++i)
+               if (!(size[i] >= 2 && size[i] <= 65536 && std::floor(size[i]) == size[i]))
+                 return json::error_at(*shape,
+                                       "\"shape\" holds " + to_text(size[i]) + "; three whole numbers from 2 to 65536 were expected");
+             layout.shape = {static_cast<int>(size.x), static_cast<int>(size.y), static_cast<int>(size.z)};
+             return Done{};
+           });
+    t.bind(schema::vec3("spacing", "world", "Edges of a voxel.").positive(), &field::RawLayout::spacing);
+    t.bind(schema::vec3("origin", "world", "Place of the first voxel's centre."), &field::RawLayout::origin);
+    t.hand(schema::word("type", {"float32", "float64", "uint8", "int8", "uint16", "int16", "uint32", "int32", "float32x3"},
+                        "How a number is stored; `float32x3` for vectors.")
+               .by_default("`float32`"),
+           [](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
+             const Key& key = *schema::find(layout_table().keys(), "type");
+             int index = 0;
+             CATENA_CHECK(schema::read_choice(key, node, index));
+             layout.type = key.words[static_cast<std::size_t>(index)];
+             return Done{};
+           });
+    t.beside(unit_key());
+    t.check([](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
+      if (layout.spacing.x > 0 && layout.spacing.y > 0 && layout.spacing.z > 0) return Done{};
+      return json::error_at(*node.find("spacing"), "\"spacing\" is not positive; three finite numbers > 0 were expected");
+    });
+    return t;
+  }();
+  return table;
 }
 
 Outcome read_file_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
@@ -52,10 +95,9 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
   LoadRequest request;
   request.path = resolved_path(scene_path, file);
   if (field::needs_layout(file)) {
-    CATENA_CHECK(json::only_keys(node, {"file", "shape", "spacing", "origin", "type", "unit"}));
-    CATENA_TRY(request.raw, read_raw_layout(node));
+    CATENA_CHECK(layout_table().read(scene_path, node, request.raw.emplace()));
   } else {
-    CATENA_CHECK(json::only_keys(node, {"file", "grid", "valid", "unit"}));
+    CATENA_CHECK(json::only_keys(node, schema::names_of(grid_keys())));
     CATENA_TRY(request.grid, json::get_string(node, "grid", {}));
     if (const json::Node* grid = node.find("grid"); grid != nullptr && request.grid.empty())
       return json::error_at(*grid, "\"grid\" is empty; the name of a grid was expected");
@@ -76,8 +118,25 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
 
 // ---- fields by formula ----
 
+Keys formula_keys() {
+  std::vector<std::string> names;
+  for (const std::string_view name : field::analytic_names()) names.emplace_back(name);
+  const FieldSource usual;
+  return {
+      schema::word("analytic", std::move(names), "Which formula.").required(),
+      schema::number("scale", "", "Multiplies the values.").ranged("not 0").by_default("1"),
+      schema::direction("direction", "Of `uniform` only.").by_default("[1, 0, 0]"),
+      schema::text("part",
+                   "A grid of what `generate` writes, where it writes several: of `left-ventricle`, `density`, `transmural` or `fibre`."),
+      schema::text("grid", "The same."),
+      schema::integer("resolution", "nodes", "Along an axis of the grid that is drawn.", 2, kMostNodes)
+          .by_default(std::to_string(usual.resolution)),
+      schema::vector("box", 2, "world", "The cube that is sampled for the picture.").ranged("rising").by_default("[-2, 2]"),
+      unit_key()};
+}
+
 Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
-  CATENA_CHECK(json::only_keys(node, {"analytic", "scale", "direction", "part", "grid", "resolution", "box", "unit"}));
+  CATENA_CHECK(json::only_keys(node, schema::names_of(formula_keys())));
   CATENA_TRY(source.analytic, json::require_string(node, "analytic"));
   const json::Node& name = *node.find("analytic");
   if (!field::is_analytic(source.analytic)) {
@@ -173,8 +232,8 @@ bool is_name(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
-  if (const json::Node* fields = root.find("fields")) {
+Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<FieldOverride>& overrides) {
+  if (fields != nullptr) {
     CATENA_CHECK(json::expect_object(*fields, "fields"));
     for (const auto& [name, node] : fields->members) {
       if (!is_name(name))
@@ -191,6 +250,16 @@ Outcome read_fields(Scene& scene, const json::Node& root, const std::vector<Fiel
   }
   for (const FieldOverride& with : overrides) CATENA_CHECK(apply_override(scene, with));
   return Done{};
+}
+
+Part fields_part() {
+  schema::Component component{
+      "fields", "What there is: grids from files, and formulas. Names and their fields; a field has either `file` or `analytic`.",
+      schema::Component::Shape::map};
+  component.variants = {{"file", "A file that says itself what it holds.", grid_keys()},
+                        {"raw", "A file of bare numbers, little-endian, x fastest.", layout_table().keys()},
+                        {"analytic", "A formula. The hand feels it exactly; the picture draws it from a grid.", formula_keys()}};
+  return {component, nullptr};
 }
 
 }  // namespace catena::scene

@@ -1,13 +1,12 @@
+/// What the hand feels: "chain", "modes", "coupling", "workspace", "device".
 #include "engine/base/text.h"
 #include "engine/exchange/haptic_state.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/scene_keys.h"
 
 namespace catena::scene {
 namespace {
 
 constexpr std::size_t kMostLinks = exchange::kMaxSceneLinks;
-
-}  // namespace
 
 /// Names, types and the field that a link names are checked here; its other keys by the constraint of its type, where the
 /// program for the hand is made.
@@ -36,12 +35,18 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
+Keys modes_keys() {
+  return {schema::text("name", "Shown in `--details`.").required(),
+          schema::texts("links", "Links of the chain, in the order of this mode.").as(Role::link).required(),
+          schema::object("on", {}, "A switch, as of a link.").required()};
+}
+
 /// Whether its links exist is checked where the program is made: a link may stand for several.
 Outcome read_modes(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"modes\" is no array; an array of modes was expected");
   for (const json::Node& item : node.items) {
     CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(item, {"name", "links", "on"}));
+    CATENA_CHECK(json::only_keys(item, schema::names_of(modes_keys())));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     if (!is_name(name))
       return json::error_at(*item.find("name"),
@@ -63,42 +68,83 @@ Outcome read_modes(Scene& scene, const json::Node& node) {
   return Done{};
 }
 
-Outcome read_coupling(Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "coupling"));
-  CATENA_CHECK(
-      json::only_keys(node, {"stiffness", "damping", "max_force", "ramp_s", "rotational_stiffness", "rotational_damping", "method"}));
-  Coupling& c = scene.coupling;
-  CATENA_TRY(c.stiffness_n_per_m, json::get_number(node, "stiffness", c.stiffness_n_per_m, json::Range::not_negative));
-  CATENA_TRY(c.damping_ns_per_m, json::get_number(node, "damping", c.damping_ns_per_m, json::Range::not_negative));
-  CATENA_TRY(c.max_force_n, json::get_number(node, "max_force", c.max_force_n, json::Range::not_negative));
-  CATENA_TRY(c.rotational_stiffness_nm_per_rad,
-             json::get_number(node, "rotational_stiffness", c.rotational_stiffness_nm_per_rad, json::Range::not_negative));
-  CATENA_TRY(c.rotational_damping_nms_per_rad,
-             json::get_number(node, "rotational_damping", c.rotational_damping_nms_per_rad, json::Range::not_negative));
-  CATENA_TRY(c.ramp_s, json::get_optional_number(node, "ramp_s", json::Range::not_negative));
-  CATENA_TRY(const int method, json::get_choice(node, "method", 0, {"chain", "pipe", "balance", "closest", "linear"}));
-  c.method = static_cast<CouplingMethod>(method);
-  return Done{};
+const Table<Coupling>& coupling_table() {
+  static const auto table = [] {
+    Table<Coupling> t;
+    t.bind(schema::number("stiffness", "N/m", "Of every link that states none.").not_negative(), &Coupling::stiffness_n_per_m);
+    t.bind(schema::number("damping", "N s/m", "Against the hand's velocity.").not_negative(), &Coupling::damping_ns_per_m);
+    t.bind(schema::number("max_force", "N", "Limit of the force; its direction is kept.").not_negative(), &Coupling::max_force_n);
+    t.bind(schema::number("rotational_stiffness", "N m/rad", "Of every link that aligns and states none.").not_negative(),
+           &Coupling::rotational_stiffness_nm_per_rad);
+    t.bind(schema::number("rotational_damping", "N m s/rad", "Against the tool's turning.").not_negative(),
+           &Coupling::rotational_damping_nms_per_rad);
+    t.bind(schema::number("ramp_s", "s", "How long a switch takes to reach full force.")
+               .not_negative()
+               .by_default("0 in `replay`, 0.02 with a device"),
+           &Coupling::ramp_s);
+    t.bind(schema::word("method", {"chain", "pipe", "balance", "closest", "linear"}, "`chain`, or a method before it."), &Coupling::method);
+    return t;
+  }();
+  return table;
 }
 
-Outcome read_workspace(Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "workspace"));
-  CATENA_CHECK(json::only_keys(node, {"metres_per_unit", "origin", "rotation"}));
-  Workspace& w = scene.workspace;
-  CATENA_TRY(w.metres_per_unit, json::get_number(node, "metres_per_unit", w.metres_per_unit, json::Range::positive));
-  w.given = node.find("metres_per_unit") != nullptr;
-  CATENA_TRY(w.origin, json::get_vec3(node, "origin", w.origin));
-  if (const json::Node* rotation = node.find("rotation")) {
-    CATENA_TRY(w.rotation, json::as_rotation(*rotation, "rotation"));
-  }
-  return Done{};
+const Table<Workspace>& workspace_table() {
+  static const auto table = [] {
+    Table<Workspace> t;
+    t.bind(schema::number("metres_per_unit", "m", "Metres of hand per world unit.")
+               .positive()
+               .by_default("1 in `replay`; fitted to the device in `view` and `feel`"),
+           &Workspace::metres_per_unit);
+    t.bind(schema::vec3("origin", "world", "Where the middle of the device's workspace lies."), &Workspace::origin);
+    t.bind(schema::rotation("rotation", "World from hand: three rows of three numbers, nine numbers, or `{\"axis\", \"angle_deg\"}`.")
+               .by_default("none"),
+           &Workspace::rotation);
+    t.check([](Scene&, const json::Node& node, Workspace& workspace) -> Outcome {
+      workspace.given = node.find("metres_per_unit") != nullptr;
+      return Done{};
+    });
+    return t;
+  }();
+  return table;
 }
 
-/// Its keys are read by haptics/device, which knows the devices.
-Outcome read_device(Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "device"));
-  scene.device = node;
-  return Done{};
+using schema::Component;
+
+}  // namespace
+
+Part chain_part() {
+  return {{"chain", "What the hand feels: links, in their order.", Component::Shape::list, {}, static_cast<int>(kMostLinks)}, read_chain};
+}
+
+Part modes_part() {
+  return {{"modes", "While the switch of a mode is on, its links run in its order, and all others are off. At most eight.",
+           Component::Shape::list, modes_keys(), 8},
+          read_modes};
+}
+
+Part coupling_part() {
+  return {{"coupling", "How the links make one force.", Component::Shape::object, coupling_table().keys()},
+          [](Scene& scene, const json::Node& node) -> Outcome {
+            CATENA_CHECK(json::expect_object(node, "coupling"));
+            return coupling_table().read(scene, node, scene.coupling);
+          }};
+}
+
+Part workspace_part() {
+  return {{"workspace", "How the hand's metres lie in the world.", Component::Shape::object, workspace_table().keys()},
+          [](Scene& scene, const json::Node& node) -> Outcome {
+            CATENA_CHECK(json::expect_object(node, "workspace"));
+            return workspace_table().read(scene, node, scene.workspace);
+          }};
+}
+
+/// Its keys are read by haptics/device, which knows the devices; one of them names a file.
+Part device_part() {
+  return {{"device", "What the hand holds.", Component::Shape::object, {}}, [](Scene& scene, const json::Node& node) -> Outcome {
+            CATENA_CHECK(json::expect_object(node, "device"));
+            scene.device = node;
+            return Done{};
+          }};
 }
 
 }  // namespace catena::scene

@@ -1,40 +1,114 @@
-/// What rays make of a volume beside its transfer function: "projection", "color_by" (isosurfaces too), and the scene's "jitter".
+/// How values become colours: the one shape of "color_by", {"field" or "quantity", "color", "range", "transfer"}.
+#include "engine/scene/read_look.h"
+
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
 
 namespace catena::scene {
+namespace {
 
-Result<std::optional<FieldColors>> read_field_colors(const Scene& scene, const json::Node& object) {
-  const json::Node* node = object.find("color_by");
-  if (node == nullptr) return std::optional<FieldColors>();
-  CATENA_CHECK(json::expect_object(*node, "color_by"));
-  CATENA_CHECK(json::only_keys(*node, {"field", "color", "range", "transfer"}));
-  FieldColors by;
-  by.where = *node;
-  CATENA_TRY(by.field, read_field_name(scene, *node));
-  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, *node));
+constexpr std::string_view kQuantities[] = {"speed", "arc_length"};
+
+Outcome take_scale(const Scene& scene, const json::Node& object, ColorBy& by) {
+  by.where = object;
+  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, object));
   by.colors = std::move(scale.colors);
   by.named = std::move(scale.named);
-  return std::optional<FieldColors>(std::move(by));
-}
-
-Outcome read_projection(Volume& volume, const json::Node& object) {
-  CATENA_TRY(const int choice, json::get_choice(object, "projection", 0, {"composite", "maximum", "minimum", "average"}));
-  volume.projection = Volume::Projection(choice);
-  if (volume.projection == Volume::Projection::composite) return Done{};
-  const std::string beside =
-      " beside the projection " + in_quotes(object.find("projection")->string) + "; \"composite\" was expected with it";
-  if (volume.color_by) return json::error_at(volume.color_by->where, "\"color_by\" stands" + beside);
-  if (!volume.transfer.gradient_factors.empty())
-    return json::error_at(*object.find("projection"), "an opacity by the gradient stands" + beside);
   return Done{};
 }
 
-Outcome read_jitter(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::boolean) return json::error_at(node, "\"jitter\" is no truth value; true or false was expected");
-  scene.jitter = node.boolean;
+bool is_table(const json::Node& color) {
+  return color.kind == json::Kind::string ||
+         (color.kind == json::Kind::array && !color.items.empty() && color.items[0].kind == json::Kind::array);
+}
+
+Outcome read_object(const Scene& scene, const json::Node& node, ColorSubjects subjects, ColorBy& by) {
+  CATENA_CHECK(json::only_keys(node, schema::names_of(*color_by_key(subjects).inner)));
+  const json::Node *field = node.find("field"), *quantity = node.find("quantity");
+  if (subjects == ColorSubjects::lines && (field != nullptr) == (quantity != nullptr))
+    return json::error_at(node, std::string("\"color_by\" names ") + (field != nullptr ? "both" : "neither") +
+                                    " \"field\" and \"quantity\"; exactly one of them was expected");
+  if (quantity != nullptr) {
+    CATENA_TRY(const int index, json::get_choice(node, "quantity", 0, {kQuantities[0], kQuantities[1]}));
+    by.what = index == 0 ? ColorBy::What::speed : ColorBy::What::arc_length;
+  } else {
+    CATENA_TRY(by.field, read_field_name(scene, node));
+  }
+  return take_scale(scene, node, by);
+}
+
+/// As it was written once: a word, with the colours' keys beside it.
+Outcome read_word(Scene& scene, const json::Node& item, ColorSubjects subjects, ColorBy& by) {
+  const json::Node& node = *item.find("color_by");
+  const std::string name = node.string;
+  by.field = find_field(scene, name);
+  if (!by.field && subjects == ColorSubjects::lines && name == kQuantities[0])
+    by.what = ColorBy::What::speed;
+  else if (!by.field && subjects == ColorSubjects::lines && name == kQuantities[1])
+    by.what = ColorBy::What::arc_length;
+  else if (!by.field && subjects == ColorSubjects::lines) {
+    std::vector<std::string_view> names{kQuantities[0], kQuantities[1]};
+    scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
+    return json::error_at(node, "unknown \"color_by\" " + in_quotes(name) + "; known: " + joined(names) + suggestion(name, names));
+  } else if (!by.field) {
+    CATENA_TRY(by.field, read_field_name(scene, item, "color_by"));
+  }
+  if (const json::Node* color = item.find("color"); subjects == ColorSubjects::lines && color != nullptr && !is_table(*color))
+    return json::error_at(*color,
+                          "\"color\" beside \"color_by\" is no table; rows [value, r, g, b], or the name of a colour map, were expected");
+  CATENA_CHECK(take_scale(scene, item, by));
+  const char* key = by.what == ColorBy::What::field ? "field" : "quantity";
+  scene.notes.push_back(
+      json::error_at(node, "\"color_by\" as a word, with \"color\", \"range\" and \"transfer\" beside it, is the old way: {\"" +
+                               std::string(key) + "\": " + in_quotes(name) + ", \"color\": ..., ...} says the same")
+          .message);
   return Done{};
+}
+
+}  // namespace
+
+Key color_by_key(ColorSubjects subjects) {
+  Keys keys{schema::named("field", Role::any_field, "The field whose values are shown; of a vector field, its magnitude.")};
+  if (subjects == ColorSubjects::lines)
+    keys.push_back(schema::word("quantity", {std::string(kQuantities[0]), std::string(kQuantities[1])},
+                                "Or what the line itself knows: one of `field` and `quantity`."));
+  else
+    keys[0] = keys[0].required();
+  return schema::object("color_by", schema::joined(keys, color_scale_keys()), "Colours by values.");
+}
+
+Outcome read_color_by(Scene& scene, const json::Node& item, ColorSubjects subjects, std::optional<ColorBy>& out) {
+  const json::Node* node = item.find("color_by");
+  if (node == nullptr) return Done{};
+  out.emplace();
+  if (node->kind == json::Kind::string && subjects != ColorSubjects::rays) return read_word(scene, item, subjects, *out);
+  CATENA_CHECK(json::expect_object(*node, "color_by"));
+  return read_object(scene, *node, subjects, *out);
+}
+
+std::string write_color_by(const Scene& scene, const ColorBy& by) {
+  std::string out = by.what == ColorBy::What::field ? "{\"field\": " + text_of(std::string_view(scene.world.get<Name>(by.field).value))
+                                                    : "{\"quantity\": " + text_of(kQuantities[by.what == ColorBy::What::speed ? 0 : 1]);
+  for (const auto& [key, value] : scale_members(by.colors, by.named)) out += ", \"" + key + "\": " + value;
+  return out + "}";
+}
+
+std::vector<std::pair<std::string, std::string>> scale_members(const std::vector<TransferFunction::ColorPoint>& colors,
+                                                               const NamedColors& named) {
+  std::vector<std::pair<std::string, std::string>> out;
+  if (!colors.empty()) out.emplace_back("color", text_of(colors));
+  if (colors.empty() && !named.map.empty()) out.emplace_back("color", text_of(std::string_view(named.map)));
+  if (colors.empty() && named.range) out.emplace_back("range", text_of(*named.range));
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> transfer_members(const TransferFunction& transfer) {
+  auto out = scale_members(transfer.colors, transfer.named);
+  if (!transfer.opacities.empty()) out.emplace_back("opacity", text_of(transfer.opacities));
+  if (!transfer.opacities.empty() && transfer.opacity_unit > 0) out.emplace_back("opacity_unit", text_of(transfer.opacity_unit));
+  if (transfer.opacities.empty() && !transfer.extinctions.empty()) out.emplace_back("extinction", text_of(transfer.extinctions));
+  if (!transfer.gradient_factors.empty()) out.emplace_back("gradient_opacity", text_of(transfer.gradient_factors));
+  return out;
 }
 
 }  // namespace catena::scene

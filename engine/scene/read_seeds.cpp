@@ -1,44 +1,41 @@
+/// Where lines begin: places, a pattern, or a widget.
+#include "engine/scene/read_seeds.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/lines.h"
-#include "engine/scene/read_parts.h"
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {
 namespace {
 
-constexpr int kMostSeeds = 100000;
+constexpr int kMostSeeds = 100000, kMostEvenLines = 20000;
 
-Result<int> read_count(const json::Node& object) {
+using Pattern = SeedPattern;
+using PatternTable = schema::Table<Pattern, const Scene>;
+
+/// A pattern's word, its kind, and its keys.
+struct PatternType {
+  std::string_view word, help;
+  Pattern::Kind kind;
+  PatternTable table;
+};
+
+Key count_key(const std::string& help) { return schema::integer("count", "", help, 1, kMostSeeds); }
+
+Outcome read_count(const json::Node& object, int& count) {
   if (object.find("count") == nullptr) return json::error_at(object, "\"count\" is missing; how many seeds was expected");
-  return json::get_integer(object, "count", 1, 1, kMostSeeds);
-}
-
-Result<std::vector<Vec3>> read_points(const json::Node& node, std::string_view what) {
-  if (node.kind != json::Kind::array || node.items.empty())
-    return json::error_at(node, in_quotes(what) + " is no list of places or empty; at least one [x, y, z] was expected");
-  std::vector<Vec3> points;
-  points.reserve(node.items.size());
-  for (const json::Node& item : node.items) {
-    CATENA_TRY(const Vec3 p, json::as_vec3(item, what));
-    points.push_back(p);
-  }
-  return points;
-}
-
-Outcome read_line(const Scene&, const json::Node& node, SeedPattern& out) {
-  CATENA_CHECK(json::only_keys(node, {"from", "to", "count"}));
-  CATENA_TRY(out.origin, json::require_vec3(node, "from"));
-  CATENA_TRY(out.u, json::require_vec3(node, "to"));
-  CATENA_TRY(out.count, read_count(node));
+  CATENA_TRY(count, json::get_integer(object, "count", 1, 1, kMostSeeds));
   return Done{};
 }
 
-Outcome read_plane(const Scene&, const json::Node& node, SeedPattern& out) {
-  CATENA_CHECK(json::only_keys(node, {"origin", "u", "v", "count"}));
-  CATENA_TRY(out.origin, json::require_vec3(node, "origin"));
-  CATENA_TRY(out.u, json::require_vec3(node, "u"));
-  CATENA_TRY(out.v, json::require_vec3(node, "v"));
+void bind_count(PatternTable& t) {
+  t.hand(
+      count_key("How many seeds.").required(),
+      [](const Scene&, const json::Node& node, Pattern& out) { return read_count(node, out.count); },
+      [](const Scene&, const Pattern& p) { return schema::write_value(p.count); });
+}
+
+Outcome read_counts(const Scene&, const json::Node& node, Pattern& out) {
   const json::Node* count = node.find("count");
   const auto whole = [](const json::Node& n) {
     return n.kind == json::Kind::number && n.number >= 1 && n.number <= 1000 && n.number == static_cast<int>(n.number);
@@ -52,34 +49,48 @@ Outcome read_plane(const Scene&, const json::Node& node, SeedPattern& out) {
   return Done{};
 }
 
-Outcome read_sphere(const Scene&, const json::Node& node, SeedPattern& out) {
-  CATENA_CHECK(json::only_keys(node, {"center", "radius", "count", "inside"}));
-  CATENA_TRY(out.origin, json::require_vec3(node, "center"));
-  CATENA_TRY(out.radius, json::require_number(node, "radius", json::Range::positive));
-  CATENA_TRY(out.count, read_count(node));
-  CATENA_TRY(out.inside, json::get_boolean(node, "inside", false));
-  return Done{};
+std::vector<PatternType> made_patterns() {
+  PatternTable line, plane, sphere, isosurface, even;
+  line.bind(schema::vec3("from", "world", "One end.").required(), &Pattern::origin);
+  line.bind(schema::vec3("to", "world", "The other end.").required(), &Pattern::u);
+  bind_count(line);
+
+  plane.bind(schema::vec3("origin", "world", "A corner.").required(), &Pattern::origin);
+  plane.bind(schema::vec3("u", "world", "One edge.").required(), &Pattern::u);
+  plane.bind(schema::vec3("v", "world", "The other edge.").required(), &Pattern::v);
+  plane.hand(schema::vector("count", 2, "", "How many along `u` and along `v`.").within(1, 1000).required(), read_counts,
+             [](const Scene&, const Pattern& p) { return "[" + std::to_string(p.count) + ", " + std::to_string(p.count_v) + "]"; });
+
+  sphere.bind(schema::vec3("center", "world", "Its centre.").required(), &Pattern::origin);
+  sphere.bind(schema::number("radius", "world", "Its radius.").positive().required(), &Pattern::radius);
+  bind_count(sphere);
+  sphere.bind(schema::boolean("inside", "In the ball rather than on the sphere."), &Pattern::inside);
+
+  bind_field(isosurface, schema::named("field", Role::scalar_field, "A scalar field.").required(), &Pattern::field);
+  isosurface.bind(schema::number("level", "value", "Its value on the surface.").required(), &Pattern::level);
+  bind_count(isosurface);
+
+  even.bind(schema::number("distance", "world", "Of the lines from each other.").positive().required(), &Pattern::distance);
+  even.bind(schema::number("test", "", "Lines end nearer than this share of the distance.").limited({0.0, 1.0, true}), &Pattern::test);
+  even.hand(
+      count_key("The most lines.").by_default(std::to_string(kMostEvenLines)),
+      [](const Scene&, const json::Node& node, Pattern& out) -> Outcome {
+        CATENA_TRY(out.count, json::get_integer(node, "count", kMostEvenLines, 1, kMostSeeds));
+        return Done{};
+      },
+      [](const Scene&, const Pattern& p) { return schema::write_value(p.count); });
+  even.bind(schema::places("start", "world", "Where the first lines begin.").by_default("the middle of the domain"), &Pattern::start);
+
+  return {{"line", "Evenly on a segment.", Pattern::Kind::line, line},
+          {"plane", "On a parallelogram.", Pattern::Kind::plane, plane},
+          {"sphere", "On a sphere, or in a ball.", Pattern::Kind::sphere, sphere},
+          {"isosurface", "On a level of a scalar field.", Pattern::Kind::isosurface, isosurface},
+          {"evenly_spaced", "Lines that keep a distance from each other.", Pattern::Kind::evenly_spaced, even}};
 }
 
-Outcome read_isosurface(const Scene& scene, const json::Node& node, SeedPattern& out) {
-  CATENA_CHECK(json::only_keys(node, {"field", "level", "count"}));
-  CATENA_TRY(out.field, read_field_name(scene, node));
-  CATENA_TRY(out.level, json::require_number(node, "level"));
-  CATENA_TRY(out.count, read_count(node));
-  return Done{};
-}
-
-Outcome read_evenly_spaced(const Scene&, const json::Node& node, SeedPattern& out) {
-  CATENA_CHECK(json::only_keys(node, {"distance", "test", "start", "count"}));
-  CATENA_TRY(out.distance, json::require_number(node, "distance", json::Range::positive));
-  CATENA_TRY(out.test, json::get_number(node, "test", out.test, json::Range::positive));
-  if (out.test > 1)
-    return json::error_at(*node.find("test"), "\"test\" is " + to_text(out.test) + "; a share of the distance, at most 1, was expected");
-  CATENA_TRY(out.count, json::get_integer(node, "count", 20000, 1, kMostSeeds));
-  if (const json::Node* start = node.find("start")) {
-    CATENA_TRY(out.start, read_points(*start, "start"));
-  }
-  return Done{};
+const std::vector<PatternType>& patterns() {
+  static const std::vector<PatternType> all = made_patterns();
+  return all;
 }
 
 /// {"widget": NAME}: of a rake with "count".
@@ -89,7 +100,7 @@ Result<Seeds> read_followed(const Scene& scene, const json::Node& node) {
   CATENA_TRY(seeds.widget, read_widget_name(scene, node, {widget::Kind::seed, widget::Kind::rake}, "a seed or a rake"));
   const widget::Spec& spec = scene.world.get<Widget>(seeds.widget).spec;
   if (spec.kind == widget::Kind::rake) {
-    CATENA_TRY(seeds.count, read_count(node));
+    CATENA_CHECK(read_count(node, seeds.count));
   } else if (const json::Node* count = node.find("count")) {
     return json::error_at(*count, "\"count\" is given with a seed, which is one place; it belongs to a rake");
   }
@@ -99,41 +110,57 @@ Result<Seeds> read_followed(const Scene& scene, const json::Node& node) {
 
 }  // namespace
 
+Key seeds_key() {
+  Keys forms;
+  for (const PatternType& type : patterns())
+    forms.push_back(schema::object(std::string(type.word), type.table.keys(), std::string(type.help)));
+  forms.push_back(schema::named("widget", Role::widget, "Follows a seed; with `count`, a rake."));
+  forms.push_back(count_key("How many seeds along a rake."));
+  return schema::any_of("seeds", {schema::places("", "world", ""), schema::object("", forms, "")},
+                        "Places `[[x, y, z], ...]`, or an object with one of the patterns below, or with `widget`.")
+      .required();
+}
+
 Result<Seeds> read_seeds(const Scene& scene, const json::Node& node) {
   Seeds seeds;
   if (node.kind != json::Kind::object) {
     if (node.kind != json::Kind::array || node.items.empty())
       return json::error_at(node, "\"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected");
-    CATENA_TRY(seeds.points, read_points(node, "seeds"));
+    json::Node holder;
+    holder.kind = json::Kind::object;
+    holder.members.emplace_back("seeds", node);
+    CATENA_CHECK(schema::read_value(schema::places("seeds", "", ""), holder, seeds.points));
     return seeds;
   }
   if (node.find("widget") != nullptr) return read_followed(scene, node);
-  struct Reader {
-    std::string_view key;
-    SeedPattern::Kind kind;
-    Outcome (*read)(const Scene&, const json::Node&, SeedPattern&);
-  };
-  constexpr Reader readers[] = {{"line", SeedPattern::Kind::line, read_line},
-                                {"plane", SeedPattern::Kind::plane, read_plane},
-                                {"sphere", SeedPattern::Kind::sphere, read_sphere},
-                                {"isosurface", SeedPattern::Kind::isosurface, read_isosurface},
-                                {"evenly_spaced", SeedPattern::Kind::evenly_spaced, read_evenly_spaced}};
-  std::vector<std::string_view> keys;
-  for (const Reader& reader : readers) keys.push_back(reader.key);
-  CATENA_CHECK(json::only_keys(node, keys));
+  std::vector<std::string_view> words;
+  for (const PatternType& type : patterns()) words.push_back(type.word);
+  CATENA_CHECK(json::only_keys(node, words));
   if (node.members.size() != 1)
-    return json::error_at(node,
-                          "\"seeds\" names " + std::to_string(node.members.size()) + " patterns; one of " + joined(keys) + " was expected");
-  for (const Reader& reader : readers) {
-    const json::Node* pattern = node.find(reader.key);
+    return json::error_at(
+        node, "\"seeds\" names " + std::to_string(node.members.size()) + " patterns; one of " + joined(words) + " was expected");
+  for (const PatternType& type : patterns()) {
+    const json::Node* pattern = node.find(type.word);
     if (pattern == nullptr) continue;
-    CATENA_CHECK(json::expect_object(*pattern, reader.key));
+    CATENA_CHECK(json::expect_object(*pattern, type.word));
     seeds.pattern.emplace();
-    seeds.pattern->kind = reader.kind;
+    seeds.pattern->kind = type.kind;
     seeds.pattern->where = *pattern;
-    CATENA_CHECK(reader.read(scene, *pattern, *seeds.pattern));
+    CATENA_CHECK(type.table.read(scene, *pattern, *seeds.pattern));
   }
   return seeds;
+}
+
+std::string write_seeds(const Scene& scene, const Seeds& seeds) {
+  if (seeds.widget) {
+    const Widget& widget = scene.world.get<Widget>(seeds.widget);
+    return "{\"widget\": " + schema::write_value(scene.world.get<Name>(seeds.widget).value) +
+           (widget.spec.kind == widget::Kind::rake ? ", \"count\": " + std::to_string(seeds.count) : "") + "}";
+  }
+  if (!seeds.pattern) return schema::write_value(seeds.points);
+  for (const PatternType& type : patterns())
+    if (type.kind == seeds.pattern->kind) return "{\"" + std::string(type.word) + "\": " + type.table.write(scene, *seeds.pattern) + "}";
+  return {};
 }
 
 }  // namespace catena::scene

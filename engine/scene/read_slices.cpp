@@ -1,10 +1,8 @@
-/// "slices": [{"field", "point" and "normal", or "axis" and "at", or "widget", the colours of read_transfer.h, "opacity", "lit", "clip",
-/// "visible",
-///             "contours": {"levels" | "count" | "spacing", "color", "width"}}]
+/// "slices": a plane, as a point with a normal, an axis with a place on it, or a widget; colours; contours.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/read_look.h"
 #include "engine/scene/read_transfer.h"
 #include "engine/scene/widgets.h"
 
@@ -25,7 +23,7 @@ Outcome read_followed(const Scene& scene, const json::Node& item, Slice& slice) 
   return Done{};
 }
 
-Outcome read_plane(const Scene& scene, const json::Node& item, Slice& slice) {
+Outcome read_plane(Scene& scene, const json::Node& item, Slice& slice) {
   if (item.find("widget") != nullptr) return read_followed(scene, item, slice);
   const json::Node *axis = item.find("axis"), *at = item.find("at"), *point = item.find("point"), *normal = item.find("normal");
   if ((axis || at) && (point || normal))
@@ -48,73 +46,108 @@ Outcome read_plane(const Scene& scene, const json::Node& item, Slice& slice) {
   return Done{};
 }
 
-Result<std::vector<double>> read_levels(const json::Node& node) {
-  if (node.kind != json::Kind::array || node.items.empty())
-    return json::error_at(node, "\"levels\" is no list; rising numbers [level, ...] were expected");
-  std::vector<double> levels;
-  for (const json::Node& item : node.items) {
-    CATENA_TRY(const double level, json::as_number(item, "levels"));
-    if (!levels.empty() && !(level > levels.back()))
-      return json::error_at(item,
-                            "\"levels\" has " + to_text(level) + " after " + to_text(levels.back()) + "; rising numbers were expected");
-    levels.push_back(level);
-  }
-  if (levels.size() > static_cast<std::size_t>(kMostContours))
-    return json::error_at(
-        node, "\"levels\" holds " + std::to_string(levels.size()) + " levels; at most " + std::to_string(kMostContours) + " were expected");
-  return levels;
+const Table<Slice::Contours>& contours_table() {
+  using Contours = Slice::Contours;
+  static const auto table = [] {
+    Table<Contours> t;
+    t.bind(schema::numbers("levels", "value", "These values: one of the three.").ranged("rising").items(1, kMostContours),
+           &Contours::levels);
+    t.bind(schema::integer("count", "", "Or so many within the range of the colours, its ends left out.", 1, kMostContours).by_default(" "),
+           &Contours::count);
+    t.bind(schema::number("spacing", "value", "Or all multiples of this.").positive().by_default(" "), &Contours::spacing);
+    t.bind(schema::color("color", "Of the lines."), &Contours::color);
+    t.bind(schema::number("width", "pixels", "Of the lines.").limited({0.0, kWidest, true}), &Contours::width);
+    t.check([](Scene&, const json::Node& node, Contours& contours) -> Outcome {
+      if (contours.levels.size() > static_cast<std::size_t>(kMostContours))
+        return json::error_at(*node.find("levels"), "\"levels\" holds " + std::to_string(contours.levels.size()) + " levels; at most " +
+                                                        std::to_string(kMostContours) + " were expected");
+      for (std::size_t i = 1; i < contours.levels.size(); ++i)
+        if (!(contours.levels[i] > contours.levels[i - 1]))
+          return json::error_at(node.find("levels")->items[i], "\"levels\" has " + to_text(contours.levels[i]) + " after " +
+                                                                   to_text(contours.levels[i - 1]) + "; rising numbers were expected");
+      return Done{};
+    });
+    return t;
+  }();
+  return table;
 }
 
-Result<Slice::Contours> read_contours(const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "contours"));
-  CATENA_CHECK(json::only_keys(node, {"levels", "count", "spacing", "color", "width"}));
-  Slice::Contours contours;
-  contours.where = node;
-  const json::Node *levels = node.find("levels"), *count = node.find("count"), *spacing = node.find("spacing");
-  if ((levels != nullptr) + (count != nullptr) + (spacing != nullptr) != 1)
-    return json::error_at(node,
+Outcome read_contours(Scene& scene, const json::Node& item, Slice& slice) {
+  const json::Node* node = item.find("contours");
+  if (node == nullptr) return Done{};
+  CATENA_CHECK(json::expect_object(*node, "contours"));
+  int ways = 0;
+  for (const char* key : {"levels", "count", "spacing"}) ways += node->find(key) != nullptr;
+  slice.contours.emplace().where = *node;
+  CATENA_CHECK(json::only_keys(*node, schema::names_of(contours_table().keys())));
+  if (ways != 1)
+    return json::error_at(*node,
                           "contours say their levels in no way, or in several; one of \"levels\", \"count\" and \"spacing\" was expected");
-  if (levels) {
-    CATENA_TRY(contours.levels, read_levels(*levels));
-  }
-  if (count) {
-    CATENA_TRY(contours.count, json::get_integer(node, "count", 1, 1, kMostContours));
-  }
-  CATENA_TRY(contours.spacing, json::get_number(node, "spacing", 0, json::Range::positive));
-  CATENA_TRY(contours.color, read_color(node, "color", contours.color));
-  CATENA_TRY(contours.width, json::get_number(node, "width", contours.width, json::Range::positive));
-  if (contours.width > kWidest)
-    return json::error_at(*node.find("width"),
-                          "\"width\" is " + to_text(contours.width) + " pixels; at most " + to_text(kWidest) + " was expected");
-  return contours;
+  return contours_table().read(scene, *node, *slice.contours);
+}
+
+Outcome read_colors(Scene& scene, const json::Node& item, Slice& slice) {
+  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
+  slice.shown.where = item;
+  slice.shown.colors = std::move(scale.colors);
+  slice.shown.named = std::move(scale.named);
+  return Done{};
+}
+
+using Members = std::vector<std::pair<std::string, std::string>>;
+
+Members plane_members(const Scene& scene, const Slice& slice) {
+  if (slice.widget) return {{"widget", schema::write_value(scene.world.get<Name>(slice.widget).value)}};
+  return {{"point", schema::write_value(slice.point)}, {"normal", schema::write_value(slice.normal)}};
+}
+
+const Table<Slice>& slice_table() {
+  static const auto table = [] {
+    Table<Slice> t;
+    bind_field(
+        t, schema::named("field", Role::any_field, "A scalar field, or a vector field, whose magnitude is shown.").required(),
+        [](auto& slice) -> auto& { return slice.shown.field; });
+    t.group(
+        {schema::vec3("point", "world", "A point of the plane: with `normal`."), schema::direction("normal", "Its normal, of any length."),
+         schema::word("axis", {"x", "y", "z"}, "Or the axis that is its normal: with `at`."),
+         schema::number("at", "world", "Where it crosses the axis."),
+         schema::named("widget", Role::widget, "Or a cutting plane to follow: one of the three.")},
+        read_plane, plane_members);
+    t.group(color_scale_keys(), read_colors,
+            [](const Scene&, const Slice& slice) { return scale_members(slice.shown.colors, slice.shown.named); });
+    t.bind(opacity_key("Of the slice."), &Slice::opacity);
+    t.hand(schema::object("contours", contours_table().keys(), "Lines of constant value; they say their levels in one of three ways."),
+           read_contours, [](const Scene& scene, const Slice& slice) {
+             return slice.contours ? contours_table().write(scene, *slice.contours) : std::string();
+           });
+    t.bind(schema::boolean("lit", "Lit as a surface is."), &Slice::lit);
+    t.bind(clip_key(), &Slice::clipped);
+    t.beside(visible_key());
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_slices(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    Slice slice;
+    slice.where = item;
+    CATENA_CHECK(slice_table().read(scene, item, slice));
+    const Entity e = scene.world.create();
+    scene.world.emplace<Slice>(e, std::move(slice));
+    return read_visible(scene, e, item);
+  });
 }
 
 }  // namespace
 
-Outcome read_slices(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::array) return json::error_at(node, "\"slices\" is no array; an array of objects was expected");
-  for (const json::Node& item : node.items) {
-    CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(item, {"field", "point", "normal", "axis", "at", "widget", "color", "range", "transfer", "opacity",
-                                        "contours", "lit", "clip", "visible"}));
-    Slice slice;
-    slice.where = item;
-    CATENA_TRY(slice.shown.field, read_field_name(scene, item));
-    CATENA_CHECK(read_plane(scene, item, slice));
-    CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
-    slice.shown.colors = std::move(scale.colors);
-    slice.shown.named = std::move(scale.named);
-    CATENA_TRY(slice.opacity, read_opacity(item, slice.opacity));
-    CATENA_TRY(slice.lit, json::get_boolean(item, "lit", false));
-    CATENA_TRY(slice.clipped, json::get_boolean(item, "clip", true));
-    if (const json::Node* contours = item.find("contours")) {
-      CATENA_TRY(slice.contours, read_contours(*contours));
-    }
-    const Entity e = scene.world.create();
-    scene.world.emplace<Slice>(e, std::move(slice));
-    CATENA_CHECK(read_visible(scene, e, item));
-  }
-  return Done{};
+Part slices_part() {
+  return {
+      list_of(
+          "slices",
+          "Planes through a field, coloured by its values. A plane is said as `axis` and `at`, as `point` and `normal`, or as `widget`.",
+          slice_table()),
+      read_slices};
 }
 
 }  // namespace catena::scene

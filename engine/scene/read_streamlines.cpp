@@ -1,96 +1,111 @@
+/// "streamlines" and the "indicator": lines of the flow.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/lines.h"
-#include "engine/scene/read_parts.h"
-#include "engine/scene/read_transfer.h"
+#include "engine/scene/read_look.h"
+#include "engine/scene/read_seeds.h"
 
 namespace catena::scene {
 namespace {
 
-/// "color_by": a field's name, "speed" or "arc_length"; the colours are then those of read_transfer.h.
-Outcome read_color_by(const Scene& scene, const json::Node& item, StreamlineSet& set) {
+/// "color", or "color_by".
+Outcome read_line_color(Scene& scene, const json::Node& item, StreamlineSet& set) {
   const json::Node *by = item.find("color_by"), *color = item.find("color");
   const bool of_values =
       color != nullptr && (color->kind == json::Kind::string ||
                            (color->kind == json::Kind::array && !color->items.empty() && color->items[0].kind == json::Kind::array));
-  if (by == nullptr) {
-    for (const json::Node* node : {of_values ? color : nullptr, item.find("range"), item.find("transfer")})
-      if (node != nullptr)
-        return json::error_at(*node,
-                              in_quotes(node->label) + (node == color && color->kind == json::Kind::array ? " is a table" : " is given") +
-                                  ", but nothing says of what; \"color_by\": a field, \"speed\" or \"arc_length\" was expected beside it");
-    CATENA_TRY(set.color, read_color(item, "color", set.color));
-    return Done{};
-  }
-  CATENA_TRY(const std::string name, json::require_string(item, "color_by"));
-  set.color_by.emplace();
-  if ((set.color_by->field = find_field(scene, name)))
-    set.color_by->what = ColorBy::What::field;
-  else if (name == "speed")
-    set.color_by->what = ColorBy::What::speed;
-  else if (name == "arc_length")
-    set.color_by->what = ColorBy::What::arc_length;
-  else {
-    std::vector<std::string_view> names{"speed", "arc_length"};
-    scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
-    return json::error_at(*by, "unknown \"color_by\" " + in_quotes(name) + "; known: " + joined(names) + suggestion(name, names));
-  }
-  if (color != nullptr && !of_values)
-    return json::error_at(*color,
-                          "\"color\" beside \"color_by\" is no table; rows [value, r, g, b], or the name of a colour map, were expected");
-  CATENA_TRY(ColorScale scale, read_color_scale(scene.path, item));
-  set.color_by->colors = std::move(scale.colors);
-  set.color_by->named = std::move(scale.named);
+  CATENA_CHECK(read_color_by(scene, item, ColorSubjects::lines, set.color_by));
+  if (by != nullptr && by->kind == json::Kind::string) return Done{};
+  for (const json::Node* node : {of_values ? color : nullptr, item.find("range"), item.find("transfer")})
+    if (node != nullptr)
+      return json::error_at(*node,
+                            in_quotes(node->label) + (node == color && color->kind == json::Kind::array ? " is a table" : " is given") +
+                                ", but nothing says of what; \"color_by\": a field, \"speed\" or \"arc_length\" was expected beside it");
+  CATENA_TRY(set.color, read_color(item, "color", set.color));
+  return Done{};
+}
+
+Outcome read_set_seeds(Scene& scene, const json::Node& item, StreamlineSet& set) {
+  const json::Node* seeds = item.find("seeds");
+  if (seeds == nullptr)
+    return json::error_at(item, "\"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected");
+  CATENA_TRY(set.seeds, read_seeds(scene, *seeds));
+  return Done{};
+}
+
+const Table<StreamlineSet>& streamlines_table() {
+  static const auto table = [] {
+    Table<StreamlineSet> t;
+    bind_field(t, schema::named("field", Role::vector_field, "A vector field.").required(), &StreamlineSet::field);
+    t.hand(seeds_key(), read_set_seeds, [](const Scene& scene, const StreamlineSet& set) { return write_seeds(scene, set.seeds); });
+    t.bind(schema::number("radius", "world", "Of the tubes.").positive().by_default("0.003 diagonals of the domain"),
+           &StreamlineSet::radius);
+    t.hand(schema::color("color", "Of all lines, without `color_by`.").by_default(write_value(StreamlineSet{}.color)), read_line_color,
+           [](const Scene&, const StreamlineSet& set) { return write_value(set.color); });
+    t.beside(color_by_key(ColorSubjects::lines), [](const Scene& scene, const StreamlineSet& set) {
+      return set.color_by ? write_color_by(scene, *set.color_by) : std::string();
+    });
+    t.bind(schema::word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres."), &StreamlineSet::line);
+    t.bind(schema::number("min_speed", "value", "Speeds up to this end a line.").not_negative(), &StreamlineSet::min_speed);
+    t.bind(schema::number("length", "world", "Longest arc length in each direction.").positive().by_default("10 L"),
+           &StreamlineSet::length);
+    t.bind(schema::number("tolerance", "L", "Embedded error of a step.")
+               .limited({0.0, 0.01, true})
+               .by_default("1e-10 for places, 1e-7 for patterns"),
+           &StreamlineSet::tolerance);
+    t.bind(schema::number("arrows", "world", "An arrowhead every so far along a line.").positive().by_default("none"),
+           &StreamlineSet::arrows);
+    t.bind(schema::number("pulse", "world", "Bands of this length run with the flow.").positive().by_default("none"),
+           &StreamlineSet::pulse);
+    t.bind(clip_key(), &StreamlineSet::clipped);
+    t.beside(visible_key());
+    t.formerly("range").formerly("transfer");  // beside "color_by" as a word
+    return t;
+  }();
+  return table;
+}
+
+const Table<Indicator>& indicator_table() {
+  static const auto table = [] {
+    Table<Indicator> t;
+    bind_field(t, schema::named("field", Role::vector_field, "A vector field.").required(), &Indicator::field);
+    t.bind(schema::number("length", "world", "Of the piece.").positive().by_default("0.1 L"), &Indicator::length);
+    t.bind(schema::number("radius", "world", "Of its tube.").positive().by_default("0.004 diagonals of the domain"), &Indicator::radius);
+    t.bind(schema::color("color", "Its colour."), &Indicator::color);
+    return t;
+  }();
+  return table;
+}
+
+Outcome read_streamlines(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    StreamlineSet set;
+    set.where = item;
+    CATENA_CHECK(streamlines_table().read(scene, item, set));
+    const Entity e = scene.world.create();
+    scene.world.emplace<StreamlineSet>(e, std::move(set));
+    return read_visible(scene, e, item);
+  });
+}
+
+Outcome read_indicator(Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::expect_object(node, "indicator"));
+  Indicator indicator;
+  indicator.where = node;
+  CATENA_CHECK(indicator_table().read(scene, node, indicator));
+  scene.world.emplace<Indicator>(scene.world.create(), std::move(indicator));
   return Done{};
 }
 
 }  // namespace
 
-Outcome read_streamlines(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::array) return json::error_at(node, "\"streamlines\" is no array; an array of objects was expected");
-  for (const json::Node& item : node.items) {
-    CATENA_CHECK(json::expect_object(item, item.label));
-    CATENA_CHECK(json::only_keys(item, {"field", "seeds", "radius", "color", "color_by", "range", "transfer", "kind", "min_speed", "length",
-                                        "tolerance", "arrows", "pulse", "clip", "visible"}));
-    StreamlineSet set;
-    set.where = item;
-    CATENA_TRY(set.field, read_field_name(scene, item));
-    const json::Node* seeds = item.find("seeds");
-    if (seeds == nullptr)
-      return json::error_at(item, "\"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected");
-    CATENA_TRY(set.seeds, read_seeds(scene, *seeds));
-    CATENA_TRY(set.radius, json::get_number(item, "radius", 0, json::Range::positive));
-    CATENA_CHECK(read_color_by(scene, item, set));
-    CATENA_TRY(const int kind, json::get_choice(item, "kind", 0, {"vector", "line"}));
-    set.line = kind == 1;
-    CATENA_TRY(set.min_speed, json::get_number(item, "min_speed", 0, json::Range::not_negative));
-    CATENA_TRY(set.length, json::get_number(item, "length", 0, json::Range::positive));
-    CATENA_TRY(set.tolerance, json::get_number(item, "tolerance", 0, json::Range::positive));
-    CATENA_TRY(set.arrows, json::get_number(item, "arrows", 0, json::Range::positive));
-    CATENA_TRY(set.clipped, json::get_boolean(item, "clip", true));
-    CATENA_TRY(set.pulse, json::get_number(item, "pulse", 0, json::Range::positive));
-    if (set.tolerance > 1e-2)
-      return json::error_at(*item.find("tolerance"),
-                            "\"tolerance\" is " + to_text(set.tolerance) + " of the domain's length; at most 0.01 was expected");
-    const Entity e = scene.world.create();
-    scene.world.emplace<StreamlineSet>(e, std::move(set));
-    CATENA_CHECK(read_visible(scene, e, item));
-  }
-  return Done{};
-}
+Part streamlines_part() { return {list_of("streamlines", "Tubes along streamlines.", streamlines_table()), read_streamlines}; }
 
-Outcome read_indicator(Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "indicator"));
-  CATENA_CHECK(json::only_keys(node, {"field", "length", "radius", "color"}));
-  Indicator indicator;
-  indicator.where = node;
-  CATENA_TRY(indicator.field, read_field_name(scene, node));
-  CATENA_TRY(indicator.length, json::get_number(node, "length", 0, json::Range::positive));
-  CATENA_TRY(indicator.radius, json::get_number(node, "radius", 0, json::Range::positive));
-  CATENA_TRY(indicator.color, read_color(node, "color", indicator.color));
-  scene.world.emplace<Indicator>(scene.world.create(), std::move(indicator));
-  return Done{};
+Part indicator_part() {
+  return {{"indicator", "A short piece of the streamline through the cursor, with an arrowhead.", schema::Component::Shape::object,
+           indicator_table().keys()},
+          read_indicator};
 }
 
 }  // namespace catena::scene

@@ -1,14 +1,9 @@
-/// "widgets": [{"name", "type", its place, "radius", "near", "step", "button", "color"}], by type:
-///   cutting_plane  "center", "normal" or "orientation" [w, x, y, z]; "snap", "release", "turning", "touch"
-///   seed           "position"
-///   rake           "from", "to"
-///   isolevel       "field", "position"
-///   box            "lo", "hi"
-///   ruler          "from", "to", "along": names of links
+/// "widgets": what the hand takes hold of and moves, by type.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/scene_keys.h"
 #include "engine/scene/widgets.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::scene {
 namespace {
@@ -41,56 +36,106 @@ Result<double> read_size(const json::Node& item, std::string_view key) {
   return size;
 }
 
-Outcome read_cutting_plane(const Scene&, const json::Node& item, Widget& widget) {
-  widget::Spec& spec = widget.spec;
-  CATENA_TRY(spec.pose.points[0], json::require_vec3(item, "center"));
+/// A length that the kind of widget has a default for.
+Key size_key(const std::string& name, const std::string& help, const std::string& usual) {
+  return schema::number(name, "world", help).limited({0.0, kLargest, true}).ranged("> 0").by_default(usual);
+}
+
+template <class Access>
+void bind_size(Table<Widget>& t, const Key& key, Access access) {
+  t.hand(
+      key,
+      [key, access](Scene&, const json::Node& item, Widget& widget) -> Outcome {
+        CATENA_TRY(std::invoke(access, widget), read_size(item, key.name));
+        return Done{};
+      },
+      [access](const Scene&, const Widget& widget) {
+        const double size = std::invoke(access, widget);
+        return size > 0 ? schema::write_value(size) : std::string();
+      });
+}
+
+template <int kIndex>
+constexpr auto kPoint = [](auto& widget) -> auto& {
+  return widget.spec.pose.points[kIndex];
+};
+
+Outcome read_facing(Scene&, const json::Node& item, Widget& widget) {
   const json::Node *normal = item.find("normal"), *orientation = item.find("orientation");
   if ((normal != nullptr) == (orientation != nullptr))
     return json::error_at(normal ? *normal : item, std::string("a cutting plane has ") + (normal ? "both" : "neither") +
                                                        " \"normal\" and \"orientation\"; exactly one of them was expected");
   if (normal) {
-    CATENA_TRY(const Vec3 n, json::as_vec3(*normal, "normal"));
-    if (max_abs(n) == 0) return json::error_at(*normal, "\"normal\" is zero; a vector other than [0, 0, 0] was expected");
-    spec.pose.orientation = shortest_arc({0.0, 0.0, 1.0}, direction(n));
+    Vec3 n(0.0);
+    CATENA_CHECK(schema::read_value(schema::direction("normal", ""), item, n));
+    widget.spec.pose.orientation = shortest_arc({0.0, 0.0, 1.0}, direction(n));
   } else {
-    CATENA_TRY(spec.pose.orientation, read_orientation(*orientation));
+    CATENA_TRY(widget.spec.pose.orientation, read_orientation(*orientation));
   }
-  CATENA_TRY(spec.snap, read_size(item, "snap"));
-  CATENA_TRY(spec.release, read_size(item, "release"));
-  if (spec.snap > 0 && spec.release > 0 && !(spec.release > spec.snap))
+  return Done{};
+}
+
+Table<Widget> cutting_plane_table() {
+  Table<Widget> t;
+  t.bind(schema::vec3("center", "world", "The middle of the plane and of the sphere.").required(), kPoint<0>);
+  t.group({schema::direction("normal", "Its normal, of any length: this or the next."),
+           schema::vector("orientation", 4, "", "A unit quaternion `[w, x, y, z]`; its z is the normal.")},
+          read_facing, [](const Scene&, const Widget& widget) {
+            return Table<Widget>::Members{{"orientation", text_of(widget.spec.pose.orientation)}};
+          });
+  bind_size(
+      t, size_key("snap", "The plane takes hold of the hand within this distance.", "0.02 L"),
+      [](auto& widget) -> auto& { return widget.spec.snap; });
+  bind_size(
+      t, size_key("release", "And lets it go at this distance, longer than `snap`.", "0.05 L"),
+      [](auto& widget) -> auto& { return widget.spec.release; });
+  t.bind(
+      schema::word("turning", {"any", "free", "axis"}, "How the sphere turns; `axis`: about the nearest axis only."),
+      [](auto& widget) -> auto& { return widget.spec.turning; });
+  t.bind(
+      schema::boolean("touch", "The sphere turns without the button."), [](auto& widget) -> auto& { return widget.spec.touch; });
+  t.check([](Scene&, const json::Node& item, Widget& widget) -> Outcome {
+    const widget::Spec& spec = widget.spec;
+    if (!(spec.snap > 0 && spec.release > 0 && !(spec.release > spec.snap))) return Done{};
     return json::error_at(*item.find("release"), "\"release\" is " + to_text(spec.release) + " where \"snap\" is " + to_text(spec.snap) +
                                                      "; a longer distance than snap's was expected");
-  CATENA_TRY(const int turning, json::get_choice(item, "turning", 0, {"any", "free", "axis"}));
-  spec.turning = static_cast<widget::Turning>(turning);
-  CATENA_TRY(spec.touch, json::get_boolean(item, "touch", false));
-  return Done{};
+  });
+  return t;
 }
 
-Outcome read_seed(const Scene&, const json::Node& item, Widget& widget) {
-  CATENA_TRY(widget.spec.pose.points[0], json::require_vec3(item, "position"));
-  return Done{};
+Table<Widget> seed_table() {
+  Table<Widget> t;
+  t.bind(schema::vec3("position", "world", "Its place.").required(), kPoint<0>);
+  return t;
 }
 
-Outcome read_rake(const Scene&, const json::Node& item, Widget& widget) {
-  CATENA_TRY(widget.spec.pose.points[0], json::require_vec3(item, "from"));
-  CATENA_TRY(widget.spec.pose.points[1], json::require_vec3(item, "to"));
-  return Done{};
+Table<Widget> rake_table() {
+  Table<Widget> t;
+  t.bind(schema::vec3("from", "world", "One end.").required(), kPoint<0>);
+  t.bind(schema::vec3("to", "world", "The other end.").required(), kPoint<1>);
+  return t;
 }
 
 /// Whether the field is a scalar one, and the place within it, use_widget tells: it loads the field.
-Outcome read_isolevel(const Scene& scene, const json::Node& item, Widget& widget) {
-  CATENA_TRY(widget.field, read_field_name(scene, item));
-  CATENA_TRY(widget.spec.pose.points[0], json::require_vec3(item, "position"));
-  return Done{};
+Table<Widget> isolevel_table() {
+  Table<Widget> t;
+  bind_field(t, schema::named("field", Role::scalar_field, "A scalar field; the level is its value at the handle.").required(),
+             &Widget::field);
+  t.bind(schema::vec3("position", "world", "The handle's place.").required(), kPoint<0>);
+  return t;
 }
 
-Outcome read_box(const Scene&, const json::Node& item, Widget& widget) {
-  CATENA_TRY(const Vec3 lo, json::require_vec3(item, "lo"));
-  CATENA_TRY(const Vec3 hi, json::require_vec3(item, "hi"));
-  for (int i = 0; i < 3; ++i)
-    if (!(lo[i] < hi[i])) return json::error_at(*item.find("hi"), "\"hi\" is not above \"lo\" on every axis; a box was expected");
-  widget.spec.pose.points = {lo, hi};
-  return Done{};
+Table<Widget> box_table() {
+  Table<Widget> t;
+  t.bind(schema::vec3("lo", "world", "Its lowest corner.").required(), kPoint<0>);
+  t.bind(schema::vec3("hi", "world", "Its highest corner, above `lo` on every axis.").required(), kPoint<1>);
+  t.check([](Scene&, const json::Node& item, Widget& widget) -> Outcome {
+    const auto& [lo, hi] = widget.spec.pose.points;
+    for (int i = 0; i < 3; ++i)
+      if (!(lo[i] < hi[i])) return json::error_at(*item.find("hi"), "\"hi\" is not above \"lo\" on every axis; a box was expected");
+    return Done{};
+  });
+  return t;
 }
 
 /// A link of the chain, or one that a ready-made mode of it stands for (NAME_...): which those are the program's maker knows.
@@ -100,8 +145,7 @@ bool is_link(const Scene& scene, std::string_view name) {
   return found;
 }
 
-Outcome read_ruler(const Scene& scene, const json::Node& item, Widget& widget) {
-  CATENA_CHECK(read_rake(scene, item, widget));
+Outcome read_along(Scene& scene, const json::Node& item, Widget& widget) {
   const json::Node* along = item.find("along");
   if (along == nullptr) return Done{};
   if (along->kind != json::Kind::array || along->items.empty())
@@ -122,22 +166,56 @@ Outcome read_ruler(const Scene& scene, const json::Node& item, Widget& widget) {
   return Done{};
 }
 
-struct Reader {
+Table<Widget> ruler_table() {
+  Table<Widget> t = rake_table();
+  t.hand(schema::texts("along", "Links that its ends keep to: it measures along their line or surface.")
+             .as(Role::link)
+             .items(1, 0)
+             .by_default("straight"),
+         read_along,
+         [](const Scene&, const Widget& widget) { return widget.along.empty() ? std::string() : schema::write_value(widget.along); });
+  return t;
+}
+
+struct WidgetType {
   Kind kind;
-  Outcome (*read)(const Scene&, const json::Node&, Widget&);
-  std::vector<std::string_view> keys;
+  std::string_view help;
+  Table<Widget> own;
 };
 
 /// In the order of kWords.
-const std::vector<Reader>& readers() {
-  static const std::vector<Reader> all{
-      {Kind::cutting_plane, read_cutting_plane, {"center", "normal", "orientation", "snap", "release", "turning", "touch"}},
-      {Kind::seed, read_seed, {"position"}},
-      {Kind::rake, read_rake, {"from", "to"}},
-      {Kind::isolevel, read_isolevel, {"field", "position"}},
-      {Kind::box, read_box, {"lo", "hi"}},
-      {Kind::ruler, read_ruler, {"from", "to", "along"}}};
+const std::vector<WidgetType>& types() {
+  static const std::vector<WidgetType> all{
+      {Kind::cutting_plane, "A plane that the hand keeps to, with a sphere that turns it.", cutting_plane_table()},
+      {Kind::seed, "A place from which a line begins.", seed_table()},
+      {Kind::rake, "A segment along which lines begin.", rake_table()},
+      {Kind::isolevel, "A place that names a level: its field's value there.", isolevel_table()},
+      {Kind::box, "A box that clips.", box_table()},
+      {Kind::ruler, "A length between two ends.", ruler_table()}};
   return all;
+}
+
+/// What every widget has.
+const Table<Widget>& common_table() {
+  static const auto table = [] {
+    Table<Widget> t;
+    t.beside(schema::text("name", "By which others follow it.").required());
+    t.beside(schema::word("type", {std::begin(kWords), std::end(kWords)}, "What it is.").required());
+    bind_size(
+        t, size_key("radius", "Of a handle's ball, or of a cutting plane's sphere.", "0.012 L; a sphere 0.12 L"),
+        [](auto& widget) -> auto& { return widget.spec.radius; });
+    bind_size(
+        t, size_key("near", "A handle, or the sphere, is taken hold of within this distance.", "0.03 L; a sphere 0.02 L"),
+        [](auto& widget) -> auto& { return widget.spec.near; });
+    bind_size(
+        t, size_key("step", "A drag leaves an axis when the hand is this far from it.", "0.02 L"),
+        [](auto& widget) -> auto& { return widget.spec.step; });
+    t.bind(
+        schema::integer("button", "", "The button that grabs.", 1, 32), [](auto& widget) -> auto& { return widget.spec.button; });
+    t.bind(schema::color("color", "Its colour."), &Widget::color);
+    return t;
+  }();
+  return table;
 }
 
 Outcome read_widget(Scene& scene, const json::Node& item) {
@@ -148,20 +226,14 @@ Outcome read_widget(Scene& scene, const json::Node& item) {
   if (find_widget(scene, name))
     return json::error_at(*item.find("name"), "a second widget is called " + in_quotes(name) + "; a name of its own was expected");
   CATENA_CHECK(json::require_string(item, "type"));
-  CATENA_TRY(const int type, json::get_choice(item, "type", 0, {kWords[0], kWords[1], kWords[2], kWords[3], kWords[4], kWords[5]}));
-  const Reader& reader = readers()[static_cast<std::size_t>(type)];
-  std::vector<std::string_view> keys{"name", "type", "radius", "near", "step", "button", "color"};
-  keys.insert(keys.end(), reader.keys.begin(), reader.keys.end());
-  CATENA_CHECK(json::only_keys(item, keys));
+  CATENA_TRY(const int index, json::get_choice(item, "type", 0, {std::begin(kWords), std::end(kWords)}));
+  const WidgetType& type = types()[static_cast<std::size_t>(index)];
+  CATENA_CHECK(json::only_keys(item, schema::names_of(schema::joined(common_table().keys(), type.own.keys()))));
   Widget widget;
   widget.where = item;
-  widget.spec.kind = reader.kind;
-  CATENA_CHECK(reader.read(scene, item, widget));
-  CATENA_TRY(widget.spec.radius, read_size(item, "radius"));
-  CATENA_TRY(widget.spec.near, read_size(item, "near"));
-  CATENA_TRY(widget.spec.step, read_size(item, "step"));
-  CATENA_TRY(widget.spec.button, json::get_integer(item, "button", widget.spec.button, 1, 32));
-  CATENA_TRY(widget.color, read_color(item, "color", widget.color));
+  widget.spec.kind = type.kind;
+  CATENA_CHECK(type.own.read_known(scene, item, widget));
+  CATENA_CHECK(common_table().read_known(scene, item, widget));
   widget.state.pose = widget.spec.pose;
   const Entity entity = scene.world.create();
   scene.world.emplace<Name>(entity, {name});
@@ -169,20 +241,26 @@ Outcome read_widget(Scene& scene, const json::Node& item) {
   return Done{};
 }
 
+Outcome read_widgets(Scene& scene, const json::Node& node) {
+  return each_item(node, [&](const json::Node& item) -> Outcome {
+    if (scene.world.count<Widget>() == static_cast<std::size_t>(widget::kMaxWidgets))
+      return json::error_at(item,
+                            "there are more than " + std::to_string(widget::kMaxWidgets) + " widgets; that many at most were expected");
+    return read_widget(scene, item);
+  });
+}
+
 }  // namespace
 
 const char* kind_word(Kind kind) { return kWords[static_cast<std::size_t>(kind)].data(); }
 
-Outcome read_widgets(Scene& scene, const json::Node& node) {
-  if (node.kind != json::Kind::array) return json::error_at(node, "\"widgets\" is no array; an array of objects was expected");
-  for (const json::Node& item : node.items) {
-    CATENA_CHECK(json::expect_object(item, item.label));
-    if (scene.world.count<Widget>() == static_cast<std::size_t>(widget::kMaxWidgets))
-      return json::error_at(item,
-                            "there are more than " + std::to_string(widget::kMaxWidgets) + " widgets; that many at most were expected");
-    CATENA_CHECK(read_widget(scene, item));
-  }
-  return Done{};
+Part widgets_part() {
+  schema::Component component = list_of("widgets",
+                                        "Things to take hold of. A slice, a clip, seeds, a level or a link follows one by "
+                                        "`{\"widget\": NAME}`. Here L is the longest domain among what is drawn.",
+                                        common_table(), widget::kMaxWidgets);
+  for (const WidgetType& type : types()) component.variants.push_back({kind_word(type.kind), std::string(type.help), type.own.keys()});
+  return {component, read_widgets};
 }
 
 Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<Kind> kinds, std::string_view wanted) {

@@ -5,6 +5,7 @@
 #include "engine/base/text.h"
 #include "engine/flow/curve.h"
 #include "engine/geodesics/geodesics.h"
+#include "engine/scene/link_feature.h"
 
 namespace catena::scene {
 namespace {
@@ -40,10 +41,6 @@ Entity named_widget(const Scene& scene, const json::Node* value) {
 Result<Track> curve_track(Scene& scene, const Link& link) {
   Track track;
   const json::Node* seed_node = link.node.find("seed");
-  if (seed_node == nullptr) {
-    track.note = "the streamline of link " + in_quotes(link.name) + " has no seed: it is not one line";
-    return track;
-  }
   CATENA_TRY(const std::string name, json::require_string(link.node, "field"));
   CATENA_TRY(const field::AnyField any, use_field(scene, name, *link.node.find("field")));
   if (!any.vector) return json::error_at(*link.node.find("field"), "a streamline needs a vector field");
@@ -65,7 +62,8 @@ Result<Track> curve_track(Scene& scene, const Link& link) {
   return track;
 }
 
-Result<Track> surface_track(Scene& scene, const Link& link, const char* field_key) {
+Result<Track> level_track(Scene& scene, const Link& link) {
+  const char* field_key = level_field_key(link.node);
   CATENA_TRY(const std::string name, json::require_string(link.node, field_key));
   CATENA_TRY(const field::AnyField any, use_field(scene, name, *link.node.find(field_key)));
   if (!any.scalar) return json::error_at(*link.node.find(field_key), "an isosurface needs a scalar field");
@@ -93,18 +91,17 @@ Result<Track> track_of(Scene& scene, const Widget& ruler) {
   std::vector<Link> links;
   for (const std::string& name : ruler.along) links.push_back(link_of(scene, name));
   for (const Link& link : links)
-    if (link.type == "streamline") return curve_track(scene, link);
+    if (feature_of(link.node) == LinkFeature::curve) return curve_track(scene, link);
   for (const Link& link : links) {
-    if (link.type == "isosurface") return surface_track(scene, link, "field");
-    if (link.type == "anisotropic_friction") return surface_track(scene, link, "surface");
-    if (link.type != "mesh") continue;
+    if (feature_of(link.node) == LinkFeature::level) return level_track(scene, link);
+    if (feature_of(link.node) != LinkFeature::mesh) continue;
     Track track;
     CATENA_TRY(const std::string name, json::require_string(link.node, "mesh"));
     CATENA_TRY(track.mesh, use_mesh(scene, name, *link.node.find("mesh")));
     return track;
   }
   Track none;
-  if (!links.empty()) none.note = "no link that it goes along is a streamline, an isosurface or a mesh";
+  if (!links.empty()) none.note = "no link that it goes along has a seed, a level or a mesh to measure along";
   return none;
 }
 

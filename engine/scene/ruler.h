@@ -2,7 +2,8 @@
 ///   streamline   arc length on the link's curve, between its places nearest to the ends; on a closed line the shorter way round
 ///   isosurface   a shortest path on the level set (engine/geodesics)
 ///   mesh         a shortest path on the mesh (engine/geodesics)
-/// Of several links the first streamline counts, or else the first surface. World units. Frame thread, off the tick.
+/// Which of them a link is, its keys say (link_feature.h). Of several the first streamline counts, or else the first surface. World units.
+/// Frame thread, off the tick.
 #pragma once
 #include "engine/scene/scene.h"
 

@@ -11,12 +11,14 @@
 #include "engine/scene/annotations.h"
 #include "engine/scene/components.h"
 #include "engine/scene/stereo.h"
+#include "engine/schema/key.h"
 
 namespace catena::scene {
 
 struct Scene {
   std::string path;
   std::vector<std::string> files;  ///< all that its text and the overrides name, as the scene opens them, read so far or not
+  std::vector<std::string> notes;  ///< about what still reads, but is written in another way now: "FILE:LINE: ..."
   World world;
   Coupling coupling;
   Workspace workspace;
@@ -61,6 +63,10 @@ Result<Scene> parse_scene(std::string_view text, const std::string& path, const 
 /// as streamlines, a triangle mesh as it is; the camera is fitted. `colors` may name a colour map and a range: a volume's
 /// opacity follows the range, lines show the speed by them.
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
+
+/// What a scene file may say, part by part (engine/schema): docs/scene.md, the JSON Schema and the reader are made of it. The links of
+/// "chain" and the keys of "device" are described by the rooms that read them.
+const std::vector<schema::Component>& scene_components();
 
 Entity find_field(const Scene& scene, std::string_view name);
 /// Loads on first use. `where` is the place that names the field, for messages.

@@ -9,50 +9,29 @@
 namespace catena::scene {
 namespace {
 
+/// All parts, in the order of docs/scene.md. They are read in this order, too: fields first, which the others name; widgets name links;
+/// what follows a widget names it; scalar bars name what is drawn.
+const std::vector<Part>& parts() {
+  static const std::vector<Part> all{
+      fields_part(),    chain_part(),      widgets_part(),      modes_part(),  coupling_part(),   workspace_part(),
+      device_part(),    volumes_part(),    isosurfaces_part(),  meshes_part(), slices_part(),     streamlines_part(),
+      indicator_part(), cursor_part(),     scalar_bars_part(),  labels_part(), title_part(),      orientation_marker_part(),
+      status_part(),    overlay_part(),    camera_part(),       stereo_part(), background_part(), quality_part(),
+      clip_part(),      jitter_part(),     bounding_box_part(), axes_part(),   ground_part(),     fog_part(),
+      lights_part(),    unit_length_part()};
+  return all;
+}
+
 Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldOverride>& overrides) {
   CATENA_CHECK(json::expect_object(root, "the scene"));
-  struct Part {
-    const char* key;
-    Outcome (*read)(Scene&, const json::Node&);
-  };
-  constexpr Part parts[] = {{"chain", read_chain},
-                            {"widgets", read_widgets},
-                            {"modes", read_modes},
-                            {"coupling", read_coupling},
-                            {"workspace", read_workspace},
-                            {"device", read_device},
-                            {"volumes", read_volumes},
-                            {"isosurfaces", read_isosurfaces},
-                            {"meshes", read_meshes},
-                            {"slices", read_slices},
-                            {"streamlines", read_streamlines},
-                            {"indicator", read_indicator},
-                            {"cursor", read_cursor},
-                            {"scalar_bars", read_scalar_bars},
-                            {"labels", read_labels},
-                            {"title", read_title},
-                            {"orientation_marker", read_orientation_marker},
-                            {"status", read_status},
-                            {"overlay", read_overlay},
-                            {"camera", read_camera},
-                            {"stereo", read_stereo},
-                            {"background", read_background},
-                            {"quality", read_quality},
-                            {"clip", read_clip},
-                            {"jitter", read_jitter},
-                            {"bounding_box", read_bounding_box},
-                            {"axes", read_axes},
-                            {"ground", read_ground},
-                            {"fog", read_fog},
-                            {"lights", read_lights},
-                            {"unit_length", read_unit_length}};
-  std::vector<std::string_view> keys{"fields"};
-  for (const Part& part : parts) keys.push_back(part.key);
+  std::vector<std::string_view> keys;
+  for (const Part& part : parts()) keys.push_back(part.description.name);
+  if (root.find("$schema") != nullptr) keys.push_back("$schema");  // for editors
   CATENA_CHECK(json::only_keys(root, keys));
-  // fields first: the other parts name them; widgets name links; what follows a widget names it; scalar bars name what is drawn
-  CATENA_CHECK(read_fields(scene, root, overrides));
-  for (const Part& part : parts)
-    if (const json::Node* node = root.find(part.key)) CATENA_CHECK(part.read(scene, *node));
+  CATENA_CHECK(read_fields(scene, root.find("fields"), overrides));
+  for (const Part& part : parts())
+    if (const json::Node* node = root.find(part.description.name); node != nullptr && part.read != nullptr)
+      CATENA_CHECK(part.read(scene, *node));
   return Done{};
 }
 
@@ -68,6 +47,15 @@ static Outcome check_sizes(const json::Node& node) {
   for (const json::Node& item : node.items) CATENA_CHECK(check_sizes(item));
   for (const auto& [key, value] : node.members) CATENA_CHECK(check_sizes(value));
   return Done{};
+}
+
+const std::vector<schema::Component>& scene_components() {
+  static const auto all = [] {
+    std::vector<schema::Component> components;
+    for (const Part& part : parts()) components.push_back(part.description);
+    return components;
+  }();
+  return all;
 }
 
 Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides) {

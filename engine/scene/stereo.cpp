@@ -3,7 +3,7 @@
 #include <array>
 
 #include "engine/base/numbers.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/scene_keys.h"
 
 namespace catena::scene {
 namespace {
@@ -34,25 +34,48 @@ bool needs_a_pair(StereoMode mode) {
          mode == StereoMode::anaglyph_grey;
 }
 
-Outcome read_stereo(Scene& scene, const json::Node& node) {
-  CATENA_CHECK(json::expect_object(node, "stereo"));
-  CATENA_CHECK(json::only_keys(node, {"mode", "separation", "zero_parallax", "views", "swap"}));
-  Stereo& stereo = scene.stereo;
-  CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(stereo_word(stereo.mode))));
-  const auto mode = stereo_mode(word);
-  if (!mode) return json::error_at(*node.find("mode"), "\"mode\" is not known; " + stereo_words() + " was expected");
-  stereo.mode = *mode;
-  CATENA_TRY(stereo.separation, json::get_optional_number(node, "separation", json::Range::not_negative));
-  if (stereo.separation > kMostStereoSeparation)
-    return json::error_at(*node.find("separation"), "\"separation\" is " + to_text(*stereo.separation) + "; at most " +
-                                                        to_text(kMostStereoSeparation) + " world units were expected");
-  CATENA_TRY(stereo.zero_parallax, json::get_optional_number(node, "zero_parallax", json::Range::positive));
-  CATENA_TRY(stereo.views, json::get_integer(node, "views", 2, 2, kMostStereoViews));
-  if (stereo.views != 2 && needs_a_pair(stereo.mode))
-    return json::error_at(*node.find("views"),
-                          "\"views\" is " + std::to_string(stereo.views) + " with mode \"" + word + "\"; 2 was expected");
-  CATENA_TRY(stereo.swap, json::get_boolean(node, "swap", false));
-  return Done{};
+namespace {
+
+const Table<Stereo>& stereo_table() {
+  static const auto table = [] {
+    Table<Stereo> t;
+    const Key mode = schema::word("mode", {kWords.begin(), kWords.end()}, "How the eyes' pictures are put together.");
+    t.hand(
+        mode.by_default("`mono`"),
+        [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
+          CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(stereo_word(stereo.mode))));
+          const auto named = stereo_mode(word);
+          if (!named) return json::error_at(*node.find("mode"), "\"mode\" is not known; " + stereo_words() + " was expected");
+          stereo.mode = *named;
+          return Done{};
+        },
+        [](const Scene&, const Stereo& stereo) { return schema::write_value(std::string(stereo_word(stereo.mode))); });
+    t.bind(schema::number("separation", "world", "Of neighbouring eyes.").within(0, kMostStereoSeparation).by_default("a 30th of the next"),
+           &Stereo::separation);
+    t.bind(schema::number("zero_parallax", "world", "Distance from the eyes to where both see the same.")
+               .positive()
+               .by_default("the target's"),
+           &Stereo::zero_parallax);
+    t.bind(schema::integer("views", "", "For the modes that take any number of eyes.", 2, kMostStereoViews), &Stereo::views);
+    t.bind(schema::boolean("swap", "The right eye's picture in the place of the left eye's."), &Stereo::swap);
+    t.check([](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
+      if (stereo.views == 2 || !needs_a_pair(stereo.mode)) return Done{};
+      return json::error_at(*node.find("views"), "\"views\" is " + std::to_string(stereo.views) + " with mode \"" +
+                                                     std::string(stereo_word(stereo.mode)) + "\"; 2 was expected");
+    });
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace
+
+Part stereo_part() {
+  return {{"stereo", "Two eyes, or more.", schema::Component::Shape::object, stereo_table().keys()},
+          [](Scene& scene, const json::Node& node) -> Outcome {
+            CATENA_CHECK(json::expect_object(node, "stereo"));
+            return stereo_table().read(scene, node, scene.stereo);
+          }};
 }
 
 }  // namespace catena::scene

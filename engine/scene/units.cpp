@@ -2,6 +2,7 @@
 
 #include "engine/base/text.h"
 #include "engine/field/units.h"
+#include "engine/scene/scene_keys.h"
 
 namespace catena::scene {
 
@@ -42,10 +43,16 @@ Outcome read_unit(Scene& scene, Entity field, const json::Node& node) {
   return Done{};
 }
 
-Outcome read_unit_length(Scene& scene, const json::Node& node) {
-  CATENA_TRY(std::string word, checked(node));
-  scene.world.emplace<UnitOfLength>(scene.world.create(), {std::move(word)});
-  return Done{};
+Part unit_length_part() {
+  const Key key = schema::text("unit_length", "The word shown after lengths, such as `\"mm\"`; it changes no number.")
+                      .items(0, 24)
+                      .by_default("the file's");
+  return {{"unit_length", "The word shown after lengths.", schema::Component::Shape::value, {key}},
+          [](Scene& scene, const json::Node& node) -> Outcome {
+            CATENA_TRY(std::string word, checked(node));
+            scene.world.emplace<UnitOfLength>(scene.world.create(), {std::move(word)});
+            return Done{};
+          }};
 }
 
 }  // namespace catena::scene

@@ -24,7 +24,5 @@ std::string after_number(const std::string& unit);
 
 /// "unit" of a field's node.
 Outcome read_unit(Scene& scene, Entity field, const json::Node& node);
-/// "unit_length".
-Outcome read_unit_length(Scene& scene, const json::Node& node);
 
 }  // namespace catena::scene

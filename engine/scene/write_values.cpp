@@ -54,23 +54,7 @@ std::string text_of(const std::vector<TransferFunction::GradientPoint>& table) {
   return list(table, [](const auto& p) { return row(p.gradient, p.factor); });
 }
 
-std::string text_of(const Camera& camera) {
-  std::string out = "{\"position\": " + text_of(camera.position) + ", \"target\": " + text_of(camera.target) +
-                    ", \"up\": " + text_of(camera.up) + ", \"fovy_deg\": " + text_of(camera.fovy_deg);
-  if (camera.orthographic) out += ", \"projection\": \"orthographic\", \"height\": " + text_of(camera.height);
-  return out + "}";
-}
-
-std::string text_of(const ClipPlane& plane) {
-  return "{\"plane\": {\"point\": " + text_of(plane.point) + ", \"normal\": " + text_of(plane.normal) + "}}";
-}
-
 std::string text_of(const Background& background) { return background.transparent ? "\"transparent\"" : text_of(background.color); }
-
-std::string text_of(const Light& light) {
-  return "{\"direction\": " + text_of(light.direction) + ", \"color\": " + text_of(light.color) +
-         ", \"intensity\": " + text_of(light.intensity) + ", \"fixed_to\": " + (light.with_camera ? "\"camera\"" : "\"scene\"") + "}";
-}
 
 Members pose_members(widget::Kind kind, const widget::Pose& pose) {
   const std::string first = text_of(pose.points[0]), second = text_of(pose.points[1]);

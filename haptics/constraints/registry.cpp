@@ -11,6 +11,7 @@
 #include "haptics/constraints/isosurface/isosurface.h"
 #include "haptics/constraints/mesh/mesh.h"
 #include "haptics/constraints/presets/modes.h"
+#include "haptics/constraints/rules/link_keys.h"
 #include "haptics/constraints/rules/snap.h"
 #include "haptics/constraints/shapes/box.h"
 #include "haptics/constraints/shapes/line.h"
@@ -25,53 +26,15 @@
 namespace catena::haptics {
 namespace {
 
-/// A parameter: a number, or an object (read_parameter.h).
-std::string parameter(const Key& key) {
-  return fmt::format(
-      R"("{0}": {{"description": "{1}", "oneOf": [{{"type": "number"{2}{3}}}, {{"type": "object", "required": ["field", "map"], "properties": {{"field": {{"type": "string"}}, "map": {{"type": "array", "minItems": 1, "description": "[value, output] pairs, values rising", "items": {{"type": "array", "items": {{"type": "number"}}, "minItems": 2, "maxItems": 2}}}}, "of": {{"enum": ["value", "gradient", "magnitude"]}}, "normalise": {{"type": "boolean", "description": "values run 0..1 over the range of the field"}}, "outside": {{"type": "number", "description": "where the field says nothing; default: the first output"}}}}, "additionalProperties": false}}]}})",
-      key.name, key.help, key.schema.empty() ? "" : ", ", key.schema);
-}
-
-std::string property(const Key& key) {
-  if (key.type == "parameter") return parameter(key);
-  if (key.type == "rotation")
-    return fmt::format(
-        R"("{}": {{"description": "{}", "oneOf": [{{"type": "array", "minItems": 3, "maxItems": 9}}, {{"type": "object", "required": ["axis", "angle_deg"], "properties": {{"axis": {{"type": "array", {}}}, "angle_deg": {{"type": "number"}}}}, "additionalProperties": false}}]}})",
-        key.name, key.help, kVec3Schema);
-  const bool named = key.type == "scalar_field" || key.type == "vector_field" || key.type == "mesh";
-  return fmt::format(R"("{}": {{"type": "{}", "description": "{}"{}{}}})", key.name, named ? "string" : key.type, key.help,
-                     key.schema.empty() ? "" : ", ", key.schema);
-}
-
-/// Of a constraint, or of a ready-made mode.
-template <class Type>
-std::string link_schema(const Type& type) {
-  std::string properties = fmt::format(R"("type": {{"const": "{}", "description": "{}"}})", type.type, type.paper);
-  std::string required = R"("type")";
-  const auto add = [&](const Key& key) {
-    if (key.name == "type") return;
-    properties += fmt::format(",\n        {}", property(key));
-    if (key.required) required += fmt::format(R"(, "{}")", key.name);
-  };
-  for (const Key& key : common_keys()) add(key);
-  for (const Key& key : type.keys) add(key);
-  return fmt::format(
-      "    {{\n      \"type\": \"object\",\n      \"properties\": {{\n        {}\n      }},\n      \"required\": [{}],\n"
-      "      \"additionalProperties\": false\n    }}",
-      properties, required);
-}
-
 std::string known_types() {
   std::string list;
-  for (const ConstraintType& type : registry()) list += (list.empty() ? "" : ", ") + std::string(type.type);
-  for (const ReadyMode& mode : ready_modes()) list += ", " + std::string(mode.type);
+  for (const ConstraintType& type : registry()) list += (list.empty() ? "" : ", ") + type.type;
+  for (const ReadyMode& mode : ready_modes()) list += ", " + mode.type;
   return list;
 }
 
-}  // namespace
-
-const std::vector<ConstraintType>& registry() {
-  static const std::vector<ConstraintType> list{
+std::vector<ConstraintType>& list_of_types() {
+  static std::vector<ConstraintType> list{
       point_constraint(),               //
       line_constraint(),                //
       segment_constraint(),             //
@@ -93,38 +56,56 @@ const std::vector<ConstraintType>& registry() {
   return list;
 }
 
+}  // namespace
+
+const std::vector<ConstraintType>& registry() { return list_of_types(); }
+
+void add_constraint(ConstraintType type) { list_of_types().push_back(std::move(type)); }
+
 const ConstraintType* find_constraint(std::string_view type) {
   for (const ConstraintType& entry : registry())
     if (entry.type == type) return &entry;
   return nullptr;
 }
 
-const std::vector<Key>& common_keys() {
-  static const std::vector<Key> keys{
-      {"name", "string", true, "unique; names the columns of the tick CSV", R"("pattern": "^[a-z][a-z0-9_]*$")"},
-      {"type", "string", true, "which constraint"},
-      {"stiffness", "parameter", false, "N/m; default: the coupling's", kNotNegativeSchema},
-      {"snap", "parameter", false, "starts apart and takes hold within this distance of the feature, world units", kPositiveSchema},
-      {"release", "parameter", false, "lets go at this distance of the probe from the proxy, world units; default: 2 snap, or never",
-       kPositiveSchema},
-      {"on", "object", false, "its switch: {button: n, toggle: true} or {force_above: newtons, force_below: newtons}",
-       R"("properties": {"button": {"type": "integer", "minimum": 1, "maximum": 32}, "toggle": {"type": "boolean"}, "force_above": {"type": "number", "exclusiveMinimum": 0}, "force_below": {"type": "number", "minimum": 0}}, "additionalProperties": false, "minProperties": 1, "maxProperties": 2)"},
-      {"enabled", "boolean", false, "false: off, whatever its switch says"},
-      {"indicate", "object", false, "how the hand is told that it leaves the feature",
-       R"("properties": {"cue": {"enum": ["none", "detent", "vibration"]}, "at": {"type": "number", "exclusiveMinimum": 0}, "from": {"type": "number", "minimum": 0, "maximum": 1}, "amplitude": {"type": "number", "minimum": 0}, "frequency": {"type": "number", "exclusiveMinimum": 0}, "duration": {"type": "number", "exclusiveMinimum": 0}}, "additionalProperties": false)"},
-      {"align", "object", false, "turns the tool's axis onto the surface's normal or the curve's tangent; stiffness in N m/rad",
-       R"("properties": {"axis": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3, "description": "tool frame; default [0, 0, 1]"}, "stiffness": {"type": "number", "minimum": 0, "description": "default: the coupling's rotational_stiffness"}, "sign": {"enum": ["either", "same"], "description": "either (default): the nearer of the axis's two ends"}}, "additionalProperties": false)"}};
+const schema::Keys& common_keys() {
+  static const schema::Keys keys{
+      schema::text("name", "Names the columns of the tick CSV; unique.").required(),
+      schema::text("type", "Which constraint.").required(),
+      schema::number("stiffness", "N/m", "Of the link's spring.").not_negative().or_field().by_default("the coupling's"),
+      schema::number("snap", "world", "The link starts apart, and takes hold within this distance of its feature.").positive().or_field(),
+      schema::number("release", "world", "The link lets go at this distance of its probe from its proxy.")
+          .positive()
+          .or_field()
+          .by_default("2 `snap`, or never"),
+      switch_key(),
+      schema::boolean("enabled", "False: off, whatever the switch says.").by_default("true"),
+      indication_key(),
+      align_key()};
   return keys;
 }
 
-std::string chain_schema() {
-  std::string links;
-  for (const ConstraintType& type : registry()) links += (links.empty() ? "" : ",\n") + link_schema(type);
-  for (const ReadyMode& mode : ready_modes()) links += ",\n" + link_schema(mode);
-  return fmt::format(
-      "{{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": \"chain\",\n  \"type\": \"array\",\n"
-      "  \"maxItems\": {},\n  \"items\": {{ \"oneOf\": [\n{}\n  ] }}\n}}\n",
-      exchange::kMaxSceneLinks, links);
+schema::Component chain_component() {
+  schema::Component chain{"chain", "What the hand feels: links, in their order.", schema::Component::Shape::list, common_keys(),
+                          exchange::kMaxSceneLinks};
+  for (const ConstraintType& type : registry()) chain.variants.push_back({type.type, type.help + " (" + type.paper + ")", type.keys});
+  for (const ReadyMode& mode : ready_modes()) chain.variants.push_back({mode.type, mode.help + " (" + mode.paper + ")", mode.keys});
+  return chain;
+}
+
+schema::Key scalar_field_key(const std::string& name) { return schema::named(name, schema::Role::scalar_field, "A scalar field."); }
+schema::Key vector_field_key(const std::string& name) { return schema::named(name, schema::Role::vector_field, "A vector field."); }
+schema::Key level_key(const std::string& help) {
+  return schema::number("level", "value", help).ranged("in the field's range").as(schema::Role::level).or_widget();
+}
+schema::Key length_key(const std::string& name, const std::string& help) {
+  return schema::number(name, "world", help).not_negative().or_field();
+}
+schema::Key line_kind_key() {
+  return schema::word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").by_default("`vector`");
+}
+schema::Key free_key(const std::string& above) {
+  return schema::word("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".").by_default("`none`");
 }
 
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {
@@ -133,10 +114,7 @@ Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& lin
   const ConstraintType* type = find_constraint(word);
   if (!type)
     return json::error_at(*link.find("type"), fmt::format("unknown constraint type \"{}\"; expected one of {}", word, known_types()));
-  std::vector<std::string_view> keys;
-  for (const Key& key : common_keys()) keys.push_back(key.name);
-  for (const Key& key : type->keys) keys.push_back(key.name);
-  CATENA_CHECK(json::only_keys(link, keys));
+  CATENA_CHECK(json::only_keys(link, schema::names_of(schema::joined(common_keys(), type->keys))));
   CATENA_TRY(std::shared_ptr<const Constraint> made, type->build(link, context));
   return wrap_snap(link, type->releases_itself, std::move(made), context);
 }

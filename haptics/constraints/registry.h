@@ -9,6 +9,7 @@
 #include "engine/base/json.h"
 #include "engine/flow/curve.h"
 #include "engine/mesh/mesh.h"
+#include "engine/schema/key.h"
 #include "haptics/chain/constraint.h"
 
 namespace catena::haptics {
@@ -23,36 +24,37 @@ struct BuildContext {
   std::function<Result<mesh::MeshPtr>(const json::Node& where, const std::string& name)> mesh;
 };
 
-struct Key {
-  std::string_view name;
-  /// JSON Schema: number, string, boolean, array; "parameter": a number or a map over a field; "rotation"; the name of a part of the
-  /// scene: "scalar_field", "vector_field", "mesh".
-  std::string_view type;
-  bool required;
-  std::string_view help;
-  std::string_view schema = {};  ///< more JSON Schema of the value, such as a range: `"exclusiveMinimum": 0`
-  bool stated = false;           ///< a new link states it though it need not: without it the link means little
-};
-
-inline constexpr std::string_view kVec3Schema = R"("items": {"type": "number"}, "minItems": 3, "maxItems": 3)";
-inline constexpr std::string_view kPositiveSchema = R"("exclusiveMinimum": 0)";
-inline constexpr std::string_view kNotNegativeSchema = R"("minimum": 0)";
-inline constexpr std::string_view kFreeSchema = R"("enum": ["none", "above", "below"])";
-
 struct ConstraintType {
-  std::string_view type;   ///< the word in the scene file
-  std::string_view paper;  ///< equations and sections it comes from
-  std::vector<Key> keys;   ///< its own keys, beside common_keys()
+  std::string type;   ///< the word in the scene file
+  std::string help;   ///< one sentence for docs/scene.md
+  std::string paper;  ///< equations and sections it comes from
+  schema::Keys keys;  ///< its own keys, beside common_keys()
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
   bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
+  bool has_axis = true;          ///< a normal or a tangent, which "align" may turn the tool onto; false for a place
 };
 
 const std::vector<ConstraintType>& registry();
 const ConstraintType* find_constraint(std::string_view type);
+/// One more type, of a program that brings its own constraint. At start-up, before anything reads a scene.
+void add_constraint(ConstraintType type);
+
 /// The keys that every link takes: name, type, stiffness, on, enabled, indicate, align, snap, release.
-const std::vector<Key>& common_keys();
-/// The JSON Schema of a chain, printed from the registry and the ready-made modes (modes.h).
-std::string chain_schema();
+const schema::Keys& common_keys();
+/// What the scene's "chain" may say: all types and the ready-made modes (modes.h).
+schema::Component chain_component();
+
+// keys that several types have
+schema::Key scalar_field_key(const std::string& name);
+schema::Key vector_field_key(const std::string& name);
+/// A value of the field, or the isolevel widget that states it.
+schema::Key level_key(const std::string& help);
+/// A length of zero or more, in world units, that may follow a field.
+schema::Key length_key(const std::string& name, const std::string& help);
+/// "kind": vectors, or lines without a direction.
+schema::Key line_kind_key();
+/// "free"; `above` says where that side is.
+schema::Key free_key(const std::string& above);
 
 /// Builds one link's constraint: looks the type up, refuses unknown keys, calls its build, wraps it where it snaps or releases.
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "engine/schema/table.h"
 #include "haptics/device/registry.h"
 
 namespace catena::haptics {
@@ -27,67 +28,111 @@ Result<Mat3> read_axes(const json::Node& node) {
   return m;
 }
 
-Outcome read_mechanics(const json::Node& node, DeviceSettings& s) {
-  CATENA_TRY(s.mass_kg, json::get_optional_number(node, "mass", json::Range::positive));
-  CATENA_TRY(s.damping_ns_per_m, json::get_optional_number(node, "damping", json::Range::not_negative));
-  CATENA_TRY(s.friction_n, json::get_optional_number(node, "friction", json::Range::not_negative));
-  CATENA_TRY(s.encoder_step_m, json::get_optional_number(node, "encoder_step", json::Range::not_negative));
-  CATENA_TRY(s.delay_s, json::get_optional_number(node, "delay", json::Range::not_negative));
+using Settings = DeviceSettings;
+/// What reading needs besides: the scene's path.
+using SettingsTable = schema::Table<Settings, const std::string>;
+
+Outcome read_type(const std::string&, const json::Node& node, Settings& s) {
+  CATENA_TRY(s.type, json::require_string(node, "type"));
+  if (is_device_type(s.type)) return Done{};
+  return json::error_at(*node.find("type"), "there is no device type \"" + s.type + "\"; one of " + device_types() + " was expected");
+}
+
+Outcome read_rate(const std::string&, const json::Node& node, Settings& s) {
+  CATENA_TRY(s.rate_hz, json::get_number(node, "rate", s.rate_hz, json::Range::positive));
+  if (s.rate_hz < 100 || s.rate_hz > 10000)
+    return json::error_at(*node.find("rate"), "\"rate\" is out of range; 100 to 10000 Hz were expected");
   return Done{};
 }
 
-Outcome read_limits(const json::Node& node, DeviceSettings& s) {
-  if (const json::Node* cap = node.find("stiffness_cap")) {
-    if (cap->kind == json::Kind::number) {
-      s.cap = DeviceSettings::Cap::value;
-      CATENA_TRY(s.stiffness_cap_n_per_m, json::as_number(*cap, "stiffness_cap", json::Range::not_negative));
-    } else if (cap->kind == json::Kind::string && (cap->string == "safe" || cap->string == "none")) {
-      s.cap = cap->string == "safe" ? DeviceSettings::Cap::safe : DeviceSettings::Cap::none;
-    } else {
-      return json::error_at(*cap, "\"stiffness_cap\" is not understood; \"safe\", \"none\" or a number (N/m) was expected");
-    }
+Outcome read_cap(const std::string&, const json::Node& node, Settings& s) {
+  const json::Node* cap = node.find("stiffness_cap");
+  if (cap == nullptr) return Done{};
+  if (cap->kind == json::Kind::number) {
+    s.cap = Settings::Cap::value;
+    CATENA_TRY(s.stiffness_cap_n_per_m, json::as_number(*cap, "stiffness_cap", json::Range::not_negative));
+  } else if (cap->kind == json::Kind::string && (cap->string == "safe" || cap->string == "none")) {
+    s.cap = cap->string == "safe" ? Settings::Cap::safe : Settings::Cap::none;
+  } else {
+    return json::error_at(*cap, "\"stiffness_cap\" is not understood; \"safe\", \"none\" or a number (N/m) was expected");
   }
-  CATENA_TRY(s.max_force_n, json::get_optional_number(node, "max_force", json::Range::not_negative));
-  CATENA_TRY(s.max_torque_nm, json::get_optional_number(node, "max_torque", json::Range::not_negative));
-  CATENA_TRY(s.slew_n_per_s, json::get_optional_number(node, "slew", json::Range::positive));
-  CATENA_TRY(s.ramp_in_s, json::get_optional_number(node, "ramp_in", json::Range::not_negative));
-  CATENA_TRY(s.passivity, json::get_boolean(node, "passivity", s.passivity));
   return Done{};
 }
 
-Outcome read_hand_map(const json::Node& node, DeviceSettings& s) {
+Outcome read_hand_axes(const std::string&, const json::Node& node, Settings& s) {
   if (const json::Node* axes = node.find("axes")) {
     CATENA_TRY(s.hand_from_device, read_axes(*axes));
   }
-  CATENA_TRY(s.scale, json::get_number(node, "scale", s.scale, json::Range::positive));
-  CATENA_TRY(s.clutch_button, json::get_integer(node, "clutch_button", s.clutch_button, 0, 32));
-  CATENA_TRY(s.force_button, json::get_integer(node, "force_button", s.force_button, 0, 32));
-  CATENA_TRY(s.gravity_n, json::get_vec3(node, "gravity", s.gravity_n));
   return Done{};
+}
+
+Outcome read_firmware(const std::string& scene_path, const json::Node& node, Settings& s) {
+  CATENA_TRY(s.firmware, json::get_string(node, "firmware", s.firmware));
+  if (!s.firmware.empty() && std::filesystem::path(s.firmware).is_relative())
+    s.firmware = (std::filesystem::path(scene_path).parent_path() / s.firmware).string();
+  return Done{};
+}
+
+SettingsTable made_table() {
+  using schema::number;
+  SettingsTable t;
+  const std::string drivers = "the driver's", devices = "the device's";
+  t.hand(schema::text("type", "Which device: " + device_types() + ".").required(), read_type);
+  t.hand(number("rate", "Hz", "Ticks a second.").within(100, 10000).by_default("1000"), read_rate);
+  t.bind(number("mass", "kg", "Of the mechanism.").positive().by_default(drivers), &Settings::mass_kg);
+  t.bind(number("damping", "N s/m", "Of the mechanism.").not_negative().by_default(drivers), &Settings::damping_ns_per_m);
+  t.bind(number("friction", "N", "Coulomb friction of the mechanism.").not_negative().by_default(drivers), &Settings::friction_n);
+  t.bind(number("encoder_step", "m", "Smallest step of the position; 0: continuous.").not_negative().by_default(drivers),
+         &Settings::encoder_step_m);
+  t.bind(number("delay", "s", "From the pose to the force.").not_negative().by_default(drivers), &Settings::delay_s);
+  t.hand(schema::any_of("stiffness_cap", {schema::word("", {"safe", "none"}, ""), number("", "N/m", "").not_negative()},
+                        "Of every spring: `safe`, `none` or a number.")
+             .by_default("`safe`"),
+         read_cap);
+  t.bind(number("max_force", "N", "Limit of the force; its direction is kept.").not_negative().by_default(devices), &Settings::max_force_n);
+  t.bind(number("max_torque", "N m", "Limit of the torque; its direction is kept.").not_negative().by_default(devices),
+         &Settings::max_torque_nm);
+  t.bind(number("slew", "N/s", "Limit of the change; it never delays the way to zero on a fault.")
+             .positive()
+             .by_default("`max_force` in 2 ms"),
+         &Settings::slew_n_per_s);
+  t.bind(number("ramp_in", "s", "From zero whenever the forces come on.").not_negative().by_default("0.5"), &Settings::ramp_in_s);
+  t.bind(schema::boolean("passivity", "Energy observer and controller."), &Settings::passivity);
+  t.hand(schema::texts("axes", "The device axis that each hand axis is, such as `[\"x\", \"-z\", \"y\"]`.")
+             .items(3, 3)
+             .ranged("a rotation")
+             .by_default("[\"x\", \"y\", \"z\"]"),
+         read_hand_axes);
+  t.bind(number("scale", "", "Metres of hand per metre of device. Newtons stay newtons; the limits know.").positive(), &Settings::scale);
+  t.bind(schema::integer("clutch_button", "", "While it is held the device moves, the probe rests, and the forces are off.", 0, 32)
+             .by_default("0, none"),
+         &Settings::clutch_button);
+  t.bind(schema::integer("force_button", "", "Turns the forces on and off; with it they start off, and are off after a loss.", 0, 32)
+             .by_default("0, none"),
+         &Settings::force_button);
+  t.bind(schema::vec3("gravity", "N", "Added in device axes while the forces are on; carries the grip."), &Settings::gravity_n);
+  t.hand(schema::file("firmware", "Falcon: the vendor's image."), read_firmware);
+  t.bind(number("force_gain", "counts/N m", "Falcon: motor counts.").positive(), &Settings::force_gain);
+  return t;
+}
+
+const SettingsTable& settings_table() {
+  static const SettingsTable table = made_table();
+  return table;
 }
 
 }  // namespace
 
+schema::Component device_component() {
+  return {"device", "What the hand holds; docs/devices.md says what each device is.", schema::Component::Shape::object,
+          settings_table().keys()};
+}
+
 Result<DeviceSettings> read_device_settings(const json::Node& node, const std::string& scene_path) {
   CATENA_CHECK(json::expect_object(node, "device"));
-  CATENA_CHECK(json::only_keys(node, {"type",          "rate",          "mass",         "damping", "friction", "encoder_step", "delay",
-                                      "stiffness_cap", "max_force",     "max_torque",   "slew",    "ramp_in",  "passivity",    "axes",
-                                      "scale",         "clutch_button", "force_button", "gravity", "firmware", "force_gain"}));
   DeviceSettings s;
   s.where = node;
-  CATENA_TRY(s.type, json::require_string(node, "type"));
-  if (!is_device_type(s.type))
-    return json::error_at(*node.find("type"), "there is no device type \"" + s.type + "\"; one of " + device_types() + " was expected");
-  CATENA_TRY(s.rate_hz, json::get_number(node, "rate", s.rate_hz, json::Range::positive));
-  if (s.rate_hz < 100 || s.rate_hz > 10000)
-    return json::error_at(*node.find("rate"), "\"rate\" is out of range; 100 to 10000 Hz were expected");
-  CATENA_CHECK(read_mechanics(node, s));
-  CATENA_CHECK(read_limits(node, s));
-  CATENA_CHECK(read_hand_map(node, s));
-  CATENA_TRY(s.firmware, json::get_string(node, "firmware", s.firmware));
-  if (!s.firmware.empty() && std::filesystem::path(s.firmware).is_relative())
-    s.firmware = (std::filesystem::path(scene_path).parent_path() / s.firmware).string();
-  CATENA_TRY(s.force_gain, json::get_number(node, "force_gain", s.force_gain, json::Range::positive));
+  CATENA_CHECK(settings_table().read(scene_path, node, s));
   return s;
 }
 

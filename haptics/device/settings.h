@@ -1,6 +1,5 @@
 /// What a person may say about a device: the scene's "device" object, or options of the command line. Off the tick.
 ///   {"type": "falcon", "max_force": 6, "stiffness_cap": "safe", "axes": ["x", "-z", "y"], "clutch_button": 2, ...}
-/// `catena info --schema` does not list these keys; docs/scene.md does.
 #pragma once
 #include <array>
 #include <functional>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "engine/base/json.h"
+#include "engine/schema/key.h"
 #include "haptics/device/device.h"
 
 namespace catena::haptics {
@@ -40,6 +40,8 @@ struct DeviceSettings {
   std::function<void(const std::string&)> tell;  ///< not a key: hears what an opening that takes long is doing, a line each; may be empty
 };
 
+/// The keys of the object.
+schema::Component device_component();
 /// Reads and checks the object; every error names the place. Paths resolve relative to `scene_path`.
 Result<DeviceSettings> read_device_settings(const json::Node& node, const std::string& scene_path);
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "haptics/constraints/presets/modes.h"
+#include "haptics/constraints/rules/link_keys.h"
 #include "haptics/extract/make_link.h"
 #include "haptics/extract/widgets.h"
 

@@ -5,9 +5,6 @@
 
 namespace catena::haptics {
 
-/// The member "on" of a link or a mode: {"button": n, "toggle": bool} or {"force_above": N, "force_below": N}; absent: always on.
-Result<Switch> read_switch(const json::Node& holder);
-
 /// `coupling` gives the default stiffness, and says whether a baseline needs the link's linear primitive.
 Result<Link> make_link(const json::Node& from, const Coupling& coupling, const BuildContext& context);
 

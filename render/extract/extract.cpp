@@ -33,7 +33,7 @@ Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene,
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
 }
 
-Result<std::optional<ColorSource>> color_source(scene::Scene& scene, const std::optional<scene::FieldColors>& by) {
+Result<std::optional<ColorSource>> color_source(scene::Scene& scene, const std::optional<scene::ColorBy>& by) {
   if (!by) return std::optional<ColorSource>();
   ColorSource source;
   CATENA_TRY(source.grid, drawn_grid(scene, by->field, by->where, "\"color_by\""));

@@ -34,7 +34,7 @@ Outcome ask_for_copy(const mesh::TriangleMesh& mesh, const scene::SurfaceMesh& s
   return Done{};
 }
 
-std::vector<Color> vertex_colors(const mesh::TriangleMesh& mesh, const field::AnyField& shown, const scene::SurfaceColors& by) {
+std::vector<Color> vertex_colors(const mesh::TriangleMesh& mesh, const field::AnyField& shown, const scene::ColorBy& by) {
   std::vector<double> values;
   values.reserve(mesh.vertices().size());
   double lo = HUGE_VAL, hi = -HUGE_VAL;

@@ -4,7 +4,8 @@
   unchanged.py BEFORE AFTER [--generated 200] [--bad 50] [--only WORD] [--exceptions FILE] [--keep FOLDER]
 
 BEFORE and AFTER are programs. Both run on every scene of assets/scenes, on generated and on bad scenes (scenes.py, always the same), and
-on recordings that BEFORE made. Durations in what they print are left out of the comparison, nothing else. The exceptions: lines
+on recordings that BEFORE made. Durations in what they print, and notes ("catena: note: ...", what reads but is written in another way now),
+are left out of the comparison, nothing else. The exceptions: lines
 "CASE: why", CASE a shell pattern; they are counted and listed. Exit code 1 where anything else differs.
 """
 import argparse
@@ -23,13 +24,14 @@ import scenes
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 DURATION = re.compile(rb"\d+(\.\d+)?(e[-+]?\d+)? ?(us|ms|s|min)\b")
+NOTE = re.compile(rb"catena: note: .*\n")
 CUBE = """v -0.6 -0.6 -0.6\nv 0.6 -0.6 -0.6\nv 0.6 0.6 -0.6\nv -0.6 0.6 -0.6\nv -0.6 -0.6 0.6\nv 0.6 -0.6 0.6\nv 0.6 0.6 0.6\nv -0.6 0.6 0.6
 f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n"""
 
 
 def run(program, words, folder):
     done = subprocess.run([program] + words, cwd=folder, capture_output=True, timeout=600, env=dict(os.environ, LC_ALL="C"))
-    return done.returncode, DURATION.sub(b"#", done.stdout), DURATION.sub(b"#", done.stderr)
+    return done.returncode, DURATION.sub(b"#", done.stdout), DURATION.sub(b"#", NOTE.sub(b"", done.stderr))
 
 
 def contents(path):

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/app/viewer/edit/scene_items.h"
+#include "engine/scene/link_feature.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/presets/modes.h"
 
@@ -13,28 +14,18 @@ namespace {
 
 using Kind = LinkKey::Kind;
 
-/// "enum": ["a", "b"] of a key's schema.
-std::vector<std::string> words_of(std::string_view schema) {
-  const auto parsed = json::parse("{" + std::string(schema) + "}", "schema");
-  std::vector<std::string> words;
-  if (!parsed) return words;
-  if (const json::Node* list = parsed->find("enum"))
-    for (const json::Node& word : list->items) words.push_back(word.string);
-  return words;
-}
-
-LinkKey key_of(const haptics::Key& key) {
-  LinkKey out{std::string(key.name), std::string(key.help), Kind::other, key.required, false, {}, key.stated};
-  out.positive = key.schema.find("inimum\": 0") != std::string_view::npos;
-  if (key.type == "number" || key.type == "parameter") out.kind = Kind::number;
-  if (key.type == "boolean") out.kind = Kind::boolean;
-  if (key.type == "array" && key.schema.starts_with("\"items\": {\"type\": \"number\"")) out.kind = Kind::vector;
-  if (key.type == "scalar_field") out.kind = Kind::scalar_field;
-  if (key.type == "vector_field") out.kind = Kind::vector_field;
-  if (key.type == "mesh") out.kind = Kind::mesh;
-  if (key.type != "string") return out;
-  out.words = words_of(key.schema);
-  if (!out.words.empty()) out.kind = Kind::choice;
+LinkKey key_of(const schema::Key& key) {
+  using schema::Form;
+  using schema::Role;
+  LinkKey out{key.name, key.help, Kind::other, key.is_required, false, key.words, key.is_stated};
+  out.positive = key.limits.lo == 0.0;
+  if (key.form == Form::number) out.kind = Kind::number;
+  if (key.form == Form::boolean) out.kind = Kind::boolean;
+  if (key.form == Form::vector && key.count == 3) out.kind = Kind::vector;
+  if (key.form == Form::word) out.kind = Kind::choice;
+  if (key.role == Role::scalar_field) out.kind = Kind::scalar_field;
+  if (key.role == Role::vector_field) out.kind = Kind::vector_field;
+  if (key.role == Role::mesh) out.kind = Kind::mesh;
   return out;
 }
 
@@ -102,16 +93,16 @@ std::vector<LinkKey> keys_of(std::string_view type) {
   const haptics::ConstraintType* constraint = haptics::find_constraint(type);
   const haptics::ReadyMode* mode = haptics::find_ready_mode(type);
   if (constraint == nullptr && mode == nullptr) return out;
-  for (const haptics::Key& key : constraint != nullptr ? constraint->keys : mode->keys) out.push_back(key_of(key));
-  for (const haptics::Key& key : haptics::common_keys())
+  for (const schema::Key& key : constraint != nullptr ? constraint->keys : mode->keys) out.push_back(key_of(key));
+  for (const schema::Key& key : haptics::common_keys())
     if (key.name == "stiffness" || key.name == "snap" || key.name == "release") out.push_back(key_of(key));
   return out;
 }
 
 std::vector<std::string> link_types() {
   std::vector<std::string> out;
-  for (const haptics::ConstraintType& type : haptics::registry()) out.emplace_back(type.type);
-  for (const haptics::ReadyMode& mode : haptics::ready_modes()) out.emplace_back(mode.type);
+  for (const haptics::ConstraintType& type : haptics::registry()) out.push_back(type.type);
+  for (const haptics::ReadyMode& mode : haptics::ready_modes()) out.push_back(mode.type);
   return out;
 }
 
@@ -141,11 +132,9 @@ std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Nod
       return along(key.name == "to" ? 0.1 : 0);
     case Kind::number: {
       if (key.name == "level") {
-        for (const char* holder : {"surface", "field"}) {
-          const json::Node* name = link.find(holder);
-          if (name == nullptr) continue;
+        if (const json::Node* name = link.find(scene::level_field_key(link)); name != nullptr) {
           const field::AnyField field = use(scene, name->string, false);
-          if (!field.scalar) continue;
+          if (!field.scalar) return {};
           field::Cursor cursor;
           // what is felt is what is seen
           const std::string seen = drawn_level(scene, name->string, field.scalar->sample(probe, cursor).value);
@@ -238,8 +227,7 @@ std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow
 std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const std::string& name,
                                                  const Vec3& probe) {
   std::vector<scene::Document::Edit> edits{{row.pointer(key.name), scene::text_of(name)}};
-  const json::Node* holder = row.node.find("surface") != nullptr ? row.node.find("surface") : row.node.find("field");
-  if (field_of_level(row.node).empty() || holder != row.node.find(key.name)) return edits;
+  if (scene::field_of_level(row.node).empty() || key.name != scene::level_field_key(row.node)) return edits;
   // another surface has another level
   json::Node link = row.node;
   for (auto& [member, value] : link.members)
@@ -252,7 +240,7 @@ std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const Chai
 }
 
 std::vector<std::string> levels_along(const scene::Scene& scene, const ChainRow& row) {
-  const std::string field = field_of_level(row.node);
+  const std::string field = scene::field_of_level(row.node);
   if (field.empty() || row.node.find("level")->kind != json::Kind::number) return {};
   const double level = row.node.find("level")->number;
   std::vector<std::string> along = seen_levels(scene, field, level);

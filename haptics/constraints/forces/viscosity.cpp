@@ -57,9 +57,10 @@ Result<std::shared_ptr<const Constraint>> build_viscosity(const json::Node& link
 
 ConstraintType viscosity_constraint() {
   return {"viscosity",
+          "A fluid about the hand. It has either `time` or `coefficient`.",
           "a volume mode beside the paper's",
-          {{"time", "parameter", false, "relaxation time, s: the force is stiffness x time x velocity", kNotNegativeSchema, true},
-           {"coefficient", "parameter", false, "instead of time: N s/m", kNotNegativeSchema}},
+          {schema::number("time", "s", "Relaxation time: the force is stiffness x time x velocity.").not_negative().or_field().stated(),
+           schema::number("coefficient", "N s/m", "The damper itself.").not_negative().or_field()},
           build_viscosity};
 }
 

@@ -47,6 +47,12 @@ void fetch(LevelField& field, const Vec3& world, LevelPoint& out) noexcept {
 
 }  // namespace
 
+schema::Key surface_key() {
+  return schema::named("surface", schema::Role::scalar_field, "A scalar field: the friction acts on its level, tangentially.");
+}
+
+schema::Key surface_level_key() { return level_key("The value of `surface` on which probe and proxy lie; the two come together."); }
+
 Result<ContactSpec> read_contact(const json::Node& link, SurfaceKey rule, const BuildContext& context) {
   ContactSpec spec;
   const json::Node *surface = link.find("surface"), *level = link.find("level");

@@ -29,8 +29,8 @@ struct ContactSpec {
 enum class SurfaceKey { optional_with_level, optional, required };
 /// Reads `surface` and `level`.
 Result<ContactSpec> read_contact(const json::Node& link, SurfaceKey rule, const BuildContext& context);
-inline constexpr Key kSurfaceKey{"surface", "scalar_field", false, "a scalar field: friction acts on its level, tangentially"};
-inline constexpr Key kLevelKey{"level", "number", false, "the value of `surface` on which probe and proxy lie"};
+schema::Key surface_key();        ///< optional
+schema::Key surface_level_key();  ///< beside it
 
 /// Zero bytes: nothing is known.
 struct ContactMemory {

@@ -27,10 +27,9 @@ Result<std::shared_ptr<const Constraint>> build_drag(const json::Node& link, con
 
 ConstraintType drag_constraint() {
   return {"drag",
+          "Isotropic friction: the proxy stays within `threshold` of the probe.",
           "section 3",
-          {{"threshold", "parameter", true, "the proxy stays within this distance of the probe, world units", kNotNegativeSchema},
-           kSurfaceKey,
-           kLevelKey},
+          {length_key("threshold", "Distance at which the proxy slips.").required(), surface_key(), surface_level_key()},
           build_drag};
 }
 

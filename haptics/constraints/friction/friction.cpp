@@ -295,12 +295,11 @@ Result<std::shared_ptr<const Constraint>> build_friction(const json::Node& link,
 
 ConstraintType friction_constraint() {
   return {"friction",
+          "Friction across a vector field; along the field the hand moves freely.",
           "section 6.1",
-          {{"field", "vector_field", true, "a vector field of the scene: free along it, friction across"},
-           {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
-           {"threshold", "parameter", false, "the proxy slips across at this distance, world units; default 0.005 L", kNotNegativeSchema},
-           kSurfaceKey,
-           kLevelKey},
+          {vector_field_key("field").required(), line_kind_key(),
+           length_key("threshold", "Distance at which the proxy slips across the field.").by_default("0.005 L"), surface_key(),
+           surface_level_key()},
           build_friction};
 }
 

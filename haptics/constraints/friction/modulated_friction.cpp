@@ -105,14 +105,14 @@ Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::N
 ConstraintType modulated_friction_constraint() {
   return {
       "modulated_friction",
+      "Friction that is harder the more normal the field is to the surface.",
       "section 6.1, Eqs. 7-9",
-      {{"field", "vector_field", true, "a vector field of the scene: its angle to the surface sets the threshold"},
-       {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
-       {"surface", "scalar_field", true, "a scalar field: its gradient is the normal"},
-       kLevelKey,
-       {"tau_min", "parameter", false, "the threshold where the field is tangential, world units; default 0.001 L", kNotNegativeSchema},
-       {"tau_max", "parameter", false, "the threshold where the field is normal, world units; default 0.01 L", kNotNegativeSchema},
-       {"law", "string", false, "safe: harder the more normal the field; printed: Eq. 7 to the letter", R"("enum": ["safe", "printed"])"}},
+      {schema::named("field", schema::Role::vector_field, "A vector field; its angle to the surface sets the threshold.").required(),
+       line_kind_key(), schema::named("surface", schema::Role::scalar_field, "A scalar field; its gradient is the normal.").required(),
+       level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
+       length_key("tau_min", "Threshold where the field is tangential.").by_default("0.001 L"),
+       length_key("tau_max", "Threshold where the field is normal.").by_default("0.01 L"),
+       schema::word("law", {"safe", "printed"}, "`safe`: harder the more normal; `printed`: Eq. 7 to the letter.").by_default("`safe`")},
       build_modulated_friction};
 }
 

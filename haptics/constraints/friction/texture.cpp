@@ -42,12 +42,11 @@ Result<std::shared_ptr<const Constraint>> build_texture(const json::Node& link, 
 
 ConstraintType texture_constraint() {
   return {"texture",
+          "Drag with bumps of a wavelength.",
           "section 3",
-          {{"threshold", "parameter", true, "the mean distance at which the proxy slips, world units", kNotNegativeSchema},
-           {"amplitude", "number", false, "of the modulation, a part of the threshold", R"("minimum": 0, "maximum": 1)"},
-           {"wavelength", "number", true, "of the modulation, world units", kPositiveSchema},
-           kSurfaceKey,
-           kLevelKey},
+          {length_key("threshold", "Mean distance at which the proxy slips.").required(),
+           schema::number("amplitude", "", "Part of the threshold that varies.").within(0, 1).by_default("0.5"),
+           schema::number("wavelength", "world", "Of the variation.").positive().required(), surface_key(), surface_level_key()},
           build_texture};
 }
 

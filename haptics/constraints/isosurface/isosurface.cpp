@@ -362,10 +362,9 @@ Result<std::shared_ptr<const Constraint>> build_isosurface(const json::Node& lin
 
 ConstraintType isosurface_constraint() {
   return {"isosurface",
+          "Holds the proxy on a level of a scalar field.",
           "Eqs. 5-6",
-          {{"field", "scalar_field", true, "a scalar field of the scene"},
-           {"level", "number", true, "the field's value on the surface"},
-           {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema}},
+          {scalar_field_key("field").required(), level_key("The value on the surface.").required(), free_key("where values are larger")},
           build_isosurface,
           true};
 }

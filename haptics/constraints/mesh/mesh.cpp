@@ -254,12 +254,13 @@ Result<std::shared_ptr<const Constraint>> build_mesh(const json::Node& link, con
 }  // namespace
 
 ConstraintType mesh_constraint() {
-  return {"mesh",
-          "section 3; god-object",
-          {{"mesh", "mesh", true, "name of a triangle mesh of the scene"},
-           {"free", "string", false, "the side where the hand moves freely: above is where the normals point to, outside", kFreeSchema}},
-          build_mesh,
-          true};
+  return {
+      "mesh",
+      "Holds the proxy on a triangle mesh: from both sides, or as a god object.",
+      "section 3; god-object",
+      {schema::named("mesh", schema::Role::mesh, "One of the scene's `meshes`.").required(), free_key("where the normals point, outside")},
+      build_mesh,
+      true};
 }
 
 }  // namespace catena::haptics

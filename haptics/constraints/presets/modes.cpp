@@ -8,16 +8,15 @@ namespace {
 ReadyMode anisotropic_friction() {
   return {
       "anisotropic_friction",
+      "Three links in one word: on the isosurface, easy along the field, hard across it. `stiffness`, `on` and `enabled` go to all three, "
+      "the "
+      "other common keys to the first.",
       "section 6.1, Eqs. 7-9",
-      {{"surface", "scalar_field", true, "a scalar field of the scene"},
-       {"level", "number", true, "the field's value on the surface"},
-       {"field", "vector_field", true, "a vector field of the scene: easy along it, hard across"},
-       {"kind", "string", false, "line: v and -v are the same, as for fibres", R"("enum": ["vector", "line"])"},
-       {"threshold", "parameter", false, "across the field, world units; default 0.005 L", kNotNegativeSchema},
-       {"tau_min", "parameter", false, "along the field where it is tangential, world units; default 0.001 L", kNotNegativeSchema},
-       {"tau_max", "parameter", false, "along the field where it is normal, world units; default 0.01 L", kNotNegativeSchema},
-       {"law", "string", false, "safe: harder the more normal the field; printed: Eq. 7 to the letter", R"("enum": ["safe", "printed"])"},
-       {"free", "string", false, "the side, by field value, where the hand moves freely", kFreeSchema}},
+      {scalar_field_key("surface").required(), level_key("The value on the surface.").required(), vector_field_key("field").required(),
+       line_kind_key(), length_key("threshold", "Slip across the field.").by_default("0.005 L"),
+       length_key("tau_min", "Slip along the field where it is tangential.").by_default("0.001 L"),
+       length_key("tau_max", "Slip along the field where it is normal.").by_default("0.01 L"),
+       schema::word("law", {"safe", "printed"}, "As of `modulated_friction`.").by_default("`safe`"), free_key("where values are larger")},
       {{"surface", "isosurface", {{"surface", "field"}, {"level", "level"}, {"free", "free"}}},
        {"direction",
         "friction",
@@ -63,13 +62,10 @@ Result<std::vector<json::Node>> expand_link(const json::Node& item) {
 
   // the mode's own keys
   CATENA_TRY(const std::string name, json::require_string(item, "name"));
-  std::vector<std::string_view> allowed;
-  for (const Key& key : common_keys()) allowed.push_back(key.name);
-  for (const Key& key : mode->keys) allowed.push_back(key.name);
-  CATENA_CHECK(json::only_keys(item, allowed));
-  for (const Key& key : mode->keys) {
-    if (!key.required || item.find(key.name) != nullptr) continue;
-    if (key.type == "number") {
+  CATENA_CHECK(json::only_keys(item, schema::names_of(schema::joined(common_keys(), mode->keys))));
+  for (const schema::Key& key : mode->keys) {
+    if (!key.is_required || item.find(key.name) != nullptr) continue;
+    if (key.form == schema::Form::number) {
       CATENA_CHECK(json::require_number(item, key.name));
     } else {
       CATENA_CHECK(json::require_string(item, key.name));
@@ -86,7 +82,7 @@ Result<std::vector<json::Node>> expand_link(const json::Node& item) {
     link.label = item.label;
     link.members.emplace_back("name", word(*item.find("name"), "name", fmt::format("{}_{}", name, part.suffix)));
     link.members.emplace_back("type", word(*type, "type", std::string(part.type)));
-    for (const Key& key : common_keys()) {
+    for (const schema::Key& key : common_keys()) {
       const bool of_all = key.name == "stiffness" || key.name == "on" || key.name == "enabled";
       if (key.name == "name" || key.name == "type" || !(of_all || links.empty())) continue;
       if (const json::Node* value = item.find(key.name)) link.members.emplace_back(key.name, *value);

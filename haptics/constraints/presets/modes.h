@@ -18,9 +18,10 @@ struct ReadyMode {
     std::string_view suffix, type;
     std::vector<Handed> keys;
   };
-  std::string_view type;   ///< the word in the scene file
-  std::string_view paper;  ///< equations and sections it comes from
-  std::vector<Key> keys;   ///< its own, beside the common ones
+  std::string type;   ///< the word in the scene file
+  std::string help;   ///< one sentence for docs/scene.md
+  std::string paper;  ///< equations and sections it comes from
+  schema::Keys keys;  ///< its own, beside the common ones
   std::vector<Part> parts;
 };
 

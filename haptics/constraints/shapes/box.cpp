@@ -188,19 +188,17 @@ Result<std::shared_ptr<const Constraint>> build_box(const json::Node& link, cons
   return make_closed_form<BoxSurface>({center, size * 0.5, rotation, rules.free == FreeSide::above}, rules);
 }
 
-constexpr std::string_view kSizeSchema = R"("items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3)";
-
 }  // namespace
 
 ConstraintType box_constraint() {
-  return {"box",
-          "section 3",
-          {{"center", "array", true, "world units", kVec3Schema},
-           {"size", "array", true, "its three edges, world units", kSizeSchema},
-           {"rotation", "rotation", false, "world from box: three rows of three numbers, nine numbers, or {axis, angle_deg}"},
-           {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema}},
-          build_box,
-          true};
+  return {
+      "box",
+      "Holds the proxy on the surface of a box, or on one side of it.",
+      "section 3",
+      {schema::vec3("center", "world", "Its centre.").required(), schema::vec3("size", "world", "Its three edges.").positive().required(),
+       schema::rotation("rotation", "World from box, written as in `workspace`.").by_default("none"), free_key("outside")},
+      build_box,
+      true};
 }
 
 }  // namespace catena::haptics

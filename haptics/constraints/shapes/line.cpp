@@ -31,9 +31,10 @@ Result<std::shared_ptr<const Constraint>> build_line(const json::Node& link, con
 
 ConstraintType line_constraint() {
   return {"line",
+          "Holds the proxy on an infinite line.",
           "section 3",
-          {{"point", "array", true, "a point of the line, world units", kVec3Schema},
-           {"direction", "array", true, "its direction, any length but zero", kVec3Schema}},
+          {schema::vec3("point", "world", "A point of the line.").required(),
+           schema::direction("direction", "Its direction, of any length.").required()},
           build_line,
           true};
 }

@@ -18,10 +18,10 @@ Result<std::shared_ptr<const Constraint>> build_plane(const json::Node& link, co
 
 ConstraintType plane_constraint() {
   return {"plane",
+          "Holds the proxy on a plane, or on one side of it.",
           "section 3",
-          {{"point", "array", true, "a point of the plane, world units", kVec3Schema},
-           {"normal", "array", true, "its normal, any length but zero", kVec3Schema},
-           {"free", "string", false, "the side where the hand moves freely: above is where the normal points to", kFreeSchema}},
+          {schema::vec3("point", "world", "A point of the plane.").required(),
+           schema::direction("normal", "Its normal, of any length.").required(), free_key("where the normal points")},
           build_plane,
           true};
 }

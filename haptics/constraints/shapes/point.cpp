@@ -21,7 +21,9 @@ Result<std::shared_ptr<const Constraint>> build_point(const json::Node& link, co
 }  // namespace
 
 ConstraintType point_constraint() {
-  return {"point", "section 3", {{"position", "array", true, "the point, world units", kVec3Schema}}, build_point, true};
+  return {"point", "Holds the proxy at a point.", "section 3", {schema::vec3("position", "world", "The point.").required()}, build_point,
+          true,
+          false};
 }
 
 }  // namespace catena::haptics

@@ -153,16 +153,14 @@ Result<std::shared_ptr<const Constraint>> build_polyline(const json::Node& link,
   return make_closed_form<PolylineSurface>(std::move(shape), rules);
 }
 
-constexpr std::string_view kPointsSchema =
-    R"("items": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "minItems": 2)";
-
 }  // namespace
 
 ConstraintType polyline_constraint() {
   return {"polyline",
+          "Holds the proxy on a polyline.",
           "section 3",
-          {{"points", "array", true, "its corners in order, world units", kPointsSchema},
-           {"closed", "boolean", false, "the last point joins the first; default false"}},
+          {schema::places("points", "world", "Its corners in order.").items(2, 0).required(),
+           schema::boolean("closed", "The last point joins the first; three points or more.").by_default("false")},
           build_polyline,
           true};
 }

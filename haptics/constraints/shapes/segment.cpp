@@ -35,12 +35,10 @@ Result<std::shared_ptr<const Constraint>> build_segment(const json::Node& link, 
 }  // namespace
 
 ConstraintType segment_constraint() {
-  return {"segment",
-          "section 3",
-          {{"from", "array", true, "its first end, world units", kVec3Schema},
-           {"to", "array", true, "its other end, world units", kVec3Schema}},
-          build_segment,
-          true};
+  return {
+      "segment",     "Holds the proxy on a piece of a line.",
+      "section 3",   {schema::vec3("from", "world", "Its first end.").required(), schema::vec3("to", "world", "Its other end.").required()},
+      build_segment, true};
 }
 
 }  // namespace catena::haptics

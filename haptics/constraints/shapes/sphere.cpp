@@ -16,10 +16,10 @@ Result<std::shared_ptr<const Constraint>> build_sphere(const json::Node& link, c
 
 ConstraintType sphere_constraint() {
   return {"sphere",
+          "Holds the proxy on a sphere, or on one side of it.",
           "section 3",
-          {{"center", "array", true, "world units", kVec3Schema},
-           {"radius", "number", true, "world units", kPositiveSchema},
-           {"free", "string", false, "the side where the hand moves freely: above is outside", kFreeSchema}},
+          {schema::vec3("center", "world", "Its centre.").required(),
+           schema::number("radius", "world", "Its radius.").positive().required(), free_key("outside")},
           build_sphere,
           true};
 }

@@ -1,5 +1,7 @@
 #include "haptics/constraints/streamline/streamline.h"
 
+#include <array>
+
 #include <fmt/format.h>
 
 #include "engine/flow/flow.h"
@@ -10,10 +12,8 @@
 namespace catena::haptics {
 namespace {
 
-constexpr std::string_view kMethodSchema = R"("enum": ["linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"])";
-constexpr std::string_view kFollowSchema = R"("enum": ["selected", "online"])";
-constexpr std::string_view kKindSchema = R"("enum": ["vector", "line"])";
-constexpr std::string_view kToleranceSchema = R"("exclusiveMinimum": 0, "exclusiveMaximum": 1)";
+constexpr std::array<std::string_view, 7> kMethods{"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"};
+constexpr std::array<std::string_view, 2> kFollow{"selected", "online"};
 
 /// An online line needs a direction at its seed before the first tick.
 Outcome check_seed(const json::Node& where, const OnlineSpec& spec, const std::string& name) {
@@ -48,9 +48,9 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
         *link.find("tolerance"),
         fmt::format("\"tolerance\" is {}; a number > 0 and < 1 was expected (it is times the domain length)", spec.tolerance));
   CATENA_TRY(const int method, json::get_choice(link, "method", static_cast<int>(cells ? flow::Method::dp54 : flow::Method::rkf34),
-                                                {"linear", "euler", "rk2", "rk3", "rk4", "rkf34", "dp54"}));
+                                                {kMethods.begin(), kMethods.end()}));
   spec.method = static_cast<flow::Method>(method);
-  CATENA_TRY(const int follow, json::get_choice(link, "follow", 0, {"selected", "online"}));
+  CATENA_TRY(const int follow, json::get_choice(link, "follow", 0, {kFollow.begin(), kFollow.end()}));
   CATENA_TRY(spec.seed, json::get_optional_vec3(link, "seed"));
 
   // selected or online
@@ -72,19 +72,26 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
 }  // namespace
 
 ConstraintType streamline_constraint() {
-  return {
-      "streamline",
-      "section 4, Eqs. 1-4",
-      {{"field", "vector_field", true, "a vector field of the scene"},
-       {"seed", "array", false, "a place on the line, world units; without it the probe where the link is switched on", kVec3Schema, true},
-       {"follow", "string", false, "selected: on the traced curve (default with a seed); online: integrated every tick", kFollowSchema},
-       {"method", "string", false,
-        "of online following, which it implies; default rkf34, of sampled line fields dp54; linear is Eqs. 1-2 as printed", kMethodSchema},
-       {"tolerance", "number", false,
-        "of the embedded error of one online step, times the domain length; default 1e-9, of sampled line fields 1e-13", kToleranceSchema},
-       {"kind", "string", false, "line: v and -v are the same, as for fibres", kKindSchema},
-       {"min_speed", "number", false, "speeds up to this count as zero", kNotNegativeSchema}},
-      build_streamline};
+  return {"streamline",
+          "Holds the proxy on a streamline: one that is traced once, or one that is integrated in every tick.",
+          "section 4, Eqs. 1-4",
+          {vector_field_key("field").required(),
+           schema::vec3("seed", "world", "A place on the line.")
+               .by_default("the probe where the link is switched on")
+               .as(schema::Role::seed)
+               .or_widget()
+               .stated(),
+           schema::word("follow", {kFollow.begin(), kFollow.end()},
+                        "`selected`: on the traced curve, with a seed; `online`: integrated every tick.")
+               .by_default("`selected` with a seed"),
+           schema::word("method", {kMethods.begin(), kMethods.end()},
+                        "Integrator of online following, which it implies; `linear` is Eqs. 1-2 as printed.")
+               .by_default("`rkf34`; sampled line fields `dp54`"),
+           schema::number("tolerance", "L", "Embedded error of one online step.")
+               .limited({0.0, 1.0, true, true})
+               .by_default("1e-9; sampled line fields 1e-13"),
+           line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").not_negative().by_default("0")},
+          build_streamline};
 }
 
 }  // namespace catena::haptics

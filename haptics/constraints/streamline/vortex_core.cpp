@@ -269,11 +269,15 @@ Result<std::shared_ptr<const Constraint>> build_vortex_core(const json::Node& li
 
 ConstraintType vortex_core_constraint() {
   return {"vortex_core",
+          "Holds the proxy in a tube about the core line of a vortex.",
           "a volume mode beside the paper's",
-          {{"field", "vector_field", true, "a vector field of the scene"},
-           {"radius", "number", false, "of the tube where the hand moves freely, world units; default 0: on the core", kNotNegativeSchema},
-           {"search", "number", false, "longest distance of the core from the probe, world units; default: 0.1 of the domain",
-            kPositiveSchema}},
+          {vector_field_key("field").required(),
+           schema::number("radius", "world", "Radius of the tube in which the hand moves freely; 0: on the core.")
+               .not_negative()
+               .by_default("0"),
+           schema::number("search", "world", "Longest distance of the core from the probe.")
+               .positive()
+               .by_default("0.1 L or 2 `radius`, the larger")},
           build_vortex_core};
 }
 

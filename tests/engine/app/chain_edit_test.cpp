@@ -1,5 +1,6 @@
 // What the chain and widget panels write into the scene's text.
 #include "engine/app/viewer/chain_edit.h"
+#include "engine/scene/link_feature.h"
 
 #include <gtest/gtest.h>
 
@@ -110,7 +111,7 @@ constexpr const char* kDrawn = R"({
 /// The link's field and level as its text has them.
 std::pair<std::string, std::string> surface_of(const json::Node& link) {
   const json::Node* level = link.find("level");
-  return {field_of_level(link), level == nullptr ? "" : json_of(*level)};
+  return {scene::field_of_level(link), level == nullptr ? "" : json_of(*level)};
 }
 
 TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {

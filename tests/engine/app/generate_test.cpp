@@ -1,6 +1,8 @@
 /// `generate`, `info`, `import` from the outside.
 #include <gtest/gtest.h>
 
+#include "engine/base/json.h"
+
 #include <filesystem>
 
 #include "tests/support/program.h"
@@ -82,10 +84,23 @@ TEST(Info, DescribesAScene) {
   EXPECT_NE(info.out.find("link a: isosurface"), std::string::npos) << info.out;
 }
 
-TEST(Info, PrintsTheChainSchema) {
+TEST(Info, PrintsTheSchemaOfScenes) {
   const auto info = test::run_catena({"info", "--schema"});
   ASSERT_EQ(info.exit_code, 0) << info.err;
+  const auto schema = json::parse(info.out, "schema");
+  ASSERT_TRUE(schema) << schema.error().message;
+  const json::Node& parts = *schema->find("properties");
+  for (const char* part : {"fields", "chain", "device", "volumes", "camera", "title"}) EXPECT_NE(parts.find(part), nullptr) << part;
   EXPECT_NE(info.out.find("\"isosurface\""), std::string::npos);
+}
+
+TEST(Info, PrintsTheKeysOfAPart) {
+  const auto info = test::run_catena({"info", "--keys", "slices"});
+  ASSERT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_NE(info.out.find("| `contours` | object |"), std::string::npos) << info.out;
+  const auto none = test::run_catena({"info", "--keys", "slice"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("did you mean \"slices\"?"), std::string::npos) << none.err;
 }
 
 }  // namespace generate_test

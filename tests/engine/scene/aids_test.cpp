@@ -30,7 +30,7 @@ TEST(SceneAids, WrongOnesNameTheirLine) {
                                        {R"("ground": {"tile": 0})", "tile"},
                                        {R"("ground": {"size": 10, "tile": 0.001})", "at most 1000 tiles"},
                                        {R"("fog": {"start": 5, "end": 5})", "greater view depth"},
-                                       {R"("fog": {"most": 1.5})", "share from 0 to 1"},
+                                       {R"("fog": {"most": 1.5})", "from 0 to 1 was expected"},
                                        {R"("lights": [{"direction": [0, 0, 0]}])", "a vector other than"},
                                        {R"("lights": [{}])", "direction"},
                                        {R"("lights": [{"direction": [1, 0, 0], "fixed_to": "moon"}])", "fixed_to"}}) {

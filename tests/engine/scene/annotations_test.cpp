@@ -95,10 +95,10 @@ TEST(Annotations, MistakesAreOneLine) {
   expect_error(R"("title": 3)", {"title", "expected"});
   expect_error(R"("orientation_marker": 3)", {"true, false or an object was expected"});
   expect_error(R"("orientation_marker": {"position": "left"})", {"bottom-left, bottom-right, top-left, top-right"});
-  expect_error(R"("orientation_marker": {"names": ["a"]})", {"names of x, y and z were expected"});
+  expect_error(R"("orientation_marker": {"names": ["a"]})", {"names, of x, y and z, were expected"});
   expect_error(R"("status": "on")", {"true or false was expected"});
   expect_error(R"("overlay": {"scale": 0})", {"> 0 was expected"});
-  expect_error(R"("overlay": {"scale": 100})", {"at most 20"});
+  expect_error(R"("overlay": {"scale": 100})", {"from 0 to 20"});
   expect_error(R"("overlay": {"fonts": "x"})", {"\"fonts\"", "font"});
   const auto none = parse_scene(R"({"scalar_bars": [{"volume": 0}]})", "scene.json");
   ASSERT_FALSE(none);

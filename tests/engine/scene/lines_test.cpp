@@ -102,10 +102,10 @@ TEST(SeedPatterns, MistakesAreNamedWithTheirLine) {
   refused("\"seeds\": {\"sphere\": {\"center\": [0, 0, 0], \"radius\": 0, \"count\": 5}}", 3, {"\"radius\" is 0", "> 0"});
   refused("\"seeds\": {\"isosurface\": {\"field\": \"bal\", \"level\": 1, \"count\": 5}}", 3, {"unknown field \"bal\"", "ball"});
   refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 0}}", 3, {"\"distance\" is 0"});
-  refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"test\": 1.5}}", 3, {"\"test\" is 1.5", "at most 1"});
+  refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"test\": 1.5}}", 3, {"\"test\" is 1.5", "from 0 to 1"});
   refused("\"seeds\": {\"evenly_spaced\": {\"distance\": 1, \"start\": []}}", 3, {"\"start\"", "at least one"});
   refused("\"seeds\": {\"line\": 3}", 3, {"object", "expected"});
-  refused("\"seeds\": [[1, 0, 0]], \"tolerance\": 0.5", 3, {"\"tolerance\" is 0.5", "at most 0.01"});
+  refused("\"seeds\": [[1, 0, 0]], \"tolerance\": 0.5", 3, {"\"tolerance\" is 0.5", "from 0 to 0.01"});
   refused("\"seeds\": [[1, 0, 0]], \"arrows\": -1", 3, {"\"arrows\" is -1", "> 0"});
 }
 

@@ -61,7 +61,7 @@ TEST(SceneSlices, WrongSlicesNameTheirLine) {
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"spacing": 0}}])", "spacing"},
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"levels": [1, 1]}}])", "rising numbers were expected"},
         {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"levels": []}}])", "rising numbers"},
-        {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"count": 2, "width": 1e4}}])", "at most 100"},
+        {R"([{"field": "s", "axis": "x", "at": 1, "contours": {"count": 2, "width": 1e4}}])", "from 0 to 100"},
         {R"([{"field": "s", "axis": "x", "at": 1, "contour": {}}])", "contours"}}) {
     const auto scene = parse(text);
     ASSERT_FALSE(scene) << text;

@@ -55,7 +55,7 @@ TEST(Modes, TheTableMatchesTheRegistry) {
   for (const ReadyMode& mode : ready_modes()) {
     EXPECT_EQ(find_constraint(mode.type), nullptr);
     EXPECT_EQ(find_ready_mode(mode.type), &mode);
-    for (const Key& key : mode.keys) {
+    for (const schema::Key& key : mode.keys) {
       int handed = 0;
       for (const ReadyMode::Part& part : mode.parts) {
         const ConstraintType* type = find_constraint(part.type);
@@ -63,7 +63,7 @@ TEST(Modes, TheTableMatchesTheRegistry) {
         for (const ReadyMode::Handed& hand : part.keys) {
           handed += hand.from == key.name;
           bool known = false;
-          for (const Key& own : type->keys) known = known || own.name == hand.to;
+          for (const schema::Key& own : type->keys) known = known || own.name == hand.to;
           EXPECT_TRUE(known) << part.type << " " << hand.to;
         }
       }

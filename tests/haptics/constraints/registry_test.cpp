@@ -1,5 +1,6 @@
 #include <set>
 
+#include "engine/schema/json_schema.h"
 #include "haptics/constraints/presets/modes.h"
 #include "tests/haptics/constraints/rig.h"
 
@@ -9,11 +10,11 @@ namespace registry_test {
 TEST(Registry, TypesAreUniqueAndFound) {
   std::set<std::string> seen;
   for (const ConstraintType& type : registry()) {
-    EXPECT_TRUE(seen.insert(std::string(type.type)).second) << type.type;
+    EXPECT_TRUE(seen.insert(type.type).second) << type.type;
     EXPECT_EQ(find_constraint(type.type), &type);
     EXPECT_NE(type.build, nullptr);
-    for (const Key& key : type.keys)
-      for (const Key& common : common_keys()) EXPECT_NE(key.name, common.name) << type.type;
+    for (const schema::Key& key : type.keys)
+      for (const schema::Key& common : common_keys()) EXPECT_NE(key.name, common.name) << type.type;
   }
   for (const char* type : {"point", "plane", "isosurface"}) EXPECT_NE(find_constraint(type), nullptr) << type;
   EXPECT_EQ(find_constraint("spline"), nullptr);
@@ -40,20 +41,21 @@ TEST(Registry, CommonKeysAreAccepted) {
 }
 
 TEST(Registry, SchemaIsJsonWithEveryTypeAndKey) {
-  const auto schema = json::parse(chain_schema(), "schema");
-  ASSERT_TRUE(schema) << schema.error().message << "\n" << chain_schema();
+  const std::string text = schema::json_schema(chain_component());
+  const auto schema = json::parse(text, "schema");
+  ASSERT_TRUE(schema) << schema.error().message << "\n" << text;
   const json::Node& list = *schema->find("items")->find("oneOf");
   ASSERT_EQ(list.items.size(), registry().size() + ready_modes().size());
   for (std::size_t i = 0; i < registry().size(); ++i) {
     const ConstraintType& type = registry()[i];
     const json::Node& properties = *list.items[i].find("properties");
     EXPECT_EQ(properties.find("type")->find("const")->string, type.type);
-    for (const Key& key : type.keys) ASSERT_NE(properties.find(key.name), nullptr) << key.name;
-    for (const Key& key : common_keys()) ASSERT_NE(properties.find(key.name), nullptr) << key.name;
+    for (const schema::Key& key : type.keys) ASSERT_NE(properties.find(key.name), nullptr) << key.name;
+    for (const schema::Key& key : common_keys()) ASSERT_NE(properties.find(key.name), nullptr) << key.name;
     EXPECT_FALSE(list.items[i].find("additionalProperties")->boolean);
     std::set<std::string> required;
     for (const json::Node& word : list.items[i].find("required")->items) required.insert(word.string);
-    for (const Key& key : type.keys) EXPECT_EQ(required.contains(std::string(key.name)), key.required) << key.name;
+    for (const schema::Key& key : type.keys) EXPECT_EQ(required.contains(key.name), key.is_required) << key.name;
   }
 }
 

@@ -6,6 +6,7 @@
 #include "engine/app/viewer/chain_edit.h"
 #include "engine/app/viewer/edit/pointers.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/link_feature.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {
@@ -20,17 +21,10 @@ std::vector<std::string> field_names(const scene::Scene& scene) {
   return names;
 }
 
-std::string field_of_level(const json::Node& link) {
-  if (link.find("level") == nullptr) return {};
-  const json::Node* field = link.find("surface");
-  if (field == nullptr) field = link.find("field");
-  return field != nullptr && field->kind == json::Kind::string ? field->string : std::string();
-}
-
 std::vector<std::string> felt_levels(const scene::Scene& scene, const std::string& field, double level) {
   std::vector<std::string> pointers;
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
-    if (field_of_level(link.node) != field) return;
+    if (scene::field_of_level(link.node) != field) return;
     const json::Node& stated = *link.node.find("level");
     const std::string at = pointer_of(link.node);
     if (stated.kind == json::Kind::number && stated.number == level && !at.empty()) pointers.push_back(at + "/level");
@@ -65,7 +59,7 @@ std::string drawn_level(const scene::Scene& scene, const std::string& field, dou
 std::string felt_level(const scene::Scene& scene, const std::string& field) {
   std::string text;
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
-    if (!text.empty() || field_of_level(link.node) != field) return;
+    if (!text.empty() || scene::field_of_level(link.node) != field) return;
     text = json_of(*link.node.find("level"));
   });
   return text;

@@ -10,9 +10,6 @@ namespace catena::app {
 std::string name_of(const scene::Scene& scene, scene::Entity entity);
 std::vector<std::string> field_names(const scene::Scene& scene);
 
-/// The field on a level of which a link lies ("surface", or "field" where it has none); empty: the link has no level.
-std::string field_of_level(const json::Node& link);
-
 /// Pointers to the levels of all links of the chain that lie on the surface `field` = `level`, of whatever type (isosurface, friction,
 /// texture): the same field, the same number.
 std::vector<std::string> felt_levels(const scene::Scene& scene, const std::string& field, double level);

@@ -1,0 +1,172 @@
+#include "engine/schema/json_schema.h"
+
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
+
+namespace catena::schema {
+
+namespace {
+
+using json::string_text;
+
+std::string items_limits(const Key& key) {
+  std::string out;
+  if (key.least > 0) out += ", \"minItems\": " + std::to_string(key.least);
+  if (key.most > 0) out += ", \"maxItems\": " + std::to_string(key.most);
+  return out;
+}
+
+std::string number_schema(const Key& key) {
+  std::string out = key.form == Form::integer ? R"("type": "integer")" : R"("type": "number")";
+  const Limits& l = key.limits;
+  if (l.lo) out += (l.lo_open ? ", \"exclusiveMinimum\": " : ", \"minimum\": ") + to_text(*l.lo);
+  if (l.hi) out += (l.hi_open ? ", \"exclusiveMaximum\": " : ", \"maximum\": ") + to_text(*l.hi);
+  return out;
+}
+
+/// So many numbers, each within the limits.
+std::string row_schema(int count, const Limits& limits = {}) {
+  Key one;
+  one.limits = limits;
+  const std::string n = std::to_string(count);
+  return R"("type": "array", "items": {)" + number_schema(one) + "}, \"minItems\": " + n + ", \"maxItems\": " + n;
+}
+
+std::string list_schema(const std::string& item, const Key& key) {
+  return R"("type": "array", "items": {)" + item + "}" + items_limits(key);
+}
+
+/// The value that follows a field (haptics/constraints/rules/read_parameter.h).
+const char* const kFieldMap =
+    R"({"type": "object", "required": ["field", "map"], "properties": {"field": {"type": "string", "description": "The field that is asked, at the proxy."}, "map": {"type": "array", "minItems": 1, "description": "Pairs [value, output], values rising, linear between them.", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}, "of": {"enum": ["value", "gradient", "magnitude"]}, "normalise": {"type": "boolean", "description": "The values of the map run from 0 to 1 over the range of the field."}, "outside": {"type": "number", "description": "The output where the field says nothing; by default the first one."}}, "additionalProperties": false})";
+const char* const kWidget =
+    R"({"type": "object", "required": ["widget"], "properties": {"widget": {"type": "string", "description": "The widget that it follows."}}, "additionalProperties": false})";
+const char* const kRotation =
+    R"("oneOf": [{"type": "array", "items": {"type": "number"}, "minItems": 9, "maxItems": 9}, {"type": "array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "minItems": 3, "maxItems": 3}, {"type": "object", "required": ["axis", "angle_deg"], "properties": {"axis": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "angle_deg": {"type": "number"}}, "additionalProperties": false}])";
+
+/// What is within the braces, without the sentence.
+std::string body(const Key& key) {
+  switch (key.form) {
+    case Form::number:
+    case Form::integer:
+      return number_schema(key);
+    case Form::boolean:
+      return R"("type": "boolean")";
+    case Form::text:
+      return std::string(R"("type": "string")") + (key.most > 0 ? ", \"maxLength\": " + std::to_string(key.most) : "");
+    case Form::word: {
+      std::string words;
+      for (const std::string& w : key.words) words += (words.empty() ? "" : ", ") + string_text(w);
+      return "\"enum\": [" + words + "]";
+    }
+    case Form::vector:
+      return row_schema(key.count, key.limits);
+    case Form::color:
+      return row_schema(3, {0.0, 1.0});
+    case Form::numbers:
+      return list_schema(R"("type": "number")", key);
+    case Form::texts:
+      return list_schema(R"("type": "string")", key);
+    case Form::places:
+      return list_schema(row_schema(3), key);
+    case Form::table:
+      return list_schema(row_schema(key.count), key);
+    case Form::rotation:
+      return kRotation;
+    case Form::null:
+      return R"("type": "null")";
+    case Form::object: {
+      const std::string whole = object_schema(*key.inner);
+      return whole.substr(1, whole.size() - 2);
+    }
+    case Form::any_of: {
+      std::string all;
+      for (const Key& choice : key.choices) all += (all.empty() ? "" : ", ") + json_schema(choice);
+      return "\"anyOf\": [" + all + "]";
+    }
+  }
+  return {};
+}
+
+std::string sentence(const std::string& help) { return help.empty() ? std::string() : "\"description\": " + string_text(help) + ", "; }
+
+/// The sentence with the unit and the default, as an editor shows it.
+std::string described(const Key& key) {
+  std::string text = key.help;
+  if (key.unit == "world") text += " In world units.";
+  if (key.unit == "value") text += " In the field's units.";
+  if (!key.unit.empty() && key.unit != "world" && key.unit != "value") text += " In " + key.unit + ".";
+  if (!key.fallback.empty()) text += " Default: " + key.fallback + ".";
+  return key.name.empty() ? std::string() : sentence(text);
+}
+
+}  // namespace
+
+std::string json_schema(const Key& key) {
+  if (!key.follows_field && !key.follows_widget) return "{" + described(key) + body(key) + "}";
+  return "{" + described(key) + "\"oneOf\": [{" + body(key) + "}" + (key.follows_field ? std::string(", ") + kFieldMap : "") +
+         (key.follows_widget ? std::string(", ") + kWidget : "") + "]}";
+}
+
+std::string object_schema(const Keys& keys, const std::string& help, const std::string& more) {
+  std::string properties = more, required;
+  for (const Key& key : keys) {
+    properties += (properties.empty() ? "" : ", ") + string_text(key.name) + ": " + json_schema(key);
+    if (key.is_required) required += (required.empty() ? "" : ", ") + string_text(key.name);
+  }
+  return "{" + sentence(help) + "\"type\": \"object\", \"properties\": {" + properties + "}" +
+         (required.empty() ? "" : ", \"required\": [" + required + "]") + ", \"additionalProperties\": false}";
+}
+
+namespace {
+
+/// Of an item of a list or a map, of the part itself.
+std::string item_schema(const Component& component) {
+  if (component.variants.empty()) return object_schema(component.keys);
+  const bool typed = find(component.keys, "type") != nullptr;
+  std::string all;
+  for (const Variant& variant : component.variants) {
+    Keys keys;
+    for (const Key& key : component.keys)
+      if (key.name != "type") keys.push_back(key);
+    const std::string type = typed ? "\"type\": {\"const\": " + string_text(variant.name) + "}" : std::string();
+    std::string one = object_schema(joined(keys, variant.keys), variant.help, type);
+    if (typed) {
+      // "type" is required, too
+      const std::string list = "\"required\": [";
+      const std::size_t at = one.rfind(list);
+      one = at == std::string::npos ? one.substr(0, one.size() - 1) + ", \"required\": [\"type\"]}"
+                                    : one.insert(at + list.size(), "\"type\", ");
+    }
+    all += (all.empty() ? "" : ",\n      ") + one;
+  }
+  return std::string("{\"") + (typed ? "oneOf" : "anyOf") + "\": [\n      " + all + "]}";
+}
+
+}  // namespace
+
+std::string json_schema(const Component& component) {
+  if (component.shape == Component::Shape::value) return json_schema(component.keys.front());
+  const std::string item = item_schema(component);
+  switch (component.shape) {
+    case Component::Shape::list:
+      return "{" + sentence(component.help) + "\"type\": \"array\", \"items\": " + item +
+             (component.most > 0 ? ", \"maxItems\": " + std::to_string(component.most) : "") + "}";
+    case Component::Shape::map:
+      return "{" + sentence(component.help) + R"("type": "object", "propertyNames": {"pattern": "^[a-z][a-z0-9_]*$"}, )" +
+             "\"additionalProperties\": " + item + "}";
+    case Component::Shape::on_off:
+      return "{" + sentence(component.help) + R"("anyOf": [{"type": "boolean"}, )" + item + "]}";
+    default:
+      return "{" + sentence(component.help) + item.substr(1);
+  }
+}
+
+std::string json_schema(const std::vector<Component>& components, const std::string& title) {
+  std::string properties = "    \"$schema\": {\"type\": \"string\"}";
+  for (const Component& component : components) properties += ",\n    " + string_text(component.name) + ": " + json_schema(component);
+  return "{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n  \"title\": " + string_text(title) +
+         ",\n  \"type\": \"object\",\n  \"properties\": {\n" + properties + "\n  },\n  \"additionalProperties\": false\n}\n";
+}
+
+}  // namespace catena::schema

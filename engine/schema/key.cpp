@@ -1,0 +1,95 @@
+#include "engine/schema/key.h"
+
+#include "engine/base/numbers.h"
+
+namespace catena::schema {
+
+namespace {
+
+Key made(const std::string& name, Form form, const std::string& unit, const std::string& help) {
+  Key key;
+  key.name = name;
+  key.form = form;
+  key.unit = unit;
+  key.help = help;
+  return key;
+}
+
+}  // namespace
+
+bool Limits::contains(double x) const {
+  return !(lo && (lo_open ? !(x > *lo) : !(x >= *lo))) && !(hi && (hi_open ? !(x < *hi) : !(x <= *hi)));
+}
+
+std::string Limits::words() const {
+  if (lo && hi && !lo_open) return to_text(*lo) + " to " + (hi_open ? "below " : "") + to_text(*hi);
+  if (lo && hi) return "> " + to_text(*lo) + ", at most " + to_text(*hi);
+  if (lo) return (lo_open ? "> " : ">= ") + to_text(*lo);
+  if (hi) return (hi_open ? "below " : "at most ") + to_text(*hi);
+  return {};
+}
+
+Key number(const std::string& name, const std::string& unit, const std::string& help) { return made(name, Form::number, unit, help); }
+Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most) {
+  return made(name, Form::integer, unit, help).within(least, most);
+}
+Key boolean(const std::string& name, const std::string& help) { return made(name, Form::boolean, {}, help); }
+Key text(const std::string& name, const std::string& help) { return made(name, Form::text, {}, help); }
+Key word(const std::string& name, std::vector<std::string> words, const std::string& help) {
+  Key key = made(name, Form::word, {}, help);
+  key.words = std::move(words);
+  return key;
+}
+Key vector(const std::string& name, int count, const std::string& unit, const std::string& help) {
+  Key key = made(name, Form::vector, unit, help);
+  key.count = count;
+  return key;
+}
+Key vec3(const std::string& name, const std::string& unit, const std::string& help) { return vector(name, 3, unit, help); }
+Key direction(const std::string& name, const std::string& help) { return vec3(name, {}, help).ranged("not 0"); }
+Key color(const std::string& name, const std::string& help) { return made(name, Form::color, {}, help).within(0, 1); }
+Key numbers(const std::string& name, const std::string& unit, const std::string& help) { return made(name, Form::numbers, unit, help); }
+Key texts(const std::string& name, const std::string& help) { return made(name, Form::texts, {}, help); }
+Key places(const std::string& name, const std::string& unit, const std::string& help) {
+  return made(name, Form::places, unit, help).items(1, 0);
+}
+Key table(const std::string& name, int width, const std::string& unit, const std::string& help) {
+  Key key = made(name, Form::table, unit, help).items(1, 0);
+  key.count = width;
+  return key;
+}
+Key rotation(const std::string& name, const std::string& help) { return made(name, Form::rotation, {}, help); }
+Key null() { return made({}, Form::null, {}, {}); }
+Key object(const std::string& name, Keys inner, const std::string& help) {
+  Key key = made(name, Form::object, {}, help);
+  key.inner = std::make_shared<const Keys>(std::move(inner));
+  return key;
+}
+Key any_of(const std::string& name, Keys choices, const std::string& help) {
+  Key key = made(name, Form::any_of, choices.front().unit, help);
+  key.choices = std::move(choices);
+  return key;
+}
+Key named(const std::string& name, Role role, const std::string& help) { return text(name, help).as(role); }
+Key file(const std::string& name, const std::string& help) { return text(name, help).as(Role::file); }
+
+const Key* find(const Keys& keys, std::string_view name) {
+  for (const Key& key : keys)
+    if (key.name == name) return &key;
+  return nullptr;
+}
+
+Keys joined(Keys first, const Keys& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+std::vector<std::string_view> names_of(const Keys& keys) {
+  std::vector<std::string_view> names;
+  for (const Key& key : keys) names.push_back(key.name);
+  return names;
+}
+
+std::vector<std::string_view> words_of(const Key& key) { return {key.words.begin(), key.words.end()}; }
+
+}  // namespace catena::schema

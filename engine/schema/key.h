@@ -1,0 +1,169 @@
+/// A key of the scene file, stated once: what it takes, its unit, its range, its default, and one sentence for a person. A component of
+/// the scene (a volume, a link of the chain, a light ...) is a list of them. Its reader and writer (table.h), the JSON Schema
+/// (json_schema.h), the tables of docs/scene.md (markdown.h), the files that a scene names and the window's controls all come from it.
+///
+///   schema::number("radius", "world", "Its radius.").positive().required()
+///   schema::word("shading", {"flat", "smooth"}, "How it is lit.")
+///
+/// Made at start-up, read from any thread.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace catena::schema {
+
+/// The shape of a value.
+enum class Form {
+  number,
+  integer,
+  boolean,
+  text,
+  word,      ///< one of `words`
+  vector,    ///< `count` numbers: [x, y, z], a quaternion, an interval
+  color,     ///< [r, g, b], display (sRGB) components from 0 to 1
+  numbers,   ///< a list of any length
+  texts,     ///< a list of strings, of names for instance
+  places,    ///< a list of [x, y, z]
+  table,     ///< rows of `count` numbers, the first of each rising
+  rotation,  ///< three rows, nine numbers, or {"axis", "angle_deg"}
+  null,      ///< null
+  object,    ///< `inner`
+  any_of,    ///< one of `choices`, which have no names
+};
+
+/// What of the scene a value names or stands for.
+enum class Role { none, scalar_field, vector_field, any_field, mesh, widget, link, level, seed, file };
+
+/// Bounds of a number, or of each number of a vector. An open bound does not belong to the range.
+struct Limits {
+  std::optional<double> lo, hi;
+  bool lo_open = false, hi_open = false;
+  bool contains(double x) const;
+  /// "> 0", "0 to 1", "at most 8"; empty: any.
+  std::string words() const;
+};
+
+struct Key {
+  std::string name;
+  Form form = Form::number;
+  std::string unit;           ///< "world" (world units), "value" (of the field), "N/m" ...
+  std::string help;           ///< one sentence
+  std::string range = {};     ///< in words, where the limits do not say it: "rising", "not 0"
+  std::string fallback = {};  ///< the default in words; JSON text where it is a value
+  Limits limits = {};
+  int count = 0;  ///< of a vector's numbers, of a row's
+  int least = 0;  ///< items of a list
+  int most = 0;   ///< items of a list; 0: any number
+  Role role = Role::none;
+  bool is_required = false;
+  bool is_stated = false;       ///< a new component states it though it need not: without it the component means little
+  bool follows_field = false;   ///< a number that may be an object {"field", "map", ...} instead
+  bool follows_widget = false;  ///< or {"widget": NAME}
+  std::vector<std::string> words = {};
+  std::vector<Key> choices = {};                       ///< any_of
+  std::shared_ptr<const std::vector<Key>> inner = {};  ///< object
+
+  Key required() const {
+    return with([](Key& k) { k.is_required = true; });
+  }
+  Key stated() const {
+    return with([](Key& k) { k.is_stated = true; });
+  }
+  Key positive() const { return limited({0.0, {}, true}); }
+  Key not_negative() const { return limited({0.0, {}}); }
+  Key within(double lo, double hi) const { return limited({lo, hi}); }
+  Key limited(const Limits& l) const {
+    return with([&](Key& k) { k.limits = l; });
+  }
+  /// The range in words.
+  Key ranged(const std::string& text) const {
+    return with([&](Key& k) { k.range = text; });
+  }
+  /// The default, in words or as JSON text.
+  Key by_default(const std::string& text) const {
+    return with([&](Key& k) { k.fallback = text; });
+  }
+  Key as(Role r) const {
+    return with([&](Key& k) { k.role = r; });
+  }
+  Key items(int lo, int hi) const {
+    return with([&](Key& k) { k.least = lo, k.most = hi; });
+  }
+  Key or_field() const {
+    return with([](Key& k) { k.follows_field = true; });
+  }
+  Key or_widget() const {
+    return with([](Key& k) { k.follows_widget = true; });
+  }
+
+ private:
+  template <class Change>
+  Key with(Change&& change) const {
+    Key k = *this;
+    change(k);
+    return k;
+  }
+};
+
+using Keys = std::vector<Key>;
+
+Key number(const std::string& name, const std::string& unit, const std::string& help);
+Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most);
+Key boolean(const std::string& name, const std::string& help);
+Key text(const std::string& name, const std::string& help);
+Key word(const std::string& name, std::vector<std::string> words, const std::string& help);
+Key vec3(const std::string& name, const std::string& unit, const std::string& help);
+/// An arrow of any length but 0.
+Key direction(const std::string& name, const std::string& help);
+Key vector(const std::string& name, int count, const std::string& unit, const std::string& help);
+Key color(const std::string& name, const std::string& help);
+Key numbers(const std::string& name, const std::string& unit, const std::string& help);
+Key texts(const std::string& name, const std::string& help);
+Key places(const std::string& name, const std::string& unit, const std::string& help);
+Key table(const std::string& name, int width, const std::string& unit, const std::string& help);
+Key rotation(const std::string& name, const std::string& help);
+Key null();
+Key object(const std::string& name, Keys inner, const std::string& help);
+/// Several forms in one key; the first is the usual one.
+Key any_of(const std::string& name, Keys choices, const std::string& help);
+/// The name of a field, a mesh, a widget.
+Key named(const std::string& name, Role role, const std::string& help);
+Key file(const std::string& name, const std::string& help);
+
+const Key* find(const Keys& keys, std::string_view name);
+/// `first`, then `second`.
+Keys joined(Keys first, const Keys& second);
+/// The names of the keys, for json::only_keys.
+std::vector<std::string_view> names_of(const Keys& keys);
+/// The words of a choice as json::get_choice takes them.
+std::vector<std::string_view> words_of(const Key& key);
+
+/// What an item of a component may be: a streamline among links, a raw file among fields.
+struct Variant {
+  std::string name;  ///< its word: of "type", or of the key that tells it from the others
+  std::string help;  ///< one or two sentences
+  Keys keys = {};    ///< beside the component's own
+};
+
+/// A part of the scene file: what stands at one of its top-level keys.
+struct Component {
+  enum class Shape {
+    object,
+    list,    ///< an array of objects
+    map,     ///< names -> objects
+    on_off,  ///< true, false, or an object
+    value    ///< `keys` has one key: the part itself
+  };
+  std::string name;  ///< "isosurfaces"
+  std::string help;  ///< one or two sentences
+  Shape shape = Shape::object;
+  Keys keys = {};
+  int most = 0;  ///< items of a list; 0: any number
+  /// Empty, or each item is one of these; told by "type" where `keys` has that.
+  std::vector<Variant> variants = {};
+};
+
+}  // namespace catena::schema

@@ -1,0 +1,132 @@
+/// The keys of one struct and where their values go: from a table come its reader and its writer. C is what reading needs besides (the
+/// scene). A key is bound to a member, or to what a function makes of the struct, and then read and written without more; or it is read by
+/// hand. What keys must say together are checks, made after all keys have been read.
+///
+///   Table<Light, Scene>()
+///       .bind(direction("direction", "Towards the light.").required(), &Light::direction)
+///       .bind(number("intensity", "", "Its strength.").not_negative(), &Light::intensity)
+#pragma once
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/schema/values.h"
+
+namespace catena::schema {
+
+template <class T, class C>
+class Table {
+ public:
+  using Read = std::function<Outcome(C&, const json::Node& object, T&)>;
+  /// The value as JSON text; empty: the key is not written.
+  using Write = std::function<std::string(const C&, const T&)>;
+  using Members = std::vector<std::pair<std::string, std::string>>;
+  using WriteMany = std::function<Members(const C&, const T&)>;
+
+  /// `access`: a pointer to a member, or a function from (const) T& to a reference. Its default is that of a T, where the key has no words
+  /// for it.
+  template <class Access>
+  Table& bind(Key key, Access access) {
+    const T made{};
+    const auto& value = std::invoke(access, made);
+    const std::string usual = text_of(key, value);
+    if (key.fallback.empty() && !key.is_required && key.form != Form::text) key.fallback = usual;
+    rows_.push_back({[key, access](C&, const json::Node& object, T& out) { return read_value(key, object, std::invoke(access, out)); },
+                     [key, access, usual](const C&, const T& in) {
+                       std::string text = text_of(key, std::invoke(access, in));
+                       return key.is_required || text != usual ? text : std::string();
+                     }});
+    keys_.push_back(std::move(key));
+    return *this;
+  }
+
+  /// Read by `read`, which is called whether the key is there or not; written by `write`, if at all.
+  Table& hand(Key key, Read read, Write write = {}) {
+    rows_.push_back({std::move(read), std::move(write)});
+    keys_.push_back(std::move(key));
+    return *this;
+  }
+  /// Read together with another key.
+  Table& beside(Key key, Write write = {}) {
+    rows_.push_back({{}, std::move(write)});
+    keys_.push_back(std::move(key));
+    return *this;
+  }
+  /// Keys that `read` reads together; the first one's place in the table is where that happens.
+  Table& group(const Keys& keys, Read read, WriteMany write = {}) {
+    for (const Key& key : keys) {
+      rows_.push_back({std::exchange(read, {}), {}, std::exchange(write, {})});
+      keys_.push_back(key);
+    }
+    return *this;
+  }
+  /// A key that scenes had once: it is read, but no longer told of.
+  Table& formerly(const std::string& key) {
+    former_.push_back(key);
+    return *this;
+  }
+  Table& check(Read check) {
+    checks_.push_back(std::move(check));
+    return *this;
+  }
+
+  const Keys& keys() const { return keys_; }
+
+  /// Every key of the object is known and within its range.
+  Outcome read(C& context, const json::Node& object, T& out) const {
+    std::vector<std::string_view> names = names_of(keys_);
+    for (const std::string& key : former_)
+      if (object.find(key) != nullptr) names.push_back(key);
+    CATENA_CHECK(json::only_keys(object, names));
+    return read_known(context, object, out);
+  }
+  /// Of an object that has other keys, too, which another table knows.
+  Outcome read_known(C& context, const json::Node& object, T& out) const {
+    for (const Row& row : rows_)
+      if (row.read) CATENA_CHECK(row.read(context, object, out));
+    for (const Read& check : checks_) CATENA_CHECK(check(context, object, out));
+    return Done{};
+  }
+  /// A JSON object on one line with what must be stated and what differs from the default.
+  std::string write(const C& context, const T& in) const {
+    std::string text;
+    const auto add = [&](const std::string& key, const std::string& value) {
+      if (!value.empty()) text += (text.empty() ? "\"" : ", \"") + key + "\": " + value;
+    };
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (rows_[i].write) add(keys_[i].name, rows_[i].write(context, in));
+      if (!rows_[i].write_many) continue;
+      for (const auto& [key, value] : rows_[i].write_many(context, in)) add(key, value);
+    }
+    return "{" + text + "}";
+  }
+
+ private:
+  struct Row {
+    Read read;
+    Write write;
+    WriteMany write_many = {};
+  };
+
+  template <class V>
+  static std::string text_of(const Key& key, const V& value) {
+    if (key.form == Form::word)
+      if constexpr (std::is_enum_v<V> || std::is_same_v<V, bool>) return write_value(key.words[static_cast<std::size_t>(value)]);
+    if constexpr (std::is_enum_v<V>)
+      return {};
+    else
+      return write_value(value);
+  }
+  template <class V>
+  static std::string text_of(const Key& key, const std::optional<V>& value) {
+    return value ? text_of(key, *value) : std::string();
+  }
+
+  Keys keys_;
+  std::vector<Row> rows_;
+  std::vector<Read> checks_;
+  std::vector<std::string> former_;
+};
+
+}  // namespace catena::schema

@@ -1,0 +1,168 @@
+#include "engine/schema/values.h"
+
+#include <cmath>
+
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+
+namespace catena::schema {
+
+namespace {
+
+bool is_absent(const Key& key, const json::Node& object) { return !key.is_required && object.find(key.name) == nullptr; }
+
+json::Range range_of(const Key& key) {
+  if (!key.limits.lo || *key.limits.lo != 0) return json::Range::any;
+  return key.limits.lo_open ? json::Range::positive : json::Range::not_negative;
+}
+
+std::string wrong_list(const Key& key, const std::string& items) {
+  return in_quotes(key.name) + " is no list; " + (key.range.empty() ? "" : key.range + " ") + items + " were expected";
+}
+
+template <class Items>
+std::string list(const Items& items) {
+  std::string out = "[";
+  for (const auto& item : items) out += (out.size() > 1 ? ", " : "") + write_value(item);
+  return out + "]";
+}
+
+}  // namespace
+
+Outcome check_limits(const Key& key, const json::Node& node) {
+  if (key.limits.contains(node.number)) return Done{};
+  const std::string unit = key.unit.empty() || key.unit == "world" || key.unit == "value" ? "" : " " + key.unit;
+  const Limits& l = key.limits;
+  const std::string range = l.lo && l.hi ? "from " + to_text(*l.lo) + " to " + to_text(*l.hi) : l.words();
+  return json::error_at(node, in_quotes(key.name) + " is " + to_text(node.number) + "; a number " + range + unit + " was expected");
+}
+
+Outcome read_value(const Key& key, const json::Node& object, double& out) {
+  if (is_absent(key, object)) return Done{};
+  CATENA_TRY(out, json::require_number(object, key.name, range_of(key)));
+  return check_limits(key, *object.find(key.name));
+}
+
+Outcome read_value(const Key& key, const json::Node& object, int& out) {
+  CATENA_TRY(out, json::get_integer(object, key.name, out, static_cast<int>(*key.limits.lo), static_cast<int>(*key.limits.hi)));
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, bool& out) {
+  if (key.form == Form::word) {
+    int index = out;
+    CATENA_CHECK(read_choice(key, object, index));
+    out = index == 1;
+    return Done{};
+  }
+  CATENA_TRY(out, json::get_boolean(object, key.name, out));
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, std::string& out) {
+  if (is_absent(key, object)) return Done{};
+  CATENA_TRY(out, json::require_string(object, key.name));
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, Vec3& out) {
+  if (is_absent(key, object)) return Done{};
+  CATENA_TRY(out, json::require_vec3(object, key.name));
+  if (key.range == "not 0" && max_abs(out) == 0)
+    return json::error_at(*object.find(key.name), in_quotes(key.name) + " is zero; a vector other than [0, 0, 0] was expected");
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, Mat3& out) {
+  if (is_absent(key, object)) return Done{};
+  CATENA_TRY(out, json::as_rotation(*object.find(key.name), key.name));
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, std::array<double, 2>& out) {
+  if (is_absent(key, object)) return Done{};
+  const json::Node& node = *object.find(key.name);
+  const std::string expected = "; two rising numbers [lo, hi] were expected";
+  if (node.kind != json::Kind::array || node.items.size() != 2) return json::error_at(node, in_quotes(key.name) + " is no pair" + expected);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CATENA_TRY(out[i], json::as_number(node.items[i], key.name + "[" + std::to_string(i) + "]"));
+  }
+  if (!(out[0] < out[1]))
+    return json::error_at(node, in_quotes(key.name) + " is [" + to_text(out[0]) + ", " + to_text(out[1]) + "]" + expected);
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, std::array<std::string, 3>& out) {
+  if (is_absent(key, object)) return Done{};
+  const json::Node& node = *object.find(key.name);
+  if (node.kind != json::Kind::array || node.items.size() != 3)
+    return json::error_at(node, in_quotes(key.name) + " is no list of three; three names, of x, y and z, were expected");
+  for (std::size_t i = 0; i < 3; ++i) {
+    CATENA_TRY(out[i], json::as_string(node.items[i], key.name));
+  }
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, std::vector<double>& out) {
+  if (is_absent(key, object)) return Done{};
+  const json::Node& node = *object.find(key.name);
+  if (node.kind != json::Kind::array || node.items.empty()) return json::error_at(node, wrong_list(key, "numbers [a, b, ...]"));
+  out.clear();
+  for (const json::Node& item : node.items) {
+    CATENA_TRY(const double value, json::as_number(item, key.name));
+    out.push_back(value);
+  }
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, std::vector<std::string>& out) {
+  if (is_absent(key, object)) return Done{};
+  const json::Node& node = *object.find(key.name);
+  if (node.kind != json::Kind::array) return json::error_at(node, wrong_list(key, "names"));
+  out.clear();
+  for (const json::Node& item : node.items) {
+    CATENA_TRY(std::string name, json::as_string(item, key.name));
+    out.push_back(std::move(name));
+  }
+  return Done{};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out) {
+  if (is_absent(key, object)) return Done{};
+  const json::Node& node = *object.find(key.name);
+  if (node.kind != json::Kind::array || node.items.empty())
+    return json::error_at(node, in_quotes(key.name) + " is no list of places or empty; at least one [x, y, z] was expected");
+  out.clear();
+  out.reserve(node.items.size());
+  for (const json::Node& item : node.items) {
+    CATENA_TRY(const Vec3 p, json::as_vec3(item, key.name));
+    out.push_back(p);
+  }
+  return Done{};
+}
+
+Outcome read_choice(const Key& key, const json::Node& object, int& out) {
+  if (key.is_required) CATENA_CHECK(json::require_string(object, key.name));
+  CATENA_TRY(out, json::get_choice(object, key.name, out, words_of(key)));
+  return Done{};
+}
+
+std::string write_value(double value) { return json::number_text(value); }
+std::string write_value(int value) { return std::to_string(value); }
+std::string write_value(bool value) { return value ? "true" : "false"; }
+std::string write_value(const std::string& value) { return json::string_text(value); }
+std::string write_value(const Vec3& v) { return list(std::array<double, 3>{v.x, v.y, v.z}); }
+std::string write_value(const std::array<double, 2>& value) { return list(value); }
+std::string write_value(const std::array<std::string, 3>& value) { return list(value); }
+std::string write_value(const std::vector<double>& value) { return list(value); }
+std::string write_value(const std::vector<std::string>& value) { return list(value); }
+std::string write_value(const std::vector<Vec3>& value) { return list(value); }
+/// Row by row; the columns are what is stored.
+std::string write_value(const Mat3& m) {
+  std::vector<Vec3> rows;
+  for (int i = 0; i < 3; ++i) rows.emplace_back(m[0][i], m[1][i], m[2][i]);
+  return list(rows);
+}
+
+}  // namespace catena::schema

@@ -1,0 +1,157 @@
+// A constraint and a file format that only this test has, each in one place and with one line of registration: they are in the reader, the
+// schema, the writer, the panel, the ruler and the document, with nothing said about them anywhere else.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "engine/app/scene_schema.h"
+#include "engine/app/viewer/chain_edit.h"
+#include "engine/base/text.h"
+#include "engine/field/formats.h"
+#include "engine/field/loaders.h"
+#include "engine/scene/document.h"
+#include "engine/scene/ruler.h"
+#include "engine/schema/json_schema.h"
+#include "engine/schema/markdown.h"
+#include "haptics/constraints/registry.h"
+#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/shapes/closed_form.h"
+#include "haptics/constraints/shapes/sphere_surface.h"
+#include "haptics/extract/extract.h"
+#include "tests/support/support.h"
+
+namespace newcomer_test {
+
+using namespace catena;
+using namespace catena::haptics;
+
+// ---- the constraint: a ball whose radius is the level of a field ----
+
+Result<std::shared_ptr<const Constraint>> build_shell(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(const field::ScalarFieldPtr field, require_scalar_field(link, "field", "shell", context));
+  CATENA_TRY(const double level, require_level(link, "field", *field));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, true, context));
+  return make_closed_form<SphereSurface>({Vec3(0.0), level, rules.free == FreeSide::above}, rules);
+}
+
+ConstraintType shell_constraint() {
+  return {"shell",
+          "Holds the proxy on a ball that is as large as a level.",
+          "of no paper",
+          {scalar_field_key("field").required(), level_key("The ball's radius.").required(),
+           schema::number("glow", "candela", "Of no effect.").positive().by_default("1"), free_key("outside")},
+          build_shell,
+          true};
+}
+
+// ---- the format: eight numbers as text, the corners of a cube of edge 1 ----
+
+Result<std::vector<field::GridInfo>> describe_corners(const std::string&) {
+  field::GridInfo info;
+  info.name = "corners";
+  return std::vector<field::GridInfo>{info};
+}
+Result<field::AnyField> load_corners(const field::LoadRequest& request) {
+  field::LoadRequest like;
+  CATENA_TRY(const std::string text, read_text(request.path, "eight numbers"));
+  // the numbers as a .raw file beside it: what a reader of a real format would make in memory
+  std::vector<float> values;
+  std::istringstream in(text);
+  for (float v = 0; in >> v;) values.push_back(v);
+  if (values.size() != 8) return Error{request.path + ": has " + std::to_string(values.size()) + " numbers; eight were expected"};
+  like.path = request.path + ".raw";
+  test::write_file(like.path, std::string(reinterpret_cast<const char*>(values.data()), 32));
+  like.raw.emplace();
+  like.raw->shape = {2, 2, 2};
+  return field::load(like);
+}
+
+field::FileFormat corners_format() {
+  field::FileFormat format;
+  format.endings = {".corners"};
+  format.load = load_corners;
+  format.describe = describe_corners;
+  return format;
+}
+
+struct Registered {
+  Registered() {
+    add_constraint(shell_constraint());
+    field::add_format(corners_format());
+  }
+};
+
+struct Newcomer : testing::Test {
+  Newcomer() { static const Registered once; }
+  test::TemporaryFolder folder;
+  std::string scene_text() const {
+    test::write_file(folder / "a.corners", "0 1 1 2 1 2 2 3\n");
+    return R"({"fields": {"a": {"file": "a.corners"}, "ball": {"analytic": "sphere"}},
+ "chain": [{"name": "skin", "type": "shell", "field": "ball", "level": 1, "glow": 2}],
+ "widgets": [{"name": "u", "type": "ruler", "from": [1.1, 0, 0], "to": [0, 1.1, 0], "along": ["skin"]}]})";
+  }
+};
+
+TEST_F(Newcomer, AreReadFeltAndLoaded) {
+  auto scene = scene::parse_scene(scene_text(), folder / "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto program = extract_program(*scene);
+  ASSERT_TRUE(program) << program.error().message;
+  ASSERT_FALSE((*program)->links.empty());
+  EXPECT_EQ((*program)->links[0].name, "skin");
+  const auto loaded = scene::use_field(*scene, scene::find_field(*scene, "a"), {});
+  ASSERT_TRUE(loaded) << loaded.error().message;
+  field::Cursor cursor;
+  EXPECT_EQ(loaded->scalar->sample(Vec3(0.5), cursor).value, 1.5);
+
+  const auto wrong = scene::parse_scene(R"({"fields": {"a": {"file": "a.corner"}}})", folder / "s.json");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error().message.find(".corners file was expected"), std::string::npos) << wrong.error().message;
+  auto unknown = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}},
+ "chain": [{"name": "skin", "type": "shell", "field": "ball", "level": 1, "glo": 2}]})",
+                                    "s.json");
+  ASSERT_TRUE(unknown);
+  const auto refused = extract_program(*unknown);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("did you mean \"glow\"?"), std::string::npos) << refused.error().message;
+}
+
+TEST_F(Newcomer, AreInTheSchemaAndTheDocument) {
+  const std::string schema = app::scene_schema();
+  EXPECT_NE(schema.find(R"("type": {"const": "shell"})"), std::string::npos);
+  EXPECT_NE(schema.find(R"("glow": {"description": "Of no effect. In candela. Default: 1.", "type": "number", "exclusiveMinimum": 0})"),
+            std::string::npos);
+  std::map<std::string, std::string> tables;
+  for (const schema::Component& component : app::scene_description())
+    for (auto& [name, table] : schema::markdown_tables(component)) tables.emplace(name, table);
+  EXPECT_NE(tables["chain/shell"].find("| `glow` | number | candela | > 0 | `1` | Of no effect. |"), std::string::npos)
+      << tables["chain/shell"];
+}
+
+TEST_F(Newcomer, AreInThePanelAndWritten) {
+  const std::vector<std::string> types = app::link_types();
+  EXPECT_NE(std::find(types.begin(), types.end(), "shell"), types.end());
+  auto scene = scene::parse_scene(scene_text(), folder / "s.json");
+  ASSERT_TRUE(scene);
+  const auto link = app::new_link(*scene, "shell", {0.7, 0, 0}, 4);
+  ASSERT_TRUE(link) << link.error().message;
+  auto document = scene::Document::make(scene_text(), folder / "s.json");
+  ASSERT_TRUE(document) << document.error().message;
+  EXPECT_TRUE(document->set("/chain/-", *link, "add shell"));
+  auto written = document->read();
+  ASSERT_TRUE(written) << written.error().message;
+  const auto program = extract_program(*written);
+  EXPECT_TRUE(program) << program.error().message << *link;
+}
+
+TEST_F(Newcomer, AreMeasuredAlong) {
+  auto scene = scene::parse_scene(scene_text(), folder / "s.json");
+  ASSERT_TRUE(scene);
+  const scene::Entity ruler = scene::find_widget(*scene, "u");
+  ASSERT_TRUE(scene::use_widget(*scene, ruler));
+  const auto measure = scene::use_ruler(*scene, ruler);
+  ASSERT_TRUE(measure) << measure.error().message;
+  EXPECT_NEAR(measure->length, 0.5 * 3.14159265, 0.01) << measure->note;
+}
+
+}  // namespace newcomer_test
