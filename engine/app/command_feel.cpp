@@ -21,8 +21,8 @@
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
+#include "engine/scene/prepare.h"
 #include "haptics/extract/extract.h"
-#include "render/extract/extract.h"
 
 namespace catena::app {
 
@@ -36,15 +36,12 @@ struct FeelOptions {
   RealtimeChoice realtime;
 };
 
-/// The bounds that `view` fits its workspace to; not needed where the scene states its own.
+/// What the workspace is fitted to; not needed where the scene states its own.
 Result<Bounds> bounds_of(scene::Scene& scene) {
-  Bounds bounds;
-  if (scene.workspace.given) return bounds;
+  if (scene.workspace.given) return Bounds();
   CATENA_TRY([[maybe_unused]] const auto felt, haptics::extract_program(scene));
-  CATENA_TRY(const render::FramePacket packet, render::extract_frame(scene, 4, 3));
-  bounds = render::packet_bounds(packet);
-  bounds.add(loaded_bounds(scene));
-  return bounds;
+  CATENA_CHECK(scene::prepare(scene));
+  return scene::prepared_bounds(scene);
 }
 
 constexpr int kPatienceMs = 500;  // with a terminal that takes nothing, once the device is off

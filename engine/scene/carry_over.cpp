@@ -36,9 +36,9 @@ void carry_fields(Scene& old, Scene& fresh) {
       if (source.drawn.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
         source.drawn = before.drawn;
       // of whose values someone asked before
-      if (source.drawn.get() != nullptr && source.drawn.get() == before.drawn.get() && old.world.has<ValueSample>(f) &&
-          !fresh.world.has<ValueSample>(e))
-        fresh.world.emplace<ValueSample>(e, old.world.get<ValueSample>(f));
+      if (source.drawn.get() != nullptr && source.drawn.get() == before.drawn.get() && old.made.has<ValueSample>(f) &&
+          !fresh.made.has<ValueSample>(e))
+        fresh.made.emplace<ValueSample>(e, old.made.get<ValueSample>(f));
     });
   });
 }
@@ -110,7 +110,7 @@ void carry_made(Scene& old, Scene& fresh) {
     const auto same = [&](Entity before) { return before && json::same_value(old.world.get<T>(before).where, part.where); };
     const auto it = names_a_file(part.where) ? left.end() : std::find_if(left.begin(), left.end(), same);
     if (it == left.end()) return;
-    fresh.world.take_missing(e, old.world, *it);
+    fresh.made.take_missing(e, old.made, *it);
     *it = Entity{};
   });
 }

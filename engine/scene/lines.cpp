@@ -25,6 +25,7 @@ struct MadeLines {
   Curves curves;
   std::uint64_t version = 0;
   bool released = false;
+  Bounds bounds;  ///< of their knots
 };
 
 const json::Node& member_or(const json::Node& node, std::string_view key) {
@@ -180,28 +181,35 @@ Result<Curves> use_lines(Scene& scene, Entity entity) {
   if (!any.vector)
     return json::error_at(member_or(set.where, "field"), in_quotes(scene.world.get<Name>(set.field).value) +
                                                              " is a scalar field; expected a vector field for streamlines");
-  if (!scene.world.has<MadeLines>(entity)) scene.world.emplace<MadeLines>(entity);
-  MadeLines& made = scene.world.get<MadeLines>(entity);
+  if (!scene.made.has<MadeLines>(entity)) scene.made.emplace<MadeLines>(entity);
+  MadeLines& made = scene.made.get<MadeLines>(entity);
   if (!made.released && made.field_version == any.vector->version() && made.points == set.seeds.points) return made.curves;
   const LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
   CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, member_or(set.where, "seeds")));
   static std::atomic<std::uint64_t> versions{0};
-  made = {any.vector->version(), set.seeds.points, std::move(curves), ++versions, false};
+  Bounds bounds;
+  for (const flow::CurvePtr& curve : curves)
+    for (const flow::Knot& knot : curve->knots()) bounds.add(knot.p);
+  made = {any.vector->version(), set.seeds.points, std::move(curves), ++versions, false, bounds};
   if (set.seeds.widget) drop_unused_curves(scene);
   return made.curves;
 }
 
 std::uint64_t lines_version(Scene& scene, Entity entity) {
-  if (!scene.world.has<MadeLines>(entity)) return 0;
+  if (!scene.made.has<MadeLines>(entity)) return 0;
   const StreamlineSet& set = scene.world.get<StreamlineSet>(entity);
-  const MadeLines& made = scene.world.get<MadeLines>(entity);
+  const MadeLines& made = scene.made.get<MadeLines>(entity);
   const auto any = use_field(scene, set.field, set.where);
   return any && any->vector && made.field_version == any->vector->version() && made.points == set.seeds.points ? made.version : 0;
 }
 
+Bounds lines_bounds(const Scene& scene, Entity entity) {
+  return scene.made.has<MadeLines>(entity) ? scene.made.get<MadeLines>(entity).bounds : Bounds();
+}
+
 void release_lines(Scene& scene, Entity entity) {
-  if (!scene.world.get<StreamlineSet>(entity).seeds.pattern || !scene.world.has<MadeLines>(entity)) return;
-  MadeLines& made = scene.world.get<MadeLines>(entity);
+  if (!scene.world.get<StreamlineSet>(entity).seeds.pattern || !scene.made.has<MadeLines>(entity)) return;
+  MadeLines& made = scene.made.get<MadeLines>(entity);
   made.curves = Curves();
   made.released = true;
 }
@@ -235,17 +243,17 @@ bool same_lines(const Scene& a_scene, const StreamlineSet& a, const Scene& b_sce
 void carry_lines(Scene& old, Scene& fresh) {
   std::vector<Entity> sets;
   fresh.world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) {
-    if (!fresh.world.has<MadeLines>(e)) sets.push_back(e);
+    if (!fresh.made.has<MadeLines>(e)) sets.push_back(e);
   });
   for (const Entity e : sets) {
     Entity found;
-    old.world.each<MadeLines>([&](Entity before, const MadeLines& made) {
+    old.made.each<MadeLines>([&](Entity before, const MadeLines& made) {
       const StreamlineSet& set = old.world.get<StreamlineSet>(before);
       if (made.field_version == loaded_version(fresh, fresh.world.get<StreamlineSet>(e).field) &&
           same_lines(old, set, fresh, fresh.world.get<StreamlineSet>(e)))
         found = before;
     });
-    if (found) fresh.world.emplace<MadeLines>(e, old.world.get<MadeLines>(found));
+    if (found) fresh.made.emplace<MadeLines>(e, old.made.get<MadeLines>(found));
   }
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 #include <functional>
 
+#include "engine/geometry/bounds.h"
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
@@ -39,6 +40,8 @@ Result<std::vector<flow::CurvePtr>> use_lines(Scene& scene, Entity set);
 
 /// Which lines use_lines returns: another number with every other set of them; 0: they are not made, or out of date.
 std::uint64_t lines_version(Scene& scene, Entity set);
+/// The box of the lines as they were made last, released or not; empty before.
+Bounds lines_bounds(const Scene& scene, Entity set);
 /// The set lets go of the curves of a pattern, for those that need them once: 1e5 lines are a gigabyte. The version stays; use_lines would
 /// make them again.
 void release_lines(Scene& scene, Entity set);

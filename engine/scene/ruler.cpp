@@ -159,13 +159,17 @@ Result<RulerMeasure> use_ruler(Scene& scene, Entity entity) {
   CATENA_ASSERT(scene.world.get<Widget>(entity).spec.kind == widget::Kind::ruler);
   CATENA_TRY(Track track, track_of(scene, scene.world.get<Widget>(entity)));
   const widget::Pose& pose = scene.world.get<Widget>(entity).state.pose;
-  if (!scene.world.has<MadeRuler>(entity)) scene.world.emplace<MadeRuler>(entity);
-  MadeRuler& made = scene.world.get<MadeRuler>(entity);
+  if (!scene.made.has<MadeRuler>(entity)) scene.made.emplace<MadeRuler>(entity);
+  MadeRuler& made = scene.made.get<MadeRuler>(entity);
   if (made.measure.points.empty() || made.pose != pose || !made.track.is_same(track)) {
     RulerMeasure measured = measure(track, pose.points[0], pose.points[1]);
     made = {pose, std::move(track), std::move(measured)};
   }
   return made.measure;
+}
+
+const RulerMeasure* ruler_measure(const Scene& scene, Entity ruler) {
+  return scene.made.has<MadeRuler>(ruler) ? &scene.made.get<MadeRuler>(ruler).measure : nullptr;
 }
 
 }  // namespace catena::scene

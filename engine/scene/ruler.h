@@ -19,6 +19,9 @@ struct RulerMeasure {
 /// Of the widget's pose as it is; measured again only when an end, or what it is measured along, has moved.
 Result<RulerMeasure> use_ruler(Scene& scene, Entity ruler);
 
+/// As use_ruler measured it last; nullptr: it has not.
+const RulerMeasure* ruler_measure(const Scene& scene, Entity ruler);
+
 /// Between the places of the curve nearest to the ends.
 RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to);
 

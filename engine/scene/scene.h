@@ -20,6 +20,9 @@ struct Scene {
   std::vector<std::string> files;  ///< all that its text and the overrides name, as the scene opens them, read so far or not
   std::vector<std::string> notes;  ///< about what still reads, but is written in another way now: "FILE:LINE: ..."
   World world;
+  /// What was made from it, by the same entities: traced lines, sorted values, measured rulers, polylines for the eye. Nothing here is of
+  /// the scene: it can be dropped, and is made again.
+  World made;
   Coupling coupling;
   Workspace workspace;
   std::optional<json::Node> device;  ///< "device": its keys are read where the device is opened
@@ -78,6 +81,9 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
 Entity find_mesh(const Scene& scene, std::string_view name);
 /// Loads on first use: the hand's and the eye's mesh are one object.
 Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh);
+/// What has been loaded; empty where nothing has asked for it yet.
+inline const field::AnyField& loaded_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).loaded; }
+inline const field::AnyField& drawn_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).drawn; }
 Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where);
 /// The one curve of (field, flow, seed, length), while something holds it.
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);

@@ -84,8 +84,8 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
     scene.world.each<Volume>([&](Entity, Volume& volume) {
       if (volume.field != field || is_complete(volume.transfer)) return;
       const field::ScalarGrid& grid = *source.drawn.scalar->grid();
-      if (!scene.world.has<ValueSample>(field)) scene.world.emplace<ValueSample>(field);
-      ValueSample& sample = scene.world.get<ValueSample>(field);
+      if (!scene.made.has<ValueSample>(field)) scene.made.emplace<ValueSample>(field);
+      ValueSample& sample = scene.made.get<ValueSample>(field);
       if (sample.grid != source.drawn.get()) sample = {source.drawn.get(), sorted_values(grid)};
       complete_transfer(volume.transfer, grid, *sample.sorted);
     });

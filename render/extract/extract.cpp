@@ -6,7 +6,7 @@
 #include "engine/base/assert.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/systems.h"
+#include "engine/scene/prepare.h"
 #include "render/extract/extract_aids.h"
 #include "render/extract/extract_lines.h"
 #include "render/extract/extract_overlay.h"
@@ -23,9 +23,9 @@ constexpr double kCursorShare = 0.008;  // fitted glyph radius by the diagonal o
 constexpr double kCursorOverTube = 2;
 
 /// The scalar grid that the eye sees of a field.
-Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene, scene::Entity field, const json::Node& where,
+Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(const scene::Scene& scene, scene::Entity field, const json::Node& where,
                                                             const char* what) {
-  CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, field, where));
+  const field::AnyField& any = scene::drawn_field(scene, field);
   if (!any.scalar)
     return json::error_at(member_or(where, "field"),
                           "\"" + name_of(scene, field) + "\" is a vector field; expected a scalar field for " + what);
@@ -33,7 +33,7 @@ Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(scene::Scene& scene,
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
 }
 
-Result<std::optional<ColorSource>> color_source(scene::Scene& scene, const std::optional<scene::ColorBy>& by) {
+Result<std::optional<ColorSource>> color_source(const scene::Scene& scene, const std::optional<scene::ColorBy>& by) {
   if (!by) return std::optional<ColorSource>();
   ColorSource source;
   CATENA_TRY(source.grid, drawn_grid(scene, by->field, by->where, "\"color_by\""));
@@ -50,7 +50,7 @@ Projection projection_of(scene::Volume::Projection projection) {
                                        : Projection::composite;
 }
 
-Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
+Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Volume>(scene.world)) {
     const scene::Volume& volume = scene.world.get<scene::Volume>(e);
     if (is_hidden(scene.world, e)) continue;
@@ -64,7 +64,7 @@ Outcome extract_volumes(scene::Scene& scene, FramePacket& packet) {
   return Done{};
 }
 
-Outcome extract_isosurfaces(scene::Scene& scene, FramePacket& packet) {
+Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Isosurface>(scene.world)) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
     if (is_hidden(scene.world, e)) continue;
@@ -158,29 +158,41 @@ Bounds packet_bounds(const FramePacket& packet) {
   return bounds;
 }
 
-Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height) {
+Outcome prepare_frame(scene::Scene& scene) {
+  CATENA_CHECK(scene::prepare(scene));
+  CATENA_CHECK(prepare_meshes(scene));
+  CATENA_CHECK(prepare_slices(scene));
+  CATENA_CHECK(prepare_streamlines(scene));
+  return prepare_widgets(scene);
+}
+
+Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height) {
+  CATENA_CHECK(prepare_frame(scene));
+  return extract_frame(scene, width, height);
+}
+
+Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width, std::uint32_t height) {
   CATENA_ASSERT(width > 0 && height > 0);
   FramePacket packet;
   packet.width = width;
   packet.height = height;
-  CATENA_CHECK(scene::drive_widgets(scene));
   packet.jitter = scene.jitter;
   for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
   const scene::Background& background = scene.background;
   packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};
   CATENA_CHECK(extract_volumes(scene, packet));
   CATENA_CHECK(extract_isosurfaces(scene, packet));
-  CATENA_CHECK(extract_meshes(scene, packet));
+  extract_meshes(scene, packet);
   CATENA_CHECK(extract_slices(scene, packet));
-  CATENA_CHECK(extract_streamlines(scene, packet));
+  extract_streamlines(scene, packet);
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);
   packet.view = view_of(scene, packet);
   // the box, its axes and the ground stay where the data are while the hand goes elsewhere
   const Bounds drawn = drawn_bounds(packet);
-  CATENA_CHECK(extract_aids(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet));
-  CATENA_CHECK(extract_widgets(scene, data_bounds(packet), packet));
+  extract_aids(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
+  extract_widgets(scene, data_bounds(packet), packet);
   set_eyes(packet, scene.stereo);
   CATENA_CHECK(check_eyes(packet, scene.stereo));
   return packet;

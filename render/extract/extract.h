@@ -1,6 +1,6 @@
 /// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, the visible cursor, widgets,
-/// background and camera become one frame packet; the ECS is not read after it. Loads (once) only the fields that something drawn names,
-/// and takes every streamline from `use_curve`: the drawn tube and the felt link are the same object. Frame thread.
+/// background and camera become one frame packet; the ECS is not read after it. What has to be loaded or made first, prepare_frame
+/// makes, once, and keeps in scene.made; extract_frame only reads. The drawn tube and the felt link are the same curve. Frame thread.
 #pragma once
 #include <cstdint>
 
@@ -11,9 +11,13 @@
 
 namespace catena::render {
 
-/// Errors carry the scene file's name and line: a field that is missing or of the wrong kind, a level that no value attains,
-/// a seed that starts nothing.
-Result<FramePacket> extract_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height);
+/// scene::prepare, and what the eye makes of it: polylines, triangles, grids of magnitudes, measures of rulers. Errors carry the scene
+/// file's name and line: a field that is missing, a seed that starts nothing.
+Outcome prepare_frame(scene::Scene& scene);
+/// Of a scene that is prepared. Errors as before: a field of the wrong kind, a level that no value attains.
+Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width, std::uint32_t height);
+/// The two, one after the other.
+Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height);
 
 /// Another view of the packet of this scene; what follows from the view, the eyes and the fog's range, is made anew.
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);

@@ -20,7 +20,7 @@ constexpr int kTilesAcross = 16;
 /// Corner i + 2 j + 4 k of a box that may be oblique.
 using Corners = std::array<Vec3, 8>;
 
-Result<Corners> corners_of(scene::Scene& scene, scene::Entity named, const json::Node& where, const Bounds& drawn) {
+Corners corners_of(const scene::Scene& scene, scene::Entity named, const Bounds& drawn) {
   Corners corners;
   if (!named) {
     Bounds bounds = drawn;
@@ -31,8 +31,7 @@ Result<Corners> corners_of(scene::Scene& scene, scene::Entity named, const json:
     for (int i = 0; i < 8; ++i) corners[i] = bounds.corner(i);
     return corners;
   }
-  CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, named, where));
-  const field::Field* field = any.scalar ? static_cast<const field::Field*>(any.scalar.get()) : any.vector.get();
+  const field::Field* field = scene::drawn_field(scene, named).get();
   for (int i = 0; i < 8; ++i) corners[i] = field->corner(i);
   return corners;
 }
@@ -60,35 +59,32 @@ LabelItem label(const Vec3& at, const std::string& text, double size_pt, const C
   return item;
 }
 
-Result<Bounds> box_of_axes(scene::Scene& scene, const Bounds& drawn) {
-  CATENA_TRY(const Corners corners, corners_of(scene, scene.axes->field, scene.axes->where, drawn));
+Bounds box_of_axes(const scene::Scene& scene, const Bounds& drawn) {
+  const Corners corners = corners_of(scene, scene.axes->field, drawn);
   Bounds box;
   for (const Vec3& p : corners) box.add(p);
   return box;
 }
 
-Outcome add_bounding_box(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+void add_bounding_box(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::BoundingBox& box = *scene.bounding_box;
-  CATENA_TRY(const Corners corners, corners_of(scene, box.field, box.where, drawn));
+  const Corners corners = corners_of(scene, box.field, drawn);
   const double radius = box.radius > 0 ? box.radius : kLineShare * diagonal_of(corners);
   const std::uint32_t id = packet.add_object("bounding box", "");
   // edges that the axes draw are left to them: two tubes in one place would fight for every pixel
   std::optional<Bounds> axes;
-  if (scene.axes) {
-    CATENA_TRY(axes, box_of_axes(scene, drawn));
-  }
+  if (scene.axes) axes = box_of_axes(scene, drawn);
   const auto is_axis = [&](const Vec3& p) { return axes && p == axes->lo && corners[7] == axes->hi; };
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t axis = 1; axis < 8; axis *= 2)
       if ((i & axis) == 0 && !is_axis(corners[i]) && !is_axis(corners[i | axis]))
         packet.aids.tubes.push_back(line(corners[i], corners[i | axis], radius, color_of(box.color), id));
-  return Done{};
 }
 
 /// The edges that meet at the corner of least x, y, z; ticks point away from the box.
-Outcome add_axes(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+void add_axes(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::Axes& axes = *scene.axes;
-  CATENA_TRY(const Bounds box, box_of_axes(scene, drawn));
+  const Bounds box = box_of_axes(scene, drawn);
   const double radius = axes.radius > 0 ? axes.radius : kLineShare * box.diagonal(), tick = kTickShare * box.diagonal();
   const Color color = color_of(axes.color);
   const std::uint32_t id = packet.add_object("axes", "");
@@ -106,7 +102,6 @@ Outcome add_axes(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) 
     Vec3 middle = 0.5 * box.lo + 0.5 * end + kNameReach * out;
     packet.overlay.labels.push_back(label(middle, axes.names[std::size_t(axis)], kNamePt, color));
   }
-  return Done{};
 }
 
 /// Both colours of the checkerboard, one mesh each.
@@ -159,16 +154,15 @@ void set_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet
   if (scene.fog) packet.fog = fog_of(*scene.fog, drawn, packet);
 }
 
-Outcome extract_aids(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
-  if (scene.bounding_box) CATENA_CHECK(add_bounding_box(scene, drawn, packet));
-  if (scene.axes) CATENA_CHECK(add_axes(scene, drawn, packet));
+void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  if (scene.bounding_box) add_bounding_box(scene, drawn, packet);
+  if (scene.axes) add_axes(scene, drawn, packet);
   if (scene.ground) add_ground(*scene.ground, drawn, packet);
   set_fog(scene, drawn, packet);
   for (const scene::Light& light : scene.lights) {
     const auto i = static_cast<float>(light.intensity);
     packet.lights.push_back({light.direction, {i * light.color.r, i * light.color.g, i * light.color.b}, light.with_camera});
   }
-  return Done{};
 }
 
 }  // namespace catena::render

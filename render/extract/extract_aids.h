@@ -11,7 +11,7 @@
 namespace catena::render {
 
 /// After everything else that is drawn, and after the view: `drawn` is its box.
-Outcome extract_aids(scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 /// The fog alone: its range follows the packet's view.
 void set_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 

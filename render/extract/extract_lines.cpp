@@ -183,32 +183,34 @@ Color table_color(const ColorTable& table, double value) {
   return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
 }
 
-const ColorTable* shown_colors(const scene::World& world, scene::Entity set) {
-  if (!world.has<FlatLines>(set) || world.get<FlatLines>(set).colors.empty()) return nullptr;
-  return &world.get<FlatLines>(set).colors;
+const ColorTable* shown_colors(const scene::World& made, scene::Entity set) {
+  if (!made.has<FlatLines>(set) || made.get<FlatLines>(set).colors.empty()) return nullptr;
+  return &made.get<FlatLines>(set).colors;
 }
 
-Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
-  std::vector<scene::Entity> sets;
-  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet&) {
-    if (!is_hidden(scene.world, e)) sets.push_back(e);
-  });
-  for (const scene::Entity e : sets) {
-    if (!scene.world.has<FlatLines>(e)) scene.world.emplace<FlatLines>(e);
+Outcome prepare_streamlines(scene::Scene& scene) {
+  for (const scene::Entity e : owners_of<scene::StreamlineSet>(scene.world)) {
+    if (is_hidden(scene.world, e)) continue;
+    if (!scene.made.has<FlatLines>(e)) scene.made.emplace<FlatLines>(e);
     const std::uint64_t version = scene::lines_version(scene, e);
-    if (version == 0 || scene.world.get<FlatLines>(e).version != version) {
-      CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
-      std::size_t knots = 0;
-      for (const flow::CurvePtr& curve : curves) knots += curve->knots().size();
-      if (knots > kMostKeptKnots) scene::release_lines(scene, e);
-      const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
-      CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
-      CATENA_TRY(FlatLines made, flat_lines(scene, set, std::move(curves), any.vector));
-      made.version = scene::lines_version(scene, e);
-      scene.world.get<FlatLines>(e) = std::move(made);
-    }
-    const FlatLines& flat = scene.world.get<FlatLines>(e);
+    if (version != 0 && scene.made.get<FlatLines>(e).version == version) continue;
+    CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
+    std::size_t knots = 0;
+    for (const flow::CurvePtr& curve : curves) knots += curve->knots().size();
+    if (knots > kMostKeptKnots) scene::release_lines(scene, e);
     const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
+    CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
+    CATENA_TRY(FlatLines made, flat_lines(scene, set, std::move(curves), any.vector));
+    made.version = scene::lines_version(scene, e);
+    scene.made.get<FlatLines>(e) = std::move(made);
+  }
+  return Done{};
+}
+
+void extract_streamlines(const scene::Scene& scene, FramePacket& packet) {
+  scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
+    if (is_hidden(scene.world, e)) return;
+    const FlatLines& flat = scene.made.get<FlatLines>(e);
     const std::uint32_t id = packet.add_object("streamlines", name_of(scene, set.field));
     const auto add = [&](auto& items, auto item) {
       item.id = id;
@@ -218,16 +220,13 @@ Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet) {
     for (std::size_t i = 0; i < flat.tubes.size(); ++i)
       add(packet.tubes, set.pulse > 0 ? with_pulse(flat.tubes[i], flat.arc_lengths[i], set.pulse, scene.phase) : flat.tubes[i]);
     for (const ArrowItem& arrow : flat.arrows) add(packet.arrows, arrow);
-  }
-  return Done{};
+  });
 }
 
-Outcome extract_indicators(scene::Scene& scene, FramePacket& packet) {
-  std::vector<scene::Entity> indicators;
-  scene.world.each<scene::Indicator>([&](scene::Entity e, const scene::Indicator&) { indicators.push_back(e); });
-  for (const scene::Entity e : indicators) {
+Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet) {
+  for (const scene::Entity e : owners_of<scene::Indicator>(scene.world)) {
     const scene::Indicator& indicator = scene.world.get<scene::Indicator>(e);
-    CATENA_TRY(const field::AnyField any, scene::use_field(scene, indicator.field, indicator.where));
+    const field::AnyField& any = scene::loaded_field(scene, indicator.field);
     if (!any.vector) return json::error_at(indicator.where, "\"indicator\" names a scalar field; a vector field was expected");
     const double length = indicator.length > 0 ? indicator.length : kIndicatorLength * any.vector->length();
     const double radius = indicator.radius > 0 ? indicator.radius : kIndicatorShare * domain_diagonal(*any.vector);

@@ -10,12 +10,15 @@
 
 namespace catena::render {
 
-Outcome extract_streamlines(scene::Scene& scene, FramePacket& packet);
+/// Flattens the lines.
+Outcome prepare_streamlines(scene::Scene& scene);
+void extract_streamlines(const scene::Scene& scene, FramePacket& packet);
 /// After the cursors.
-Outcome extract_indicators(scene::Scene& scene, FramePacket& packet);
+Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 
-/// What an extracted set's "color_by" has come to: its own table, or the one over the values that are drawn. None without "color_by".
-const std::vector<scene::TransferFunction::ColorPoint>* shown_colors(const scene::World& world, scene::Entity set);
+/// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
+/// "color_by".
+const std::vector<scene::TransferFunction::ColorPoint>* shown_colors(const scene::World& made, scene::Entity set);
 
 /// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
 Color table_color(const std::vector<scene::TransferFunction::ColorPoint>& table, double value);

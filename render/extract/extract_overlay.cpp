@@ -56,7 +56,7 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
   }
   CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
   const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
-  const auto* points = shown_colors(world, e);
+  const auto* points = shown_colors(scene.made, e);
   if (points == nullptr) return {};
   const auto colors = rows_of(*points);
   switch (set.color_by->what) {

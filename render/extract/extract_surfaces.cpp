@@ -69,24 +69,29 @@ struct PlainMagnitude {
   std::uint64_t version = 0;
 };
 
-Result<std::shared_ptr<const field::ScalarGrid>> sliced_grid(scene::Scene& scene, scene::Entity e) {
+Outcome prepare_slice(scene::Scene& scene, scene::Entity e) {
   const scene::Entity field = scene.world.get<scene::Slice>(e).shown.field;
   CATENA_TRY(const field::AnyField any, scene::use_drawn_field(scene, field, scene.world.get<scene::Slice>(e).where));
-  if (any.scalar) return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
+  if (any.scalar) return Done{};
   const field::VectorGrid& grid = *any.vector->grid();
-  if (!scene.world.has<PlainMagnitude>(e)) scene.world.emplace<PlainMagnitude>(e);
-  PlainMagnitude& plain = scene.world.get<PlainMagnitude>(e);
-  if (plain.version != grid.version()) {
-    const Vec3 size = grid.index_box().hi - grid.index_box().lo + 1.0;
-    if (size.x * size.y * size.z > kMostVoxels)
-      return json::error_at(member_or(scene.world.get<scene::Slice>(e).where, "field"),
-                            "\"" + name_of(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
-                                " voxels; a vector field of at most " + to_text(kMostVoxels) + " was expected for a slice");
-    auto made = field::magnitude_grid(grid, "the magnitude of \"" + name_of(scene, field) + "\"");
-    if (!made) return json::error_at(member_or(scene.world.get<scene::Slice>(e).where, "field"), made.error().message);
-    plain = {*made, grid.version()};
-  }
-  return plain.grid;
+  if (!scene.made.has<PlainMagnitude>(e)) scene.made.emplace<PlainMagnitude>(e);
+  PlainMagnitude& plain = scene.made.get<PlainMagnitude>(e);
+  if (plain.version == grid.version()) return Done{};
+  const json::Node& where = member_or(scene.world.get<scene::Slice>(e).where, "field");
+  const Vec3 size = grid.index_box().hi - grid.index_box().lo + 1.0;
+  if (size.x * size.y * size.z > kMostVoxels)
+    return json::error_at(where, "\"" + name_of(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
+                                     " voxels; a vector field of at most " + to_text(kMostVoxels) + " was expected for a slice");
+  auto made = field::magnitude_grid(grid, "the magnitude of \"" + name_of(scene, field) + "\"");
+  if (!made) return json::error_at(where, made.error().message);
+  plain = {*made, grid.version()};
+  return Done{};
+}
+
+std::shared_ptr<const field::ScalarGrid> sliced_grid(const scene::Scene& scene, scene::Entity e) {
+  const field::AnyField& any = scene::drawn_field(scene, scene.world.get<scene::Slice>(e).shown.field);
+  if (any.scalar) return {any.scalar, any.scalar->grid()};
+  return scene.made.get<PlainMagnitude>(e).grid;
 }
 
 /// Whether the plane meets the domain.
@@ -104,7 +109,7 @@ bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
 
 }  // namespace
 
-Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
+Outcome prepare_meshes(scene::Scene& scene) {
   for (const scene::Entity e : owners_of<scene::SurfaceMesh>(scene.world)) {
     const scene::SurfaceMesh& surface = scene.world.get<scene::SurfaceMesh>(e);
     if (is_hidden(scene.world, e)) continue;
@@ -114,24 +119,36 @@ Outcome extract_meshes(scene::Scene& scene, FramePacket& packet) {
       CATENA_TRY(shown, scene::use_field(scene, surface.color_by->field, surface.where));
     }
     const std::uint64_t field_version = shown.get() ? shown.get()->version() : 0;
-    if (!scene.world.has<PlainMesh>(e)) scene.world.emplace<PlainMesh>(e);
-    PlainMesh& plain = scene.world.get<PlainMesh>(e);
-    if (plain.version != mesh->version() || plain.field_version != field_version) {
-      CATENA_CHECK(ask_for_copy(*mesh, surface));
-      auto geometry = std::make_shared<MeshGeometry>();
-      geometry->vertices = mesh->vertices();
-      geometry->triangles.reserve(3 * mesh->triangles().size());
-      for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
-      for (std::uint32_t v = 0; surface.smooth && v < geometry->vertices.size(); ++v) geometry->normals.push_back(mesh->vertex_normal(v));
-      if (shown.get()) geometry->colors = vertex_colors(*mesh, shown, *surface.color_by);
-      plain = {std::move(geometry), mesh->version(), field_version};
-    }
-    MeshItem item{plain.geometry, color_of(surface.color), packet.add_object("mesh", name_of(scene, surface.mesh)), surface.clipped};
+    if (!scene.made.has<PlainMesh>(e)) scene.made.emplace<PlainMesh>(e);
+    PlainMesh& plain = scene.made.get<PlainMesh>(e);
+    if (plain.version == mesh->version() && plain.field_version == field_version) continue;
+    CATENA_CHECK(ask_for_copy(*mesh, surface));
+    auto geometry = std::make_shared<MeshGeometry>();
+    geometry->vertices = mesh->vertices();
+    geometry->triangles.reserve(3 * mesh->triangles().size());
+    for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
+    for (std::uint32_t v = 0; surface.smooth && v < geometry->vertices.size(); ++v) geometry->normals.push_back(mesh->vertex_normal(v));
+    if (shown.get()) geometry->colors = vertex_colors(*mesh, shown, *surface.color_by);
+    plain = {std::move(geometry), mesh->version(), field_version};
+  }
+  return Done{};
+}
+
+void extract_meshes(const scene::Scene& scene, FramePacket& packet) {
+  scene.world.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
+    if (is_hidden(scene.world, e)) return;
+    MeshItem item{scene.made.get<PlainMesh>(e).geometry, color_of(surface.color), packet.add_object("mesh", name_of(scene, surface.mesh)),
+                  surface.clipped};
     item.opacity = static_cast<float>(surface.opacity);
     item.smooth = surface.smooth;
     item.edges = surface.edges;
     packet.meshes.push_back(std::move(item));
-  }
+  });
+}
+
+Outcome prepare_slices(scene::Scene& scene) {
+  for (const scene::Entity e : owners_of<scene::Slice>(scene.world))
+    if (!is_hidden(scene.world, e)) CATENA_CHECK(prepare_slice(scene, e));
   return Done{};
 }
 
@@ -149,10 +166,10 @@ Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contour
   return levels;
 }
 
-Outcome extract_slices(scene::Scene& scene, FramePacket& packet) {
+Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
   for (const scene::Entity e : owners_of<scene::Slice>(scene.world)) {
     if (is_hidden(scene.world, e)) continue;
-    CATENA_TRY(auto grid, sliced_grid(scene, e));
+    const std::shared_ptr<const field::ScalarGrid> grid = sliced_grid(scene, e);
     const scene::Slice& slice = scene.world.get<scene::Slice>(e);
     // the hand may carry a widget's plane out of the domain: there nothing is seen
     if (!slice.widget && !cuts(slice, *grid))

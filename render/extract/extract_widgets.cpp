@@ -23,11 +23,6 @@ constexpr double kNormalReach = 1.45, kFreeReach = 2.1, kHead = 0.34, kHeldSquar
 // by the handle's radius
 constexpr double kGradientReach = 6, kHandleReach = 7, kHandleHead = 2.4, kHandleSquare = 2.8;
 
-/// Beside its widget: what a ruler measured when the packet was made.
-struct DrawnRuler {
-  scene::RulerMeasure measure;
-};
-
 double length_of(const scene::Widget& widget) { return widget.spec.length > 0 ? widget.spec.length : 4; }
 
 double radius_of(const scene::Widget& widget) {
@@ -47,6 +42,8 @@ bool is_drawable(const scene::Widget& widget) {
   const widget::Pose& pose = widget.state.pose;
   return is_finite(pose.points[0]) && is_finite(pose.points[1]) && is_finite(pose.orientation) && std::isfinite(radius_of(widget));
 }
+
+bool is_measured(const scene::Widget& widget) { return widget.spec.kind == Kind::ruler && is_drawable(widget); }
 
 /// A double arrow along every axis that is free, a square across every one that is held.
 void draw_axes(WidgetShapes& shapes, const scene::Widget& widget, const Vec3& at, double reach, double square, double head) {
@@ -114,14 +111,14 @@ void draw_seed(WidgetShapes& shapes, const scene::Widget& widget) {
 }
 
 /// A rake's line of seeds, and a ruler with the way that it measures.
-void draw_line(WidgetShapes& shapes, const scene::Widget& widget, const DrawnRuler* ruler) {
+void draw_line(WidgetShapes& shapes, const scene::Widget& widget, const scene::RulerMeasure* ruler) {
   const auto& [a, b] = widget.state.pose.points;
   const Vec3 middle = 0.5 * a + 0.5 * b;
   const double radius = radius_of(widget);
-  const bool bent = ruler != nullptr && ruler->measure.how != scene::RulerMeasure::How::straight;
+  const bool bent = ruler != nullptr && ruler->how != scene::RulerMeasure::How::straight;
   const Color color = color_of(widget.color);
   shapes.tube({a, b}, bent ? 0.8 : 1.2, bent ? mixed(color, {0.5f, 0.5f, 0.5f}, 0.6f) : color);
-  if (bent) shapes.tube(ruler->measure.points, 1.6, color);
+  if (bent) shapes.tube(ruler->points, 1.6, color);
   draw_handle(shapes, widget, 0, a, radius);
   draw_handle(shapes, widget, 1, b, radius);
   draw_handle(shapes, widget, 2, middle, 0.8 * radius);
@@ -161,7 +158,7 @@ void draw_box(WidgetShapes& shapes, const scene::Widget& widget) {
   if (is_dragged(widget) && widget.state.handle == 6) draw_handle_axes(shapes, widget, box.centre());
 }
 
-void draw(WidgetShapes& shapes, const scene::Widget& widget, const DrawnRuler* ruler, const Bounds& drawn) {
+void draw(WidgetShapes& shapes, const scene::Widget& widget, const scene::RulerMeasure* ruler, const Bounds& drawn) {
   switch (widget.spec.kind) {
     case Kind::cutting_plane:
       return draw_cutting_plane(shapes, widget, drawn);
@@ -205,25 +202,28 @@ void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& pa
   scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
     if (!is_drawable(widget)) return;
     shapes.begin(id_of(packet, name_of(scene, e)), kLine * length_of(widget));
-    draw(shapes, widget, scene.world.has<DrawnRuler>(e) ? &scene.world.get<DrawnRuler>(e) : nullptr, drawn);
+    draw(shapes, widget, scene::ruler_measure(scene, e), drawn);
   });
 }
 
-Outcome extract_widgets(scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
-  for (const scene::Entity e : owners_of<scene::Widget>(scene.world)) {
-    if (scene.world.get<scene::Widget>(e).spec.kind != Kind::ruler || !is_drawable(scene.world.get<scene::Widget>(e))) continue;
-    CATENA_TRY(scene::RulerMeasure measure, scene::use_ruler(scene, e));
+Outcome prepare_widgets(scene::Scene& scene) {
+  for (const scene::Entity e : owners_of<scene::Widget>(scene.world))
+    if (is_measured(scene.world.get<scene::Widget>(e))) CATENA_CHECK(scene::use_ruler(scene, e));
+  return Done{};
+}
+
+void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+    if (!is_measured(widget)) return;
+    const scene::RulerMeasure& measure = *scene::ruler_measure(scene, e);
     LabelItem label;
     label.at = halfway(measure.points);
     label.text = fmt::format("{:.4g} units{}", measure.length, measure.note.empty() ? "" : " (straight)");
     label.anchor = Anchor::bottom_left;
     label.offset_pt = {6.0, -6.0};
     packet.overlay.labels.push_back(std::move(label));
-    if (!scene.world.has<DrawnRuler>(e)) scene.world.emplace<DrawnRuler>(e);
-    scene.world.get<DrawnRuler>(e).measure = std::move(measure);
-  }
+  });
   set_widgets(scene, drawn, packet);
-  return Done{};
 }
 
 }  // namespace catena::render

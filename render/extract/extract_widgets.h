@@ -19,9 +19,10 @@
 
 namespace catena::render {
 
-/// After the view is known, and after scene::drive_widgets. `drawn` is the box of the data, which outlines a cutting plane. Rulers are
-/// measured (engine/scene/ruler.h).
-Outcome extract_widgets(scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+/// Measures the rulers (engine/scene/ruler.h). After scene::drive_widgets.
+Outcome prepare_widgets(scene::Scene& scene);
+/// After the view is known. `drawn` is the box of the data, which outlines a cutting plane.
+void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 /// What of it follows the view, made anew.
 void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "engine/app/scene_schema.h"
-#include "engine/app/viewer/chain_edit.h"
+#include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/loaders.h"

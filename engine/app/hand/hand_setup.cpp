@@ -35,12 +35,4 @@ Vec3 device_from_world(const scene::Workspace& workspace, const Vec3& world) {
   return ((world - workspace.origin) * workspace.rotation) * workspace.metres_per_unit;  // v * R = R^T v
 }
 
-Bounds loaded_bounds(const scene::Scene& scene) {
-  Bounds bounds;
-  scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
-    if (const field::Field* field = source.loaded.get()) bounds.add(field->world_bounds());
-  });
-  return bounds;
-}
-
 }  // namespace catena::app

@@ -16,7 +16,4 @@ Vec3 first_probe(const scene::Scene& scene, const Bounds& bounds);
 /// World -> metres in the device's axes, the inverse of what the servo does:  R^T (p - origin) S
 Vec3 device_from_world(const scene::Workspace& workspace, const Vec3& world);
 
-/// The boxes of every field that is loaded, drawn or felt.
-Bounds loaded_bounds(const scene::Scene& scene);
-
 }  // namespace catena::app

@@ -51,7 +51,7 @@ class Frames {
   Result<render::FramePacket> packet(int frame) {
     scene_.phase = options_.phase + static_cast<double>(frame) / motion_.frames();
     hand_.show(scene_, options_.play && motion_.frames() > 1 ? static_cast<double>(frame) / (motion_.frames() - 1) : 1);
-    CATENA_TRY(render::FramePacket packet, render::extract_frame(scene_, size_.width, size_.height));
+    CATENA_TRY(render::FramePacket packet, render::make_frame(scene_, size_.width, size_.height));
     // the eye stays where it is while the hand moves
     if (!base_view_ || !options_.play) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
     const render::View view = motion_.at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);

@@ -1,14 +1,75 @@
 #include "engine/app/viewer/viewer.h"
 
-#include "engine/app/viewer/session.h"
+#include <filesystem>
+
+#include "engine/app/viewer/shell/session.h"
 #include "engine/base/tell.h"
+#include "render/extract/extract.h"
+#include "render/extract/extract_stereo.h"
+#include "render/image/picture.h"
 
 namespace catena::app {
 
+namespace {
+
+constexpr const char* kEmptyScene = "{\n  \"fields\": {},\n  \"chain\": []\n}\n";
+
+Result<SceneHost> read_scene(const ViewOptions& options) {
+  std::error_code code;
+  CATENA_TRY(scene::Document document,
+             options.source.empty() ? scene::Document::make(kEmptyScene, (std::filesystem::current_path(code) / "scene.json").string())
+                                    : scene::Document::open(options.source, options.overrides));
+  return SceneHost::open(std::move(document), options.adjust);
+}
+
+/// The next best thing to a window: what --screenshot asks for, drawn as `catena render` does. Exit code 0.
+Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHost& hand, const std::string& why) {
+  const bool picture_only =
+      options.window_screenshot.empty() && options.servo_stats.empty() && options.frame_stats.empty() && options.hand.record.empty();
+  if (options.screenshot.empty() || !picture_only) return {1, why};
+  const auto loaded = load_first(host, hand, options.width, options.height);
+  if (!loaded) return {2, loaded.error().message};
+  const auto draw = [&]() -> Outcome {
+    scene::Scene& scene = host.scene();
+    scene.camera = camera_of(loaded->packet.view);
+    const auto eye = render::view_size(render::packing_of(scene.stereo), render::views_of(scene.stereo), options.width, options.height);
+    CATENA_TRY(const render::FramePacket packet,
+               render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height)));
+    render::vk::DeviceOptions device;
+    device.memory_budget_bytes = options.gpu_memory;
+    CATENA_TRY(const std::unique_ptr<render::Renderer> renderer, render::Renderer::create(device));
+    CATENA_CHECK(renderer->draw(packet, Pacing(options.quality).best(SceneKind{}).settings));
+    CATENA_TRY(const render::Picture picture, renderer->read_back());
+    return render::write_png(options.screenshot, picture, scene.background.transparent);
+  }();
+  if (!draw) return {1, draw.error().message};
+  return {0, why.substr(0, why.find(';')) + "; " + options.screenshot + " was drawn without a window"};
+}
+
+/// What is wrong with the scene, the device or the shaders is said before any window opens.
+std::optional<Failure> show(const ViewOptions& options) {
+  auto scene = read_scene(options);
+  if (!scene) return Failure{2, scene.error().message};
+  std::optional<Interrupt> interrupt;
+  HandHost hand(options.hand);
+  if (auto opened = hand.open_device(scene->scene()); !opened) return Failure{2, opened.error().message};
+  std::optional<ShaderReload> reload;
+  if (!options.shaders.empty()) {
+    auto opened = ShaderReload::open(options.shaders);
+    if (!opened) return Failure{2, "--shaders " + opened.error().message};
+    reload = std::move(*opened);
+  }
+  auto window = Window::create(options.width, options.height, "catena");
+  if (!window) return draw_without_window(options, *scene, hand, window.error().message);
+  Session session(options, *scene, hand, **window, std::move(reload), interrupt);
+  if (auto failure = session.open()) return failure;
+  return session.run();
+}
+
+}  // namespace
+
 int view(ViewOptions options) {
-  Session session(std::move(options));
-  auto failure = session.open();
-  if (!failure) failure = session.run();
+  const auto failure = show(options);
   if (failure) tell_from_catena(failure->message);
   return failure ? failure->exit_code : 0;
 }

@@ -1,4 +1,4 @@
-/// `catena view`: a window that shows the scene while the hand (by default the mouse) feels it.
+/// `catena view` opens a window that shows the scene while the hand (by default the mouse) feels it.
 /// Any other device has its forces off until F turns them on; the mouse cannot push: its force is only drawn.
 /// The servo thread runs the haptic program; the frame takes its newest state and never waits for it.
 #pragma once
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/app/render/quality_words.h"
-#include "engine/app/viewer/hand_host.h"
+#include "engine/app/viewer/shell/hand_host.h"
 #include "engine/scene/document.h"
 #include "render/vk/device.h"
 

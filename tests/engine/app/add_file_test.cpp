@@ -1,4 +1,4 @@
-#include "engine/app/viewer/add_file.h"
+#include "engine/app/viewer/edit/add_file.h"
 
 #include <gtest/gtest.h>
 

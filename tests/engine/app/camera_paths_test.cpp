@@ -1,4 +1,4 @@
-#include "engine/app/viewer/camera_paths.h"
+#include "engine/app/viewer/shell/camera_paths.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // What the chain and widget panels write into the scene's text.
-#include "engine/app/viewer/chain_edit.h"
+#include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/scene/link_feature.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "engine/app/viewer/edit/new_widget.h"
 #include "engine/app/viewer/edit/scene_items.h"
-#include "engine/app/viewer/new_widget.h"
-#include "engine/app/viewer/scene_host.h"
+#include "engine/app/viewer/shell/scene_host.h"
 #include "haptics/extract/extract.h"
 #include "tests/support/support.h"
 

@@ -1,4 +1,4 @@
-#include "engine/app/viewer/file_list.h"
+#include "engine/app/viewer/shell/file_list.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What holds the probe in the window, without a window: programs, devices and recordings change while the servo runs.
-#include "engine/app/viewer/hand_host.h"
+#include "engine/app/viewer/shell/hand_host.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/replay_log.h"
-#include "engine/app/viewer/scene_host.h"
+#include "engine/app/viewer/shell/scene_host.h"
 #include "tests/support/support.h"
 
 namespace catena::app {

@@ -1,12 +1,10 @@
-#include "engine/app/viewer/keys.h"
+#include "engine/app/viewer/shell/keys.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <set>
 #include <string>
-
-#include "engine/app/viewer/controls.h"
 
 namespace catena::app {
 namespace keys_test {
@@ -156,27 +154,6 @@ TEST(Keys, AnyInterleavingOfStrokesRepeatsFocusAndFramesLosesNothing) {
         strokes.erase(strokes.find(word), word.size());
     ASSERT_EQ(strokes, expected_strokes) << "run " << run;
   }
-}
-
-TEST(Keys, QAloneAsksForNothingAndEscapeDoesNotQuit) {
-  Input input;
-  interpret(event(What::press, 'Q'), false, input);
-  EXPECT_TRUE(input.commands.empty());
-  interpret(event(What::press, kEscape), false, input);
-  EXPECT_TRUE(input.escape);
-  EXPECT_TRUE(input.commands.empty());
-  KeyEvent quit = event(What::press, 'Q');
-  quit.control = true;
-  interpret(quit, false, input);
-  EXPECT_EQ(input.commands, std::vector<Command>{Command::quit});
-}
-
-TEST(Keys, LettersThatFlyAreNoCommands) {
-  Input flies, walks;
-  interpret(event(What::press, 'A'), true, flies);
-  interpret(event(What::press, 'A'), false, walks);
-  EXPECT_FALSE(flies.fit);
-  EXPECT_TRUE(walks.fit);
 }
 
 }  // namespace keys_test

@@ -1,4 +1,4 @@
-#include "engine/app/viewer/layout.h"
+#include "engine/app/viewer/shell/layout.h"
 
 #include <gtest/gtest.h>
 

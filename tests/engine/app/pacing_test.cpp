@@ -1,9 +1,9 @@
 /// Which picture the window shows next, told the times; and the phase of pulses, told the clock.
-#include "engine/app/viewer/pacing.h"
+#include "engine/app/viewer/shell/pacing.h"
 
 #include <gtest/gtest.h>
 
-#include "engine/app/viewer/pulse_clock.h"
+#include "engine/app/viewer/shell/pulse_clock.h"
 
 namespace catena::app {
 namespace pacing_test {

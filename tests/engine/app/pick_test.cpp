@@ -1,5 +1,5 @@
 // Places under the pointer against closed forms.
-#include "engine/app/viewer/pick.h"
+#include "engine/app/viewer/shell/pick.h"
 
 #include <gtest/gtest.h>
 

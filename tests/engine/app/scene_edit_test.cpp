@@ -94,7 +94,7 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
   EXPECT_EQ(items, 3 + 2 + 3 + 3);
   auto scene = document_->read();
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto packet = render::extract_frame(*scene, 32, 32);
+  const auto packet = render::make_frame(*scene, 32, 32);
   ASSERT_TRUE(packet) << packet.error().message;
   EXPECT_EQ(packet->volumes.size(), 3u);
   EXPECT_EQ(packet->isosurfaces.size(), 2u + 3);

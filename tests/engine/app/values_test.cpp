@@ -1,4 +1,4 @@
-#include "engine/app/viewer/values.h"
+#include "engine/app/viewer/shell/values.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Nothing that was done in the window is lost: by a kill, by a key, by the window's close button.
-#include "engine/app/viewer/draft.h"
+#include "engine/app/viewer/shell/draft.h"
 
 #include <gtest/gtest.h>
 

@@ -171,12 +171,12 @@ TEST(CarryOver, WhatOthersKeepGoesWithAnEqualDescription) {
   const auto carried = [](const std::string& text) {
     Scene old = scene_of(kText);
     const std::vector<Entity> sets = sets_of(old);
-    old.world.emplace<Beside>(sets[0], {1});
-    old.world.emplace<Beside>(sets[1], {2});
+    old.made.emplace<Beside>(sets[0], {1});
+    old.made.emplace<Beside>(sets[1], {2});
     Scene fresh = scene_of(text);
     carry_over(old, fresh);
     std::string values;
-    for (const Entity e : sets_of(fresh)) values += fresh.world.has<Beside>(e) ? std::to_string(fresh.world.get<Beside>(e).value) : "-";
+    for (const Entity e : sets_of(fresh)) values += fresh.made.has<Beside>(e) ? std::to_string(fresh.made.get<Beside>(e).value) : "-";
     return values;
   };
   EXPECT_EQ(carried(kText), "12");

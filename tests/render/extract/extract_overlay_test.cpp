@@ -13,7 +13,7 @@ namespace extract_overlay_test {
 FramePacket packet_of(const std::string& text) {
   auto scene = scene::parse_scene(text, "test.json");
   EXPECT_TRUE(scene) << scene.error().message;
-  auto packet = extract_frame(*scene, 320, 240);
+  auto packet = make_frame(*scene, 320, 240);
   EXPECT_TRUE(packet) << packet.error().message;
   return std::move(*packet);
 }
@@ -101,7 +101,7 @@ TEST(ExtractOverlay, AHistogramsColoursAreShownToo) {
 TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
   auto scene = scene::parse_scene(R"({"coupling": {"max_force": 4}, "status": true})", "test.json");
   ASSERT_TRUE(scene) << scene.error().message;
-  EXPECT_FALSE(extract_frame(*scene, 32, 32)->overlay.status) << "no hand, nothing to say";
+  EXPECT_FALSE(make_frame(*scene, 32, 32)->overlay.status) << "no hand, nothing to say";
   exchange::HapticState state;
   state.force_n = {0, 3, 4};
   state.link_count = 2;
@@ -109,7 +109,7 @@ TEST(ExtractOverlay, StatusSaysWhatIsFelt) {
   state.links[1].status = exchange::Status::released;
   scene::update_cursor(*scene, state);
   scene->world.get<scene::Cursor>(scene->cursor).names = {"curve"};
-  const auto packet = extract_frame(*scene, 32, 32);
+  const auto packet = make_frame(*scene, 32, 32);
   ASSERT_TRUE(packet && packet->overlay.status);
   const StatusItem& status = *packet->overlay.status;
   EXPECT_EQ(status.force_n, 5);

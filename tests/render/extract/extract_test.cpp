@@ -17,14 +17,14 @@ scene::Scene scene_of(const std::string& text) {
 }
 
 FramePacket packet_of(scene::Scene& scene, std::uint32_t width = 320, std::uint32_t height = 240) {
-  auto packet = extract_frame(scene, width, height);
+  auto packet = make_frame(scene, width, height);
   EXPECT_TRUE(packet) << (packet ? "" : packet.error().message);
   return std::move(*packet);
 }
 
 std::string error_of(const std::string& text) {
   scene::Scene scene = scene_of(text);
-  const auto packet = extract_frame(scene, 32, 32);
+  const auto packet = make_frame(scene, 32, 32);
   EXPECT_FALSE(packet);
   return packet ? std::string() : packet.error().message;
 }

@@ -41,7 +41,7 @@ scene::Entity add_widget(scene::Scene& scene, const std::string& name, Kind kind
 }
 
 FramePacket packet_of(scene::Scene& scene, std::uint32_t width = 256, std::uint32_t height = 192) {
-  auto packet = extract_frame(scene, width, height);
+  auto packet = make_frame(scene, width, height);
   EXPECT_TRUE(packet) << (packet ? "" : packet.error().message);
   return std::move(*packet);
 }

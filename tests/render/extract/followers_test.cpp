@@ -25,7 +25,7 @@ scene::Scene parsed() {
 }
 
 FramePacket frame(scene::Scene& scene) {
-  auto packet = extract_frame(scene, 64, 48);
+  auto packet = make_frame(scene, 64, 48);
   EXPECT_TRUE(packet) << (packet ? "" : packet.error().message);
   return packet ? std::move(*packet) : FramePacket{};
 }

@@ -16,7 +16,7 @@ TEST(ExtractLook, TheyReachThePacket) {
                     {"field": "s", "level": 1.5, "opacity": 0.5, "color_by": {"field": "t"}}]})",
                                   "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto packet = extract_frame(*scene, 32, 32);
+  const auto packet = make_frame(*scene, 32, 32);
   ASSERT_TRUE(packet) << packet.error().message;
   EXPECT_EQ(packet->jitter, false);
   ASSERT_EQ(packet->volumes.size(), 1u);
@@ -38,7 +38,7 @@ TEST(ExtractLook, TheyReachThePacket) {
 TEST(ExtractLook, AVectorFieldCannotColour) {
   auto scene = scene::parse_scene(kFields + "\n" + R"("volumes": [{"field": "s", "color_by": {"field": "v"}}]})", "s.json");
   ASSERT_TRUE(scene) << scene.error().message;
-  const auto packet = extract_frame(*scene, 32, 32);
+  const auto packet = make_frame(*scene, 32, 32);
   ASSERT_FALSE(packet);
   EXPECT_NE(packet.error().message.find("is a vector field"), std::string::npos) << packet.error().message;
   EXPECT_EQ(packet.error().message.find("s.json:"), 0u);

@@ -29,7 +29,7 @@ TEST(SceneLoads, AHundredHoldNoMore) {
   for (int k = 0; k < kWarm + 100; ++k) {
     auto scene = scene::parse_scene(kScene, "test.json");
     ASSERT_TRUE(scene) << scene.error().message;
-    auto packet = extract_frame(*scene, 48, 36);
+    auto packet = make_frame(*scene, 48, 36);
     ASSERT_TRUE(packet) << packet.error().message;
     const std::uint64_t uploads = (*renderer)->stats().uploads;
     const Outcome drawn = (*renderer)->draw(*packet);

@@ -14,7 +14,7 @@ namespace surfaces_test {
 Result<FramePacket> extract(const std::string& text, const std::string& path = "test.json") {
   auto scene = scene::parse_scene(text, path);
   EXPECT_TRUE(scene) << scene.error().message;
-  return extract_frame(*scene, 32, 32);
+  return make_frame(*scene, 32, 32);
 }
 
 std::string sliced(const std::string& keys) {

@@ -25,7 +25,7 @@ class Visible : public testing::Test {
     test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     scene_ = scene::parse_scene(scene_text(visible), folder_ / "s.json");
     EXPECT_TRUE(scene_) << scene_.error().message;
-    auto packet = extract_frame(*scene_, 32, 32);
+    auto packet = make_frame(*scene_, 32, 32);
     EXPECT_TRUE(packet) << packet.error().message;
     return packet ? std::move(*packet) : FramePacket{};
   }

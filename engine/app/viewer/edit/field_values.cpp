@@ -47,11 +47,11 @@ SortedValues FieldValues::of(scene::Scene& scene, scene::Entity field) {
   const field::AnyField& any = source.drawn.get() != nullptr ? source.drawn : source.loaded;
   if (any.get() == nullptr || !any.get()->is_grid()) return nullptr;
   // the transfer functions may have asked for them already, or be glad of them later
-  const auto* sample = scene.world.has<scene::ValueSample>(field) ? &scene.world.get<scene::ValueSample>(field) : nullptr;
+  const auto* sample = scene.made.has<scene::ValueSample>(field) ? &scene.made.get<scene::ValueSample>(field) : nullptr;
   if (sample != nullptr && sample->grid == any.get()) return sample->sorted;
   const std::uint64_t version = any.get()->version();
   if (const auto it = known_.find(version); it != known_.end()) {
-    if (source.drawn.scalar && sample == nullptr) scene.world.emplace<scene::ValueSample>(field, {source.drawn.get(), it->second});
+    if (source.drawn.scalar && sample == nullptr) scene.made.emplace<scene::ValueSample>(field, {source.drawn.get(), it->second});
     return it->second;
   }
   if (job_) return nullptr;

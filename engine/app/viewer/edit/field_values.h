@@ -1,5 +1,5 @@
-/// The values of fields for histograms: a sorted sample, made once a field version by a thread of its own, so that no frame waits.
-/// At most about 2 million floats a field; those of fields that are gone go with them. Frame thread.
+/// FieldValues keeps the values of fields for histograms: a sorted sample, made once a field version by a thread of its own, so that no
+/// frame waits. It has at most about 2 million floats a field; those of fields that are gone go with them. Frame thread.
 #pragma once
 #include <atomic>
 #include <map>

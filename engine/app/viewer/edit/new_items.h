@@ -1,4 +1,5 @@
-/// What "show this field as .." adds to the scene: an item with defaults that show something. JSON text; pure, any thread.
+/// These functions make what "show this field as .." adds to the scene: an item with defaults that show something, as JSON text. Pure, any
+/// thread.
 #pragma once
 #include <string>
 #include <vector>

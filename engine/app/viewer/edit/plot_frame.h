@@ -1,5 +1,5 @@
-/// Where values lie in a plot of the interface: value to x, alpha to y, and back. Pixels, y down. Alphas are drawn by their square roots:
-/// those of a volume are mostly small. Pure, any thread.
+/// PlotFrame says where values lie in a plot of the interface: value to x, alpha to y, and back. Pixels, y down. Alphas are drawn by their
+/// square roots, because those of a volume are mostly small. Pure, any thread.
 #pragma once
 #include <array>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/app/viewer/chain_edit.h"
+#include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/app/viewer/edit/pointers.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/link_feature.h"

@@ -1,11 +1,11 @@
-/// From a volume as it is drawn to one whose transfer function stands in the scene as points, looking the same, and the edits of the
-/// scene's text that make it what the hand wants. Where the points came from a file, extinctions or the histogram, the first edit states
-/// them all.
+/// This file leads from a volume as it is drawn to one whose transfer function stands in the scene as points and looks the same, and has
+/// the edits of the scene's text that make it what the hand wants. Where the points came from a file, extinctions or the histogram, the
+/// first edit states them all.
 ///   alpha = 1 - exp(-sigma u), u the opacity unit; a volume without opacities gets that at which the thickest point has alpha 0.6
 /// Pure, any thread.
 #pragma once
+#include "engine/app/viewer/edit/pointers.h"
 #include "engine/app/viewer/edit/transfer_points.h"
-#include "engine/scene/document.h"
 
 namespace catena::app {
 
@@ -17,8 +17,6 @@ struct TransferEdit {
   std::string map;         ///< the colours' name, if they have one; `colors` are its points
   bool has_range = false;  ///< the named map's range is stated
 };
-
-using TextEdits = std::vector<scene::Document::Edit>;
 
 /// `volume.transfer` as drawn: complete_transfer has filled it in. Empty where it has not.
 std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double smallest_edge);

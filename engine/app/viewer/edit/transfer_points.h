@@ -1,5 +1,5 @@
-/// What a hand does to the points of a transfer function: find, add, move, remove. Values rise strictly after every step, whatever is
-/// asked: a point stays between its neighbours, the outermost within the plot. Pure, any thread.
+/// These functions do what a hand does to the points of a transfer function: find, add, move, remove. Values rise strictly after every
+/// step, whatever is asked: a point stays between its neighbours, the outermost within the plot. Pure, any thread.
 #pragma once
 #include <array>
 #include <optional>

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/app/viewer/chain_edit.h"
+#include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/panels/panel.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {
@@ -72,9 +73,9 @@ void draw_name_choice(PanelContext& context, const ChainRow& row, const LinkKey&
   if (!choose(key.name.c_str(), words, chosen)) return;
   const bool field = key.kind == Kind::scalar_field || key.kind == Kind::vector_field;
   if (field)
-    context.apply(changed_field(context.scene.scene(), row, key, chosen, probe_of(context)), key.name);
+    context.edits.set(changed_field(context.scene.scene(), row, key, chosen, probe_of(context)), key.name);
   else
-    context.edit(row.pointer(key.name), scene::text_of(chosen), key.name);
+    context.edits.set(row.pointer(key.name), scene::text_of(chosen), key.name);
 }
 
 /// One key that the link states.
@@ -86,19 +87,19 @@ void draw_stated(PanelContext& context, const ChainRow& row, const LinkKey& key,
     NumberItem item{key.name.c_str(), pointer, value.number, 0, 0, speed};
     if (key.positive) item.hi = 1e9;
     if (key.name == "level") item.along = levels_along(context.scene.scene(), row);
-    edit_number(context, item);
+    edit_number(context.edits, item);
   } else if (key.kind == Kind::vector && value.items.size() == 3) {
     if (const auto v = json::as_vec3(value, key.name)) {
-      edit_vector(context, key.name.c_str(), pointer, *v, speed);
+      edit_vector(context.edits, key.name.c_str(), pointer, *v, speed);
       const bool place = key.name != "normal" && key.name != "direction" && key.name != "size";
       if (place && ImGui::SmallButton(("to the probe##" + key.name).c_str()))
-        context.edit(pointer, scene::text_of(probe_of(context)), key.name);
+        context.edits.set(pointer, scene::text_of(probe_of(context)), key.name);
     }
   } else if (key.kind == Kind::choice && word) {
     draw_name_choice(context, row, key, key.words, value.string);
   } else if (key.kind == Kind::boolean && value.kind == json::Kind::boolean) {
     bool on = value.boolean;
-    if (ImGui::Checkbox(key.name.c_str(), &on)) context.edit(pointer, on ? "true" : "false", key.name);
+    if (ImGui::Checkbox(key.name.c_str(), &on)) context.edits.set(pointer, on ? "true" : "false", key.name);
   } else if ((key.kind == Kind::scalar_field || key.kind == Kind::vector_field) && word) {
     draw_name_choice(context, row, key, fields_of(context.scene.scene(), key.kind == Kind::vector_field), value.string);
   } else if (key.kind == Kind::mesh && word) {
@@ -121,7 +122,7 @@ void draw_keys(PanelContext& context, const ChainRow& row) {
     tip(key.help);
     if (key.required) continue;
     ImGui::SameLine();
-    if (ImGui::SmallButton(("x##" + key.name).c_str())) context.remove(row.pointer(key.name), "remove " + key.name);
+    if (ImGui::SmallButton(("x##" + key.name).c_str())) context.edits.remove(row.pointer(key.name), "remove " + key.name);
     tip("the default again");
   }
   if (absent.empty() || !ImGui::BeginCombo("##key", "add a key", ImGuiComboFlags_HeightLarge)) return;
@@ -130,8 +131,8 @@ void draw_keys(PanelContext& context, const ChainRow& row) {
       const auto edits = added_key(context.scene.scene(), row, key, probe_of(context), length);
       if (edits.empty())
         context.state.say("\"" + key.name + "\" has no value to begin with here; write it into the scene's text", true);
-      else if (const Outcome done = context.scene.apply(edits, key.name); !done)
-        context.state.say(done.error().message, true);
+      else
+        context.edits.set(edits, key.name);
     }
     tip(key.help);
   }
@@ -151,9 +152,9 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
   bool enabled = row.enabled;
   if (ImGui::Checkbox("##on", &enabled)) {
     if (enabled)
-      context.remove(row.pointer("enabled"), row.name + " on");
+      context.edits.remove(row.pointer("enabled"), row.name + " on");
     else
-      context.edit(row.pointer("enabled"), "false", row.name + " off");
+      context.edits.set(row.pointer("enabled"), "false", row.name + " off");
   }
   tip("off for a try: the others go on as they are");
   ImGui::SameLine();
@@ -208,7 +209,7 @@ void draw_add(PanelContext& context) {
     if (!ImGui::Selectable(type.c_str())) continue;
     const auto link = new_link(context.scene.scene(), type, probe_of(context), length_of(context));
     if (link)
-      context.edit("/chain/-", *link, "add " + type);
+      context.edits.set("/chain/-", *link, "add " + type);
     else
       context.state.say(link.error().message, true);
   }
@@ -218,13 +219,11 @@ void draw_add(PanelContext& context) {
 void draw_coupling(PanelContext& context) {
   const scene::Coupling c = context.scene.scene().coupling;
   ImGui::TextUnformatted("Coupling");
-  edit_number(context, {"stiffness", "/coupling/stiffness", c.stiffness_n_per_m, 0, 5000, 2, "%.4g N/m"});
+  edit_number(context.edits, {"stiffness", "/coupling/stiffness", c.stiffness_n_per_m, 0, 5000, 2, "%.4g N/m"});
   tip("of links that do not say; a device may allow less");
-  edit_number(context, {"damping", "/coupling/damping", c.damping_ns_per_m, 0, 100, 0.02, "%.3g N s/m"});
-  edit_number(context, {"most force", "/coupling/max_force", c.max_force_n, 0, 40, 0.02, "%.3g N"});
+  edit_number(context.edits, {"damping", "/coupling/damping", c.damping_ns_per_m, 0, 100, 0.02, "%.3g N s/m"});
+  edit_number(context.edits, {"most force", "/coupling/max_force", c.max_force_n, 0, 40, 0.02, "%.3g N"});
 }
-
-}  // namespace
 
 void draw_chain(PanelContext& context) {
   const double most_n = context.scene.scene().coupling.max_force_n;
@@ -239,12 +238,15 @@ void draw_chain(PanelContext& context) {
   if (!move) return;
   const ChainRow& row = rows[move->row];
   if (move->by == 0) {
-    context.remove(row.pointer(), "remove " + row.name);
+    context.edits.remove(row.pointer(), "remove " + row.name);
     return;
   }
   const ChainRow& other = rows[move->row + static_cast<std::size_t>(move->by)];
-  if (const Outcome done = context.scene.apply(swapped(row, other), "move " + row.name); !done)
-    context.state.say(done.error().message, true);
+  context.edits.set(swapped(row, other), "move " + row.name);
 }
+
+}  // namespace
+
+Panel chain_panel() { return {"Chain", false, draw_chain}; }
 
 }  // namespace catena::app

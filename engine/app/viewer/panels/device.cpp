@@ -4,6 +4,7 @@
 
 #include "engine/app/hand/hand_setup.h"
 #include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 
@@ -19,7 +20,7 @@ void draw_choice(PanelContext& context) {
       // the window itself is the mouse's
       const bool present = info.present || info.name == "mouse";
       if (ImGui::Selectable(info.name.c_str(), info.name == now, present ? 0 : ImGuiSelectableFlags_Disabled))
-        context.state.device = info.name;
+        context.ask(ChooseDevice{info.name});
       if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", info.detail.c_str());
     }
     ImGui::EndCombo();
@@ -50,8 +51,6 @@ void draw_buttons(std::uint32_t pressed, int count) {
   }
 }
 
-}  // namespace
-
 void draw_device(PanelContext& context) {
   HandHost& hand = context.hand;
   const haptics::DeviceCapabilities& c = hand.hand().device->capabilities();
@@ -63,7 +62,7 @@ void draw_device(PanelContext& context) {
 
   if (!hand.is_mouse() && c.max_force_n > 0) {
     bool on = hand.forces();
-    if (ImGui::Checkbox("Forces (F)", &on)) hand.set_forces(on);
+    if (ImGui::Checkbox("Forces (F)", &on)) context.ask(Action::forces);
     tip("the device may push; what a force does is felt at once");
   }
   const Vec3 at = device_from_world(context.scene.scene().workspace, felt.probe);
@@ -88,5 +87,9 @@ void draw_device(PanelContext& context) {
                       r.cpu >= 0 ? fmt::format("core {}", r.cpu).c_str() : "any core");
   for (const std::string& note : r.notes) ImGui::TextWrapped("%s", note.c_str());
 }
+
+}  // namespace
+
+Panel device_panel() { return {"Device", false, draw_device}; }
 
 }  // namespace catena::app

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 
@@ -25,11 +25,11 @@ void draw_help(ViewState& state) {
       if (section != key.section) {
         if (!section.empty()) ImGui::Spacing();
         section = key.section;
-        ImGui::TextColored({0.6f, 0.8f, 1, 1}, "%s", key.section);
+        ImGui::TextColored({0.6f, 0.8f, 1, 1}, "%s", key.section.c_str());
       }
-      ImGui::TextUnformatted(key.keys);
+      ImGui::TextUnformatted(key.keys.c_str());
       ImGui::SameLine(190);
-      ImGui::TextUnformatted(key.does);
+      ImGui::TextUnformatted(key.does.c_str());
     }
   }
   ImGui::End();
@@ -42,39 +42,44 @@ bool begin_question(const char* title, bool wanted) {
   return ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove);
 }
 
-bool button(const char* label, ImGuiKey_ key = ImGuiKey_COUNT) {
+constexpr ImGuiKey_ kNoKey = ImGuiKey_COUNT;
+
+bool button(const char* label, ImGuiKey_ key) {
   const bool pressed = ImGui::Button(label, {110, 0});
-  const bool by_key = key != ImGuiKey_COUNT && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);
+  const bool by_key = key != kNoKey && ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), false);
   return pressed || by_key;
 }
 
+/// A button that answers the question: the command is asked for, and the question goes.
+void answer(PanelContext& context, const char* label, ImGuiKey_ key, Command command) {
+  if (!button(label, key)) return;
+  context.ask(std::move(command));
+  ImGui::CloseCurrentPopup();
+}
+
 void draw_unsaved(PanelContext& context) {
-  ViewState& state = context.state;
-  if (!begin_question("Before this scene is left", state.ask_unsaved.has_value())) return;
-  if (!state.ask_unsaved) {
+  const std::optional<Leaving>& leaving = context.state.ask.unsaved;
+  if (!begin_question("Before this scene is left", leaving.has_value())) return;
+  if (!leaving) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
   const bool modified = context.scene.document().is_modified();
   if (modified) ImGui::Text("%s has changes that are not saved.", file_name_of(context.scene.document().path()).c_str());
-  if (state.ask_unsaved->quit && context.hand.recording().running())
+  if (leaving->ends() && context.hand.recording().running())
     ImGui::Text("%s is being recorded: quitting ends it.", file_name_of(context.hand.recording().path()).c_str());
   ImGui::Spacing();
-  const auto answer = [&](Answer given) {
-    state.answer = given;
-    ImGui::CloseCurrentPopup();
-  };
   if (modified) {
-    if (button("Save", ImGuiKey_Enter)) answer(Answer::save);
+    answer(context, "Save", ImGuiKey_Enter, AnswerToUnsaved::save);
     ImGui::SetItemDefaultFocus();
     ImGui::SameLine();
-    if (button("Discard")) answer(Answer::discard);
+    answer(context, "Discard", kNoKey, AnswerToUnsaved::discard);
   } else {
-    if (button("Quit", ImGuiKey_Enter)) answer(Answer::discard);
+    answer(context, "Quit", ImGuiKey_Enter, AnswerToUnsaved::discard);
     ImGui::SetItemDefaultFocus();
   }
   ImGui::SameLine();
-  if (button("Cancel", ImGuiKey_Escape)) answer(Answer::cancel);
+  answer(context, "Cancel", ImGuiKey_Escape, AnswerToUnsaved::cancel);
   ImGui::EndPopup();
 }
 
@@ -87,53 +92,39 @@ std::string words_of_time(std::int64_t at_s) {
 }
 
 void draw_left(PanelContext& context, bool wanted) {
-  ViewState& state = context.state;
+  const std::optional<LeftDraft>& left = context.state.ask.left;
   if (!begin_question("Unsaved changes of an earlier run", wanted)) return;
-  if (!state.ask_left) {
+  if (!left) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
   ImGui::Text("%s had changes that were not saved when its window ended", file_name_of(context.scene.document().path()).c_str());
-  ImGui::Text("(%s).", words_of_time(state.ask_left->at_s).c_str());
+  ImGui::Text("(%s).", words_of_time(left->at_s).c_str());
   ImGui::Spacing();
-  const auto answer = [&](AnswerToLeft given) {
-    state.answer_to_left = given;
-    ImGui::CloseCurrentPopup();
-  };
-  if (button("Restore", ImGuiKey_Enter)) answer(AnswerToLeft::restore);
+  answer(context, "Restore", ImGuiKey_Enter, AnswerToLeft::restore);
   ImGui::SetItemDefaultFocus();
   ImGui::SameLine();
-  if (button("Discard")) answer(AnswerToLeft::discard);
+  answer(context, "Discard", kNoKey, AnswerToLeft::discard);
   ImGui::SameLine();
-  if (button("Later", ImGuiKey_Escape)) answer(AnswerToLeft::later);
+  answer(context, "Later", ImGuiKey_Escape, AnswerToLeft::later);
   ImGui::EndPopup();
 }
 
 void draw_dropped(PanelContext& context, bool wanted) {
-  ViewState& state = context.state;
+  const std::optional<std::string>& dropped = context.state.ask.dropped;
   if (!begin_question("A file was dropped", wanted)) return;
-  if (!state.ask_dropped) {
+  if (!dropped) {
     ImGui::CloseCurrentPopup();
     return ImGui::EndPopup();
   }
-  ImGui::TextUnformatted(file_name_of(*state.ask_dropped).c_str());
+  ImGui::TextUnformatted(file_name_of(*dropped).c_str());
   ImGui::Spacing();
-  const auto done = [&] {
-    state.ask_dropped.reset();
-    ImGui::CloseCurrentPopup();
-  };
-  if (button("Add to the scene", ImGuiKey_Enter)) {
-    state.add = state.ask_dropped;
-    done();
-  }
+  answer(context, "Add to the scene", ImGuiKey_Enter, AnswerToDropped::add);
   ImGui::SetItemDefaultFocus();
   ImGui::SameLine();
-  if (state.ask_dropped && button("Open instead")) {
-    state.open = state.ask_dropped;
-    done();
-  }
+  answer(context, "Open instead", kNoKey, AnswerToDropped::open);
   ImGui::SameLine();
-  if (state.ask_dropped && button("Cancel", ImGuiKey_Escape)) done();
+  answer(context, "Cancel", ImGuiKey_Escape, AnswerToDropped::cancel);
   ImGui::EndPopup();
 }
 
@@ -144,8 +135,8 @@ void draw_dialogs(PanelContext& context) {
   // one question at a time
   const ViewState& state = context.state;
   draw_unsaved(context);
-  draw_dropped(context, state.ask_dropped && !state.ask_unsaved);
-  draw_left(context, state.ask_left && !state.ask_unsaved && !state.ask_dropped);
+  draw_dropped(context, state.ask.dropped && !state.ask.unsaved);
+  draw_left(context, state.ask.left && !state.ask.unsaved && !state.ask.dropped);
 }
 
 }  // namespace catena::app

@@ -5,20 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/viewer/edit/plot_frame.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {
 
 namespace {
 
-/// The name of the drag that the last item is in; a click that types a number is a drag of its own.
-std::string drag_name(ViewState& state) {
-  if (ImGui::IsItemActivated()) ++state.next_drag;
-  return "drag " + std::to_string(state.next_drag);
-}
+/// The key that an item edits, for the menu of undo.
+std::string key_of(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
 
 /// True: `now` is to be taken. While digits are typed nothing is: a surface that follows each of them would jump under the hand.
-bool is_settled(ViewState& state, const std::string& pointer, bool changed, const Vec3& before, Vec3& now) {
+bool is_settled(EditState& state, const std::string& pointer, bool changed, const Vec3& before, Vec3& now) {
+  // a click that types a number is a drag of its own
+  if (ImGui::IsItemActivated()) ++state.gesture;
   TypedNumbers& typed = state.typed;
   const int frame = ImGui::GetFrameCount();
   const bool mine = typed.pointer == pointer && typed.frame >= frame - 1;
@@ -36,27 +36,81 @@ float speed_of(double speed, double value) { return static_cast<float>(speed > 0
 
 }  // namespace
 
-bool edit_number(PanelContext& context, const NumberItem& item) {
+bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::string& word, const std::string& name) {
+  const std::string pointer = pointer_of(where);
+  ImGui::PushID(pointer.empty() ? name.c_str() : pointer.c_str());
+  const float button = ImGui::GetFrameHeight();
+  bool open = false;
+  if (pointer.empty()) {
+    ImGui::TextDisabled("%s: save the scene first", name.c_str());
+  } else {
+    bool seen = visible;
+    if (ImGui::Checkbox("##seen", &seen)) edits.set(pointer + "/visible", scene::text_of(seen), seen ? "show " + word : "hide " + word);
+    short_tip(visible ? "seen" : "hidden");
+    ImGui::SameLine();
+    if (!visible) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    open = ImGui::TreeNodeEx("##open", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap, "%s", name.c_str());
+    if (!visible) ImGui::PopStyleColor();
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
+    if (ImGui::Button("x", {button, 0})) edits.remove(pointer, "remove " + word);
+    short_tip("remove");
+  }
+  if (!open) ImGui::PopID();
+  return open;
+}
+
+void end_item() {
+  ImGui::TreePop();
+  ImGui::PopID();
+}
+
+void edit_boolean(Edits& edits, const char* label, bool value, const std::string& pointer) {
+  if (ImGui::Checkbox(label, &value)) edits.set(pointer, scene::text_of(value), label);
+}
+
+void edit_slider(Edits& edits, const char* label, double value, double lo, double hi, const std::string& pointer, const char* format) {
+  auto now = static_cast<float>(value);
+  if (ImGui::SliderFloat(label, &now, static_cast<float>(lo), static_cast<float>(hi), format, ImGuiSliderFlags_AlwaysClamp))
+    edits.drag(pointer, scene::text_of(rounded_in(now, lo, hi, 1000)), label);
+}
+
+void edit_share(Edits& edits, const char* label, double value, const std::string& pointer) {
+  edit_slider(edits, label, value, 0, 1, pointer, "%.2f");
+}
+
+void edit_color(Edits& edits, const char* label, const scene::Rgb& color, const std::string& pointer) {
+  float rgb[3] = {color.r, color.g, color.b};
+  if (ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_NoInputs))
+    edits.drag(pointer, scene::text_of(scene::Rgb{rgb[0], rgb[1], rgb[2]}), label[0] == '#' ? "colour" : label);
+}
+
+void edit_number(Edits& edits, const NumberItem& item) {
   double value = item.value;
   const bool ranged = item.lo < item.hi;
   const bool changed = ImGui::DragScalar(item.label, ImGuiDataType_Double, &value, speed_of(item.speed, item.value),
                                          ranged ? &item.lo : nullptr, ranged ? &item.hi : nullptr, item.format);
-  const std::string drag = drag_name(context.state);
   Vec3 now(value, 0, 0);
-  if (!is_settled(context.state, item.pointer, changed, Vec3(item.value, 0, 0), now)) return false;
-  std::vector<scene::Document::Edit> edits{{item.pointer, scene::text_of(now.x)}};
-  for (const std::string& pointer : item.along) edits.push_back({pointer, scene::text_of(now.x)});
-  return context.apply(edits, item.pointer.substr(item.pointer.rfind('/') + 1), drag);
+  if (!is_settled(edits.state(), item.pointer, changed, Vec3(item.value, 0, 0), now)) return;
+  TextEdits change{{item.pointer, scene::text_of(now.x)}};
+  for (const std::string& pointer : item.along) change.push_back({pointer, scene::text_of(now.x)});
+  edits.drag(change, key_of(item.pointer));
 }
 
-bool edit_vector(PanelContext& context, const char* label, const std::string& pointer, const Vec3& value, double speed) {
+void edit_vector(Edits& edits, const char* label, const std::string& pointer, const Vec3& value, double speed) {
   double numbers[3] = {value.x, value.y, value.z};
   const bool changed =
       ImGui::DragScalarN(label, ImGuiDataType_Double, numbers, 3, speed_of(speed, max_abs(value)), nullptr, nullptr, "%.4g");
-  const std::string drag = drag_name(context.state);
   Vec3 now(numbers[0], numbers[1], numbers[2]);
-  return is_settled(context.state, pointer, changed, value, now) &&
-         context.edit(pointer, scene::text_of(now), pointer.substr(pointer.rfind('/') + 1), drag);
+  if (is_settled(edits.state(), pointer, changed, value, now)) edits.drag(pointer, scene::text_of(now), key_of(pointer));
+}
+
+bool typed_number(const char* label, double& value, const char* hint) {
+  double typed = value;
+  const bool entered = ImGui::InputDouble(label, &typed, 0, 0, "%.6g", ImGuiInputTextFlags_EnterReturnsTrue);
+  short_tip(hint);
+  if (!entered || !std::isfinite(typed) || typed == value) return false;
+  value = typed;
+  return true;
 }
 
 bool choose(const char* label, const std::vector<std::string>& words, std::string& chosen) {
@@ -75,6 +129,10 @@ void tip(const std::string& text) {
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
+}
+
+void short_tip(const std::string& text) {
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text.c_str());
 }
 
 }  // namespace catena::app

@@ -1,30 +1,47 @@
-/// Numbers and choices of the scene as interface items: what the person does becomes an edit of the document. While an item is dragged
-/// its edits are one step of undo. Between Gui::begin and end.
+/// These functions draw numbers, colours and choices of the scene as items of the interface; what the person makes of one is an edit of the
+/// scene at `pointer`. While an item is dragged its edits are one step of undo. A slider of a new key is one line in its panel:
+///   edit_slider(context.edits, "radius", line.radius, 0, 5, pointer + "/radius");
+/// Frame thread, between Gui::begin and end.
 #pragma once
 #include <string>
 #include <vector>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/edit/edits.h"
 
 namespace catena::app {
 
+/// A line with a box (seen or hidden), the name, a button that removes the item. Below it, if open, the rest is drawn: true.
+/// False too where the item is not of the scene's text.
+bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::string& word, const std::string& name);
+void end_item();
+
+void edit_boolean(Edits& edits, const char* label, bool value, const std::string& pointer);
+void edit_slider(Edits& edits, const char* label, double value, double lo, double hi, const std::string& pointer,
+                 const char* format = "%.3g");
+void edit_share(Edits& edits, const char* label, double value, const std::string& pointer);  ///< 0..1
+void edit_color(Edits& edits, const char* label, const scene::Rgb& color, const std::string& pointer);
+
+/// A number that is dragged or typed.
 struct NumberItem {
   const char* label;
-  std::string pointer;  ///< of the document
+  std::string pointer;
   double value;
   double lo = 0, hi = 0;  ///< lo < hi: the item's range; the text may still say more
   double speed = 0;       ///< a pixel of drag; 0: by the value
   const char* format = "%.5g";
   std::vector<std::string> along{};  ///< pointers that get the same value in the same step
 };
-/// True: edited.
-bool edit_number(PanelContext& context, const NumberItem& item);
+void edit_number(Edits& edits, const NumberItem& item);
 /// Three numbers, [x, y, z].
-bool edit_vector(PanelContext& context, const char* label, const std::string& pointer, const Vec3& value, double speed);
+void edit_vector(Edits& edits, const char* label, const std::string& pointer, const Vec3& value, double speed);
+
+/// A number typed, taken at Enter; true: `value` is another now.
+bool typed_number(const char* label, double& value, const char* hint);
 /// One of `words`; true: `chosen` is another now.
 bool choose(const char* label, const std::vector<std::string>& words, std::string& chosen);
 
-/// A line that appears while the item above is pointed at.
+/// A text that appears while the item above is pointed at, in lines of a readable length; the same on one line.
 void tip(const std::string& text);
+void short_tip(const std::string& text);
 
 }  // namespace catena::app

@@ -35,7 +35,7 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
   };
   if (source.file) {
     row("file", std::filesystem::path(source.file->path).filename().string());
-    tip(source.file->path.c_str());
+    short_tip(source.file->path.c_str());
   } else {
     row("formula", source.analytic);
   }
@@ -55,7 +55,7 @@ void draw_facts(const scene::FieldSource& source, const field::AnyField& shown) 
 void draw_histogram(const SortedValues& values) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, 36};
   ImGui::Dummy(size);
-  tip("how often values occur, logarithmic");
+  short_tip("how often values occur, logarithmic");
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), 3);
   if (!values || values->empty()) return;
   const auto range = plot_range(values->front(), values->back());
@@ -71,30 +71,26 @@ void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
   const std::string name = name_of(scene, entity);
   // what is seen is what is felt
   const std::string item = new_item(name, *drawn, as, values ? *values : std::vector<float>(), felt_level(scene, name));
-  context.edit(pointer_of_new(as), item, std::string("new ") + word_of(as));
+  context.edits.set(pointer_of_new(as), item, std::string("new ") + word_of(as));
 }
 
-void draw_buttons(Edits& edits, scene::Entity entity, const field::AnyField& shown) {
+void draw_buttons(PanelContext& context, scene::Entity entity, const field::AnyField& shown) {
   bool first = true;
   for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines}) {
     if (!can_show(shown, as)) continue;
     if (!first) ImGui::SameLine();
     first = false;
-    if (ImGui::SmallButton(fmt::format("+ {}", word_of(as)).c_str()))
-      edits.later([entity, as](PanelContext& later) { show_as(later, entity, as); });
-    tip(fmt::format("show the field as {}{}",
-                    as == ShowAs::streamlines  ? ""
-                    : as == ShowAs::isosurface ? "an "
-                                               : "a ",
-                    word_of(as))
-            .c_str());
+    if (ImGui::SmallButton(fmt::format("+ {}", word_of(as)).c_str())) show_as(context, entity, as);
+    short_tip(fmt::format("show the field as {}{}",
+                          as == ShowAs::streamlines  ? ""
+                          : as == ShowAs::isosurface ? "an "
+                                                     : "a ",
+                          word_of(as))
+                  .c_str());
   }
 }
 
-}  // namespace
-
 void draw_fields(PanelContext& context) {
-  Edits edits(context);
   scene::Scene& scene = context.scene.scene();
   LookState& look = context.state.look;
   look.values.tidy(scene);
@@ -103,7 +99,7 @@ void draw_fields(PanelContext& context) {
   if (fields.empty()) ImGui::TextDisabled("the scene has none");
   for (const scene::Entity e : fields) {
     const scene::FieldSource& source = scene.world.get<scene::FieldSource>(e);
-    const field::AnyField& shown = source.drawn.get() != nullptr ? source.drawn : source.loaded;
+    const field::AnyField shown = source.drawn.get() != nullptr ? source.drawn : source.loaded;
     const std::string name = name_of(scene, e);
     const char* kind = shown.scalar ? "scalar" : shown.vector ? "vector" : "not loaded";
     ImGui::PushID(name.c_str());
@@ -114,19 +110,19 @@ void draw_fields(PanelContext& context) {
       draw_facts(source, shown);
       if (shown.get() == nullptr) {
         if (ImGui::SmallButton("load"))
-          edits.later([e](PanelContext& later) {
-            scene::Scene& s = later.scene.scene();
-            if (auto loaded = scene::use_drawn_field(s, e, s.world.get<scene::FieldSource>(e).where); !loaded)
-              later.state.say(loaded.error().message, true);
-          });
+          if (auto loaded = scene::use_drawn_field(scene, e, source.where); !loaded) context.state.say(loaded.error().message, true);
       } else {
         if (shown.get()->is_grid()) draw_histogram(look.values.of(scene, e));
-        draw_buttons(edits, e, shown);
+        draw_buttons(context, e, shown);
       }
       ImGui::TreePop();
     }
     ImGui::PopID();
   }
 }
+
+}  // namespace
+
+Panel fields_panel() { return {"Fields", true, draw_fields}; }
 
 }  // namespace catena::app

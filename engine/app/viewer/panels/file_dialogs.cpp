@@ -5,8 +5,8 @@
 #include <array>
 #include <filesystem>
 
-#include "engine/app/viewer/file_list.h"
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/shell/file_list.h"
 
 namespace catena::app {
 
@@ -129,7 +129,7 @@ bool is_answer(Browser& browser, std::string& path) {
 void draw_open(PanelContext& context) {
   static Browser browser;
   ViewState& state = context.state;
-  if (!begin("Open", state.ask_open, browser, context, "")) return;
+  if (!begin("Open", state.ask.open, browser, context, "")) return;
   bool chosen = draw_list(browser);
   chosen = draw_typed(browser) || chosen;
   chosen = ImGui::Button("Open", {110, 0}) || chosen;
@@ -137,7 +137,7 @@ void draw_open(PanelContext& context) {
   const bool leaves = cancelled();
   std::string path;
   if (chosen && is_answer(browser, path)) {
-    state.open = path;
+    context.ask(OpenFile{path});
     ImGui::CloseCurrentPopup();
   } else if (leaves) {
     ImGui::CloseCurrentPopup();
@@ -149,8 +149,8 @@ void draw_save(PanelContext& context) {
   static Browser browser;
   browser.scenes_only = true;
   ViewState& state = context.state;
-  if (state.ask_save) browser.folder = start_folder(context);
-  if (!begin("Save as", state.ask_save, browser, context, fs::path(context.scene.document().path()).filename().string())) return;
+  if (state.ask.save_as) browser.folder = start_folder(context);
+  if (!begin("Save as", state.ask.save_as, browser, context, fs::path(context.scene.document().path()).filename().string())) return;
   bool chosen = draw_list(browser);
   chosen = draw_typed(browser) || chosen;
   std::string path;
@@ -168,11 +168,11 @@ void draw_save(PanelContext& context) {
     if (!browser.asks_overwrite && fs::exists(path, code)) {
       browser.asks_overwrite = true;
     } else {
-      state.save = path;
+      context.ask(SaveAs{path});
       ImGui::CloseCurrentPopup();
     }
   } else if (leaves) {
-    state.after_save.reset();
+    context.ask(GiveUpSaving{});
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();

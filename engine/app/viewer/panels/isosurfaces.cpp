@@ -26,7 +26,7 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
   if (!felt.empty()) {
     ImGui::SameLine();
     ImGui::TextDisabled("felt");
-    tip("a link of the chain lies on this surface: its level goes along");
+    short_tip("a link of the chain lies on this surface: its level goes along");
   }
   if (!moved) return;
   TextEdits writes{{pointer_of(surface.where) + "/level", scene::text_of(level)}};
@@ -34,10 +34,8 @@ void draw_level(PanelContext& context, Edits& edits, const scene::Isosurface& su
   edits.drag(writes, "isolevel");
 }
 
-}  // namespace
-
 void draw_isosurfaces(PanelContext& context) {
-  Edits edits(context);
+  Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
   scene.world.each<scene::Isosurface>([&](scene::Entity e, const scene::Isosurface& surface) {
     if (!begin_item(edits, surface.where, !is_hidden(scene.world, e), "isosurface", name_of(scene, surface.field))) return;
@@ -51,5 +49,9 @@ void draw_isosurfaces(PanelContext& context) {
     end_item();
   });
 }
+
+}  // namespace
+
+Panel isosurfaces_panel() { return {"Isosurfaces", true, draw_isosurfaces, has_any<scene::Isosurface>}; }
 
 }  // namespace catena::app

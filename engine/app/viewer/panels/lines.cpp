@@ -37,10 +37,8 @@ void choose_what(Edits& edits, const scene::Scene& scene, const scene::Streamlin
   ImGui::EndCombo();
 }
 
-}  // namespace
-
 void draw_lines(PanelContext& context) {
-  Edits edits(context);
+  Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
   scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
     if (!begin_item(edits, set.where, !is_hidden(scene.world, e), "streamlines", name_of(scene, set.field))) return;
@@ -63,9 +61,13 @@ void draw_lines(PanelContext& context) {
       else if (set.where.find("radius") != nullptr)
         edits.remove(pointer + "/radius", "radius");
     }
-    tip("of the tubes, world units; at the left end: fitted to the domain");
+    short_tip("of the tubes, world units; at the left end: fitted to the domain");
     end_item();
   });
 }
+
+}  // namespace
+
+Panel lines_panel() { return {"Lines", false, draw_lines, has_any<scene::StreamlineSet>}; }
 
 }  // namespace catena::app

@@ -1,7 +1,5 @@
 #include "engine/app/viewer/panels/look_parts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,90 +12,7 @@ namespace {
 constexpr float kBarsHeight = 44;
 constexpr double kFine = 0.1;
 
-std::string key_of(const PanelContext& context, const std::string& what) { return fmt::format("{} {}", what, context.state.look.press); }
-
 }  // namespace
-
-Edits::~Edits() {
-  for (const auto& action : actions_) action(context_);
-}
-
-void Edits::set(std::string pointer, std::string value, std::string what) {
-  later([=](PanelContext& context) { context.edit(pointer, value, what); });
-}
-
-void Edits::drag(std::string pointer, std::string value, std::string what) {
-  drag(TextEdits{{std::move(pointer), std::move(value)}}, what);
-}
-
-void Edits::set(const TextEdits& edits, const std::string& what) {
-  later([=](PanelContext& context) { context.apply(edits, what); });
-}
-
-void Edits::drag(const TextEdits& edits, const std::string& what) {
-  later([=](PanelContext& context) { context.apply(edits, what, key_of(context, what)); });
-}
-
-void Edits::remove(std::string pointer, std::string what) {
-  later([=](PanelContext& context) { context.remove(pointer, what); });
-}
-
-void tip(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
-}
-
-bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::string& word, const std::string& name) {
-  const std::string pointer = pointer_of(where);
-  ImGui::PushID(pointer.empty() ? name.c_str() : pointer.c_str());
-  const float button = ImGui::GetFrameHeight();
-  bool open = false;
-  if (pointer.empty()) {
-    ImGui::TextDisabled("%s: save the scene first", name.c_str());
-  } else {
-    bool seen = visible;
-    if (ImGui::Checkbox("##seen", &seen)) edits.set(pointer + "/visible", scene::text_of(seen), seen ? "show " + word : "hide " + word);
-    tip(visible ? "seen" : "hidden");
-    ImGui::SameLine();
-    if (!visible) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    open = ImGui::TreeNodeEx("##open", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap, "%s", name.c_str());
-    if (!visible) ImGui::PopStyleColor();
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
-    if (ImGui::Button("x", {button, 0})) edits.remove(pointer, "remove " + word);
-    tip("remove");
-  }
-  if (!open) ImGui::PopID();
-  return open;
-}
-
-void end_item() {
-  ImGui::TreePop();
-  ImGui::PopID();
-}
-
-void edit_boolean(Edits& edits, const char* label, bool value, const std::string& pointer) {
-  if (ImGui::Checkbox(label, &value)) edits.set(pointer, scene::text_of(value), label);
-}
-
-void edit_share(Edits& edits, const char* label, double value, const std::string& pointer) {
-  auto share = static_cast<float>(value);
-  if (ImGui::SliderFloat(label, &share, 0, 1, "%.2f", ImGuiSliderFlags_AlwaysClamp))
-    edits.drag(pointer, scene::text_of(rounded_in(share, 0, 1, 1000)), label);
-}
-
-void edit_color(Edits& edits, const char* label, const scene::Rgb& color, const std::string& pointer) {
-  float rgb[3] = {color.r, color.g, color.b};
-  if (ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_NoInputs))
-    edits.drag(pointer, scene::text_of(scene::Rgb{rgb[0], rgb[1], rgb[2]}), label[0] == '#' ? "colour" : label);
-}
-
-bool typed_number(const char* label, double& value, const char* hint) {
-  double typed = value;
-  const bool entered = ImGui::InputDouble(label, &typed, 0, 0, "%.6g", ImGuiInputTextFlags_EnterReturnsTrue);
-  tip(hint);
-  if (!entered || !std::isfinite(typed) || typed == value) return false;
-  value = typed;
-  return true;
-}
 
 std::optional<std::string> choose_map(const std::string& now, const char* otherwise) {
   const bool reversed = now.ends_with("_r");
@@ -150,7 +65,7 @@ void edit_color_scale(Edits& edits, const json::Node& item, const std::vector<sc
       if (typed) edits.set(pointer + "/range", scene::text_of(range), "range");
       ImGui::SameLine();
       if (ImGui::Checkbox("##own", &own)) edits.remove(pointer + "/range", "range");
-      tip("off: the range of the values");
+      short_tip("off: the range of the values");
     } else if (ImGui::Checkbox("own range", &own)) {
       edits.set(pointer + "/range", "[0, 1]", "range");
     }

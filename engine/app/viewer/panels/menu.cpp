@@ -1,71 +1,64 @@
-// The bar at the top.
+// The bar at the top: entries that ask for the commands of shell/commands.h.
 #include <imgui.h>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 
 namespace {
 
+/// Another word than the command's own: "Undo isolevel".
+void entry(PanelContext& context, Action action, const std::string& words, bool checked = false, bool enabled = true) {
+  if (ImGui::MenuItem(words.c_str(), key_words(action).c_str(), checked, enabled)) context.ask(action);
+}
+void entry(PanelContext& context, Action action, bool checked = false) { entry(context, action, menu_words(action), checked); }
+
 void draw_file_menu(PanelContext& context) {
-  ViewState& state = context.state;
   if (!ImGui::BeginMenu("File")) return;
-  if (ImGui::MenuItem("Open...", "Ctrl+O")) state.ask_open = true;
-  if (ImGui::BeginMenu("Open recent", !state.recent.empty())) {
-    draw_recent(state);
+  entry(context, Action::open);
+  if (ImGui::BeginMenu("Open recent", !context.state.recent.empty())) {
+    draw_recent(context);
     ImGui::EndMenu();
   }
-  if (ImGui::MenuItem("Save", "Ctrl+S")) state.save.emplace();
-  if (ImGui::MenuItem("Save as...", "Ctrl+Shift+S")) state.ask_save = true;
+  entry(context, Action::save);
+  entry(context, Action::save_as);
   ImGui::Separator();
-  const auto shoot = [&](bool window) {
-    state.screenshot.emplace();
-    state.screenshot_of_window = window;
-  };
-  if (ImGui::MenuItem("Picture as PNG", "F12")) shoot(false);
-  if (ImGui::MenuItem("Window as PNG", "Shift+F12")) shoot(true);
+  entry(context, Action::picture);
+  entry(context, Action::window_picture);
   ImGui::Separator();
-  if (ImGui::MenuItem("Quit", "Ctrl+Q")) state.quit = true;
+  entry(context, Action::quit);
   ImGui::EndMenu();
 }
 
 void draw_edit_menu(PanelContext& context) {
-  ViewState& state = context.state;
-  const scene::Document& document = context.scene.document();
   if (!ImGui::BeginMenu("Edit")) return;
-  const std::string undo = document.can_undo() ? "Undo " + document.undo_what() : "Undo";
-  const std::string redo = document.can_redo() ? "Redo " + document.redo_what() : "Redo";
-  if (ImGui::MenuItem(undo.c_str(), "Ctrl+Z", false, document.can_undo()))
-    if (const Outcome done = context.scene.undo(); !done) state.say(done.error().message, true);
-  if (ImGui::MenuItem(redo.c_str(), "Ctrl+Y", false, document.can_redo()))
-    if (const Outcome done = context.scene.redo(); !done) state.say(done.error().message, true);
+  const scene::Document& document = context.scene.document();
+  const auto with = [](Action action, bool can, const std::string& what) { return menu_words(action) + (can ? " " + what : ""); };
+  const bool undo = document.can_undo(), redo = document.can_redo();
+  entry(context, Action::undo, with(Action::undo, undo, document.undo_what()), false, undo);
+  entry(context, Action::redo, with(Action::redo, redo, document.redo_what()), false, redo);
   ImGui::EndMenu();
 }
 
 void draw_view_menu(PanelContext& context) {
-  ViewState& state = context.state;
+  const ViewState& state = context.state;
+  const Controls& controls = context.controls;
   if (!ImGui::BeginMenu("View")) return;
-  ImGui::MenuItem("Panels", "Tab", &state.panels);
-  ImGui::MenuItem("Full screen", "F11", &state.full_screen);
+  entry(context, Action::panels, state.panels);
+  entry(context, Action::full_screen, state.full_screen);
   ImGui::Separator();
-  if (ImGui::MenuItem("First view", "R")) state.moves.reset_view = true;
-  if (ImGui::MenuItem("Everything", "A")) state.moves.fit = true;
+  entry(context, Action::first_view);
+  entry(context, Action::fit);
   if (ImGui::BeginMenu("Along")) {
-    constexpr const char *kAxes[2][3] = {{"+x", "+y", "+z"}, {"-x", "-y", "-z"}},
-                         *kKeys[2][3] = {{"1", "2", "3"}, {"Shift+1", "Shift+2", "Shift+3"}};
-    for (int side = 0; side < 2; ++side)
-      for (int axis = 0; axis < 3; ++axis)
-        if (ImGui::MenuItem(kAxes[side][axis], kKeys[side][axis])) {
-          state.moves.axis = axis;
-          state.moves.shift = side == 1;
-        }
+    for (const Action action : {Action::along_x, Action::along_y, Action::along_z, Action::against_x, Action::against_y, Action::against_z})
+      entry(context, action);
     ImGui::EndMenu();
   }
-  if (ImGui::MenuItem("Orthographic", "O", context.controls.view.orthographic)) state.moves.toggle_projection = true;
+  entry(context, Action::projection, controls.view.orthographic);
   ImGui::Separator();
-  ImGui::MenuItem("Turntable", "T", &state.turntable);
-  ImGui::MenuItem("Fly", "V", &state.fly);
-  ImGui::MenuItem("The mouse is the hand", "H", &context.controls.hand_mode);
+  entry(context, Action::turntable, controls.turntable);
+  entry(context, Action::fly, controls.fly);
+  entry(context, Action::hand_mode, controls.hand_mode);
   ImGui::EndMenu();
 }
 
@@ -77,7 +70,7 @@ void draw_menu(PanelContext& context) {
   draw_edit_menu(context);
   draw_view_menu(context);
   if (ImGui::BeginMenu("Help")) {
-    if (ImGui::MenuItem("Keys and buttons", "F1")) context.state.help = true;
+    entry(context, Action::help);
     ImGui::EndMenu();
   }
   ImGui::EndMainMenuBar();

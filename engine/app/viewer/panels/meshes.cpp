@@ -5,8 +5,10 @@
 
 namespace catena::app {
 
+namespace {
+
 void draw_meshes(PanelContext& context) {
-  Edits edits(context);
+  Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
   scene.world.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
     if (!begin_item(edits, surface.where, !is_hidden(scene.world, e), "mesh", name_of(scene, surface.mesh))) return;
@@ -21,9 +23,13 @@ void draw_meshes(PanelContext& context) {
     ImGui::SameLine();
     bool smooth = surface.smooth;
     if (ImGui::Checkbox("smooth", &smooth)) edits.set(pointer + "/shading", smooth ? "\"smooth\"" : "\"flat\"", "shading");
-    tip("shading only: the felt mesh is flat");
+    short_tip("shading only: the felt mesh is flat");
     end_item();
   });
 }
+
+}  // namespace
+
+Panel meshes_panel() { return {"Meshes", false, draw_meshes, has_any<scene::SurfaceMesh>}; }
 
 }  // namespace catena::app

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 
@@ -24,7 +25,7 @@ void draw_goal(PanelContext& context) {
   const Quality& now = context.pacing.quality();
   const bool time = now.goal && now.goal->kind == Goal::Kind::time, error = now.goal && now.goal->kind == Goal::Kind::error;
   const auto ask = [&](const std::string& words) {
-    if (auto quality = parse_quality(words)) context.state.quality = *quality;
+    if (auto quality = parse_quality(words)) context.ask(ChooseQuality{*quality});
   };
   if (ImGui::RadioButton("time", time)) ask("time=50");
   tip("the best picture that comes within so many milliseconds, and better ones while nothing moves");
@@ -60,8 +61,6 @@ void draw_memory(const render::RenderStats& stats) {
   for (const std::string& note : stats.notes) ImGui::TextWrapped("%s", note.c_str());
 }
 
-}  // namespace
-
 void draw_quality(PanelContext& context) {
   draw_goal(context);
   ImGui::TextWrapped("%s", context.pacing.words().c_str());
@@ -70,9 +69,13 @@ void draw_quality(PanelContext& context) {
   else
     ImGui::TextDisabled("error: once it rests");
   tip("against converged rays, over all pixels");
-  context.state.estimate = true;
+  context.ask(EstimateError{});
   ImGui::Separator();
   draw_memory(context.screen.renderer().stats());
 }
+
+}  // namespace
+
+Panel quality_panel() { return {"Quality", false, draw_quality}; }
 
 }  // namespace catena::app

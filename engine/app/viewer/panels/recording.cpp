@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 
@@ -23,8 +24,6 @@ std::string free_name(const std::string& scene_path) {
   }
 }
 
-}  // namespace
-
 void draw_recording(PanelContext& context) {
   const Recording& recording = context.hand.recording();
   static char name[1024] = "";
@@ -40,7 +39,7 @@ void draw_recording(PanelContext& context) {
     std::error_code ignored;
     const bool exists = name[0] != 0 && std::filesystem::exists(name, ignored);
     const bool clicked = ImGui::Button(exists ? "Replace the file" : "Record");
-    if (name[0] != 0 && (clicked || (enter && !exists))) context.state.record = name;
+    if (name[0] != 0 && (clicked || (enter && !exists))) context.ask(Record{name});
     tip(exists ? "a file of that name is there: the recording takes its place"
                : "every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
     return;
@@ -53,9 +52,13 @@ void draw_recording(PanelContext& context) {
   if (status.lost > 0) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%llu ticks lost", static_cast<unsigned long long>(status.lost));
   if (status.failed) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "writing has failed");
   if (ImGui::Button("Stop")) {
-    context.state.record = "";
+    context.ask(Record{});
     name[0] = 0;
   }
 }
+
+}  // namespace
+
+Panel recording_panel() { return {"Recording", false, draw_recording}; }
 
 }  // namespace catena::app

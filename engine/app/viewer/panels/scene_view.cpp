@@ -19,7 +19,7 @@ std::optional<std::string> stated_object(const PanelContext& context, const std:
 void edit_aid(PanelContext& context, Edits& edits, const char* label, const std::string& key, bool on, const char* hint) {
   const std::string pointer = "/" + key;
   const bool clicked = ImGui::Checkbox(label, &on);
-  tip(hint);
+  short_tip(hint);
   if (!clicked) return;
   auto& kept = context.state.look.switched_off;
   if (on) {
@@ -35,36 +35,28 @@ void draw_title(Edits& edits, const std::string& title) {
   std::strncpy(text, title.c_str(), sizeof text - 1);
   if (ImGui::InputText("title", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue))
     edits.set("/title", scene::text_of(text), "title");
-  tip("over the picture; Enter");
+  short_tip("over the picture; Enter");
 }
 
-/// The projection is the eye's, as key O has it.
 void choose_projection(PanelContext& context) {
-  render::View& view = context.controls.view;
-  int projection = view.orthographic ? 1 : 0;
-  if (!ImGui::Combo("projection", &projection, "perspective\0orthographic\0") || (projection == 1) == view.orthographic) return;
-  toggle_projection(view);
-  scene::Camera& camera = context.scene.scene().camera;
-  camera = {view.position, view.target, view.up, view.fovy_deg, view.orthographic, view.height, true};
-  context.scene.touch();
+  const bool before = context.controls.view.orthographic;
+  int projection = before ? 1 : 0;
+  if (ImGui::Combo("projection", &projection, "perspective\0orthographic\0") && (projection == 1) != before)
+    context.ask(Action::projection);
 }
 
 void choose_stereo(PanelContext& context) {
-  scene::StereoMode& mode = context.scene.scene().stereo.mode;
+  const scene::StereoMode mode = context.scene.scene().stereo.mode;
   if (!ImGui::BeginCombo("stereo", std::string(scene::stereo_word(mode)).c_str())) return;
   for (int i = 0; i < scene::kStereoModes; ++i) {
     const auto one = static_cast<scene::StereoMode>(i);
-    if (!ImGui::Selectable(std::string(scene::stereo_word(one)).c_str(), one == mode)) continue;
-    mode = one;
-    context.scene.touch();
+    if (ImGui::Selectable(std::string(scene::stereo_word(one)).c_str(), one == mode)) context.ask(ChooseStereo{one});
   }
   ImGui::EndCombo();
 }
 
-}  // namespace
-
 void draw_scene_view(PanelContext& context) {
-  Edits edits(context);
+  Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
   if (scene.background.transparent)
     ImGui::TextDisabled("transparent background");
@@ -90,10 +82,14 @@ void draw_scene_view(PanelContext& context) {
     }
   }
   choose_projection(context);
-  tip("key O");
+  short_tip("key O");
   choose_stereo(context);
-  tip("key F2: the next");
+  short_tip("key F2: the next");
   draw_title(edits, scene.annotations.title);
 }
+
+}  // namespace
+
+Panel view_panel() { return {"View", false, draw_scene_view}; }
 
 }  // namespace catena::app

@@ -37,7 +37,7 @@ void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& fie
                 "slice");
     return;
   }
-  tip("the axis across which the slice lies");
+  short_tip("the axis across which the slice lies");
   if (!free) {
     ImGui::SameLine();
     const double lo = box.lo[which], hi = box.hi[which];
@@ -90,10 +90,8 @@ void draw_contours(Edits& edits, const scene::Slice& slice) {
   }
 }
 
-}  // namespace
-
 void draw_slices(PanelContext& context) {
-  Edits edits(context);
+  Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
   scene.world.each<scene::Slice>([&](scene::Entity e, const scene::Slice& slice) {
     if (!begin_item(edits, slice.where, !is_hidden(scene.world, e), "slice", name_of(scene, slice.shown.field))) return;
@@ -106,5 +104,9 @@ void draw_slices(PanelContext& context) {
     end_item();
   });
 }
+
+}  // namespace
+
+Panel slices_panel() { return {"Slices", false, draw_slices, has_any<scene::Slice>}; }
 
 }  // namespace catena::app

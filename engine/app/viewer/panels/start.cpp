@@ -3,18 +3,18 @@
 
 #include <filesystem>
 
-#include "engine/app/viewer/file_list.h"
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
 
-bool draw_recent(ViewState& state) {
+bool draw_recent(PanelContext& context) {
   bool any = false;
-  for (const std::string& path : state.recent) {
+  for (const std::string& path : context.state.recent) {
     any = true;
     ImGui::PushID(path.c_str());
-    if (ImGui::Selectable(std::filesystem::path(path).filename().string().c_str())) state.open = path;
+    if (ImGui::Selectable(std::filesystem::path(path).filename().string().c_str())) context.ask(OpenFile{path});
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", path.c_str());
     ImGui::PopID();
   }
@@ -22,7 +22,7 @@ bool draw_recent(ViewState& state) {
 }
 
 void draw_start(PanelContext& context) {
-  ViewState& state = context.state;
+  const ViewState& state = context.state;
   if (!state.untitled || !state.loading.empty() || context.scene.document().is_modified()) return;
   const Area& area = state.area;
   ImGui::SetNextWindowPos({static_cast<float>(area.x + 0.5 * area.width), static_cast<float>(area.y + 0.5 * area.height)}, 0, {0.5f, 0.5f});
@@ -34,11 +34,12 @@ void draw_start(PanelContext& context) {
   if (ImGui::Begin("##start", nullptr, kFlags)) {
     ImGui::TextUnformatted(("Drop a file here: " + alternatives(openable_endings())).c_str());
     ImGui::Spacing();
-    if (ImGui::Button("Open...  (Ctrl+O)")) state.ask_open = true;
+    const std::string open = menu_words(Action::open) + ("  (" + key_words(Action::open) + ")");
+    if (ImGui::Button(open.c_str())) context.ask(Action::open);
     if (!state.recent.empty()) {
       ImGui::Spacing();
       ImGui::TextDisabled("Recent");
-      draw_recent(state);
+      draw_recent(context);
     }
   }
   ImGui::End();

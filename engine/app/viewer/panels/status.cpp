@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 #include "engine/base/clock.h"
 
 namespace catena::app {
@@ -80,7 +80,7 @@ void draw_status(PanelContext& context) {
     } else {
       std::string words = line_words(state.pointer, state.unit_length);
       if (words.empty() && context.controls.hand_mode) words = "hand mode: the mouse is the hand (H)";
-      if (words.empty() && state.fly)
+      if (words.empty() && context.controls.fly)
         words = fmt::format("fly: W S A D E Q, left drag looks about, pace {:.2g} (V)", context.controls.fly_speed);
       ImGui::TextUnformatted(words.c_str());
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/panels/panel.h"
 
 namespace catena::app {
 
@@ -86,8 +87,6 @@ void draw_recent(const FrameTimes& times, double budget_ms) {
   tip(fmt::format("the newest {} pictures; the line: {:g} ms, what one may take while something moves", FrameTimes::kRecent, budget_ms));
 }
 
-}  // namespace
-
 void draw_times(PanelContext& context) {
   const FrameTimes& times = context.times;
   draw_recent(times, context.pacing.budget_ms());
@@ -99,5 +98,9 @@ void draw_times(PanelContext& context) {
   ImGui::Text("%llu ticks, %llu deadlines missed", static_cast<unsigned long long>(servo.ticks),
               static_cast<unsigned long long>(servo.missed_deadlines));
 }
+
+}  // namespace
+
+Panel times_panel() { return {"Times", false, draw_times}; }
 
 }  // namespace catena::app

@@ -173,7 +173,7 @@ void move_colors(Editor& editor) {
   const ImGuiIO& io = ImGui::GetIO();
   const PlotFrame& bar = editor.bar;
   LookState& look = editor.context.state.look;
-  if (!editor.edit.map.empty()) return tip("a map by its name; \"points\" makes it one of your own");
+  if (!editor.edit.map.empty()) return short_tip("a map by its name; \"points\" makes it one of your own");
   const auto there = point_at(editor.edit.colors, bar, io.MousePos.x, kReach);
   if (ImGui::IsItemActivated() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
     pressed<ColorPoints>(
@@ -188,7 +188,7 @@ void move_colors(Editor& editor) {
   }
   if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right))
     remove_at(editor, &TransferEdit::colors, &LookState::Transfer::color, there, color_edits, "colours");
-  if (!ImGui::IsItemActive()) tip("click: new colour, drag: move, right click: remove");
+  if (!ImGui::IsItemActive()) short_tip("click: new colour, drag: move, right click: remove");
 }
 
 // ---- what is typed and chosen ----
@@ -234,7 +234,7 @@ void draw_choices(Editor& editor) {
   if (!editor.edit.map.empty()) {
     ImGui::SameLine();
     if (ImGui::SmallButton("points")) editor.edits.drag(color_edits(editor.volume, editor.edit), "colours");
-    tip("makes the map's colours points that can be moved");
+    short_tip("makes the map's colours points that can be moved");
   }
   auto reach = *reach_of(editor.edit.colors, editor.edit.opacities);
   ImGui::SetNextItemWidth(78);
@@ -251,7 +251,7 @@ void draw_choices(Editor& editor) {
   }
   ImGui::SameLine();
   ImGui::Checkbox("all", &editor.state.whole_range);
-  tip("plot all values of the field, not only those with points and the frequent ones");
+  short_tip("plot all values of the field, not only those with points and the frequent ones");
 
   auto unit = static_cast<float>(editor.edit.unit);
   ImGui::SetNextItemWidth(78);
@@ -261,7 +261,7 @@ void draw_choices(Editor& editor) {
     now.unit = rounded_in(unit, 0, unit, 500);
     editor.edits.drag(unit_edits(editor.volume, now), "opacity unit");
   }
-  tip("the opacities hold for a way of this length through the volume, world units; longer: thinner");
+  short_tip("the opacities hold for a way of this length through the volume, world units; longer: thinner");
   ImGui::SameLine();
   edit_boolean(editor.edits, "shade", editor.volume.shade, pointer_of(editor.volume.where) + "/shade");
   if (!editor.volume.transfer.gradient_factors.empty()) ImGui::TextDisabled("opacity follows the gradient too (kept)");
@@ -315,10 +315,8 @@ void draw_editor(PanelContext& context, Edits& edits, const scene::Volume& volum
   draw_choices(editor);
 }
 
-}  // namespace
-
 void draw_transfer(PanelContext& context) {
-  Edits edits(context);
+  Edits& edits = context.edits;
   LookState::Transfer& state = context.state.look.transfer;
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) state.before.reset();
   const scene::Scene& scene = context.scene.scene();
@@ -328,5 +326,9 @@ void draw_transfer(PanelContext& context) {
     end_item();
   });
 }
+
+}  // namespace
+
+Panel volumes_panel() { return {"Volumes", true, draw_transfer, has_any<scene::Volume>}; }
 
 }  // namespace catena::app

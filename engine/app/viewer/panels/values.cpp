@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "engine/app/viewer/panel.h"
+#include "engine/app/viewer/panels/panel.h"
 #include "engine/scene/units.h"
 
 namespace catena::app {
@@ -29,8 +29,6 @@ const FieldValue* find(const PlaceValues& place, const std::string& name) {
   const auto found = std::ranges::find(place.fields, name, &FieldValue::name);
   return found == place.fields.end() ? nullptr : &*found;
 }
-
-}  // namespace
 
 void draw_values(PanelContext& context) {
   const ViewState& state = context.state;
@@ -61,5 +59,9 @@ void draw_values(PanelContext& context) {
   for (const PlaceValues* place : places) cell(place->object, place->object);
   ImGui::EndTable();
 }
+
+}  // namespace
+
+Panel values_panel() { return {"Values", false, draw_values}; }
 
 }  // namespace catena::app

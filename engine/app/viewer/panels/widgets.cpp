@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "engine/app/viewer/new_widget.h"
+#include "engine/app/viewer/edit/new_widget.h"
 #include "engine/app/viewer/panels/edit_items.h"
+#include "engine/app/viewer/panels/panel.h"
 #include "engine/scene/widgets.h"
 #include "engine/scene/write_values.h"
 
@@ -28,19 +29,16 @@ std::vector<Row> rows_of(const scene::Scene& scene) {
 void draw_pose(PanelContext& context, const Row& row) {
   const widget::Pose& pose = row.widget.state.pose;
   const double speed = 0.001 * row.widget.spec.length;
-  const auto place = [&](const char* key, const Vec3& value) { edit_vector(context, key, row.pointer + "/" + key, value, speed); };
+  const auto place = [&](const char* key, const Vec3& value) { edit_vector(context.edits, key, row.pointer + "/" + key, value, speed); };
   switch (row.widget.spec.kind) {
     case widget::Kind::cutting_plane: {
       place("center", pose.points[0]);
       const Vec3 normal = scene::normal_of(pose);
       // two ways to say how it stands: where one is edited the other goes
       double n[3] = {normal.x, normal.y, normal.z};
-      if (ImGui::InputScalarN("normal", ImGuiDataType_Double, n, 3, nullptr, nullptr, "%.3g", ImGuiInputTextFlags_EnterReturnsTrue)) {
-        const Outcome done = context.scene.apply(
-            {{row.pointer + "/orientation", std::nullopt}, {row.pointer + "/normal", scene::text_of(Vec3(n[0], n[1], n[2]))}},
-            "turn " + row.name);
-        if (!done) context.state.say(done.error().message, true);
-      }
+      if (ImGui::InputScalarN("normal", ImGuiDataType_Double, n, 3, nullptr, nullptr, "%.3g", ImGuiInputTextFlags_EnterReturnsTrue))
+        context.edits.set({{row.pointer + "/orientation", std::nullopt}, {row.pointer + "/normal", scene::text_of(Vec3(n[0], n[1], n[2]))}},
+                          "turn " + row.name);
       tip("Enter takes it");
       break;
     }
@@ -66,12 +64,12 @@ void reset(PanelContext& context, const Row& row) {
   if (!fresh) return;
   const auto node = json::parse(*fresh, "widget");
   if (!node) return;
-  std::vector<scene::Document::Edit> edits;
+  TextEdits edits;
   if (row.widget.spec.kind == widget::Kind::cutting_plane) edits.push_back({row.pointer + "/orientation", std::nullopt});
   for (const char* key : {"center", "normal", "position", "from", "to", "lo", "hi"})
     if (const json::Node* value = node->find(key))
       if (const auto v = json::as_vec3(*value, key)) edits.push_back({row.pointer + "/" + key, scene::text_of(*v)});
-  if (const Outcome done = context.scene.apply(edits, "reset " + row.name); !done) context.state.say(done.error().message, true);
+  context.edits.set(edits, "reset " + row.name);
 }
 
 void draw_row(PanelContext& context, const Row& row) {
@@ -89,14 +87,12 @@ void draw_row(PanelContext& context, const Row& row) {
     if (ImGui::Button("Reset")) reset(context, row);
     tip("back to the middle");
     ImGui::SameLine();
-    if (ImGui::Button("Remove")) context.remove(row.pointer, "remove " + row.name);
+    if (ImGui::Button("Remove")) context.edits.remove(row.pointer, "remove " + row.name);
     tip("what follows it must go first, or name another one");
     ImGui::TreePop();
   }
   ImGui::PopID();
 }
-
-}  // namespace
 
 void draw_widgets(PanelContext& context) {
   for (const Row& row : rows_of(context.scene.scene())) draw_row(context, row);
@@ -105,11 +101,15 @@ void draw_widgets(PanelContext& context) {
     if (!ImGui::Selectable(type.c_str())) continue;
     const auto fresh = new_widget(context.scene.scene(), type, context.scene.bounds);
     if (fresh)
-      context.edit("/widgets/-", *fresh, "add " + type);
+      context.edits.set("/widgets/-", *fresh, "add " + type);
     else
       context.state.say(fresh.error().message, true);
   }
   ImGui::EndCombo();
 }
+
+}  // namespace
+
+Panel widgets_panel() { return {"Widgets", false, draw_widgets}; }
 
 }  // namespace catena::app

@@ -1,0 +1,124 @@
+/// A panel is one part of the side window, one file in panels/: it shows what is there, notes edits of the scene (context.edits, see
+/// edit/edits.h), and asks for what else the window can do (context.commands, see shell/commands.h). Nothing here waits for anything.
+/// To add one: a file with a function that returns its Panel, and that function's name in the list of panels.cpp. Frame thread, between
+/// Gui::begin and end.
+#pragma once
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/app/viewer/edit/edits.h"
+#include "engine/app/viewer/panels/look_state.h"
+#include "engine/app/viewer/shell/controls.h"
+#include "engine/app/viewer/shell/draft.h"
+#include "engine/app/viewer/shell/frame_times.h"
+#include "engine/app/viewer/shell/hand_host.h"
+#include "engine/app/viewer/shell/layout.h"
+#include "engine/app/viewer/shell/pacing.h"
+#include "engine/app/viewer/shell/scene_host.h"
+#include "engine/app/viewer/shell/screen.h"
+#include "engine/app/viewer/shell/values.h"
+
+namespace catena::app {
+
+/// One line for the person, at the bottom of the window for a while.
+struct Message {
+  std::string text;
+  bool is_error = false;
+  std::int64_t at_ns = 0;
+};
+
+/// What goes on once it is decided what becomes of unsaved changes: another file, or (empty) the end of the program.
+struct Leaving {
+  std::string open;
+  bool ends() const { return open.empty(); }
+};
+
+/// What is asked above everything else; each stands until it is answered.
+struct Questions {
+  bool open = false, save_as = false;  ///< the dialogs shall come up
+  std::optional<Leaving> unsaved;      ///< what becomes of unsaved changes before that
+  std::optional<std::string> dropped;  ///< a data file on an open scene: open it, or add it
+  std::optional<LeftDraft> left;       ///< unsaved work of an earlier run
+};
+
+/// What the window shows beside the scene: set by the session, read by the panels.
+struct ViewState {
+  bool panels = true;  ///< the side window and the status line
+  bool help = false, full_screen = false;
+  Questions ask;
+  std::deque<Message> messages;  ///< the newest last, at most kMessages
+  static constexpr std::size_t kMessages = 100;
+
+  // files
+  bool untitled = false;            ///< nothing is open: the window says how to begin
+  std::string loading;              ///< the path that is being opened; empty: none
+  std::vector<std::string> recent;  ///< paths, the newest first
+
+  // the picture and the pointer
+  Area area;                            ///< of the picture, window coordinates
+  double pointer_x = 0, pointer_y = 0;  ///< window coordinates
+  bool pointer_on_picture = false;      ///< and not on a panel
+  bool pointer_seen = false;            ///< it has moved over the window
+  bool pointer_pressed = false;         ///< a button is down
+  PlaceValues pointer, probe, proxy;    ///< for the table of values
+  std::string unit_length;
+  double force_share = 0;  ///< of the greatest force, 0..1
+
+  // what panels remember
+  EditState edit;
+  LookState look;
+
+  void say(std::string text, bool is_error = false);
+  /// An error is said.
+  void say_if_wrong(const Outcome& outcome) {
+    if (!outcome) say(outcome.error().message, true);
+  }
+};
+
+struct PanelContext {
+  SceneHost& scene;
+  HandHost& hand;
+  Screen& screen;
+  Controls& controls;
+  Pacing& pacing;
+  FrameTimes& times;
+  ViewState& state;
+  Commands& commands;
+  Edits edits{commands, state.edit};
+
+  /// Done after this frame, in order.
+  void ask(Command command) { commands.push_back(std::move(command)); }
+};
+
+/// What the interface takes of the window where panels are shown (after the first frame's begin).
+inline constexpr float kSideWidth = 320;
+Edges interface_edges();
+
+struct Panel {
+  const char* title;
+  bool open_at_first;
+  void (*draw)(PanelContext& context);
+  /// Whether the scene has anything for it; nullptr: always shown.
+  bool (*wanted)(const PanelContext& context) = nullptr;
+};
+/// For Panel::wanted.
+template <class Component>
+bool has_any(const PanelContext& context) {
+  return context.scene.scene().world.count<Component>() > 0;
+}
+
+/// Everything in order: the menu bar, the side window with every panel, the dialogs, the status line.
+void draw_interface(PanelContext& context);
+
+// what is drawn beside the panels
+void draw_menu(PanelContext& context);
+void draw_dialogs(PanelContext& context);
+void draw_status(PanelContext& context);
+void draw_file_dialogs(PanelContext& context);
+void draw_start(PanelContext& context);
+/// The recent files as a list to choose from; false: there are none.
+bool draw_recent(PanelContext& context);
+
+}  // namespace catena::app

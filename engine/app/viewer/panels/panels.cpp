@@ -1,0 +1,64 @@
+#include <imgui.h>
+
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/base/clock.h"
+
+namespace catena::app {
+
+// every panel, each described in its own file
+Panel values_panel(), fields_panel(), volumes_panel(), isosurfaces_panel(), slices_panel(), lines_panel(), meshes_panel(), widgets_panel(),
+    chain_panel(), device_panel(), recording_panel(), view_panel(), quality_panel(), times_panel();
+
+namespace {
+
+const std::vector<Panel>& panels_in_order() {
+  static const std::vector<Panel> panels{values_panel(),    fields_panel(), volumes_panel(), isosurfaces_panel(), slices_panel(),
+                                         lines_panel(),     meshes_panel(), widgets_panel(), chain_panel(),       device_panel(),
+                                         recording_panel(), view_panel(),   quality_panel(), times_panel()};
+  return panels;
+}
+
+void draw_side(PanelContext& context) {
+  const ImGuiViewport& view = *ImGui::GetMainViewport();
+  ImGui::SetNextWindowPos(view.WorkPos);
+  ImGui::SetNextWindowSize({kSideWidth, view.WorkSize.y - ImGui::GetFrameHeightWithSpacing()});
+  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus;
+  if (ImGui::Begin("##side", nullptr, kFixed)) {
+    ImGui::PushItemWidth(0.55f * kSideWidth);
+    for (const Panel& panel : panels_in_order()) {
+      if (panel.wanted != nullptr && !panel.wanted(context)) continue;
+      ImGui::SetNextItemOpen(panel.open_at_first, ImGuiCond_Once);
+      if (!ImGui::CollapsingHeader(panel.title)) continue;
+      ImGui::PushID(panel.title);
+      panel.draw(context);
+      ImGui::PopID();
+    }
+    ImGui::PopItemWidth();
+  }
+  ImGui::End();
+}
+
+}  // namespace
+
+void ViewState::say(std::string text, bool is_error) {
+  messages.push_back({std::move(text), is_error, now_ns()});
+  while (messages.size() > kMessages) messages.pop_front();
+}
+
+Edges interface_edges() { return {kSideWidth, ImGui::GetFrameHeight(), ImGui::GetFrameHeightWithSpacing()}; }
+
+void draw_interface(PanelContext& context) {
+  ViewState& state = context.state;
+  if (ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right)) ++state.edit.gesture;
+  // without panels the menu comes down where the pointer looks for it
+  const bool looked_for = state.pointer_y < ImGui::GetFrameHeight() && state.pointer_y >= 0 && !state.pointer_pressed && state.pointer_seen;
+  if (state.panels || looked_for || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId)) draw_menu(context);
+  if (state.panels) draw_side(context);
+  draw_status(context);
+  draw_start(context);
+  draw_dialogs(context);
+  draw_file_dialogs(context);
+}
+
+}  // namespace catena::app

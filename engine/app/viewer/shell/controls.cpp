@@ -1,0 +1,183 @@
+#include "engine/app/viewer/shell/controls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/app/viewer/shell/camera_paths.h"
+#include "engine/app/viewer/shell/commands.h"
+#include "engine/base/eye_limits.h"
+#include "render/frame/camera_moves.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr double kTurnPerHeight = std::numbers::pi;  // a drag over the window's height
+constexpr double kZoomPerNotch = 0.9;
+constexpr double kDepthPerNotch = 0.01;  // of the distance from the eye
+constexpr double kPoleAngle = 0.02;      // radians
+
+Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
+}
+
+render::Camera camera_of(const render::View& view, const Input& input) {
+  return render::make_camera(view, std::max(1.0, input.width), std::max(1.0, input.height), Bounds());
+}
+
+void pan(render::View& view, const Input& input) {
+  const render::Camera camera = camera_of(view, input);
+  const double unit = render::pixel_size(camera, norm(view.position - view.target));
+  const Vec3 shift = unit * (input.dy * camera.up - input.dx * camera.right);
+  view.position += shift;
+  view.target += shift;
+}
+
+void move_hand(Controls& controls, const Input& input) {
+  const render::Camera camera = camera_of(controls.view, input);
+  auto place = render::project(camera, controls.hand);
+  if (!place) place = render::project(camera, controls.view.target);  // the hand was behind the eye: back into the picture
+  if (!place) return;
+  double depth = place->z;
+  const auto held = controls.held && controls.hand_mode ? render::project(camera, *controls.held) : std::nullopt;
+  if (held) depth += std::min(1.0, std::hypot(input.dx, input.dy) / Controls::kDepthPixels) * (held->z - depth);
+  depth *= 1 + kDepthPerNotch * input.wheel;
+  const Vec3 moved = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
+  controls.hand = controls.hand_mode ? controls.hand + yielding(moved - controls.hand, controls.force_n, controls.max_force_n) : moved;
+}
+
+/// Along an axis, all in the picture; the angle and the projection stay.
+void look_along(Controls& controls, std::string_view axis, double aspect) {
+  auto view = render::axis_view(controls.bounds, aspect, axis, controls.view.fovy_deg);
+  view->orthographic = controls.view.orthographic;
+  controls.view = *view;
+}
+
+}  // namespace
+
+Vec3 yielding(const Vec3& motion, const Vec3& force_n, double max_force_n) {
+  constexpr double kLeast = 0.25;
+  const double force = norm(force_n);
+  if (!(max_force_n > 0) || !(force > 0)) return motion;
+  const Vec3 away = 1 / force * force_n;
+  const double along = dot(motion, away);
+  if (along >= 0) return motion;
+  return motion - (1 - kLeast) * std::min(1.0, force / max_force_n) * along * away;
+}
+
+void orbit(render::View& view, double yaw, double pitch) {
+  const Vec3 up = direction(view.up);
+  const double distance = norm(view.position - view.target);
+  if (!(distance > 0) || max_abs(up) == 0) return;
+  Vec3 back = direction(view.position - view.target);
+  if (norm(cross(up, back)) < 1e-6) {
+    // right over the pole: step off it first
+    const Vec3 side = std::fabs(up.x) < 0.9 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
+    back = rotated(back, direction(cross(up, side)), kPoleAngle);
+  }
+  back = rotated(back, up, yaw);
+  const double polar = std::atan2(norm(cross(up, back)), dot(up, back));
+  const double turn = std::clamp(polar - pitch, kPoleAngle, std::numbers::pi - kPoleAngle) - polar;
+  back = direction(rotated(back, direction(cross(up, back)), turn));
+  view.position = view.target + distance * back;
+}
+
+void zoom(render::View& view, double factor) {
+  if (view.orthographic)
+    view.height *= factor;
+  else
+    view.position = view.target + factor * (view.position - view.target);
+}
+
+void toggle_projection(render::View& view) {
+  const double height_at_1 = 2 * std::tan(0.5 * view.fovy_deg * std::numbers::pi / 180);
+  const Vec3 arm = view.position - view.target;
+  if (view.orthographic)
+    view.position = view.target + view.height / height_at_1 * direction(arm);
+  else
+    view.height = height_at_1 * norm(arm);
+  view.orthographic = !view.orthographic;
+}
+
+static bool is_possible(const render::View& view) {
+  const bool high = !view.orthographic || (view.height >= kLeastEyeHeight && view.height <= kMostEyeHeight);
+  return high && eye_problem(view.position, view.target).empty();
+}
+
+Changed apply(Controls& controls, const Input& input) {
+  Changed changed;
+  const render::View view_before = controls.view;
+  const Vec3 hand_before = controls.hand;
+  const bool moved = input.dx != 0 || input.dy != 0, wheeled = input.wheel != 0;
+  const bool hand = controls.hand_mode || input.control || input.right;
+  const bool navigates = input.middle || (input.left && input.shift);
+
+  const std::uint32_t buttons = (input.space || (controls.hand_mode && input.left && !input.shift)) ? 1u : 0u;
+  changed.hand = buttons != controls.buttons;
+  controls.buttons = buttons;
+
+  if (navigates && moved) {
+    pan(controls.view, input);
+    changed.view = true;
+  } else if (hand && (moved || wheeled)) {
+    move_hand(controls, input);
+    changed.hand = true;
+  } else if (controls.fly && input.left && moved) {
+    const double turn = controls.view.fovy_deg * std::numbers::pi / 180 / input.height;
+    look(controls.view, turn * input.dx, -turn * input.dy);
+    changed.view = true;
+  } else if (input.left && moved) {
+    orbit(controls.view, -kTurnPerHeight * input.dx / input.height, kTurnPerHeight * input.dy / input.height);
+    changed.view = true;
+  }
+  if (controls.fly && wheeled && !hand) {
+    controls.fly_speed = std::clamp(controls.fly_speed * std::pow(1 / kZoomPerNotch, input.wheel), 0.02, 50.0);
+  } else if (!hand && wheeled) {
+    zoom(controls.view, std::pow(kZoomPerNotch, input.wheel));
+    changed.view = true;
+  }
+  // neither eye nor hand leaves the world
+  if (!is_possible(controls.view)) controls.view = view_before;
+  if (!is_finite(controls.hand) || max_abs(controls.hand) > kMostEyeCoordinate) controls.hand = hand_before;
+  return changed;
+}
+
+bool apply(Controls& controls, Action action, double aspect) {
+  const render::View before = controls.view;
+  const bool fits = !controls.bounds.empty();
+  switch (action) {
+    case Action::along_x:
+    case Action::along_y:
+    case Action::along_z:
+    case Action::against_x:
+    case Action::against_y:
+    case Action::against_z:
+      if (!fits) return false;
+      look_along(controls, menu_words(action), aspect);
+      break;
+    case Action::fit:
+      if (!fits) return false;
+      controls.view = render::fitted(controls.view, controls.bounds, aspect);
+      break;
+    case Action::projection:
+      toggle_projection(controls.view);
+      break;
+    case Action::first_view:
+      controls.view = controls.home;
+      break;
+    default:
+      return false;
+  }
+  if (!is_possible(controls.view)) controls.view = before;
+  return true;
+}
+
+bool takes_hold(const Input& input) { return input.left || input.middle || input.wheel != 0; }
+
+bool takes_hold(Action action) {
+  return action == Action::fit || action == Action::first_view || (action >= Action::along_x && action <= Action::against_z);
+}
+
+}  // namespace catena::app

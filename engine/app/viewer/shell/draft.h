@@ -1,0 +1,39 @@
+/// Draft keeps unsaved work: the scene's text as it is now, in a file beside the scene while it has changes that are not saved, so that it
+/// outlives a program that is killed. SCENE.json.unsaved-<12 hex digits> is written whole or not at all, is its owner's alone, and is
+/// locked (flock) while its program runs: what is found unlocked was left by one that has ended. Frame thread.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "engine/base/result.h"
+
+namespace catena::app {
+
+class Draft {
+ public:
+  Draft() = default;
+  ~Draft();  ///< the file stays
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+
+  /// The text is on its way to the disk; the same text twice is written once. Of another scene than before: the one before goes.
+  Outcome keep(const std::string& scene_path, const std::string& text);
+  /// Saved, or given up by the person.
+  void remove();
+
+ private:
+  std::string scene_path_, path_, text_;  ///< path_ empty: nothing is kept
+  int lock_ = -1;
+};
+
+/// What a program that has ended left of a scene.
+struct LeftDraft {
+  std::string path, text;
+  std::int64_t at_s = 0;  ///< when it was kept, seconds of the system's clock
+};
+/// The newest of this user's own; none: nothing is there. Links and what is no regular file do not count.
+std::optional<LeftDraft> find_left_draft(const std::string& scene_path);
+void remove_left_draft(const LeftDraft& draft);
+
+}  // namespace catena::app

@@ -1,0 +1,119 @@
+#include "engine/app/viewer/shell/file_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "engine/base/text.h"
+#include "engine/field/formats.h"
+#include "engine/mesh/load.h"
+
+namespace catena::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return text;
+}
+
+}  // namespace
+
+bool is_scene_name(const std::string& path) { return has_ending(path, ".json"); }
+
+const std::vector<std::string_view>& openable_endings() {
+  static const std::vector<std::string_view> endings = [] {
+    std::vector<std::string_view> all{".json"};
+    for (const std::string_view ending : field::field_endings(true)) all.push_back(ending);
+    for (const std::string_view ending : mesh::mesh_endings()) all.push_back(ending);
+    return all;
+  }();
+  return endings;
+}
+
+bool is_openable(const std::string& path) {
+  return std::ranges::any_of(openable_endings(), [&](std::string_view ending) { return has_ending(path, ending); });
+}
+
+Result<std::vector<FileEntry>> list_folder(const std::string& folder, bool scenes_only) {
+  std::error_code code;
+  fs::directory_iterator it(folder, fs::directory_options::skip_permission_denied, code);
+  if (code) return Error{one_line(folder + ": " + code.message() + "; a folder that can be read was expected")};
+  std::vector<FileEntry> entries;
+  for (; it != fs::directory_iterator(); it.increment(code)) {
+    if (code || entries.size() >= kMostEntries) break;
+    const std::string name = it->path().filename().string();
+    if (name.empty() || name[0] == '.') continue;
+    std::error_code ignored;
+    if (it->is_directory(ignored)) {
+      entries.push_back({name, true, 0});
+    } else if (it->is_regular_file(ignored) && (scenes_only ? is_scene_name(name) : is_openable(name))) {
+      const auto bytes = it->file_size(ignored);
+      entries.push_back({name, false, ignored ? 0 : bytes});
+    }
+  }
+  std::ranges::sort(entries, [](const FileEntry& a, const FileEntry& b) {
+    if (a.is_folder != b.is_folder) return a.is_folder;
+    const std::string x = lower(a.name), y = lower(b.name);
+    return x != y ? x < y : a.name < b.name;
+  });
+  return entries;
+}
+
+std::string typed_path(const std::string& folder, const std::string& typed) {
+  fs::path path(typed);
+  if (typed == "~" || typed.starts_with("~/")) {
+    const char* home = std::getenv("HOME");
+    path = fs::path(home == nullptr ? "/" : home) / typed.substr(std::min<std::size_t>(2, typed.size()));
+  } else if (path.is_relative()) {
+    path = fs::path(folder) / path;
+  }
+  return path.lexically_normal().string();
+}
+
+std::string completed(const std::string& folder, const std::string& typed) {
+  const std::size_t slash = typed.rfind('/');
+  const std::string before = slash == std::string::npos ? "" : typed.substr(0, slash + 1);
+  const std::string begun = typed.substr(before.size());
+  const auto entries = list_folder(before.empty() ? folder : typed_path(folder, before));
+  if (!entries) return typed;
+  const FileEntry* only = nullptr;
+  std::string common;
+  int count = 0;
+  for (const FileEntry& entry : *entries) {
+    if (!entry.name.starts_with(begun)) continue;
+    if (count++ == 0) {
+      common = entry.name;
+      only = &entry;
+      continue;
+    }
+    const auto differ = std::ranges::mismatch(common, entry.name);
+    common.erase(differ.in1, common.end());
+  }
+  if (count == 0) return typed;
+  return before + common + (count == 1 && only->is_folder ? "/" : "");
+}
+
+std::string free_name(const std::string& folder, const std::string& stem, const std::string& extension) {
+  std::error_code code;
+  for (int number = 1;; ++number) {
+    const fs::path path = fs::path(folder) / fmt::format("{}-{:03}{}", stem, number, extension);
+    if (!fs::exists(fs::symlink_status(path, code)) || number == 1'000'000) return path.string();
+  }
+}
+
+std::string stem_of_path(const std::string& path) {
+  std::string name = fs::path(path).filename().string();
+  for (const std::string_view ending : openable_endings())
+    if (has_ending(name, ending)) {
+      name.erase(name.size() - ending.size());
+      break;
+    }
+  return name.empty() ? "catena" : name;
+}
+
+}  // namespace catena::app

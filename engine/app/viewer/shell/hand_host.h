@@ -1,0 +1,101 @@
+/// HandHost is the hand in the window: it has the device that holds the probe (a haptic one, else the mouse), its servo, its recording, and
+/// the program that the servo runs. The device may be another one, the program newer, a recording may begin and end, all while the servo
+/// runs. The frame never waits for the servo, nor the servo for the frame. Frame thread.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/app/hand/crash_guard.h"
+#include "engine/app/hand/open_hand.h"
+#include "engine/app/hand/recording.h"
+#include "haptics/device/mouse.h"
+#include "haptics/device/registry.h"
+
+namespace catena::app {
+
+class HandHost {
+ public:
+  struct Options {
+    /// The mouse, or a name of haptics/device/registry.h; empty: that of the scene's "device" if it is a thing on the desk, else the
+    /// mouse. What is known and not plugged in leaves the probe to the mouse, and is said (note()).
+    std::string device;
+    std::string firmware;               ///< falcon: before the scene's
+    std::string record;                 ///< .catlog of every tick; empty: none
+    std::vector<std::string> fields;    ///< --field options, for the recording
+    haptics::RealtimeOptions realtime;  ///< of the servo
+  };
+
+  explicit HandHost(Options options) : options_(std::move(options)) {}
+  ~HandHost();
+
+  /// Loads what the chain names.
+  static Outcome load(scene::Scene& scene);
+  /// Opens the device, before any window: what is wrong with it is said at once.
+  Outcome open_device(const scene::Scene& scene);
+  /// One line for the person, from opening the device; empty: nothing.
+  const std::string& note() const { return hand_.note; }
+  /// Fits the workspace, makes the program and the servo. `bounds`: of what is drawn and felt; `text`: the scene's, for the recording.
+  Outcome prepare(scene::Scene& scene, const Bounds& bounds, const RecordedScene& text);
+  /// Another scene, while the servo runs: as prepare, with the device and the servo that there are. Ends a recording.
+  Outcome take_over(scene::Scene& scene, const Bounds& bounds);
+  Outcome start();
+  void stop();
+  /// Stops, writes what is asked for.
+  Outcome finish(const std::string& servo_stats);
+
+  /// Whether the scene's program can be made: its links' keys are read here, not where the scene is.
+  Outcome check(scene::Scene& scene) const;
+  /// The program of the scene as it is now; the servo goes on with it at its next tick. Links that have not changed keep their state. An
+  /// error leaves the old one. `text`: the scene's, for the recording.
+  Outcome publish(scene::Scene& scene, const std::string& text);
+
+  /// Another device from now on, by its name; its forces are off. An error leaves the one that there is. Ends a recording.
+  Outcome switch_device(scene::Scene& scene, const std::string& name, const Bounds& bounds);
+
+  /// Every tick from the next one on. An error: nothing is recorded.
+  Outcome record(const std::string& path, RecordedScene scene);
+  Outcome stop_recording();
+
+  /// The newest state into the scene's cursor and widgets, if there is one; true where it would change the picture.
+  bool take(scene::Scene& scene);
+  const exchange::HapticState& felt() const { return felt_; }
+  const std::vector<std::string>& link_names() const { return link_names_; }
+  const std::shared_ptr<const haptics::Program>& program() const { return program_; }
+
+  bool is_mouse() const { return mouse_ != nullptr; }
+  void move_mouse(const scene::Scene& scene, const Vec3& world, std::uint32_t buttons);
+  const Vec3& first_probe() const { return first_probe_; }
+  bool forces() const { return servo_ && servo_->forces(); }
+  void set_forces(bool on);
+  void say_forces() const;
+
+  const OpenHand& hand() const { return hand_; }
+  const std::string& device_name() const { return device_name_; }  ///< as it was opened: "mouse", "falcon:1"
+  const haptics::Servo& servo() const { return *servo_; }
+  const Recording& recording() const { return recording_; }
+  const std::vector<std::string>& fields() const { return options_.fields; }
+  const std::string& firmware() const { return options_.firmware; }
+
+ private:
+  Result<OpenHand> open(const scene::Scene& scene, const std::string& name) const;
+  void use(OpenHand hand, const scene::Scene& scene, const Vec3& probe);
+  void make_servo();
+  void name_links(scene::Scene& scene);
+
+  Options options_;
+  OpenHand hand_;
+  std::string device_name_ = "mouse";
+  haptics::MouseDevice* mouse_ = nullptr;  ///< hand_.device, if that is the mouse: the frame moves it
+  Recording recording_;
+  std::optional<CrashGuard> crash_guard_;
+  std::unique_ptr<haptics::Servo> servo_;
+  std::shared_ptr<const haptics::Program> program_;
+  std::vector<std::string> link_names_;
+  exchange::HapticState felt_;
+  Vec3 first_probe_{0.0};
+  scene::Workspace stated_;  ///< the scene's, before it was fitted to the device
+};
+
+}  // namespace catena::app

@@ -1,0 +1,101 @@
+#include "engine/app/viewer/shell/pacing.h"
+
+#include <fmt/format.h>
+
+namespace catena::app {
+namespace {
+
+constexpr double kFinerBelow = 0.7;  // of the budget: more pixels again only with some room, or their number would come and go
+
+bool is_goal(const Quality& quality) { return quality.goal.has_value(); }
+
+double budget_of(const Quality& quality) {
+  return is_goal(quality) && quality.goal->kind == render::QualityGoal::Kind::time ? quality.goal->value : kBudgetMs;
+}
+
+render::LadderKind ladder_of(const SceneKind& kind) { return {kind.fast, kind.shaded}; }
+
+}  // namespace
+
+Pacing::Pacing(const Quality& quality) : quality_(quality), budget_ms_(budget_of(quality)), refinement_(budget_ms_, ladder_of(kind_)) {}
+
+/// Another kind of scene begins with another ladder.
+void Pacing::follow(const SceneKind& kind) {
+  if (kind == kind_) return;
+  kind_ = kind;
+  refinement_ = render::Refinement(budget_ms_, ladder_of(kind));
+  asked_ = false;
+}
+
+NextPicture Pacing::ask(const render::RefinementStep& step, std::uint32_t scale) {
+  asked_ = true;
+  rmse_.reset();
+  current_ = {step.settings, scale};
+  return current_;
+}
+
+NextPicture Pacing::moving(const SceneKind& kind) {
+  follow(kind);
+  const render::RefinementStep step = *refinement_.next(true);
+  const auto fits = [&](std::uint32_t scale) {
+    const double room = scale < current_.scale ? kFinerBelow : 1;
+    return step.expected_ms / (scale * scale) <= room * budget_ms_;
+  };
+  std::uint32_t scale = 1;
+  // the fast raycast saves pixels by itself
+  while (!kind.fast && scale < kMostScale && !fits(scale)) scale *= 2;
+  by_moving_ = true;
+  finished_ = false;
+  return ask(step, scale);
+}
+
+std::optional<NextPicture> Pacing::still(const SceneKind& kind) {
+  follow(kind);
+  if (finished_) return std::nullopt;
+  const std::uint32_t scale = current_.scale;
+  if (!is_goal(quality_) || !kind.rays) {
+    finished_ = true;
+    const bool shown = by_moving_ && scale == 1 && !kind.rays;
+    by_moving_ = asked_ = false;
+    rmse_.reset();
+    if (shown) return std::nullopt;
+    current_ = {quality_.settings, 1};
+    return current_;
+  }
+  by_moving_ = false;
+  if (const auto step = refinement_.next(false)) {
+    finished_ = step->finished;
+    return ask(*step, 1);
+  }
+  finished_ = true;
+  if (scale == 1) return std::nullopt;
+  current_.scale = 1;
+  return current_;
+}
+
+NextPicture Pacing::best(const SceneKind& kind) {
+  while (still(kind)) {
+  }
+  by_moving_ = false;
+  return current_;
+}
+
+void Pacing::drawn(double ms) {
+  shown_ms_ = ms;
+  if (asked_) refinement_.drawn(ms * current_.scale * current_.scale);
+  asked_ = false;
+}
+
+void Pacing::estimated(double rmse) {
+  rmse_ = rmse;
+  if (quality_.goal && quality_.goal->kind == render::QualityGoal::Kind::error && rmse <= quality_.goal->value) finished_ = true;
+}
+
+std::string Pacing::words() const {
+  std::string text = kind_.rays ? render::describe(current_.settings) + ", " : "";
+  if (current_.scale > 1) text += fmt::format("1/{} of the size, ", current_.scale);
+  if (rmse_) text += fmt::format("error {:.2f}, ", *rmse_);
+  return text + fmt::format("{:.0f} ms", shown_ms_);
+}
+
+}  // namespace catena::app

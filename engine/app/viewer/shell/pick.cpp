@@ -1,0 +1,173 @@
+#include "engine/app/viewer/shell/pick.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/field/grid.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostSteps = 4000;
+
+struct Span {
+  double enter = 0, leave = kInfinity;
+  bool empty() const { return !(enter < leave); }
+};
+
+/// Where the ray lies within the half space that a plane keeps.
+void cut(Span& span, const render::Ray& ray, const render::ClipPlane& plane) {
+  const double rate = dot(plane.normal, ray.direction), start = dot(plane.normal, ray.origin - plane.point);
+  if (rate == 0) {
+    if (start < 0) span.leave = -kInfinity;
+  } else if (rate > 0) {
+    span.enter = std::max(span.enter, -start / rate);
+  } else {
+    span.leave = std::min(span.leave, -start / rate);
+  }
+}
+
+Span domain_span(const field::Field& field, const render::Ray& ray) {
+  const Vec3 o = field.mapping().index_from_world(ray.origin), d = field.mapping().index_from_world_linear * ray.direction;
+  const field::Box& box = field.index_box();
+  Span span;
+  for (int a = 0; a < 3; ++a) {
+    if (d[a] == 0) {
+      if (o[a] < box.lo[a] || o[a] > box.hi[a]) span.leave = -kInfinity;
+      continue;
+    }
+    const double s = (box.lo[a] - o[a]) / d[a], t = (box.hi[a] - o[a]) / d[a];
+    span.enter = std::max(span.enter, std::min(s, t));
+    span.leave = std::min(span.leave, std::max(s, t));
+  }
+  return span;
+}
+
+double factor_at(const std::vector<std::array<double, 2>>& rows, double x) {
+  if (rows.empty()) return 1;
+  if (x <= rows.front()[0]) return rows.front()[1];
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (x > rows[i][0]) continue;
+    const double width = rows[i][0] - rows[i - 1][0];
+    const double share = width > 0 ? (x - rows[i - 1][0]) / width : 1;
+    return rows[i - 1][1] + share * (rows[i][1] - rows[i - 1][1]);
+  }
+  return rows.back()[1];
+}
+
+struct Marched {
+  const render::VolumeItem* item;
+  Span span;
+  field::Cursor cursor{};
+
+  /// Extinction at the ray's place; nothing outside the span, the domain and the mask.
+  double sigma(const render::Ray& ray, double t) {
+    if (t < span.enter || t > span.leave) return 0;
+    const field::ScalarSample s = item->grid->sample(ray.origin + t * ray.direction, cursor);
+    if (!s.inside || !std::isfinite(s.value)) return 0;
+    const double sigma = extinction_at(item->transfer, s.value);
+    if (!(sigma > 0) || item->transfer.gradient_factors.empty()) return sigma;
+    return sigma * factor_at(item->transfer.gradient_factors, norm(s.gradient));
+  }
+};
+
+bool is_extreme(render::Projection p) { return p == render::Projection::maximum || p == render::Projection::minimum; }
+
+/// The place of a projection's value.
+std::optional<PickedPlace> pick_extreme(const render::VolumeItem& item, const render::Ray& ray, const Span& span, double step) {
+  field::Cursor cursor;
+  const double sign = item.projection == render::Projection::maximum ? 1 : -1;
+  double best = -kInfinity, at = 0;
+  for (double t = span.enter; t <= span.leave; t += step) {
+    const field::ScalarSample s = item.grid->sample(ray.origin + t * ray.direction, cursor);
+    if (!s.inside || !(sign * s.value > best)) continue;
+    best = sign * s.value;
+    at = t;
+  }
+  if (!std::isfinite(best)) return std::nullopt;
+  const double unit = item.transfer.opacity_unit > 0 ? item.transfer.opacity_unit : item.grid->mapping().smallest_edge();
+  const double opacity = 1 - std::exp(-extinction_at(item.transfer, sign * best) * unit);
+  if (opacity < kFaint) return std::nullopt;
+  return PickedPlace{ray.origin + at * ray.direction, item.id, true, opacity};
+}
+
+}  // namespace
+
+double extinction_at(const render::TransferTable& table, double value) {
+  return table.extinctions.empty() ? 0 : factor_at(table.extinctions, value);
+}
+
+std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double farthest) {
+  std::vector<Marched> marched;
+  Span all{kInfinity, -kInfinity};
+  double edge = kInfinity;
+  for (const render::VolumeItem& item : packet.volumes) {
+    Span span = domain_span(*item.grid, ray);
+    if (item.clipped)
+      for (const render::ClipPlane& plane : packet.clip) cut(span, ray, plane);
+    span.leave = std::min(span.leave, farthest);
+    if (span.empty()) continue;
+    marched.push_back({&item, span});
+    all = {std::min(all.enter, span.enter), std::max(all.leave, span.leave)};
+    edge = std::min(edge, item.grid->mapping().smallest_edge());
+  }
+  if (marched.empty()) return std::nullopt;
+  const double step = std::max(0.5 * edge, (all.leave - all.enter) / kMostSteps);
+
+  // a projection stands for its whole ray: the first one that shows anything
+  for (const Marched& m : marched)
+    if (is_extreme(m.item->projection))
+      if (const auto place = pick_extreme(*m.item, ray, m.span, step)) return place;
+
+  const double wanted = -std::log(1 - kHalfOpaque);
+  double depth = 0, best = 0, best_at = 0;
+  std::uint32_t best_id = 0;
+  std::vector<double> before(marched.size(), 0);
+  for (double t = all.enter; t < all.leave; t += step) {
+    const double length = std::min(step, all.leave - t), middle = t + 0.5 * length;
+    double sum = 0, most = 0;
+    std::uint32_t id = 0;
+    for (Marched& m : marched) {
+      if (is_extreme(m.item->projection)) continue;
+      const double sigma = m.sigma(ray, middle);
+      sum += sigma;
+      if (sigma > most) {
+        most = sigma;
+        id = m.item->id;
+      }
+    }
+    if (depth + sum * length >= wanted)
+      return PickedPlace{ray.origin + (t + (wanted - depth) / sum) * ray.direction, id, true, kHalfOpaque};
+    const double contribution = std::exp(-depth) * (1 - std::exp(-sum * length)) / length;
+    if (contribution > best) {
+      best = contribution;
+      best_at = middle;
+      best_id = id;
+    }
+    depth += sum * length;
+  }
+  const double opacity = 1 - std::exp(-depth);
+  if (opacity < kFaint) return std::nullopt;
+  return PickedPlace{ray.origin + best_at * ray.direction, best_id, true, opacity};
+}
+
+std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, double y, double depth, std::uint32_t id) {
+  const render::Camera camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
+  const render::Ray ray = render::ray_through(camera, x, y);
+  const bool opaque = std::isfinite(depth);
+  const Vec3 behind = opaque ? render::unproject(camera, x, y, depth) : Vec3(0.0);
+  const auto place = pick_volume(packet, ray, opaque ? dot(behind - ray.origin, ray.direction) : kInfinity);
+  if (!opaque || (place && place->opacity >= kHalfOpaque)) return place;
+  return PickedPlace{behind, id, false};
+}
+
+std::string object_words(const render::FramePacket& packet, std::uint32_t id) {
+  if (id == 0 || id > packet.objects.size()) return {};
+  const render::ObjectName& object = packet.objects[id - 1];
+  return object.name.empty() ? object.kind : object.kind + " " + object.name;
+}
+
+}  // namespace catena::app

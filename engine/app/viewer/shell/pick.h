@@ -1,0 +1,37 @@
+/// These functions say what the pointer shows: the nearest opaque thing, or within volumes the place where their colour comes from.
+///   a ray through a volume: a(t) = 1 - exp(-integral of sigma), of all volumes together; the place is the first t with a(t) >= 0.5, and
+///   where it never gets there the t of the largest contribution, the largest d a/dt. A projection (maximum, minimum): the place of its
+///   value. Where all that a ray meets stays below kFaint there is nothing. A solid thing shows through volumes short of a(t) = 0.5.
+/// The same transfer tables as the picture's, on the exact values of the grids, in steps of half a voxel; crossings are refined linearly.
+/// World units. Pure functions over the packet, any thread.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "render/frame/camera.h"
+
+namespace catena::app {
+
+inline constexpr double kHalfOpaque = 0.5, kFaint = 0.02;
+
+struct PickedPlace {
+  Vec3 world{0.0};
+  std::uint32_t id = 0;  ///< of FramePacket::objects; 0: none
+  bool is_volume = false;
+  double opacity = 1;  ///< of the volumes: gathered on the whole ray, or kHalfOpaque where that was reached
+};
+
+/// Extinction per world unit of a value, linear between the table's points, constant beyond them.
+double extinction_at(const render::TransferTable& table, double value);
+
+/// Along the ray from the eye to `farthest` (world units, may be infinite).
+std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double farthest);
+
+/// In the picture's place `x, y`, in pixels of the packet. `depth`, `id`: of the nearest opaque thing there (Renderer::pick); infinite:
+/// none.
+std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, double y, double depth, std::uint32_t id);
+
+/// "isosurface density"; empty for 0 and for ids of no object.
+std::string object_words(const render::FramePacket& packet, std::uint32_t id);
+
+}  // namespace catena::app

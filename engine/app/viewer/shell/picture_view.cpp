@@ -1,0 +1,228 @@
+#include "engine/app/viewer/shell/picture_view.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "engine/app/viewer/shell/file_list.h"
+#include "engine/app/viewer/shell/pick.h"
+#include "engine/base/clock.h"
+#include "engine/base/tell.h"
+#include "engine/scene/units.h"
+#include "render/extract/extract.h"
+#include "render/extract/extract_stereo.h"
+#include "render/image/picture.h"
+#include "render/quality/quality.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
+constexpr int kMostWaits = 30;
+
+}  // namespace
+
+std::optional<Failure> PictureView::open() {
+  auto screen = Screen::open(shared_.window, {shared_.options.gpu_memory, shared_.options.fail});
+  if (!screen) return Failure{1, screen.error().message};
+  screen_ = std::move(*screen);
+  const render::vk::DeviceInfo& device = screen_->renderer().device().info();
+  if (device.is_cpu()) shared_.state.say("no GPU: drawn by the processor (" + device.name + ")");
+  return std::nullopt;
+}
+
+// ---- its place ----
+
+bool PictureView::is_minimised() const {
+  std::uint32_t width = 0, height = 0;
+  screen_->size(width, height);
+  return width == 0 || height == 0;
+}
+
+bool PictureView::lay_out() {
+  double width = 1, height = 1;
+  std::uint32_t frame_width = 0, frame_height = 0;
+  shared_.window.size(width, height);
+  screen_->size(frame_width, frame_height);
+  ViewState& state = shared_.state;
+  state.area = picture_area(width, height, state.panels ? interface_edges() : Edges{});
+  const auto before = pixels_;
+  if (frame_width > 0 && frame_height > 0) pixels_ = pixels_of(state.area, width, height, frame_width, frame_height);
+  return pixels_ != before;
+}
+
+std::array<std::uint32_t, 2> PictureView::size() const {
+  return {std::max(1u, pixels_[2] - pixels_[0]), std::max(1u, pixels_[3] - pixels_[1])};
+}
+
+// ---- drawing ----
+
+bool PictureView::take_shaders() { return reload_ && reload_->poll(screen_->renderer(), now_ns()); }
+
+/// Of the scene as it is now, for a picture of that many pixels.
+Result<render::FramePacket> PictureView::packet(std::uint32_t width, std::uint32_t height) const {
+  scene::Scene& scene = shared_.scene.scene();
+  const auto eye = render::view_size(render::packing_of(scene.stereo), render::views_of(scene.stereo), std::max(kLeastPixels, width),
+                                     std::max(kLeastPixels, height));
+  return render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
+}
+
+std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file) {
+  if (is_minimised()) return std::nullopt;
+  std::uint32_t width = 0, height = 0;
+  screen_->size(width, height);
+  if (!for_file) {
+    lay_out();
+    width = pixels_[2] - pixels_[0];
+    height = pixels_[3] - pixels_[1];
+  }
+  const std::uint32_t scale = render::is_interlaced(render::packing_of(shared_.scene.scene().stereo)) ? 1 : next.scale;
+  std::int64_t start = now_ns();
+  auto packet = this->packet(width / scale, height / scale);
+  if (!packet) {
+    // at the start it is the scene's fault; later an edit's, and the last picture stands
+    if (shared_.times.count() == 0) return Failure{2, packet.error().message};
+    shared_.state.say(packet.error().message, true);
+    return std::nullopt;
+  }
+  Pacing& pacing = shared_.pacing;
+  if (pacing.wants_estimate()) {
+    const auto error = render::estimate_rmse(screen_->renderer(), *packet, next.settings);
+    if (!error) return Failure{1, error.error().message};
+    pacing.estimated(*error);
+    start = now_ns();
+  }
+  const int recoveries = screen_->recoveries();
+  auto drawn = screen_->draw(*packet, next.settings);
+  // with the embedded shaders if those of --shaders cannot be drawn with
+  if (!drawn && reload_ && reload_->give_up(screen_->renderer(), drawn.error().message)) drawn = screen_->draw(*packet, next.settings);
+  if (!drawn) return Failure{1, drawn.error().message};
+  if (screen_->recoveries() != recoveries) shared_.state.say("the graphics device was lost and has been started again", true);
+  const double ms = ms_since(start);
+  pacing.drawn(ms);
+  kind_ = {!packet->volumes.empty() || !packet->isosurfaces.empty(), screen_->renderer().draws_fast(*packet),
+           std::ranges::any_of(packet->volumes, &render::VolumeItem::shade)};
+  if (shared_.times.count() == 0) tell_notes();
+  shown_ = std::move(*packet);
+  picked_stale_ = true;
+  if (!for_file) shared_.times.add(ms, now_ns());
+  return std::nullopt;
+}
+
+/// What the first picture had to leave out.
+void PictureView::tell_notes() const {
+  const render::RenderStats stats = screen_->renderer().stats();
+  for (const std::string& note : stats.notes) tell_from_catena(note);
+  for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
+}
+
+std::optional<Failure> PictureView::estimate() {
+  Pacing& pacing = shared_.pacing;
+  if (!pacing.may_estimate() || is_minimised()) return std::nullopt;
+  auto packet = this->packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
+  if (!packet) return std::nullopt;  // said where it was drawn
+  const auto error = render::estimate_rmse(screen_->renderer(), *packet, pacing.again().settings);
+  if (!error) return Failure{1, error.error().message};
+  pacing.estimated(*error);
+  // the estimate drew with the renderer's own images
+  if (auto drawn = screen_->draw(*packet, pacing.again().settings); !drawn) return Failure{1, drawn.error().message};
+  damaged_ = true;
+  return std::nullopt;
+}
+
+std::optional<Failure> PictureView::show(const std::function<void()>& make_panels) {
+  const std::int64_t start = now_ns();
+  update_values();
+  Gui& gui = shared_.gui;
+  gui.begin();
+  // the glyph is the pointer while the mouse is the hand
+  if (shared_.controls.hand_mode && shared_.hand.is_mouse() && shared_.state.pointer_on_picture) gui.hide_pointer();
+  make_panels();
+  render::UiItems items = gui.end();
+  items.area = pixels_;
+  if (auto shown = screen_->show(items); !shown) return Failure{1, shown.error().message};
+  shared_.times.add_interface(ms_since(start));
+  damaged_ = false;
+  return std::nullopt;
+}
+
+void PictureView::forget() {
+  shown_.reset();
+  picked_stale_ = true;
+}
+
+// ---- what is where ----
+
+/// The rows of the table of values. The place under the pointer is looked up while nothing moves.
+void PictureView::update_values() {
+  const scene::Scene& scene = shared_.scene.scene();
+  const HandHost& hand = shared_.hand;
+  ViewState& state = shared_.state;
+  state.unit_length = scene::unit_length(scene);
+  const auto at = [&](const std::optional<Vec3>& world, std::string object) {
+    PlaceValues place{world, std::move(object), {}};
+    if (world) place.fields = values_at(scene, *world);
+    return place;
+  };
+  const exchange::HapticState& felt = hand.felt();
+  const bool feels = felt.tick > 0;
+  state.probe = at(feels ? std::optional(felt.probe) : std::nullopt, {});
+  std::optional<Vec3> proxy;
+  if (feels && felt.link_count > 0) proxy = felt.links[static_cast<std::size_t>(felt.link_count - 1)].proxy;
+  state.proxy = at(proxy, feels && felt.link_count > 0 && !hand.link_names().empty() ? hand.link_names().back() : "");
+  const double most = scene.coupling.max_force_n;
+  state.force_share = most > 0 ? std::clamp(norm(felt.force_n) / most, 0.0, 1.0) : 0;
+
+  const bool can = state.pointer_on_picture && !state.pointer_pressed && shown_ && shown_->eyes.empty() && !state.untitled;
+  if (can && !picked_stale_) return;
+  picked_stale_ = !can;
+  state.pointer = {};
+  if (!can) return;
+  const double x = (state.pointer_x - state.area.x) / state.area.width * shown_->width;
+  const double y = (state.pointer_y - state.area.y) / state.area.height * shown_->height;
+  const auto texel = screen_->pick(x, y);
+  if (!texel) return;
+  if (const auto place = pick(*shown_, x, y, texel->depth, texel->id)) state.pointer = at(place->world, object_words(*shown_, place->id));
+}
+
+// ---- to a file ----
+
+void PictureView::write_asked() {
+  const bool of_window = asked_.value_or(false);
+  const bool there = of_window ? screen_->is_shown() : screen_->has_picture();
+  if (!asked_ || !there || (shared_.pacing.again().scale > 1 && waits_++ < kMostWaits)) return;
+  waits_ = 0;
+  asked_.reset();
+  std::error_code code;
+  const scene::Document& document = shared_.scene.document();
+  const std::string name = free_name(std::filesystem::current_path(code).string(), stem_of_path(document.path()), ".png");
+  auto picture = of_window ? screen_->window_picture() : screen_->renderer().read_back();
+  const bool transparent = !of_window && shared_.scene.scene().background.transparent;
+  const Outcome written = picture ? render::write_png(name, *picture, transparent) : Outcome(picture.error());
+  shared_.state.say(written ? "wrote " + name : written.error().message, !written);
+}
+
+std::optional<Failure> PictureView::write_last(const std::function<void()>& make_panels) {
+  const ViewOptions& options = shared_.options;
+  if (shared_.times.count() == 0) return std::nullopt;
+  if (!options.window_screenshot.empty()) {
+    if (auto failure = show(make_panels)) return failure;
+    auto picture = screen_->window_picture();
+    if (!picture) return Failure{1, picture.error().message};
+    if (auto written = render::write_png(options.window_screenshot, *picture, false); !written) return Failure{2, written.error().message};
+  }
+  if (options.screenshot.empty()) return std::nullopt;
+  std::uint32_t width = 0, height = 0;
+  screen_->size(width, height);
+  const bool whole = pixels_ == std::array<std::uint32_t, 4>{0, 0, width, height};
+  if (!shared_.pacing.finished() || !whole || !screen_->has_picture())
+    if (auto failure = draw(best(), !whole)) return failure;
+  auto picture = screen_->renderer().read_back();
+  if (!picture) return Failure{1, picture.error().message};
+  const bool transparent = shared_.scene.scene().background.transparent;
+  if (auto written = render::write_png(options.screenshot, *picture, transparent); !written) return Failure{2, written.error().message};
+  return std::nullopt;
+}
+
+}  // namespace catena::app

@@ -1,0 +1,76 @@
+/// PictureView is the picture in the window: it says where the picture lies, draws it, shows it with the interface over it, looks up what
+/// is under the pointer, and writes it to files. Frame thread.
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/app/viewer/shell/shader_reload.h"
+#include "engine/app/viewer/shell/shared.h"
+
+namespace catena::app {
+
+class PictureView {
+ public:
+  PictureView(Shared& shared, std::optional<ShaderReload> reload) : shared_(shared), reload_(std::move(reload)) {}
+
+  /// What draws it; before the first picture.
+  std::optional<Failure> open();
+  Screen& screen() { return *screen_; }
+
+  bool is_minimised() const;
+  /// The picture's place in the window; true where it has changed.
+  bool lay_out();
+  /// Width and height of the picture, pixels; at least 1.
+  std::array<std::uint32_t, 2> size() const;
+  /// It is not there, or not in the window's size.
+  bool is_stale() const { return screen_->is_resized() || !screen_->has_picture(); }
+  /// True: the next picture is drawn with other shaders.
+  bool take_shaders();
+
+  /// Into the picture's part of the window; `for_file`: of the whole window's size, and no picture of the session's.
+  std::optional<Failure> draw(const NextPicture& next, bool for_file = false);
+  /// The best that the scene can be drawn with.
+  NextPicture best() { return shared_.pacing.best(kind_); }
+  NextPicture moving() { return shared_.pacing.moving(kind_); }
+  std::optional<NextPicture> still() { return shared_.pacing.still(kind_); }
+  /// The error of the picture that is at rest, once.
+  std::optional<Failure> estimate();
+  /// The interface over the last picture.
+  std::optional<Failure> show(const std::function<void()>& make_panels);
+
+  /// The interface has to be shown again though nothing happened.
+  bool is_damaged() const { return damaged_; }
+  void damage() { damaged_ = true; }
+  /// Another scene: nothing of the last picture counts.
+  void forget();
+  /// The pointer may be over something else.
+  void look_again() { picked_stale_ = true; }
+
+  /// The picture, or the window, to the next free SCENE-001.png of the folder that the program was started in: as soon as there is one of
+  /// every pixel, for which it waits a while.
+  void ask_for_file(bool of_window) { asked_ = of_window; }
+  void write_asked();
+  /// --screenshot and --window-screenshot, at the end.
+  std::optional<Failure> write_last(const std::function<void()>& make_panels);
+
+ private:
+  Result<render::FramePacket> packet(std::uint32_t width, std::uint32_t height) const;
+  void tell_notes() const;
+  void update_values();
+
+  Shared& shared_;
+  std::optional<ShaderReload> reload_;
+  std::unique_ptr<Screen> screen_;
+  std::array<std::uint32_t, 4> pixels_{};     ///< where the picture lies in the window
+  std::optional<render::FramePacket> shown_;  ///< the last picture's
+  SceneKind kind_;                            ///< the last picture's
+  bool picked_stale_ = true;                  ///< the place under the pointer is to be looked at again
+  bool damaged_ = false;
+  std::optional<bool> asked_;  ///< a file; of the window: true
+  int waits_ = 0;              ///< frames, for a picture of every pixel
+};
+
+}  // namespace catena::app

@@ -1,0 +1,95 @@
+#include "engine/app/viewer/shell/scene_host.h"
+
+#include <utility>
+
+namespace catena::app {
+
+namespace {
+
+void make_cursor(scene::Scene& scene) {
+  if (!scene.cursor) scene.cursor = scene.world.create();
+  if (!scene.world.has<scene::Cursor>(scene.cursor)) scene.world.emplace<scene::Cursor>(scene.cursor);
+}
+
+}  // namespace
+
+Result<SceneHost> SceneHost::open(scene::Document document, std::function<Outcome(scene::Scene&)> adjust) {
+  SceneHost host(std::move(document), std::move(adjust));
+  CATENA_TRY(host.scene_, host.read());
+  return host;
+}
+
+Result<scene::Scene> SceneHost::read() const {
+  CATENA_TRY(scene::Scene scene, document_.read());
+  make_cursor(scene);
+  if (adjust_) CATENA_CHECK(adjust_(scene));
+  return scene;
+}
+
+void SceneHost::keep_what_is_lived(scene::Scene& fresh) const {
+  fresh.camera = scene_.camera;
+  fresh.stereo.mode = scene_.stereo.mode;
+  fresh.phase = scene_.phase;
+  // fitted to the device once; a scene that states another one is followed when it is opened
+  fresh.workspace = scene_.workspace;
+  if (!fresh.coupling.ramp_s) fresh.coupling.ramp_s = scene_.coupling.ramp_s;
+}
+
+Outcome SceneHost::change(const std::function<Outcome(scene::Document&)>& edit) {
+  scene::Document edited = document_;
+  CATENA_CHECK(edit(edited));
+  std::swap(document_, edited);
+  // `edited` is what it was from here on
+  auto fresh = read();
+  if (!fresh) {
+    std::swap(document_, edited);
+    return fresh.error();
+  }
+  scene::carry_over(scene_, *fresh);
+  keep_what_is_lived(*fresh);
+  if (check_)
+    if (const Outcome good = check_(*fresh); !good) {
+      scene::carry_over(*fresh, scene_);
+      std::swap(document_, edited);
+      return good;
+    }
+  scene_ = std::move(*fresh);
+  changed_ = true;
+  return Done{};
+}
+
+Outcome SceneHost::set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag) {
+  return change([&](scene::Document& document) { return document.set(pointer, value, what, drag); });
+}
+
+Outcome SceneHost::remove(std::string_view pointer, const std::string& what) {
+  return change([&](scene::Document& document) { return document.remove(pointer, what); });
+}
+
+Outcome SceneHost::apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag) {
+  return change([&](scene::Document& document) { return document.apply(edits, what, drag); });
+}
+
+Outcome SceneHost::replace(const std::string& text, const std::string& what) {
+  return change([&](scene::Document& document) { return document.replace(text, what); });
+}
+
+Outcome SceneHost::undo() {
+  if (!document_.can_undo()) return Done{};
+  return change([](scene::Document& document) -> Outcome {
+    document.undo();
+    return Done{};
+  });
+}
+
+Outcome SceneHost::redo() {
+  if (!document_.can_redo()) return Done{};
+  return change([](scene::Document& document) -> Outcome {
+    document.redo();
+    return Done{};
+  });
+}
+
+Outcome SceneHost::save(const std::string& path) { return document_.save(path); }
+
+}  // namespace catena::app

@@ -1,0 +1,61 @@
+/// SceneHost has the scene that the window shows, with the text that it is read from. Edits go to the text; the scene is then read again
+/// and takes over what was loaded, what the hand did, and where the eye stands. Frame thread.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "engine/scene/document.h"
+#include "render/frame/camera.h"
+
+namespace catena::app {
+
+class SceneHost {
+ public:
+  /// Reads it; nothing is loaded yet. `adjust`: what is wanted otherwise than the text says, whenever it is read.
+  static Result<SceneHost> open(scene::Document document, std::function<Outcome(scene::Scene&)> adjust);
+
+  scene::Scene& scene() { return scene_; }
+  const scene::Scene& scene() const { return scene_; }
+  const scene::Document& document() const { return document_; }
+
+  /// What a scene must pass beside being read for an edit to count, such as that its program can be made. It may load what the scene names.
+  using Check = std::function<Outcome(scene::Scene&)>;
+  void set_check(Check check) { check_ = std::move(check); }
+
+  /// An error leaves all as it was. `what`, `drag`: as Document::set.
+  Outcome set(std::string_view pointer, const std::string& value, const std::string& what, const std::string& drag = {});
+  Outcome remove(std::string_view pointer, const std::string& what);
+  Outcome apply(const std::vector<scene::Document::Edit>& edits, const std::string& what, const std::string& drag = {});
+  /// Another text, as one step of undo.
+  Outcome replace(const std::string& text, const std::string& what);
+  Outcome undo();
+  Outcome redo();
+  Outcome save(const std::string& path);
+
+  /// The scene differs from what it was at the last call: picture and program have to be made again.
+  bool take_changed() { return std::exchange(changed_, false); }
+  void touch() { changed_ = true; }
+
+  /// All that is drawn and felt; set by who extracts.
+  Bounds bounds;
+
+ private:
+  SceneHost(scene::Document document, std::function<Outcome(scene::Scene&)> adjust)
+      : document_(std::move(document)), adjust_(std::move(adjust)) {}
+  Result<scene::Scene> read() const;
+  /// The document as `edit` leaves it and the scene of it, or both as they were.
+  Outcome change(const std::function<Outcome(scene::Document&)>& edit);
+  /// What the person did to the scene without editing it.
+  void keep_what_is_lived(scene::Scene& fresh) const;
+
+  scene::Document document_;
+  std::function<Outcome(scene::Scene&)> adjust_;
+  Check check_;
+  scene::Scene scene_;
+  bool changed_ = false;
+};
+
+}  // namespace catena::app

@@ -1,0 +1,31 @@
+/// Shared is what loop (session.h), files (scene_files.h), picture (picture_view.h) and eye (eye.h) work on together, and what the panels
+/// read. Each of them owns its own state beside it. Frame thread.
+#pragma once
+#include <string>
+
+#include "engine/app/viewer/panels/panel.h"
+#include "engine/app/viewer/shell/gui.h"
+#include "engine/app/viewer/viewer.h"
+
+namespace catena::app {
+
+/// Why the program ends, in one line, and with which exit code.
+struct Failure {
+  int exit_code;
+  std::string message;
+};
+
+struct Shared {
+  const ViewOptions& options;
+  SceneHost& scene;
+  HandHost& hand;
+  Window& window;
+  Gui& gui;
+  Pacing pacing{options.quality};
+  Controls controls{};
+  FrameTimes times{};
+  ViewState state{};
+  Commands commands{};
+};
+
+}  // namespace catena::app

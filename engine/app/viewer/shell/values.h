@@ -1,0 +1,35 @@
+/// These functions say what the fields of the scene are at a place: every field that is loaded, by its name, with its unit. Frame thread.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.h"
+
+namespace catena::app {
+
+struct FieldValue {
+  std::string name, unit;
+  bool inside = false;  ///< within the domain and the mask; outside there is no value
+  double value = 0;     ///< of a vector: its length
+  std::optional<Vec3> vector{};
+};
+
+/// A place of the table: where, of which thing, and what is there.
+struct PlaceValues {
+  std::optional<Vec3> world{};
+  std::string object{};
+  std::vector<FieldValue> fields{};
+};
+
+/// In the order of the scene.
+std::vector<FieldValue> values_at(const scene::Scene& scene, const Vec3& world);
+
+/// "0.43", "outside"; a vector's length with its components in brackets where `components`.
+std::string value_words(const FieldValue& value, bool components = false);
+/// "1.2, 3.4, 5.6 mm"
+std::string place_words(const Vec3& world, const std::string& unit_length);
+/// "1.2, 3.4, 5.6 mm   density 0.43   isosurface density"
+std::string line_words(const PlaceValues& place, const std::string& unit_length);
+
+}  // namespace catena::app

@@ -1,0 +1,84 @@
+// Edits that panels note: what becomes of them in the queue of commands, and which of them are one step of undo.
+#include "engine/app/viewer/edit/edits.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/app/viewer/shell/scene_host.h"
+
+namespace catena::app {
+namespace edits_test {
+
+constexpr const char* kScene = R"({"fields": {"f": {"analytic": "gaussian"}}, "isosurfaces": [{"field": "f", "level": 0.5}]})";
+
+struct Notes {
+  Commands commands;
+  EditState state;
+  Edits edits{commands, state};
+
+  /// As the session does after each frame.
+  void carry_out(SceneHost& host) {
+    for (const Command& command : std::exchange(commands, {})) {
+      const Edit* edit = std::get_if<Edit>(&command);
+      ASSERT_NE(edit, nullptr);
+      const Outcome done = host.apply(edit->edits, edit->what, edit->drag);
+      EXPECT_TRUE(done) << done.error().message;
+    }
+  }
+};
+
+SceneHost open_scene() {
+  auto document = scene::Document::make(kScene, "scene.json");
+  EXPECT_TRUE(document);
+  auto host = SceneHost::open(std::move(*document), {});
+  EXPECT_TRUE(host);
+  return std::move(*host);
+}
+
+TEST(Edits, AreNotedAndChangeNothingAtOnce) {
+  SceneHost host = open_scene();
+  Notes notes;
+  notes.edits.set("/isosurfaces/0/opacity", "0.5", "opacity");
+  notes.edits.remove("/isosurfaces/0", "remove isosurface");
+  EXPECT_EQ(notes.commands.size(), 2u);
+  EXPECT_EQ(host.document().text(), kScene);
+  notes.carry_out(host);
+  EXPECT_EQ(host.scene().world.count<scene::Isosurface>(), 0u);
+  EXPECT_EQ(host.document().undo_what(), "remove isosurface");
+  EXPECT_TRUE(host.undo());
+  EXPECT_EQ(host.document().undo_what(), "opacity") << "in order, a step each";
+}
+
+TEST(Edits, OfOneGestureAreOneStepOfUndo) {
+  SceneHost host = open_scene();
+  Notes notes;
+  for (int frame = 1; frame <= 5; ++frame) {
+    notes.edits.drag("/isosurfaces/0/level", std::to_string(0.1 * frame), "isolevel");
+    notes.carry_out(host);
+  }
+  EXPECT_TRUE(host.undo());
+  EXPECT_EQ(host.document().text(), kScene);
+  EXPECT_FALSE(host.document().can_undo());
+}
+
+TEST(Edits, OfTwoGesturesOrOfTwoThingsAreTwoSteps) {
+  SceneHost host = open_scene();
+  Notes notes;
+  notes.edits.drag("/isosurfaces/0/level", "0.1", "isolevel");
+  ++notes.state.gesture;
+  notes.edits.drag("/isosurfaces/0/level", "0.2", "isolevel");
+  notes.edits.drag("/isosurfaces/0/opacity", "0.2", "opacity");
+  notes.carry_out(host);
+  int steps = 0;
+  for (; host.document().can_undo(); ++steps) ASSERT_TRUE(host.undo());
+  EXPECT_EQ(steps, 3);
+}
+
+TEST(Edits, ThatBelongTogetherAreAllOrNothing) {
+  SceneHost host = open_scene();
+  const Outcome done = host.apply({{"/isosurfaces/0/level", "0.1"}, {"/isosurfaces/0/opacity", "\"thick\""}}, "level");
+  EXPECT_FALSE(done);
+  EXPECT_EQ(host.document().text(), kScene);
+}
+
+}  // namespace edits_test
+}  // namespace catena::app
