@@ -7,7 +7,7 @@
 
 #include "engine/scene/scene.h"
 #include "render/frame/frame_packet.h"
-#include "render/passes/coarsening.h"
+#include "render/mirror/mirrors.h"
 
 namespace catena::app {
 

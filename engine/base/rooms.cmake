@@ -80,8 +80,13 @@ function(catena_program FOLDER NAME)
 endfunction()
 
 # GLSL to SPIR-V at build time: shaders/passes/x.frag becomes <build>/spirv/x.frag.inc (a list of words), which
-# render/passes/x.cpp includes as data.
+# a room with SHADERS includes as data.
 function(catena_shaders TARGET)
+  target_include_directories(${TARGET} PRIVATE ${CMAKE_BINARY_DIR}/spirv)
+  if(TARGET catena_spirv)
+    add_dependencies(${TARGET} catena_spirv)
+    return()
+  endif()
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/shaders/passes/*.vert ${CMAKE_SOURCE_DIR}/shaders/passes/*.frag ${CMAKE_SOURCE_DIR}/shaders/passes/*.comp)
   file(GLOB_RECURSE included CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/shaders/lib/*.glsl ${CMAKE_SOURCE_DIR}/shaders/shared/*.h)
   set(outputs "")
@@ -105,9 +110,6 @@ function(catena_shaders TARGET)
   endforeach()
   file(GENERATE OUTPUT ${CMAKE_BINARY_DIR}/spirv/spirv/table.inc
     CONTENT "${arrays}constexpr EmbeddedShader kEmbedded[] = {\n${entries}};\n")
-  if(outputs)
-    add_custom_target(catena_spirv DEPENDS ${outputs})
-    add_dependencies(${TARGET} catena_spirv)
-    target_include_directories(${TARGET} PRIVATE ${CMAKE_BINARY_DIR}/spirv)
-  endif()
+  add_custom_target(catena_spirv DEPENDS ${outputs})
+  add_dependencies(${TARGET} catena_spirv)
 endfunction()

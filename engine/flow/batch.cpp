@@ -2,15 +2,232 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <optional>
 #include <thread>
 
 #include "engine/base/parallel_for.h"
-#include "engine/flow/batch_branch.h"
+#include "engine/flow/batch_step.h"
+#include "engine/flow/hermite.h"
+#include "engine/flow/trace_parts.h"
 
 namespace catena::flow {
-
 namespace {
+
+/// A place that a line passed: local coordinates, the rate there, and the (signed, scaled) time to the next one.
+struct RawStep {
+  double q[3];
+  float h;
+  float k[3];
+};
+
+/// One direction of one line, fed by the steps of its lane. It accepts or shortens them, sees the
+/// lap, the length and the places where the exact marcher has to help, and turns the steps into knots.
+class BatchBranch {
+ public:
+  /// `out` is made anew in its memory; `steps` is memory only.
+  BatchBranch(const VelocityBricks& bricks, const Flow& flow, const TraceOptions& options, double lap_gap, const Vec3& seed,
+              const Vec3& tangent, double sign, std::vector<RawStep>& steps, Branch& out);
+  double sign() const { return sign_; }
+
+  /// Puts the lane on the seed; false: `out` is finished already.
+  bool start(LaneGroup& group, int i);
+  /// Takes what step_lanes() made of the lane and says how it goes on; false: `out` is finished.
+  bool take(LaneGroup& group, int i);
+
+ private:
+  bool place(LaneGroup& group, int i, const Vec3& world, double first_step);
+  bool shorten(LaneGroup& group, int i, float factor);
+  bool go_by_hand(LaneGroup& group, int i);
+  bool came_round(const LaneGroup& group, int i);
+  double world_length(const Vec3& local) const;
+  double speed(const Float4& k) const;
+  void add_knots();
+
+  const VelocityBricks& bricks_;
+  const Flow& flow_;
+  const TraceOptions& options_;
+  double lap_gap_;
+  Vec3 seed_, tangent_;
+  double sign_;
+  std::vector<RawStep>& steps_;
+  Vec3 seed_local_{0.0};
+  Vec3 seed_normal_{0.0};  ///< the tangent as a covector of local coordinates
+  double height_ = 0;      ///< above the seed's plane, world units
+  double way_ = 0;         ///< sum of the chords, world units
+  Branch& out_;
+};
+
+constexpr float kShortest = 0.01f;   ///< voxels: below it the exact marcher goes on
+constexpr double kFirstStep = 0.25;  ///< voxels
+constexpr double kByHand = 2;        ///< voxels: as far as the exact marcher goes at a time
+
+/// Rates, places and voxels of a batch are far from either end of the double range.
+double length_of(const Vec3& v) { return std::sqrt(dot(v, v)); }
+Vec3 vector_of(const Float4& k) { return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2])}; }
+Vec3 vector_of(const float (&k)[3]) { return {static_cast<double>(k[0]), static_cast<double>(k[1]), static_cast<double>(k[2])}; }
+Vec3 vector_of(const Double4& q) { return {q[0], q[1], q[2]}; }
+
+RawStep raw_step(const Double4& q, float h, const Float4& k) { return {{q[0], q[1], q[2]}, h, {k[0], k[1], k[2]}}; }
+
+BatchBranch::BatchBranch(const VelocityBricks& bricks, const Flow& flow, const TraceOptions& options, double lap_gap, const Vec3& seed,
+                         const Vec3& tangent, double sign, std::vector<RawStep>& steps, Branch& out)
+    : bricks_(bricks),
+      flow_(flow),
+      options_(options),
+      lap_gap_(lap_gap),
+      seed_(seed),
+      tangent_(tangent),
+      sign_(sign),
+      steps_(steps),
+      out_(out) {
+  steps_.clear();
+  out_.knots.assign(1, {0, seed, tangent});
+  out_.end = {};
+}
+
+inline double BatchBranch::world_length(const Vec3& local) const { return length_of(bricks_.world_from_rate() * local); }
+double BatchBranch::speed(const Float4& k) const { return world_length(vector_of(k)) * bricks_.speed_from_rate(); }
+
+bool BatchBranch::start(LaneGroup& group, int i) {
+  seed_local_ = bricks_.local_from_index(flow_.field->mapping().index_from_world(seed_));
+  seed_normal_ = tangent_ * bricks_.world_from_rate();
+  return place(group, i, seed_, kFirstStep) || go_by_hand(group, i);
+}
+
+/// The lane at a place; false: it is beside the box by rounding, or too slow for floats.
+bool BatchBranch::place(LaneGroup& group, int i, const Vec3& world, double first_step) {
+  const Vec3 local = bricks_.local_from_index(flow_.field->mapping().index_from_world(world));
+  const Double4 q{local.x, local.y, local.z, 0};
+  Float4 k;
+  const double length = rate_at(bricks_, q, k) ? length_of(vector_of(k)) : 0;
+  if (!(length > 1e-15) || !(speed(k) > flow_.min_speed)) return false;
+  group.q[i] = q;
+  group.k[i] = k;
+  group.h[i] = static_cast<float>(sign_ * first_step / length);
+  steps_.push_back(raw_step(q, 0, k));
+  return true;
+}
+
+bool BatchBranch::shorten(LaneGroup& group, int i, float factor) {
+  const Float4 moved = group.k[i] * group.h[i];
+  if (!(moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] > kShortest * kShortest)) return go_by_hand(group, i);
+  group.h[i] *= factor;
+  return true;
+}
+
+/// The exact marcher, until it has ended the line or is `kByHand` further, where the lane goes on.
+bool BatchBranch::go_by_hand(LaneGroup& group, int i) {
+  std::vector<Knot>& knots = out_.knots;
+  const double domain = flow_.field->length();
+  add_knots();
+  for (;;) {
+    const Knot from = knots.back();
+    TraceOptions piece = options_;
+    const double left = options_.length - std::fabs(from.s);
+    if (!(left > 1e-12 * domain) || knots.size() >= options_.max_knots) return false;
+    // a whole line by hand is the seed's own, with its lap
+    const bool whole = knots.size() == 1;
+    piece.length = whole ? left : std::min(left, kByHand * flow_.field->longest_edge());
+    const Branch tail = march_from(flow_, from.p, sign_, piece);
+    for (std::size_t n = 1; n < tail.knots.size(); ++n) {
+      const double s = from.s + tail.knots[n].s, way = std::fabs(s) - std::fabs(knots.back().s);
+      if (way < 1e-10 * domain && (n + 1 < tail.knots.size() || !(way > 0))) continue;
+      knots.push_back({s, tail.knots[n].p, tail.knots[n].t});
+    }
+    const End how = tail.end.end;
+    out_.end = how == End::lap && !whole ? LineEnd{} : tail.end;
+    if (how == End::boundary || how == End::critical || how == End::incoherent || whole || tail.knots.size() < 2) return false;
+    way_ = std::fabs(knots.back().s);
+    height_ = dot(knots.back().p - seed_, tangent_);
+    out_.end = {};
+    if (place(group, i, knots.back().p, kFirstStep)) return true;
+  }
+}
+
+bool BatchBranch::take(LaneGroup& group, int i) {
+  // refused: a stage left the box or its valid cells (NaN), a sharp turn (more than 60 degrees), or too large an error
+  const float speed2 = group.speed2[i];
+  const RawStep& last = steps_.back();
+  const float last2 = last.k[0] * last.k[0] + last.k[1] * last.k[1] + last.k[2] * last.k[2];
+  if (group.left[i] || !(speed2 > 1e-30f) || !(group.turn[i] > 0) || !(group.turn[i] * group.turn[i] > 0.25f * last2 * speed2))
+    return shorten(group, i, 0.5f);
+  if (!(group.error2[i] <= group.allowed2[i])) {
+    const float factor = group.next_h[i] / group.h[i];
+    return shorten(group, i, factor < 0.8f ? factor : 0.8f);
+  }
+  if (flow_.min_speed > 0 && !(speed(group.k_end[i]) > flow_.min_speed)) return shorten(group, i, 0.5f);
+
+  // accepted
+  if (sign_ > 0 && came_round(group, i)) return false;
+  steps_.back().h = group.h[i];
+  way_ += world_length(vector_of(group.end[i]) - vector_of(group.q[i]));
+  group.q[i] = group.end[i];
+  group.k[i] = group.k_end[i];
+  group.h[i] = group.next_h[i];
+  steps_.push_back(raw_step(group.q[i], 0, group.k[i]));
+  if (way_ >= options_.length || out_.knots.size() + steps_.size() >= options_.max_knots) {
+    add_knots();
+    return false;
+  }
+  // crept to nothing: near a zero
+  return speed2 * group.h[i] * group.h[i] >= kShortest * kShortest || go_by_hand(group, i);
+}
+
+/// The step crosses the seed's plane, in the seed's direction, within the gap of the seed.
+bool BatchBranch::came_round(const LaneGroup& group, int i) {
+  const Vec3 end = vector_of(group.end[i]), off = end - seed_local_;
+  const double before = height_, after = dot(off, seed_normal_);
+  height_ = after;
+  if (!(before < 0 && after >= 0)) return false;
+  const Vec3 from = vector_of(group.q[i]);
+  if (world_length(off) > 2 * world_length(end - from) + lap_gap_) return false;
+  const double h = static_cast<double>(group.h[i]);
+  const Hermite piece(from, end - from, h, vector_of(group.k[i]), vector_of(group.k_end[i]));
+  const double theta = illinois_root(0.0, before, 1.0, after, [&](double at) { return dot(piece.at(at) - seed_local_, seed_normal_); });
+  if (world_length(piece.at(theta) - seed_local_) > lap_gap_ || theta * h <= 0) return false;
+  steps_.back().h = static_cast<float>(theta * h);
+  const RawStep first = steps_.front();
+  steps_.push_back({{seed_local_.x, seed_local_.y, seed_local_.z}, 0, {first.k[0], first.k[1], first.k[2]}});
+  add_knots();
+  out_.end = {End::lap, Reason::none};
+  out_.knots.back().p = seed_;
+  out_.knots.back().t = tangent_;
+  return true;
+}
+
+/// The steps as knots behind the ones that are there; the memory of the steps is free again.
+void BatchBranch::add_knots() {
+  if (steps_.empty()) return;
+  const field::Mapping& mapping = flow_.field->mapping();
+  const Mat3& linear = bricks_.world_from_rate();
+  const auto place_of = [&](const RawStep& step) {
+    return mapping.world_from_index(bricks_.index_from_local({step.q[0], step.q[1], step.q[2]}));
+  };
+  std::vector<Knot>& knots = out_.knots;
+  Vec3 p = knots.back().p, w = linear * vector_of(steps_.front().k);
+  double length = length_of(w), s = std::fabs(knots.back().s);
+  for (std::size_t i = 1; i < steps_.size(); ++i) {
+    const Vec3 p_next = place_of(steps_[i]), w_next = linear * vector_of(steps_[i].k);
+    const double h = static_cast<double>(steps_[i - 1].h), length_next = length_of(w_next);
+    // Simpson's rule on the cubic of the step
+    const Vec3 middle = (1.5 / h) * (p_next - p) - 0.25 * (w + w_next);
+    const double piece = std::fabs(h) / 6 * (length + 4 * length_of(middle) + length_next);
+    if (s + piece > options_.length) {
+      // the length ends within the step
+      const Hermite cubic(p, p_next - p, h, w, w_next);
+      const double theta = (options_.length - s) / piece;
+      if (theta > 1e-9) knots.push_back({sign_ * options_.length, cubic.at(theta), direction(cubic.derivative(theta) / h)});
+      break;
+    }
+    s += piece;
+    knots.push_back({sign_ * s, p_next, (1 / length_next) * w_next});
+    p = p_next;
+    w = w_next;
+    length = length_next;
+  }
+  steps_.clear();
+}
 
 constexpr double kLapGap = 0.01;           ///< voxels
 constexpr double kByHandTolerance = 1e-8;  ///< of the exact marcher's pieces: errors grow near saddles

@@ -1,6 +1,8 @@
 #include "engine/flow/curve.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "engine/base/assert.h"
 #include "engine/flow/hermite.h"
@@ -51,6 +53,103 @@ Vec3 Curve::position(double s) const noexcept {
   Vec3 p, derivative;
   evaluate_in(interval_of(s), s, p, derivative);
   return p;
+}
+
+namespace {
+
+constexpr std::uint32_t kLeaf = 4;
+constexpr std::size_t kDepth = 48;
+
+double distance2_to_box(const Vec3& x, const Vec3& lo, const Vec3& hi) noexcept {
+  Vec3 d;
+  for (int a = 0; a < 3; ++a) d[a] = std::max(0.0, std::max(lo[a] - x[a], x[a] - hi[a]));
+  return dot(d, d);
+}
+
+}  // namespace
+
+NearestOnCurve::NearestOnCurve(CurvePtr curve) : curve_(std::move(curve)) {
+  CATENA_ASSERT(curve_);
+  const auto intervals = static_cast<std::uint32_t>(curve_->knots().size() - 1);
+  nodes_.reserve(intervals);
+  make(0, intervals);
+}
+
+std::uint32_t NearestOnCurve::make(std::uint32_t first, std::uint32_t count) {
+  const auto me = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.push_back({Vec3(std::numeric_limits<double>::infinity()), Vec3(-std::numeric_limits<double>::infinity()), first, count, 0});
+  if (count > kLeaf) {
+    const std::uint32_t half = count / 2;
+    make(first, half);
+    const std::uint32_t right = make(first + half, count - half);
+    Node& node = nodes_[me];
+    node.right = right;
+    for (const std::uint32_t child : {me + 1, right})
+      for (int a = 0; a < 3; ++a) {
+        node.lo[a] = std::min(node.lo[a], nodes_[child].lo[a]);
+        node.hi[a] = std::max(node.hi[a], nodes_[child].hi[a]);
+      }
+    return me;
+  }
+  Node& node = nodes_[me];
+  for (std::uint32_t k = first; k < first + count; ++k) {
+    const Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
+    const double third = (b.s - a.s) / 3;
+    for (const Vec3& corner : {a.p, a.p + third * a.t, b.p - third * b.t, b.p})
+      for (int axis = 0; axis < 3; ++axis) {
+        node.lo[axis] = std::min(node.lo[axis], corner[axis]);
+        node.hi[axis] = std::max(node.hi[axis], corner[axis]);
+      }
+  }
+  return me;
+}
+
+void NearestOnCurve::look(std::size_t k, const Vec3& x, NearestPlace& best) const noexcept {
+  const Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
+  const double h = b.s - a.s, below = dot(x - a.p, a.t), above = dot(x - b.p, b.t);
+  const auto offer = [&](double s, const Vec3& p) {
+    const Vec3 e = x - p;
+    if (!(dot(e, e) < best.distance2)) return;
+    best.interval = k;
+    best.s = s;
+    best.distance2 = dot(e, e);
+  };
+  offer(a.s, a.p);
+  offer(b.s, b.p);
+  if (!(below >= 0 && above <= 0)) return;
+  const Hermite piece(a.p, b.p - a.p, h, a.t, b.t);
+  const double theta = piece.foot(x, below * h, above * h);
+  offer(theta >= 1 ? b.s : a.s + theta * h, theta >= 1 ? b.p : piece.at(theta));
+}
+
+NearestPlace NearestOnCurve::at(const Vec3& x) const noexcept {
+  NearestPlace best;
+  best.distance2 = std::numeric_limits<double>::infinity();
+  best.s = curve_->knots().front().s;
+  struct Waiting {
+    std::uint32_t node;
+    double distance2;
+  };
+  std::array<Waiting, kDepth> waiting;
+  std::size_t count = 0;
+  waiting[count++] = {0, 0};
+  while (count > 0 && best.work < kNearestWork) {
+    const Waiting next = waiting[--count];
+    if (!(next.distance2 < best.distance2)) continue;
+    const Node& node = nodes_[next.node];
+    ++best.work;
+    if (node.right == 0) {
+      for (std::uint32_t k = node.first; k < node.first + node.count; ++k, ++best.work) look(k, x, best);
+      continue;
+    }
+    Waiting near{next.node + 1, distance2_to_box(x, nodes_[next.node + 1].lo, nodes_[next.node + 1].hi)};
+    Waiting far{node.right, distance2_to_box(x, nodes_[node.right].lo, nodes_[node.right].hi)};
+    if (far.distance2 < near.distance2) std::swap(near, far);
+    if (count + 2 > kDepth) break;
+    waiting[count++] = far;
+    waiting[count++] = near;
+  }
+  return best;
 }
 
 }  // namespace catena::flow

@@ -1,4 +1,8 @@
-/// What is followed, and by which method. Any thread.
+/// What is followed, by which method, and which way it leads: the unit direction u = v/|v| of a Flow at a place, along which arc-length
+/// integration goes. Correct for |v| from 1e-323 to 1e308.
+/// Line fields (v ~ -v) follow the axis of the interpolated dyads (engine/field/line_axis.h), turned to the side of a reference
+/// direction; where the coherence of the dyads is below kCoherent there is none. Trace, both kinds of streamline links and friction
+/// all go by these functions. One call is one evaluation. Any thread; no allocation, lock or throw.
 #pragma once
 #include <optional>
 #include <string_view>
@@ -8,7 +12,7 @@
 namespace catena::flow {
 
 /// linear (Eqs. 1-2 as printed), euler (Eq. 1), rk2 (midpoint), rk3 (Kutta), rk4, rkf34 (Fehlberg 3(4), FSAL, the paper's), dp54
-/// (Dormand-Prince). Their coefficients: tableau.h.
+/// (Dormand-Prince). Their coefficients: runge_kutta.h.
 enum class Method { linear, euler, rk2, rk3, rk4, rkf34, dp54 };
 std::optional<Method> method_from_word(std::string_view word);
 const char* method_word(Method method);
@@ -19,5 +23,36 @@ struct Flow {
   bool line = false;
   double min_speed = 0;
 };
+
+/// Why a rate could not be given: outside the domain (or not finite), too slow, no single axis, or turned too far from the step's start.
+enum class Stop { none, outside, still, incoherent, turned };
+
+/// Measured on a synthetic heart with noise of 10 degrees and seams of 90: noise alone leaves 0.8 to 1. At 0.2 to 0.3 the axis is off
+/// the fibre by 11 degrees in the median and by 29 at the 90th percentile, below that by 16 to 22 and by 40, so that it says nothing.
+inline constexpr double kCoherent = 0.2;
+
+/// The unit direction of a velocity, or why there is none: not finite counts as outside, zero or <= min_speed as still.
+inline Stop unit_direction(const Vec3& v, double min_speed, Vec3& u) noexcept {
+  if (!is_finite(v)) return Stop::outside;
+  u = direction(v);
+  if (!(max_abs(v) > 0) || norm(v) <= min_speed) return Stop::still;
+  return Stop::none;
+}
+
+/// The same of an axis, turned to the side of `reference`; a reference of zero leaves its own side.
+inline Stop axis_direction(const field::LineAxis& line, double min_speed, const Vec3& reference, Vec3& u) noexcept {
+  u = dot(line.axis, reference) < 0 ? -line.axis : line.axis;
+  if (!std::isfinite(line.speed)) return Stop::outside;
+  if (!(line.speed > min_speed)) return Stop::still;
+  return line.coherence < kCoherent ? Stop::incoherent : Stop::none;
+}
+
+/// `reference` is used by line fields only.
+Stop direction_at(const Flow& flow, const Vec3& p, const Vec3& reference, field::Cursor& cursor, Vec3& u) noexcept;
+
+/// The direction at a seed, where no previous tangent is known; of a line field the side of the nearest voxel.
+inline Stop seed_direction(const Flow& flow, const Vec3& seed, field::Cursor& cursor, Vec3& u) noexcept {
+  return direction_at(flow, seed, Vec3(0.0), cursor, u);
+}
 
 }  // namespace catena::flow

@@ -7,8 +7,9 @@
 /// Off the haptic thread, but without allocation.
 #pragma once
 #include "engine/field/grid.h"
-#include "engine/flow/direction.h"
+#include "engine/flow/flow.h"
 #include "engine/flow/hermite.h"
+#include "engine/flow/runge_kutta.h"
 
 namespace catena::flow {
 

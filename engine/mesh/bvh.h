@@ -1,6 +1,8 @@
 /// A hierarchy of boxes over the faces of a mesh: binary, flat, two children's boxes a cache line, leaves of at most four faces
 /// that lie one after the other. Split where the surface-area heuristic is least (16 bins), by halves where that goes too deep.
 /// Boxes are floats, rounded outwards. Built off the tick; a walk is bounded by its budget of nodes and a fixed stack.
+/// Curves and polylines keep trees of their own (engine/flow/curve.h, haptics/constraints/shapes/polyline_search.h): the order of a walk
+/// decides which of equally near places is taken and what a walk that is cut off has seen, and theirs is part of what recordings hold.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -7,7 +7,6 @@
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/flow/evenly_spaced.h"
 #include "engine/flow/seeds.h"
 
 namespace catena::scene {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-#include "engine/base/shorten_path.h"
 #include "engine/base/text.h"
-#include "engine/flow/level_path.h"
-#include "engine/flow/nearest.h"
-#include "engine/mesh/mesh_path.h"
+#include "engine/flow/curve.h"
+#include "engine/geodesics/geodesics.h"
 #include "engine/scene/link_feature.h"
 
 namespace catena::scene {
@@ -116,9 +114,10 @@ RulerMeasure measure(const Track& track, const Vec3& from, const Vec3& to) {
   if (!track.surface && !track.mesh) return straight(from, to, track.note);
   RulerMeasure out;
   out.how = track.mesh ? How::mesh : How::isosurface;
-  out.points = track.mesh ? mesh::path_on_mesh(*track.mesh, from, to) : flow::path_on_level(*track.surface, track.level, from, to);
+  out.points =
+      track.mesh ? geodesics::path_on_mesh(*track.mesh, from, to) : geodesics::path_on_level(*track.surface, track.level, from, to);
   if (out.points.empty()) return straight(from, to, "no way along the surface joins the ends");
-  out.length = length_of(out.points);
+  out.length = geodesics::length_of(out.points);
   return out;
 }
 

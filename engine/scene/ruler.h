@@ -1,7 +1,7 @@
 /// What a ruler measures: the straight way between its ends, or the way along what its "along" names.
 ///   streamline   arc length on the link's curve, between its places nearest to the ends; on a closed line the shorter way round
-///   isosurface   a shortest path on the level set (engine/flow/level_path.h)
-///   mesh         a shortest path on the mesh (engine/mesh/mesh_path.h)
+///   isosurface   a shortest path on the level set (engine/geodesics)
+///   mesh         a shortest path on the mesh (engine/geodesics)
 /// Which of them a link is, its keys say (link_feature.h). Of several the first streamline counts, or else the first surface. World units.
 /// Frame thread, off the tick.
 #pragma once

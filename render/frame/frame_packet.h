@@ -107,6 +107,7 @@ struct MeshGeometry {
   std::vector<std::uint32_t> triangles;  ///< three indices each, counter-clockwise from outside
   std::vector<Vec3> normals{};           ///< by vertex, for smooth shading; may be empty without it
   std::vector<Color> colors{};           ///< by vertex; empty: the item's everywhere
+  bool operator==(const MeshGeometry&) const = default;
 };
 
 struct MeshItem {
@@ -117,6 +118,12 @@ struct MeshItem {
   float opacity = 1;    ///< of one side; < 1: drawn in the layers
   bool smooth = false;  ///< lit by the vertices' normals, not by each triangle's own
   bool edges = false;   ///< the triangles' edges as lines
+  /// Equal triangles are equal, wherever they are kept.
+  bool operator==(const MeshItem& other) const {
+    const bool alike = geometry == other.geometry || (geometry && other.geometry && *geometry == *other.geometry);
+    return alike && color == other.color && id == other.id && clipped == other.clipped && opacity == other.opacity &&
+           smooth == other.smooth && edges == other.edges;
+  }
 };
 
 /// A plane through a grid, coloured by its values. Lines of constant value lie over it, opaque whatever the slice is.
@@ -141,6 +148,7 @@ struct TubeItem {
   SharedList<Color> colors{};  ///< by point; empty: `color` everywhere
   std::uint32_t id = 0;
   bool clipped = true;
+  bool operator==(const TubeItem&) const = default;
 };
 
 /// An arrowhead: a cone.
@@ -150,12 +158,14 @@ struct ArrowItem {
   Color color;
   std::uint32_t id = 0;
   bool clipped = true;
+  bool operator==(const ArrowItem&) const = default;
 };
 
 /// The local indicator: a short piece of the streamline through the cursor, with an arrowhead downstream.
 struct IndicatorItem {
   TubeItem tube;
   ArrowItem arrow;
+  bool operator==(const IndicatorItem&) const = default;
 };
 
 /// The cursor: probe, the proxy of every link, the links between them, the force. Clip planes do not touch it.
@@ -170,6 +180,7 @@ struct CursorItem {
   /// Where nothing can push back (a mouse), the picture does: the cursor is the last proxy, the probe a small ball on a tether whose
   /// colour and width say the force, 0..1 of the largest. None: as it is.
   std::optional<double> strain{};
+  bool operator==(const CursorItem&) const = default;
 };
 
 /// Bounding boxes, axes, the ground: help for the eye, not data. The camera is not fitted to them; clip planes do not touch them.
@@ -177,6 +188,7 @@ struct AidItems {
   std::vector<TubeItem> tubes;
   std::vector<MeshItem> meshes;
   bool empty() const { return tubes.empty() && meshes.empty(); }
+  bool operator==(const AidItems&) const = default;
 };
 
 /// What the hand takes hold of (paper, Figure 6). A tube of a single point is a ball. The camera is not fitted to them.
@@ -185,6 +197,7 @@ struct WidgetItems {
   std::vector<ArrowItem> arrows;
   std::vector<MeshItem> meshes;
   bool empty() const { return tubes.empty() && arrows.empty() && meshes.empty(); }
+  bool operator==(const WidgetItems&) const = default;
 };
 
 struct FramePacket {

@@ -3,9 +3,41 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
+
+// Chamfer distance of the largest coordinate to the nearest brick of another kind, for all kinds at once: two sweeps over the 13
+// neighbours that come before (after) a brick. Outside the grid nothing is of another kind.
+std::vector<std::uint8_t> plain_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint16_t>& kind) {
+  const auto [nx, ny, nz] = bricks;
+  std::vector<std::uint8_t> distance(kind.size());
+  for (std::size_t i = 0; i < kind.size(); ++i) distance[i] = kind[i] ? 255 : 0;
+  const auto relax = [&, nx = nx, ny = ny, nz = nz](int x, int y, int z, int sign) {
+    const std::size_t at = (std::size_t(z) * ny + y) * nx + x;
+    int here = distance[at];
+    for (int k = 0; k < 13 && here > 1; ++k) {
+      const int a = x + sign * (k % 3 - 1), b = y + sign * (k / 3 % 3 - 1), c = z + sign * (k / 9 - 1);
+      if (a < 0 || b < 0 || c < 0 || a >= nx || b >= ny || c >= nz) continue;
+      const std::size_t other = (std::size_t(c) * ny + b) * nx + a;
+      here = std::min(here, kind[other] == kind[at] ? distance[other] + 1 : 1);
+    }
+    distance[at] = std::uint8_t(here);
+  };
+  for (int z = 0; z < nz; ++z)
+    for (int y = 0; y < ny; ++y)
+      for (int x = 0; x < nx; ++x) relax(x, y, z, 1);
+  for (int z = nz - 1; z >= 0; --z)
+    for (int y = ny - 1; y >= 0; --y)
+      for (int x = nx - 1; x >= 0; --x) relax(x, y, z, -1);
+  return distance;
+}
+
+std::vector<std::uint8_t> brick_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint8_t>& active) {
+  std::vector<std::uint16_t> kind(active.size());
+  std::transform(active.begin(), active.end(), kind.begin(), [](std::uint8_t a) { return std::uint16_t(a ? 0 : 1); });
+  return plain_distances(bricks, kind);
+}
 
 Result<BrickMap> make_word_map(vk::Device& device, const GridMirror& mirror, std::span<const std::uint8_t> high) {
   CATENA_ASSERT(mirror.drawable && high.size() == mirror.ranges.size());
@@ -48,6 +80,28 @@ Result<BrickMap> make_leap_map(vk::Device& device, const GridMirror& mirror, con
   for (std::size_t i = 0; i < high.size(); ++i) high[i] = std::uint8_t(std::min<int>(high[i], 127) | (kinds[i] > 1 ? 128 : 0));
   CATENA_TRY(BrickMap map, make_word_map(device, mirror, high));
   map.active = std::uint64_t(std::count(kinds.begin(), kinds.end(), 0));
+  return map;
+}
+
+Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, std::span<const std::uint16_t, 256> look) {
+  std::vector<std::uint16_t> kind(packed.ranges.size());
+  for (std::size_t i = 0; i < kind.size(); ++i) {
+    const CodeRange& r = packed.ranges[i];
+    kind[i] = look[r.least] == look[r.greatest] ? std::uint16_t(look[r.least] + 1) : 0;
+  }
+  const std::vector<std::uint8_t> distance = plain_distances(packed.bricks, kind);
+  PlainMap map;
+  map.leaping = double(std::count_if(distance.begin(), distance.end(), [](std::uint8_t d) { return d > 0; })) / double(distance.size());
+  vk::ImageInfo info;
+  info.type = VK_IMAGE_TYPE_3D;
+  info.format = VK_FORMAT_R8_UINT;
+  info.extent = {std::uint32_t(packed.bricks[0]), std::uint32_t(packed.bricks[1]), std::uint32_t(packed.bricks[2])};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(map.image, vk::Image::create(device, info));
+  const std::size_t plane = std::size_t(packed.bricks[0]) * packed.bricks[1];
+  CATENA_CHECK(vk::upload_planes(device, map.image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
+    std::memcpy(out, distance.data() + first * plane, count * plane);
+  }));
   return map;
 }
 

@@ -1,18 +1,30 @@
+/// What rays leap over: maps of the bricks of grids and of packed volumes, and the distances in them.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "render/mirror/grid_mirror.h"
+#include "render/mirror/packed_volume.h"
+
+namespace catena::render {
+
+/// How far a ray may leap: for every brick of a grid, x fastest, the largest coordinate difference, in bricks and at most 255, to the
+/// nearest brick of another kind. 0: a brick that is never leapt over. Outside the grid nothing is of another kind.
+/// `kind`: 0 varies; equal numbers are alike.
+std::vector<std::uint8_t> plain_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint16_t>& kind);
+
+/// Two kinds: active ones, which are never leapt over, and the others.
+std::vector<std::uint8_t> brick_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint8_t>& active);
+
 /// What a ray asks before it samples: one word a brick of 8^3 cells, in an image R32_UINT.
 ///   bits 0..23: the brick's slot in the atlas (x, y, z, 8 bits each); bits 24..31: 0 if the brick is active, else the distance
 ///   (largest coordinate difference, in bricks, at most 255) to the nearest active one: all nearer bricks are inactive too.
 /// Volumes have their bits 24..31 otherwise: bits 24..30 the distance (at most 127) to the nearest brick of another kind, 0 if the
 /// brick varies; bit 31: it is not empty but plain, of one colour and density.
 /// Rebuilt when the transfer function or the level changes; the values stay where they are.
-#pragma once
-#include <functional>
-#include <span>
-
-#include "render/mirror/brick_distances.h"
-#include "render/mirror/grid_mirror.h"
-
-namespace catena::render {
-
 struct BrickMap {
   vk::Image image;
   std::uint64_t active = 0, total = 0;
@@ -26,5 +38,17 @@ Result<BrickMap> make_brick_map(vk::Device& device, const GridMirror& mirror, co
 Result<BrickMap> make_leap_map(vk::Device& device, const GridMirror& mirror, const std::function<std::uint16_t(const BrickRange&)>& kind);
 /// Bits 24..31 as they are given, by brick.
 Result<BrickMap> make_word_map(vk::Device& device, const GridMirror& mirror, std::span<const std::uint8_t> high);
+
+/// Where a ray may leap: one byte a brick of 4^3 cells, in an image R8_UINT. 0: the transfer function varies in the brick. d > 0: the
+/// brick is plain (empty, or of one colour and density), and so, alike, are all bricks nearer than d (largest coordinate
+/// difference): a segment within that cube is integrated at once. Rebuilt when the transfer function changes.
+struct PlainMap {
+  vk::Image image;
+  double leaping = 0;  ///< share of bricks with d > 0
+};
+
+/// `look[c]`: codes c and c + 1 (and all between) look alike if look[c] == look[c + 1]; a code where the look varies within half a
+/// code of it has a number of its own.
+Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, std::span<const std::uint16_t, 256> look);
 
 }  // namespace catena::render

@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "engine/base/parallel_for.h"
-#include "render/mirror/brick_distances.h"
+#include "render/mirror/brick_map.h"
 #include "render/mirror/half.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

@@ -11,7 +11,7 @@
 #include "engine/base/memory_limit.h"
 #include "engine/base/parallel_for.h"
 #include "render/mirror/half.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {

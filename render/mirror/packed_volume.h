@@ -37,12 +37,24 @@ struct PackedVolume {
 /// Whether a grid can be packed on this device: no masked cells, at least a cell thick, and of a size that pays.
 bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid);
 
-/// Of its words, and of gradients (render/mirror/gradient_volume.h) as many again.
+/// Of its words, and of gradients (render/mirror/packed_volume.h) as many again.
 std::uint64_t packed_bytes(const field::ScalarGrid& grid);
 
 Result<PackedVolume> make_packed_volume(vk::Device& device, const field::ScalarGrid& grid, const ValueInterval& active);
 
 /// The range of values to encode (for make_packed_volume and its test): `values` x fastest.
 ValueInterval range_to_encode(const field::Index3& size, const std::vector<float>& values, const ValueInterval& active);
+
+/// Gradients for shading in the fast raycast: directions of central differences of one voxel at every voxel, R8G8B8A8_UNORM, read with
+/// linear interpolation: 128 + 127 g / (3 rms |g|). Longer ones are shortened, which the fourth component says (1): the light needs
+/// directions more than lengths.
+/// The shading of `reference`, for 4 bytes a voxel more; without it the gradient of the cell serves. Made when first asked for.
+struct GradientVolume {
+  vk::Image image;
+  double unit = 0;  ///< values a voxel in one count of 1 / 127
+};
+
+/// `grid` can_be_packed.
+Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::ScalarGrid& grid);
 
 }  // namespace catena::render

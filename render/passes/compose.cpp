@@ -1,9 +1,8 @@
-#include "render/passes/compose.h"
-
 #include <map>
 
-#include "render/passes/grid_bindings.h"
-#include "render/passes/upsample.h"
+#include "render/passes/passes.h"
+#include "render/raycast/fast_volume.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -26,7 +25,7 @@ class ComposePass final : public Pass {
   Outcome record(vk::Commands& commands, Frame& frame) override;
 
  private:
-  UpsamplePass upsample_;
+  Upsampler upsample_;
   std::map<std::pair<VkFormat, std::uint32_t>, vk::Pipeline> pipelines_;
   vk::Buffer uniform_;
 };
@@ -35,7 +34,9 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   Targets& targets = frame.targets;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
   const std::array<float, 4>& background = frame.packet.background;
-  if (frame.half_lattice) return upsample_.record(commands, *frame.half_lattice, targets, background, opaque, frame.half_area);
+  if (frame.half_lattice)
+    return upsample_.record(commands, *frame.half_lattice, opaque ? &targets.opaque_color : nullptr, targets.none, background,
+                            frame.half_area, targets.picture);
 
   vk::Pipeline& pipeline = pipelines_[{targets.picture_format, (opaque ? 1u : 0u) | (volume ? 2u : 0u)}];
   if (!pipeline) {
@@ -49,7 +50,7 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   }
   shared::ComposeData data{};
   data.background = {background[0], background[1], background[2], background[3]};
-  CATENA_CHECK(write_uniform(frame.device, uniform_, data));
+  CATENA_CHECK(vk::write_uniform(frame.device, uniform_, data));
   targets.begin(commands, target::picture, target::picture);
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, opaque ? &targets.opaque_color : &targets.none, nullptr},
@@ -62,6 +63,6 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
 
 }  // namespace
 
-const PassEntry kComposePass{"compose", [](const Frame&) { return true; }, ComposePass::create};
+const PassEntry kComposePass{"compose", [](const Frame&) { return true; }, ComposePass::create, target::picture};
 
 }  // namespace catena::render

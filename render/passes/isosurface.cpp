@@ -1,11 +1,10 @@
-#include "render/passes/isosurface.h"
-
 #include <algorithm>
 #include <map>
 
 #include "render/mirror/cell_map.h"
-#include "render/passes/covered_area.h"
-#include "render/passes/targets.h"
+#include "render/passes/passes.h"
+#include "render/raycast/bound_grids.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -30,29 +29,6 @@ VkRect2D surface_area(const CellMap& cells, const GridMirror& mirror, const fiel
 }
 
 bool is_opaque(const IsosurfaceItem& item) { return item.opacity >= 1; }
-
-}  // namespace
-
-Outcome SurfaceState::update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, double next_level) {
-  const auto rounded = float(next_level);
-  if (mirror == next_mirror && level == rounded && map.image) return Done{};
-  mirror = std::move(next_mirror);
-  level = rounded;
-  CATENA_TRY(map, make_brick_map(device, *mirror, [this](const BrickRange& r) { return r.least <= level && level <= r.greatest; }));
-  return Done{};
-}
-
-shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state, const IsosurfaceItem& item) {
-  shared::GridData data = rays.grid(*state.mirror, item.grid->mapping());
-  data.level = state.level;
-  data.opacity = item.opacity;
-  data.color = {item.color.r, item.color.g, item.color.b};
-  data.id = item.id;
-  data.clipped = item.clipped;
-  return data;
-}
-
-namespace {
 
 class IsosurfacePass final : public Pass {
  public:
@@ -138,7 +114,7 @@ Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
     if (area.extent.width == 0 || area.extent.height == 0) continue;
     shared::FrameData data = frame.rays.frame();
     data.grids[0] = surface_data(frame.rays, surface.state, surface.item);
-    CATENA_CHECK(write_uniform(frame.device, surface.uniform, data));
+    CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
     const bool has_cells = frame.settings.skip && surface.cell_map;
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags(), has_cells));

@@ -1,11 +1,10 @@
-#include "render/passes/layers.h"
-
 #include <algorithm>
 #include <map>
 
-#include "render/passes/mesh.h"
+#include "render/passes/passes.h"
 #include "render/passes/slice.h"
 #include "render/passes/triangles.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -20,7 +19,12 @@ constexpr std::uint32_t kLayersRestShader[] = {
 #include "spirv/layer_rest.frag.inc"
 };
 
+/// Of a pixel: colour and depth of every layer, two ids, the depth buffer, the rest; four to spare.
+constexpr std::uint64_t kLayerBytes = 12 * MAX_LAYERS + 32;
+
 using Clear = std::array<float, 4>;
+
+bool is_translucent(const MeshItem& item) { return item.opacity > 0 && item.opacity < 1; }
 
 struct TranslucentMesh {
   MeshItem item;
@@ -69,7 +73,7 @@ Outcome LayersPass::prepare_meshes(Frame& frame) {
     if (!is_translucent(item)) continue;
     if (count == meshes_.size()) meshes_.emplace_back();
     TranslucentMesh& mesh = meshes_[count++];
-    if (same(mesh.item, item)) continue;
+    if (mesh.item == item) continue;
     Shape shape;
     add_mesh(shape, item);
     CATENA_CHECK(mesh.triangles.upload(frame.device, shape));
@@ -107,7 +111,7 @@ Outcome LayersPass::prepare_images(Frame& frame) {
 
 Outcome LayersPass::prepare(Frame& frame) {
   CATENA_CHECK(prepare_meshes(frame));
-  CATENA_CHECK(prepare_slices(frame, slices_, is_translucent));
+  CATENA_CHECK(prepare_slices(frame, slices_, render::is_translucent));
   std::stable_sort(meshes_.begin(), meshes_.end(), [](const auto& a, const auto& b) { return a.item.id < b.item.id; });
   std::stable_sort(slices_.begin(), slices_.end(), [](const auto& a, const auto& b) { return a.id() < b.id(); });
   count_ = collects_rest() ? MAX_LAYERS : std::uint32_t(slices_.size());
@@ -138,7 +142,7 @@ Result<const vk::Pipeline*> LayersPass::mesh_pipeline(vk::Device& device, std::u
 
 Outcome LayersPass::draw_mesh(vk::Commands& commands, Frame& frame, TranslucentMesh& mesh, const Peel& peel) {
   if (mesh.triangles.empty()) return Done{};
-  CATENA_CHECK(write_uniform(frame.device, mesh.layer_data, layer_data(frame.rays, mesh.item.opacity)));
+  CATENA_CHECK(vk::write_uniform(frame.device, mesh.layer_data, layer_data(frame.rays, mesh.item.opacity)));
   CATENA_TRY(const vk::Pipeline* pipe, mesh_pipeline(frame.device, peel.mode, peel.opaque_depth != nullptr));
   CATENA_TRY(const vk::Binding binding, mesh.triangles.frame_binding(frame.device, frame.rays));
   std::vector<vk::Binding> bindings{binding};
@@ -222,6 +226,7 @@ bool has_layers(const FramePacket& packet) {
   return any(packet.meshes) || any(packet.slices);
 }
 
-const PassEntry kLayersPass{"layers", [](const Frame& frame) { return has_layers(frame.packet); }, LayersPass::create};
+const PassEntry kLayersPass{"layers", [](const Frame& frame) { return has_layers(frame.packet); }, LayersPass::create, target::opaque,
+                            kLayerBytes};
 
 }  // namespace catena::render

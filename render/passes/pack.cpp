@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "render/passes/grid_bindings.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -58,7 +58,7 @@ shared::AnaglyphData anaglyph_matrices(Packing packing) {
   return data;
 }
 
-Outcome PackPass::begin(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height) {
+Outcome EyePacker::begin(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height) {
   if (is_anaglyph(packing) && views != 2) return Error{fmt::format("an anaglyph has {} views, expected 2", views)};
   const PackedSize size = packed_size(packing, views, width, height);
   const std::uint32_t most = device_->info().limits.maxImageDimension2D;
@@ -73,9 +73,9 @@ Outcome PackPass::begin(Packing packing, std::size_t views, std::uint32_t width,
   return Done{};
 }
 
-void PackPass::keep(std::size_t view, vk::Image& picture) { std::swap(views_.at(view), picture); }
+void EyePacker::keep(std::size_t view, vk::Image& picture) { std::swap(views_.at(view), picture); }
 
-Outcome PackPass::record(vk::Commands& commands) {
+Outcome EyePacker::record(vk::Commands& commands) {
   const vk::ImageInfo& one = views_.front().info();
   const VkExtent3D& have = packed_.info().extent;
   if (!packed_ || have.width != size_.width || have.height != size_.height || packed_.info().format != one.format) {
@@ -96,7 +96,7 @@ Outcome PackPass::record(vk::Commands& commands) {
   return Done{};
 }
 
-Result<const vk::Pipeline*> PackPass::pipeline(std::uint32_t pattern) {
+Result<const vk::Pipeline*> EyePacker::pipeline(std::uint32_t pattern) {
   vk::Pipeline& pipeline = pipelines_[{packed_.info().format, pattern}];
   if (!pipeline) {
     vk::GraphicsInfo info;
@@ -115,7 +115,7 @@ Result<const vk::Pipeline*> PackPass::pipeline(std::uint32_t pattern) {
   return &pipeline;
 }
 
-Outcome PackPass::record_view(vk::Commands& commands, std::size_t view) {
+Outcome EyePacker::record_view(vk::Commands& commands, std::size_t view) {
   CATENA_TRY(const vk::Pipeline* pipe, pipeline(pattern_of(packing_)));
   // where it goes, and how many of its pixels make one
   const auto k = std::uint32_t(view), n = std::uint32_t(views_.size());
@@ -132,7 +132,7 @@ Outcome PackPass::record_view(vk::Commands& commands, std::size_t view) {
     if (packing_ == Packing::top_bottom_half) data.block_y = n;
   }
   data.first = {float(area.offset.x), float(area.offset.y)};
-  CATENA_CHECK(write_uniform(*device_, data_[view], data));
+  CATENA_CHECK(vk::write_uniform(*device_, data_[view], data));
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &data_[view], nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, &views_[view], nullptr}};
   commands.scissor(area);
@@ -141,9 +141,9 @@ Outcome PackPass::record_view(vk::Commands& commands, std::size_t view) {
   return Done{};
 }
 
-Outcome PackPass::record_anaglyph(vk::Commands& commands) {
+Outcome EyePacker::record_anaglyph(vk::Commands& commands) {
   CATENA_TRY(const vk::Pipeline* pipe, pipeline(pattern_of(packing_)));
-  CATENA_CHECK(write_uniform(*device_, matrices_, anaglyph_matrices(packing_)));
+  CATENA_CHECK(vk::write_uniform(*device_, matrices_, anaglyph_matrices(packing_)));
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &matrices_, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, &views_[0], nullptr},
                                   {2, vk::Resource::texture, nullptr, &views_[1], nullptr}};

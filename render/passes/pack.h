@@ -11,9 +11,9 @@
 
 namespace catena::render {
 
-class PackPass {
+class EyePacker {
  public:
-  explicit PackPass(vk::Device& device) : device_(&device) {}
+  explicit EyePacker(vk::Device& device) : device_(&device) {}
 
   /// Before the views: how many there are. Errors: a packing that does not take so many, a picture beyond the device.
   Outcome begin(Packing packing, std::size_t views, std::uint32_t width, std::uint32_t height);

@@ -2,7 +2,97 @@
 
 #include <algorithm>
 
+#include "engine/base/assert.h"
+#include "shaders/shared/frame.h"
+
 namespace catena::render {
+
+namespace {
+
+bool fits(const vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height) {
+  const VkExtent3D& have = image.info().extent;
+  return image && image.info().format == format && have.width == width && have.height == height;
+}
+
+Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
+  if (fits(image, format, width, height)) return Done{};
+  vk::ImageInfo info;
+  info.format = format;
+  info.extent = {width, height, 1};
+  info.usage = usage;
+  CATENA_TRY(image, vk::Image::create(device, info));
+  return Done{};
+}
+
+}  // namespace
+
+std::vector<VkFormat> opaque_formats() { return {kOpaqueFormat, kDepthValueFormat, kIdFormat}; }
+
+Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, TargetSet needed) {
+  constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  const auto want = [&](TargetSet one, VkFormat format, VkImageUsageFlags usage) -> Outcome {
+    return (needed & one) != 0 ? fit(device, image(one), format, width, height, usage) : Done{};
+  };
+  CATENA_CHECK(want(target::picture, picture_format, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
+  CATENA_CHECK(want(target::opaque_color, kOpaqueFormat, color | read));
+  CATENA_CHECK(want(target::opaque_depth, kDepthValueFormat, color | read));
+  CATENA_CHECK(want(target::opaque_id, kIdFormat, color | read));
+  CATENA_CHECK(want(target::depth_buffer, kDepthBufferFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
+  CATENA_CHECK(want(target::volume, kVolumeFormat, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
+  if (!none) {
+    CATENA_CHECK(fit(device, none, kPictureFormat, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT));
+    CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
+    commands.use(none, vk::kFragmentRead);
+    CATENA_CHECK(commands.finish());
+  }
+  return Done{};
+}
+
+std::uint64_t Targets::bytes_to_come(std::uint32_t width, std::uint32_t height, TargetSet needed) const {
+  std::uint64_t a_pixel = 0;
+  const auto add = [&](TargetSet one, const vk::Image& image, VkFormat format) {
+    if ((needed & one) != 0 && !fits(image, format, width, height)) a_pixel += vk::texel_bytes(format);
+  };
+  add(target::picture, picture, picture_format);
+  add(target::opaque_color, opaque_color, kOpaqueFormat);
+  add(target::opaque_depth, opaque_depth, kDepthValueFormat);
+  add(target::opaque_id, opaque_id, kIdFormat);
+  add(target::depth_buffer, depth_buffer, kDepthBufferFormat);
+  add(target::volume, volume, kVolumeFormat);
+  return a_pixel * width * height;
+}
+
+vk::Image& Targets::image(TargetSet one) {
+  switch (one) {
+    case target::opaque_color:
+      return opaque_color;
+    case target::opaque_depth:
+      return opaque_depth;
+    case target::opaque_id:
+      return opaque_id;
+    case target::depth_buffer:
+      return depth_buffer;
+    case target::volume:
+      return volume;
+    default:
+      CATENA_ASSERT(one == target::picture);
+      return picture;
+  }
+}
+
+void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared) {
+  std::vector<vk::ColorTarget> colors;
+  for (const TargetSet one : {target::opaque_color, target::opaque_depth, target::opaque_id, target::volume, target::picture}) {
+    if ((writes & one) == 0) continue;
+    const std::array<float, 4> empty{one == target::opaque_depth ? NO_DEPTH : 0.0f, 0, 0, 0};
+    colors.push_back({&image(one), (cleared & one) != 0 ? std::optional(empty) : std::nullopt});
+  }
+  vk::DepthTarget depth;
+  if ((writes & target::depth_buffer) != 0)
+    depth = {&depth_buffer, (cleared & target::depth_buffer) != 0 ? std::optional(0.0f) : std::nullopt};
+  commands.begin_pass(colors, depth);
+}
 
 Result<std::shared_ptr<const GridMirror>> Frame::mirror(const field::ScalarGrid& grid) const {
   const auto uses = [&](const auto& item) { return item.grid.get() == &grid; };

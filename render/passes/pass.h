@@ -2,24 +2,52 @@
 /// the passes in order and derives clears, barriers and groups from the declarations. A pass is created when a packet first wants
 /// it; a scene without streamlines has no streamline pass.
 ///   wanted -> prepare (uploads, pipelines) -> bounds (they fix near, far and the rays) -> record
-/// Frame thread only. To add one: a class here beside its shader, and a line in the list of renderer.cpp.
+/// Frame thread only. To add one: a class here beside its shader, a line in passes.h and one in the list of renderer.cpp.
 #pragma once
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "render/frame/frame_packet.h"
-#include "render/passes/camera_rays.h"
-#include "render/passes/mirrors.h"
-#include "render/passes/render_settings.h"
-#include "render/passes/targets.h"
+#include "render/mirror/mirrors.h"
+#include "render/raycast/camera_rays.h"
+#include "render/raycast/ray_scene.h"
+#include "render/raycast/render_settings.h"
 #include "render/vk/commands.h"
+#include "render/vk/resources.h"
 
 namespace catena::render {
 
-/// Something translucent that triangles drew, to be blended with what rays meet, in order: premultiplied colours, and the depth t
-/// (shaders/shared/frame.h, R32_SFLOAT) of each; NO_DEPTH: nothing at this pixel. Of the picture's size.
-struct Layer {
-  vk::Image* color = nullptr;
-  vk::Image* depth = nullptr;
+/// A set of targets, by bits.
+using TargetSet = unsigned;
+namespace target {
+inline constexpr TargetSet opaque_color = 1, opaque_depth = 2, opaque_id = 4, depth_buffer = 8, volume = 16, picture = 32;
+/// Everything that solid things draw into.
+inline constexpr TargetSet opaque = opaque_color | opaque_depth | opaque_id | depth_buffer;
+}  // namespace target
+
+inline constexpr VkFormat kOpaqueFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+inline constexpr VkFormat kDepthValueFormat = VK_FORMAT_R32_SFLOAT;  ///< depth t of shared/frame.h
+inline constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT;            ///< the object's id, 0: none
+inline constexpr VkFormat kDepthBufferFormat = VK_FORMAT_D32_SFLOAT;
+inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;            ///< straight alpha
+inline constexpr VkFormat kFloatPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< the same, not rounded
+
+/// The formats of a pipeline that draws into target::opaque, in the order of its outputs.
+std::vector<VkFormat> opaque_formats();
+
+/// The images that passes hand to each other, created when a pass first needs them and again when the size changes.
+struct Targets {
+  vk::Image opaque_color, opaque_depth, opaque_id, depth_buffer, volume, picture;
+  VkFormat picture_format = kPictureFormat;  ///< or kFloatPictureFormat; pipelines that draw into the picture follow it
+  vk::Image none;                            ///< one texel, bound where a pass has no input
+
+  Outcome ensure(vk::Device& device, std::uint32_t width, std::uint32_t height, TargetSet needed);
+  /// Bytes that ensure() would have to add for these.
+  std::uint64_t bytes_to_come(std::uint32_t width, std::uint32_t height, TargetSet needed) const;
+  vk::Image& image(TargetSet one);
+  /// Begins rendering into `writes`; what `cleared` names starts empty, the rest keeps what is there.
+  void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared);
 };
 
 /// One picture while it is made: what its passes share.
@@ -47,6 +75,18 @@ struct PassUse {
   bool own_scope = false;  ///< begins and ends its rendering itself; else the renderer does, for all neighbours with equal targets
 };
 
+/// Rays of a pass, some of them alone: what the error of a picture is measured with.
+class RayProbe {
+ public:
+  /// The rays of every `spacing`-th pixel, into `target` (kVolumeFormat).
+  virtual Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
+  /// The fast raycast was tried with this packet's volume and had no memory for it.
+  virtual bool has_refused(const FramePacket& packet) const = 0;
+
+ protected:
+  ~RayProbe() = default;
+};
+
 class Pass {
  public:
   virtual ~Pass() = default;
@@ -58,6 +98,8 @@ class Pass {
   virtual Outcome record(vk::Commands& commands, Frame& frame) = 0;
   /// Milliseconds spent so far on images made from grids, beside the mirrors.
   virtual double build_ms() const { return 0; }
+  /// Null: it casts no rays that others are blended with.
+  virtual RayProbe* probe() { return nullptr; }
   /// What the last picture lacks, or was drawn otherwise than asked, and why, one sentence; empty: nothing.
   virtual std::string note() const { return {}; }
 };
@@ -67,6 +109,9 @@ struct PassEntry {
   const char* name;
   bool (*wanted)(const Frame& frame);
   Result<std::unique_ptr<Pass>> (*create)(vk::Device& device);
+  // what the mirrors of grids leave room for, where it is wanted
+  TargetSet reserves = target::opaque;
+  std::uint64_t reserved_pixel_bytes = 0;  ///< for images of its own
 };
 
 }  // namespace catena::render

@@ -1,11 +1,12 @@
-#include "render/passes/raycast.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
-#include "render/passes/covered_area.h"
-#include "render/passes/layers.h"
+#include "render/passes/passes.h"
+#include "render/raycast/fast_volume.h"
+#include "render/raycast/projection.h"
+#include "render/raycast/volume.h"
 
 namespace catena::render {
 namespace {
@@ -43,17 +44,46 @@ Outcome check(const Frame& frame, std::size_t volumes, std::size_t surfaces, std
   return Done{};
 }
 
-}  // namespace
+class RaycastPass final : public Pass, public RayProbe {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device);
+  PassUse use(const Frame& frame) const override;
+  Outcome prepare(Frame& frame) override;
+  Bounds bounds() const override;
+  Outcome record(vk::Commands& commands, Frame& frame) override;
+  double build_ms() const override { return fast_pass_ ? fast_pass_->build_ms() : 0; }
+  std::string note() const override { return wanted_fast_ && !fast_ ? refused_.reason : std::string(); }
+
+  RayProbe* probe() override { return this; }
+  Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
+  bool has_refused(const FramePacket& packet) const override {
+    return !refused_.reason.empty() && packet.volumes.size() == 1 && packet.volumes.front().grid->version() == refused_.version;
+  }
+
+ private:
+  RaycastPass() = default;
+  bool ends_at_half(const Frame& frame) const;
+  /// A grid that the fast raycast had no memory for; not tried again before another one, or other settings, come.
+  struct Refused {
+    std::uint64_t version = 0, most_bytes = 0;
+    bool gradients = false;
+    std::string reason;
+  };
+  bool prepare_fast(Frame& frame);
+  /// The volumes, or the one that is projected; into the target that is begun.
+  Outcome record_exact(vk::Commands& commands, Frame& frame, const CameraRays& rays, const VkRect2D& area);
+
+  std::optional<VolumeRaycast> exact_pass_;
+  std::optional<ProjectionRaycast> projection_pass_;
+  std::optional<FastVolumeRaycast> fast_pass_;
+  const VolumeItem* fast_ = nullptr;  ///< of this frame
+  Refused refused_;
+  bool wanted_fast_ = false;
+  bool any_ = false, projected_ = false;
+  std::vector<const field::ScalarGrid*> grids_;
+};
 
 Result<std::unique_ptr<Pass>> RaycastPass::create(vk::Device&) { return std::unique_ptr<Pass>(new RaycastPass); }
-
-bool RaycastPass::draws_fast(const vk::Device& device, const FramePacket& packet) {
-  if (packet.volumes.size() != 1) return false;
-  const VolumeItem& item = packet.volumes.front();
-  return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
-         !has_layers(packet) && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
-         can_be_packed(device, *packet.volumes.front().grid);
-}
 
 bool RaycastPass::ends_at_half(const Frame& frame) const {
   return fast_ && frame.settings.fast->ends_at_half() && !frame.settings.float_picture && !frame.has(target::opaque_depth);
@@ -80,7 +110,7 @@ bool RaycastPass::prepare_fast(Frame& frame) {
     prepared = Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, settings.most_bytes >> 20)};
   } else {
     if (!fast_pass_) {
-      auto created = FastVolumePass::create(frame.device);
+      auto created = FastVolumeRaycast::create(frame.device);
       if (created)
         fast_pass_.emplace(std::move(*created));
       else
@@ -97,7 +127,7 @@ bool RaycastPass::prepare_fast(Frame& frame) {
 Outcome RaycastPass::prepare(Frame& frame) {
   const FramePacket& packet = frame.packet;
   grids_.clear();
-  wanted_fast_ = frame.settings.fast && frame.layers.empty() && draws_fast(frame.device, packet);
+  wanted_fast_ = frame.settings.fast && frame.layers.empty() && can_be_drawn_fast(frame.device, packet);
   fast_ = wanted_fast_ && prepare_fast(frame) ? &packet.volumes.front() : nullptr;
   if (fast_) {
     grids_.push_back(fast_->grid.get());
@@ -128,12 +158,12 @@ Outcome RaycastPass::prepare(Frame& frame) {
   if (!any_) return Done{};
   if (projected_) {
     if (!projection_pass_) {
-      CATENA_TRY(projection_pass_, ProjectionPass::create(frame.device));
+      CATENA_TRY(projection_pass_, ProjectionRaycast::create(frame.device));
     }
     return projection_pass_->prepare(*volumes.front().item, volumes.front().mirror);
   }
   if (!exact_pass_) {
-    CATENA_TRY(exact_pass_, VolumePass::create(frame.device));
+    CATENA_TRY(exact_pass_, VolumeRaycast::create(frame.device));
   }
   return exact_pass_->prepare(volumes, surfaces);
 }
@@ -188,12 +218,22 @@ Outcome RaycastPass::record_probe(vk::Commands& commands, Frame& frame, std::uin
   return Done{};
 }
 
+}  // namespace
+
+bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
+  if (packet.volumes.size() != 1) return false;
+  const VolumeItem& item = packet.volumes.front();
+  return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
+         !has_layers(packet) && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
+         can_be_packed(device, *packet.volumes.front().grid);
+}
+
 const PassEntry kRaycastPass{"raycast",
                              [](const Frame& frame) {
                                const auto& surfaces = frame.packet.isosurfaces;
                                return !frame.packet.volumes.empty() || !frame.layers.empty() ||
                                       std::any_of(surfaces.begin(), surfaces.end(), is_translucent);
                              },
-                             RaycastPass::create};
+                             RaycastPass::create, target::volume};
 
 }  // namespace catena::render

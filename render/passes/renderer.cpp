@@ -8,21 +8,10 @@
 #include <limits>
 
 #include "render/mirror/half.h"
-#include "render/passes/aids.h"
-#include "render/passes/compose.h"
-#include "render/passes/cursor.h"
 #include "render/passes/embedded_shaders.h"
-#include "render/passes/isosurface.h"
-#include "render/passes/layers.h"
-#include "render/passes/mesh.h"
-#include "render/passes/overlay.h"
 #include "render/passes/pack.h"
-#include "render/passes/raycast.h"
-#include "render/passes/slice.h"
-#include "render/passes/streamlines.h"
-#include "render/passes/surface_color.h"
+#include "render/passes/passes.h"
 #include "render/passes/ui.h"
-#include "render/passes/widgets.h"
 #include "render/vk/swapchain.h"
 
 namespace catena::render {
@@ -78,8 +67,8 @@ struct Renderer::Parts {
   std::array<std::unique_ptr<Pass>, std::size(kPasses)> passes;
   double gone_build_ms = 0;  ///< of passes that have gone
   TargetSet drawn = 0;       ///< by the last picture
-  std::optional<PackPass> pack;
-  std::optional<UiPass> ui;
+  std::optional<EyePacker> pack;
+  std::optional<WindowPainter> ui;
   bool packed = false;                            ///< the last picture is made of several views
   std::uint32_t view_width = 0, view_height = 0;  ///< of one view; its depth and ids
   double reference_depth = 0;
@@ -158,13 +147,14 @@ auto Renderer::Parts::within_budget(const FramePacket& packet, const Work& work)
 /// Bytes of the budget that are not for mirrors: the targets, their copy on the way back, layers, and 1 MB of tables and vertices.
 std::uint64_t Renderer::Parts::reserved(const Frame& frame) const {
   TargetSet needed = target::picture | target::volume;
+  std::uint64_t a_pixel = vk::texel_bytes(targets.picture_format);
   for (const PassEntry* entry : kPasses)
-    if (entry != &kRaycastPass && entry != &kComposePass && entry != &kOverlayPass && entry->wanted(frame)) needed |= target::opaque;
-  constexpr std::uint64_t kLayerBytes = 12 * MAX_LAYERS + 32;  // a pixel; layers.cpp
+    if (entry->wanted(frame)) {
+      needed |= entry->reserves;
+      a_pixel += entry->reserved_pixel_bytes;
+    }
   const std::uint64_t pixels = std::uint64_t(frame.packet.width) * frame.packet.height;
-  const std::uint64_t layers = has_layers(frame.packet) ? pixels * kLayerBytes : 0;
-  return layers + targets.bytes_to_come(frame.packet.width, frame.packet.height, needed) +
-         pixels * vk::texel_bytes(targets.picture_format) + 1'000'000;
+  return pixels * a_pixel + targets.bytes_to_come(frame.packet.width, frame.packet.height, needed) + 1'000'000;
 }
 
 /// Makes the passes that the packet wants and no others, uploads, and fixes the targets and the rays.
@@ -297,9 +287,9 @@ Result<FloatPicture> Renderer::read_back_float() {
 std::uint32_t Renderer::longest_side() const { return parts_->device->info().limits.maxImageDimension2D; }
 
 bool Renderer::draws_fast(const FramePacket& packet) const {
-  for (const Pass* pass : parts_->active())
-    if (const auto* raycast = dynamic_cast<const RaycastPass*>(pass); raycast && raycast->has_refused(packet)) return false;
-  return RaycastPass::draws_fast(*parts_->device, packet);
+  for (Pass* pass : parts_->active())
+    if (const RayProbe* rays = pass->probe(); rays && rays->has_refused(packet)) return false;
+  return can_be_drawn_fast(*parts_->device, packet);
 }
 
 Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSettings& settings) {
@@ -307,7 +297,7 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
   Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
   CATENA_CHECK(p.prepare(frame));
 
-  // all before the raycast, whole; then the rays, into an image of their own
+  // all before the rays, whole; then the rays, into an image of their own
   const std::uint32_t spacing = probe_spacing(packet.width, packet.height);
   Picture picture;
   picture.width = (packet.width + spacing - 1) / spacing;
@@ -315,26 +305,26 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
   const std::size_t count = std::size_t(picture.width) * picture.height;
   vk::Image target;
   std::vector<Pass*> before;
-  RaycastPass* raycast = nullptr;
+  RayProbe* rays = nullptr;
   for (Pass* pass : p.active()) {
-    if ((raycast = dynamic_cast<RaycastPass*>(pass))) break;
+    if ((rays = pass->probe())) break;
     if ((pass->use(frame).writes & target::picture) == 0) before.push_back(pass);
   }
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(*p.device));
   CATENA_CHECK(p.record(commands, frame, before));
-  if (raycast) {
+  if (rays) {
     vk::ImageInfo info;
     info.format = kVolumeFormat;
     info.extent = {picture.width, picture.height, 1};
     info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     CATENA_TRY(target, vk::Image::create(*p.device, info));
     if (frame.has(target::opaque_depth)) commands.use(p.targets.opaque_depth, vk::kFragmentRead);
-    CATENA_CHECK(raycast->record_probe(commands, frame, spacing, target));
+    CATENA_CHECK(rays->record_probe(commands, frame, spacing, target));
   }
   CATENA_CHECK(commands.finish());
   std::vector<float> volume(4 * count);
   std::vector<std::uint16_t> opaque;
-  if (raycast) {
+  if (rays) {
     CATENA_TRY(volume, bytes_of<float>(*p.device, target, volume.size()));
   }
   if (frame.has(target::opaque_color)) {

@@ -19,8 +19,8 @@
 #include "render/frame/frame_packet.h"
 #include "render/frame/ui_items.h"
 #include "render/image/picture.h"
-#include "render/passes/coarsening.h"
-#include "render/passes/render_settings.h"
+#include "render/mirror/mirrors.h"
+#include "render/raycast/render_settings.h"
 #include "render/vk/device.h"
 
 namespace catena::render {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include "render/passes/covered_area.h"
-#include "render/vk/upload.h"
+#include "render/passes/passes.h"
+#include "render/raycast/camera_rays.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -84,7 +85,7 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   frame.grids[0] = rays.grid(*slice.mirror_, grid->mapping());
   frame.grids[0].id = item.id;
   frame.grids[0].clipped = item.clipped;
-  CATENA_CHECK(write_uniform(*device_, slice.frame_data_, frame));
+  CATENA_CHECK(vk::write_uniform(*device_, slice.frame_data_, frame));
   shared::SliceData data{};
   data.plane = rays.plane({item.point, item.normal});
   data.normal = glm::vec3(direction(item.normal));
@@ -94,8 +95,8 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   data.level_count = std::uint32_t(item.levels.size());
   data.line_color = {item.line_color.r, item.line_color.g, item.line_color.b};
   data.half_width = 0.5f * item.line_width;
-  CATENA_CHECK(write_uniform(*device_, slice.slice_data_, data));
-  CATENA_CHECK(write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
+  CATENA_CHECK(vk::write_uniform(*device_, slice.slice_data_, data));
+  CATENA_CHECK(vk::write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
 
   // draw
   const BoundGrid bound{slice.mirror_, &slice.map_, false, true};

@@ -3,12 +3,12 @@
 ///   colour: the table, piecewise linear, at full precision
 ///   line of a level: |value - level| / |gradient a pixel| pixels away, measured a second time at the foot of that distance;
 ///                    drawn by coverage over `line_width` pixels
-/// Cells that are masked or not finite are transparent. Opaque slices are drawn by SlicePass, others in the layers (layers.h).
+/// Cells that are masked or not finite are transparent. Opaque slices are drawn by SlicePass, others in the layers (passes.h).
 #pragma once
 #include <map>
 
-#include "render/passes/grid_bindings.h"
 #include "render/passes/peel.h"
+#include "render/raycast/bound_grids.h"
 
 namespace catena::render {
 
@@ -49,6 +49,5 @@ class SliceDrawer {
 Outcome prepare_slices(Frame& frame, std::vector<Slice>& slices, bool (*chosen)(const SliceItem&));
 
 bool is_translucent(const SliceItem& item);
-extern const PassEntry kSlicePass;
 
 }  // namespace catena::render

@@ -1,11 +1,9 @@
-#include "render/passes/surface_color.h"
-
 #include <algorithm>
 #include <map>
 
-#include "render/passes/color_grid.h"
-#include "render/passes/covered_area.h"
-#include "render/vk/upload.h"
+#include "render/passes/passes.h"
+#include "render/raycast/bound_grids.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -94,7 +92,7 @@ Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
     data.grids[0].color = {own.r, own.g, own.b};
     data.grids[1] = frame.rays.grid(*surface.colors.mirror, surface.item.color_by->grid->mapping());
     set_table(data.grids[1], surface.colors.lut, 0);
-    CATENA_CHECK(write_uniform(frame.device, surface.uniform, data));
+    CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.bound()};
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound[0].flags() | bound[1].flags() << 4));
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "render/passes/grid_bindings.h"
-#include "render/passes/targets.h"
-#include "render/vk/upload.h"
+#include "render/passes/pass.h"
+#include "render/vk/commands.h"
 
 namespace catena::render {
 namespace {
@@ -41,7 +40,7 @@ Outcome Triangles::upload(vk::Device& device, const Shape& shape) {
 }
 
 Result<vk::Binding> Triangles::frame_binding(vk::Device& device, const CameraRays& rays) {
-  CATENA_CHECK(write_uniform(device, uniform_, rays.mesh(origin_)));
+  CATENA_CHECK(vk::write_uniform(device, uniform_, rays.mesh(origin_)));
   return vk::Binding{0, vk::Resource::uniform, &uniform_, nullptr, nullptr};
 }
 
@@ -73,26 +72,6 @@ Outcome TriangleDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tri
   commands.bind(pipeline_, {&binding, 1});
   triangles.draw(commands);
   return Done{};
-}
-
-bool same(const Color& a, const Color& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
-
-bool same(const MeshItem& a, const MeshItem& b) {
-  const bool alike =
-      a.geometry == b.geometry ||
-      (a.geometry && b.geometry && a.geometry->vertices == b.geometry->vertices && a.geometry->triangles == b.geometry->triangles &&
-       a.geometry->normals == b.geometry->normals && all_same(a.geometry->colors, b.geometry->colors));
-  return alike && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped && a.opacity == b.opacity && a.smooth == b.smooth &&
-         a.edges == b.edges;
-}
-
-bool same(const TubeItem& a, const TubeItem& b) {
-  return a.radius == b.radius && same(a.color, b.color) && a.points == b.points &&
-         (a.colors.is_same(b.colors) || all_same(a.colors, b.colors)) && a.id == b.id && a.clipped == b.clipped;
-}
-
-bool same(const ArrowItem& a, const ArrowItem& b) {
-  return a.base == b.base && a.tip == b.tip && a.radius == b.radius && same(a.color, b.color) && a.id == b.id && a.clipped == b.clipped;
 }
 
 }  // namespace catena::render

@@ -1,7 +1,7 @@
 /// Lit triangles into the opaque targets: what meshes, streamlines and the cursor have in common.
 #pragma once
-#include "render/passes/camera_rays.h"
 #include "render/passes/shapes.h"
+#include "render/raycast/camera_rays.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {
@@ -38,14 +38,5 @@ class TriangleDrawer {
   vk::Device* device_ = nullptr;
   vk::Pipeline pipeline_;
 };
-
-bool same(const Color& a, const Color& b);
-bool same(const MeshItem& a, const MeshItem& b);
-bool same(const TubeItem& a, const TubeItem& b);
-bool same(const ArrowItem& a, const ArrowItem& b);
-template <class Items>
-bool all_same(const Items& a, const Items& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) { return same(x, y); });
-}
 
 }  // namespace catena::render

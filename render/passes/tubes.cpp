@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/passes/grid_bindings.h"
-#include "render/passes/targets.h"
-#include "render/vk/upload.h"
+#include "render/passes/pass.h"
+#include "render/vk/commands.h"
 #include "shaders/shared/tube.h"
 
 namespace catena::render {
@@ -139,7 +138,7 @@ Result<TubeDrawer> TubeDrawer::create(vk::Device& device) {
 
 Outcome TubeDrawer::draw(vk::Commands& commands, const CameraRays& rays, Tubes& tubes) {
   if (tubes.empty()) return Done{};
-  CATENA_CHECK(write_uniform(*device_, tubes.uniform_, rays.mesh(tubes.origin_)));
+  CATENA_CHECK(vk::write_uniform(*device_, tubes.uniform_, rays.mesh(tubes.origin_)));
   for (const Tubes::Piece& piece : tubes.pieces_) {
     const vk::Binding bindings[] = {{0, vk::Resource::uniform, &tubes.uniform_, nullptr, nullptr},
                                     {1, vk::Resource::buffer, &piece.rings, nullptr, nullptr}};

@@ -5,8 +5,8 @@
 #include <array>
 #include <span>
 
-#include "render/passes/camera_rays.h"
 #include "render/passes/shapes.h"
+#include "render/raycast/camera_rays.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

@@ -7,8 +7,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "render/passes/grid_bindings.h"
-#include "render/vk/upload.h"
+#include "render/vk/commands.h"
 #include "shaders/shared/ui.h"
 
 namespace catena::render {
@@ -21,17 +20,6 @@ constexpr std::uint32_t kUiFragmentShader[] = {
 #include "spirv/ui.frag.inc"
 };
 constexpr VkFormat kWindowFormat = VK_FORMAT_R8G8B8A8_UNORM;
-
-/// Host memory with these items; with room for twice as many where it must grow.
-template <class T>
-Outcome write_items(vk::Device& device, vk::Buffer& buffer, const std::vector<T>& items, VkBufferUsageFlags usage) {
-  const std::size_t bytes = std::max<std::size_t>(1, items.size()) * sizeof(T);
-  if (!buffer || buffer.size() < bytes) {
-    CATENA_TRY(buffer, vk::Buffer::create(device, 2 * bytes, usage, vk::Memory::upload));
-  }
-  if (!items.empty()) std::memcpy(buffer.bytes().data(), items.data(), items.size() * sizeof(T));
-  return Done{};
-}
 
 /// The first pixel whose centre lies at or beyond `edge`, at most `count`. Not a number: 0.
 std::uint32_t first_beyond(float edge, std::uint32_t count) {
@@ -69,7 +57,7 @@ bool indices_lead_inside(const UiItems& items) {
 }  // namespace
 
 /// An image of the window's size; what does not depend on the items.
-Outcome UiPass::fit(std::uint32_t width, std::uint32_t height) {
+Outcome WindowPainter::fit(std::uint32_t width, std::uint32_t height) {
   const std::uint32_t most = device_->info().limits.maxImageDimension2D;
   if (width == 0 || height == 0 || width > most || height > most)
     return Error{fmt::format("a window of {} x {} pixels cannot be painted, expected 1 to {} each way", width, height, most)};
@@ -82,10 +70,10 @@ Outcome UiPass::fit(std::uint32_t width, std::uint32_t height) {
     window_ = vk::Image();  // the old one's memory first
     CATENA_TRY(window_, vk::Image::create(*device_, info));
   }
-  return write_uniform(*device_, uniform_, shared::UiData{{0.5f * float(width), 0.5f * float(height)}});
+  return vk::write_uniform(*device_, uniform_, shared::UiData{{0.5f * float(width), 0.5f * float(height)}});
 }
 
-Outcome UiPass::keep(const std::shared_ptr<const UiTexture>& texture) {
+Outcome WindowPainter::keep(const std::shared_ptr<const UiTexture>& texture) {
   Texture& kept = textures_[texture];
   kept.used = paints_;
   if (kept.image) return Done{};
@@ -100,7 +88,7 @@ Outcome UiPass::keep(const std::shared_ptr<const UiTexture>& texture) {
   });
 }
 
-Outcome UiPass::upload(const UiItems& items) {
+Outcome WindowPainter::upload(const UiItems& items) {
   CATENA_ASSERT(indices_lead_inside(items));
   if (!pipeline_) {
     vk::GraphicsInfo info;
@@ -117,14 +105,14 @@ Outcome UiPass::upload(const UiItems& items) {
     CATENA_TRY(linear_, vk::Sampler::create(*device_, vk::Filter::linear));
     white_ = std::make_shared<const UiTexture>(UiTexture{1, 1, {255, 255, 255, 255}});
   }
-  CATENA_CHECK(write_items(*device_, vertices_, items.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
-  CATENA_CHECK(write_items(*device_, indices_, items.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+  CATENA_CHECK(vk::write_items(*device_, vertices_, items.vertices, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+  CATENA_CHECK(vk::write_items(*device_, indices_, items.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
   for (const UiDraw& draw : items.draws) CATENA_CHECK(keep(draw.texture ? draw.texture : white_));
   std::erase_if(textures_, [&](const auto& entry) { return entry.second.used + kTextureRest < paints_; });
   return Done{};
 }
 
-void UiPass::record(vk::Commands& commands, const UiItems& items) {
+void WindowPainter::record(vk::Commands& commands, const UiItems& items) {
   const vk::ColorTarget into{&window_, std::nullopt};
   commands.begin_pass({&into, 1}, {});
   const Texture* bound = nullptr;
@@ -145,7 +133,7 @@ void UiPass::record(vk::Commands& commands, const UiItems& items) {
   commands.end_pass();
 }
 
-Outcome UiPass::paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items) {
+Outcome WindowPainter::paint(vk::Image& picture, std::uint32_t width, std::uint32_t height, const UiItems& items) {
   ++paints_;
   CATENA_CHECK(fit(width, height));
   CATENA_CHECK(upload(items));

@@ -15,11 +15,11 @@
 
 namespace catena::render {
 
-class UiPass {
+class WindowPainter {
  public:
   static constexpr std::uint64_t kTextureRest = 4;
 
-  explicit UiPass(vk::Device& device) : device_(&device) {}
+  explicit WindowPainter(vk::Device& device) : device_(&device) {}
 
   /// Paints and waits until it is done. Errors: a window of 0 pixels or beyond the device's images, memory, a lost device. Items whose
   /// indices lead outside are a bug.

@@ -3,6 +3,8 @@
 #include <vulkan/vulkan.h>
 
 #include <array>
+#include <cstring>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -100,5 +102,36 @@ class Commands {
   Device* device_;
   VkCommandBuffer buffer_;
 };
+
+// ---- bytes to the device: through staging memory what changes seldom (these wait for their own end), mapped what changes each frame ----
+
+/// Fills `image` in pieces of whole z-ranges: fill(first_z, count_z, bytes) writes the texels x fastest. `granule` z-planes stay
+/// together. Ends with the image ready for shaders.
+Outcome upload_planes(Device& device, Image& image, std::uint32_t granule,
+                      const std::function<void(std::uint32_t first, std::uint32_t count, std::byte* out)>& fill);
+
+/// A device buffer with these bytes (at least one).
+Result<Buffer> upload_buffer(Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
+
+/// Host memory with these items; with room for twice as many where it must grow.
+template <class T>
+Outcome write_items(Device& device, Buffer& buffer, const std::vector<T>& items, VkBufferUsageFlags usage) {
+  const std::size_t bytes = std::max<std::size_t>(1, items.size()) * sizeof(T);
+  if (!buffer || buffer.size() < bytes) {
+    CATENA_TRY(buffer, Buffer::create(device, 2 * bytes, usage, Memory::upload));
+  }
+  if (!items.empty()) std::memcpy(buffer.bytes().data(), items.data(), items.size() * sizeof(T));
+  return Done{};
+}
+
+/// A uniform buffer that the host writes each frame.
+template <class Data>
+Outcome write_uniform(Device& device, Buffer& buffer, const Data& data) {
+  if (!buffer) {
+    CATENA_TRY(buffer, Buffer::create(device, sizeof(Data), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Memory::upload));
+  }
+  std::memcpy(buffer.bytes().data(), &data, sizeof(Data));
+  return Done{};
+}
 
 }  // namespace catena::render::vk

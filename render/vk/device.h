@@ -9,14 +9,33 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
 #include "render/vk/instance.h"
-#include "render/vk/shader_replacements.h"
 
 namespace catena::render::vk {
+
+using Spirv = std::span<const std::uint32_t>;
+
+/// Shaders that stand in for embedded ones, by the embedded words themselves: what creates pipelines need not know of it. Frame thread.
+class ShaderReplacements {
+ public:
+  /// Pipelines created from now on have `words` in the place of `embedded` (which outlives this).
+  void replace(Spirv embedded, std::vector<std::uint32_t> words);
+  void clear() { all_.clear(); }
+  /// What stands in for `embedded`: itself, where nothing does.
+  Spirv of(Spirv embedded) const;
+
+ private:
+  std::vector<std::pair<Spirv, std::vector<std::uint32_t>>> all_;
+};
+
+/// The bindings that a shader declares, sorted.
+std::vector<std::uint32_t> declared_bindings(Spirv words);
 
 /// The calls that a driver may refuse at any time: what a test can make fail.
 enum class DriverCall { allocate, submit, wait };

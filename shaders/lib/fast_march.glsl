@@ -1,6 +1,6 @@
 // One packed volume along a ray: segments between samples s0, s1 with slopes d0, d1 along the ray; the value at the middle by the
-// Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half from the pre-integrated table (render/passes/preintegrated.h). A segment
-// within a cube of plain bricks (render/mirror/plain_map.h) is as long as the ray's way through it.
+// Hermite cubic, (s0 + s1) / 2 + (d0 - d1) L / 8; each half from the pre-integrated table (render/raycast/transfer_tables.h). A segment
+// within a cube of plain bricks (render/mirror/brick_map.h) is as long as the ray's way through it.
 layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cell, 2: by gradients made beforehand
 layout(constant_id = 1) const uint SKIPS = 0;
 layout(constant_id = 2) const uint OPAQUE = 0;
@@ -8,7 +8,7 @@ layout(constant_id = 2) const uint OPAQUE = 0;
 layout(binding = 3) uniform utexture3D packed_words;
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
 layout(binding = 5) uniform utexture3D plain_map;
-layout(binding = 8) uniform sampler3D gradients;  // render/mirror/gradient_volume.h
+layout(binding = 8) uniform sampler3D gradients;  // render/mirror/packed_volume.h
 #include "shaders/lib/packed.glsl"
 
 #define SMALL_BRICK 4.0

@@ -1,4 +1,4 @@
-// Which fragments a translucent layer takes (render/passes/layers.h). Depths are compared as the depth buffer holds them, and equal
+// Which fragments a translucent layer takes (render/passes/passes.h). Depths are compared as the depth buffer holds them, and equal
 // ones by their ids, so that the comparison here and the depth test agree to the bit.
 layout(constant_id = 1) const uint MODE = MODE_OPAQUE;
 layout(constant_id = 2) const uint HAS_OPAQUE = 0;

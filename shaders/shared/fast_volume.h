@@ -1,4 +1,4 @@
-// The fast raycast of one packed volume (render/passes/fast_volume.h): what its passes need beside FrameData, whose grid 0 is the
+// The fast raycast of one packed volume (render/raycast/fast_volume.h): what its passes need beside FrameData, whose grid 0 is the
 // packed volume with positions counted from its first voxel.
 #ifndef CATENA_SHARED_FAST_VOLUME_H
 #define CATENA_SHARED_FAST_VOLUME_H
@@ -10,16 +10,16 @@ CATENA_SHARED_BEGIN
 
 // A lattice of rays: texel `at` is the ray through the centre of pixel spacing * (at - apron).
 struct LatticeData {
-  float spacing;     // pixels
-  float apron;       // texels before the picture's first; coarser lattices have COARSE_APRON
-  float threshold;   // a block is marched where interpolation is expected to err by more (display units)
-  uint width, height;  // of the lattice that this one refines, texels
-  float gradient_unit; // codes a voxel in one count of the gradient volume
+  float spacing;        // pixels
+  float apron;          // texels before the picture's first; coarser lattices have COARSE_APRON
+  float threshold;      // a block is marched where interpolation is expected to err by more (display units)
+  uint width, height;   // of the lattice that this one refines, texels
+  float gradient_unit;  // codes a voxel in one count of the gradient volume
 };
 
 // From every 2nd pixel to the picture, in invocations from lattice point first_x, first_y on.
 struct UpsampleData {
-  vec4 background;   // alpha 0: transparent
+  vec4 background;  // alpha 0: transparent
   uint first_x, first_y;
   uint width, height;  // of the picture
 };

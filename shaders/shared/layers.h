@@ -1,4 +1,4 @@
-// What is drawn into translucent layers (render/passes/layers.h), and slices, need beside the frame's data.
+// What is drawn into translucent layers (render/passes/passes.h), and slices, need beside the frame's data.
 #ifndef CATENA_SHARED_LAYERS_H
 #define CATENA_SHARED_LAYERS_H
 #include "shaders/shared/frame.h"

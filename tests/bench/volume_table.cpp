@@ -19,7 +19,7 @@
 #include "engine/base/quantile.h"
 #include "engine/field/grid.h"
 #include "render/image/picture.h"
-#include "render/passes/quality.h"
+#include "render/quality/quality.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "render/passes/quality.h"
+#include "render/quality/quality.h"
 
 namespace catena::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "render/passes/bands.h"
+#include "render/quality/bands.h"
 
 namespace catena::app {
 

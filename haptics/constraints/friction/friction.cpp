@@ -1,7 +1,7 @@
 #include "haptics/constraints/friction/friction.h"
 
 #include "engine/field/magnitude.h"
-#include "engine/flow/direction.h"
+#include "engine/flow/flow.h"
 #include "haptics/constraints/friction/contact.h"
 #include "haptics/constraints/friction/safe_direction.h"
 #include "haptics/constraints/rules/read_field.h"

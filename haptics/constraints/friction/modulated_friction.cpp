@@ -1,7 +1,7 @@
 #include "haptics/constraints/friction/modulated_friction.h"
 
 #include "engine/field/magnitude.h"
-#include "engine/flow/direction.h"
+#include "engine/flow/flow.h"
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/friction/contact.h"
 #include "haptics/constraints/friction/safe_direction.h"

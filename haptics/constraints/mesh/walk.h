@@ -4,7 +4,7 @@
 /// Where it ends at an open edge, faces within 1e-7 of it count as neighbours: files whose corners do not quite meet.
 /// In the mesh's own frame. Haptic thread: no allocation, lock or throw; at most kFaces faces a tick.
 #pragma once
-#include "engine/mesh/closest.h"
+#include "engine/mesh/mesh.h"
 
 namespace catena::haptics {
 

@@ -1,8 +1,8 @@
 #include "haptics/constraints/streamline/online.h"
 
-#include "engine/flow/direction.h"
+#include "engine/flow/derivatives.h"
+#include "engine/flow/flow.h"
 #include "engine/flow/hermite.h"
-#include "engine/flow/zero.h"
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/streamline/cells.h"
 

@@ -1,7 +1,7 @@
 #include "haptics/constraints/streamline/selected.h"
 
+#include "engine/flow/curve.h"
 #include "engine/flow/hermite.h"
-#include "engine/flow/nearest.h"
 
 namespace catena::haptics {
 namespace {

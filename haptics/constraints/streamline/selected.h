@@ -3,7 +3,7 @@
 /// The root is always bracketed by the interval's two knots, so it does not depend on where the proxy came from: sweeping there
 /// and back gives the same bits. Open ends hold with BOUNDARY or CRITICAL; closed curves wrap. At most 4096 knots a tick, then
 /// BUDGET, and on from there in the next. While a link that snaps is apart it seeks the nearest place of the whole curve
-/// (engine/flow/nearest.h). Haptic thread: no allocation, lock or throw.
+/// (engine/flow/curve.h). Haptic thread: no allocation, lock or throw.
 #pragma once
 #include "engine/flow/curve.h"
 #include "haptics/chain/constraint.h"

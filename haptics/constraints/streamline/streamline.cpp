@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/flow/direction.h"
+#include "engine/flow/flow.h"
 #include "haptics/constraints/rules/read_field.h"
 #include "haptics/constraints/streamline/online.h"
 #include "haptics/constraints/streamline/selected.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/flow/velocity_gradient.h"
+#include "engine/flow/derivatives.h"
 #include "haptics/constraints/isosurface/level.h"
 #include "haptics/constraints/rules/read_field.h"
 

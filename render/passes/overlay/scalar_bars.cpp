@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "render/passes/overlay/furniture.h"
+#include "render/passes/overlay/canvas.h"
 
 namespace catena::render {
 namespace {

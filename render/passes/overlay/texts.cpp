@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "render/passes/overlay/furniture.h"
+#include "render/passes/overlay/canvas.h"
 
 namespace catena::render {
 namespace {

@@ -1,10 +1,9 @@
 /// The advection function f_V of Eqs. 3-4 in the field's own time, as the paper prints it: one call carries p along V for a signed dt.
 ///   f_V(p, -dt) equals f_-V(p, dt) bit for bit (Eq. 4): every method only ever forms products h * v.
-/// The program itself integrates in arc length (engine/flow/direction.h); this tests its methods in another parameter.
+/// The program itself integrates in arc length (engine/flow/flow.h); this tests its methods in another parameter.
 /// The embedded pairs choose their own sub-steps: the estimated error of each is <= tolerance * L.
 #pragma once
-#include "engine/flow/direction.h"
-#include "engine/flow/flow.h"
+#include "engine/flow/runge_kutta.h"
 
 namespace catena::flow {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "engine/flow/tableau.h"
+#include "engine/flow/runge_kutta.h"
 #include "tests/engine/flow/advect.h"
 #include "tests/engine/flow/fields.h"
 

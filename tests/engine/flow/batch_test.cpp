@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "engine/flow/batch_step.h"
-#include "engine/flow/nearest.h"
+#include "engine/flow/curve.h"
 #include "tests/engine/flow/fields.h"
 #include "tests/support/support.h"
 

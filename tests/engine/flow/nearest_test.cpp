@@ -1,4 +1,4 @@
-#include "engine/flow/nearest.h"
+#include "engine/flow/curve.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 
 #include <numbers>
 
-#include "engine/flow/evenly_spaced.h"
 #include "tests/engine/flow/fields.h"
 
 namespace catena::flow {

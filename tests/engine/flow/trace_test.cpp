@@ -5,7 +5,7 @@
 
 #include "engine/field/load.h"
 #include "engine/flow/curve.h"
-#include "engine/flow/direction.h"
+#include "engine/flow/flow.h"
 #include "tests/engine/flow/fields.h"
 #include "tests/support/support.h"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/mesh/closest.h"
+#include "engine/mesh/mesh.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/mesh_shapes.h"
 

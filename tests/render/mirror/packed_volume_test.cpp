@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/mirror/plain_map.h"
+#include "render/mirror/brick_map.h"
 #include "render/vk/commands.h"
 #include "tests/render/support/device_fixture.h"
 

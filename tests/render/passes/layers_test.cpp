@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "render/passes/raycast.h"
-#include "render/vk/upload.h"
+#include "render/passes/passes.h"
+#include "render/vk/commands.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {
@@ -41,7 +41,7 @@ class Layers : public PictureTest {
     Frame frame{device, mirrors, targets, packet_, settings, {}};
     const std::size_t count = std::max(left.size(), right.size());
     frame.layers.resize(count);
-    auto pass = RaycastPass::create(device);
+    auto pass = kRaycastPass.create(device);
     EXPECT_TRUE(pass);
     const auto prepared = (*pass)->prepare(frame);
     EXPECT_TRUE(prepared) << (prepared ? "" : prepared.error().message);
@@ -161,7 +161,7 @@ TEST_F(Layers, MoreThanFourAreRefusedWithASentence) {
   Targets targets;
   Frame frame{device, mirrors, targets, packet_, {}, {}};
   frame.layers.resize(5);
-  auto pass = RaycastPass::create(device);
+  auto pass = kRaycastPass.create(device);
   ASSERT_TRUE(pass);
   const auto prepared = (*pass)->prepare(frame);
   ASSERT_FALSE(prepared);

@@ -1,11 +1,11 @@
 /// Text and flat shapes over the picture, against places and colours worked out apart. Pixels of text are only counted, never compared.
-#include "render/passes/overlay.h"
+#include "render/passes/passes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "render/passes/overlay/furniture.h"
+#include "render/passes/overlay/canvas.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {

@@ -203,7 +203,7 @@ TEST_F(Translucent, SlicesAndTranslucentIsosurfacesAreInOrder) {
   expect_pixel(draw(packet, settings, "fast"), 60, 60, without);
 }
 
-/// Up to four things exactly; of more, the fourth and all behind it as the header of layers.h says.
+/// Up to four things exactly; of more, the fourth and all behind it as passes.h says.
 TEST_F(Translucent, FourLayersAreExactAndTheRestIsTheirMean) {
   const std::vector<std::array<double, 3>> colors{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
   const double alphas[] = {0.3, 0.4, 0.2, 0.5, 0.6, 0.7};

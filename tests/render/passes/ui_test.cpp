@@ -306,10 +306,10 @@ TEST_F(Ui, ATextureIsUploadedOnceAndGoesWhenItRests) {
     const Picture p = paint(32, 32, ui);
     const double alpha = (100 + k) / 255.0;
     EXPECT_NEAR(p.pixel(4, 4)[0], 255 * (alpha * alpha + 1 - alpha), 1.5);
-    EXPECT_LE(held(), bytes_before + (UiPass::kTextureRest + 1) * 65536);
+    EXPECT_LE(held(), bytes_before + (WindowPainter::kTextureRest + 1) * 65536);
   }
   EXPECT_EQ(uploads(), uploads_before + 40);
-  for (std::uint64_t k = 0; k <= UiPass::kTextureRest; ++k) paint(32, 32, with(kept));
+  for (std::uint64_t k = 0; k <= WindowPainter::kTextureRest; ++k) paint(32, 32, with(kept));
   EXPECT_EQ(held(), bytes_before);
 }
 

@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 
-#include "render/text/utf8.h"
 #include "tests/support/support.h"
 
 namespace catena::test {

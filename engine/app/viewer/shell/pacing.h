@@ -10,7 +10,7 @@
 #include <string>
 
 #include "engine/app/render/quality_words.h"
-#include "render/passes/refinement.h"
+#include "render/quality/refinement.h"
 
 namespace catena::app {
 

@@ -12,7 +12,7 @@
 #include "render/extract/extract.h"
 #include "render/extract/extract_stereo.h"
 #include "render/image/picture.h"
-#include "render/passes/quality.h"
+#include "render/quality/quality.h"
 
 namespace catena::app {
 

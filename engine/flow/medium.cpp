@@ -1,0 +1,146 @@
+#include "engine/flow/medium.h"
+
+namespace catena::flow {
+
+namespace {
+
+constexpr double kSlack = 1e-12;     ///< voxels: an excursion beyond a face that is only rounding
+constexpr double kSeedSlack = 1e-9;  ///< voxels: a seed on the domain's face
+
+/// The first theta at which one coordinate of the piece passes above `face` (mirrored for below), or 2.
+double first_passage(double c0, double c1, double c2, double c3, double face, double side) {
+  const auto beyond = [&](double theta) { return side * (c0 + theta * (c1 + theta * (c2 + theta * c3)) - face); };
+  // monotone pieces between the extremes
+  double stations[4] = {0, 1, 1, 1};
+  int count = 1;
+  const double a = 3 * c3, b = c2, discriminant = b * b - a * c1;
+  if (discriminant > 0) {
+    const double root = std::sqrt(discriminant), far = -(b + (b < 0 ? -root : root));
+    double first = a != 0 ? far / a : 2, second = far != 0 ? c1 / far : 2;
+    if (first > second) std::swap(first, second);
+    if (first > 0 && first < 1) stations[count++] = first;
+    if (second > 0 && second < 1) stations[count++] = second;
+  }
+  stations[count++] = 1;
+  double from = 0, value = beyond(0);
+  for (int i = 1; i < count; ++i) {
+    const double next = beyond(stations[i]);
+    if (next > kSlack) return value >= 0 ? from : illinois_root(from, value, stations[i], next, beyond);
+    from = stations[i];
+    value = next;
+  }
+  return 2;
+}
+
+}  // namespace
+
+CellMedium::CellMedium(const Flow& flow, field::Cursor* cursor) : flow_(flow), grid_(flow.field->grid()), shared_cursor_(cursor) {
+  longest_step_ = 2 * norm(world_difference(Vec3(1.0)));
+  for (int axis = 0; axis < 3; ++axis) longest_step_ = std::max(longest_step_, 2 * norm(grid_->mapping().world_from_index_linear[axis]));
+}
+
+bool CellMedium::enter(const field::Index3& base) {
+  const field::VectorCell cell = grid_->cell(base, cursor());
+  outside_ = !(cell.base == base) ? Reason::box : cell.valid ? Reason::none : Reason::mask;
+  for (const Vec3& v : cell.corner)
+    if (!is_finite(v) && outside_ != Reason::box) outside_ = Reason::not_finite;
+  if (outside_ != Reason::none) return false;
+  base_ = base;
+  lo_ = Vec3(base.x, base.y, base.z);
+  for (int axis = 0; axis < 3; ++axis) hi_[axis] = std::min(lo_[axis] + 1, grid_->index_box().hi[axis]);
+  if (flow_.line) {
+    dyads_ = field::DyadCell(cell.corner);
+    return true;
+  }
+  const auto& c = cell.corner;
+  const Vec3 x00 = c[1] - c[0], x10 = c[3] - c[2], x01 = c[5] - c[4], x11 = c[7] - c[6];
+  const Vec3 y0 = c[2] - c[0], y1 = c[6] - c[4];
+  polynomial_ = {c[0], x00, y0, x10 - x00, c[4] - c[0], x01 - x00, y1 - y0, (x11 - x01) - (x10 - x00)};
+  for (Vec3& v : polynomial_) v *= sign_;
+  return true;
+}
+
+bool CellMedium::begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
+  q = grid_->mapping().index_from_world(seed);
+  const field::Box& box = grid_->index_box();
+  outside_ = is_finite(q) ? Reason::box : Reason::not_finite;
+  if (!is_finite(q) || !box.contains(q, kSeedSlack)) return false;
+  for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], box.lo[axis], box.hi[axis]);
+  motion_ = sign * u;
+  sign_ = flow_.line ? 1 : sign;
+  // the cell of the seed, or one that it lies on the face of (a rounding beside a face is on it)
+  const field::Index3 base = grid_->base_of(q);
+  const std::int32_t bases[3] = {base.x, base.y, base.z};
+  int beside[3];
+  for (int axis = 0; axis < 3; ++axis)
+    beside[axis] = q[axis] - bases[axis] <= kSeedSlack ? -1 : bases[axis] + 1 - q[axis] <= kSeedSlack ? 1 : 0;
+  for (int c = 0; c < 8; ++c) {
+    if (((c & 1) && beside[0] == 0) || ((c & 2) && beside[1] == 0) || ((c & 4) && beside[2] == 0)) continue;
+    if (!enter({base.x + (c & 1 ? beside[0] : 0), base.y + (c & 2 ? beside[1] : 0), base.z + (c & 4 ? beside[2] : 0)})) continue;
+    if (c != 0)
+      for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], lo_[axis], hi_[axis]);
+    return true;
+  }
+  return false;
+}
+
+Stop CellMedium::seed(const Vec3& place, Vec3& u) {
+  Vec3 q, w;
+  if (!begin(place, Vec3(0.0), 1, q)) return Stop::outside;
+  // of a line field the side of the nearest voxel
+  if (flow_.line) motion_ = field::line_axis(grid_->cell(base_, cursor()).corner, q - lo_).axis;
+  return rate(q, w, u);
+}
+
+// flat, as direction_at (flow.cpp)
+[[gnu::flatten]] Stop CellMedium::rate(const Vec3& q, Vec3& w, Vec3& u) const {
+  const Vec3 f = q - lo_;
+  const auto& c = polynomial_;
+  if (flow_.line) {
+    const Stop stop = axis_direction(dyads_.at(f), flow_.min_speed, motion_, u);
+    w = grid_->mapping().index_from_world_linear * u;
+    return stop;
+  }
+  const Vec3 v = (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
+  const Stop stop = unit_direction(v, flow_.min_speed, u);
+  w = grid_->mapping().index_from_world_linear * u;
+  return stop;
+}
+
+Settled CellMedium::settle(Vec3& q, const Vec3& w) {
+  Settled settled = Settled::here;
+  for (int hops = 0; hops < 6; ++hops) {
+    int axis = 0, side = 0;
+    for (; axis < 3; ++axis) {
+      side =
+          q[axis] < lo_[axis] || (q[axis] == lo_[axis] && w[axis] < 0) ? -1 : q[axis] > hi_[axis] || (q[axis] == hi_[axis] && w[axis] > 0);
+      if (side != 0) break;
+    }
+    if (axis == 3) return settled;
+    if (!hop({0, axis, 0, side})) {
+      q[axis] = side < 0 ? lo_[axis] : hi_[axis];
+      return Settled::boundary;
+    }
+    settled = Settled::moved;
+  }
+  return settled;
+}
+
+bool CellMedium::leave(const Hermite& piece, WayOut& way) const {
+  way.theta = 2;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int side = -1; side <= 1; side += 2) {
+      const double face = side < 0 ? lo_[axis] : hi_[axis];
+      const double theta = first_passage(piece.c0[axis], piece.c1[axis], piece.c2[axis], piece.c3[axis], face, side);
+      if (theta < way.theta) way = {theta, axis, face, side};
+    }
+  return way.theta <= 1;
+}
+
+bool CellMedium::hop(const WayOut& way) {
+  field::Index3 next = base_;
+  (way.axis == 0 ? next.x : way.axis == 1 ? next.y : next.z) += way.side;
+  return enter(next);
+}
+
+}  // namespace catena::flow

@@ -1,0 +1,56 @@
+/// The mirrors that frames use, keyed by (grid version, texel format, layout), dropped when a frame no longer names them.
+/// They keep within what is left of the device's memory budget: a grid that does not fit is mirrored at 1/2, 1/4 or 1/8 of its
+/// resolution, and again as a whole once there is room.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "render/mirror/grid_mirror.h"
+
+namespace catena::render {
+
+/// A grid that is drawn at less than its resolution because the whole does not fit into the memory budget.
+struct MirrorCoarsening {
+  std::string grid;
+  int factor = 1;                                  ///< 2, 4, 8
+  std::string size;                                ///< of the grid: "256^3", "512 x 512 x 90"
+  std::uint64_t needed_bytes = 0, left_bytes = 0;  ///< of the whole grid; of the budget, when it was mirrored
+  /// "density: 256^3 needs 67 MB of GPU memory, 40 MB are left: drawn at half resolution"
+  std::string words() const;
+};
+
+class Mirrors {
+ public:
+  explicit Mirrors(vk::Device& device) : device_(device) {}
+  /// Builds it at the first call.
+  Result<std::shared_ptr<const GridMirror>> get(const field::ScalarGrid& grid, const MirrorOptions& options);
+  /// `reserved` bytes of the budget are for others. `sharers` > 1: so many grids are to share the rest.
+  void begin_frame(std::uint64_t reserved, std::size_t sharers = 1);
+  void drop_unused();
+  void clear() { entries_.clear(); }
+  std::size_t count() const { return entries_.size(); }
+  double build_ms() const { return build_ms_; }
+  /// Of the grids that are mirrored now, older grids first.
+  std::vector<MirrorCoarsening> coarsenings() const;
+
+ private:
+  using Key = std::tuple<std::uint64_t, bool, MirrorLayout>;
+  struct Entry {
+    std::shared_ptr<const GridMirror> mirror;
+    std::uint64_t used = 0;
+    MirrorCoarsening coarsening;
+  };
+  std::uint64_t left() const;
+  Outcome build(Entry& entry, const field::ScalarGrid& grid, const MirrorOptions& options);
+
+  vk::Device& device_;
+  std::map<Key, Entry> entries_;
+  std::uint64_t frame_ = 0, reserved_ = 0;
+  std::size_t sharers_ = 1;  ///< still to come in this frame
+  double build_ms_ = 0;
+};
+
+}  // namespace catena::render

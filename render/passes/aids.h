@@ -1,9 +1,0 @@
-/// Help for the eye: bounding boxes, axes and the ground.
-#pragma once
-#include "render/passes/pass.h"
-
-namespace catena::render {
-
-extern const PassEntry kAidPass;
-
-}  // namespace catena::render

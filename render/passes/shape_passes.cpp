@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include "render/passes/passes.h"
+#include "render/passes/triangles.h"
+#include "render/passes/tubes.h"
+
+namespace catena::render {
+namespace {
+
+void add_arrow(Shape& shape, const ArrowItem& arrow) {
+  const std::size_t first = shape.vertices.size();
+  add_cone(shape, arrow.base, arrow.tip, arrow.radius, arrow.color);
+  mark(shape, first, arrow.id, arrow.clipped);
+}
+
+/// Triangles of some of a packet's items, made anew when those differ from what they were made of.
+///   Kind::Items                what is kept to compare with
+///   Kind::of(packet)           the items, or references to them
+///   Kind::add(shape, items)    their triangles
+template <class Kind>
+class ShapePass final : public Pass {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
+    CATENA_TRY(TriangleDrawer drawer, TriangleDrawer::create(device));
+    return std::unique_ptr<Pass>(new ShapePass(std::move(drawer)));
+  }
+  PassUse use(const Frame&) const override { return {0, target::opaque}; }
+
+  Outcome prepare(Frame& frame) override {
+    decltype(auto) items = Kind::of(frame.packet);
+    if (items == built_) return Done{};
+    Shape shape;
+    Kind::add(shape, items);
+    CATENA_CHECK(triangles_.upload(frame.device, shape));
+    built_ = items;
+    return Done{};
+  }
+  Bounds bounds() const override { return triangles_.bounds(); }
+  Outcome record(vk::Commands& commands, Frame& frame) override { return drawer_.draw(commands, frame.rays, triangles_); }
+
+ private:
+  explicit ShapePass(TriangleDrawer drawer) : drawer_(std::move(drawer)) {}
+  TriangleDrawer drawer_;
+  Triangles triangles_;
+  typename Kind::Items built_;
+};
+
+struct Aids {
+  using Items = AidItems;
+  static constexpr int kSides = 8;
+  static const Items& of(const FramePacket& packet) { return packet.aids; }
+  static void add(Shape& shape, const Items& items) {
+    for (const TubeItem& tube : items.tubes) {
+      const std::size_t first = shape.vertices.size();
+      add_tube(shape, tube, kSides);
+      mark(shape, first, tube.id, false);
+    }
+    for (const MeshItem& mesh : items.meshes) {
+      const std::size_t first = shape.vertices.size();
+      add_mesh(shape, mesh);
+      mark(shape, first, mesh.id, false);
+    }
+  }
+};
+
+struct Widgets {
+  using Items = WidgetItems;
+  static constexpr int kSides = 10, kBallSides = 20;
+  static const Items& of(const FramePacket& packet) { return packet.widgets; }
+  static void add(Shape& shape, const Items& items) {
+    for (const TubeItem& tube : items.tubes) {
+      const std::size_t first = shape.vertices.size();
+      add_tube(shape, tube, tube.points.size() == 1 ? kBallSides : kSides);
+      mark(shape, first, tube.id, tube.clipped);
+    }
+    for (const ArrowItem& arrow : items.arrows) add_arrow(shape, arrow);
+    for (const MeshItem& mesh : items.meshes) add_mesh(shape, mesh);
+  }
+};
+
+/// The others are drawn in layers.
+struct OpaqueMeshes {
+  using Items = std::vector<MeshItem>;
+  static bool has(const MeshItem& item) { return item.opacity >= 1; }
+  static Items of(const FramePacket& packet) {
+    Items items;
+    std::ranges::copy_if(packet.meshes, std::back_inserter(items), has);
+    return items;
+  }
+  static void add(Shape& shape, const Items& items) {
+    for (const MeshItem& mesh : items) add_mesh(shape, mesh);
+  }
+};
+
+struct Cursors {
+  using Items = std::tuple<std::vector<CursorItem>, std::vector<IndicatorItem>>;
+  static constexpr int kIndicatorSides = 12;
+  static auto of(const FramePacket& packet) { return std::tie(packet.cursors, packet.indicators); }
+  template <class References>
+  static void add(Shape& shape, const References& items) {
+    const auto& [cursors, indicators] = items;
+    for (const CursorItem& cursor : cursors) {
+      const std::size_t first = shape.vertices.size();
+      add_cursor(shape, cursor);
+      mark(shape, first, cursor.id, false);
+    }
+    for (const IndicatorItem& indicator : indicators) {
+      const std::size_t first = shape.vertices.size();
+      add_tube(shape, indicator.tube, kIndicatorSides);
+      add_cone(shape, indicator.arrow.base, indicator.arrow.tip, indicator.arrow.radius, indicator.arrow.color);
+      mark(shape, first, indicator.tube.id, false);
+    }
+  }
+};
+
+/// Tubes as rings (tubes.h), and their arrowheads.
+class StreamlinePass final : public Pass {
+ public:
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
+    CATENA_TRY(TubeDrawer lines, TubeDrawer::create(device));
+    return std::unique_ptr<Pass>(new StreamlinePass(std::move(lines)));
+  }
+  PassUse use(const Frame&) const override { return {0, target::opaque}; }
+
+  Outcome prepare(Frame& frame) override {
+    const FramePacket& packet = frame.packet;
+    if (packet.tubes != tubes_) {
+      tubes_.clear();
+      CATENA_CHECK(lines_.upload(frame.device, packet.tubes));
+      tubes_ = packet.tubes;
+    }
+    if (packet.arrows == arrows_) return Done{};
+    arrows_.clear();
+    Shape shape;
+    for (const ArrowItem& arrow : packet.arrows) add_arrow(shape, arrow);
+    if (!head_drawer_) {
+      CATENA_TRY(head_drawer_, TriangleDrawer::create(frame.device));
+    }
+    CATENA_CHECK(heads_.upload(frame.device, shape));
+    arrows_ = packet.arrows;
+    return Done{};
+  }
+  Bounds bounds() const override {
+    Bounds all = lines_.bounds();
+    all.add(heads_.bounds());
+    return all;
+  }
+  Outcome record(vk::Commands& commands, Frame& frame) override {
+    CATENA_CHECK(line_drawer_.draw(commands, frame.rays, lines_));
+    return head_drawer_ ? head_drawer_->draw(commands, frame.rays, heads_) : Outcome(Done{});
+  }
+
+ private:
+  explicit StreamlinePass(TubeDrawer lines) : line_drawer_(std::move(lines)) {}
+  TubeDrawer line_drawer_;
+  std::optional<TriangleDrawer> head_drawer_;  ///< once there are any
+  Tubes lines_;
+  Triangles heads_;
+  std::vector<TubeItem> tubes_;
+  std::vector<ArrowItem> arrows_;
+};
+
+}  // namespace
+
+const PassEntry kAidPass{"aids", [](const Frame& frame) { return !frame.packet.aids.empty(); }, ShapePass<Aids>::create};
+
+const PassEntry kWidgetPass{"widgets", [](const Frame& frame) { return !frame.packet.widgets.empty(); }, ShapePass<Widgets>::create};
+
+const PassEntry kMeshPass{"meshes", [](const Frame& frame) { return std::ranges::any_of(frame.packet.meshes, OpaqueMeshes::has); },
+                          ShapePass<OpaqueMeshes>::create};
+
+const PassEntry kStreamlinePass{
+    "streamlines", [](const Frame& frame) { return !frame.packet.tubes.empty() || !frame.packet.arrows.empty(); }, StreamlinePass::create};
+
+const PassEntry kCursorPass{"cursor", [](const Frame& frame) { return !frame.packet.cursors.empty() || !frame.packet.indicators.empty(); },
+                            ShapePass<Cursors>::create};
+
+}  // namespace catena::render

@@ -1,0 +1,131 @@
+#include "render/quality/refinement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/assert.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kFirstGuessMs = 400;  // a unit of cost at a megapixel on two CPU cores
+constexpr double kUpBelow = 0.85;      // of the budget: a better rung is taken only with some room, or it would come and go
+
+RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false) {
+  RenderSettings s;
+  s.fast = FastSettings{step_voxels, spacing, half, full};
+  s.fast->smooth_gradients = smooth;
+  return s;
+}
+
+RenderSettings exact_rung(double step_voxels) {
+  RenderSettings s;
+  s.step_voxels = step_voxels;
+  if (step_voxels < 1) s.termination = 1e-3;
+  return s;
+}
+
+/// The share of pixels whose rays are marched, and what interpolation costs beside them.
+struct Share {
+  double rays, overhead;
+};
+Share share_of(const FastSettings& f) {
+  if (f.spacing == 1) return {1, 0.03};
+  // a threshold of 1/255 leaves about a quarter of what is finer
+  const auto refined = [](double threshold_255) { return threshold_255 < 0 ? 0.0 : 0.25 / (0.25 + threshold_255); };
+  const double half = f.spacing == 2 ? 1 : refined(f.refine_half_255), full = refined(f.refine_full_255);
+  return {0.1 + 0.2 * half + 0.7 * full * half, 0.02 + (half > 0 ? 0.01 : 0) + (full > 0 ? 0.03 : 0)};
+}
+
+}  // namespace
+
+double relative_cost(const RenderSettings& settings, bool shaded) {
+  if (!settings.fast) return (shaded ? 3.5 : 1.1) / settings.step_voxels + 0.05;
+  const FastSettings& f = *settings.fast;
+  const Share share = share_of(f);
+  const double a_ray = shaded ? (f.smooth_gradients ? 1.9 : 1.1) : 1.0;
+  return share.overhead + share.rays * a_ray / f.step_voxels;
+}
+
+std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
+  std::vector<RenderSettings> all;
+  if (kind.fast) {
+    const bool smooth = kind.shaded;
+    all = {fast_rung(8, 4, -1, -1),         fast_rung(6, 4, -1, -1),   fast_rung(5, 4, -1, -1),  fast_rung(4, 4, -1, -1),
+           fast_rung(4, 4, 1, -1),          fast_rung(3, 4, 0.7, -1),  fast_rung(2, 4, 0.5, -1), fast_rung(2, 2, 0, -1),
+           fast_rung(2, 2, 0, 0.7),         fast_rung(1.5, 2, 0, 0.4), fast_rung(1.5, 1, 0, -1), fast_rung(1, 1, 0, -1, smooth),
+           fast_rung(0.5, 1, 0, -1, smooth)};
+    if (smooth) all.push_back(fast_rung(2, 2, 0, -1, true));
+  } else {
+    for (const double step : {4.0, 2.0, 1.0}) all.push_back(exact_rung(step));
+  }
+  for (const double step : {0.5, 0.25}) all.push_back(exact_rung(step));
+  std::stable_sort(all.begin(), all.end(), [&](const RenderSettings& a, const RenderSettings& b) {
+    return relative_cost(a, kind.shaded) < relative_cost(b, kind.shaded);
+  });
+  return all;
+}
+
+TimeModel::TimeModel(std::vector<double> costs, double first_guess_ms) : unit_ms_(first_guess_ms) {
+  for (const double cost : costs) rungs_.push_back({cost});
+}
+
+void TimeModel::measured(std::size_t rung, double ms) {
+  Rung& r = rungs_[rung];
+  const double ratio = std::clamp(ms / expected_ms(rung), 0.01, 100.0);
+  const bool counts = r.drawn || ratio < 1;
+  r.drawn = true;
+  if (!counts) return;
+  unit_ms_ *= std::sqrt(ratio);
+  r.factor *= std::sqrt(ratio);
+}
+
+Refinement::Refinement(double budget_ms, const LadderKind& kind) : budget_ms_(budget_ms), times_({}, 0) {
+  std::vector<double> costs;
+  for (const RenderSettings& settings : quality_ladder(kind)) {
+    // exact rays finer than a voxel are for files: a window's picture ends before
+    if (kind.fast ? !settings.fast || settings.fast->step_voxels < 1 : settings.step_voxels < 0.5) continue;
+    rungs_.push_back(settings);
+    costs.push_back(relative_cost(settings, kind.shaded));
+  }
+  times_ = TimeModel(std::move(costs), kFirstGuessMs);
+  // the last rung of every spacing; without the fast raycast, every rung
+  const auto spacing = [&](std::size_t i) { return rungs_[i].fast ? rungs_[i].fast->spacing : 0; };
+  for (std::size_t i = 0; i < rungs_.size(); ++i)
+    if (i + 1 == rungs_.size() || spacing(i) == 0 || spacing(i) > spacing(i + 1)) stops_.push_back(i);
+}
+
+std::size_t Refinement::best_within_budget() const {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < rungs_.size(); ++i)
+    if (times_.expected_ms(i) <= (i > moving_ ? kUpBelow : 1.0) * budget_ms_) best = i;
+  return best;
+}
+
+std::size_t Refinement::stop_after(std::size_t rung) const {
+  const auto next = std::upper_bound(stops_.begin(), stops_.end(), rung);
+  return next == stops_.end() ? rungs_.size() - 1 : *next;
+}
+
+RefinementStep Refinement::step(std::size_t rung) {
+  shown_ = rung;
+  asked_ = true;
+  return {rungs_[rung], times_.expected_ms(rung), rung + 1 == rungs_.size()};
+}
+
+std::optional<RefinementStep> Refinement::next(bool changed) {
+  if (changed || !shown_) {
+    moving_ = best_within_budget();
+    return step(moving_);
+  }
+  if (*shown_ + 1 == rungs_.size()) return std::nullopt;
+  return step(stop_after(*shown_));
+}
+
+void Refinement::drawn(double ms) {
+  CATENA_ASSERT(asked_);
+  asked_ = false;
+  times_.measured(*shown_, ms);
+}
+
+}  // namespace catena::render

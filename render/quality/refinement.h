@@ -1,0 +1,74 @@
+/// What to draw next so that a picture comes in time and becomes good while nothing moves. Pure logic: no device, no window, no clock.
+///   moving: the best rung of a ladder of settings whose expected time fits the budget
+///   still:  quarter -> half -> every pixel, then finished; anything that moves starts anew
+/// Times are expected from measured ones (TimeModel). Frame thread.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "render/raycast/render_settings.h"
+
+namespace catena::render {
+
+/// What is known of what will be drawn.
+struct LadderKind {
+  bool fast = true;  ///< Renderer::draws_fast
+  bool shaded = false;
+};
+
+/// Of drawing, in units of marching every pixel at step 1 unshaded by the fast raycast, as a CPU driver has it: good for an order and for
+/// first guesses.
+double relative_cost(const RenderSettings& settings, bool shaded);
+
+/// From the cheapest settings to the best, in the order of their cost.
+std::vector<RenderSettings> quality_ladder(const LadderKind& kind);
+
+/// expected(rung) = unit cost(rung) factor(rung): the unit follows the view and the machine, the factor what a rung's cost got wrong.
+/// A picture that took r times what was expected moves both by sqrt(r). A rung's first picture pays for its pipelines too: it
+/// counts only if it was quicker than expected.
+class TimeModel {
+ public:
+  TimeModel(std::vector<double> costs, double first_guess_ms);
+  void measured(std::size_t rung, double ms);
+  double expected_ms(std::size_t rung) const { return unit_ms_ * rungs_[rung].cost * rungs_[rung].factor; }
+
+ private:
+  struct Rung {
+    double cost = 0, factor = 1;
+    bool drawn = false;
+  };
+  std::vector<Rung> rungs_;
+  double unit_ms_;
+};
+
+struct RefinementStep {
+  RenderSettings settings;
+  double expected_ms = 0;
+  bool finished = false;  ///< nothing better comes while nothing moves
+};
+
+class Refinement {
+ public:
+  Refinement(double budget_ms, const LadderKind& kind);
+  /// The picture to draw now; nothing where the last one is finished and nothing has `changed` (camera, scene, size) since.
+  std::optional<RefinementStep> next(bool changed);
+  /// What that picture took.
+  void drawn(double ms);
+  void set_budget_ms(double budget_ms) { budget_ms_ = budget_ms; }
+
+ private:
+  std::size_t best_within_budget() const;
+  /// The next better stop on the way to the last rung, or the last rung itself.
+  std::size_t stop_after(std::size_t rung) const;
+  RefinementStep step(std::size_t rung);
+
+  double budget_ms_;
+  std::vector<RenderSettings> rungs_;
+  std::vector<std::size_t> stops_;  ///< rungs that a still picture goes through
+  TimeModel times_;
+  std::size_t moving_ = 0;            ///< the rung of moving pictures
+  std::optional<std::size_t> shown_;  ///< drawn last
+  bool asked_ = false;                ///< a picture was asked for and its time has not come
+};
+
+}  // namespace catena::render

@@ -1,0 +1,82 @@
+#include "render/raycast/bound_grids.h"
+
+#include <algorithm>
+
+namespace catena::render {
+namespace {
+
+constexpr std::uint32_t kValues = 3, kMaps = kValues + MAX_GRIDS, kMasks = kMaps + MAX_GRIDS;
+
+}  // namespace
+
+std::uint32_t BoundGrid::flags() const {
+  return (mirror->atlas ? 1u : 0u) | (mirror->masked ? 2u : 0u) | (shaded ? 4u : 0u) | (skips ? 8u : 0u);
+}
+
+void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    slots.push_back({kValues + i, vk::Resource::sampled});
+    slots.push_back({kMaps + i, vk::Resource::texture});
+    slots.push_back({kMasks + i, vk::Resource::texture});
+  }
+}
+
+void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const BoundGrid> grids, std::uint32_t count,
+                       const vk::Sampler& linear) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const BoundGrid& g = grids[i < grids.size() ? i : 0];
+    bindings.push_back({kValues + i, vk::Resource::sampled, nullptr, &g.mirror->values, &linear});
+    bindings.push_back({kMaps + i, vk::Resource::texture, nullptr, &g.map->image, nullptr});
+    // without a mask the binding is never read; the map has the right type
+    bindings.push_back({kMasks + i, vk::Resource::texture, nullptr, g.mirror->masked ? &g.mirror->mask : &g.map->image, nullptr});
+  }
+}
+
+Outcome SurfaceState::update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, double next_level) {
+  const auto rounded = float(next_level);
+  if (mirror == next_mirror && level == rounded && map.image) return Done{};
+  mirror = std::move(next_mirror);
+  level = rounded;
+  CATENA_TRY(map, make_brick_map(device, *mirror, [this](const BrickRange& r) { return r.least <= level && level <= r.greatest; }));
+  return Done{};
+}
+
+shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state, const IsosurfaceItem& item) {
+  shared::GridData data = rays.grid(*state.mirror, item.grid->mapping());
+  data.level = state.level;
+  data.opacity = item.opacity;
+  data.color = {item.color.r, item.color.g, item.color.b};
+  data.id = item.id;
+  data.clipped = item.clipped;
+  return data;
+}
+
+BrickRange range_of(const GridMirror& mirror) {
+  BrickRange all;
+  for (const BrickRange& r : mirror.ranges) {
+    if (r.empty()) continue;
+    all = all.empty() ? r : BrickRange{std::min(all.least, r.least), std::max(all.greatest, r.greatest)};
+  }
+  return all.empty() ? BrickRange{0, 0} : all;
+}
+
+void set_table(shared::GridData& data, const TransferLut& lut, std::uint32_t start) {
+  data.table_start = start;
+  data.table_last = lut.last();
+  data.table_lo = lut.lo;
+  data.table_per_value = lut.per_value;
+}
+
+Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, const ColorSource& next) {
+  const bool same_grid = mirror == next_mirror && map.image;
+  if (same_grid && source.colors == next.colors) return false;
+  mirror = std::move(next_mirror);
+  source = next;
+  lut = make_transfer_lut({next.colors, {}, {}, 0}, range_of(*mirror));
+  if (!same_grid) {
+    CATENA_TRY(map, make_word_map(device, *mirror, std::vector<std::uint8_t>(mirror->ranges.size())));
+  }
+  return true;
+}
+
+}  // namespace catena::render

@@ -1,0 +1,58 @@
+/// Mirrored grids as the shaders of rays get them: how one is bound (shaders/lib/grids.glsl: value image, brick map and mask at three
+/// bindings, four flag bits), one with a level, and one that colours what another one shapes.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "render/mirror/brick_map.h"
+#include "render/raycast/camera_rays.h"
+#include "render/raycast/transfer_tables.h"
+#include "render/vk/commands.h"
+#include "shaders/shared/frame.h"
+
+namespace catena::render {
+
+struct BoundGrid {
+  std::shared_ptr<const GridMirror> mirror;
+  const BrickMap* map = nullptr;
+  bool shaded = false;
+  bool skips = false;
+  std::uint32_t flags() const;
+};
+
+/// The pipeline's slots for `count` grids, and what to push for them: grid i, or the first one where there are fewer.
+void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count);
+void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const BoundGrid> grids, std::uint32_t count,
+                       const vk::Sampler& linear);
+
+/// A level of a mirrored grid, ready to be bound: bricks without the level are inactive.
+struct SurfaceState {
+  std::shared_ptr<const GridMirror> mirror;
+  float level = 0;
+  BrickMap map;
+  /// Rebuilds the map when the mirror or the level is another one.
+  Outcome update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, double next_level);
+  BoundGrid bound() const { return {mirror, &map, true, true}; }
+};
+/// The ray's numbers, level, colour and opacity.
+shared::GridData surface_data(const CameraRays& rays, const SurfaceState& state, const IsosurfaceItem& item);
+
+/// A grid that colours what another one shapes: its mirror, the table of its colours, and a map by which any of its bricks is found.
+struct ColorGrid {
+  std::shared_ptr<const GridMirror> mirror;
+  ColorSource source;
+  TransferLut lut;
+  BrickMap map;
+
+  /// Whether anything was new.
+  Result<bool> update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, const ColorSource& next);
+  BoundGrid bound() const { return {mirror, &map, false, false}; }
+};
+
+/// The least and the greatest value of a mirrored grid.
+BrickRange range_of(const GridMirror& mirror);
+/// Tells the shader where in the buffer of tables that of a grid begins.
+void set_table(shared::GridData& data, const TransferLut& lut, std::uint32_t start);
+
+}  // namespace catena::render

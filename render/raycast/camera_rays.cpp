@@ -1,0 +1,173 @@
+#include "render/raycast/camera_rays.h"
+
+#include <glm/matrix.hpp>
+
+namespace catena::render {
+namespace {
+
+glm::vec3 narrow(const Vec3& v) { return glm::vec3(v); }
+
+glm::vec3 color_of(const Color& c) { return {c.r, c.g, c.b}; }
+
+/// Unit, in the world.
+Vec3 towards(const Camera& c, const LightItem& light) {
+  const Vec3 d = direction(light.direction);
+  return light.with_camera ? d.x * c.right + d.y * c.up + d.z * c.back : d;
+}
+
+shared::FogData fog_of(const CameraRays& rays) {
+  shared::FogData fog{};
+  if (!rays.fog) return fog;
+  fog.color = color_of(rays.fog->color);
+  fog.start = float(rays.fog->start - rays.reference_depth);
+  fog.per_depth = float(1 / std::max(rays.fog->end - rays.fog->start, 1e-30));
+  fog.most = float(rays.fog->most);
+  return fog;
+}
+
+}  // namespace
+
+CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds) {
+  CameraRays rays;
+  rays.camera = make_camera(packet.view, packet.width, packet.height, bounds);
+  rays.forward = -rays.camera.back;
+  rays.clip = packet.clip;
+  rays.lights = packet.lights;
+  rays.fog = packet.fog;
+  if (bounds.empty()) return rays;
+  rays.reference_depth = std::max(0.0, rays.view_depth(bounds.centre()));
+  double farthest = 0;
+  for (int i = 0; i < 8; ++i) farthest = std::max(farthest, rays.view_depth(bounds.corner(i)));
+  const double scale = std::max(farthest, bounds.diagonal());
+  // reversed float depth keeps its relative precision at any distance: near may be tiny
+  rays.depth_near = rays.camera.orthographic ? 0 : std::max(1e-6 * scale, 1e-30);
+  rays.depth_far = farthest + 1e-3 * scale + 1e-30;
+  return rays;
+}
+
+shared::FrameData CameraRays::frame() const {
+  shared::FrameData f{};
+  f.half_size = {float(0.5 * camera.width), float(0.5 * camera.height)};
+  const double slope_x = camera.half_width / (0.5 * camera.width), slope_y = camera.half_height / (0.5 * camera.height);
+  if (!camera.orthographic) f.slope = {float(slope_x), float(slope_y)};
+  f.axis = {float(0.5 * camera.width - camera.centre_x / slope_x), float(0.5 * camera.height + camera.centre_y / slope_y)};
+  f.right = narrow(camera.right);
+  f.up = narrow(camera.up);
+  f.forward = narrow(forward);
+  f.reference_depth = float(reference_depth);
+  f.front = float(-reference_depth);
+  f.depth_near = float(depth_near);
+  f.depth_far = float(depth_far);
+  f.orthographic = camera.orthographic;
+  f.spacing = float(spacing);
+  f.first = glm::vec2(0.5f - 0.5f * float(spacing));
+  f.clip_count = std::uint32_t(clip.size());
+  for (std::size_t i = 0; i < clip.size(); ++i) f.clips[i] = plane(clip[i]);
+  f.light_count = std::uint32_t(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) f.lights[i] = {narrow(towards(camera, lights[i])), color_of(lights[i].color)};
+  f.fog = fog_of(*this);
+  return f;
+}
+
+shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping& whole) const {
+  const field::Mapping& mapping = mirror.coarse ? mirror.coarse->mapping() : whole;
+  const Mat3& inverse = mapping.index_from_world_linear;
+  const Vec3 origin(mirror.origin.x, mirror.origin.y, mirror.origin.z);
+  // one pixel to the right and down, in index space at depth 1 (perspective) or anywhere (orthographic)
+  const Vec3 x = inverse * (camera.right * (camera.half_width / (0.5 * camera.width)));
+  const Vec3 y = inverse * (camera.up * (-camera.half_height / (0.5 * camera.height)));
+  const Vec3 z = inverse * forward;
+  const Vec3 at_reference = mapping.index_from_world(camera.position + forward * reference_depth) - origin;
+  shared::GridData g{};
+  g.origin = narrow(at_reference);
+  g.direction = narrow(z);
+  if (camera.orthographic) {
+    g.origin_x = narrow(x);
+    g.origin_y = narrow(y);
+  } else {
+    g.origin_x = narrow(reference_depth * x);
+    g.origin_y = narrow(reference_depth * y);
+    g.direction_x = narrow(x);
+    g.direction_y = narrow(y);
+  }
+  g.lo = narrow(mirror.box_lo);
+  g.hi = narrow(mirror.box_hi);
+  g.domain_lo = mirror.coarse ? narrow(mirror.domain_lo) : g.lo;
+  g.domain_hi = mirror.coarse ? narrow(mirror.domain_hi) : g.hi;
+  const VkExtent3D extent = mirror.values.info().extent;
+  g.texel = {1.0f / float(extent.width), 1.0f / float(extent.height), 1.0f / float(extent.depth)};
+  g.world_gradient = glm::mat3(glm::transpose(inverse));
+  g.value_offset = mirror.offset;
+  g.value_scale = mirror.scale;
+  return g;
+}
+
+shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
+  shared::MeshFrameData m{};
+  // columns of the matrix whose rows are right, up, forward
+  for (int i = 0; i < 3; ++i) m.view_from_world[i] = {float(camera.right[i]), float(camera.up[i]), float(forward[i])};
+  const Vec3 from_eye = origin - camera.position;
+  m.offset = {float(dot(from_eye, camera.right)), float(dot(from_eye, camera.up)), float(dot(from_eye, forward))};
+  m.offset_depth = float(dot(from_eye, forward) - reference_depth);
+  m.scale = {float(1 / camera.half_width), float(1 / camera.half_height)};
+  m.shift = {float(-camera.centre_x / camera.half_width), float(camera.centre_y / camera.half_height)};
+  m.depth_near = float(depth_near);
+  m.depth_far = float(depth_far);
+  m.orthographic = camera.orthographic;
+  m.light_count = std::uint32_t(lights.size());
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Vec3 l = towards(camera, lights[i]);
+    m.lights[i] = {{float(dot(l, camera.right)), float(dot(l, camera.up)), float(dot(l, forward))}, color_of(lights[i].color)};
+  }
+  m.fog = fog_of(*this);
+  m.clip_count = std::uint32_t(clip.size());
+  for (std::size_t i = 0; i < clip.size(); ++i) {
+    const Vec3 normal = direction(clip[i].normal);
+    m.clips[i] = glm::vec4(narrow(normal), float(dot(normal, origin - clip[i].point)));
+  }
+  return m;
+}
+
+shared::ClipData CameraRays::plane(const ClipPlane& plane) const {
+  const Camera& c = camera;
+  const Vec3 normal = direction(plane.normal);
+  const double x = dot(normal, c.right) * (c.half_width / (0.5 * c.width)), y = -dot(normal, c.up) * (c.half_height / (0.5 * c.height));
+  shared::ClipData clip_data{};
+  clip_data.at = float(dot(normal, c.position - plane.point) + reference_depth * dot(normal, forward));
+  clip_data.along = float(dot(normal, forward));
+  const double depth = c.orthographic ? 1 : reference_depth;
+  clip_data.at_x = float(depth * x);
+  clip_data.at_y = float(depth * y);
+  if (!c.orthographic) {
+    clip_data.along_x = float(x);
+    clip_data.along_y = float(y);
+  }
+  return clip_data;
+}
+
+VkRect2D covered_area(std::span<const Vec3> points, const Camera& camera) {
+  double x0 = camera.width, y0 = camera.height, x1 = 0, y1 = 0;
+  if (points.empty()) return {};
+  for (const Vec3& point : points) {
+    const auto pixel = project(camera, point);
+    if (!pixel) return {{0, 0}, {std::uint32_t(camera.width), std::uint32_t(camera.height)}};
+    x0 = std::min(x0, pixel->x);
+    y0 = std::min(y0, pixel->y);
+    x1 = std::max(x1, pixel->x);
+    y1 = std::max(y1, pixel->y);
+  }
+  x0 = std::clamp(std::floor(x0) - 1, 0.0, camera.width);
+  y0 = std::clamp(std::floor(y0) - 1, 0.0, camera.height);
+  x1 = std::clamp(std::ceil(x1) + 1, x0, camera.width);
+  y1 = std::clamp(std::ceil(y1) + 1, y0, camera.height);
+  return {{std::int32_t(x0), std::int32_t(y0)}, {std::uint32_t(x1 - x0), std::uint32_t(y1 - y0)}};
+}
+
+VkRect2D covered_area(std::span<const field::ScalarGrid* const> grids, const Camera& camera) {
+  std::vector<Vec3> corners;
+  for (const field::ScalarGrid* grid : grids)
+    for (int i = 0; i < 8; ++i) corners.push_back(grid->corner(i));
+  return covered_area(corners, camera);
+}
+
+}  // namespace catena::render

@@ -1,0 +1,371 @@
+#include "render/raycast/fast_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "engine/base/clock.h"
+#include "render/vk/commands.h"
+#include "shaders/shared/fast_volume.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr std::uint32_t kUpsampleShader[] = {
+#include "spirv/upsample.comp.inc"
+};
+constexpr std::uint32_t kGroupX = 16, kGroupY = 4;  // as in the shaders
+
+}  // namespace
+
+UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture) {
+  UpsampleGroups groups;
+  groups.data.first_x = std::uint32_t(area.offset.x) / 2;
+  groups.data.first_y = std::uint32_t(area.offset.y) / 2;
+  groups.data.width = picture.width;
+  groups.data.height = picture.height;
+  const auto points = [](std::int32_t first, std::uint32_t extent) {
+    return extent == 0 ? 0 : (std::uint32_t(first) % 2 + extent + 1) / 2;
+  };
+  groups.x = (points(area.offset.x, area.extent.width) + kGroupX - 1) / kGroupX;
+  groups.y = (points(area.offset.y, area.extent.height) + kGroupY - 1) / kGroupY;
+  return groups;
+}
+
+Outcome Upsampler::record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
+                          const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture) {
+  vk::Pipeline& pipeline = pipelines_[opaque ? 1 : 0];
+  if (!pipeline) {
+    vk::ComputeInfo info;
+    info.shader = kUpsampleShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}, {3, vk::Resource::storage_image}};
+    info.constants = {opaque ? 1u : 0u};
+    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+  }
+  const VkExtent3D& size = picture.info().extent;
+  VkRect2D pixels = area;
+  if (opaque) {
+    pixels = {{0, 0}, {size.width, size.height}};
+    commands.use(*opaque, vk::kFragmentRead);
+  } else {
+    // beyond the area there is the background
+    const bool seen = background[3] > 0;
+    const vk::ColorTarget target{&picture, seen ? background : std::array<float, 4>{0, 0, 0, 0}};
+    commands.begin_pass({&target, 1}, {});
+    commands.end_pass();
+  }
+  UpsampleGroups groups = upsample_groups(pixels, size);
+  groups.data.background = {background[0], background[1], background[2], background[3]};
+  CATENA_CHECK(vk::write_uniform(*device_, uniform_, groups.data));
+  commands.use(half_lattice, vk::kFragmentRead);
+  commands.use(picture, vk::kComputeWrite);
+  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
+                                  {1, vk::Resource::texture, nullptr, opaque ? opaque : &none, nullptr},
+                                  {2, vk::Resource::texture, nullptr, &half_lattice, nullptr},
+                                  {3, vk::Resource::storage_image, nullptr, &picture, nullptr}};
+  commands.bind(pipeline, bindings);
+  if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
+  commands.use(picture, vk::kTransferRead);
+  return Done{};
+}
+
+namespace {
+
+constexpr std::uint32_t kFastVolumeVertexShader[] = {
+#include "spirv/screen.vert.inc"
+};
+constexpr std::uint32_t kFastVolumeFragmentShader[] = {
+#include "spirv/volume_fast.frag.inc"
+};
+constexpr std::uint32_t kFastVolumeTilesShader[] = {
+#include "spirv/marked_tiles.vert.inc"
+};
+constexpr std::uint32_t kFastVolumeInterpolateShader[] = {
+#include "spirv/interpolate.comp.inc"
+};
+constexpr std::uint32_t kFastVolumeOpaqueShader[] = {
+#include "spirv/opaque_tiles.frag.inc"
+};
+constexpr std::uint32_t kFastVolumeMarkShader[] = {
+#include "spirv/volume_blocks.frag.inc"
+};
+
+constexpr double kLeapAbove = 0.15;  // share of plain bricks from which asking for leaps pays
+constexpr std::uint32_t kBlock = 4, kTileBlocks = 4;
+constexpr double kNever = 1e9;  // an error that interpolation never makes
+constexpr VkFormat kLatticeFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+
+/// A coarse lattice has an apron of two texels before the picture's first ray and of four behind its last.
+std::uint32_t lattice_size(std::uint32_t pixels, std::uint32_t spacing) {
+  return spacing == 1 ? pixels : (pixels - 1 + spacing - 1) / spacing + 1 + COARSE_APRON + 4;
+}
+
+/// The texels of a lattice that the pixels of an area need.
+VkRect2D lattice_area(const VkRect2D& area, std::uint32_t spacing, const VkExtent3D& extent) {
+  if (spacing == 1) return area;
+  constexpr std::int32_t margin = 4, apron = COARSE_APRON;
+  const auto s = std::int32_t(spacing);
+  const auto from = [&](std::int32_t first) { return std::max(0, first / s + apron - margin); };
+  const auto to = [&](std::int32_t last, std::uint32_t size) { return std::min(std::int32_t(size), last / s + apron + margin + 1); };
+  const std::int32_t x = from(area.offset.x), y = from(area.offset.y);
+  const std::int32_t x1 = to(area.offset.x + std::int32_t(area.extent.width), extent.width);
+  const std::int32_t y1 = to(area.offset.y + std::int32_t(area.extent.height), extent.height);
+  return {{x, y}, {std::uint32_t(std::max(0, x1 - x)), std::uint32_t(std::max(0, y1 - y))}};
+}
+
+Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height) {
+  const VkExtent3D& have = image.info().extent;
+  if (image && have.width == width && have.height == height) return Done{};
+  vk::ImageInfo info;
+  info.format = format;
+  info.extent = {width, height, 1};
+  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  CATENA_TRY(image, vk::Image::create(device, info));
+  return Done{};
+}
+
+bool same_look(const VolumeItem& a, const VolumeItem& b) {
+  return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.shade == b.shade;
+}
+
+}  // namespace
+
+Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
+  FastVolumeRaycast self;
+  self.device_ = &device;
+  CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
+  vk::ImageInfo info;
+  info.type = VK_IMAGE_TYPE_3D;
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(self.no_gradients_, vk::Image::create(device, info));
+  CATENA_CHECK(
+      vk::upload_planes(device, self.no_gradients_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 128, 4); }));
+  return self;
+}
+
+Outcome FastVolumeRaycast::prepare(const VolumeItem& item, const FastSettings& settings) {
+  const std::int64_t start = now_ns();
+  const bool other_grid = !packed_.words || version_ != item.grid->version();
+  const bool other_look = other_grid || !same_look(item_, item);
+  item_ = item;
+  if (other_grid) gradients_ = {};
+  if (item.shade && settings.smooth_gradients && !gradients_.image) {
+    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item.grid));
+    build_ms_ += ms_since(start);
+  }
+  if (!other_look) return Done{};
+
+  const double background = item.grid->background();
+  const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
+  const ValueInterval active = active_interval(item.transfer, values, item.shade);
+  if (other_grid || !(active == active_)) {
+    packed_ = {};
+    CATENA_TRY(packed_, make_packed_volume(*device_, *item.grid, active));
+    version_ = item.grid->version();
+    active_ = active;
+  }
+  const PreintegratedTable table = make_preintegrated(item.transfer, packed_.lo, packed_.per_code, item.shade);
+  vk::ImageInfo info;
+  info.format = VK_FORMAT_R32G32_UINT;
+  info.extent = {256, 256, 1};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(table_, vk::Image::create(*device_, info));
+  CATENA_CHECK(vk::upload_planes(*device_, table_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
+    std::memcpy(out, table.entries.data(), table.entries.size() * sizeof(table.entries[0]));
+  }));
+  CATENA_TRY(map_, make_plain_map(*device_, packed_, table.look));
+  build_ms_ += ms_since(start);
+  return Done{};
+}
+
+Outcome FastVolumeRaycast::ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target) {
+  const std::uint32_t width = lattice_size(target.width, spacing), height = lattice_size(target.height, spacing);
+  if (spacing > 1) CATENA_CHECK(fit(*device_, level.color, kLatticeFormat, width, height));
+  return fit(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock);
+}
+
+Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles) {
+  vk::Pipeline& pipeline = pipelines_[{constants, tiles}];
+  if (!pipeline) {
+    vk::GraphicsInfo info;
+    info.vertex = tiles ? vk::Spirv(kFastVolumeTilesShader) : vk::Spirv(kFastVolumeVertexShader);
+    info.fragment = kFastVolumeFragmentShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture},
+                  {3, vk::Resource::texture}, {4, vk::Resource::texture}, {5, vk::Resource::texture},
+                  {6, vk::Resource::texture}, {7, vk::Resource::texture}, {8, vk::Resource::sampled}};
+    info.constants.assign(constants.begin(), constants.end());
+    // every pixel goes to the volume target, coarser lattices to their own
+    info.colors = {constants[4] & 2u ? kVolumeFormat : kLatticeFormat};
+    info.constants[4] &= 1u;
+    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+  }
+  return &pipeline;
+}
+
+Outcome FastVolumeRaycast::mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth) {
+  if (!tile_pipeline_) {
+    vk::GraphicsInfo info;
+    info.vertex = kFastVolumeVertexShader;
+    info.fragment = kFastVolumeOpaqueShader;
+    info.slots = {{0, vk::Resource::texture}};
+    info.colors = {VK_FORMAT_R8_UINT};
+    CATENA_TRY(tile_pipeline_, vk::Pipeline::create(*device_, info));
+  }
+  const VkExtent3D& extent = opaque_depth.info().extent;
+  CATENA_CHECK(
+      fit(*device_, opaque_tiles_, VK_FORMAT_R8_UINT, (extent.width + kBlock - 1) / kBlock, (extent.height + kBlock - 1) / kBlock));
+  const vk::ColorTarget target{&opaque_tiles_, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&target, 1}, {});
+  const vk::Binding bindings[] = {{0, vk::Resource::texture, nullptr, &opaque_depth, nullptr}};
+  commands.bind(tile_pipeline_, bindings);
+  commands.draw_triangle();
+  commands.end_pass();
+  commands.use(opaque_tiles_, vk::kFragmentRead);
+  return Done{};
+}
+
+Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque) {
+  vk::Pipeline& pipe = mark_pipelines_[opaque];
+  if (!pipe) {
+    vk::GraphicsInfo info;
+    info.vertex = kFastVolumeVertexShader;
+    info.fragment = kFastVolumeMarkShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
+    info.constants = {opaque};
+    info.colors = {VK_FORMAT_R8_UINT};
+    CATENA_TRY(pipe, vk::Pipeline::create(*device_, info));
+  }
+  if (!opaque_tiles_) CATENA_CHECK(fit(*device_, opaque_tiles_, VK_FORMAT_R8_UINT, 1, 1));
+  commands.use(opaque_tiles_, vk::kFragmentRead);
+  const vk::ColorTarget target{&level.marks, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&target, 1}, {});
+  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &level.data, nullptr, nullptr},
+                                  {1, vk::Resource::texture, nullptr, &coarser, nullptr},
+                                  {2, vk::Resource::texture, nullptr, &opaque_tiles_, nullptr}};
+  commands.bind(pipe, bindings);
+  commands.draw_triangle();
+  commands.end_pass();
+  commands.use(level.marks, vk::kShaderRead);
+  return Done{};
+}
+
+/// The frame's data; grid 0 counts from the volume's first voxel.
+Outcome FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
+  GridMirror place;
+  place.origin = packed_.origin;
+  place.box_hi = Vec3(packed_.size.x - 1, packed_.size.y - 1, packed_.size.z - 1);
+  shared::FrameData frame = rays.frame();
+  frame.grids[0] = rays.grid(place, item_.grid->mapping());
+  frame.grids[0].id = item_.id;
+  frame.grids[0].clipped = item_.clipped;
+  frame.termination = float(settings.termination);
+  frame.step_world = float(settings.step_voxels * item_.grid->mapping().smallest_edge());
+  return vk::write_uniform(*device_, frame_, frame);
+}
+
+Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw& draw) {
+  CATENA_TRY(const vk::Pipeline* pipe,
+             pipeline({draw.shading, draw.skips && map_.leaping > kLeapAbove, draw.opaque_depth != nullptr, draw.coarser != nullptr,
+                       (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u)},
+                      draw.tiles));
+  vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
+  if (draw.tiles) color.clear.reset();
+  commands.begin_pass({&color, 1}, {});
+  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &frame_, nullptr, nullptr},
+                                  {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
+                                  {2, vk::Resource::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.none, nullptr},
+                                  {3, vk::Resource::texture, nullptr, &packed_.words, nullptr},
+                                  {4, vk::Resource::texture, nullptr, &table_, nullptr},
+                                  {5, vk::Resource::texture, nullptr, &map_.image, nullptr},
+                                  {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
+                                  {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
+                                  {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients_.image : &no_gradients_, &linear_}};
+  commands.scissor(draw.area);
+  commands.bind(*pipe, bindings);
+  if (draw.tiles) {
+    const VkExtent3D& marks = level.marks.info().extent;
+    const auto tiles = [](std::uint32_t blocks) { return (blocks + kTileBlocks - 1) / kTileBlocks; };
+    commands.draw(6, tiles(marks.width) * tiles(marks.height));
+  } else {
+    commands.draw_triangle();
+  }
+  commands.end_pass();
+  return Done{};
+}
+
+Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area) {
+  if (!interpolate_pipeline_) {
+    vk::ComputeInfo info;
+    info.shader = kFastVolumeInterpolateShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::storage_image}};
+    CATENA_TRY(interpolate_pipeline_, vk::Pipeline::create(*device_, info));
+  }
+  const vk::ColorTarget empty{&target, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&empty, 1}, {});
+  commands.end_pass();
+  const UpsampleGroups groups = upsample_groups(area, target.info().extent);
+  CATENA_CHECK(vk::write_uniform(*device_, interpolate_data_, groups.data));
+  commands.use(half, vk::kFragmentRead);
+  commands.use(target, vk::kComputeWrite);
+  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &interpolate_data_, nullptr, nullptr},
+                                  {1, vk::Resource::texture, nullptr, &half, nullptr},
+                                  {2, vk::Resource::storage_image, nullptr, &target, nullptr}};
+  commands.bind(interpolate_pipeline_, bindings);
+  if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
+  return Done{};
+}
+
+Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
+                                  const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none) {
+  CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
+  CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
+  CATENA_CHECK(write_frame(rays, settings));
+  if (opaque_depth && settings.spacing > 1) CATENA_CHECK(mark_opaque(commands, *opaque_depth));
+
+  // from the coarsest lattice to every pixel
+  vk::Image* coarser = nullptr;
+  const std::uint32_t finest = target ? 1 : 2;
+  for (std::uint32_t spacing = settings.spacing; spacing >= finest; spacing /= 2) {
+    Level& level = spacing == 4 ? quarter_ : spacing == 2 ? half_ : full_;
+    CATENA_CHECK(ensure(level, spacing, picture));
+    vk::Image& image = spacing == 1 ? *target : level.color;
+    double refine_255 = spacing == 2 ? settings.refine_half_255 : settings.refine_full_255;
+    if (opaque_depth && refine_255 < 0) refine_255 = kNever;
+    const bool marches = !coarser || refine_255 >= 0;
+    const VkExtent3D from = coarser ? coarser->info().extent : VkExtent3D{1, 1, 1};
+    const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
+    const shared::LatticeData data{float(spacing), apron, float(refine_255 / 255), from.width, from.height, gradient_unit()};
+    CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
+    if (coarser && marches) {
+      CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
+    } else {
+      commands.use(level.marks, vk::kFragmentRead);
+    }
+    // most of the last step is interpolation: all of it first, then what is marked
+    const bool tiles = coarser && spacing == 1;
+    if (tiles) CATENA_CHECK(interpolate(commands, *coarser, image, area));
+    if (tiles && !marches) break;
+    CATENA_CHECK(draw(commands, level,
+                      {&image, coarser, marches, tiles, shading(settings), settings.skip, lattice_area(area, spacing, image.info().extent),
+                       opaque_depth, &none}));
+    if (spacing > 1) commands.use(image, vk::kFragmentRead);
+    coarser = &image;
+  }
+  return Done{};
+}
+
+Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
+                                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none) {
+  CATENA_ASSERT(target.info().format == kVolumeFormat);
+  CATENA_CHECK(write_frame(rays, settings));
+  CATENA_CHECK(fit(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
+  commands.use(probe_.marks, vk::kFragmentRead);
+  CATENA_CHECK(vk::write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1, gradient_unit()}));
+  const VkExtent3D& extent = target.info().extent;
+  return draw(
+      commands, probe_,
+      {&target, nullptr, true, false, shading(settings), settings.skip, {{0, 0}, {extent.width, extent.height}}, opaque_depth, &none});
+}
+
+}  // namespace catena::render

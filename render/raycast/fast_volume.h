@@ -1,0 +1,109 @@
+/// One volume, fast, with an error that is measured and not assumed (render/quality/quality.h): packed words, pre-integrated
+/// table, Hermite midpoints, leaps over plain bricks; rays on a lattice of every 4th, 2nd or every pixel, refined where the fourth
+/// difference of the picture says that interpolation would err.   lattice -> marks -> finer lattice -> .. -> every pixel
+/// Volumes that it cannot draw (several at once, masked cells, too many voxels) belong to VolumeRaycast. Frame thread only.
+#pragma once
+#include <array>
+#include <map>
+
+#include "render/mirror/brick_map.h"
+#include "render/mirror/packed_volume.h"
+#include "render/raycast/camera_rays.h"
+#include "render/raycast/ray_scene.h"
+#include "render/raycast/render_settings.h"
+#include "render/raycast/transfer_tables.h"
+#include "render/vk/commands.h"
+#include "shaders/shared/fast_volume.h"
+
+namespace catena::render {
+
+class FastVolumeRaycast {
+ public:
+  static Result<FastVolumeRaycast> create(vk::Device& device);
+  /// Packs the volume, its table and its map, if they are new. `item.grid` can_be_packed.
+  Outcome prepare(const VolumeItem& item, const FastSettings& settings);
+  /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;
+  /// not within a pass. `opaque_depth` null: nothing opaque, `none` is bound instead; else pixels near it are always marched and
+  /// `target` is needed.
+  Outcome record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
+                 const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none);
+  /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
+  Outcome record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
+                       vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
+  /// Every 2nd pixel, for Upsampler.
+  vk::Image& half() { return half_.color; }
+  double build_ms() const { return build_ms_; }
+
+ private:
+  /// A lattice of rays: what it needs to be drawn.
+  struct Level {
+    vk::Image color, marks;
+    vk::Buffer data;
+  };
+  FastVolumeRaycast() = default;
+  Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
+  Result<const vk::Pipeline*> pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles);
+  std::uint32_t shading(const FastSettings& settings) const { return item_.shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
+  float gradient_unit() const { return packed_.per_code > 0 ? float(gradients_.unit / packed_.per_code) : 0.0f; }
+  Outcome write_frame(const CameraRays& rays, const FastSettings& settings);
+  Outcome mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque);
+  Outcome mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth);
+  /// What draws a level: its target, the coarser one (or null) and whether rays are marched.
+  struct Draw {
+    vk::Image* target = nullptr;
+    const vk::Image* coarser = nullptr;
+    bool marches = true;
+    bool tiles = false;  ///< `target` is interpolated already: only marked tiles are drawn
+    std::uint32_t shading = 0;
+    bool skips = true;
+    VkRect2D area{};
+    const vk::Image* opaque_depth = nullptr;
+    const vk::Image* none = nullptr;
+  };
+  Outcome draw(vk::Commands& commands, Level& level, const Draw& draw);
+  Outcome interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area);
+
+  vk::Device* device_ = nullptr;
+  VolumeItem item_;
+  ValueInterval active_;
+  std::uint64_t version_ = 0;
+  PackedVolume packed_;
+  PlainMap map_;
+  vk::Image table_;
+  GradientVolume gradients_;
+  vk::Image no_gradients_;  ///< one voxel, bound where shading does not ask for them
+  vk::Sampler linear_;
+  vk::Buffer frame_;
+  Level quarter_, half_, full_, probe_;
+  std::map<std::pair<std::array<std::uint32_t, 5>, bool>, vk::Pipeline> pipelines_;
+  std::array<vk::Pipeline, 2> mark_pipelines_;  // without and with something opaque
+  vk::Pipeline tile_pipeline_, interpolate_pipeline_;
+  vk::Buffer interpolate_data_;
+  vk::Image opaque_tiles_;
+  double build_ms_ = 0;
+};
+
+/// One invocation a lattice point: what upsample.comp and interpolate.comp need for the pixels of an area.
+struct UpsampleGroups {
+  shared::UpsampleData data{};
+  std::uint32_t x = 0, y = 0;
+};
+UpsampleGroups upsample_groups(const VkRect2D& area, const VkExtent3D& picture);
+
+/// From a volume on every 2nd pixel to the finished picture, over opaque over background: what the pass `compose` does for the fast
+/// raycast.
+class Upsampler {
+ public:
+  explicit Upsampler(vk::Device& device) : device_(&device) {}
+  /// Into `picture`. `opaque` null: there is nothing opaque, `none` is bound instead. `area`: the pixels that the volume may cover. Moves
+  /// the images to their layouts.
+  Outcome record(vk::Commands& commands, vk::Image& half_lattice, vk::Image* opaque, const vk::Image& none,
+                 const std::array<float, 4>& background, const VkRect2D& area, vk::Image& picture);
+
+ private:
+  vk::Device* device_;
+  std::array<vk::Pipeline, 2> pipelines_;  // without and with something opaque
+  vk::Buffer uniform_;
+};
+
+}  // namespace catena::render

@@ -1,0 +1,27 @@
+#include "render/raycast/render_settings.h"
+
+namespace catena::render {
+
+RenderSettings draft_settings() {
+  RenderSettings s;
+  s.step_voxels = 2;
+  s.jitter = true;
+  s.fast = FastSettings{4, 4, -1, -1};
+  return s;
+}
+
+RenderSettings balanced_settings() {
+  RenderSettings s;
+  s.fast = FastSettings{2.5, 4, 0.7, 1.5};
+  return s;
+}
+
+RenderSettings reference_settings() {
+  RenderSettings s;
+  s.step_voxels = 0.1;
+  s.termination = 1e-4;
+  s.texels = TexelFormat::r32f;
+  return s;
+}
+
+}  // namespace catena::render

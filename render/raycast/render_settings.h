@@ -1,0 +1,45 @@
+/// How well and how fast: what renderer and passes are told beside the packet.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "render/mirror/grid_mirror.h"
+
+namespace catena::render {
+
+/// How the fast raycast of one volume (fast_volume.h) trades error for time.
+struct FastSettings {
+  double step_voxels = 4;         ///< in smallest voxel edges
+  std::uint32_t spacing = 1;      ///< pixels between the first rays: 1, 2 or 4
+  double refine_half_255 = 0;     ///< spacing 4: marches every 2nd pixel where interpolation is expected to err by more; < 0: nowhere
+  double refine_full_255 = -1;    ///< the same for every pixel
+  bool smooth_gradients = false;  ///< shading by central differences, as the exact raycast has it, for 4 bytes a voxel more
+  double termination = 1.0 / 512;
+  bool skip = true;
+  std::uint64_t most_bytes = std::uint64_t(1) << 30;  ///< on the device, for packed words and gradients; what needs more is drawn exactly
+  /// The last step to every pixel is interpolation alone.
+  bool ends_at_half() const { return spacing > 1 && refine_full_255 < 0; }
+  bool operator==(const FastSettings&) const = default;
+};
+
+enum class TexelFormat { automatic, r16f, r32f };
+
+struct RenderSettings {
+  double step_voxels = 1;                       ///< in smallest voxel edges
+  double termination = 1.0 / 512;               ///< a ray ends when less than this gets through
+  TexelFormat texels = TexelFormat::automatic;  ///< automatic: r32f where a grid carries an isosurface or a slice, r16f elsewhere
+  MirrorLayout layout = MirrorLayout::automatic;
+  bool skip = true;  ///< leap over bricks that the transfer function leaves empty
+  /// The picture target holds 32-bit floats instead of 8 bits: Renderer::read_back_float(). What is opaque has 11 bits of mantissa.
+  bool float_picture = false;
+  /// Rays begin with a part of a step, another one at every pixel: grain instead of rings where the step is coarse. The packet may
+  /// say otherwise. The fast raycast has none.
+  bool jitter = false;
+  /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
+  std::optional<FastSettings> fast;
+};
+RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2, jittered
+RenderSettings balanced_settings();   ///< every 4th pixel at step 2.5, refined where the picture asks for it; where it cannot: step 1
+RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
+
+}  // namespace catena::render

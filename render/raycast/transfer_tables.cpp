@@ -1,0 +1,160 @@
+#include "render/raycast/transfer_tables.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/base/assert.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr std::uint32_t kEntries = 4096;
+
+template <class Points>
+double piecewise(const Points& points, double value, std::size_t column) {
+  if (points.empty()) return 0;
+  const auto above = std::upper_bound(points.begin(), points.end(), value, [](double v, const auto& p) { return v < p[0]; });
+  if (above == points.begin()) return points.front()[column];
+  if (above == points.end()) return points.back()[column];
+  const auto& a = *(above - 1);
+  const auto& b = *above;
+  const double f = (value - a[0]) / (b[0] - a[0]);
+  return a[column] + f * (b[column] - a[column]);
+}
+
+}  // namespace
+
+double table_value(const TransferTable& table, double value, int channel) {
+  return channel == 3 ? piecewise(table.extinctions, value, 1) : piecewise(table.colors, value, std::size_t(channel) + 1);
+}
+
+TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& range) {
+  // the values where anything changes
+  double lo = range.least, hi = range.greatest, first = HUGE_VAL, last = -HUGE_VAL;
+  for (const auto& p : table.colors) first = std::min(first, p[0]), last = std::max(last, p[0]);
+  for (const auto& p : table.extinctions) first = std::min(first, p[0]), last = std::max(last, p[0]);
+  if (first <= last) {
+    lo = std::clamp(lo, first, last);
+    hi = std::clamp(hi, first, last);
+  }
+  TransferLut lut;
+  lut.lo = float(lo);
+  lut.per_value = hi > lo ? float((kEntries - 1) / (hi - lo)) : 0;
+  if (!std::isfinite(lut.per_value)) lut.per_value = 0;
+  lut.entries.resize(lut.per_value > 0 ? kEntries : 2);
+  for (std::uint32_t i = 0; i < lut.entries.size(); ++i) {
+    const double value = lut.per_value > 0 ? lo + (hi - lo) * i / (kEntries - 1) : lo;
+    for (int c = 0; c < 4; ++c) lut.entries[i][c] = float(table_value(table, value, c));
+  }
+  lut.visible_before.resize(lut.entries.size() + 1);
+  for (std::size_t i = 0; i < lut.entries.size(); ++i) lut.visible_before[i + 1] = lut.visible_before[i] + (lut.entries[i].a > 0);
+  lut.run.resize(lut.entries.size());
+  for (std::size_t i = 1; i < lut.entries.size(); ++i) lut.run[i] = std::uint16_t(lut.run[i - 1] + (lut.entries[i] != lut.entries[i - 1]));
+  return lut;
+}
+
+float TransferLut::index(float value) const { return std::clamp((value - lo) * per_value, 0.0f, float(last())); }
+
+bool TransferLut::visible(const BrickRange& range) const {
+  const auto from = std::uint32_t(std::floor(index(range.least))), to = std::uint32_t(std::ceil(index(range.greatest)));
+  return visible_before[to + 1] > visible_before[from];
+}
+
+std::uint16_t TransferLut::look(const BrickRange& range) const {
+  if (!visible(range)) return 1;
+  const float least = index(range.least), greatest = index(range.greatest);
+  const auto from = std::size_t(std::floor(least)), to = std::size_t(std::ceil(greatest));
+  if (run[from] == run[to]) return std::uint16_t(2 + run[from]);
+  // one value between two different entries
+  constexpr float parts = 8;
+  static_assert(2 + kEntries + parts * kEntries < 65536);
+  return range.least == range.greatest ? std::uint16_t(2 + kEntries + std::lround(parts * least)) : 0;
+}
+
+FactorLut make_factor_lut(const std::vector<std::array<double, 2>>& factors) {
+  constexpr std::size_t entries = 1024;
+  CATENA_ASSERT(!factors.empty());
+  const double lo = factors.front()[0], hi = factors.back()[0];
+  FactorLut lut;
+  lut.lo = float(lo);
+  lut.per_gradient = hi > lo ? float((entries - 1) / (hi - lo)) : 0;
+  for (std::size_t i = 0; i < entries; ++i)
+    lut.entries.emplace_back(float(piecewise(factors, lo + (hi - lo) * double(i) / (entries - 1), 1)), 0, 0, 0);
+  return lut;
+}
+
+namespace {
+
+constexpr int kCodes = 256, kFine = 16;  // samples a code
+constexpr int kSamples = (kCodes - 1) * kFine + 1;
+
+/// sigma, and sigma times red, green, blue.
+using Look = std::array<double, 4>;
+
+Look look_at(const TransferTable& table, double value) {
+  const double sigma = table_value(table, value, 3);
+  if (!(sigma > 0)) return {};
+  return {sigma, sigma * table_value(table, value, 0), sigma * table_value(table, value, 1), sigma * table_value(table, value, 2)};
+}
+
+std::uint32_t quantised(double share, double greatest) { return std::uint32_t(std::lround(std::clamp(share, 0.0, 1.0) * greatest)); }
+
+std::array<std::uint32_t, 2> entry(const Look& mean) {
+  if (!(mean[0] > 0)) return {};
+  return {std::bit_cast<std::uint32_t>(float(mean[0])),
+          quantised(mean[1] / mean[0], 2047) | quantised(mean[2] / mean[0], 2047) << 11 | quantised(mean[3] / mean[0], 1023) << 22};
+}
+
+}  // namespace
+
+ValueInterval active_interval(const TransferTable& table, const ValueInterval& values, bool shaded) {
+  constexpr int last = 4096;
+  const auto value = [&](int i) { return values.least + (values.greatest - values.least) * i / last; };
+  std::vector<Look> looks(last + 1);
+  for (int i = 0; i <= last; ++i) looks[i] = look_at(table, value(i));
+  int first = 0, final = last;
+  const auto trims = [&](const Look& end) { return !shaded || !(end[0] > 0); };
+  while (trims(looks[0]) && first < last && looks[first + 1] == looks[0]) ++first;
+  while (trims(looks[last]) && final > first && looks[final - 1] == looks[last]) --final;
+  return {value(first), value(final)};
+}
+
+PreintegratedTable make_preintegrated(const TransferTable& table, double lo, double per_code, bool shaded) {
+  // running integrals by the trapezium rule
+  std::vector<Look> looks(kSamples), integral(kSamples);
+  PreintegratedTable out;
+  for (int k = 0; k < kSamples; ++k) {
+    looks[k] = look_at(table, lo + per_code * k / kFine);
+    out.greatest_sigma = std::max(out.greatest_sigma, looks[k][0]);
+    if (k > 0)
+      for (int c = 0; c < 4; ++c) integral[k][c] = integral[k - 1][c] + 0.5 * (looks[k - 1][c] + looks[k][c]);
+  }
+  const auto mean = [&](int a, int b) {
+    Look m;
+    for (int c = 0; c < 4; ++c) m[c] = std::max(0.0, (integral[b][c] - integral[a][c]) / (b - a));
+    return m;
+  };
+
+  // runs of codes between which nothing changes
+  std::array<bool, kCodes> alike{};  // code and the next
+  for (int a = 0; a + 1 < kCodes; ++a) {
+    alike[a] = !shaded || !(looks[a * kFine][0] > 0);
+    for (int k = a * kFine; k < (a + 1) * kFine && alike[a]; ++k) alike[a] = looks[k] == looks[k + 1];
+    out.look[a + 1] = std::uint16_t(out.look[a] + (alike[a] ? 0 : 1));
+  }
+
+  out.entries.resize(std::size_t(kCodes) * kCodes);
+  for (int a = 0; a < kCodes; ++a) {
+    out.entries[std::size_t(a) * kCodes + a] = entry(looks[a * kFine]);
+    for (int b = a + 1; b < kCodes; ++b) {
+      const bool same = out.look[a] == out.look[b];
+      out.entries[std::size_t(a) * kCodes + b] = out.entries[std::size_t(b) * kCodes + a] =
+          entry(same ? looks[a * kFine] : mean(a * kFine, b * kFine));
+    }
+  }
+  return out;
+}
+
+}  // namespace catena::render

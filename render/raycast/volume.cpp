@@ -1,0 +1,215 @@
+#include "render/raycast/volume.h"
+
+#include <algorithm>
+
+#include "render/vk/commands.h"
+
+namespace catena::render {
+namespace {
+
+constexpr std::uint32_t kVolumeVertexShader[] = {
+#include "spirv/screen.vert.inc"
+};
+constexpr std::uint32_t kVolumeFragmentShader[] = {
+#include "spirv/volume.frag.inc"
+};
+constexpr std::uint32_t kVolumeBlendShader[] = {
+#include "spirv/blend.frag.inc"
+};
+
+constexpr std::uint32_t kVolumeBlendLayersShader[] = {
+#include "spirv/blend_layers.frag.inc"
+};
+constexpr std::uint32_t kVolumeLayersShader[] = {
+#include "spirv/layers.frag.inc"
+};
+constexpr std::uint32_t kLayers = 27;  // bindings of their colours; those of their depths follow
+
+/// Below this share of active bricks a ray asks the brick map before it samples; above, asking costs more than it saves.
+constexpr double kSkipBelow = 0.95;
+
+bool same(const TransferTable& a, const TransferTable& b) {
+  return a.colors == b.colors && a.extinctions == b.extinctions && a.gradient_factors == b.gradient_factors;
+}
+
+/// The colour and sigma of a volume follow from its value alone.
+bool is_plain_where_its_value_is(const VolumeItem& item) { return !item.shade && !item.color_by && item.transfer.gradient_factors.empty(); }
+
+}  // namespace
+
+Result<VolumeRaycast> VolumeRaycast::create(vk::Device& device) {
+  VolumeRaycast self;
+  self.device_ = &device;
+  CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
+  return self;
+}
+
+Result<const vk::Pipeline*> VolumeRaycast::pipeline(const Kind& kind) {
+  vk::Pipeline& pipeline = pipelines_[kind];
+  if (pipeline) return &pipeline;
+  vk::GraphicsInfo info;
+  info.vertex = kVolumeVertexShader;
+  info.slots = {{0, vk::Resource::uniform}, {2, vk::Resource::texture}};
+  if (!kind.layers_alone()) info.slots.push_back({1, vk::Resource::buffer});
+  add_grid_slots(info.slots, kind.grid_slots());
+  if (kind.layers > 0)
+    for (std::uint32_t i = 0; i < 2 * MAX_LAYERS; ++i) info.slots.push_back({kLayers + i, vk::Resource::texture});
+  info.colors = {kVolumeFormat};
+  if (kind.layers_alone()) {
+    info.fragment = kVolumeLayersShader;
+    info.constants = {kind.opaque, kind.layers};
+  } else {
+    info.fragment = kind.single()     ? vk::Spirv(kVolumeFragmentShader)
+                    : kind.layers > 0 ? vk::Spirv(kVolumeBlendLayersShader)
+                                      : vk::Spirv(kVolumeBlendShader);
+    info.constants = {kind.flags, kind.opaque,      kind.volumes, kind.surfaces, kind.layers,
+                      kind.modes, kind.color_grids, kind.jitter,  kind.colors,   kind.fog};
+  }
+  CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+  return &pipeline;
+}
+
+Result<bool> VolumeRaycast::update_volume(Volume& volume, const Mirrored<VolumeItem>& next) {
+  const bool plain = is_plain_where_its_value_is(*next.item);
+  const bool fresh =
+      volume.mirror != next.mirror || !same(volume.item.transfer, next.item->transfer) || plain != is_plain_where_its_value_is(volume.item);
+  volume.item = *next.item;
+  volume.mirror = next.mirror;
+  if (!fresh) return false;
+  volume.lut = make_transfer_lut(next.item->transfer, range_of(*next.mirror));
+  volume.factors = next.item->transfer.gradient_factors.empty() ? FactorLut{} : make_factor_lut(next.item->transfer.gradient_factors);
+  CATENA_TRY(volume.map, make_leap_map(*device_, *next.mirror, [&](const BrickRange& r) -> std::uint16_t {
+               return plain ? volume.lut.look(r) : volume.lut.visible(r) ? 0 : 1;
+             }));
+  return true;
+}
+
+Result<bool> VolumeRaycast::update_colors(std::span<const Mirrored<VolumeItem>> volumes,
+                                          std::span<const Mirrored<IsosurfaceItem>> surfaces) {
+  std::size_t count = 0;
+  bool changed = false;
+  const auto update = [&](const auto& next, std::size_t owner) -> Outcome {
+    if (!next.colors) return Done{};
+    if (count == colors_.size()) colors_.emplace_back();
+    Colors& colors = colors_[count++];
+    CATENA_TRY(const bool fresh, colors.grid.update(*device_, next.colors, *next.item->color_by));
+    changed = changed || fresh || colors.owner != owner;
+    colors.owner = owner;
+    return Done{};
+  };
+  for (std::size_t i = 0; i < volumes.size(); ++i) CATENA_CHECK(update(volumes[i], i));
+  for (std::size_t i = 0; i < surfaces.size(); ++i) CATENA_CHECK(update(surfaces[i], volumes.size() + i));
+  changed = changed || count != colors_.size();
+  while (colors_.size() > count) colors_.pop_back();
+  return changed;
+}
+
+Outcome VolumeRaycast::upload_tables() {
+  std::vector<glm::vec4> entries;
+  const auto append = [&](const std::vector<glm::vec4>& more) {
+    const auto start = std::uint32_t(entries.size());
+    entries.insert(entries.end(), more.begin(), more.end());
+    return start;
+  };
+  for (Volume& volume : volumes_) {
+    volume.table_start = append(volume.lut.entries);
+    volume.factor_start = append(volume.factors.entries);
+  }
+  for (Colors& colors : colors_) colors.table_start = append(colors.grid.lut.entries);
+  if (entries.empty()) entries.resize(2);
+  CATENA_TRY(tables_, vk::upload_buffer(*device_, std::as_bytes(std::span(entries)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+  return Done{};
+}
+
+Outcome VolumeRaycast::prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces) {
+  CATENA_ASSERT(volumes.size() <= MAX_VOLUMES && surfaces.size() <= MAX_SURFACES);
+  bool changed = volumes.size() != volumes_.size() || !tables_;
+  volumes_.resize(volumes.size());
+  for (std::size_t i = 0; i < volumes.size(); ++i) {
+    CATENA_TRY(const bool fresh, update_volume(volumes_[i], volumes[i]));
+    changed = changed || fresh;
+  }
+  surfaces_.resize(surfaces.size());
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    CATENA_CHECK(surfaces_[i].state.update(*device_, surfaces[i].mirror, surfaces[i].item->level));
+    surfaces_[i].item = *surfaces[i].item;
+  }
+  CATENA_TRY(const bool recoloured, update_colors(volumes, surfaces));
+  CATENA_ASSERT(volumes_.size() + surfaces_.size() + colors_.size() <= MAX_GRIDS);
+  return changed || recoloured ? upload_tables() : Done{};
+}
+
+shared::GridData VolumeRaycast::volume_data(const CameraRays& rays, const Volume& volume) const {
+  shared::GridData grid = rays.grid(*volume.mirror, volume.item.grid->mapping());
+  grid.id = volume.item.id;
+  grid.clipped = volume.item.clipped;
+  set_table(grid, volume.lut, volume.table_start);
+  if (!volume.factors.entries.empty()) {
+    grid.factor_start = volume.factor_start;
+    grid.factor_last = std::uint32_t(volume.factors.entries.size()) - 1;
+    grid.factor_lo = volume.factors.lo;
+    grid.factor_per_gradient = volume.factors.per_gradient;
+  }
+  return grid;
+}
+
+std::vector<vk::Binding> VolumeRaycast::bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) const {
+  std::vector<vk::Binding> list{{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
+                                {2, vk::Resource::texture, nullptr, scene.opaque_depth ? scene.opaque_depth : scene.none, nullptr}};
+  if (!kind.layers_alone()) list.push_back({1, vk::Resource::buffer, &tables_, nullptr, nullptr});
+  add_grid_bindings(list, bound, kind.grid_slots(), linear_);
+  if (kind.layers == 0) return list;
+  for (std::uint32_t i = 0; i < MAX_LAYERS; ++i) {
+    const Layer& layer = scene.layers[std::min<std::size_t>(i, scene.layers.size() - 1)];
+    list.push_back({kLayers + i, vk::Resource::texture, nullptr, layer.color, nullptr});
+    list.push_back({kLayers + MAX_LAYERS + i, vk::Resource::texture, nullptr, layer.depth, nullptr});
+  }
+  return list;
+}
+
+Outcome VolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                              const RayScene& scene) {
+  // volumes, surfaces, the grids that colour them
+  shared::FrameData data = rays.frame();
+  data.termination = float(settings.termination);
+  std::vector<BoundGrid> bound;
+  Kind kind{.opaque = scene.opaque_depth != nullptr,
+            .volumes = std::uint32_t(volumes_.size()),
+            .surfaces = std::uint32_t(surfaces_.size()),
+            .layers = std::uint32_t(scene.layers.size()),
+            .jitter = settings.jitter,
+            .colors = std::uint32_t(colors_.size()),
+            .fog = rays.fog && rays.fog->most > 0};
+  double edge = 0;
+  for (const Volume& volume : volumes_) {
+    data.grids[bound.size()] = volume_data(rays, volume);
+    if (!volume.factors.entries.empty()) kind.modes |= 1u << (2 * bound.size());
+    const double own = volume.item.grid->mapping().smallest_edge();
+    edge = edge > 0 ? std::min(edge, own) : own;
+    const bool skips = settings.skip && double(volume.map.active) < kSkipBelow * double(volume.map.total);
+    bound.push_back({volume.mirror, &volume.map, volume.item.shade, skips});
+  }
+  for (const Surface& surface : surfaces_) {
+    data.grids[bound.size()] = surface_data(rays, surface.state, surface.item);
+    bound.push_back(surface.state.bound());
+  }
+  for (const Colors& colors : colors_) {
+    kind.modes |= 2u << (2 * colors.owner);
+    kind.color_grids |= std::uint32_t(bound.size()) << (4 * colors.owner);
+    shared::GridData& grid = data.grids[bound.size()];
+    grid = rays.grid(*colors.grid.mirror, colors.grid.source.grid->mapping());
+    set_table(grid, colors.grid.lut, colors.table_start);
+    bound.push_back(colors.grid.bound());
+  }
+  data.step_world = float(settings.step_voxels * edge);
+  CATENA_CHECK(vk::write_uniform(*device_, uniform_, data));
+
+  for (std::size_t i = 0; i < bound.size(); ++i) kind.flags |= bound[i].flags() << (4 * i);
+  CATENA_TRY(const vk::Pipeline* pipe, pipeline(kind));
+  commands.scissor(area);
+  commands.bind(*pipe, bindings(kind, bound, scene));
+  commands.draw_triangle();
+  return Done{};
+}
+
+}  // namespace catena::render

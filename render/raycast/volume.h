@@ -1,0 +1,63 @@
+/// Volumes, translucent isosurfaces and layers, one raycast for all of them (at most MAX_VOLUMES, MAX_SURFACES and MAX_LAYERS, MAX_GRIDS
+/// grids together with those that colour them, MAX_GRIDS_WITH_LAYERS where there are layers), in front of the opaque depth. Tables and
+/// brick maps are rebuilt only when a transfer function, a level or a grid changes.
+#pragma once
+#include <compare>
+#include <map>
+
+#include "render/raycast/bound_grids.h"
+#include "render/raycast/ray_scene.h"
+
+namespace catena::render {
+
+class VolumeRaycast {
+ public:
+  static Result<VolumeRaycast> create(vk::Device& device);
+  Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
+  /// Within a pass over the volume target.
+  Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
+
+ private:
+  struct Volume {
+    std::shared_ptr<const GridMirror> mirror;
+    VolumeItem item;
+    TransferLut lut;
+    FactorLut factors;
+    BrickMap map;
+    std::uint32_t table_start = 0, factor_start = 0;
+  };
+  struct Surface {
+    SurfaceState state;
+    IsosurfaceItem item;
+  };
+  struct Colors {
+    ColorGrid grid;
+    std::size_t owner = 0;  ///< a volume, or behind those a surface
+    std::uint32_t table_start = 0;
+  };
+  /// What a pipeline is made for.
+  struct Kind {
+    std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0;
+    auto operator<=>(const Kind&) const = default;
+    bool single() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
+    bool layers_alone() const { return volumes == 0 && surfaces == 0; }
+    std::uint32_t grid_slots() const { return layers_alone() ? 0 : single() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS; }
+  };
+  VolumeRaycast() = default;
+  Result<bool> update_volume(Volume& volume, const Mirrored<VolumeItem>& next);
+  Result<bool> update_colors(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
+  Outcome upload_tables();
+  shared::GridData volume_data(const CameraRays& rays, const Volume& volume) const;
+  std::vector<vk::Binding> bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) const;
+  Result<const vk::Pipeline*> pipeline(const Kind& kind);
+
+  vk::Device* device_ = nullptr;
+  vk::Sampler linear_;
+  std::map<Kind, vk::Pipeline> pipelines_;
+  std::vector<Volume> volumes_;
+  std::vector<Surface> surfaces_;
+  std::vector<Colors> colors_;
+  vk::Buffer tables_, uniform_;
+};
+
+}  // namespace catena::render

@@ -1,0 +1,141 @@
+/// The estimate against the truth, and goals that are reached.
+#include "render/quality/quality.h"
+
+#include "render/quality/refinement.h"
+
+#include <cmath>
+
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace quality_test {
+
+using namespace catena::render;
+
+class Quality : public PictureTest {
+ protected:
+  static FramePacket scene(bool shade = false) {
+    const auto grid = make_grid(
+        {64, 60, 56}, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(0.42 * p.x + 0.1 * p.y) * std::cos(0.37 * p.y + 0.3 * p.z); });
+    FramePacket packet = packet_of({130, -100, 90}, {31.5, 29.5, 27.5}, 32);
+    packet.background = {0, 0, 0, 1};
+    VolumeItem item = volume_item(grid, {{0, 0}, {0.4, 0}, {1, 0.15}});
+    item.transfer.colors = {{0, 0.1, 0.1, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
+    item.shade = shade;
+    packet.volumes = {item};
+    return packet;
+  }
+  static double true_rmse(const Picture& a, const Picture& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i)
+      if (i % 4 != 3) sum += (double(a.rgba[i]) - b.rgba[i]) * (double(a.rgba[i]) - b.rgba[i]);
+    return std::sqrt(sum / (0.75 * double(a.rgba.size())));
+  }
+};
+
+TEST_F(Quality, TheEstimateIsNearTheTruth) {
+  const FramePacket packet = scene();
+  const Picture converged = draw(packet, reference_settings());
+  for (const std::uint32_t spacing : {1u, 4u}) {
+    RenderSettings settings;
+    settings.fast = FastSettings{4, spacing, -1, -1};
+    const auto estimated = estimate_rmse(*renderer_, packet, settings);
+    ASSERT_TRUE(estimated);
+    const double truth = true_rmse(draw(packet, settings), converged);
+    // few pixels at this size
+    EXPECT_GT(*estimated, 0.6 * truth) << spacing;
+    EXPECT_LT(*estimated, 1.5 * truth) << spacing;
+  }
+}
+
+TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
+  const FramePacket packet = scene();
+  const Picture converged = draw(packet, reference_settings());
+  double last_step = 0;
+  for (const double e : {0.3, 0.8, 3.0}) {
+    const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e});
+    ASSERT_TRUE(choice);
+    EXPECT_TRUE(choice->reached);
+    EXPECT_LE(choice->estimated_rmse, e);
+    EXPECT_LT(true_rmse(draw(packet, choice->settings), converged), 1.3 * e) << describe(choice->settings);
+    ASSERT_TRUE(choice->settings.fast);
+    EXPECT_GE(choice->settings.fast->step_voxels, last_step);
+    last_step = choice->settings.fast->step_voxels;
+  }
+  EXPECT_GT(last_step, 1);
+}
+
+/// A thin shell in a small picture: all error is in a few pixels, which a sparse lattice misses.
+TEST_F(Quality, SmallPicturesOfThinThingsAreMeasuredToo) {
+  FramePacket packet = scene();
+  packet.width = 64;
+  packet.height = 48;
+  packet.background = {0.9f, 0.5f, 0.2f, 1};
+  packet.volumes[0].transfer.extinctions = {{0.60, 0}, {0.65, 0.4}, {0.70, 0}};
+  const Picture converged = draw(packet, reference_settings());
+  for (const double e : {0.5, 1.0}) {
+    const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e});
+    ASSERT_TRUE(choice);
+    const double truth = true_rmse(draw(packet, choice->settings), converged);
+    EXPECT_LT(truth, e) << describe(choice->settings);
+    EXPECT_NEAR(choice->estimated_rmse, truth, 0.1 * e) << describe(choice->settings);
+  }
+  EXPECT_EQ(probe_spacing(1024, 768), 13u);
+}
+
+TEST_F(Quality, ATinyErrorFallsBackToExactRays) {
+  const auto choice = choose_quality(*renderer_, scene(true), {QualityGoal::Kind::error, 0.02});
+  ASSERT_TRUE(choice);
+  EXPECT_FALSE(choice->settings.fast);
+  EXPECT_LT(choice->settings.step_voxels, 1);
+}
+
+TEST_F(Quality, TimeTakesTheBestOfWhatIsQuickEnough) {
+  const FramePacket packet = scene();
+  const auto plenty = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e6});
+  const auto none = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, 1e-6});
+  ASSERT_TRUE(plenty && none);
+  EXPECT_TRUE(plenty->reached);
+  EXPECT_FALSE(none->reached);
+  EXPECT_EQ(none->pictures, 1);
+  EXPECT_LT(plenty->estimated_rmse, 0.3);
+  EXPECT_LT(plenty->estimated_rmse, none->estimated_rmse);
+}
+
+TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
+  // times by the ladder's own costs: the same on every machine
+  for (const bool shade : {false, true}) {
+    const FramePacket packet = scene(shade);
+    const DrawTimer timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
+    double last = 1e9;
+    for (const double ms : {4.0, 8.0, 30.0, 400.0}) {
+      const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, ms}, timer);
+      ASSERT_TRUE(choice);
+      EXPECT_TRUE(choice->reached) << ms;
+      EXPECT_LE(choice->expected_ms, ms);
+      EXPECT_DOUBLE_EQ(choice->expected_ms, 100 * relative_cost(choice->settings, shade));
+      EXPECT_LE(choice->estimated_rmse, last) << ms;
+      last = choice->estimated_rmse;
+    }
+    EXPECT_LT(last, 0.6);
+  }
+}
+
+TEST(QualityWithin, TheLeastErrorInTimeElseTheQuickest) {
+  const std::vector<TimedPicture> tried{{10, 3}, {20, 1}, {15, 2}, {40, 0.5}, {60, 0.6}};
+  EXPECT_EQ(best_within(tried, 5), 0u);
+  EXPECT_EQ(best_within(tried, 16), 2u);
+  EXPECT_EQ(best_within(tried, 39), 1u);
+  EXPECT_EQ(best_within(tried, 100), 3u);
+}
+
+TEST_F(Quality, ScenesWithoutVolumesAreExactAlready) {
+  FramePacket packet = packet_of({20, -20, 20}, {4, 4, 4});
+  packet.isosurfaces = {{make_grid({8, 8, 8}, [](const Vec3& p) { return p.x; }), 3.5, {1, 1, 1}, 1}};
+  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 0.5});
+  ASSERT_TRUE(choice);
+  EXPECT_EQ(choice->estimated_rmse, 0);
+}
+
+}  // namespace quality_test
+}  // namespace catena::test

@@ -1,0 +1,144 @@
+/// The ladder, the times expected of it, and the pictures that a viewer is told to draw.
+#include "render/quality/refinement.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace catena::test {
+namespace refinement_test {
+
+using namespace catena::render;
+
+/// A machine on which a unit of cost takes `unit_ms`, whatever else.
+double time_of(const RenderSettings& settings, double unit_ms, bool shaded = false) { return unit_ms * relative_cost(settings, shaded); }
+
+/// The picture that a moving camera settles on.
+RefinementStep settle(Refinement& refinement, double unit_ms, bool shaded = false) {
+  RefinementStep step;
+  for (int k = 0; k < 60; ++k) {
+    step = *refinement.next(true);
+    refinement.drawn(time_of(step.settings, unit_ms, shaded));
+  }
+  return step;
+}
+
+TEST(Ladder, RisesInCostAndEndsWithExactRays) {
+  for (const bool fast : {false, true})
+    for (const bool shaded : {false, true}) {
+      const auto ladder = quality_ladder({fast, shaded});
+      ASSERT_GE(ladder.size(), 4u);
+      for (std::size_t i = 1; i < ladder.size(); ++i) EXPECT_GE(relative_cost(ladder[i], shaded), relative_cost(ladder[i - 1], shaded));
+      EXPECT_FALSE(ladder.back().fast);
+      EXPECT_EQ(ladder.front().fast.has_value(), fast);
+    }
+}
+
+TEST(Ladder, CostsFollowRaysStepsAndShading) {
+  RenderSettings coarse, fine;
+  coarse.fast = FastSettings{4, 4, -1, -1};
+  fine.fast = FastSettings{4, 1, 0, -1};
+  EXPECT_GT(relative_cost(fine, false), 4 * relative_cost(coarse, false));
+  RenderSettings refined = coarse;
+  refined.fast->refine_half_255 = 0.5;
+  EXPECT_GT(relative_cost(refined, false), relative_cost(coarse, false));
+  RenderSettings smooth = fine;
+  smooth.fast->smooth_gradients = true;
+  EXPECT_GT(relative_cost(smooth, true), relative_cost(fine, true));
+  EXPECT_GT(relative_cost({}, true), relative_cost(fine, true));
+}
+
+TEST(TimeModel, FollowsTheMachineAndForgetsPipelines) {
+  TimeModel times({0.1, 1}, 100);
+  EXPECT_DOUBLE_EQ(times.expected_ms(0), 10);
+  times.measured(0, 80);  // the first picture made a pipeline
+  EXPECT_DOUBLE_EQ(times.expected_ms(0), 10);
+  for (int k = 0; k < 20; ++k) times.measured(0, 20);
+  EXPECT_NEAR(times.expected_ms(0), 20, 1e-6);
+  EXPECT_GT(times.expected_ms(1), 110);  // what one rung says of the machine holds for the others
+  times.measured(0, 20);
+  EXPECT_NEAR(times.expected_ms(0), 20, 1e-6);
+  TimeModel quick({0.1, 1}, 100);
+  quick.measured(0, 5);  // quicker than expected: that is no pipeline
+  EXPECT_LT(quick.expected_ms(0), 10);
+}
+
+TEST(Refinement, AMovingCameraStaysWithinItsBudget) {
+  double last_cost = 0;
+  for (const double budget : {25.0, 40.0, 66.0, 200.0}) {
+    Refinement refinement(budget, {true, false});
+    const RefinementStep step = settle(refinement, 600);
+    EXPECT_LE(time_of(step.settings, 600), budget) << budget;
+    EXPECT_NEAR(step.expected_ms, time_of(step.settings, 600), 0.05 * budget);
+    EXPECT_GE(relative_cost(step.settings, false), last_cost) << budget;
+    last_cost = relative_cost(step.settings, false);
+  }
+  EXPECT_GT(last_cost, 0.1);
+}
+
+TEST(Refinement, ASlowMachineGetsTheCheapestPicture) {
+  Refinement refinement(5, {true, true});
+  const RefinementStep step = settle(refinement, 1e5, true);
+  EXPECT_EQ(step.settings.fast->step_voxels, 8);
+  EXPECT_EQ(step.settings.fast->spacing, 4u);
+  EXPECT_GT(step.expected_ms, 5);  // and is not lied about
+}
+
+TEST(Refinement, AStillPictureGoesFromQuarterToHalfToEveryPixelAndEnds) {
+  for (const bool shaded : {false, true}) {
+    Refinement refinement(20, {true, shaded});
+    const RefinementStep moving = settle(refinement, 600, shaded);
+    std::vector<std::uint32_t> spacings{moving.settings.fast->spacing};
+    double cost = relative_cost(moving.settings, shaded);
+    bool finished = false;
+    for (int k = 0; k < 10; ++k) {
+      const auto step = refinement.next(false);
+      if (!step) break;
+      EXPECT_FALSE(finished);
+      EXPECT_GT(relative_cost(step->settings, shaded), cost);
+      cost = relative_cost(step->settings, shaded);
+      spacings.push_back(step->settings.fast->spacing);
+      finished = step->finished;
+      refinement.drawn(time_of(step->settings, 600, shaded));
+    }
+    EXPECT_TRUE(finished);
+    EXPECT_FALSE(refinement.next(false));
+    EXPECT_EQ(spacings.front(), 4u);
+    EXPECT_EQ(spacings.back(), 1u);
+    EXPECT_TRUE(std::is_sorted(spacings.rbegin(), spacings.rend()));
+    EXPECT_LE(spacings.size(), 5u);
+    // what moves starts anew
+    const auto again = refinement.next(true);
+    ASSERT_TRUE(again);
+    EXPECT_LE(relative_cost(again->settings, shaded), relative_cost(moving.settings, shaded));
+  }
+}
+
+TEST(Refinement, TheSettingDoesNotComeAndGo) {
+  // a machine whose times waver by a tenth: after a while one rung and its neighbour at most
+  Refinement refinement(66, {true, false});
+  std::map<double, int> seen;
+  for (int k = 0; k < 200; ++k) {
+    const RefinementStep step = *refinement.next(true);
+    const double wavering = 1 + 0.1 * (k % 3 - 1);
+    refinement.drawn(time_of(step.settings, 600) * wavering);
+    if (k >= 100) ++seen[relative_cost(step.settings, false)];
+  }
+  EXPECT_LE(seen.size(), 2u);
+}
+
+TEST(Refinement, WithoutTheFastRaycastStepsAreRefined) {
+  Refinement refinement(50, {false, false});
+  const RefinementStep moving = settle(refinement, 1000);
+  EXPECT_FALSE(moving.settings.fast);
+  EXPECT_EQ(moving.settings.step_voxels, 4);
+  std::vector<double> steps;
+  while (const auto step = refinement.next(false)) {
+    steps.push_back(step->settings.step_voxels);
+    refinement.drawn(100);
+  }
+  EXPECT_EQ(steps, (std::vector<double>{2, 1, 0.5}));
+}
+
+}  // namespace refinement_test
+}  // namespace catena::test

@@ -1,0 +1,67 @@
+#include "render/raycast/transfer_tables.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+namespace catena::test {
+namespace preintegrated_test {
+
+using namespace catena::render;
+
+TransferTable table_of(std::vector<std::array<double, 2>> extinctions) {
+  TransferTable table;
+  table.colors = {{0, 0, 0.5, 1}, {1, 1, 0.5, 0}};
+  table.extinctions = std::move(extinctions);
+  return table;
+}
+double sigma(const PreintegratedTable& t, int a, int b) { return std::bit_cast<float>(t.entries[a + 256 * b][0]); }
+double red(const PreintegratedTable& t, int a, int b) { return (t.entries[a + 256 * b][1] & 2047) / 2047.0; }
+double blue(const PreintegratedTable& t, int a, int b) { return (t.entries[a + 256 * b][1] >> 22) / 1023.0; }
+
+TEST(Preintegrated, LinearSigmaGivesItsMeanAndTheWeightedColour) {
+  const auto t = make_preintegrated(table_of({{0, 0}, {1, 2}}), 0, 1 / 255.0, false);
+  for (const auto& [a, b] : {std::pair{0, 255}, {30, 90}, {90, 30}, {200, 201}, {77, 77}}) {
+    EXPECT_NEAR(sigma(t, a, b), (a + b) / 255.0, 1e-6);
+    // mean of v^2 over mean of v
+    const double u = a / 255.0, v = b / 255.0, mean = 2.0 / 3 * (u * u + u * v + v * v) / (u + v);
+    EXPECT_NEAR(red(t, a, b), mean, 2e-3) << a << " " << b;
+    EXPECT_NEAR(blue(t, a, b), 1 - mean, 2e-3);
+  }
+}
+
+TEST(Preintegrated, AnEmptyCodeIsEmptyAndASpikeBetweenIsSeen) {
+  const auto t = make_preintegrated(table_of({{0, 0}, {0.5, 0}, {0.51, 4}, {0.52, 0}, {1, 0}}), 0, 1 / 255.0, false);
+  EXPECT_EQ(sigma(t, 0, 0), 0);
+  EXPECT_EQ(sigma(t, 0, 127), 0);
+  EXPECT_EQ(sigma(t, 140, 255), 0);
+  EXPECT_NEAR(sigma(t, 0, 255), 0.04, 0.004);  // its area over the range
+  EXPECT_EQ(t.look[0], t.look[127]);
+  EXPECT_EQ(t.look[133], t.look[255]);
+  EXPECT_NE(t.look[127], t.look[133]);
+}
+
+TEST(Preintegrated, ActiveIsWhereThePictureDependsOnTheValue) {
+  auto active = active_interval(table_of({{0, 0}, {0.25, 0}, {0.5, 1}, {1, 1}}), {0, 1}, false);
+  EXPECT_NEAR(active.least, 0.25, 1e-3);
+  EXPECT_NEAR(active.greatest, 1, 1e-3);  // the colour goes on changing
+  active = active_interval(table_of({{0, 0}, {0.25, 0}, {0.5, 1}, {0.6, 0}}), {0, 1}, false);
+  EXPECT_NEAR(active.greatest, 0.6, 1e-3);
+}
+
+TEST(Preintegrated, ShadedNothingVisibleIsPlainOrLeftOut) {
+  const auto flat = table_of({{0, 0}, {0.3, 0}, {0.31, 1}, {1, 1}});
+  TransferTable grey = flat;
+  for (auto& c : grey.colors) c = {c[0], 0.5, 0.5, 0.5};
+  const auto unlit = make_preintegrated(grey, 0, 1 / 255.0, false), lit = make_preintegrated(grey, 0, 1 / 255.0, true);
+  EXPECT_EQ(unlit.look[90], unlit.look[200]);
+  EXPECT_NE(lit.look[90], lit.look[200]);
+  EXPECT_EQ(lit.look[10], lit.look[70]);  // nothing is seen there
+  EXPECT_EQ(unlit.entries, lit.entries);
+  EXPECT_LT(active_interval(grey, {0, 1}, false).greatest, 0.32);
+  EXPECT_EQ(active_interval(grey, {0, 1}, true).greatest, 1);
+  EXPECT_NEAR(active_interval(grey, {0, 1}, true).least, 0.3, 1e-3);
+}
+
+}  // namespace preintegrated_test
+}  // namespace catena::test

@@ -1,0 +1,146 @@
+/// The mirror against the truth: values that the GPU reads against those of the grid on the CPU, at 10,000 random points.
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "render/mirror/brick_map.h"
+#include "render/vk/commands.h"
+#include "shaders/shared/frame.h"
+#include "tests/render/support/device_fixture.h"
+#include "tests/render/support/frames.h"
+#include "tests/render/support/spirv.h"
+
+namespace catena::test {
+namespace sampling_test {
+
+using namespace catena::render;
+
+class Sampling : public DeviceFixture {
+ protected:
+  void TearDown() override { expect_silence(); }
+
+  std::vector<float> sample(const GridMirror& mirror, const std::vector<glm::vec3>& local) {
+    const auto words = shader_words("sample.comp");
+    EXPECT_FALSE(words.empty());
+    vk::ComputeInfo info;
+    info.shader = words;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer},   {2, vk::Resource::buffer},
+                  {3, vk::Resource::sampled}, {11, vk::Resource::texture}, {19, vk::Resource::texture}};
+    info.constants = {(mirror.atlas ? 1u : 0u) | (mirror.masked ? 2u : 0u)};
+    auto pipeline = vk::Pipeline::create(*device_, info);
+    EXPECT_TRUE(pipeline);
+    auto map = make_brick_map(*device_, mirror, [](const BrickRange&) { return true; });
+    EXPECT_TRUE(map);
+    shared::FrameData frame{};
+    frame.grids[0].lo = glm::vec3(mirror.box_lo);
+    frame.grids[0].hi = glm::vec3(mirror.box_hi);
+    const VkExtent3D e = mirror.values.info().extent;
+    frame.grids[0].texel = {1.0f / float(e.width), 1.0f / float(e.height), 1.0f / float(e.depth)};
+    frame.grids[0].value_offset = mirror.offset;
+    frame.grids[0].value_scale = mirror.scale;
+    auto uniform = vk::Buffer::create(*device_, sizeof frame, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, vk::Memory::upload);
+    auto positions = vk::upload_buffer(*device_, std::as_bytes(std::span(local)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    auto values = vk::Buffer::create(*device_, 4 * local.size(), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, vk::Memory::readback);
+    auto linear = vk::Sampler::create(*device_, vk::Filter::linear);
+    EXPECT_TRUE(uniform && positions && values && linear);
+    std::memcpy(uniform->bytes().data(), &frame, sizeof frame);
+    auto commands = vk::Commands::begin(*device_);
+    EXPECT_TRUE(commands);
+    const vk::Image& mask = mirror.masked ? mirror.mask : map->image;
+    const vk::Binding bindings[] = {
+        {0, vk::Resource::uniform, &*uniform, nullptr, nullptr},    {1, vk::Resource::buffer, &*positions, nullptr, nullptr},
+        {2, vk::Resource::buffer, &*values, nullptr, nullptr},      {3, vk::Resource::sampled, nullptr, &mirror.values, &*linear},
+        {11, vk::Resource::texture, nullptr, &map->image, nullptr}, {19, vk::Resource::texture, nullptr, &mask, nullptr}};
+    commands->bind(*pipeline, bindings);
+    commands->dispatch((std::uint32_t(local.size()) + 63) / 64, 1, 1);
+    commands->barrier(*values, vk::kComputeWrite, vk::kHostRead);
+    EXPECT_TRUE(commands->finish());
+    std::vector<float> out(local.size());
+    std::memcpy(out.data(), values->bytes().data(), 4 * out.size());
+    return out;
+  }
+
+  /// The worst error at 10,000 random points of the domain, against `tolerance(value)`.
+  void expect_close(const field::ScalarGrid& grid, const MirrorOptions& options, const std::function<double(double)>& tolerance) {
+    auto mirror = make_grid_mirror(*device_, grid, options);
+    ASSERT_TRUE(mirror);
+    ASSERT_EQ(mirror->atlas, options.layout == MirrorLayout::atlas);
+    std::mt19937 random(7);
+    std::vector<glm::vec3> local;
+    std::vector<Vec3> world;
+    const Vec3 lo = mirror->box_lo, size = mirror->box_hi - mirror->box_lo;
+    for (int i = 0; i < 10000; ++i) {
+      std::uniform_real_distribution<double> unit(0, 1);
+      Vec3 p = lo + size * Vec3(unit(random), unit(random), unit(random));
+      if (i % 10 == 0) p = glm::dvec3(std::round(p.x), p.y, std::round(p.z));  // faces and edges of cells too
+      if (i < 8) p = lo + size * Vec3(i & 1, i >> 1 & 1, i >> 2);
+      local.emplace_back(p);
+      // the truth at the very place that the GPU was given
+      const Vec3 index = Vec3(local.back()) + Vec3(mirror->origin.x, mirror->origin.y, mirror->origin.z);
+      world.push_back(grid.mapping().world_from_index(index));
+    }
+    const std::vector<float> values = sample(*mirror, local);
+    field::Cursor cursor;
+    double worst = 0;
+    int compared = 0;
+    for (std::size_t i = 0; i < local.size(); ++i) {
+      const field::ScalarSample truth = grid.sample(world[i], cursor);
+      if (mirror->masked && (values[i] > 1e29 || !truth.inside)) {
+        // at a face between a valid and an invalid cell either may answer
+        if (i % 10 != 0 && i >= 8) {
+          EXPECT_EQ(values[i] > 1e29, !truth.inside);
+        }
+        continue;
+      }
+      ++compared;
+      worst = std::max(worst, std::fabs(values[i] - truth.value) / tolerance(truth.value));
+    }
+    EXPECT_GT(compared, 2000);
+    EXPECT_LE(worst, 1.0);
+  }
+};
+
+double wavy(const Vec3& p) { return 40 * std::sin(0.31 * p.x + 0.2 * p.y) * std::cos(0.23 * p.z) + 0.37 * p.y - 20; }
+
+TEST_F(Sampling, Float32) {
+  const auto grid = make_grid({64, 64, 64}, wavy);
+  const double range = grid->max_value() - grid->min_value();
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+    expect_close(*grid, {true, layout}, [&](double) { return 1e-5 * range; });
+}
+
+TEST_F(Sampling, HalfRounding) {
+  const auto grid = make_grid({64, 64, 64}, wavy);
+  const double largest = std::max(std::fabs(grid->min_value()), std::fabs(grid->max_value()));
+  // half an ulp of the largest corner: 2^-12 of the power of two above it
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+    expect_close(*grid, {false, layout}, [&](double) { return std::exp2(std::ceil(std::log2(largest)) - 12) + 1e-6 * largest; });
+}
+
+TEST_F(Sampling, HalfOfASmallRangeFarFromZero) {
+  const auto grid = make_grid({40, 33, 21}, [](const Vec3& p) { return 300000 + 0.5 * wavy(p); });
+  const double range = grid->max_value() - grid->min_value();
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+    expect_close(*grid, {false, layout}, [&](double) { return range / 4096 + 0.04; });
+}
+
+TEST_F(Sampling, HalfOfHugeAndTinyValues) {
+  for (const double scale : {1e30, 1e-30}) {
+    const auto grid = make_grid({20, 20, 20}, [&](const Vec3& p) { return scale * (p.x - 3); });
+    expect_close(*grid, {false, MirrorLayout::dense}, [&](double) { return scale * 16 / 2048; });
+  }
+}
+
+TEST_F(Sampling, AnOddBoxInTheAtlas) {
+  const auto grid = make_grid({17, 9, 25}, wavy);
+  expect_close(*grid, {true, MirrorLayout::atlas}, [&](double) { return 1e-3; });
+}
+
+TEST_F(Sampling, MaskedCells) {
+  const auto grid = make_grid({40, 40, 40}, wavy, {}, [](const Vec3& p) { return norm(p - Vec3(17, 20, 22)) < 19; });
+  for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
+    expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
+}
+
+}  // namespace sampling_test
+}  // namespace catena::test
