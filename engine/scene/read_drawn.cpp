@@ -143,7 +143,7 @@ const Table<MeshItem>& mesh_table() {
         schema::vec3("offset", "world", "Added after the scale."), [](auto& m) -> auto& { return m.source.placement.offset; });
     t.bind(schema::boolean("drawn", "False: it is only felt."), &MeshItem::drawn);
     t.hand(schema::color("color", "Its colour, without `color_by`.").by_default(write_value(SurfaceMesh{}.color)), read_mesh_color,
-           [](const Scene&, const MeshItem& m) { return write_value(m.surface.color); });
+           [](const Scene&, const MeshItem& m) { return m.surface.color_by ? std::string() : write_value(m.surface.color); });
     t.beside(color_by_key(ColorSubjects::surfaces), [](const Scene& scene, const MeshItem& m) {
       return m.surface.color_by ? write_color_by(scene, *m.surface.color_by) : std::string();
     });
@@ -236,6 +236,9 @@ Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std
   return json::error_at(*object.find(key), "unknown field " + in_quotes(name) + "; known: " + (names.empty() ? "none" : joined(names)) +
                                                ", one of \"fields\" was expected" + suggestion(name, names));
 }
+
+std::string text_of(const Scene& scene, const Volume& volume) { return volume_table().write(scene, volume); }
+std::string text_of(const Scene& scene, const Isosurface& surface) { return isosurface_table().write(scene, surface); }
 
 Part volumes_part() {
   return {list_of("volumes", "Volumes seen through. At most four.", volume_table()),

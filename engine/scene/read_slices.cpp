@@ -98,6 +98,13 @@ using Members = std::vector<std::pair<std::string, std::string>>;
 
 Members plane_members(const Scene& scene, const Slice& slice) {
   if (slice.widget) return {{"widget", schema::write_value(scene.world.get<Name>(slice.widget).value)}};
+  for (int i = 0; i < 3; ++i) {
+    Vec3 axis(0.0), at(0.0);
+    axis[i] = 1;
+    at[i] = slice.point[i];
+    if (slice.normal == axis && slice.point == at)
+      return {{"axis", schema::write_value(std::string(1, "xyz"[i]))}, {"at", schema::write_value(slice.point[i])}};
+  }
   return {{"point", schema::write_value(slice.point)}, {"normal", schema::write_value(slice.normal)}};
 }
 
@@ -140,6 +147,8 @@ Outcome read_slices(Scene& scene, const json::Node& node) {
 }
 
 }  // namespace
+
+std::string text_of(const Scene& scene, const Slice& slice) { return slice_table().write(scene, slice); }
 
 Part slices_part() {
   return {

@@ -42,7 +42,7 @@ const Table<StreamlineSet>& streamlines_table() {
     t.bind(schema::number("radius", "world", "Of the tubes.").positive().by_default("0.003 diagonals of the domain"),
            &StreamlineSet::radius);
     t.hand(schema::color("color", "Of all lines, without `color_by`.").by_default(write_value(StreamlineSet{}.color)), read_line_color,
-           [](const Scene&, const StreamlineSet& set) { return write_value(set.color); });
+           [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : write_value(set.color); });
     t.beside(color_by_key(ColorSubjects::lines), [](const Scene& scene, const StreamlineSet& set) {
       return set.color_by ? write_color_by(scene, *set.color_by) : std::string();
     });
@@ -99,6 +99,8 @@ Outcome read_indicator(Scene& scene, const json::Node& node) {
 }
 
 }  // namespace
+
+std::string text_of(const Scene& scene, const StreamlineSet& set) { return streamlines_table().write(scene, set); }
 
 Part streamlines_part() { return {list_of("streamlines", "Tubes along streamlines.", streamlines_table()), read_streamlines}; }
 

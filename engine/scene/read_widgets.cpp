@@ -254,6 +254,14 @@ Outcome read_widgets(Scene& scene, const json::Node& node) {
 
 const char* kind_word(Kind kind) { return kWords[static_cast<std::size_t>(kind)].data(); }
 
+std::string text_of(const Scene& scene, const std::string& name, const Widget& widget) {
+  const WidgetType& type = types()[static_cast<std::size_t>(widget.spec.kind)];
+  CATENA_ASSERT(type.kind == widget.spec.kind);
+  const auto members = [](const std::string& object) { return object.size() > 2 ? ", " + object.substr(1, object.size() - 2) : ""; };
+  return "{\"name\": " + text_of(std::string_view(name)) + ", \"type\": " + text_of(kind_word(type.kind)) +
+         members(type.own.write(scene, widget)) + members(common_table().write(scene, widget)) + "}";
+}
+
 Part widgets_part() {
   schema::Component component = list_of("widgets",
                                         "Things to take hold of. A slice, a clip, seeds, a level or a link follows one by "

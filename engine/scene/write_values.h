@@ -12,6 +12,8 @@
 
 namespace catena::scene {
 
+struct Scene;
+
 std::string text_of(double value);
 std::string text_of(bool value);
 std::string text_of(std::string_view value);  ///< in quotes
@@ -30,6 +32,13 @@ std::string text_of(const Camera& camera);
 std::string text_of(const ClipPlane& plane);  ///< an item of "clip": {"plane": {"point", "normal"}}
 std::string text_of(const Background& background);
 std::string text_of(const Light& light);
+
+/// Items of the scene's lists, as their descriptions write them: what must be stated, and what differs from the default.
+std::string text_of(const Scene& scene, const Volume& volume);
+std::string text_of(const Scene& scene, const Isosurface& surface);
+std::string text_of(const Scene& scene, const Slice& slice);
+std::string text_of(const Scene& scene, const StreamlineSet& set);
+std::string text_of(const Scene& scene, const std::string& name, const Widget& widget);
 
 /// The keys that state a widget's pose, with their values; no value: the key goes, as another says it.
 using Members = std::vector<std::pair<std::string, std::optional<std::string>>>;

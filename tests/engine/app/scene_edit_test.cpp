@@ -87,7 +87,8 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
     for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines}) {
       if (!can_show(*drawn, as)) continue;
       ++items;
-      const Outcome done = document_->set(pointer_of_new(as), new_item(name, *drawn, as, {}, {}), word_of(as));
+      const Outcome done =
+          document_->set(pointer_of_new(as), new_item(scene_, scene::find_field(scene_, name), *drawn, as, {}), word_of(as));
       ASSERT_TRUE(done) << name << " as " << word_of(as) << ": " << done.error().message;
     }
   }
@@ -117,9 +118,12 @@ TEST_F(EditedScene, ANewSurfaceIsTheOneThatIsFelt) {
   ASSERT_TRUE(drawn);
   const std::string level = felt_level(scene_, "ball");
   EXPECT_EQ(level, "1.25") << "the first link's";
-  EXPECT_NE(new_item("ball", *drawn, ShowAs::isosurface, {}, level).find("\"level\": " + level), std::string::npos);
+  EXPECT_EQ(new_item(scene_, scene::find_field(scene_, "ball"), *drawn, ShowAs::isosurface, {}), R"({"field": "ball", "level": 1.25})");
   EXPECT_TRUE(felt_level(scene_, "flow").empty());
-  EXPECT_EQ(new_item("ball", *drawn, ShowAs::isosurface, {}, {}).find("1.25,"), std::string::npos) << "else of its own range";
+  const auto unfelt = scene::use_drawn_field(scene_, scene::find_field(scene_, "exact"), {});
+  ASSERT_TRUE(unfelt && unfelt->scalar);
+  const std::string item = new_item(scene_, scene::find_field(scene_, "exact"), *unfelt, ShowAs::isosurface, {});
+  EXPECT_EQ(item.find("1.25"), std::string::npos) << "else of its own range: " << item;
 }
 
 }  // namespace scene_edit_test

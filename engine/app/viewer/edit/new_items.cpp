@@ -6,6 +6,8 @@
 #include "engine/app/viewer/edit/field_values.h"
 #include "engine/app/viewer/edit/plot_frame.h"
 #include "engine/app/viewer/edit/pointers.h"
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {
@@ -42,6 +44,15 @@ double default_level(const field::ScalarField& field, const std::vector<float>& 
   return level >= field.min_value() && level <= field.max_value() ? level : middle;
 }
 
+/// The level at which a link of the chain lies on the field: what is seen is what is felt.
+bool take_felt_level(const scene::Scene& scene, scene::Entity field, scene::Isosurface& surface) {
+  const auto felt = json::parse(felt_level(scene, name_of(scene, field)), "level");
+  if (!felt) return false;
+  if (const json::Node* widget = felt->find("widget")) surface.level_from = scene::find_widget(scene, widget->string);
+  surface.level = felt->number;
+  return felt->kind == json::Kind::number || surface.level_from;
+}
+
 }  // namespace
 
 std::string pointer_of_new(ShowAs as) {
@@ -59,25 +70,47 @@ bool can_show(const field::AnyField& field, ShowAs as) {
   return as == ShowAs::streamlines ? field.vector != nullptr : field.scalar != nullptr;
 }
 
-std::string new_item(const std::string& name, const field::AnyField& field, ShowAs as, const std::vector<float>& sorted,
-                     const std::string& felt) {
-  const std::string start = "{\"field\": \"" + name + "\", ";
-  const Domain domain = domain_of(*field.get());
+std::string new_item(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
+                     const std::vector<float>& sorted) {
+  const Domain domain = domain_of(*values.get());
   const auto rounded = [&](double value) { return rounded_in(value, 0, domain.shortest); };
+  const Vec3 middle{rounded(domain.middle.x), rounded(domain.middle.y), rounded(domain.middle.z)};
+  scene::ColorBy colors;
+  colors.named.map = scene::kDefaultLineMap;
   switch (as) {
-    case ShowAs::volume:
-      return start + "\"shade\": true}";
-    case ShowAs::isosurface:
-      return start + "\"level\": " + (felt.empty() ? scene::text_of(default_level(*field.scalar, sorted)) : felt) + ", \"opacity\": 1}";
-    case ShowAs::slice:
-      return start + "\"axis\": \"z\", \"at\": " + scene::text_of(rounded(domain.middle.z)) + ", \"color\": \"viridis\"}";
+    case ShowAs::volume: {
+      scene::Volume volume;
+      volume.field = field;
+      volume.shade = true;
+      return scene::text_of(scene, volume);
+    }
+    case ShowAs::isosurface: {
+      scene::Isosurface surface;
+      surface.field = field;
+      if (!take_felt_level(scene, field, surface)) surface.level = default_level(*values.scalar, sorted);
+      return scene::text_of(scene, surface);
+    }
+    case ShowAs::slice: {
+      scene::Slice slice;
+      slice.shown = colors;
+      slice.shown.field = field;
+      slice.point = {0, 0, middle.z};
+      return scene::text_of(scene, slice);
+    }
     case ShowAs::streamlines:
       break;
   }
-  const Vec3 middle{rounded(domain.middle.x), rounded(domain.middle.y), rounded(domain.middle.z)};
-  return start + "\"seeds\": {\"sphere\": {\"center\": " + scene::text_of(middle) +
-         ", \"radius\": " + scene::text_of(rounded(kBall * domain.shortest)) + ", \"count\": " + std::to_string(kSeeds) +
-         ", \"inside\": true}}, \"color_by\": {\"quantity\": \"speed\", \"color\": \"viridis\"}}";
+  scene::StreamlineSet set;
+  set.field = field;
+  set.seeds.pattern.emplace();
+  set.seeds.pattern->kind = scene::SeedPattern::Kind::sphere;
+  set.seeds.pattern->origin = middle;
+  set.seeds.pattern->radius = rounded(kBall * domain.shortest);
+  set.seeds.pattern->count = kSeeds;
+  set.seeds.pattern->inside = true;
+  set.color_by = colors;
+  set.color_by->what = scene::ColorBy::What::speed;
+  return scene::text_of(scene, set);
 }
 
 }  // namespace catena::app

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/field/field.h"
+#include "engine/scene/scene.h"
 
 namespace catena::app {
 
@@ -17,9 +17,10 @@ const char* word_of(ShowAs as);
 /// A scalar field as all but streamlines, a vector field as a slice (its magnitude) and streamlines.
 bool can_show(const field::AnyField& field, ShowAs as);
 
-/// The isosurface lies at `felt` (JSON text; empty: half way between the 2nd and the 98th percentile of `sorted`, or of the field's
-/// range), the slice across z through the middle of the domain, the seeds in a ball around it.
-std::string new_item(const std::string& name, const field::AnyField& field, ShowAs as, const std::vector<float>& sorted,
-                     const std::string& felt);
+/// The isosurface lies where a link of the chain lies on the field, or else half way between the 2nd and the 98th percentile of `sorted`
+/// (empty: of the field's range), the slice across z through the middle of the domain, the seeds in a ball around it. `values`: of the
+/// field as it is drawn.
+std::string new_item(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
+                     const std::vector<float>& sorted);
 
 }  // namespace catena::app

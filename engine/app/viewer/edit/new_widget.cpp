@@ -8,43 +8,45 @@
 
 namespace catena::app {
 
-std::vector<std::string> widget_types() { return {"cutting_plane", "seed", "rake", "isolevel", "box", "ruler"}; }
+namespace {
+
+/// The field of a surface that is drawn, or else the first scalar one.
+scene::Entity field_of_isolevel(const scene::Scene& scene) {
+  scene::Entity field;
+  scene.world.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
+    if (!field) field = surface.field;
+  });
+  const auto fields = fields_of(scene, false);
+  return field || fields.empty() ? field : scene::find_field(scene, fields.front());
+}
+
+}  // namespace
+
+std::vector<std::string> widget_types() {
+  std::vector<std::string> words;
+  for (const schema::Component& component : scene::scene_components())
+    if (component.name == "widgets")
+      for (const schema::Variant& type : component.variants) words.push_back(type.name);
+  return words;
+}
 
 Result<std::string> new_widget(const scene::Scene& scene, const std::string& type, const Bounds& bounds) {
-  using scene::text_of;
-  std::vector<std::string> taken;
-  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget&) { taken.push_back(scene.world.get<scene::Name>(e).value); });
-  std::string name = type == "cutting_plane" ? "cut" : type;
-  for (int n = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++n)
-    name = (type == "cutting_plane" ? "cut" : type) + "_" + std::to_string(n);
+  using widget::Kind;
+  const std::vector<std::string> types = widget_types();
+  const auto kind = static_cast<Kind>(std::find(types.begin(), types.end(), type) - types.begin());
+  const std::string base = kind == Kind::cutting_plane ? "cut" : type;
+  std::string name = base;
+  for (int n = 2; scene::find_widget(scene, name); ++n) name = base + "_" + std::to_string(n);
 
   const Vec3 middle = bounds.empty() ? Vec3(0.0) : bounds.centre(), size = bounds.empty() ? Vec3(1.0) : bounds.hi - bounds.lo;
-  const Vec3 half(0.25 * max_abs(size), 0, 0);
-  std::string text = "{\"name\": " + text_of(name) + ", \"type\": " + text_of(type);
-  const auto add = [&](const char* key, const std::string& value) { text += std::string(", \"") + key + "\": " + value; };
-  if (type == "cutting_plane") {
-    add("center", text_of(middle));
-    add("normal", "[0, 0, 1]");
-  } else if (type == "seed") {
-    add("position", text_of(middle));
-  } else if (type == "isolevel") {
-    // the field of a surface that is drawn, or else the first one
-    std::string field;
-    scene.world.each<scene::Isosurface>([&](scene::Entity, const scene::Isosurface& surface) {
-      if (field.empty()) field = scene.world.get<scene::Name>(surface.field).value;
-    });
-    if (const auto fields = fields_of(scene, false); field.empty() && !fields.empty()) field = fields.front();
-    if (field.empty()) return Error{"an isolevel needs a scalar field, which the scene does not have"};
-    add("field", text_of(field));
-    add("position", text_of(middle));
-  } else if (type == "box") {
-    add("lo", text_of(middle - size * 0.25));
-    add("hi", text_of(middle + size * 0.25));
-  } else {
-    add("from", text_of(middle - half));
-    add("to", text_of(middle + half));
-  }
-  return text + "}";
+  const Vec3 half = kind == Kind::box ? size * 0.25 : Vec3(0.25 * max_abs(size), 0, 0);
+  const bool two_ends = kind == Kind::rake || kind == Kind::ruler || kind == Kind::box;
+  scene::Widget widget;
+  widget.spec.kind = kind;
+  widget.spec.pose.points = {two_ends ? middle - half : middle, middle + half};
+  if (kind == Kind::isolevel && !(widget.field = field_of_isolevel(scene)))
+    return Error{"an isolevel needs a scalar field, which the scene does not have"};
+  return scene::text_of(scene, name, widget);
 }
 
 }  // namespace catena::app

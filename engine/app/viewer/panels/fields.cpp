@@ -68,9 +68,7 @@ void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
   const auto drawn = scene::use_drawn_field(scene, entity, scene.world.get<scene::FieldSource>(entity).where);
   if (!drawn) return context.state.say(drawn.error().message, true);
   const SortedValues values = context.state.look.values.of(scene, entity);
-  const std::string name = name_of(scene, entity);
-  // what is seen is what is felt
-  const std::string item = new_item(name, *drawn, as, values ? *values : std::vector<float>(), felt_level(scene, name));
+  const std::string item = new_item(scene, entity, *drawn, as, values ? *values : std::vector<float>());
   context.edits.set(pointer_of_new(as), item, std::string("new ") + word_of(as));
 }
 
