@@ -79,7 +79,7 @@ Result<std::shared_ptr<const haptics::Program>> LogScene::build(const log::LogPr
     coupling.stiffness_n_per_m = program.coupling.stiffness_n_per_m;
     coupling.damping_ns_per_m = program.coupling.damping_ns_per_m;
     coupling.max_force_n = program.coupling.max_force_n;
-    coupling.method = static_cast<scene::CouplingMethod>(program.coupling.combination);
+    coupling.method = static_cast<scene::CouplingMethod>(program.coupling.method);
   }
   if (!from_file_ || !coupling.ramp_s) coupling.ramp_s = program.coupling.ramp_s;
   if (!from_file_ || !scene_->workspace.given)

@@ -26,7 +26,7 @@ struct ScalarBar {
 struct Label {
   Vec3 at{0.0};
   std::string text;
-  std::optional<Rgb> color;
+  std::optional<Color> color;
   double size_pt = 12;
   bool dot = true;
   bool hidden_behind = false;  ///< left out where an opaque surface stands before it
@@ -47,7 +47,7 @@ struct Annotations {
   // of all text
   std::string font = "DejaVu Sans";
   double scale = 1;
-  std::optional<Rgb> color;
+  std::optional<Color> color;
 };
 
 /// A bar for the first thing in the scene that has colours; nothing where there is none.

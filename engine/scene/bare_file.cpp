@@ -20,7 +20,7 @@ constexpr double kSlowShare = 0.05;   // of the fastest seed: not worth a line
 constexpr double kLengthShare = 2.0;  // of L, in each direction
 constexpr double kDrawnTolerance = 1e-7;
 constexpr std::size_t kSeedsPerLine = 4;
-constexpr Rgb kLineColor{0.96f, 0.66f, 0.26f};
+constexpr Color kLineColor{0.96f, 0.66f, 0.26f};
 
 /// The grid asked for; else the only one; else the first scalar one, else the first vector one.
 Result<field::AnyField> load_best(field::LoadRequest& request) {

@@ -37,8 +37,8 @@ constexpr Anchor kPlasma[] = {{0, 0x0d0887},   {7, 0x20068f},   {26, 0x43039e}, 
 constexpr Anchor kGrey[] = {{0, 0x000000}, {255, 0xffffff}};
 
 /// From dusk blue over green to ivory: light enough on black, dark enough on white.
-constexpr Rgb kDusk[] = {{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f},
-                         {0.72f, 0.79f, 0.52f}, {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}};
+constexpr Color kDusk[] = {{0.16f, 0.24f, 0.52f}, {0.15f, 0.47f, 0.62f}, {0.33f, 0.66f, 0.58f},
+                           {0.72f, 0.79f, 0.52f}, {0.95f, 0.80f, 0.55f}, {0.99f, 0.96f, 0.90f}};
 
 constexpr int kCoolWarmSteps = 256;  // its green falls steeply at the warm end
 
@@ -56,7 +56,7 @@ std::vector<ColorPoint> from_anchors(std::span<const Anchor> anchors) {
 
 std::vector<ColorPoint> dusk() {
   std::vector<ColorPoint> points;
-  for (const Rgb& rgb : kDusk) points.push_back({static_cast<double>(points.size()) / (std::size(kDusk) - 1), rgb});
+  for (const Color& rgb : kDusk) points.push_back({static_cast<double>(points.size()) / (std::size(kDusk) - 1), rgb});
   return points;
 }
 
@@ -86,9 +86,9 @@ const ColorMap* find_map(std::string_view name) {
   return nullptr;
 }
 
-Rgb mixed(const Rgb& a, const Rgb& b, float t) { return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)}; }
+Color mixed(const Color& a, const Color& b, float t) { return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)}; }
 
-Rgb middle_of(const std::vector<ColorPoint>& points) {
+Color middle_of(const std::vector<ColorPoint>& points) {
   std::size_t i = 1;
   while (points[i].value < 0.5) ++i;
   return mixed(points[i - 1].color, points[i].color,

@@ -6,9 +6,12 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/exchange/coupling_method.h"
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
+#include "engine/geometry/color.h"
+#include "engine/geometry/plane.h"
 #include "engine/mesh/load.h"
 #include "engine/scene/world.h"
 #include "engine/widget/widget.h"
@@ -32,10 +35,6 @@ struct FieldSource {
   field::AnyField drawn;   ///< a grid (the eye's); the same object for files
 };
 
-struct Rgb {
-  float r = 0, g = 0, b = 0;
-};
-
 /// A colour map by its name, laid over a range once the values are known (color_maps.h).
 struct NamedColors {
   std::string map;                             ///< empty: the default of what is coloured
@@ -49,7 +48,7 @@ struct NamedColors {
 struct TransferFunction {
   struct ColorPoint {
     double value;
-    Rgb color;
+    Color color;
   };
   struct ExtinctionPoint {
     double value, sigma;
@@ -96,7 +95,7 @@ struct Isosurface {
   json::Node where;
   double level = 0;
   Entity level_from{};  ///< the isolevel widget whose value the level follows
-  Rgb color{0.8f, 0.8f, 0.9f};
+  Color color{0.8f, 0.8f, 0.9f};
   double opacity = 1;
   bool clipped = true;  ///< the clip planes count
   std::optional<ColorBy> color_by{};
@@ -114,7 +113,7 @@ struct MeshSource {
 struct SurfaceMesh {
   Entity mesh;
   json::Node where;
-  Rgb color{0.8f, 0.8f, 0.9f};
+  Color color{0.8f, 0.8f, 0.9f};
   bool clipped = true;  ///< the clip planes count
   double opacity = 1;
   bool smooth = false;  ///< "shading": the felt mesh is flat
@@ -136,7 +135,7 @@ struct Slice {
     std::vector<double> levels;  ///< rising; or
     int count = 0;               ///< so many within the colours' range, its ends left out; or
     double spacing = 0;          ///< all multiples
-    Rgb color{0, 0, 0};
+    Color color{0, 0, 0};
     double width = 1;  ///< pixels
   };
   std::optional<Contours> contours;
@@ -174,7 +173,7 @@ struct StreamlineSet {
   json::Node where;
   Seeds seeds;
   double radius = 0;  ///< 0: fitted to the domain
-  Rgb color{1.0f, 0.3f, 0.2f};
+  Color color{1.0f, 0.3f, 0.2f};
   std::optional<ColorBy> color_by;
   bool line = false;  ///< "kind": "line"
   double min_speed = 0;
@@ -191,7 +190,7 @@ struct Indicator {
   json::Node where;
   double length = 0;  ///< world units; 0: a tenth of L
   double radius = 0;  ///< 0: fitted
-  Rgb color{1.0f, 0.85f, 0.1f};
+  Color color{1.0f, 0.85f, 0.1f};
 };
 
 /// The cursor: what the hand holds, as the last tick left it. Written by the cursor system, drawn as a glyph.
@@ -229,14 +228,13 @@ struct Widget {
   widget::Report state;
   Entity field;                    ///< isolevel
   std::vector<std::string> along;  ///< ruler: names of links
-  Rgb color{1.0f, 0.75f, 0.2f};
+  Color color{1.0f, 0.75f, 0.2f};
   bool complete = false;                 ///< use_widget has been here
   std::optional<widget::Pose> followed;  ///< the pose that its followers have
   std::optional<double> followed_value;  ///< and the isolevel's value
 };
 
-/// How the links make one force: the chain, or a baseline of the paper (haptics/chain/baseline.h).
-enum class CouplingMethod { chain, pipe, balance, closest, linear };
+using exchange::CouplingMethod;
 
 struct Coupling {
   double stiffness_n_per_m = 500;
@@ -264,19 +262,17 @@ struct Camera {
 };
 
 /// What is drawn lies on the side of the plane to which the normal points. A clip box is six of them.
-struct ClipPlane {
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+struct ClipPlane : Plane {
   Entity widget{};      ///< the cutting plane or box that it follows
   int box_face = -1;    ///< of a box: 0..5, -x +x -y +y -z +z
   bool behind = false;  ///< of a cutting plane: what its normal points away from is kept
 };
-inline constexpr std::size_t kMostClipPlanes = 8;
 
 /// Help for the eye: what shows where things stand. Sizes of 0 are fitted to what is drawn.
 struct BoundingBox {
   Entity field;  ///< none: everything that is drawn
   json::Node where;
-  Rgb color{0.7f, 0.7f, 0.7f};
+  Color color{0.7f, 0.7f, 0.7f};
   double radius = 0;
 };
 
@@ -285,7 +281,7 @@ struct Axes {
   Entity field;  ///< none: everything that is drawn
   json::Node where;
   std::array<std::string, 3> names{"x", "y", "z"};
-  Rgb color{0.7f, 0.7f, 0.7f};
+  Color color{0.7f, 0.7f, 0.7f};
   int ticks = 5;  ///< about so many an axis
   double radius = 0;
 };
@@ -294,12 +290,12 @@ struct Axes {
 struct Ground {
   std::optional<double> at;  ///< z; none: just below what is drawn
   double size = 0, tile = 0;
-  std::array<Rgb, 2> colors{Rgb{0.42f, 0.42f, 0.44f}, Rgb{0.32f, 0.32f, 0.34f}};
+  std::array<Color, 2> colors{Color{0.42f, 0.42f, 0.44f}, Color{0.32f, 0.32f, 0.34f}};
 };
 
 /// Depth cue: colours turn to the fog's as the view depth goes from start to end.
 struct Fog {
-  std::optional<Rgb> color;          ///< none: the background's
+  std::optional<Color> color;        ///< none: the background's
   std::optional<double> start, end;  ///< view depth, world units; none: the nearest and farthest of what is drawn
   double most = 0.8;                 ///< share of the fog at the end
 };
@@ -307,14 +303,14 @@ struct Fog {
 /// A light from far away. Without one there is a headlight.
 struct Light {
   Vec3 direction{0.0, 0.0, 1.0};  ///< towards the light; camera: right, up, towards the eye
-  Rgb color{1, 1, 1};
+  Color color{1, 1, 1};
   double intensity = 1;
   bool with_camera = false;
 };
 inline constexpr std::size_t kMostLights = 4;
 
 struct Background {
-  Rgb color{0, 0, 0};
+  Color color{0, 0, 0};
   bool transparent = false;
 };
 

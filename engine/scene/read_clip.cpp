@@ -59,8 +59,8 @@ Outcome read_box(Scene& scene, const json::Node& node) {
   for (int i = 0; i < 3; ++i) {
     Vec3 axis(0.0);
     axis[i] = 1;
-    scene.clip.push_back({box.lo, axis});
-    scene.clip.push_back({box.hi, -axis});
+    scene.clip.push_back({{box.lo, axis}});
+    scene.clip.push_back({{box.hi, -axis}});
   }
   return Done{};
 }
@@ -91,9 +91,9 @@ Outcome read_clip(Scene& scene, const json::Node& node) {
     if (const json::Node* side = item.find("side"); side != nullptr && widget == nullptr)
       return json::error_at(*side, "\"side\" is given without \"widget\"; the name of a cutting plane was expected beside it");
     CATENA_CHECK(plane ? read_plane(scene, *plane) : box ? read_box(scene, *box) : read_followed(scene, item));
-    if (scene.clip.size() > kMostClipPlanes)
+    if (scene.clip.size() > kMaxClipPlanes)
       return json::error_at(
-          item, "there are more than " + std::to_string(kMostClipPlanes) + " clip planes (a box is six); that many at most were expected");
+          item, "there are more than " + std::to_string(kMaxClipPlanes) + " clip planes (a box is six); that many at most were expected");
     return Done{};
   });
 }

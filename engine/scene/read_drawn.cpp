@@ -142,8 +142,8 @@ const Table<MeshItem>& mesh_table() {
     t.bind(
         schema::vec3("offset", "world", "Added after the scale."), [](auto& m) -> auto& { return m.source.placement.offset; });
     t.bind(schema::boolean("drawn", "False: it is only felt."), &MeshItem::drawn);
-    t.hand(schema::color("color", "Its colour, without `color_by`.").by_default(write_value(SurfaceMesh{}.color)), read_mesh_color,
-           [](const Scene&, const MeshItem& m) { return m.surface.color_by ? std::string() : write_value(m.surface.color); });
+    t.hand(schema::color("color", "Its colour, without `color_by`.").by_default(schema::write_value(SurfaceMesh{}.color)), read_mesh_color,
+           [](const Scene&, const MeshItem& m) { return m.surface.color_by ? std::string() : schema::write_value(m.surface.color); });
     t.beside(color_by_key(ColorSubjects::surfaces), [](const Scene& scene, const MeshItem& m) {
       return m.surface.color_by ? write_color_by(scene, *m.surface.color_by) : std::string();
     });
@@ -214,14 +214,7 @@ Outcome read_cursor(Scene& scene, const json::Node& node) {
 
 }  // namespace
 
-Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what) {
-  for (int i = 0; i < 3; ++i)
-    if (!(c[i] >= 0 && c[i] <= 1))
-      return json::error_at(node, in_quotes(what) + " holds " + to_text(c[i]) + "; colour components from 0 to 1 were expected");
-  return Rgb{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
-}
-
-Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback) {
+Result<Color> read_color(const json::Node& object, std::string_view key, const Color& fallback) {
   const json::Node* node = object.find(key);
   if (node == nullptr) return fallback;
   CATENA_TRY(const Vec3 c, json::as_vec3(*node, key));

@@ -7,6 +7,7 @@
 #include "engine/scene/color_spaces.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/read_transfer.h"
+#include "engine/schema/values.h"
 
 namespace catena::scene {
 namespace {
@@ -47,7 +48,7 @@ Outcome read_rgb_points(const json::Node& node, ColorSpace space, TransferFuncti
   CATENA_TRY(const auto rows, read_rows(node, "RGBPoints"));
   const auto color_of = [](const std::array<double, 4>& row) { return Vec3(row[1], row[2], row[3]); };
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    CATENA_TRY(const Rgb rgb, as_color(color_of(rows[i]), node.items[4 * i], "RGBPoints"));
+    CATENA_TRY(const Color rgb, schema::as_color(color_of(rows[i]), node.items[4 * i], "RGBPoints"));
     const int pieces = i == 0 || space == ColorSpace::rgb ? 1 : kPieces;
     for (int k = 1; k < pieces; ++k) {
       const double t = static_cast<double>(k) / pieces, value = (1 - t) * rows[i - 1][0] + t * rows[i][0];

@@ -70,10 +70,8 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
 /// The entity of the field that member `key` of `object` names; an error lists the known ones.
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
 
-/// Three numbers 0..1 as a colour.
-Result<Rgb> as_color(const Vec3& c, const json::Node& node, std::string_view what);
 /// Member `key` as [r, g, b], 0..1.
-Result<Rgb> read_color(const json::Node& object, std::string_view key, const Rgb& fallback);
+Result<Color> read_color(const json::Node& object, std::string_view key, const Color& fallback);
 /// Rows [value, r, g, b], values rising.
 Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what);
 

@@ -41,8 +41,9 @@ const Table<StreamlineSet>& streamlines_table() {
     t.hand(seeds_key(), read_set_seeds, [](const Scene& scene, const StreamlineSet& set) { return write_seeds(scene, set.seeds); });
     t.bind(schema::number("radius", "world", "Of the tubes.").positive().by_default("0.003 diagonals of the domain"),
            &StreamlineSet::radius);
-    t.hand(schema::color("color", "Of all lines, without `color_by`.").by_default(write_value(StreamlineSet{}.color)), read_line_color,
-           [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : write_value(set.color); });
+    t.hand(schema::color("color", "Of all lines, without `color_by`.").by_default(schema::write_value(StreamlineSet{}.color)),
+           read_line_color,
+           [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : schema::write_value(set.color); });
     t.beside(color_by_key(ColorSubjects::lines), [](const Scene& scene, const StreamlineSet& set) {
       return set.color_by ? write_color_by(scene, *set.color_by) : std::string();
     });

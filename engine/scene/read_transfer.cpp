@@ -1,4 +1,5 @@
 #include "engine/scene/read_transfer.h"
+#include "engine/schema/values.h"
 
 #include <algorithm>
 #include <cmath>
@@ -165,7 +166,7 @@ Result<std::vector<ColorPoint>> read_color_table(const json::Node& node, std::st
   std::vector<ColorPoint> colors;
   CATENA_TRY(const auto rows, read_table(node, what, 4));
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    CATENA_TRY(const Rgb rgb, as_color({rows[i][1], rows[i][2], rows[i][3]}, node.items[i], what));
+    CATENA_TRY(const Color rgb, schema::as_color({rows[i][1], rows[i][2], rows[i][3]}, node.items[i], what));
     colors.push_back({rows[i][0], rgb});
   }
   return colors;

@@ -100,7 +100,7 @@ Part camera_part() {
 Part background_part() {
   const Key key =
       schema::any_of("background", {schema::color("", ""), schema::word("", {"transparent"}, "")}, "A colour, or `transparent`.")
-          .by_default(write_value(Background{}.color));
+          .by_default(schema::write_value(Background{}.color));
   return {{"background", "Behind everything.", Component::Shape::value, {key}}, read_background};
 }
 

@@ -4,14 +4,6 @@
 
 namespace catena::scene {
 
-Outcome read_value(const Key& key, const json::Node& object, Rgb& out) {
-  if (!key.is_required && object.find(key.name) == nullptr) return Done{};
-  CATENA_TRY(out, read_color(object, key.name, out));
-  return Done{};
-}
-
-std::string write_value(const Rgb& value) { return text_of(value); }
-
 Key clip_key() { return schema::boolean("clip", "False: the clip planes leave it whole.").by_default("true"); }
 Key visible_key() { return schema::boolean("visible", "False: it is not drawn, but still felt and followed.").by_default("true"); }
 Key opacity_key(const std::string& help) { return schema::number("opacity", "", help).within(0, 1); }

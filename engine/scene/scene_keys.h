@@ -5,14 +5,12 @@
 
 namespace catena::scene {
 
+using schema::as_color;
 using schema::Key;
 using schema::Keys;
 using schema::Role;
 template <class T>
 using Table = schema::Table<T, Scene>;
-
-Outcome read_value(const Key& key, const json::Node& object, Rgb& out);
-std::string write_value(const Rgb& value);
 
 /// Binds a key that names a field to the entity of it; absent and not required: none.
 template <class T, class C, class Access>

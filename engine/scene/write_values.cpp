@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/json_edit.h"
+#include "engine/schema/values.h"
 
 namespace catena::scene {
 namespace {
@@ -31,7 +32,7 @@ std::string text_of(bool value) { return value ? "true" : "false"; }
 std::string text_of(std::string_view value) { return json::string_text(value); }
 std::string text_of(const Vec3& v) { return "[" + text_of(v.x) + ", " + text_of(v.y) + ", " + text_of(v.z) + "]"; }
 std::string text_of(const Quat& q) { return "[" + text_of(q.w) + ", " + text_of(q.x) + ", " + text_of(q.y) + ", " + text_of(q.z) + "]"; }
-std::string text_of(const Rgb& c) { return "[" + component(c.r) + ", " + component(c.g) + ", " + component(c.b) + "]"; }
+std::string text_of(const Color& c) { return schema::write_value(c); }
 std::string text_of(const std::array<double, 2>& range) { return "[" + text_of(range[0]) + ", " + text_of(range[1]) + "]"; }
 std::string text_of(const std::vector<Vec3>& points) {
   return list(points, [](const Vec3& p) { return text_of(p); });

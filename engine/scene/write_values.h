@@ -20,7 +20,7 @@ std::string text_of(std::string_view value);  ///< in quotes
 inline std::string text_of(const char* value) { return text_of(std::string_view(value)); }
 std::string text_of(const Vec3& v);                                                ///< [x, y, z]
 std::string text_of(const Quat& q);                                                ///< [w, x, y, z]
-std::string text_of(const Rgb& c);                                                 ///< [r, g, b]
+std::string text_of(const Color& c);                                               ///< [r, g, b]
 std::string text_of(const std::array<double, 2>& range);                           ///< [lo, hi]
 std::string text_of(const std::vector<Vec3>& points);                              ///< [[x, y, z], ...]
 std::string text_of(const std::vector<double>& values);                            ///< [a, b, ...]

@@ -1,5 +1,6 @@
 #include "engine/schema/values.h"
 
+#include <charconv>
 #include <cmath>
 
 #include "engine/base/json_edit.h"
@@ -142,12 +143,35 @@ Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& 
   return Done{};
 }
 
+Result<Color> as_color(const Vec3& c, const json::Node& node, std::string_view what) {
+  for (int i = 0; i < 3; ++i)
+    if (!(c[i] >= 0 && c[i] <= 1))
+      return json::error_at(node, in_quotes(what) + " holds " + to_text(c[i]) + "; colour components from 0 to 1 were expected");
+  return Color{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
+}
+
+Outcome read_value(const Key& key, const json::Node& object, Color& out) {
+  if (is_absent(key, object)) return Done{};
+  CATENA_TRY(const Vec3 components, json::require_vec3(object, key.name));
+  CATENA_TRY(out, as_color(components, *object.find(key.name), key.name));
+  return Done{};
+}
+
 Outcome read_choice(const Key& key, const json::Node& object, int& out) {
   if (key.is_required) CATENA_CHECK(json::require_string(object, key.name));
   CATENA_TRY(out, json::get_choice(object, key.name, out, words_of(key)));
   return Done{};
 }
 
+std::string write_value(const Color& c) {
+  std::string out = "[";
+  for (const float component : {c.r, c.g, c.b}) {
+    CATENA_ASSERT(std::isfinite(component));
+    char digits[40];
+    out += (out.size() > 1 ? ", " : "") + std::string(digits, std::to_chars(digits, digits + sizeof digits, component).ptr);
+  }
+  return out + "]";
+}
 std::string write_value(double value) { return json::number_text(value); }
 std::string write_value(int value) { return std::to_string(value); }
 std::string write_value(bool value) { return value ? "true" : "false"; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/geometry/color.h"
 #include "engine/schema/key.h"
 
 namespace catena::schema {
@@ -23,6 +24,7 @@ Outcome read_value(const Key& key, const json::Node& object, std::array<std::str
 Outcome read_value(const Key& key, const json::Node& object, std::vector<double>& out);
 Outcome read_value(const Key& key, const json::Node& object, std::vector<std::string>& out);
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out);
+Outcome read_value(const Key& key, const json::Node& object, Color& out);
 /// The index of a word.
 Outcome read_choice(const Key& key, const json::Node& object, int& out);
 
@@ -37,6 +39,10 @@ std::string write_value(const std::array<std::string, 3>& value);
 std::string write_value(const std::vector<double>& value);
 std::string write_value(const std::vector<std::string>& value);
 std::string write_value(const std::vector<Vec3>& value);
+std::string write_value(const Color& value);  ///< components, which are floats, in the fewest digits that give the same float
+
+/// Three numbers from 0 to 1 as a colour.
+Result<Color> as_color(const Vec3& components, const json::Node& node, std::string_view what);
 
 /// "KEY is VALUE; a number from 0 to 1 was expected" where the number is not within the key's limits.
 Outcome check_limits(const Key& key, const json::Node& node);

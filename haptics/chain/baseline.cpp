@@ -32,8 +32,8 @@ bool takes_hold_again(SingleTick& tick, std::size_t i) noexcept {
 /// Starts the links that have just been switched on. False: none has.
 bool begin_links(SingleTick& tick) noexcept {
   SingleProxy& single = tick.single;
-  const Combination combination = tick.program.coupling.combination;
-  const bool any_tick = combination == Combination::linear, at_proxy = any_tick || combination == Combination::balance;
+  const CouplingMethod method = tick.program.coupling.method;
+  const bool any_tick = method == CouplingMethod::linear, at_proxy = any_tick || method == CouplingMethod::balance;
   const bool first = !single.started;
   bool begun = false;
   if (first) single.proxy = tick.probe;
@@ -55,12 +55,12 @@ bool begin_links(SingleTick& tick) noexcept {
 }
 
 Vec3 proxy_of(SingleTick& tick) noexcept {
-  switch (tick.program.coupling.combination) {
-    case Combination::balance:
+  switch (tick.program.coupling.method) {
+    case CouplingMethod::balance:
       return balance(tick);
-    case Combination::closest:
+    case CouplingMethod::closest:
       return closest(tick);
-    case Combination::linear:
+    case CouplingMethod::linear:
       return linear(tick);
     default:
       return pipe(tick);
@@ -115,7 +115,7 @@ void advance_single_proxy(SingleTick& tick, bool same_order) noexcept {
   if (single.settled && same_order && !begun && same_bits(single.probe, tick.probe)) return;
 
   // links that have let go
-  const bool is_linear = tick.program.coupling.combination == Combination::linear;
+  const bool is_linear = tick.program.coupling.method == CouplingMethod::linear;
   for (int k = 0; k < tick.order.count; ++k) {
     const auto i = static_cast<std::size_t>(tick.order.links[static_cast<std::size_t>(k)]);
     SingleProxy::Watch& watch = single.watches[i];
@@ -155,8 +155,8 @@ void advance_single_proxy(SingleTick& tick, bool same_order) noexcept {
   }
   single.proxy = p;
   single.probe = tick.probe;
-  const Combination combination = tick.program.coupling.combination;
-  single.settled = !spent && (combination == Combination::pipe || combination == Combination::closest);
+  const CouplingMethod method = tick.program.coupling.method;
+  single.settled = !spent && (method == CouplingMethod::pipe || method == CouplingMethod::closest);
 }
 
 }  // namespace catena::haptics

@@ -63,7 +63,7 @@ void settle(const Program& program, const std::array<LinkState, kMaxLinks>& link
             PassivityState& state) noexcept {
   const Limits& limits = program.limits;
   const Vec3 move_m = tick.move * program.metres_per_unit;
-  const bool weighs = program.coupling.combination == Combination::chain;
+  const bool weighs = program.coupling.method == CouplingMethod::chain;
   const std::size_t count = program.links.size();
 
   // what the last tick's force has done since

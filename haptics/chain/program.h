@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/exchange/coupling_method.h"
 #include "haptics/chain/constraint.h"
 #include "haptics/chain/limits.h"
 #include "haptics/chain/parameter.h"
@@ -65,8 +66,7 @@ struct Mode {
   Switch on;
 };
 
-/// How the links make one force: the proxy chain, or one of the baselines that the paper compares it with.
-enum class Combination { chain, pipe, balance, closest, linear };
+using exchange::CouplingMethod;
 
 struct Coupling {
   double stiffness_n_per_m = 500;
@@ -75,7 +75,7 @@ struct Coupling {
   double ramp_s = 0;
   double rotational_stiffness_nm_per_rad = 0.5;  ///< of links that align and do not say
   double rotational_damping_nms_per_rad = 0;     ///< b_r
-  Combination combination = Combination::chain;
+  CouplingMethod method = CouplingMethod::chain;
 };
 
 struct Program {

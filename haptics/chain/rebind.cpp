@@ -16,7 +16,7 @@ void rebind(const Program& from, const Program& to, ChainState& state, ChainScra
   state.fade.replaced = state.alignment.fade.replaced = true;
   state.alignment.axes = {};
   state.passivity.anew = true;
-  if (from.coupling.combination != to.coupling.combination) state.single = SingleProxy{};
+  if (from.coupling.method != to.coupling.method) state.single = SingleProxy{};
   state.fade.shares = old.fade.shares;
   for (std::size_t i = 0; i < static_cast<std::size_t>(kMaxLinks); ++i) {
     state.links[i] = LinkState{};
@@ -30,7 +30,7 @@ void rebind(const Program& from, const Program& to, ChainState& state, ChainScra
       if (!keeps(from.links[k], to.links[i])) continue;
       state.links[i] = old.links[k];
       state.indications[i] = old.indications[k];
-      if (from.coupling.combination == to.coupling.combination) state.single.watches[i] = old.single.watches[k];
+      if (from.coupling.method == to.coupling.method) state.single.watches[i] = old.single.watches[k];
       state.switches.link_on[i] = old.switches.link_on[k];
       // the ledger of a link goes on; what links that are gone have given stays in the observer
       state.passivity.given_j[i] = old.passivity.given_j[k];

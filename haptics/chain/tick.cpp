@@ -16,7 +16,7 @@ struct Coupled {
   Vec3 reach{0.0};  ///< from the probe to the last proxy, world units
 };
 
-bool is_single(const Program& program) noexcept { return program.coupling.combination != Combination::chain; }
+bool is_single(const Program& program) noexcept { return program.coupling.method != CouplingMethod::chain; }
 
 void switch_off(LinkState& link) noexcept {
   link.on = link.started = link.released = false;

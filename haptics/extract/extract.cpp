@@ -83,7 +83,7 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, cons
   program->coupling.rotational_stiffness_nm_per_rad = scene.coupling.rotational_stiffness_nm_per_rad;
   program->coupling.rotational_damping_nms_per_rad = scene.coupling.rotational_damping_nms_per_rad;
   program->coupling.ramp_s = scene.coupling.ramp_s.value_or(0);
-  program->coupling.combination = static_cast<Combination>(scene.coupling.method);
+  program->coupling.method = scene.coupling.method;
   program->limits = limits;
   program->metres_per_unit = scene.workspace.metres_per_unit;
   program->workspace_origin = scene.workspace.origin;

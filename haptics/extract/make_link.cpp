@@ -28,7 +28,7 @@ void add_recipe(const json::Node& node, Fnv1a& recipe) {
 
 /// A baseline lets go by itself (haptics/chain/baseline.h): "release" goes from the constraint's node to the link. Its linear
 /// method knows of a streamline only what the field says at the proxy.
-Result<json::Node> node_for_baseline(const json::Node& from, Combination combination, Link& link) {
+Result<json::Node> node_for_baseline(const json::Node& from, CouplingMethod method, Link& link) {
   json::Node node = from;
   const ConstraintType* type = find_constraint(from.find("type")->string);
   if (type == nullptr) return node;
@@ -45,7 +45,7 @@ Result<json::Node> node_for_baseline(const json::Node& from, Combination combina
     std::erase_if(node.members, [](const auto& member) { return member.first == "release"; });
   }
   if (const json::Node* side = from.find("free"); side != nullptr && has("free")) link.one_sided = side->string != "none";
-  if (combination == Combination::linear && has("follow") && node.find("follow") == nullptr && node.find("method") == nullptr) {
+  if (method == CouplingMethod::linear && has("follow") && node.find("follow") == nullptr && node.find("method") == nullptr) {
     json::Node online;
     online.kind = json::Kind::string;
     online.line = node.line;
@@ -65,7 +65,7 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
   json::Node own = from;
   std::erase_if(own.members, [](const auto& member) { return member.first == "enabled"; });
   add_recipe(own, recipe);
-  if (coupling.combination != Combination::chain) recipe.add(static_cast<int>(coupling.combination));
+  if (coupling.method != CouplingMethod::chain) recipe.add(static_cast<int>(coupling.method));
   BuildContext noting = context;
   noting.field = [&](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
     CATENA_TRY(field::AnyField field, context.field(where, name));
@@ -83,10 +83,10 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
   CATENA_TRY(const bool enabled, json::get_boolean(from, "enabled", true));
   link.on.never = !enabled;
   CATENA_TRY(link.indication, read_indication(from));
-  if (coupling.combination == Combination::chain) {
+  if (coupling.method == CouplingMethod::chain) {
     CATENA_TRY(link.constraint, build_constraint(from, noting));
   } else {
-    CATENA_TRY(const json::Node node, node_for_baseline(from, coupling.combination, link));
+    CATENA_TRY(const json::Node node, node_for_baseline(from, coupling.method, link));
     CATENA_TRY(link.constraint, build_constraint(node, noting));
     if (!link.constraint->has_primitive())
       return json::error_at(*from.find("type"), "a \"" + from.find("type")->string +

@@ -76,7 +76,7 @@ Outcome add_widgets(scene::Scene& scene, const std::function<const std::vector<i
   scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget&) { entities.push_back(e); });
   if (entities.empty()) return Done{};
   const json::Node& first = scene.world.get<scene::Widget>(entities.front()).where;
-  if (program.coupling.combination != Combination::chain)
+  if (program.coupling.method != CouplingMethod::chain)
     return json::error_at(first, "widgets need the proxy chain; \"method\": \"chain\" was expected in \"coupling\"");
   if (entities.size() > static_cast<std::size_t>(widget::kMaxWidgets))
     return json::error_at(first, "too many widgets; at most " + std::to_string(widget::kMaxWidgets) + " were expected");

@@ -72,8 +72,8 @@ Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
     CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
     const std::uint32_t id = packet.add_object("isosurface", name_of(scene, surface.field));
-    packet.isosurfaces.push_back({std::move(grid), surface.level, color_of(surface.color), static_cast<float>(surface.opacity), id,
-                                  surface.clipped, std::move(color_by)});
+    packet.isosurfaces.push_back(
+        {std::move(grid), surface.level, surface.color, static_cast<float>(surface.opacity), id, surface.clipped, std::move(color_by)});
   }
   return Done{};
 }
@@ -177,7 +177,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   packet.width = width;
   packet.height = height;
   packet.jitter = scene.jitter;
-  for (const scene::ClipPlane& plane : scene.clip) packet.clip.push_back({plane.point, plane.normal});
+  packet.clip.assign(scene.clip.begin(), scene.clip.end());
   const scene::Background& background = scene.background;
   packet.background = {background.color.r, background.color.g, background.color.b, background.transparent ? 0.0f : 1.0f};
   CATENA_CHECK(extract_volumes(scene, packet));

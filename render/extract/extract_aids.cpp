@@ -78,7 +78,7 @@ void add_bounding_box(const scene::Scene& scene, const Bounds& drawn, FramePacke
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t axis = 1; axis < 8; axis *= 2)
       if ((i & axis) == 0 && !is_axis(corners[i]) && !is_axis(corners[i | axis]))
-        packet.aids.tubes.push_back(line(corners[i], corners[i | axis], radius, color_of(box.color), id));
+        packet.aids.tubes.push_back(line(corners[i], corners[i | axis], radius, box.color, id));
 }
 
 /// The edges that meet at the corner of least x, y, z; ticks point away from the box.
@@ -86,7 +86,7 @@ void add_axes(const scene::Scene& scene, const Bounds& drawn, FramePacket& packe
   const scene::Axes& axes = *scene.axes;
   const Bounds box = box_of_axes(scene, drawn);
   const double radius = axes.radius > 0 ? axes.radius : kLineShare * box.diagonal(), tick = kTickShare * box.diagonal();
-  const Color color = color_of(axes.color);
+  const Color color = axes.color;
   const std::uint32_t id = packet.add_object("axes", "");
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 end = box.lo, out(0.0);
@@ -126,14 +126,13 @@ void add_ground(const scene::Ground& ground, const Bounds& drawn, FramePacket& p
           geometry->vertices.push_back(p);
         for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) geometry->triangles.push_back(first + k);
       }
-    if (!geometry->triangles.empty())
-      packet.aids.meshes.push_back({std::move(geometry), color_of(ground.colors[std::size_t(shade)]), id, false});
+    if (!geometry->triangles.empty()) packet.aids.meshes.push_back({std::move(geometry), ground.colors[std::size_t(shade)], id, false});
   }
 }
 
 FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& packet) {
   FogItem item;
-  item.color = fog.color ? color_of(*fog.color) : Color{packet.background[0], packet.background[1], packet.background[2]};
+  item.color = fog.color ? *fog.color : Color{packet.background[0], packet.background[1], packet.background[2]};
   item.most = fog.most;
   const Vec3 forward = direction(packet.view.target - packet.view.position);
   double nearest = 0, farthest = 1;

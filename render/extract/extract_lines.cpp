@@ -112,7 +112,7 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
   std::vector<FlatPoint> arrow_places;
   double lo = std::numeric_limits<double>::infinity(), hi = -lo;
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    TubeItem tube{{}, flat.radius, color_of(set.color), {}};
+    TubeItem tube{{}, flat.radius, set.color, {}};
     FlattenOptions of_this = options;
     if (value && detail == 0) of_this.longest = band > 0 ? std::min(band, curves[i]->period() / 64) : curves[i]->period() / 64;
     std::vector<double> arc;
@@ -152,7 +152,7 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
     }
     for (std::size_t i = 0; i < flat.arrows.size(); ++i) flat.arrows[i].color = table_color(table, value->at(arrow_places[i]));
   } else {
-    for (ArrowItem& arrow : flat.arrows) arrow.color = color_of(set.color);
+    for (ArrowItem& arrow : flat.arrows) arrow.color = set.color;
   }
   return flat;
 }
@@ -175,8 +175,8 @@ TubeItem with_pulse(TubeItem tube, const std::vector<double>& arc, double pulse,
 Color table_color(const ColorTable& table, double value) {
   CATENA_ASSERT(!table.empty());
   if (std::isnan(value)) return {0.5f, 0.5f, 0.5f};
-  if (value <= table.front().value) return color_of(table.front().color);
-  if (value >= table.back().value) return color_of(table.back().color);
+  if (value <= table.front().value) return table.front().color;
+  if (value >= table.back().value) return table.back().color;
   const auto next = std::upper_bound(table.begin(), table.end(), value, [](double v, const auto& point) { return v < point.value; });
   const auto &a = *(next - 1), &b = *next;
   const auto t = static_cast<float>((value - a.value) / (b.value - a.value));
@@ -238,8 +238,8 @@ Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet) {
       const auto curve = flow::trace({any.vector.get()}, cursor.probe, options);
       if (!curve) continue;
       const flow::Knot& end = (*curve)->closed() ? (*curve)->knots().front() : (*curve)->knots().back();
-      IndicatorItem item{{flatten(**curve, {radius}), radius, color_of(indicator.color), {}},
-                         {end.p, end.p + (kArrowLength * radius) * end.t, kArrowRadius * radius, color_of(indicator.color)}};
+      IndicatorItem item{{flatten(**curve, {radius}), radius, indicator.color, {}},
+                         {end.p, end.p + (kArrowLength * radius) * end.t, kArrowRadius * radius, indicator.color}};
       item.tube.id = packet.add_object("indicator", "");
       packet.indicators.push_back(std::move(item));
     }

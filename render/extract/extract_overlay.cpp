@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTitleSizePt = 17, kTitleTopPt = 12;
 
-std::optional<Color> optional_color(const std::optional<scene::Rgb>& c) {
+std::optional<Color> optional_color(const std::optional<Color>& c) {
   if (!c) return std::nullopt;
   return Color{c->r, c->g, c->b};
 }

@@ -137,7 +137,7 @@ Outcome prepare_meshes(scene::Scene& scene) {
 void extract_meshes(const scene::Scene& scene, FramePacket& packet) {
   scene.world.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
     if (is_hidden(scene.world, e)) return;
-    MeshItem item{scene.made.get<PlainMesh>(e).geometry, color_of(surface.color), packet.add_object("mesh", name_of(scene, surface.mesh)),
+    MeshItem item{scene.made.get<PlainMesh>(e).geometry, surface.color, packet.add_object("mesh", name_of(scene, surface.mesh)),
                   surface.clipped};
     item.opacity = static_cast<float>(surface.opacity);
     item.smooth = surface.smooth;
@@ -189,7 +189,7 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
       const double lo = spread ? item.colors.front()[0] : grid->min_value(), hi = spread ? item.colors.back()[0] : grid->max_value();
       const bool multiples = slice.contours->spacing > 0;
       CATENA_TRY(item.levels, contour_levels(*slice.contours, multiples ? grid->min_value() : lo, multiples ? grid->max_value() : hi));
-      item.line_color = color_of(slice.contours->color);
+      item.line_color = slice.contours->color;
       item.line_width = static_cast<float>(slice.contours->width);
     }
     item.id = packet.add_object("slice", name_of(scene, slice.shown.field));

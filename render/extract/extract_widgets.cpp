@@ -63,7 +63,7 @@ void draw_border(WidgetShapes& shapes, const scene::Widget& widget, const Bounds
     border = {centre + u + v, centre - u + v, centre - u - v, centre + u - v};
   }
   const bool explored = widget.state.mode == Mode::explore, moved = widget.state.mode == Mode::translate;
-  const Color color = color_of(widget.color);
+  const Color color = widget.color;
   shapes.loop(border, explored ? 2.2 : moved ? 1.6 : 1, explored ? brighter(color, 0.6f) : color);
 }
 
@@ -83,14 +83,14 @@ void draw_cutting_plane(WidgetShapes& shapes, const scene::Widget& widget, const
   if (moves)
     draw_axes(shapes, widget, centre, kFreeReach * radius, kHeldSquare * radius, kHead * radius);
   else
-    shapes.arrow(centre, centre + kNormalReach * radius * axis_of(widget, 2), 1.5, kHead * radius, color_of(widget.color));
+    shapes.arrow(centre, centre + kNormalReach * radius * axis_of(widget, 2), 1.5, kHead * radius, widget.color);
 }
 
 /// A ball of a widget, by what the hand does with it.
 void draw_handle(WidgetShapes& shapes, const scene::Widget& widget, int handle, const Vec3& at, double radius) {
   const bool mine = widget.state.handle == handle || widget.spec.kind == Kind::seed || widget.spec.kind == Kind::isolevel;
   const bool hovered = mine && widget.state.mode == Mode::hover, dragged = mine && widget.state.mode == Mode::drag;
-  const Color color = brighter(color_of(widget.color), dragged ? 0.7f : hovered ? 0.4f : 0);
+  const Color color = brighter(widget.color, dragged ? 0.7f : hovered ? 0.4f : 0);
   shapes.ball(at, (dragged ? 1.5 : hovered ? 1.4 : 1) * shapes.ball_radius(at, radius), color);
 }
 
@@ -107,7 +107,7 @@ void draw_seed(WidgetShapes& shapes, const scene::Widget& widget) {
   draw_handle(shapes, widget, 0, at, radius);
   if (is_dragged(widget)) return draw_handle_axes(shapes, widget, at);
   const bool hovered = widget.state.mode == Mode::hover;
-  shapes.circle(at, shapes.towards_eye(at), (hovered ? 2.6 : 2.1) * radius, 0.8, color_of(widget.color));
+  shapes.circle(at, shapes.towards_eye(at), (hovered ? 2.6 : 2.1) * radius, 0.8, widget.color);
 }
 
 /// A rake's line of seeds, and a ruler with the way that it measures.
@@ -116,7 +116,7 @@ void draw_line(WidgetShapes& shapes, const scene::Widget& widget, const scene::R
   const Vec3 middle = 0.5 * a + 0.5 * b;
   const double radius = radius_of(widget);
   const bool bent = ruler != nullptr && ruler->how != scene::RulerMeasure::How::straight;
-  const Color color = color_of(widget.color);
+  const Color color = widget.color;
   shapes.tube({a, b}, bent ? 0.8 : 1.2, bent ? mixed(color, {0.5f, 0.5f, 0.5f}, 0.6f) : color);
   if (bent) shapes.tube(ruler->points, 1.6, color);
   draw_handle(shapes, widget, 0, a, radius);
@@ -133,7 +133,7 @@ void draw_isolevel(WidgetShapes& shapes, const scene::Widget& widget) {
   field::Cursor cursor;
   const Vec3 along = direction(widget.spec.field->sample(at, cursor).gradient);
   if (max_abs(along) == 0) return;
-  const Color color = color_of(widget.color);
+  const Color color = widget.color;
   shapes.arrow(at, at + kGradientReach * radius * along, 1, kHandleHead * radius, color);
   if (is_dragged(widget)) shapes.arrow(at, at - kGradientReach * radius * along, 1, kHandleHead * radius, color);
 }
@@ -141,7 +141,7 @@ void draw_isolevel(WidgetShapes& shapes, const scene::Widget& widget) {
 void draw_box(WidgetShapes& shapes, const scene::Widget& widget) {
   Bounds box;
   for (const Vec3& p : widget.state.pose.points) box.add(p);
-  const Color color = color_of(widget.color);
+  const Color color = widget.color;
   const double radius = radius_of(widget);
   for (int i = 0; i < 8; ++i)
     for (int axis = 1; axis < 8; axis *= 2)

@@ -8,8 +8,6 @@
 
 namespace catena::render {
 
-inline Color color_of(const scene::Rgb& c) { return {c.r, c.g, c.b}; }
-
 /// "?" where it has none.
 inline std::string name_of(const scene::Scene& scene, scene::Entity entity) {
   return scene.world.has<scene::Name>(entity) ? scene.world.get<scene::Name>(entity).value : std::string("?");

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "engine/base/vec.h"
-#include "render/frame/color.h"
+#include "engine/geometry/color.h"
+#include "engine/geometry/plane.h"
 #include "render/frame/overlay_items.h"
 #include "render/frame/packing.h"
 #include "render/frame/shared_list.h"
@@ -33,12 +34,6 @@ struct View {
   Window window{};
   double aspect = 0;  ///< width by height of the symmetric frustum; 0: as pixels are square
 };
-
-/// Keeps the half space to which `normal` points; `normal` need not be unit.
-struct ClipPlane {
-  Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
-};
-inline constexpr std::size_t kMostClipPlanes = 8;
 
 /// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
 struct LightItem {
@@ -215,7 +210,7 @@ struct FramePacket {
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
   Overlay overlay;
-  std::vector<ClipPlane> clip;    ///< what all planes keep is drawn; at most kMostClipPlanes
+  std::vector<Plane> clip;        ///< what all planes keep is drawn; at most kMaxClipPlanes
   std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
   std::optional<FogItem> fog;
   AidItems aids;

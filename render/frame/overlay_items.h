@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/base/vec.h"
-#include "render/frame/color.h"
+#include "engine/geometry/color.h"
 
 namespace catena::render {
 

@@ -27,8 +27,8 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
     return Error{fmt::format("a picture of {} x {} pixels cannot be drawn, expected 1 to {} each way", packet.width, packet.height, most)};
   if (!(settings.step_voxels > 0) || !std::isfinite(settings.step_voxels))
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
-  if (packet.clip.size() > kMostClipPlanes)
-    return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMostClipPlanes)};
+  if (packet.clip.size() > kMaxClipPlanes)
+    return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMaxClipPlanes)};
   if (packet.lights.size() > kMostLights)
     return Error{fmt::format("the scene has {} lights, expected at most {}", packet.lights.size(), kMostLights)};
   return Done{};

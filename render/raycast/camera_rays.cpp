@@ -128,7 +128,7 @@ shared::MeshFrameData CameraRays::mesh(const Vec3& origin) const {
   return m;
 }
 
-shared::ClipData CameraRays::plane(const ClipPlane& plane) const {
+shared::ClipData CameraRays::plane(const Plane& plane) const {
   const Camera& c = camera;
   const Vec3 normal = direction(plane.normal);
   const double x = dot(normal, c.right) * (c.half_width / (0.5 * c.width)), y = -dot(normal, c.up) * (c.half_height / (0.5 * c.height));

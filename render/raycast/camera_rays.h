@@ -17,7 +17,7 @@ struct CameraRays {
   Vec3 forward{0.0};
   double reference_depth = 0;
   double depth_near = 1, depth_far = 2;
-  std::vector<ClipPlane> clip;
+  std::vector<Plane> clip;
   std::vector<LightItem> lights;
   std::optional<FogItem> fog;
   std::uint32_t spacing = 1;  ///< fragment (i, j) is the ray of pixel (spacing i, spacing j)
@@ -31,7 +31,7 @@ struct CameraRays {
   shared::GridData grid(const GridMirror& mirror, const field::Mapping& whole) const;
   shared::MeshFrameData mesh(const Vec3& origin) const;
   /// The signed distance from a plane along a pixel's ray.
-  shared::ClipData plane(const ClipPlane& plane) const;
+  shared::ClipData plane(const Plane& plane) const;
 };
 
 /// The pixels that the box around world points (its corners) can cover; the whole picture when one of them is behind the eye. No

@@ -116,7 +116,7 @@ Result<Align> read_align(const json::Node& link, const Coupling& coupling, const
   if (!constraint.has_primitive() || !type.has_axis)
     return json::error_at(
         *node, "a \"" + type.type + "\" link has no axis to align with; a surface (its normal) or a curve (its tangent) was expected");
-  if (coupling.combination != Combination::chain)
+  if (coupling.method != CouplingMethod::chain)
     return json::error_at(*node, "\"align\" needs a proxy of the link's own; \"method\": \"chain\" was expected in \"coupling\"");
   out.on = true;
   out.stiffness_nm_per_rad = coupling.rotational_stiffness_nm_per_rad;

@@ -26,7 +26,7 @@ void each_number(P& p, const F& each) {
   for (auto* v : {&p.coupling.stiffness_n_per_m, &p.coupling.damping_ns_per_m, &p.coupling.max_force_n, &p.coupling.ramp_s,
                   &p.coupling.rotational_stiffness_nm_per_rad, &p.coupling.rotational_damping_nms_per_rad})
     each(*v);
-  each(p.coupling.combination);
+  each(p.coupling.method);
   each(p.metres_per_unit);
   for (int a = 0; a < 3; ++a) each(p.workspace_origin[a]);
   for (int c = 0; c < 3; ++c)
@@ -45,7 +45,7 @@ struct PutNumber {
   void operator()(const double& v) const { out.put(v); }
   void operator()(const int& v) const { out.put(static_cast<std::int32_t>(v)); }
   void operator()(const bool& v) const { out.put(static_cast<std::uint8_t>(v)); }
-  void operator()(const Combination& v) const { out.put(static_cast<std::uint8_t>(v)); }
+  void operator()(const CouplingMethod& v) const { out.put(static_cast<std::uint8_t>(v)); }
 };
 
 struct GetNumber {
@@ -58,10 +58,10 @@ struct GetNumber {
     good = good && byte <= 1;
     v = byte == 1;
   }
-  void operator()(Combination& v) const {
+  void operator()(CouplingMethod& v) const {
     const auto byte = in.get<std::uint8_t>();
-    good = good && byte <= static_cast<std::uint8_t>(Combination::linear);
-    v = static_cast<Combination>(byte);
+    good = good && byte <= static_cast<std::uint8_t>(CouplingMethod::linear);
+    v = static_cast<CouplingMethod>(byte);
   }
 };
 

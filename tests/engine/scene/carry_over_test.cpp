@@ -273,7 +273,7 @@ TEST(WriteValues, AreReadBack) {
   const std::string text =
       "{\"fields\": {\"s\": {\"analytic\": \"sphere\"}}, \"camera\": " + text_of(camera) + ", \"volumes\": [{\"field\": " + text_of("s") +
       ", \"color\": " + text_of(colors) + ", \"opacity\": " + text_of(opacities) + ", \"shade\": " + text_of(true) + "}], \"clip\": [" +
-      text_of(ClipPlane{{1, 2, 3}, {0.1, 0.2, 0.3}}) + "], \"background\": " + text_of(Background{{0.1f, 0, 1}, false}) +
+      text_of(ClipPlane{{{1, 2, 3}, {0.1, 0.2, 0.3}}}) + "], \"background\": " + text_of(Background{{0.1f, 0, 1}, false}) +
       ", \"lights\": [" + text_of(Light{{1, 2, 3}, {1, 0.5f, 0.1f}, 0.7, true}) + "]}";
   const Scene scene = scene_of(text);
   EXPECT_EQ(text_of(scene.camera), text_of(camera));

@@ -417,11 +417,11 @@ TEST_P(EveryScene, IsEditedUndoneAndSaved) {
   Camera camera;
   camera.position = {0.1, 1.0 / 3, -4};
   std::vector<std::pair<std::string, std::string>> edits{{"/camera", text_of(camera)},
-                                                         {"/background", text_of(Rgb{0.1f, 0.2f, 0.3f})},
+                                                         {"/background", text_of(Color{0.1f, 0.2f, 0.3f})},
                                                          {"/fog/most", "0.25"},
                                                          {"/quality", "\"draft\""},
                                                          {"/labels/-", R"({"at": [0, 0, 0], "text": "here"})"},
-                                                         {"/clip/-", text_of(ClipPlane{{0.0, 0.0, 0.0}, {0.0, 0.6, 0.8}})}};
+                                                         {"/clip/-", text_of(ClipPlane{{{0.0, 0.0, 0.0}, {0.0, 0.6, 0.8}}})}};
   for (const char* list : {"volumes", "isosurfaces", "streamlines", "slices", "meshes"})
     if (const json::Node* items = root->find(list))
       for (std::size_t i = 0; i < items->items.size(); ++i)

@@ -161,7 +161,7 @@ TEST_F(ReadTransfer, ParaViewsSpacesAreVtks) {
     const auto colors = file_of("[{" + keys + "}]").colors;
     ASSERT_EQ(colors.size(), 33u);
     for (std::size_t i = 0; i < 3; ++i) {
-      const Rgb& c = colors[8 * (i + 1)].color;
+      const Color& c = colors[8 * (i + 1)].color;
       EXPECT_LT(norm(Vec3(c.r, c.g, c.b) - quarters[i]), 0.004) << keys << " at quarter " << i + 1;
     }
   };

@@ -10,11 +10,11 @@
 namespace catena::haptics::tests {
 namespace baseline_test {
 
-constexpr Combination kAll[] = {Combination::pipe, Combination::balance, Combination::closest, Combination::linear};
+constexpr CouplingMethod kAll[] = {CouplingMethod::pipe, CouplingMethod::balance, CouplingMethod::closest, CouplingMethod::linear};
 
 struct Hand {
-  explicit Hand(Combination combination) {
-    program.coupling.combination = combination;
+  explicit Hand(CouplingMethod combination) {
+    program.coupling.method = combination;
     program.coupling.max_force_n = 1e9;
   }
   Link& add(ConstraintPtr constraint, double stiffness = 500) {
@@ -80,7 +80,7 @@ TEST(Pipe, MeetsTwoPlanesAtTheNearestPointOfTheirLine) {
     const Vec3 n = random.unit(), m = random.unit(), o = random.box(1);
     const Vec3 along = direction(cross(n, m));
     if (norm(cross(n, m)) < 0.1) continue;
-    Hand hand(Combination::pipe);
+    Hand hand(CouplingMethod::pipe);
     hand.add(plane(o, n));
     hand.add(plane(o, m));
     const Vec3 x = random.box(2);
@@ -92,7 +92,7 @@ TEST(Pipe, MeetsTwoPlanesAtTheNearestPointOfTheirLine) {
 }
 
 TEST(Pipe, MeetsThreePlanesAndAPlaneWithALine) {
-  Hand corner(Combination::pipe);
+  Hand corner(CouplingMethod::pipe);
   corner.add(plane({1, 0, 0}, {1, 0, 0}));
   corner.add(plane({0, 2, 0}, {0.3, 1, 0}));
   corner.add(plane({0, 0, 3}, {0.2, 0.4, 1}));
@@ -103,7 +103,7 @@ TEST(Pipe, MeetsThreePlanesAndAPlaneWithALine) {
   for (const double degrees : {2.0, 5.0, 20.0, 60.0, 90.0}) {
     const double a = degrees * M_PI / 180;
     for (const char* more : {"", R"(, "follow": "online")"}) {
-      Hand hand(Combination::pipe);
+      Hand hand(CouplingMethod::pipe);
       hand.add(line({0.5 * std::cos(a), 0, 0.5 * std::sin(a)}, {std::cos(a), 0, std::sin(a)}, more));
       hand.add(plane({0, 0, 0}, {0, 0, 1}));
       expect_near(hand.at({-0.03 * std::cos(a), 0.01, -0.03 * std::sin(a)}), Vec3(0.0), 1e-10 / std::sin(a));
@@ -113,7 +113,7 @@ TEST(Pipe, MeetsThreePlanesAndAPlaneWithALine) {
 }
 
 TEST(Pipe, MeetsCurvedConstraints) {
-  Hand hand(Combination::pipe);  // a circle in z = 0.3 and a plane across it
+  Hand hand(CouplingMethod::pipe);  // a circle in z = 0.3 and a plane across it
   Fields fields;
   fields.named["v"] = *field::make_analytic("circle");
   hand.add(build(R"({"name": "a", "type": "streamline", "field": "v", "seed": [0.8, 0, 0.3]})", fields));
@@ -121,7 +121,7 @@ TEST(Pipe, MeetsCurvedConstraints) {
   expect_near(hand.at({0.5, 0.7, 0.2}), {0.4, std::sqrt(0.64 - 0.16), 0.3}, 1e-9);
   EXPECT_EQ(hand.out.links[0].status, Status::ok);
   for (const auto& sphere : {analytic("sphere"), sampled("sphere", 64)}) {
-    Hand two(Combination::pipe);
+    Hand two(CouplingMethod::pipe);
     two.add(isosurface(sphere, 1));
     two.add(plane({0, 0, 0.6}, {0, 0, 1}));
     const Vec3 p = two.at({1, 0.5, 0.9});
@@ -133,7 +133,7 @@ TEST(Pipe, MeetsCurvedConstraints) {
 }
 
 TEST(Pipe, HoldsOnTheEdgeOfTwoFreeSides) {
-  Hand hand(Combination::pipe);
+  Hand hand(CouplingMethod::pipe);
   hand.add(plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")")).one_sided = true;
   hand.add(plane({0, 0, 0}, {0, 1, 0}, R"(, "free": "above")")).one_sided = true;
   expect_near(hand.at({0.25, -0.5, -0.125}), {0.25, 0, 0}, 0);
@@ -145,7 +145,7 @@ TEST(Pipe, HoldsOnTheEdgeOfTwoFreeSides) {
 }
 
 TEST(Pipe, WithoutAnIntersectionEndsInBudget) {
-  Hand hand(Combination::pipe);
+  Hand hand(CouplingMethod::pipe);
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
   hand.add(plane({0, 0, 1}, {0, 0, 1}));
   const Vec3 p = hand.at({0, 0, 3});
@@ -155,7 +155,7 @@ TEST(Pipe, WithoutAnIntersectionEndsInBudget) {
 
 TEST(Pipe, ReleasesByTheStretchOfTheOneProxyNotByTheDepth) {
   const double a = 30 * M_PI / 180;
-  Hand hand(Combination::pipe);
+  Hand hand(CouplingMethod::pipe);
   hand.add(line({0.5 * std::cos(a), 0, 0.5 * std::sin(a)}, {std::cos(a), 0, std::sin(a)}));
   Link& floor = hand.add(plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")"));
   floor.release = 0.05;
@@ -180,7 +180,7 @@ TEST(Pipe, ReleasesByTheStretchOfTheOneProxyNotByTheDepth) {
 }
 
 TEST(Balance, IsTheWeightedMeanOfTwoPlanes) {
-  Hand hand(Combination::balance);
+  Hand hand(CouplingMethod::balance);
   hand.program.coupling.stiffness_n_per_m = 400;
   hand.add(plane({0, 0, 0}, {0, 0, 1}), 100);
   hand.add(plane({0, 0, 1}, {0, 0, 1}), 300);
@@ -191,7 +191,7 @@ TEST(Balance, IsTheWeightedMeanOfTwoPlanes) {
 }
 
 TEST(Balance, OfALineAPlaneAndAPointHasAClosedForm) {
-  Hand hand(Combination::balance);
+  Hand hand(CouplingMethod::balance);
   hand.add(line({0, 0, 0}, {1, 0, 0}), 1000);
   hand.add(plane({1, 0, 0}, {1, 0, 0}), 250);
   hand.add(point({0, 0, 1}), 500);
@@ -205,7 +205,7 @@ TEST(Balance, OfAnyPrimitivesIsTheMinimumOfTheEnergy) {
   for (int i = 0; i < 200; ++i) {
     const Vec3 n = random.unit(), m = random.unit(), t = random.unit(), o = random.box(1), q = random.box(1), x = random.box(2);
     const double k[] = {random.in(1, 1000), random.in(1, 1000), random.in(1, 1000)};
-    Hand hand(Combination::balance);
+    Hand hand(CouplingMethod::balance);
     hand.add(plane(o, n), k[0]);
     hand.add(plane(q, m), k[1]);
     hand.add(line(o, t), k[2]);
@@ -218,7 +218,7 @@ TEST(Balance, OfAnyPrimitivesIsTheMinimumOfTheEnergy) {
 
 TEST(Balance, LeavesBothConstraintsWhereTheChainLeavesNone) {
   const double a = 30 * M_PI / 180;
-  Hand hand(Combination::balance);
+  Hand hand(CouplingMethod::balance);
   hand.add(line({0, 0, 0}, {std::cos(a), 0, std::sin(a)}), 10);
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
   const Vec3 p = hand.at({-0.05 * std::cos(a), 0, -0.05 * std::sin(a)});
@@ -227,7 +227,7 @@ TEST(Balance, LeavesBothConstraintsWhereTheChainLeavesNone) {
 }
 
 TEST(Closest, IsTheNearestOfTwoLines) {
-  Hand hand(Combination::closest);
+  Hand hand(CouplingMethod::closest);
   hand.add(line({0, 0, 0}, {1, 0, 0}));
   hand.add(line({0, 0, 1}, {0, 1, 0}));
   expect_near(hand.at({0.3, 0.1, 0.2}), {0.3, 0, 0}, 1e-12);
@@ -238,20 +238,20 @@ TEST(Closest, IsTheNearestOfTwoLines) {
 }
 
 TEST(Linear, MovesAlongWhatThePrimitivesLeaveFree) {
-  Hand hand(Combination::linear);
+  Hand hand(CouplingMethod::linear);
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
   expect_near(hand.at({1, 2, 3}), {1, 2, 0}, 1e-14);
   hand.add(plane({0, 0, 0}, {0, 1, 0}));
   const Vec3 p = hand.at({4, 5, 6});
   EXPECT_NEAR(p.x, 4, 1e-14);
   EXPECT_NEAR(p.y, 0, 1e-14);  // put on the plane that was added
-  Hand fixed(Combination::linear);
+  Hand fixed(CouplingMethod::linear);
   fixed.add(point({1, 1, 1}));
   expect_near(fixed.at({4, 5, 6}), {1, 1, 1}, 0);
 }
 
 TEST(Linear, DriftsOffACircleAsTheFollowModeDoes) {
-  Hand hand(Combination::linear), follow(Combination::chain);
+  Hand hand(CouplingMethod::linear), follow(CouplingMethod::chain);
   hand.add(circle(0.05, R"(, "follow": "online")"));
   follow.add(circle(0.05, R"(, "method": "linear")"));
   double worst = 0;
@@ -265,7 +265,7 @@ TEST(Linear, DriftsOffACircleAsTheFollowModeDoes) {
 }
 
 TEST(Linear, DriftsOffASphere) {
-  Hand hand(Combination::linear);
+  Hand hand(CouplingMethod::linear);
   hand.add(isosurface(analytic("sphere"), 1));
   double worst = 0;
   for (int k = 0; k <= 100; ++k) worst = std::max(worst, std::fabs(norm(hand.at({std::cos(0.01 * k), std::sin(0.01 * k), 0.1})) - 1));
@@ -274,7 +274,7 @@ TEST(Linear, DriftsOffASphere) {
 }
 
 TEST(Baseline, TwoSidedLinksTakeHoldAgainNearOrAcross) {
-  for (const Combination combination : kAll) {
+  for (const CouplingMethod combination : kAll) {
     Hand hand(combination);
     hand.add(plane({0, 0, 0}, {0, 0, 1}), 1e6).release = 0.25;
     hand.at({0, 0, 0.2});
@@ -292,7 +292,7 @@ TEST(Baseline, TwoSidedLinksTakeHoldAgainNearOrAcross) {
 }
 
 TEST(Baseline, FreeSidesAreFree) {
-  for (const Combination combination : kAll) {
+  for (const CouplingMethod combination : kAll) {
     for (const ConstraintPtr& floor :
          {plane({0, 0, 0}, {0, 0, 1}, R"(, "free": "above")"), isosurface(analytic("plane"), 0, R"(, "free": "above")")}) {
       Hand hand(combination);
@@ -308,11 +308,11 @@ TEST(Baseline, FreeSidesAreFree) {
 }
 
 TEST(Baseline, SwitchedLinksJoinAndLeave) {
-  for (const Combination combination : kAll) {
+  for (const CouplingMethod combination : kAll) {
     Hand hand(combination);
     hand.add(plane({0, 0, 0}, {0, 0, 1}), 1e6);
     hand.add(plane({0, 0, 0}, {0, 1, 0}), 1e6).on.button = 1;
-    const bool nearest = combination == Combination::closest;
+    const bool nearest = combination == CouplingMethod::closest;
     expect_near(hand.at({1, 2, 3}), {1, 2, 0}, 2e-3);
     expect_near(hand.at({1, 2, 3}, 1), {1, 0, nearest ? 3.0 : 0.0}, 2e-3);
     expect_near(hand.at({1, 2, 3}, 0), {1, 2, 0}, 2e-3);
@@ -322,7 +322,7 @@ TEST(Baseline, SwitchedLinksJoinAndLeave) {
 }
 
 TEST(Baseline, ASwitchFadesTheForceInsteadOfJumping) {
-  Hand hand(Combination::pipe);
+  Hand hand(CouplingMethod::pipe);
   hand.program.coupling.ramp_s = 0.02;
   hand.add(plane({0, 0, 0}, {0, 0, 1}));
   hand.add(plane({0, 0, 0}, {0, 1, 0})).on.button = 1;
@@ -336,7 +336,7 @@ TEST(Baseline, ASwitchFadesTheForceInsteadOfJumping) {
 }
 
 TEST(Baseline, ARestingProbeRests) {
-  for (const Combination combination : {Combination::pipe, Combination::closest}) {
+  for (const CouplingMethod combination : {CouplingMethod::pipe, CouplingMethod::closest}) {
     Hand hand(combination);
     hand.add(line({0.2, 0.1, 0}, {1, 0.4, 0.2}, R"(, "method": "rkf34")"));
     hand.add(isosurface(sampled("sphere", 32), 0.9));
@@ -357,7 +357,7 @@ TEST(Baseline, ARestingProbeRests) {
 
 TEST(Baseline, StaysFiniteBoundedAndAllocatesNothing) {
   const double wild[] = {0.0, -0.0, 5e-324, 1e-300, 1e-9, 0.4, 3, 1e9, 1e160, 1e300, 1.7e308};
-  for (const Combination combination : kAll) {
+  for (const CouplingMethod combination : kAll) {
     Hand hand(combination);
     hand.add(circle(0.7, R"(, "method": "rkf34")"));
     Link& shell = hand.add(isosurface(sampled("sphere", 32), 0.8, R"(, "free": "above")"));
@@ -391,7 +391,7 @@ TEST(Baseline, StaysFiniteBoundedAndAllocatesNothing) {
 }
 
 TEST(Baseline, NoLinksIsFreeMotion) {
-  for (const Combination combination : kAll) {
+  for (const CouplingMethod combination : kAll) {
     Hand hand(combination);
     hand.at({1, 2, 3});
     EXPECT_EQ(hand.out.force_n, Vec3(0.0));

@@ -37,7 +37,7 @@ TEST(StiffnessCap, HoldsForEveryLinkAndForABaseline) {
 
   Hand single;
   single.program.links = {hold_height("a", 0.01, 3000)};
-  single.program.coupling = {.stiffness_n_per_m = 5000, .max_force_n = 1e9, .combination = Combination::pipe};
+  single.program.coupling = {.stiffness_n_per_m = 5000, .max_force_n = 1e9, .method = CouplingMethod::pipe};
   single.program.limits.max_stiffness_n_per_m = 200;
   single.to(Vec3(0.0));
   EXPECT_DOUBLE_EQ(single.out.force_n.z, 2);

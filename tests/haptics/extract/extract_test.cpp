@@ -47,7 +47,7 @@ TEST(ExtractProgram, ABaselineTakesReleaseFromTheConstraint) {
     scene::Scene scene = scene_of(link + words[i] + "\"}}");
     const auto program = extract_program(scene);
     ASSERT_TRUE(program) << program.error().message;
-    EXPECT_EQ((*program)->coupling.combination, static_cast<Combination>(i));
+    EXPECT_EQ((*program)->coupling.method, static_cast<CouplingMethod>(i));
     EXPECT_EQ((*program)->links[0].release, i == 0 ? 0 : 0.25);
     EXPECT_EQ((*program)->links[0].one_sided, i != 0);
     recipes[i] = (*program)->links[0].recipe;

@@ -228,7 +228,7 @@ TEST(Log, ProgramsComeBackWithAllTheirNumbers) {
     *v = next++;
   program.limits.late_ticks = 11;
   program.limits.passivity = true;
-  program.coupling.combination = Combination::closest;
+  program.coupling.method = CouplingMethod::closest;
   program.workspace_origin = {21, 22, 23};
   program.workspace_rotation = Mat3(Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9));
   program.modes = {{"m", {0}, {}}, {"n", {1}, {}}};
@@ -243,7 +243,7 @@ TEST(Log, ProgramsComeBackWithAllTheirNumbers) {
   EXPECT_TRUE(got->limits.passivity);
   EXPECT_EQ(got->coupling.stiffness_n_per_m, 9);
   EXPECT_EQ(got->coupling.ramp_s, 12);
-  EXPECT_EQ(got->coupling.combination, Combination::closest);
+  EXPECT_EQ(got->coupling.method, CouplingMethod::closest);
   EXPECT_EQ(got->metres_per_unit, 13);
   EXPECT_EQ(got->workspace_origin, program.workspace_origin);
   EXPECT_EQ(got->workspace_rotation, program.workspace_rotation);

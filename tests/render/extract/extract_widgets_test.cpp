@@ -366,7 +366,7 @@ TEST_F(WidgetPictures, CirclesLieWhereTheyProjectTo) {
 TEST_F(WidgetPictures, PicturesRepeatAndModesDiffer) {
   const auto picture_of = [&](Mode mode, int held) {
     scene::Scene scene = scene_of(kCamera + R"(, "isosurfaces": [{"field": "s", "level": 1}])");
-    scene.clip.push_back({{0, 0, 0}, {0, 0, -1}});
+    scene.clip.push_back({{{0, 0, 0}, {0, 0, -1}}});
     add_widget(scene, "cut", Kind::cutting_plane, {}, mode, -1, held);
     const FramePacket packet = packet_of(scene);
     return draw(packet, {}, std::string(exchange::mode_word(mode)) + std::to_string(held));
@@ -390,7 +390,7 @@ TEST_F(WidgetPictures, ClipPlanesDoNotTouchThem) {
   scene::Scene scene = scene_of(kCamera);
   add_widget(scene, "s", Kind::seed, {{Vec3(0, 0, 0), Vec3(0.0)}});
   const Picture whole = draw(packet_of(scene));
-  scene.clip.push_back({{0, 0, 5}, {0, 0, 1}});
+  scene.clip.push_back({{{0, 0, 5}, {0, 0, 1}}});
   EXPECT_EQ(draw(packet_of(scene)).rgba, whole.rgba);
 }
 

@@ -14,7 +14,7 @@ namespace catena::test {
 namespace ui_test {
 
 using namespace catena::render;
-using Rgb = std::array<int, 3>;
+using Color = std::array<int, 3>;
 
 constexpr std::uint32_t rgba(std::uint32_t r, std::uint32_t g, std::uint32_t b, std::uint32_t a = 255) {
   return r | g << 8 | b << 16 | a << 24;
@@ -33,7 +33,7 @@ void add_rectangle(UiItems& ui, std::array<float, 4> box, std::uint32_t color, s
   ui.indices.insert(ui.indices.end(), {0, 1, 2, 0, 2, 3});
 }
 
-void expect_pixel(const Picture& p, std::uint32_t x, std::uint32_t y, const Rgb& want) {
+void expect_pixel(const Picture& p, std::uint32_t x, std::uint32_t y, const Color& want) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(p.pixel(x, y)[c], want[c], 1) << "channel " << c << " at " << x << " " << y;
   EXPECT_EQ(p.pixel(x, y)[3], 255) << x << " " << y;
 }
@@ -41,7 +41,7 @@ void expect_pixel(const Picture& p, std::uint32_t x, std::uint32_t y, const Rgb&
 class Ui : public PictureTest {
  protected:
   /// One colour everywhere.
-  void draw_plain(std::uint32_t width, std::uint32_t height, const Rgb& color) {
+  void draw_plain(std::uint32_t width, std::uint32_t height, const Color& color) {
     FramePacket packet = packet_of({0, -5, 0}, {0, 0, 0});
     packet.width = width;
     packet.height = height;

@@ -32,7 +32,7 @@ void expect_alpha(const Picture& picture, const FramePacket& packet, double tole
 }
 
 /// [enter, leave] of a ray in a grid's domain and behind the planes.
-std::array<double, 2> interval_of(const field::ScalarGrid& grid, const Ray& ray, const std::vector<ClipPlane>& clip = {}) {
+std::array<double, 2> interval_of(const field::ScalarGrid& grid, const Ray& ray, const std::vector<Plane>& clip = {}) {
   const Vec3 o = grid.mapping().index_from_world(ray.origin), d = grid.mapping().index_from_world_linear * ray.direction;
   double enter = 0, leave = 1e9;
   const auto cut = [&](double at, double along) {  // keeps at + t along >= 0
@@ -48,7 +48,7 @@ std::array<double, 2> interval_of(const field::ScalarGrid& grid, const Ray& ray,
     cut(o[a] - grid.index_box().lo[a], d[a]);
     cut(grid.index_box().hi[a] - o[a], -d[a]);
   }
-  for (const ClipPlane& plane : clip) cut(dot(plane.normal, ray.origin - plane.point), dot(plane.normal, ray.direction));
+  for (const Plane& plane : clip) cut(dot(plane.normal, ray.origin - plane.point), dot(plane.normal, ray.direction));
   return {enter, std::max(enter, leave)};
 }
 
@@ -286,7 +286,7 @@ TEST_F(VolumeModes, EachVolumeHasItsTransformAndItsClipping) {
   const OfRay depth = [&](const Ray& ray) {
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i)
-      sum += sigmas[i] * length_of(interval_of(*grids[i], ray, packet.volumes[i].clipped ? packet.clip : std::vector<ClipPlane>{}));
+      sum += sigmas[i] * length_of(interval_of(*grids[i], ray, packet.volumes[i].clipped ? packet.clip : std::vector<Plane>{}));
     return sum;
   };
   expect_alpha(draw(packet, {}, "four"), packet, 1, depth);

@@ -28,8 +28,7 @@ inline GridPtr make_grid(const field::Index3& n, const std::function<double(cons
   return field::make_scalar_grid("density", mapping, n, values, mask);
 }
 
-inline render::VolumeItem volume_item(GridPtr grid, const std::vector<std::array<double, 2>>& extinctions,
-                                      render::Color color = {1, 1, 1}) {
+inline render::VolumeItem volume_item(GridPtr grid, const std::vector<std::array<double, 2>>& extinctions, Color color = {1, 1, 1}) {
   render::VolumeItem item;
   item.grid = std::move(grid);
   item.transfer.colors = {{0, color.r, color.g, color.b}, {1, color.r, color.g, color.b}};

@@ -130,11 +130,11 @@ double alpha_at(const OpacityPoints& points, double value) {
   return -std::expm1(low + t * (high - low));
 }
 
-scene::Rgb color_at(const ColorPoints& points, double value) {
+Color color_at(const ColorPoints& points, double value) {
   if (points.empty()) return {0.5f, 0.5f, 0.5f};
   const auto [a, b, share] = around(points, value);
   const auto t = static_cast<float>(share);
-  const scene::Rgb &p = a->color, &q = b->color;
+  const Color &p = a->color, &q = b->color;
   return {p.r + t * (q.r - p.r), p.g + t * (q.g - p.g), p.b + t * (q.b - p.b)};
 }
 

@@ -35,7 +35,7 @@ bool remove_point(ColorPoints& points, std::size_t index);
 
 /// What is drawn at a value: sigma linear between the points, constant beyond them. Of no points 0, or grey.
 double alpha_at(const OpacityPoints& points, double value);
-scene::Rgb color_at(const ColorPoints& points, double value);
+Color color_at(const ColorPoints& points, double value);
 
 /// Lays the points anew, from where they reach to lo..hi. False (and nothing is changed) where they would fall together.
 bool lay_over(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi);

@@ -78,10 +78,10 @@ void edit_share(Edits& edits, const char* label, double value, const std::string
   edit_slider(edits, label, value, 0, 1, pointer, "%.2f");
 }
 
-void edit_color(Edits& edits, const char* label, const scene::Rgb& color, const std::string& pointer) {
+void edit_color(Edits& edits, const char* label, const Color& color, const std::string& pointer) {
   float rgb[3] = {color.r, color.g, color.b};
   if (ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_NoInputs))
-    edits.drag(pointer, scene::text_of(scene::Rgb{rgb[0], rgb[1], rgb[2]}), label[0] == '#' ? "colour" : label);
+    edits.drag(pointer, scene::text_of(Color{rgb[0], rgb[1], rgb[2]}), label[0] == '#' ? "colour" : label);
 }
 
 namespace {

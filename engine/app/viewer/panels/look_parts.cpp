@@ -90,7 +90,7 @@ void draw_bars(const PlotFrame& frame, const SortedValues& values, ImU32 color) 
   }
 }
 
-bool histogram_slider(PanelContext& context, const char* id, const SortedValues& values, double lo, double hi, const scene::Rgb& color,
+bool histogram_slider(PanelContext& context, const char* id, const SortedValues& values, double lo, double hi, const Color& color,
                       double& value) {
   const auto range = plot_range(lo, hi);
   const ImVec2 at = ImGui::GetCursorScreenPos(), size{ImGui::GetContentRegionAvail().x, kBarsHeight};

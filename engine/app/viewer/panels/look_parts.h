@@ -23,9 +23,9 @@ std::optional<std::string> choose_map(const std::string& now, const char* otherw
 /// Grey bars of how often values occur.
 void draw_bars(const PlotFrame& frame, const SortedValues& values, ImU32 color);
 /// A histogram with a line at the value, which the pointer moves; with Ctrl finely. True while it moves.
-bool histogram_slider(PanelContext& context, const char* id, const SortedValues& values, double lo, double hi, const scene::Rgb& color,
+bool histogram_slider(PanelContext& context, const char* id, const SortedValues& values, double lo, double hi, const Color& color,
                       double& value);
 
-inline ImU32 packed(const scene::Rgb& c, float alpha = 1) { return ImGui::GetColorU32(ImVec4(c.r, c.g, c.b, alpha)); }
+inline ImU32 packed(const Color& c, float alpha = 1) { return ImGui::GetColorU32(ImVec4(c.r, c.g, c.b, alpha)); }
 
 }  // namespace catena::app

@@ -19,7 +19,7 @@ struct Span {
 };
 
 /// Where the ray lies within the half space that a plane keeps.
-void cut(Span& span, const render::Ray& ray, const render::ClipPlane& plane) {
+void cut(Span& span, const render::Ray& ray, const Plane& plane) {
   const double rate = dot(plane.normal, ray.direction), start = dot(plane.normal, ray.origin - plane.point);
   if (rate == 0) {
     if (start < 0) span.leave = -kInfinity;
@@ -107,7 +107,7 @@ std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const 
   for (const render::VolumeItem& item : packet.volumes) {
     Span span = domain_span(*item.grid, ray);
     if (item.clipped)
-      for (const render::ClipPlane& plane : packet.clip) cut(span, ray, plane);
+      for (const Plane& plane : packet.clip) cut(span, ray, plane);
     span.leave = std::min(span.leave, farthest);
     if (span.empty()) continue;
     marched.push_back({&item, span});

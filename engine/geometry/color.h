@@ -1,0 +1,11 @@
+/// A display (sRGB) colour, components from 0 to 1, as scenes write it and as it stands in the picture.
+#pragma once
+
+namespace catena {
+
+struct Color {
+  float r = 0, g = 0, b = 0;
+  bool operator==(const Color&) const = default;
+};
+
+}  // namespace catena
