@@ -37,10 +37,10 @@ const Table<Axes>& axes_table() {
   static const auto table = [] {
     Table<Axes> t;
     bind_field(t, schema::named("field", Role::any_field, "Along whose box.").by_default("all that is drawn"), &Axes::field);
+    t.bind(schema::texts("names", "Of the axes x, y and z.").items(3, 3), &Axes::names);
     t.bind(schema::color("color", "Of the axes."), &Axes::color);
     t.bind(schema::integer("ticks", "", "About so many along an axis.", 2, 50), &Axes::ticks);
     t.bind(schema::number("radius", "world", "Of the axes.").positive().by_default("fitted"), &Axes::radius);
-    t.bind(schema::texts("names", "Of the axes x, y and z.").items(3, 3), &Axes::names);
     return t;
   }();
   return table;
