@@ -21,6 +21,7 @@
 #include "engine/schema/markdown.h"
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/registry.h"
+#include "haptics/device/settings.h"
 #include "haptics/extract/extract.h"
 
 namespace catena::app {
@@ -78,8 +79,8 @@ void print_mesh(const mesh::TriangleMesh& mesh, const char* indent) {
   fmt::print("{}vertices     {}\n", indent, mesh.vertices().size());
   fmt::print("{}world box    {} .. {}   (L = {})\n", indent, text(mesh.lowest()), text(mesh.highest()), to_text(mesh.length()));
   fmt::print("{}open edges   {}\n", indent, mesh.open_edges());
-  fmt::print("{}other edges  {} with more than two faces, {} whose faces disagree on the outside\n", indent, mesh.crowded_edges(),
-             mesh.turned_edges());
+  fmt::print("{}other edges  {} with more than two faces, {} whose faces disagree on the outside\n", indent, mesh.non_manifold_edges(),
+             mesh.misoriented_edges());
   fmt::print("{}bytes        {} ({})\n", indent, mesh.bytes(), human_bytes(static_cast<double>(mesh.bytes())));
 }
 
@@ -148,6 +149,7 @@ Outcome describe_scene(const std::string& path) {
     print_mesh(*mesh, "  ");
   }
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  if (scene.device) CATENA_CHECK(haptics::read_device_settings(*scene.device, scene.path));
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     const haptics::ConstraintType* type = haptics::find_constraint(link.type);
     const haptics::ReadyMode* mode = haptics::find_ready_mode(link.type);

@@ -30,7 +30,7 @@ void add_render(CLI::App& program, Work& chosen) {
                       "draft, balanced, reference, time=MS, error=E (RMSE, 1/255) or step=VOXELS (default: the scene's, or balanced)");
   add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "how many frames to draw and time (default: 1; with --camera its duration times --fps)")
-      ->check(CLI::Range(1, kMostFrames));
+      ->check(CLI::Range(1, kMaxFrames));
   command->add_option("--fps", options->fps, "frames a second of a video")->check(number_between(0.01, 1000))->capture_default_str();
   command->add_option("--orbit", options->orbit_deg, "turn by so many degrees over the frames");
   command->add_option("--elevation", options->elevation_deg, "raise the camera by so many degrees");

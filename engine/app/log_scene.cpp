@@ -17,7 +17,7 @@ Result<log::LogHeader> log_header(const std::string& scene_path, const std::vect
   log::LogHeader header;
   header.scene_path = scene_path;
   if (is_scene_file(scene_path)) {
-    CATENA_TRY(header.scene_text, read_text(scene_path, "a scene file (JSON)", kMostJsonBytes));
+    CATENA_TRY(header.scene_text, read_text(scene_path, "a scene file (JSON)", kMaxJsonBytes));
   }
   header.fields = field_options;
   header.device = device;

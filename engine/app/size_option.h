@@ -8,14 +8,14 @@
 
 namespace catena::app {
 
-inline constexpr std::uint32_t kMostPixels = 16384;  ///< each way, of a picture drawn in one piece
+inline constexpr std::uint32_t kMaxPixels = 16384;  ///< each way, of a picture drawn in one piece
 
 struct Size {
   std::uint32_t width = 1024, height = 768;
 };
 
 /// `most`: pixels each way.
-inline Result<Size> parse_size(const std::string& text, int most = kMostPixels) {
+inline Result<Size> parse_size(const std::string& text, int most = kMaxPixels) {
   const auto x = text.find('x');
   if (x != std::string::npos) {
     const auto width = parse_integer(text.substr(0, x)), height = parse_integer(text.substr(x + 1));

@@ -39,11 +39,11 @@ struct StereoChoice {
 /// Several pictures in one may be more than a picture can hold.
 inline Outcome check_packed(const scene::Stereo& stereo, const Size& size) {
   const auto packed = render::packed_size(render::packing_of(stereo), render::views_of(stereo), size.width, size.height);
-  if (packed.width >= 1 && packed.height >= 1 && packed.width <= kMostPixels && packed.height <= kMostPixels) return Done{};
+  if (packed.width >= 1 && packed.height >= 1 && packed.width <= kMaxPixels && packed.height <= kMaxPixels) return Done{};
   return Error{"--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": with " +
                std::to_string(render::views_of(stereo)) + " views " + std::string(scene::stereo_word(stereo.mode)) + " the picture has " +
-               std::to_string(packed.width) + "x" + std::to_string(packed.height) + " pixels, expected 1 to " +
-               std::to_string(kMostPixels) + " each way"};
+               std::to_string(packed.width) + "x" + std::to_string(packed.height) + " pixels, expected 1 to " + std::to_string(kMaxPixels) +
+               " each way"};
 }
 
 inline void add_stereo_options(CLI::App& command, StereoChoice& choice) {

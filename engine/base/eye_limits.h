@@ -7,8 +7,7 @@
 namespace catena {
 
 /// World units; degrees; the height of an orthographic picture in world units.
-inline constexpr double kMostEyeCoordinate = 1e15, kLeastFovyDeg = 1e-3, kMostFovyDeg = 179.9, kMostEyeHeight = 1e15,
-                        kLeastEyeHeight = 1e-15;
+inline constexpr double kMaxEyeCoordinate = 1e15, kLeastFovyDeg = 1e-3, kMaxFovyDeg = 179.9, kMaxEyeHeight = 1e15, kLeastEyeHeight = 1e-15;
 
 /// What is wrong with an eye's place, and what was expected, as a sentence; empty: nothing. A target counts as the eye's own place
 /// where the difference of the two is rounding.

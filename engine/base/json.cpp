@@ -216,6 +216,11 @@ const Node* Node::find(std::string_view key) const {
   return nullptr;
 }
 
+const Node& member_or(const Node& object, std::string_view key) {
+  const Node* member = object.find(key);
+  return member == nullptr ? object : *member;
+}
+
 Error error_at(const Node& node, const std::string& what) { return error_on_line(node.file ? *node.file : "", node.line, what); }
 
 bool same_value(const Node& a, const Node& b) {
@@ -255,7 +260,7 @@ Result<Node> parse(std::string_view text, const std::string& file) {
 }
 
 Result<Node> read(const std::string& path) {
-  CATENA_TRY(const std::string text, read_text(path, "a JSON file", kMostJsonBytes));
+  CATENA_TRY(const std::string text, read_text(path, "a JSON file", kMaxJsonBytes));
   return parse(text, path);
 }
 

@@ -36,6 +36,9 @@ struct Node {
 Result<Node> parse(std::string_view text, const std::string& file);
 Result<Node> read(const std::string& path);
 
+/// The member, or the object that lacks it: where a message points.
+const Node& member_or(const Node& object, std::string_view key);
+
 /// The same kinds, values, items and members in the same order, wherever they stand.
 bool same_value(const Node& a, const Node& b);
 

@@ -160,4 +160,28 @@ std::string number_text(double value) {
   return to_text(value);
 }
 
+std::string node_text(const Node& node) {
+  std::string text;
+  const auto next = [&] { text += text.size() > 1 ? ", " : ""; };
+  switch (node.kind) {
+    case Kind::null:
+      return "null";
+    case Kind::boolean:
+      return node.boolean ? "true" : "false";
+    case Kind::number:
+      return number_text(node.number);
+    case Kind::string:
+      return string_text(node.string);
+    case Kind::array:
+      text = "[";
+      for (const Node& item : node.items) next(), text += node_text(item);
+      return text + "]";
+    case Kind::object:
+      text = "{";
+      for (const auto& [key, member] : node.members) next(), text += string_text(key) + ": " + node_text(member);
+      return text + "}";
+  }
+  return text;
+}
+
 }  // namespace catena::json

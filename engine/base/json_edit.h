@@ -27,6 +27,8 @@ const Node* find_value(const Node& root, std::string_view pointer);
 std::string pointer_step(std::string_view key);
 /// `text` as a JSON string in quotes that reads back byte for byte.
 std::string string_text(std::string_view text);
+/// The node as JSON on one line, without its comments.
+std::string node_text(const Node& node);
 /// A finite number, the shortest text that reads back to the same double.
 std::string number_text(double value);
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMostLinks = 40;
+constexpr int kMaxSymlinks = 40;
 
 /// What a name leads to: a thing on the disk, or the place where one would be made.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
@@ -29,7 +29,7 @@ std::optional<Identity> identity_of(const std::string& name) {
   // a link to nothing is the place that it names
   std::error_code code;
   fs::path place = fs::absolute(name, code);
-  for (int k = 0; k < kMostLinks && fs::is_symlink(place, code); ++k) {
+  for (int k = 0; k < kMaxSymlinks && fs::is_symlink(place, code); ++k) {
     const fs::path to = fs::read_symlink(place, code);
     place = to.is_absolute() ? to : place.parent_path() / to;
   }

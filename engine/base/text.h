@@ -10,11 +10,11 @@
 namespace catena {
 
 /// The sizes that texts are believed: of scenes and other JSON, of tables of numbers and all else.
-inline constexpr std::uint64_t kMostJsonBytes = std::uint64_t{128} << 20, kMostTextBytes = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t kMaxJsonBytes = std::uint64_t{128} << 20, kMaxTextBytes = std::uint64_t{1} << 30;
 
 /// The whole file, which must be a regular one of at most `most_bytes`: nothing is allocated for a greater one, and a pipe, a device or a
 /// socket is never waited for. The error says PATH, why it cannot be read, and that `expected` ("a scene file") was expected.
-Result<std::string> read_text(const std::string& path, std::string_view expected, std::uint64_t most_bytes = kMostTextBytes);
+Result<std::string> read_text(const std::string& path, std::string_view expected, std::uint64_t most_bytes = kMaxTextBytes);
 
 /// Without a UTF-8 byte order mark at its start.
 std::string_view without_bom(std::string_view text);

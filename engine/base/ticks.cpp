@@ -10,7 +10,7 @@ namespace catena {
 namespace {
 
 constexpr double kNoRange = 1e-12, kSlack = 1e-9;
-constexpr std::size_t kMostFixed = 6;
+constexpr std::size_t kMaxFixed = 6;
 
 /// mantissa 10^exponent, the mantissa 1, 2, 5 or 10.
 struct Step {
@@ -79,7 +79,7 @@ std::vector<Tick> nice_ticks(double lo, double hi, int about) {
     scientific.push_back(exponent_text(k * mantissa, exponent));
   }
   const std::size_t digits = most_digits(fixed);
-  const bool plain = readable && (digits <= kMostFixed || digits <= most_digits(scientific));
+  const bool plain = readable && (digits <= kMaxFixed || digits <= most_digits(scientific));
   const std::vector<std::string>& labels = plain ? fixed : scientific;
   std::vector<Tick> ticks;
   for (const std::string& label : labels) ticks.push_back({parse_double(label).value_or(0), label});

@@ -171,9 +171,9 @@ Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
   const auto down = [](int v) { return v & ~(kLeaf - 1); };
   double block_count = 1;
   for (const Axis& a : axes) block_count *= (down(a.last) - down(a.first)) / kLeaf + 1;
-  constexpr double kMostBlocks = 4e9;
+  constexpr double kMaxBlocks = 4e9;
   const std::string what = fmt::format("grid \"{}\" at 1/{} of its resolution", grid.name(), factor);
-  if (block_count > kMostBlocks) return Error{fmt::format("{} has {:.0f} blocks, expected at most {:.0f}", what, block_count, kMostBlocks)};
+  if (block_count > kMaxBlocks) return Error{fmt::format("{} has {:.0f} blocks, expected at most {:.0f}", what, block_count, kMaxBlocks)};
   CATENA_CHECK(ask_for_memory(what, block_count * (sizeof(nanovdb::Coord) + 1 + sizeof(float))));
 
   // the leaves: those of one value become tiles, or nothing

@@ -166,9 +166,9 @@ void DenseSlab<T>::gather_valid(std::size_t block, nanovdb::Mask<3>& valid) cons
 
 Outcome ask_for_dense(const std::string& what, const Index3& size, int components, bool masked) {
   const double blocks = static_cast<double>(blocks_of(size.x)) * blocks_of(size.y) * blocks_of(size.z);
-  constexpr double kMostBlocks = 4e9;
-  if (blocks > kMostBlocks)
-    return Error{fmt::format("{} has {:.0f} blocks of 8^3 voxels, expected at most {:.0f}", what, blocks, kMostBlocks)};
+  constexpr double kMaxBlocks = 4e9;
+  if (blocks > kMaxBlocks)
+    return Error{fmt::format("{} has {:.0f} blocks of 8^3 voxels, expected at most {:.0f}", what, blocks, kMaxBlocks)};
   const bool vector = components == 3;
   const double leaf = vector ? sizeof(NanoTypes<nanovdb::Vec3f>::Leaf) + sizeof(NanoBlock<nanovdb::Vec3f>)
                              : sizeof(NanoTypes<float>::Leaf) + sizeof(NanoBlock<float>);

@@ -135,9 +135,9 @@ Result<Header> read_header(const std::string& path) {
   if (dimensions < 1 || dimensions > 7 || header->datatype == DT_BINARY || header->datatype == DT_UNKNOWN) return unknown();
   for (int d = 1; d <= dimensions; ++d)
     if (header->dim[d] < 1) return unknown();
-  constexpr std::int32_t kMostOffset = 1 << 28;
-  if (!(header->vox_offset >= 0 && header->vox_offset <= static_cast<float>(kMostOffset)))
-    return Error{fmt::format("{}: vox_offset is {}, expected 0 to {} bytes before the voxels", path, header->vox_offset, kMostOffset)};
+  constexpr std::int32_t kMaxOffset = 1 << 28;
+  if (!(header->vox_offset >= 0 && header->vox_offset <= static_cast<float>(kMaxOffset)))
+    return Error{fmt::format("{}: vox_offset is {}, expected 0 to {} bytes before the voxels", path, header->vox_offset, kMaxOffset)};
   Header read{Image(nifti_convert_nhdr2nim(*header, path.c_str())), swapped != 0};
   if (!read.image) return unknown();
   return read;

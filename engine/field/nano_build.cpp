@@ -144,8 +144,8 @@ Result<NanoMemory> finish_blocks(NanoMemory memory, std::uint64_t leaves, std::v
     ++counts.uppers;
     for (std::size_t i = run.first; i < run.first + run.count; ++i) counts.lowers += lower_runs[i].is_tile ? 0 : 1;
   }
-  if (counts.entries > kMostRootEntries)
-    return Error{fmt::format("reaches over {} nodes of {}^3 voxels, expected at most {}", counts.entries, kUpperEdge, kMostRootEntries)};
+  if (counts.entries > kMaxRootEntries)
+    return Error{fmt::format("reaches over {} nodes of {}^3 voxels, expected at most {}", counts.entries, kUpperEdge, kMaxRootEntries)};
   // the nodes, from below
   memory.resize(NanoBuilder<T>::bytes(counts));
   NanoBuilder<T> build(memory.data(), counts, background);

@@ -27,7 +27,7 @@ struct NanoTypes {
 inline constexpr std::int32_t kLeafEdge = 8, kLowerEdge = 128, kUpperEdge = 4096;
 inline constexpr std::uint32_t kLowerEntries = 4096, kUpperEntries = 32768;
 /// A fetch outside of all nodes looks at every entry of the root.
-inline constexpr std::uint64_t kMostRootEntries = 1024;
+inline constexpr std::uint64_t kMaxRootEntries = 1024;
 
 /// The number of the entry that holds a voxel, z fastest.
 inline std::uint32_t lower_entry(const nanovdb::Coord& c) {

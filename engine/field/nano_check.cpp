@@ -78,7 +78,7 @@ Result<Layout<T>> layout_of(std::span<const std::byte> bytes) {
       return wrong("the place of the nodes");
   // the root
   l.counts.entries = number_at<std::uint32_t>(bytes, l.root + offsetof(Root, mTableSize));
-  if (l.counts.entries > kMostRootEntries) return wrong("the number of the root's entries");
+  if (l.counts.entries > kMaxRootEntries) return wrong("the number of the root's entries");
   if (NanoBuilder<T>::bytes(l.counts) != bytes.size()) return wrong("the size of the grid");
   return l;
 }

@@ -79,7 +79,10 @@ class March {
     Step step = runge_kutta_step(tableaus::dp54, q_, w_, h, true, rates());
     if (step.stop != Stop::none) return shorten(knots, step.stop, h);
     Vec3 u_end = u_last_;
-    const double tolerance = options_.tolerance * domain_, hermite_tolerance = options_.hermite_tolerance * domain_;
+    // far from the origin nothing is more exact than the place's own rounding: asking for more would make steps without end
+    const double rounding = kRounding * norm(medium_.world_difference(q_));
+    const double tolerance = std::max(options_.tolerance * domain_, rounding);
+    const double hermite_tolerance = std::max(options_.hermite_tolerance * domain_, rounding);
     const double error = norm(medium_.world_difference(step.error));
     if (!(error <= tolerance)) return reject(h, step_factor(error, tolerance, 0.1, 0.8));
     const Step half = runge_kutta_step(tableaus::dp54, q_, w_, 0.5 * h, false, rates());
@@ -186,6 +189,7 @@ class March {
   }
 
   static constexpr double kCapture = 1e-5;  ///< times L
+  static constexpr double kRounding = 16 * 2.220446049250313e-16;
 
   Medium& medium_;
   Flow flow_;

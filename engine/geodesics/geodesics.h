@@ -15,10 +15,10 @@ namespace catena::geodesics {
 /// Empty where an end has no surface near it (Newton's steps along the gradient do not reach the level), or no way joins them.
 std::vector<Vec3> path_on_level(const field::ScalarField& field, double level, const Vec3& from, const Vec3& to);
 
-inline constexpr std::size_t kMostVisited = 500'000;
+inline constexpr std::size_t kMaxVisited = 500'000;
 
 /// A way along a mesh between its points nearest to two places: along edges first (A*, from vertex to vertex), then over the faces.
-/// Bounded: at most kMostVisited vertices are looked at. Empty where the two lie on pieces that do not hang together, or are too many
+/// Bounded: at most kMaxVisited vertices are looked at. Empty where the two lie on pieces that do not hang together, or are too many
 /// vertices apart.
 std::vector<Vec3> path_on_mesh(const mesh::TriangleMesh& mesh, const Vec3& from, const Vec3& to);
 

@@ -8,7 +8,7 @@
 namespace catena::geodesics {
 namespace {
 
-constexpr int kMostCells = 64;     // an axis
+constexpr int kMaxCells = 64;      // an axis
 constexpr int kSteps = 32;         // of Newton's, to the level
 constexpr double kOnLevel = 1e-7;  // of L
 
@@ -37,10 +37,10 @@ class Lattice {
  public:
   Lattice(const field::ScalarField& field, double level) : field_(field), level_(level) {
     const field::Box& box = field.index_box();
-    const double finest = std::max(field.is_grid() ? field.longest_edge() : 0.0, field.length() / kMostCells);
+    const double finest = std::max(field.is_grid() ? field.longest_edge() : 0.0, field.length() / kMaxCells);
     for (int a = 0; a < 3; ++a) {
       const double edge = norm(field.mapping().world_from_index_linear[a]) * (box.hi[a] - box.lo[a]);
-      cells_[static_cast<std::size_t>(a)] = std::clamp(static_cast<int>(std::ceil(edge / finest)), 1, kMostCells);
+      cells_[static_cast<std::size_t>(a)] = std::clamp(static_cast<int>(std::ceil(edge / finest)), 1, kMaxCells);
       step_[a] = (box.hi[a] - box.lo[a]) / cells_[static_cast<std::size_t>(a)];
     }
     values_.assign(index_of_corner({cells_[0], cells_[1], cells_[2]}) + 1, kUnknown);
@@ -121,7 +121,7 @@ void each_around(const Lattice& lattice, const Cell& c, Visit&& visit) {
 /// Dijkstra from cell to cell along places on the surface; the ends are left out.
 std::vector<Vec3> coarse_way(const field::ScalarField& field, double level, const Vec3& from, const Vec3& to, bool& joined) {
   Lattice lattice(field, level);
-  const double longest = field.length() / kMostCells;
+  const double longest = field.length() / kMaxCells;
   struct Visited {
     double distance = std::numeric_limits<double>::infinity();
     Vec3 place{0.0};
@@ -186,7 +186,7 @@ std::vector<Vec3> coarse_way(const field::ScalarField& field, double level, cons
 std::vector<Vec3> path_on_level(const field::ScalarField& field, double level, const Vec3& from, const Vec3& to) {
   if (!is_finite(from) || !is_finite(to)) return {};
   field::Cursor cursor;
-  const double longest = field.length() / kMostCells;
+  const double longest = field.length() / kMaxCells;
   Vec3 first = from, last = to;
   if (!reach_level(field, level, longest, cursor, first) || !reach_level(field, level, longest, cursor, last)) return {};
   bool joined = false;

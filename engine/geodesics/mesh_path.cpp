@@ -28,7 +28,7 @@ std::vector<Vec3> way_along_edges(const mesh::TriangleMesh& mesh, const mesh::Cl
     queue.push({all[v].distance + norm(goal - place(v)), v});
   }
   const mesh::Triangle& goals = mesh.triangles()[to.face];
-  while (!queue.empty() && all.size() < kMostVisited) {
+  while (!queue.empty() && all.size() < kMaxVisited) {
     const std::uint32_t v = queue.top().second;
     queue.pop();
     Visited& here = all[v];

@@ -7,7 +7,7 @@
 namespace catena::geodesics {
 namespace {
 
-constexpr int kMostSweeps = 400;
+constexpr int kMaxSweeps = 400;
 constexpr double kStill = 1e-6;   ///< of a segment
 constexpr double kLonger = 1.01;  ///< growth that shows a sweep to have gone too far
 
@@ -48,7 +48,7 @@ void relax(std::vector<Vec3>& path, const PutOnSurface& put_on_surface) {
   double length = length_of(path);
   std::vector<Vec3> best = path;
   double shortest = length;
-  for (int i = 0; i < kMostSweeps; ++i) {
+  for (int i = 0; i < kMaxSweeps; ++i) {
     const double farthest = sweep(path, factor, put_on_surface);
     length = length_of(path);
     if (length < shortest) {

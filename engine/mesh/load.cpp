@@ -5,7 +5,7 @@
 namespace catena::mesh {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{4} << 30;
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30;
 
 /// The registry: one line a format.
 struct Format {
@@ -22,7 +22,7 @@ const Format* format_of(std::string_view path) {
 
 /// The text is gone when the mesh is made.
 Result<Soup> read_soup(const std::string& path) {
-  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (" + alternatives(mesh_endings()) + ")", kMostBytes));
+  CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (" + alternatives(mesh_endings()) + ")", kMaxBytes));
   return format_of(path)->parse(bytes, path);
 }
 

@@ -1,7 +1,7 @@
 /// Reads triangle meshes: STL (binary and ASCII) and OBJ. Corners are joined as they lie; stored normals, colours, texture
 /// coordinates, groups and materials are not used: the outside is where the corners run counter-clockwise.
 /// OBJ polygons become fans. Refused, with one line "FILE: place: what; what was expected": numbers that are not finite, indices of
-/// vertices that are not there, a file that ends too early or is longer than it says, more than kMostTriangles, more
+/// vertices that are not there, a file that ends too early or is longer than it says, more than kMaxTriangles, more
 /// than the memory that is allowed (engine/base/memory_limit.h). Off the tick.
 #pragma once
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace catena::mesh {
 
-inline constexpr std::size_t kMostTriangles = 20'000'000;
+inline constexpr std::size_t kMaxTriangles = 20'000'000;
 
 bool is_mesh_file(std::string_view path);  ///< by its ending, any case
 const std::vector<std::string_view>& mesh_endings();

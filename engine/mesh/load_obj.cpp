@@ -11,7 +11,7 @@
 namespace catena::mesh {
 namespace {
 
-constexpr std::size_t kMostVertices = 3 * kMostTriangles;
+constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;
 
 constexpr std::array<std::string_view, 38> kPassedOver = {
     "vt",     "vn",    "vp",       "g",        "o",    "s",          "mg",        "usemtl", "mtllib", "usemap", "maplib", "l",  "p",
@@ -77,8 +77,8 @@ struct ObjReader {
                       "; three finite numbers were expected");
       v[i] = *number;
     }
-    if (soup.vertices.size() >= kMostVertices)
-      return failed("too many vertices; at most " + std::to_string(kMostVertices) + " were expected");
+    if (soup.vertices.size() >= kMaxVertices)
+      return failed("too many vertices; at most " + std::to_string(kMaxVertices) + " were expected");
     CATENA_CHECK(grow(soup.vertices, static_cast<double>(text.size()) + bytes_of(soup.triangles), name, "vertices"));
     soup.vertices.push_back(v);
     return Done{};
@@ -105,8 +105,8 @@ struct ObjReader {
       ++corners;
       if (corners == 1) first = v;
       if (corners > 2) {
-        if (soup.triangles.size() >= kMostTriangles)
-          return failed("too many triangles; at most " + std::to_string(kMostTriangles) + " were expected");
+        if (soup.triangles.size() >= kMaxTriangles)
+          return failed("too many triangles; at most " + std::to_string(kMaxTriangles) + " were expected");
         CATENA_CHECK(grow(soup.triangles, static_cast<double>(text.size()) + bytes_of(soup.vertices), name, "triangles"));
         soup.triangles.push_back({first, last, v});
       }

@@ -83,8 +83,8 @@ struct TextReader {
       words.skip_line();
       for (word = words.next(); !is_word(word, "endsolid"); word = words.next()) {
         if (!is_word(word, "facet")) return failed(word, "\"facet\" or \"endsolid\"");
-        if (soup.triangles.size() >= kMostTriangles)
-          return failed(word, "a mesh of at most " + std::to_string(kMostTriangles) + " triangles");
+        if (soup.triangles.size() >= kMaxTriangles)
+          return failed(word, "a mesh of at most " + std::to_string(kMaxTriangles) + " triangles");
         CATENA_CHECK(expect("normal"));
         for (int i = 0; i < 3; ++i)
           if (const std::string_view number = words.next(); number.empty()) return failed(number, "a normal");
@@ -153,8 +153,8 @@ Result<Soup> parse_stl(std::string_view bytes, const std::string& name) {
   if (!fits)
     return Error{one_line(name + ": byte 80: says " + std::to_string(count) + " triangles, which take " + std::to_string(wanted) +
                           " bytes, but the file has " + std::to_string(bytes.size()) + "; a whole STL file was expected")};
-  if (count > kMostTriangles)
-    return Error{one_line(name + ": byte 80: has " + std::to_string(count) + " triangles; at most " + std::to_string(kMostTriangles) +
+  if (count > kMaxTriangles)
+    return Error{one_line(name + ": byte 80: has " + std::to_string(count) + " triangles; at most " + std::to_string(kMaxTriangles) +
                           " were expected")};
   return read_binary(bytes, count, name);
 }

@@ -211,8 +211,8 @@ void TriangleMesh::connect() {
     for (std::size_t j = i; j < end; ++j) across_[edges[j].face][edges[j].k] = edges[j + 1 < end ? j + 1 : i].face;
     if (end - i == 1) border_[edges[i].a] = border_[edges[i].b] = 1;
     open_edges_ += end - i == 1 ? 1 : 0;
-    crowded_edges_ += end - i > 2 ? 1 : 0;
-    turned_edges_ += end - i == 2 && edges[i].forward == edges[i + 1].forward ? 1 : 0;
+    non_manifold_edges_ += end - i > 2 ? 1 : 0;
+    misoriented_edges_ += end - i == 2 && edges[i].forward == edges[i + 1].forward ? 1 : 0;
     i = end;
   }
 

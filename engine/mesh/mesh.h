@@ -52,8 +52,8 @@ class TriangleMesh {
   const std::vector<Triangle>& triangles() const { return triangles_; }  ///< in the order of the hierarchy, not of the file
   std::size_t dropped() const { return dropped_; }                       ///< triangles without an area
   std::size_t open_edges() const { return open_edges_; }
-  std::size_t crowded_edges() const { return crowded_edges_; }  ///< with more than two faces
-  std::size_t turned_edges() const { return turned_edges_; }    ///< whose two faces disagree on the outside
+  std::size_t non_manifold_edges() const { return non_manifold_edges_; }  ///< with more than two faces
+  std::size_t misoriented_edges() const { return misoriented_edges_; }    ///< whose two faces disagree on the outside
 
   // the mesh's own frame
   double scale() const { return scale_; }
@@ -86,7 +86,7 @@ class TriangleMesh {
   std::vector<Face> faces_;
   std::vector<std::uint32_t> fans_, fan_starts_;
   std::vector<std::uint8_t> border_;
-  std::size_t dropped_ = 0, open_edges_ = 0, crowded_edges_ = 0, turned_edges_ = 0;
+  std::size_t dropped_ = 0, open_edges_ = 0, non_manifold_edges_ = 0, misoriented_edges_ = 0;
   Bvh bvh_;
 };
 
@@ -108,7 +108,7 @@ struct Closest {
   std::int8_t corner = -1;  ///< 0..2: at that corner
 };
 
-/// Calls visit(face) for the other faces at an edge of `face`: one, none at an open edge, several at a crowded one (at most 16).
+/// Calls visit(face) for the other faces at an edge of `face`: one, none at an open edge, several at a non-manifold one (at most 16).
 template <class Visit>
 void each_across(const TriangleMesh& mesh, std::uint32_t face, int edge, Visit&& visit) noexcept {
   const Triangle& t = mesh.triangles()[face];

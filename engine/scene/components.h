@@ -140,7 +140,7 @@ struct Slice {
   };
   std::optional<Contours> contours;
 };
-inline constexpr int kMostContours = 1000;
+inline constexpr int kMaxContours = 1000;
 
 /// Seeds that are not listed one by one. Which members mean something follows from the kind.
 struct SeedPattern {
@@ -307,7 +307,7 @@ struct Light {
   double intensity = 1;
   bool with_camera = false;
 };
-inline constexpr std::size_t kMostLights = 4;
+inline constexpr std::size_t kMaxLights = 4;
 
 struct Background {
   Color color{0, 0, 0};

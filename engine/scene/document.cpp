@@ -15,7 +15,7 @@ Result<Document> Document::open(const std::string& path, const std::vector<Field
   if (path.ends_with(".json")) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": a scene says its colours; a data file was expected beside a colour map")};
-    CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)", kMostJsonBytes));
+    CATENA_TRY(document.saved_, read_text(path, "a scene file (JSON)", kMaxJsonBytes));
   } else {
     if (!overrides.empty()) return Error{one_line(path + ": a field of a data file cannot be replaced; a scene file (.json) was expected")};
     CATENA_TRY(BareFile bare, describe_bare_file(path, {}, colors));
@@ -80,7 +80,7 @@ Outcome Document::push(std::string edited, const std::string& what, const std::s
   }
   // the oldest steps go
   std::size_t bytes = 0, kept = 0;
-  while (kept <= now_ && kept <= kMostSteps && (kept == 0 || bytes + versions_[now_ - kept].text.size() <= kMostBytes))
+  while (kept <= now_ && kept <= kMaxSteps && (kept == 0 || bytes + versions_[now_ - kept].text.size() <= kMaxBytes))
     bytes += versions_[now_ - kept++].text.size();
   versions_.erase(versions_.begin(), versions_.end() - static_cast<std::ptrdiff_t>(kept));
   now_ = versions_.size() - 1;

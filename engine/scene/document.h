@@ -17,7 +17,7 @@ struct BareFile;
 class Document {
  public:
   /// The history that is kept: so many steps, so much text; the oldest steps go first, the text as it is now never.
-  static constexpr std::size_t kMostSteps = 1000, kMostBytes = std::size_t{64} << 20;
+  static constexpr std::size_t kMaxSteps = 1000, kMaxBytes = std::size_t{64} << 20;
 
   /// A scene file as it is; for a data file a new scene that shows it as scene_for_file does, `colors` included (they go with data files
   /// only, overrides with scene files only).

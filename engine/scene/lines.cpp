@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kExact = 1e-9;  ///< tolerances up to it: the exact tracer
 constexpr double kPatternTolerance = 1e-7;
-constexpr std::uint64_t kMostKnots = 40'000'000;
+constexpr std::uint64_t kMaxKnots = 40'000'000;
 
 using Curves = std::vector<flow::CurvePtr>;
 
@@ -27,11 +27,6 @@ struct MadeLines {
   bool released = false;
   Bounds bounds;  ///< of their knots
 };
-
-const json::Node& member_or(const json::Node& node, std::string_view key) {
-  const json::Node* member = node.find(key);
-  return member == nullptr ? node : *member;
-}
 
 /// Points through the scene's curves; those that are new, over all cores.
 Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
@@ -78,12 +73,12 @@ Result<std::vector<Vec3>> places_of(Scene& scene, const SeedPattern& pattern) {
   }
   CATENA_TRY(const field::AnyField any, use_field(scene, pattern.field, pattern.where));
   if (!any.scalar)
-    return json::error_at(member_or(pattern.where, "field"), in_quotes(scene.world.get<Name>(pattern.field).value) +
-                                                                 " is a vector field; a scalar field was expected for an isosurface");
-  CATENA_CHECK(check_level(*any.scalar, pattern.level, member_or(pattern.where, "level")));
+    return json::error_at(json::member_or(pattern.where, "field"), in_quotes(scene.world.get<Name>(pattern.field).value) +
+                                                                       " is a vector field; a scalar field was expected for an isosurface");
+  CATENA_CHECK(check_level(*any.scalar, pattern.level, json::member_or(pattern.where, "level")));
   std::vector<Vec3> places = flow::seeds_on_isosurface(*any.scalar, pattern.level, pattern.count);
   if (places.empty())
-    return json::error_at(member_or(pattern.where, "level"),
+    return json::error_at(json::member_or(pattern.where, "level"),
                           "no place of this level was found; a level that the field's domain holds was expected");
   return places;
 }
@@ -110,7 +105,7 @@ std::size_t next_block(std::size_t seeds, std::size_t knots, std::size_t most) {
 
 }  // namespace
 
-std::size_t allowed_knots() { return static_cast<std::size_t>(std::min(kMostKnots, allowed_memory() / sizeof(flow::Knot))); }
+std::size_t allowed_knots() { return static_cast<std::size_t>(std::min(kMaxKnots, allowed_memory() / sizeof(flow::Knot))); }
 
 std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most) {
   return "the lines of " + std::to_string(done) + " of the " + std::to_string(seeds) + " seeds have more than " + std::to_string(most) +
@@ -131,9 +126,9 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& r
     flow::EvenlySpaced spacing{seeds.pattern->distance, seeds.pattern->test, seeds.pattern->start,
                                static_cast<std::size_t>(seeds.pattern->count)};
     if (spacing.distance < 1e-3 * request.flow.field->length())
-      return json::error_at(member_or(place, "distance"), "\"distance\" is " + to_text(spacing.distance) +
-                                                              "; at least a thousandth of the domain's length, " +
-                                                              to_text(1e-3 * request.flow.field->length()) + ", was expected");
+      return json::error_at(json::member_or(place, "distance"), "\"distance\" is " + to_text(spacing.distance) +
+                                                                    "; at least a thousandth of the domain's length, " +
+                                                                    to_text(1e-3 * request.flow.field->length()) + ", was expected");
     if (spacing.start.empty()) spacing.start = default_start(*request.flow.field);
     Curves curves = flow::evenly_spaced(request.flow, spacing, batch);
     if (curves.empty())
@@ -179,13 +174,13 @@ Result<Curves> use_lines(Scene& scene, Entity entity) {
   const StreamlineSet& set = scene.world.get<StreamlineSet>(entity);
   CATENA_TRY(const field::AnyField any, use_field(scene, set.field, set.where));
   if (!any.vector)
-    return json::error_at(member_or(set.where, "field"), in_quotes(scene.world.get<Name>(set.field).value) +
-                                                             " is a scalar field; expected a vector field for streamlines");
+    return json::error_at(json::member_or(set.where, "field"), in_quotes(scene.world.get<Name>(set.field).value) +
+                                                                   " is a scalar field; expected a vector field for streamlines");
   if (!scene.made.has<MadeLines>(entity)) scene.made.emplace<MadeLines>(entity);
   MadeLines& made = scene.made.get<MadeLines>(entity);
   if (!made.released && made.field_version == any.vector->version() && made.points == set.seeds.points) return made.curves;
   const LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
-  CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, member_or(set.where, "seeds")));
+  CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, json::member_or(set.where, "seeds")));
   static std::atomic<std::uint64_t> versions{0};
   Bounds bounds;
   for (const flow::CurvePtr& curve : curves)

@@ -99,8 +99,8 @@ const Table<Light>& light_table() {
 
 Outcome read_lights(Scene& scene, const json::Node& node) {
   return each_item(node, [&](const json::Node& item) -> Outcome {
-    if (scene.lights.size() == kMostLights)
-      return json::error_at(item, "there are more than " + std::to_string(kMostLights) + " lights; that many at most were expected");
+    if (scene.lights.size() == kMaxLights)
+      return json::error_at(item, "there are more than " + std::to_string(kMaxLights) + " lights; that many at most were expected");
     Light light;
     CATENA_CHECK(light_table().read(scene, item, light));
     scene.lights.push_back(light);
@@ -131,7 +131,7 @@ Part fog_part() {
 }
 
 Part lights_part() {
-  return {list_of("lights", "Lights from far away. Without one the scene has a headlight.", light_table(), static_cast<int>(kMostLights)),
+  return {list_of("lights", "Lights from far away. Without one the scene has a headlight.", light_table(), static_cast<int>(kMaxLights)),
           read_lights};
 }
 

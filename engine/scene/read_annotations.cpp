@@ -6,7 +6,7 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kMostPoints = 576;  // the picture's shorter side has as many
+constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
 
 /// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
@@ -110,7 +110,7 @@ const Table<ScalarBar>& scalar_bar_table() {
 
 /// A size in points.
 Key points_key(const std::string& name, const std::string& help) {
-  return schema::number(name, "points", help).limited({0.0, kMostPoints, true});
+  return schema::number(name, "points", help).limited({0.0, kMaxPoints, true});
 }
 
 const Table<Label>& label_table() {

@@ -41,7 +41,7 @@ Keys clip_keys() {
   return {schema::object("plane", plane_table().keys(), "Keeps the side to which the normal points."),
           schema::object("box", box_table().keys(), "Keeps the inside."),
           schema::named("widget", Role::widget, "Follows a cutting plane, or a box."),
-          schema::word("side", {"front", "behind"}, "Of a cutting plane that is followed: which side is kept.").by_default("`front`")};
+          schema::word("side", {"front", "behind"}, "Of a cutting plane that is followed: which side is kept.").by_default("\"front\"")};
 }
 
 Outcome read_plane(Scene& scene, const json::Node& node) {

@@ -124,7 +124,8 @@ Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
   if (by != nullptr && by->kind == json::Kind::string) return Done{};
   for (const char* key : {"range", "transfer"})
     if (const json::Node* node = item.find(key))
-      return json::error_at(*node, in_quotes(key) + " is given, but nothing says of what; \"color_by\": a field was expected beside it");
+      return json::error_at(*node,
+                            in_quotes(key) + " is given, but nothing says of what; it was expected within \"color_by\": {\"field\": NAME}");
   CATENA_TRY(surface.color, read_color(item, "color", surface.color));
   return Done{};
 }
@@ -132,7 +133,7 @@ Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
 const Table<MeshItem>& mesh_table() {
   static const auto table = [] {
     Table<MeshItem> t;
-    t.hand(schema::text("name", "By which a link names it.").required(), read_mesh_name,
+    t.hand(schema::identifier("name", "By which a link names it.").required(), read_mesh_name,
            [](const Scene&, const MeshItem& m) { return schema::write_value(m.name); });
     t.hand(schema::file("file", "The file: " + alternatives(mesh::mesh_endings()) + ".").required(), read_mesh_file,
            [](const Scene&, const MeshItem& m) { return schema::write_value(m.file); });

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using field::LoadRequest;
 
-constexpr int kMostNodes = 1024;  // an axis, of a sampled analytic field
+constexpr int kMaxNodes = 1024;  // an axis, of a sampled analytic field
 
 /// Empty where `path` is a file that can be loaded, else what is wrong and what was expected.
 std::string file_fault(const std::string& path) {
@@ -45,7 +45,7 @@ Keys grid_keys() {
   return {file_key(false), schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
           schema::any_of("valid", {schema::text("", ""), schema::null()},
                          "The BoolGrid that masks the field; null for none. The default one may be missing.")
-              .by_default("`\"valid\"`"),
+              .by_default("\"valid\""),
           unit_key()};
 }
 
@@ -128,8 +128,8 @@ Keys formula_keys() {
       schema::direction("direction", "Of `uniform` only.").by_default("[1, 0, 0]"),
       schema::text("part",
                    "A grid of what `generate` writes, where it writes several: of `left-ventricle`, `density`, `transmural` or `fibre`."),
-      schema::text("grid", "The same."),
-      schema::integer("resolution", "nodes", "Along an axis of the grid that is drawn.", 2, kMostNodes)
+      schema::text("grid", "Another word for `part`."),
+      schema::integer("resolution", "nodes", "Along an axis of the grid that is drawn.", 2, kMaxNodes)
           .by_default(std::to_string(usual.resolution)),
       schema::vector("box", 2, "world", "The cube that is sampled for the picture.").ranged("rising").by_default("[-2, 2]"),
       unit_key()};
@@ -170,7 +170,7 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
     if (word != source.analytic) source.parameters.part = word;
   }
 
-  CATENA_TRY(source.resolution, json::get_integer(node, "resolution", source.resolution, 2, kMostNodes));
+  CATENA_TRY(source.resolution, json::get_integer(node, "resolution", source.resolution, 2, kMaxNodes));
   if (const json::Node* box = node.find("box")) {
     const bool pair = box->kind == json::Kind::array && box->items.size() == 2 && box->items[0].kind == json::Kind::number &&
                       box->items[1].kind == json::Kind::number;

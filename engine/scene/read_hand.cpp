@@ -6,7 +6,7 @@
 namespace catena::scene {
 namespace {
 
-constexpr std::size_t kMostLinks = exchange::kMaxSceneLinks;
+constexpr auto kMaxSceneLinks = static_cast<std::size_t>(exchange::kMaxSceneLinks);
 
 /// Names, types and the field that a link names are checked here; its other keys by the constraint of its type, where the
 /// program for the hand is made.
@@ -14,9 +14,9 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::array) return json::error_at(node, "\"chain\" is no array; an array of links was expected");
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const json::Node& item = node.items[i];
-    if (i >= kMostLinks)
-      return json::error_at(
-          item, "\"chain\" has " + std::to_string(node.items.size()) + " links; at most " + std::to_string(kMostLinks) + " were expected");
+    if (i >= kMaxSceneLinks)
+      return json::error_at(item, "\"chain\" has " + std::to_string(node.items.size()) + " links; at most " +
+                                      std::to_string(kMaxSceneLinks) + " were expected");
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     const json::Node& name_node = *item.find("name");
@@ -36,7 +36,7 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
 }
 
 Keys modes_keys() {
-  return {schema::text("name", "Shown in `--details`.").required(),
+  return {schema::identifier("name", "Shown in `--details`.").required(),
           schema::texts("links", "Links of the chain, in the order of this mode.").as(Role::link).required(),
           schema::object("on", {}, "A switch, as of a link.").required()};
 }
@@ -113,7 +113,8 @@ using schema::Component;
 }  // namespace
 
 Part chain_part() {
-  return {{"chain", "What the hand feels: links, in their order.", Component::Shape::list, {}, static_cast<int>(kMostLinks)}, read_chain};
+  return {{"chain", "What the hand feels: links, in their order.", Component::Shape::list, {}, static_cast<int>(kMaxSceneLinks)},
+          read_chain};
 }
 
 Part modes_part() {

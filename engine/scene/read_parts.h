@@ -60,7 +60,7 @@ Outcome each_item(const json::Node& node, Read&& read) {
   return Done{};
 }
 
-/// [a-z][a-z0-9_]*, and for links none of the words that the tick CSV uses itself.
+/// [a-z][a-z0-9_]*
 bool is_name(std::string_view text);
 
 /// Relative paths start at the scene file's folder.

@@ -8,7 +8,7 @@
 namespace catena::scene {
 namespace {
 
-constexpr int kMostSeeds = 100000, kMostEvenLines = 20000;
+constexpr int kMaxSeeds = 100000, kMaxEvenLines = 20000;
 
 using Pattern = SeedPattern;
 using PatternTable = schema::Table<Pattern, const Scene>;
@@ -20,11 +20,11 @@ struct PatternType {
   PatternTable table;
 };
 
-Key count_key(const std::string& help) { return schema::integer("count", "", help, 1, kMostSeeds); }
+Key count_key(const std::string& help) { return schema::integer("count", "", help, 1, kMaxSeeds); }
 
 Outcome read_count(const json::Node& object, int& count) {
   if (object.find("count") == nullptr) return json::error_at(object, "\"count\" is missing; how many seeds was expected");
-  CATENA_TRY(count, json::get_integer(object, "count", 1, 1, kMostSeeds));
+  CATENA_TRY(count, json::get_integer(object, "count", 1, 1, kMaxSeeds));
   return Done{};
 }
 
@@ -73,13 +73,13 @@ std::vector<PatternType> made_patterns() {
   even.bind(schema::number("distance", "world", "Of the lines from each other.").positive().required(), &Pattern::distance);
   even.bind(schema::number("test", "", "Lines end nearer than this share of the distance.").limited({0.0, 1.0, true}), &Pattern::test);
   even.hand(
-      count_key("The most lines.").by_default(std::to_string(kMostEvenLines)),
+      count_key("The most lines.").by_default(std::to_string(kMaxEvenLines)),
       [](const Scene&, const json::Node& node, Pattern& out) -> Outcome {
-        CATENA_TRY(out.count, json::get_integer(node, "count", kMostEvenLines, 1, kMostSeeds));
+        CATENA_TRY(out.count, json::get_integer(node, "count", kMaxEvenLines, 1, kMaxSeeds));
         return Done{};
       },
       [](const Scene&, const Pattern& p) { return schema::write_value(p.count); });
-  even.bind(schema::places("start", "world", "Where the first lines begin.").by_default("the middle of the domain"), &Pattern::start);
+  even.bind(schema::places("start", "world", "Where the first lines begin.").by_default("found by the method"), &Pattern::start);
 
   return {{"line", "Evenly on a segment.", Pattern::Kind::line, line},
           {"plane", "On a parallelogram.", Pattern::Kind::plane, plane},

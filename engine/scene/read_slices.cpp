@@ -50,17 +50,18 @@ const Table<Slice::Contours>& contours_table() {
   using Contours = Slice::Contours;
   static const auto table = [] {
     Table<Contours> t;
-    t.bind(schema::numbers("levels", "value", "These values: one of the three.").ranged("rising").items(1, kMostContours),
+    t.bind(schema::numbers("levels", "value", "These values: one of the three.").ranged("rising").without_default().items(1, kMaxContours),
            &Contours::levels);
-    t.bind(schema::integer("count", "", "Or so many within the range of the colours, its ends left out.", 1, kMostContours).by_default(" "),
-           &Contours::count);
-    t.bind(schema::number("spacing", "value", "Or all multiples of this.").positive().by_default(" "), &Contours::spacing);
+    t.bind(
+        schema::integer("count", "", "Or so many within the range of the colours, its ends left out.", 1, kMaxContours).without_default(),
+        &Contours::count);
+    t.bind(schema::number("spacing", "value", "Or all multiples of this.").positive().without_default(), &Contours::spacing);
     t.bind(schema::color("color", "Of the lines."), &Contours::color);
     t.bind(schema::number("width", "pixels", "Of the lines.").limited({0.0, kWidest, true}), &Contours::width);
     t.check([](Scene&, const json::Node& node, Contours& contours) -> Outcome {
-      if (contours.levels.size() > static_cast<std::size_t>(kMostContours))
+      if (contours.levels.size() > static_cast<std::size_t>(kMaxContours))
         return json::error_at(*node.find("levels"), "\"levels\" holds " + std::to_string(contours.levels.size()) + " levels; at most " +
-                                                        std::to_string(kMostContours) + " were expected");
+                                                        std::to_string(kMaxContours) + " were expected");
       for (std::size_t i = 1; i < contours.levels.size(); ++i)
         if (!(contours.levels[i] > contours.levels[i - 1]))
           return json::error_at(node.find("levels")->items[i], "\"levels\" has " + to_text(contours.levels[i]) + " after " +

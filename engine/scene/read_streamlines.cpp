@@ -19,9 +19,10 @@ Outcome read_line_color(Scene& scene, const json::Node& item, StreamlineSet& set
   if (by != nullptr && by->kind == json::Kind::string) return Done{};
   for (const json::Node* node : {of_values ? color : nullptr, item.find("range"), item.find("transfer")})
     if (node != nullptr)
-      return json::error_at(*node,
-                            in_quotes(node->label) + (node == color && color->kind == json::Kind::array ? " is a table" : " is given") +
-                                ", but nothing says of what; \"color_by\": a field, \"speed\" or \"arc_length\" was expected beside it");
+      return json::error_at(*node, in_quotes(node->label) +
+                                       (node == color && color->kind == json::Kind::array ? " is a table" : " is given") +
+                                       ", but nothing says of what; it was expected within \"color_by\": {\"field\": NAME} or "
+                                       "{\"quantity\": \"speed\" or \"arc_length\"}");
   CATENA_TRY(set.color, read_color(item, "color", set.color));
   return Done{};
 }

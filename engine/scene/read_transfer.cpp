@@ -152,7 +152,7 @@ Result<TransferFunction> read_transfer_file(const std::string& scene_path, const
     return json::error_at(node, "\"transfer\": " + in_quotes(path) +
                                     (std::filesystem::exists(path, code) ? " is not a file" : " does not exist") +
                                     "; a transfer file (JSON) was expected");
-  CATENA_TRY(const std::string text, read_text(path, "a transfer file (JSON)", kMostJsonBytes));
+  CATENA_TRY(const std::string text, read_text(path, "a transfer file (JSON)", kMaxJsonBytes));
   CATENA_TRY(TransferFunction transfer, parse_transfer(text, path));
   transfer.file = path;
   CATENA_TRY(const std::optional<Pair> range, read_range(object));

@@ -24,9 +24,9 @@ Outcome check_camera(Scene&, const json::Node& node, Camera& camera) {
   if (!camera.orthographic && height != nullptr)
     return json::error_at(*height, "\"height\" is given without \"projection\": \"orthographic\"; \"fovy_deg\" was expected");
   if (camera.orthographic && height == nullptr) CATENA_CHECK(json::require_number(node, "height", json::Range::positive));
-  if (camera.orthographic && !(camera.height >= kLeastEyeHeight && camera.height <= kMostEyeHeight))
+  if (camera.orthographic && !(camera.height >= kLeastEyeHeight && camera.height <= kMaxEyeHeight))
     return json::error_at(*height, "\"height\" is " + to_text(camera.height) + "; a length from " + to_text(kLeastEyeHeight) + " to " +
-                                       to_text(kMostEyeHeight) + " was expected");
+                                       to_text(kMaxEyeHeight) + " was expected");
   camera.given = true;
   return Done{};
 }
@@ -106,7 +106,7 @@ Part background_part() {
 
 Part quality_part() {
   const Key key = schema::text("quality", "`draft`, `balanced`, `reference`, `time=MS` or `error=E`, as of `render --quality`.")
-                      .by_default("`balanced`");
+                      .by_default("\"balanced\"");
   return {{"quality", "How good the picture is to be, and how fast.", Component::Shape::value, {key}}, read_quality};
 }
 

@@ -199,7 +199,7 @@ const std::vector<WidgetType>& types() {
 const Table<Widget>& common_table() {
   static const auto table = [] {
     Table<Widget> t;
-    t.beside(schema::text("name", "By which others follow it.").required());
+    t.beside(schema::identifier("name", "By which others follow it.").required());
     t.beside(schema::word("type", {std::begin(kWords), std::end(kWords)}, "What it is.").required());
     bind_size(
         t, size_key("radius", "Of a handle's ball, or of a cutting plane's sphere.", "0.012 L; a sphere 0.12 L"),

@@ -11,7 +11,7 @@ namespace catena::scene {
 namespace {
 
 using How = RulerMeasure::How;
-constexpr std::size_t kMostPoints = 4096;
+constexpr std::size_t kMaxPoints = 4096;
 
 /// What a ruler is measured along: at most one is set.
 struct Track {
@@ -147,7 +147,7 @@ RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const 
       places.push_back(k->s + lap);
   }
   places.push_back(b);
-  const std::size_t stride = 1 + places.size() / kMostPoints;
+  const std::size_t stride = 1 + places.size() / kMaxPoints;
   for (std::size_t i = 0; i + 1 < places.size(); i += stride) out.points.push_back(curve->position(places[i]));
   out.points.push_back(curve->position(b));
   // from the first end to the second

@@ -9,7 +9,7 @@
 namespace catena::scene {
 namespace {
 
-/// All parts, in the order of docs/scene.md. They are read in this order, too: fields first, which the others name; widgets name links;
+/// All parts, in the order in which they are read: fields first, which the others name; widgets name links;
 /// what follows a widget names it; scalar bars name what is drawn.
 const std::vector<Part>& parts() {
   static const std::vector<Part> all{
@@ -26,7 +26,10 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
   CATENA_CHECK(json::expect_object(root, "the scene"));
   std::vector<std::string_view> keys;
   for (const Part& part : parts()) keys.push_back(part.description.name);
-  if (root.find("$schema") != nullptr) keys.push_back("$schema");  // for editors
+  if (root.find("$schema") != nullptr) {  // for editors
+    keys.push_back("$schema");
+    CATENA_CHECK(json::require_string(root, "$schema"));
+  }
   CATENA_CHECK(json::only_keys(root, keys));
   CATENA_CHECK(read_fields(scene, root.find("fields"), overrides));
   for (const Part& part : parts())
@@ -71,7 +74,7 @@ Result<Scene> parse_scene(std::string_view text, const std::string& path, const 
 }
 
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides) {
-  CATENA_TRY(const std::string text, read_text(path, "a scene file (JSON)", kMostJsonBytes));
+  CATENA_TRY(const std::string text, read_text(path, "a scene file (JSON)", kMaxJsonBytes));
   return parse_scene(text, path, overrides);
 }
 

@@ -1,5 +1,6 @@
 /// Keys that several components of a scene have, and how the types of this room are read and written. Inside this room only.
 #pragma once
+#include "engine/scene/color_maps.h"
 #include "engine/scene/read_parts.h"
 #include "engine/schema/table.h"
 
@@ -33,7 +34,7 @@ Key clip_key();
 Key visible_key();
 Key opacity_key(const std::string& help);
 /// "color", "range" and "transfer" where values become colours (read_transfer.h).
-Keys color_scale_keys();
+Keys color_scale_keys(std::string_view map = kDefaultLineMap, const std::string& range = "that of the values");
 /// Those, and a volume's opacities.
 Keys transfer_keys();
 

@@ -41,7 +41,7 @@ const Table<Stereo>& stereo_table() {
     Table<Stereo> t;
     const Key mode = schema::word("mode", {kWords.begin(), kWords.end()}, "How the eyes' pictures are put together.");
     t.hand(
-        mode.by_default("`mono`"),
+        mode.by_default("\"mono\""),
         [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
           CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(stereo_word(stereo.mode))));
           const auto named = stereo_mode(word);
@@ -50,13 +50,15 @@ const Table<Stereo>& stereo_table() {
           return Done{};
         },
         [](const Scene&, const Stereo& stereo) { return schema::write_value(std::string(stereo_word(stereo.mode))); });
-    t.bind(schema::number("separation", "world", "Of neighbouring eyes.").within(0, kMostStereoSeparation).by_default("a 30th of the next"),
+    t.bind(schema::number("separation", "world", "Of neighbouring eyes.")
+               .within(0, kMaxStereoSeparation)
+               .by_default("a 30th of `zero_parallax`"),
            &Stereo::separation);
     t.bind(schema::number("zero_parallax", "world", "Distance from the eyes to where both see the same.")
                .positive()
                .by_default("the target's"),
            &Stereo::zero_parallax);
-    t.bind(schema::integer("views", "", "For the modes that take any number of eyes.", 2, kMostStereoViews), &Stereo::views);
+    t.bind(schema::integer("views", "", "For the modes that take any number of eyes.", 2, kMaxStereoViews), &Stereo::views);
     t.bind(schema::boolean("swap", "The right eye's picture in the place of the left eye's."), &Stereo::swap);
     t.check([](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
       if (stereo.views == 2 || !needs_a_pair(stereo.mode)) return Done{};

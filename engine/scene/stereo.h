@@ -40,7 +40,7 @@ struct Stereo {
   int views = 2;                        ///< for the modes that take any number
   bool swap = false;                    ///< the right eye's picture in the left eye's place
 };
-inline constexpr int kMostStereoViews = 64;
-inline constexpr double kMostStereoSeparation = 1e15;  ///< world units
+inline constexpr int kMaxStereoViews = 64;
+inline constexpr double kMaxStereoSeparation = 1e15;  ///< world units
 
 }  // namespace catena::scene

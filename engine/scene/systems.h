@@ -21,7 +21,7 @@ struct WidgetChanges {
 };
 
 /// Slices, clip planes, seeds and isosurfaces that name a widget follow its pose; a level stays within the values of the field that it is
-/// drawn of. Completes the widgets (use_widget); those that have not moved cost nothing. extract_frame calls it, too.
+/// drawn of. Completes the widgets (use_widget); those that have not moved cost nothing. prepare (prepare.h) calls it.
 Result<WidgetChanges> drive_widgets(Scene& scene);
 
 }  // namespace catena::scene

@@ -10,7 +10,7 @@
 namespace catena::scene {
 namespace {
 
-constexpr std::size_t kMostSamples = 1u << 21;
+constexpr std::size_t kMaxSamples = 1u << 21;
 constexpr int kBins = 256;
 constexpr double kLowEnd = 0.15, kLowShare = 0.1, kDominantShare = 0.3;  // where the background lies, see transfer.h
 constexpr double kMargin = 0.06, kOpticalDepth = 2.5;
@@ -98,7 +98,7 @@ std::vector<float> sample_magnitudes(const field::VectorGrid& grid, std::size_t 
 }
 
 std::shared_ptr<const std::vector<float>> sorted_values(const field::ScalarGrid& grid) {
-  auto values = std::make_shared<std::vector<float>>(sample_values(grid, kMostSamples));
+  auto values = std::make_shared<std::vector<float>>(sample_values(grid, kMaxSamples));
   std::sort(values->begin(), values->end());
   return values;
 }

@@ -80,25 +80,20 @@ void complete_sizes(widget::Spec& spec) {
   fit(spec.release, snap > 0 ? kRelease / kSnap * snap : kRelease * length);
 }
 
-const json::Node& member_or(const json::Node& node, std::string_view key) {
-  const json::Node* member = node.find(key);
-  return member == nullptr ? node : *member;
-}
-
 Outcome load_isolevel(Scene& scene, Entity entity) {
   const json::Node where = scene.world.get<Widget>(entity).where;
   const Entity field = scene.world.get<Widget>(entity).field;
-  CATENA_TRY(const field::AnyField any, use_field(scene, field, member_or(where, "field")));
+  CATENA_TRY(const field::AnyField any, use_field(scene, field, json::member_or(where, "field")));
   if (!any.scalar)
-    return json::error_at(member_or(where, "field"), in_quotes(scene.world.get<Name>(field).value) +
-                                                         " is a vector field; a scalar field was expected for an isolevel");
+    return json::error_at(json::member_or(where, "field"), in_quotes(scene.world.get<Name>(field).value) +
+                                                               " is a vector field; a scalar field was expected for an isolevel");
   Widget& widget = scene.world.get<Widget>(entity);
   field::Cursor cursor;
   const field::ScalarSample stated = any.scalar->sample(widget.spec.pose.points[0], cursor);
   if (widget.spec.revision == 0 && (!stated.inside || !std::isfinite(stated.value)))
-    return json::error_at(member_or(where, "position"), "the isolevel's place lies outside the domain of field " +
-                                                            in_quotes(scene.world.get<Name>(field).value) +
-                                                            ", or has no value there; a place within it was expected");
+    return json::error_at(json::member_or(where, "position"), "the isolevel's place lies outside the domain of field " +
+                                                                  in_quotes(scene.world.get<Name>(field).value) +
+                                                                  ", or has no value there; a place within it was expected");
   const field::ScalarSample now = any.scalar->sample(widget.state.pose.points[0], cursor);
   if (std::isfinite(now.value)) widget.state.value = now.value;
   widget.spec.field = any.scalar;

@@ -53,14 +53,15 @@ std::string body(const Key& key) {
     case Form::boolean:
       return R"("type": "boolean")";
     case Form::text:
-      return std::string(R"("type": "string")") + (key.most > 0 ? ", \"maxLength\": " + std::to_string(key.most) : "");
+      return std::string(R"("type": "string")") + (key.is_identifier ? R"(, "pattern": "^[a-z][a-z0-9_]*$")" : "") +
+             (key.most > 0 ? ", \"maxLength\": " + std::to_string(key.most) : "");
     case Form::word: {
       std::string words;
       for (const std::string& w : key.words) words += (words.empty() ? "" : ", ") + string_text(w);
       return "\"enum\": [" + words + "]";
     }
     case Form::vector:
-      return row_schema(key.count, key.limits);
+      return row_schema(key.count, key.limits) + (key.range == "not 0" ? R"(, "not": {"const": [0, 0, 0]})" : "");
     case Form::color:
       return row_schema(3, {0.0, 1.0});
     case Form::numbers:

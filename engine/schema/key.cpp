@@ -1,5 +1,7 @@
 #include "engine/schema/key.h"
 
+#include <cmath>
+
 #include "engine/base/numbers.h"
 
 namespace catena::schema {
@@ -21,11 +23,23 @@ bool Limits::contains(double x) const {
   return !(lo && (lo_open ? !(x > *lo) : !(x >= *lo))) && !(hi && (hi_open ? !(x < *hi) : !(x <= *hi)));
 }
 
+namespace {
+
+/// 100000, 1e15: not 1e+05, 1e+15.
+std::string plain(double x) {
+  if (x == std::floor(x) && std::fabs(x) < 1e7) return std::to_string(static_cast<long long>(x));
+  std::string text = to_text(x);
+  std::erase(text, '+');
+  return text;
+}
+
+}  // namespace
+
 std::string Limits::words() const {
-  if (lo && hi && !lo_open) return to_text(*lo) + " to " + (hi_open ? "below " : "") + to_text(*hi);
-  if (lo && hi) return "> " + to_text(*lo) + ", at most " + to_text(*hi);
-  if (lo) return (lo_open ? "> " : ">= ") + to_text(*lo);
-  if (hi) return (hi_open ? "below " : "at most ") + to_text(*hi);
+  if (lo && hi && !lo_open) return plain(*lo) + " to " + (hi_open ? "below " : "") + plain(*hi);
+  if (lo && hi) return "> " + plain(*lo) + (hi_open ? ", below " : ", at most ") + plain(*hi);
+  if (lo) return (lo_open ? "> " : ">= ") + plain(*lo);
+  if (hi) return (hi_open ? "below " : "at most ") + plain(*hi);
   return {};
 }
 
@@ -35,6 +49,11 @@ Key integer(const std::string& name, const std::string& unit, const std::string&
 }
 Key boolean(const std::string& name, const std::string& help) { return made(name, Form::boolean, {}, help); }
 Key text(const std::string& name, const std::string& help) { return made(name, Form::text, {}, help); }
+Key identifier(const std::string& name, const std::string& help) {
+  Key key = text(name, help);
+  key.is_identifier = true;
+  return key;
+}
 Key word(const std::string& name, std::vector<std::string> words, const std::string& help) {
   Key key = made(name, Form::word, {}, help);
   key.words = std::move(words);

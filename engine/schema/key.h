@@ -56,10 +56,15 @@ struct Key {
   Limits limits = {};
   int count = 0;  ///< of a vector's numbers, of a row's
   int least = 0;  ///< items of a list
-  int most = 0;   ///< items of a list; 0: any number
+  int most = 0;   ///< items of a list, bytes of a text; 0: any number
   Role role = Role::none;
   bool is_required = false;
-  bool is_stated = false;       ///< a new component states it though it need not: without it the component means little
+  bool is_stated = false;  ///< a new component states it though it need not: without it the component means little
+  /// How a new one begins in the window: JSON text, "0.1 L" (a share of the length of all that is there), "hand" (a place where the hand
+  /// is) or "hand + 0.1 L"; empty: places begin at the hand, lengths with 0.02 L, words with the first one.
+  std::string begin = {};
+  bool is_identifier = false;  ///< [a-z][a-z0-9_]*
+  bool has_default = true;
   bool follows_field = false;   ///< a number that may be an object {"field", "map", ...} instead
   bool follows_widget = false;  ///< or {"widget": NAME}
   std::vector<std::string> words = {};
@@ -82,9 +87,16 @@ struct Key {
   Key ranged(const std::string& text) const {
     return with([&](Key& k) { k.range = text; });
   }
+  /// Left out it means something else than its value at the start.
+  Key without_default() const {
+    return with([](Key& k) { k.has_default = false; });
+  }
   /// The default, in words or as JSON text.
   Key by_default(const std::string& text) const {
     return with([&](Key& k) { k.fallback = text; });
+  }
+  Key begins(const std::string& text) const {
+    return with([&](Key& k) { k.begin = text; });
   }
   Key as(Role r) const {
     return with([&](Key& k) { k.role = r; });
@@ -114,6 +126,8 @@ Key number(const std::string& name, const std::string& unit, const std::string& 
 Key integer(const std::string& name, const std::string& unit, const std::string& help, int least, int most);
 Key boolean(const std::string& name, const std::string& help);
 Key text(const std::string& name, const std::string& help);
+/// A name that others may use: [a-z][a-z0-9_]*.
+Key identifier(const std::string& name, const std::string& help);
 Key word(const std::string& name, std::vector<std::string> words, const std::string& help);
 Key vec3(const std::string& name, const std::string& unit, const std::string& help);
 /// An arrow of any length but 0.

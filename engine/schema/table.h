@@ -31,7 +31,7 @@ class Table {
     const T made{};
     const auto& value = std::invoke(access, made);
     const std::string usual = text_of(key, value);
-    if (key.fallback.empty() && !key.is_required && key.form != Form::text) key.fallback = usual;
+    if (key.fallback.empty() && key.has_default && !key.is_required && key.form != Form::text) key.fallback = usual;
     rows_.push_back({[key, access](C&, const json::Node& object, T& out) { return read_value(key, object, std::invoke(access, out)); },
                      [key, access, usual](const C&, const T& in) {
                        std::string text = text_of(key, std::invoke(access, in));

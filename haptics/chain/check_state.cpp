@@ -8,7 +8,7 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr std::int32_t kMostCounted = 1 << 20;  // of what is counted up within a few ticks
+constexpr std::int32_t kMaxCounted = 1 << 20;  // of what is counted up within a few ticks
 
 bool is_sane(const Order& order) {
   if (order.count < 0 || order.count > kMaxLinks || order.mode < -1 || order.mode >= kMaxModes) return false;
@@ -19,8 +19,8 @@ bool is_sane(const Order& order) {
 
 bool is_sane(const LinkState& link) {
   return is_one_of(link.status, Status::bad_probe) && are_bools(link.started, link.released, link.on) &&
-         is_one_of(link.shape.kind, widget::Shape::Kind::point) && link.evaluations >= 0 && link.evaluations <= kMostCounted &&
-         link.steps >= 0 && link.steps <= kMostCounted && is_one_of(link.reason, Reason::not_finite);
+         is_one_of(link.shape.kind, widget::Shape::Kind::point) && link.evaluations >= 0 && link.evaluations <= kMaxCounted &&
+         link.steps >= 0 && link.steps <= kMaxCounted && is_one_of(link.reason, Reason::not_finite);
 }
 
 bool is_sane(const SingleProxy& single) {
@@ -36,7 +36,7 @@ bool are_sane(const std::array<IndicationState, kMaxLinks>& indications) {
 }
 
 bool is_sane(const GuardState& guard) {
-  return is_one_of(guard.force_state, ForceState::stopped) && guard.late >= 0 && guard.late <= kMostCounted;
+  return is_one_of(guard.force_state, ForceState::stopped) && guard.late >= 0 && guard.late <= kMaxCounted;
 }
 
 bool is_sane(const PassivityState& ledger) {

@@ -70,13 +70,14 @@ const ConstraintType* find_constraint(std::string_view type) {
 
 const schema::Keys& common_keys() {
   static const schema::Keys keys{
-      schema::text("name", "Names the columns of the tick CSV; unique.").required(),
+      schema::identifier("name", "Names the columns of the tick CSV; unique.").required(),
       schema::text("type", "Which constraint.").required(),
       schema::number("stiffness", "N/m", "Of the link's spring.").not_negative().or_field().by_default("the coupling's"),
       schema::number("snap", "world", "The link starts apart, and takes hold within this distance of its feature.").positive().or_field(),
       schema::number("release", "world", "The link lets go at this distance of its probe from its proxy.")
           .positive()
           .or_field()
+          .begins("0.05 L")
           .by_default("2 `snap`, or never"),
       switch_key(),
       schema::boolean("enabled", "False: off, whatever the switch says.").by_default("true"),
@@ -88,8 +89,8 @@ const schema::Keys& common_keys() {
 schema::Component chain_component() {
   schema::Component chain{"chain", "What the hand feels: links, in their order.", schema::Component::Shape::list, common_keys(),
                           exchange::kMaxSceneLinks};
-  for (const ConstraintType& type : registry()) chain.variants.push_back({type.type, type.help + " (" + type.paper + ")", type.keys});
-  for (const ReadyMode& mode : ready_modes()) chain.variants.push_back({mode.type, mode.help + " (" + mode.paper + ")", mode.keys});
+  for (const ConstraintType& type : registry()) chain.variants.push_back({type.type, type.help + " Paper: " + type.paper + ".", type.keys});
+  for (const ReadyMode& mode : ready_modes()) chain.variants.push_back({mode.type, mode.help + " Paper: " + mode.paper + ".", mode.keys});
   return chain;
 }
 
@@ -102,10 +103,10 @@ schema::Key length_key(const std::string& name, const std::string& help) {
   return schema::number(name, "world", help).not_negative().or_field();
 }
 schema::Key line_kind_key() {
-  return schema::word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").by_default("`vector`");
+  return schema::word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").by_default("\"vector\"");
 }
 schema::Key free_key(const std::string& above) {
-  return schema::word("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".").by_default("`none`");
+  return schema::word("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".").by_default("\"none\"");
 }
 
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {

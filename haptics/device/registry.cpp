@@ -39,9 +39,9 @@ Result<std::unique_ptr<Device>> open_simulated(const std::string& detail, const 
   p.friction_n = settings.friction_n.value_or(p.friction_n);
   p.encoder_step_m = settings.encoder_step_m.value_or(p.encoder_step_m);
   p.delay_s = settings.delay_s.value_or(p.delay_s);
-  if (p.delay_s > HandParameters::kMostDelay * p.period_s)
+  if (p.delay_s > HandParameters::kMaxDelay * p.period_s)
     return Error{"simulated: a delay of " + to_text(p.delay_s) + " s is too long; at most " +
-                 to_text(HandParameters::kMostDelay * p.period_s) + " s (" + std::to_string(HandParameters::kMostDelay) +
+                 to_text(HandParameters::kMaxDelay * p.period_s) + " s (" + std::to_string(HandParameters::kMaxDelay) +
                  " periods) were expected"};
   std::vector<SimulatedHand::Waypoint> path{{}};
   if (!detail.empty()) {

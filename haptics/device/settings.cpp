@@ -87,7 +87,7 @@ SettingsTable made_table() {
   t.bind(number("delay", "s", "From the pose to the force.").not_negative().by_default(drivers), &Settings::delay_s);
   t.hand(schema::any_of("stiffness_cap", {schema::word("", {"safe", "none"}, ""), number("", "N/m", "").not_negative()},
                         "Of every spring: `safe`, `none` or a number.")
-             .by_default("`safe`"),
+             .by_default("\"safe\""),
          read_cap);
   t.bind(number("max_force", "N", "Limit of the force; its direction is kept.").not_negative().by_default(devices), &Settings::max_force_n);
   t.bind(number("max_torque", "N m", "Limit of the torque; its direction is kept.").not_negative().by_default(devices),

@@ -41,7 +41,7 @@ SimulatedHand::SimulatedHand(std::vector<Waypoint> path, const HandParameters& p
     : path_(std::move(path)), parameters_(parameters) {
   const HandParameters& p = parameters_;
   CATENA_ASSERT(!path_.empty() && p.mass_kg > 0 && p.hand_mass_kg >= 0 && p.period_s > 0);
-  CATENA_ASSERT(p.delay_s >= 0 && p.delay_s <= HandParameters::kMostDelay * p.period_s && p.encoder_step_m >= 0 && p.friction_n >= 0);
+  CATENA_ASSERT(p.delay_s >= 0 && p.delay_s <= HandParameters::kMaxDelay * p.period_s && p.encoder_step_m >= 0 && p.friction_n >= 0);
   capabilities_ = {.name = "simulated hand",
                    .max_force_n = p.max_force_n,
                    .mechanics = {.mass_kg = p.mass_kg,

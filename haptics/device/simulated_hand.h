@@ -25,11 +25,11 @@ struct HandParameters {
   double device_damping_ns_per_m = 0;
   double friction_n = 0;
   double encoder_step_m = 0;  ///< 0: continuous
-  double delay_s = 0;         ///< at most kMostDelay periods
+  double delay_s = 0;         ///< at most kMaxDelay periods
   double max_force_n = 100;
   Vec3 velocity_m_per_s{0.0};  ///< at the start
 
-  static constexpr int kMostDelay = 62;
+  static constexpr int kMaxDelay = 62;
 };
 
 /// A desktop mechanism of the kind that the linear limits of the literature are worked out for: 0.159 kg, 0.5 N s/m, 0.1 N,

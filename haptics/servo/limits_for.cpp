@@ -8,7 +8,7 @@ namespace catena::haptics {
 
 namespace {
 
-constexpr double kRampIn_s = 0.5, kFullForceIn_s = 2e-3, kMostSlew = 1e4;
+constexpr double kRampIn_s = 0.5, kFullForceIn_s = 2e-3, kMaxSlew = 1e4;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ Limits limits_for(const DeviceCapabilities& device, const DeviceSettings& settin
   // the defaults of a device that can push
   if (device.max_force_n > 0) {
     limits.max_force_n = device.max_force_n;
-    limits.slew_n_per_s = std::min(device.max_force_n / kFullForceIn_s, kMostSlew);
+    limits.slew_n_per_s = std::min(device.max_force_n / kFullForceIn_s, kMaxSlew);
     limits.ramp_in_s = kRampIn_s;
     limits.passivity = settings.passivity;
     limits.max_added_damping_ns_per_m = most_added_damping(m.mass_kg, period_s, m.delay_s);

@@ -2,7 +2,7 @@
 /// A device with force output, where the settings do not say otherwise:
 ///   stiffness   the safe one at the servo's rate (haptics/device/safe_stiffness.h); rotational the same
 ///   force       the device's most; a larger number of the person's is taken at its word
-///   slew        from nothing to the device's most force in 2 ms: max_force / 2 ms, at most 10 kN/s. Contact at hand speed is slower
+///   slew        from nothing to the device's maximum force in 2 ms: max_force / 2 ms, at most 10 kN/s. Contact at hand speed is slower
 ///   ramp in     0.5 s;  ramp out 20 ms after more than 5 late ticks
 ///   passivity   observed and controlled; the controller adds at most m / (4 (T + t_d)) of damping: from about four
 ///               times that on (m / T without delay), damping itself shakes the device

@@ -14,14 +14,14 @@ enum class Holder : std::uint32_t { program, watchdog };
 
 struct Page {
   static constexpr std::uint32_t kMark = 0x47444f47;
-  static constexpr std::size_t kMostOffBytes = 64;
+  static constexpr std::size_t kMaxOffBytes = 64;
 
   // before the process starts
   std::uint32_t mark = kMark;
-  std::uint32_t silence_ms = 50;      ///< so long without a tick or a packet while `pushing`
-  std::uint32_t endpoint = 0;         ///< bulk OUT
-  std::uint32_t off_bytes = 0;        ///< of `off`
-  std::uint8_t off[kMostOffBytes]{};  ///< the packet that takes the force away
+  std::uint32_t silence_ms = 50;     ///< so long without a tick or a packet while `pushing`
+  std::uint32_t endpoint = 0;        ///< bulk OUT
+  std::uint32_t off_bytes = 0;       ///< of `off`
+  std::uint8_t off[kMaxOffBytes]{};  ///< the packet that takes the force away
 
   // the program's threads
   std::atomic<std::uint32_t> ticks{0};    ///< haptic thread: orders written

@@ -34,7 +34,7 @@ enum class Sent { yes, not_yet, gone };
 Sent send_off(Page& page, int usb) noexcept {
   usbdevfs_bulktransfer transfer{};
   transfer.ep = page.endpoint;
-  transfer.len = std::min<std::uint32_t>(page.off_bytes, Page::kMostOffBytes);
+  transfer.len = std::min<std::uint32_t>(page.off_bytes, Page::kMaxOffBytes);
   transfer.timeout = kWriteMs;
   transfer.data = page.off;
   const int sent = ioctl(usb, USBDEVFS_BULK, &transfer);

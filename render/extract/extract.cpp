@@ -27,7 +27,7 @@ Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(const scene::Scene& 
                                                             const char* what) {
   const field::AnyField& any = scene::drawn_field(scene, field);
   if (!any.scalar)
-    return json::error_at(member_or(where, "field"),
+    return json::error_at(json::member_or(where, "field"),
                           "\"" + name_of(scene, field) + "\" is a vector field; expected a scalar field for " + what);
   CATENA_ASSERT(any.scalar->grid() != nullptr);
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
@@ -69,7 +69,7 @@ Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
     if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
-    CATENA_CHECK(scene::check_level(*grid, surface.level, member_or(surface.where, "level")));
+    CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
     const std::uint32_t id = packet.add_object("isosurface", name_of(scene, surface.field));
     packet.isosurfaces.push_back(

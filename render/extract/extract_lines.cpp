@@ -21,10 +21,10 @@ constexpr double kTubeShare = 0.003;                    // fitted tube radius by
 constexpr double kIndicatorShare = 0.004;               // the same of the indicator
 constexpr double kIndicatorLength = 0.1;                // of L
 constexpr double kArrowRadius = 2.4, kArrowLength = 6;  // by the tube's radius
-constexpr double kMostArrows = 100000;
-constexpr std::size_t kMostKeptKnots = 2000000;  // of a set: above it the curves go once they are polylines
-constexpr double kPulseShare = 1.0 / 12;         // of a pulse: the longest segment
-constexpr double kDimmest = 0.25;                // brightness between pulses
+constexpr double kMaxArrows = 100000;
+constexpr std::size_t kMaxKeptKnots = 2000000;  // of a set: above it the curves go once they are polylines
+constexpr double kPulseShare = 1.0 / 12;        // of a pulse: the longest segment
+constexpr double kDimmest = 0.25;               // brightness between pulses
 
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 
@@ -101,7 +101,7 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
   // a slip of the spacing must not fill the memory
   double all = 0;
   for (const flow::CurvePtr& curve : curves) all += curve->period();
-  if (set.arrows > 0 && all / set.arrows > kMostArrows) {
+  if (set.arrows > 0 && all / set.arrows > kMaxArrows) {
     const json::Node* node = set.where.find("arrows");
     return json::error_at(node == nullptr ? set.where : *node, "\"arrows\" this close would be more than 100000 on the lines, which are " +
                                                                    to_text(all) + " long together; a longer spacing was expected");
@@ -197,7 +197,7 @@ Outcome prepare_streamlines(scene::Scene& scene) {
     CATENA_TRY(std::vector<flow::CurvePtr> curves, scene::use_lines(scene, e));
     std::size_t knots = 0;
     for (const flow::CurvePtr& curve : curves) knots += curve->knots().size();
-    if (knots > kMostKeptKnots) scene::release_lines(scene, e);
+    if (knots > kMaxKeptKnots) scene::release_lines(scene, e);
     const scene::StreamlineSet& set = scene.world.get<scene::StreamlineSet>(e);
     CATENA_TRY(const field::AnyField any, scene::use_field(scene, set.field, set.where));
     CATENA_TRY(FlatLines made, flat_lines(scene, set, std::move(curves), any.vector));

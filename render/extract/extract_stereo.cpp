@@ -47,10 +47,10 @@ std::size_t views_of(const scene::Stereo& stereo) {
 }
 
 Outcome check_eyes(const FramePacket& packet, const scene::Stereo& stereo) {
-  constexpr double kMostApart = 1e15;  // world units: a float of the picture still tells them apart
+  constexpr double kMaxApart = 1e15;  // world units: a float of the picture still tells them apart
   const auto too_far = [&](const View& eye) {
-    return std::fabs(eye.window.left) > 0.5 * kMostShift || !is_finite(eye.position) || !is_finite(eye.target) ||
-           max_abs(eye.position) > kMostApart;
+    return std::fabs(eye.window.left) > 0.5 * kMaxShift || !is_finite(eye.position) || !is_finite(eye.target) ||
+           max_abs(eye.position) > kMaxApart;
   };
   if (std::none_of(packet.eyes.begin(), packet.eyes.end(), too_far)) return Done{};
   return Error{fmt::format("\"stereo\": the eyes are {} apart with a zero-parallax distance of {}: expected eyes that see one scene",

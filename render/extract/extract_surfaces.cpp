@@ -15,7 +15,7 @@
 namespace catena::render {
 namespace {
 
-constexpr double kMostVoxels = 1 << 28;  ///< of a grid of magnitudes
+constexpr double kMaxVoxels = 1 << 28;  ///< of a grid of magnitudes
 
 // ---- meshes ----
 
@@ -77,11 +77,11 @@ Outcome prepare_slice(scene::Scene& scene, scene::Entity e) {
   if (!scene.made.has<PlainMagnitude>(e)) scene.made.emplace<PlainMagnitude>(e);
   PlainMagnitude& plain = scene.made.get<PlainMagnitude>(e);
   if (plain.version == grid.version()) return Done{};
-  const json::Node& where = member_or(scene.world.get<scene::Slice>(e).where, "field");
+  const json::Node& where = json::member_or(scene.world.get<scene::Slice>(e).where, "field");
   const Vec3 size = grid.index_box().hi - grid.index_box().lo + 1.0;
-  if (size.x * size.y * size.z > kMostVoxels)
+  if (size.x * size.y * size.z > kMaxVoxels)
     return json::error_at(where, "\"" + name_of(scene, field) + "\" has " + to_text(size.x * size.y * size.z) +
-                                     " voxels; a vector field of at most " + to_text(kMostVoxels) + " was expected for a slice");
+                                     " voxels; a vector field of at most " + to_text(kMaxVoxels) + " was expected for a slice");
   auto made = field::magnitude_grid(grid, "the magnitude of \"" + name_of(scene, field) + "\"");
   if (!made) return json::error_at(where, made.error().message);
   plain = {*made, grid.version()};
@@ -158,10 +158,10 @@ Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contour
   for (int i = 0; i < contours.count; ++i) levels.push_back(lo + (hi - lo) * (i + 1) / (contours.count + 1));
   if (!(contours.spacing > 0)) return levels;
   const double first = std::ceil(lo / contours.spacing), last = std::floor(hi / contours.spacing);
-  if (last - first + 1 > scene::kMostContours)
-    return json::error_at(member_or(contours.where, "spacing"), "\"spacing\" is " + to_text(contours.spacing) + ", which gives " +
-                                                                    to_text(last - first + 1) + " levels; at most " +
-                                                                    to_text(scene::kMostContours) + " were expected");
+  if (last - first + 1 > scene::kMaxContours)
+    return json::error_at(json::member_or(contours.where, "spacing"), "\"spacing\" is " + to_text(contours.spacing) + ", which gives " +
+                                                                          to_text(last - first + 1) + " levels; at most " +
+                                                                          to_text(scene::kMaxContours) + " were expected");
   for (double n = first; n <= last; ++n) levels.push_back(n * contours.spacing);
   return levels;
 }

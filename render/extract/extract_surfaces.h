@@ -13,7 +13,7 @@ namespace catena::render {
 Outcome prepare_meshes(scene::Scene& scene);
 void extract_meshes(const scene::Scene& scene, FramePacket& packet);
 
-/// Errors: a plane that misses the field, a spacing that gives more than scene::kMostContours lines, a vector grid too large for
+/// Errors: a plane that misses the field, a spacing that gives more than scene::kMaxContours lines, a vector grid too large for
 /// its magnitudes.
 Outcome prepare_slices(scene::Scene& scene);
 Outcome extract_slices(const scene::Scene& scene, FramePacket& packet);

@@ -21,10 +21,4 @@ std::vector<scene::Entity> owners_of(const scene::World& world) {
   return owners;
 }
 
-/// Where a message points: the member, or the object that lacks it.
-inline const json::Node& member_or(const json::Node& node, std::string_view key) {
-  const json::Node* member = node.find(key);
-  return member == nullptr ? node : *member;
-}
-
 }  // namespace catena::render

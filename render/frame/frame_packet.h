@@ -41,7 +41,7 @@ struct LightItem {
   Color color{1, 1, 1};  ///< times the intensity
   bool with_camera = false;
 };
-inline constexpr std::size_t kMostLights = 4;
+inline constexpr std::size_t kMaxLights = 4;
 
 /// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
 struct FogItem {
@@ -211,7 +211,7 @@ struct FramePacket {
   std::vector<IndicatorItem> indicators;
   Overlay overlay;
   std::vector<Plane> clip;        ///< what all planes keep is drawn; at most kMaxClipPlanes
-  std::vector<LightItem> lights;  ///< none: a headlight; at most kMostLights
+  std::vector<LightItem> lights;  ///< none: a headlight; at most kMaxLights
   std::optional<FogItem> fog;
   AidItems aids;
   WidgetItems widgets;

@@ -5,8 +5,6 @@
 
 namespace catena::render {
 
-inline constexpr float kLargestHalf = 65504.0f;
-
 /// For finite values within +-65504 (beyond: infinity). Subnormals are kept.
 inline std::uint16_t half_from_float(float value) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);

@@ -15,7 +15,7 @@ namespace catena::render {
 namespace {
 
 using field::Index3;
-constexpr double kMostVoxels = 64.0 * 1024 * 1024;  // 256 MiB of words; above, the brick atlas serves better
+constexpr double kMaxVoxels = 64.0 * 1024 * 1024;  // 256 MiB of words; above, the brick atlas serves better
 
 struct Extent {
   Index3 lo, size;
@@ -45,7 +45,7 @@ bool can_be_packed(const vk::Device& device, const field::ScalarGrid& grid) {
   const Vec3 n = box.hi - box.lo + Vec3(1.0);
   const double limit = device.info().limits.maxImageDimension3D;
   return grid.stats().active_voxels > 0 && !grid.has_mask() && grid.stats().nan_count == 0 && std::isfinite(grid.background()) &&
-         std::min({n.x, n.y, n.z}) >= 2 && std::max({n.x, n.y, n.z}) <= limit && n.x * n.y * n.z <= kMostVoxels;
+         std::min({n.x, n.y, n.z}) >= 2 && std::max({n.x, n.y, n.z}) <= limit && n.x * n.y * n.z <= kMaxVoxels;
 }
 
 std::uint64_t packed_bytes(const field::ScalarGrid& grid) {

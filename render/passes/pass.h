@@ -59,7 +59,7 @@ struct Frame {
   const RenderSettings& settings;
   CameraRays rays;                    ///< from record() on
   TargetSet written = 0;              ///< by the passes before this one, or to be (prepare: of all passes)
-  vk::Image* half_lattice = nullptr;  ///< the volume on every 2nd pixel, instead of Target::volume
+  vk::Image* half_lattice = nullptr;  ///< the volume on every 2nd pixel, instead of target::volume
   VkRect2D half_area{};
   /// The nearest first at every pixel, at most MAX_LAYERS. A pass before the raycast appends them in prepare() and draws them in
   /// record(); the raycast blends them, also where there is no volume.

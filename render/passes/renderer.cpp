@@ -29,8 +29,8 @@ Outcome check(const FramePacket& packet, const RenderSettings& settings, const v
     return Error{fmt::format("the ray step is {} voxels, expected a positive number", settings.step_voxels)};
   if (packet.clip.size() > kMaxClipPlanes)
     return Error{fmt::format("the scene has {} clip planes, expected at most {}", packet.clip.size(), kMaxClipPlanes)};
-  if (packet.lights.size() > kMostLights)
-    return Error{fmt::format("the scene has {} lights, expected at most {}", packet.lights.size(), kMostLights)};
+  if (packet.lights.size() > kMaxLights)
+    return Error{fmt::format("the scene has {} lights, expected at most {}", packet.lights.size(), kMaxLights)};
   return Done{};
 }
 

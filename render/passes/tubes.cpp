@@ -17,7 +17,7 @@ constexpr std::uint32_t kTubesFragmentShader[] = {
 #include "spirv/mesh.frag.inc"
 };
 
-constexpr std::size_t kMostRings = 1 << 16;  // of a piece: all pieces share their indices
+constexpr std::size_t kMaxRings = 1 << 16;  // of a piece: all pieces share their indices
 
 /// A share of -1..1 as unpackSnorm2x16 reads it.
 std::uint32_t packed_share(double x) { return static_cast<std::uint16_t>(std::lround(std::clamp(x, -1.0, 1.0) * 32767)); }
@@ -93,7 +93,7 @@ class Tubes::Filler {
     const bool gap = sides == RING_GAP;
     rings_.push_back({glm::vec3(ring.centre - tubes_.origin_), gap ? 0.0f : static_cast<float>(ring.radius), static_cast<float>(ring.lean),
                       packed_direction(ring.tangent), packed_direction(ring.normal), packed_color(ring.color, sides), id});
-    if (rings_.size() < kMostRings) return Done{};
+    if (rings_.size() < kMaxRings) return Done{};
     // the next piece goes on from the last ring
     const shared::TubeRingData last = rings_.back();
     CATENA_CHECK(flush());

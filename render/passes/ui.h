@@ -27,7 +27,6 @@ class WindowPainter {
   /// What was painted last, in the layout TRANSFER_SRC.
   vk::Image& window() { return window_; }
   /// That are on the device now.
-  std::size_t textures() const { return textures_.size(); }
 
  private:
   struct Texture {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStepShare = 0.93;  // of the error that ray steps may take
 constexpr double kMargin = 0.95;     // for the lattice's statistical error
-constexpr int kMostPictures = 16;
+constexpr int kMaxPictures = 16;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
 /// CPU driver has them: they only decide what is tried first.
@@ -104,7 +104,7 @@ class Search {
     if (fast_) {
       CATENA_TRY(auto candidates, fast_candidates(e));
       std::optional<Tried> failed[kPlans][2];  // the latest of a plan and shading
-      for (int drawn = 0; drawn < kMostPictures && !candidates.empty(); candidates.erase(candidates.begin())) {
+      for (int drawn = 0; drawn < kMaxPictures && !candidates.empty(); candidates.erase(candidates.begin())) {
         // what interpolation cost at another step says whether this one is worth a picture
         const Candidate& next = candidates.front();
         std::optional<Tried>& before = failed[next.plan][next.smooth];

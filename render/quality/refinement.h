@@ -54,7 +54,6 @@ class Refinement {
   std::optional<RefinementStep> next(bool changed);
   /// What that picture took.
   void drawn(double ms);
-  void set_budget_ms(double budget_ms) { budget_ms_ = budget_ms; }
 
  private:
   std::size_t best_within_budget() const;

@@ -15,7 +15,7 @@ View perspective_eye(const View& centre, const Camera& axes, double aspect, doub
   eye.position += offset * axes.right;
   eye.target += offset * axes.right;
   const double half_width = aspect * std::tan(0.5 * centre.fovy_deg * std::numbers::pi / 180);
-  const double shift = std::clamp(offset / (zero_parallax * half_width), -kMostShift, kMostShift);
+  const double shift = std::clamp(offset / (zero_parallax * half_width), -kMaxShift, kMaxShift);
   eye.window.left -= shift;
   eye.window.right -= shift;
   return eye;

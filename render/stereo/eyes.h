@@ -14,7 +14,7 @@
 namespace catena::render {
 
 /// Of an eye's window, in its own widths: farther apart no picture has both.
-inline constexpr double kMostShift = 1e6;
+inline constexpr double kMaxShift = 1e6;
 
 struct EyeSettings {
   std::size_t views = 2;

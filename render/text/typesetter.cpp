@@ -35,11 +35,11 @@ bool GlyphAtlas::place(Entry& entry) {
     return true;
   }
   const int y = shelves_.empty() ? 0 : shelves_.back().y + shelves_.back().height;
-  if (y + rows > kMostHeight) return false;
+  if (y + rows > kMaxHeight) return false;
   if (y + rows > height_) {
     int next = std::max(kFirstHeight, height_);
     while (next < y + rows) next *= 2;
-    grow(std::min(next, kMostHeight));
+    grow(std::min(next, kMaxHeight));
   }
   shelves_.push_back({y, rows, entry.width});
   entry.x = 0;
@@ -52,7 +52,7 @@ const GlyphAtlas::Entry* GlyphAtlas::get(const Font& font, std::uint32_t glyph, 
   if (const auto it = entries_.find(key); it != entries_.end()) return &it->second;
   const GlyphBitmap bitmap = font.rasterise(glyph, size_px, 0.25 * quarter, halo_px);
   Entry entry{0, 0, bitmap.width, bitmap.height, bitmap.left, bitmap.top};
-  if (entry.width > kWidth || entry.height > kMostHeight) return nullptr;
+  if (entry.width > kWidth || entry.height > kMaxHeight) return nullptr;
   if (entry.width > 0 && !place(entry)) {
     clear();
     if (!place(entry)) return nullptr;

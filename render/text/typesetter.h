@@ -47,7 +47,7 @@ class GlyphAtlas {
     int x = 0, y = 0, width = 0, height = 0;  ///< in the image
     int left = 0, top = 0;                    ///< of the bitmap's corner, from the pen
   };
-  static constexpr int kWidth = 1024, kMostHeight = 4096;
+  static constexpr int kWidth = 1024, kMaxHeight = 4096;
 
   /// The glyph with its pen at `quarter` / 4 of a pixel. Nothing if it is larger than the whole image.
   const Entry* get(const Font& font, std::uint32_t glyph, double size_px, int quarter, double halo_px);

@@ -82,7 +82,6 @@ class Device {
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
-  std::uint32_t queue_family() const { return queue_family_; }
   VkCommandPool command_pool() const { return pool_; }
   VkSurfaceKHR surface() const { return instance_->surface(); }
   const DeviceInfo& info() const { return info_; }

@@ -8,7 +8,7 @@ namespace noisy_surface_test {
 using haptics::tests::Random;
 using haptics::tests::Rig;
 
-constexpr double kStiffness = 800, kMetres = 0.05, kMostForce = 8, kLevel = 0.6;
+constexpr double kStiffness = 800, kMetres = 0.05, kMaxForce = 8, kLevel = 0.6;
 constexpr int kNodes = 96;
 #ifdef CATENA_SANITIZED
 constexpr int kTicks = 6000;
@@ -41,7 +41,7 @@ std::shared_ptr<const Program> program_on(const std::vector<haptics::tests::Cons
   auto program = std::make_shared<Program>(*program_of(constraints));
   for (haptics::Link& link : program->links) link.stiffness_n_per_m = kStiffness;
   program->metres_per_unit = kMetres;
-  program->coupling.max_force_n = kMostForce;
+  program->coupling.max_force_n = kMaxForce;
   return program;
 }
 
@@ -62,9 +62,9 @@ void follow(const std::string& side) {
     const double gap = norm(probe - last_proxy), dx = norm(probe - last_probe);
     if (i > 0) {
       // in units of what is allowed
-      const double slip = std::max(0.05 * kMostForce / newtons_per_unit, 0.05 * gap);
+      const double slip = std::max(0.05 * kMaxForce / newtons_per_unit, 0.05 * gap);
       worst_move = std::max(worst_move, (norm(chain.proxy() - last_proxy) - dx) / slip);
-      worst_step = std::max(worst_step, norm(force - last_force) / (0.05 * kMostForce));
+      worst_step = std::max(worst_step, norm(force - last_force) / (0.05 * kMaxForce));
       worst_unlimited = std::max(worst_unlimited, norm(unlimited.state.proxy - last_unlimited) / voxel);
       if (chain.status() == Status::ok) worst_rise = std::max(worst_rise, norm(probe - chain.proxy()) - gap);
     }
@@ -107,7 +107,7 @@ TEST(NoisySurface, OnlyTheClosestPointItselfMayOutrunTheTravel) {
     const Vec3 probe = hand.next();
     chain.to(probe);
     if (i > 0) {
-      const double gap = norm(probe - last_proxy), slip = std::max(0.05 * kMostForce / (kStiffness * kMetres), 0.05 * gap);
+      const double gap = norm(probe - last_proxy), slip = std::max(0.05 * kMaxForce / (kStiffness * kMetres), 0.05 * gap);
       if (norm(chain.proxy() - last_proxy) > norm(probe - last_probe) + slip) {
         const bool was_nearer = norm(last_probe - chain.proxy()) < norm(last_probe - last_proxy) - 1e-8 * grid->length();
         ++(was_nearer ? jumps : moved);

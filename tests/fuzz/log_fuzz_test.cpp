@@ -106,7 +106,7 @@ TEST(LogFuzz, HostileLengthsAndMarksCostNoMoreThanTheFile) {
   BlockHead head;
   head.type = 3;
   head.sequence = 1;
-  head.length = kMostPayload;
+  head.length = kMaxPayload;
   head.head_hash = test::hash_of(reinterpret_cast<const char*>(&head), BlockHead::kHashed);
   std::string bytes = seed.substr(0, 400);
   for (int i = 0; i < 50000; ++i) bytes.append(reinterpret_cast<const char*>(&head), sizeof head);

@@ -12,7 +12,7 @@ namespace catena::app {
 namespace {
 
 constexpr std::size_t kStackBytes = 64 * 1024;
-constexpr int kMostWaitMs = 1000;
+constexpr int kMaxWaitMs = 1000;
 
 std::atomic<haptics::Device*> held{nullptr};
 static_assert(std::atomic<haptics::Device*>::is_always_lock_free, "a signal handler reads it");
@@ -61,7 +61,7 @@ LetGo let_go() noexcept {
   haptics::Device* device = held.exchange(nullptr);
   if (device == nullptr) return LetGo::nobody;
   device->stop();
-  for (int waited_ms = 0; waited_ms < kMostWaitMs; ++waited_ms) {
+  for (int waited_ms = 0; waited_ms < kMaxWaitMs; ++waited_ms) {
     if (device->at_rest()) return LetGo::off;
     const timespec nap{.tv_sec = 0, .tv_nsec = 1'000'000};
     nanosleep(&nap, nullptr);

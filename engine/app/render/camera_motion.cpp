@@ -25,7 +25,7 @@ Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
   motion.elevation_deg_ = o.elevation_deg;
   motion.zoom_ = o.zoom;
   const double by_path = std::max(motion.path_ ? motion.path_->duration_s() : 0.0, hand_s) * o.fps + 1;
-  if (o.frames == 0 && by_path > kMostFrames)
+  if (o.frames == 0 && by_path > kMaxFrames)
     return Error{(o.camera.empty() ? o.probe : o.camera) + ": at " + std::to_string(o.fps) +
                  " frames a second there are more than 100000: expected --frames N"};
   motion.frames_ = o.frames > 0 ? o.frames : std::max(1, static_cast<int>(std::lround(by_path)));

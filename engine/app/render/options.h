@@ -10,7 +10,7 @@
 
 namespace catena::app {
 
-inline constexpr int kMostFrames = 100000;
+inline constexpr int kMaxFrames = 100000;
 
 struct RenderOptions {
   std::string source, output, size = "1024x768", quality, stats, probe;

@@ -27,7 +27,7 @@ namespace catena::app {
 namespace {
 
 constexpr int kUnreportedFrames = 3;
-constexpr int kMostTiledPixels = 65536;  // each way
+constexpr int kMaxTiledPixels = 65536;  // each way
 
 template <class T>
 T machine(Result<T> result) {
@@ -132,7 +132,7 @@ Result<Size> picture_size(const RenderOptions& o, const scene::Stereo& stereo, c
 }  // namespace
 
 Outcome render_pictures(const RenderOptions& o) {
-  CATENA_TRY(const Size size, parse_size(o.size, kMostTiledPixels));
+  CATENA_TRY(const Size size, parse_size(o.size, kMaxTiledPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   if (o.play && o.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
   HandPath path;

@@ -59,7 +59,7 @@ Result<std::shared_ptr<const Constraint>> build_gradient_force(const json::Node&
 ConstraintType gradient_force_constraint() {
   return {"gradient_force",
           "Draws the hand up or down a scalar field.",
-          "a volume mode beside the paper's",
+          "not in the paper",
           {scalar_field_key("field").required(), length_key("displacement", "Largest distance of the proxy from the probe.").required(),
            schema::word("towards", {"high", "low"}, "Which values draw the hand.").required()},
           build_gradient_force};

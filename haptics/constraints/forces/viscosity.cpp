@@ -58,9 +58,13 @@ Result<std::shared_ptr<const Constraint>> build_viscosity(const json::Node& link
 ConstraintType viscosity_constraint() {
   return {"viscosity",
           "A fluid about the hand. It has either `time` or `coefficient`.",
-          "a volume mode beside the paper's",
-          {schema::number("time", "s", "Relaxation time: the force is stiffness x time x velocity.").not_negative().or_field().stated(),
-           schema::number("coefficient", "N s/m", "The damper itself.").not_negative().or_field()},
+          "not in the paper",
+          {schema::number("time", "s", "Relaxation time: the force is stiffness x time x velocity.")
+               .not_negative()
+               .or_field()
+               .begins("0.05")
+               .stated(),
+           schema::number("coefficient", "N s/m", "The damper itself.").not_negative().or_field().begins("2")},
           build_viscosity};
 }
 

@@ -29,7 +29,7 @@ ConstraintType drag_constraint() {
   return {"drag",
           "Isotropic friction: the proxy stays within `threshold` of the probe.",
           "section 3",
-          {length_key("threshold", "Distance at which the proxy slips.").required(), surface_key(), surface_level_key()},
+          {length_key("threshold", "Distance at which the proxy slips.").begins("0.005 L").required(), surface_key(), surface_level_key()},
           build_drag};
 }
 

@@ -112,7 +112,7 @@ ConstraintType modulated_friction_constraint() {
        level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
        length_key("tau_min", "Threshold where the field is tangential.").by_default("0.001 L"),
        length_key("tau_max", "Threshold where the field is normal.").by_default("0.01 L"),
-       schema::word("law", {"safe", "printed"}, "`safe`: harder the more normal; `printed`: Eq. 7 to the letter.").by_default("`safe`")},
+       schema::word("law", {"safe", "printed"}, "`safe`: harder the more normal; `printed`: Eq. 7 to the letter.").by_default("\"safe\"")},
       build_modulated_friction};
 }
 

@@ -44,7 +44,7 @@ ConstraintType texture_constraint() {
   return {"texture",
           "Drag with bumps of a wavelength.",
           "section 3",
-          {length_key("threshold", "Mean distance at which the proxy slips.").required(),
+          {length_key("threshold", "Mean distance at which the proxy slips.").begins("0.005 L").required(),
            schema::number("amplitude", "", "Part of the threshold that varies.").within(0, 1).by_default("0.5"),
            schema::number("wavelength", "world", "Of the variation.").positive().required(), surface_key(), surface_level_key()},
           build_texture};

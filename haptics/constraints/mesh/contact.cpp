@@ -11,8 +11,8 @@ constexpr double kBehind = 4 * kGap;    // so far behind a face it still holds: 
 constexpr double kTouching = 8 * kGap;  // height and outline of a face that is touched; shorter moves leave none
 constexpr double kSlip = 1e-9;          // past a vertex: at least so far
 constexpr double kAtVertex = 64 * kGap;
-constexpr std::size_t kMostFan = 12;  // faces at a vertex that are tried
-constexpr double kReach = 31;         // of one tick; the mesh is 1 long
+constexpr std::size_t kMaxFan = 12;  // faces at a vertex that are tried
+constexpr double kReach = 31;        // of one tick; the mesh is 1 long
 
 class Mover {
  public:
@@ -77,7 +77,7 @@ class Mover {
       if (max_abs(mesh_.corner(face, k) - god_.p) <= kAtVertex) corner = k;
     if (corner < 0) return false;
     const auto fan = mesh_.fan(mesh_.triangles()[face][static_cast<std::size_t>(corner)]);
-    const std::size_t count = std::min<std::size_t>(fan.size(), kMostFan);
+    const std::size_t count = std::min<std::size_t>(fan.size(), kMaxFan);
     const GodObject before = god_;
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = i; j < count; ++j) {

@@ -16,7 +16,7 @@ ReadyMode anisotropic_friction() {
        line_kind_key(), length_key("threshold", "Slip across the field.").by_default("0.005 L"),
        length_key("tau_min", "Slip along the field where it is tangential.").by_default("0.001 L"),
        length_key("tau_max", "Slip along the field where it is normal.").by_default("0.01 L"),
-       schema::word("law", {"safe", "printed"}, "As of `modulated_friction`.").by_default("`safe`"), free_key("where values are larger")},
+       schema::word("law", {"safe", "printed"}, "As of `modulated_friction`.").by_default("\"safe\""), free_key("where values are larger")},
       {{"surface", "isosurface", {{"surface", "field"}, {"level", "level"}, {"free", "free"}}},
        {"direction",
         "friction",

@@ -2,8 +2,8 @@
 ///   anisotropic_friction   NAME_surface    isosurface: the hand on a level of a scalar field (p_s)
 ///                          NAME_direction  friction across the tangential part of a vector field (p_c)
 ///                          NAME_friction   friction modulated by the field's angle to the surface, Eqs. 7-9 (p_f)
-/// A mode is an entry of a table: which of its keys go to which link, under which name. Of the common keys stiffness and on go to all
-/// links, the others to the first. Values keep their file and line, so that errors name the place in the scene.
+/// A mode is an entry of a table: which of its keys go to which link, under which name. Of the common keys stiffness, on and enabled go to
+/// all links, the others to the first. Values keep their file and line, so that errors name the place in the scene.
 /// Off the tick.
 #pragma once
 #include "haptics/constraints/registry.h"

@@ -14,9 +14,9 @@ using Table = schema::Table<T, const Nothing>;
 const Table<Switch>& switch_table() {
   static const auto table = [] {
     Table<Switch> t;
-    t.bind(schema::integer("button", "", "The link is on while this button is held.", 1, 32).by_default(" "), &Switch::button);
+    t.bind(schema::integer("button", "", "The link is on while this button is held.", 1, 32).without_default(), &Switch::button);
     t.bind(schema::boolean("toggle", "Each press of the button turns the link on or off."), &Switch::toggle);
-    t.bind(schema::number("force_above", "N", "Or: it goes on when the last tick's force is above this.").positive().by_default(" "),
+    t.bind(schema::number("force_above", "N", "Or: it goes on when the last tick's force is above this.").positive().without_default(),
            &Switch::force_above_n);
     t.hand(schema::number("force_below", "N", "And off when the force is at most this.").not_negative().by_default("`force_above`"),
            [](const Nothing&, const json::Node& node, Switch& on) -> Outcome {

@@ -7,9 +7,9 @@
 namespace catena::haptics {
 namespace {
 
-constexpr double kReleasePart = 2, kMostSnap = 0.9;
+constexpr double kReleasePart = 2, kMaxSnap = 0.9;
 
-constexpr int kMostBeforeSearch = 64;  // fetches: with more already spent, the search waits for the next tick
+constexpr int kMaxBeforeSearch = 64;  // fetches: with more already spent, the search waits for the next tick
 
 struct SnapMemory {
   Vec3 hidden{0.0};  ///< the constraint's proxy while apart
@@ -49,7 +49,7 @@ class Snap final : public Constraint {
     // apart: where is the feature, and is it within reach; a search out of budget has found nothing
     const bool lets_go = !memory.apart;
     state.proxy = memory.hidden;
-    const bool affordable = state.evaluations <= (lets_go ? kMostBeforeSearch : kEvaluationCap - 1);
+    const bool affordable = state.evaluations <= (lets_go ? kMaxBeforeSearch : kEvaluationCap - 1);
     if (affordable) inner_->seek(probe, state, scratch);
     const bool searched = affordable && state.evaluations < kEvaluationCap && state.status != Status::budget;
     if (searched && norm(probe - state.proxy) <= distances.snap) {
@@ -80,7 +80,7 @@ class Snap final : public Constraint {
     const auto ask = [&](const Parameter& parameter) { return parameter.at(state.proxy, scratch.parameter, state.evaluations); };
     const double snap = spec_.has_snap ? ask(spec_.snap) : 0;
     const double release = spec_.has_release ? ask(spec_.release) : kReleasePart * snap;
-    return {spec_.has_snap ? std::fmin(snap, kMostSnap * release) : kRearmPart * release, release};
+    return {spec_.has_snap ? std::fmin(snap, kMaxSnap * release) : kRearmPart * release, release};
   }
 
   /// Held: what the constraint says. Without a feature it is apart, but says so itself.

@@ -1,4 +1,4 @@
-/// The rules that all penetrable surfaces share: the free side, letting go, taking hold again ("Links and proxies").
+/// The rules that all penetrable surfaces share: the free side, letting go, taking hold again.
 ///   free = above | below: where value - level has that sign (or is 0) the hand moves freely and the proxy is the probe, bit
 ///   for bit; a crossing is decided within the tick that makes it.
 ///   release: the link lets go in the tick in which |probe - proxy| >= release. A one-sided link takes hold again when its

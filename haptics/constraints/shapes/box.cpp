@@ -191,14 +191,14 @@ Result<std::shared_ptr<const Constraint>> build_box(const json::Node& link, cons
 }  // namespace
 
 ConstraintType box_constraint() {
-  return {
-      "box",
-      "Holds the proxy on the surface of a box, or on one side of it.",
-      "section 3",
-      {schema::vec3("center", "world", "Its centre.").required(), schema::vec3("size", "world", "Its three edges.").positive().required(),
-       schema::rotation("rotation", "World from box, written as in `workspace`.").by_default("none"), free_key("outside")},
-      build_box,
-      true};
+  return {"box",
+          "Holds the proxy on the surface of a box, or on one side of it.",
+          "section 3",
+          {schema::vec3("center", "world", "Its centre.").required(),
+           schema::vec3("size", "world", "Its three edges.").positive().begins("0.2 L").required(),
+           schema::rotation("rotation", "World from box, written as in `workspace`.").by_default("none"), free_key("outside")},
+          build_box,
+          true};
 }
 
 }  // namespace catena::haptics

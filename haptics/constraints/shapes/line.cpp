@@ -34,7 +34,7 @@ ConstraintType line_constraint() {
           "Holds the proxy on an infinite line.",
           "section 3",
           {schema::vec3("point", "world", "A point of the line.").required(),
-           schema::direction("direction", "Its direction, of any length.").required()},
+           schema::direction("direction", "Its direction, of any length.").begins("[1, 0, 0]").required()},
           build_line,
           true};
 }

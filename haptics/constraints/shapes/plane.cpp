@@ -21,7 +21,7 @@ ConstraintType plane_constraint() {
           "Holds the proxy on a plane, or on one side of it.",
           "section 3",
           {schema::vec3("point", "world", "A point of the plane.").required(),
-           schema::direction("normal", "Its normal, of any length.").required(), free_key("where the normal points")},
+           schema::direction("normal", "Its normal, of any length.").begins("[0, 0, 1]").required(), free_key("where the normal points")},
           build_plane,
           true};
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr int kFirstVisits = 1024;
 constexpr int kVisits = 128;
 constexpr int kPieces = 4096, kPiecesAStep = 2, kVisitWork = 3;
-constexpr double kLeastExtent = 1e-300, kMostExtent = 1e300;
+constexpr double kLeastExtent = 1e-300, kMaxExtent = 1e300;
 
 struct PolylineShape {
   std::vector<Straight> pieces;
@@ -147,9 +147,9 @@ Result<std::shared_ptr<const Constraint>> build_polyline(const json::Node& link,
   if (closed) shape.pieces.emplace_back(points.back(), points.front());
   shape.tree = PolylineSearch(shape.pieces);
   const double extent = shape.tree.extent();
-  if (!(extent >= kLeastExtent && extent <= kMostExtent))
+  if (!(extent >= kLeastExtent && extent <= kMaxExtent))
     return json::error_at(*node,
-                          fmt::format("\"points\" spans {}; an extent from {} to {} was expected", extent, kLeastExtent, kMostExtent));
+                          fmt::format("\"points\" spans {}; an extent from {} to {} was expected", extent, kLeastExtent, kMaxExtent));
   return make_closed_form<PolylineSurface>(std::move(shape), rules);
 }
 

@@ -35,10 +35,13 @@ Result<std::shared_ptr<const Constraint>> build_segment(const json::Node& link, 
 }  // namespace
 
 ConstraintType segment_constraint() {
-  return {
-      "segment",     "Holds the proxy on a piece of a line.",
-      "section 3",   {schema::vec3("from", "world", "Its first end.").required(), schema::vec3("to", "world", "Its other end.").required()},
-      build_segment, true};
+  return {"segment",
+          "Holds the proxy on a piece of a line.",
+          "section 3",
+          {schema::vec3("from", "world", "Its first end.").required(),
+           schema::vec3("to", "world", "Its other end.").begins("hand + 0.1 L").required()},
+          build_segment,
+          true};
 }
 
 }  // namespace catena::haptics

@@ -19,7 +19,7 @@ ConstraintType sphere_constraint() {
           "Holds the proxy on a sphere, or on one side of it.",
           "section 3",
           {schema::vec3("center", "world", "Its centre.").required(),
-           schema::number("radius", "world", "Its radius.").positive().required(), free_key("outside")},
+           schema::number("radius", "world", "Its radius.").positive().begins("0.1 L").required(), free_key("outside")},
           build_sphere,
           true};
 }

@@ -89,6 +89,7 @@ ConstraintType streamline_constraint() {
                .by_default("`rkf34`; sampled line fields `dp54`"),
            schema::number("tolerance", "L", "Embedded error of one online step.")
                .limited({0.0, 1.0, true, true})
+               .begins("1e-4")
                .by_default("1e-9; sampled line fields 1e-13"),
            line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").not_negative().by_default("0")},
           build_streamline};

@@ -270,13 +270,15 @@ Result<std::shared_ptr<const Constraint>> build_vortex_core(const json::Node& li
 ConstraintType vortex_core_constraint() {
   return {"vortex_core",
           "Holds the proxy in a tube about the core line of a vortex.",
-          "a volume mode beside the paper's",
+          "not in the paper",
           {vector_field_key("field").required(),
            schema::number("radius", "world", "Radius of the tube in which the hand moves freely; 0: on the core.")
                .not_negative()
+               .begins("0.1 L")
                .by_default("0"),
            schema::number("search", "world", "Longest distance of the core from the probe.")
                .positive()
+               .begins("0.2 L")
                .by_default("0.1 L or 2 `radius`, the larger")},
           build_vortex_core};
 }

@@ -59,8 +59,7 @@ class FalconSession {
   void let_go() noexcept;
 
   const FalconPose& pose() const { return pose_; }
-  std::uint8_t homed() const { return homed_; }                ///< bits 0-2, of the last frame
-  const FalconCommand& last_command() const { return sent_; }  ///< what the motors and LEDs were sent
+  std::uint8_t homed() const { return homed_; }  ///< bits 0-2, of the last frame
   /// The last packet was a zero, and the device has it.
   bool at_rest() const { return acknowledged_ && sent_.motors == FalconCounts{}; }
 

@@ -11,7 +11,7 @@ namespace catena::haptics::usb {
 /// Those on the USB bus as "falcon", "falcon:1", ...; a "falcon" that is not present where there is none.
 void list_falcons(std::vector<DeviceInfo>& to);
 
-/// Tells the share of an upload, ten lines a try; for BootOptions::progress.
+/// Tells the share of an upload, ten lines a try; for FalconBootOptions::progress.
 std::function<bool(int attempt, double share)> boot_progress_lines(std::function<void(const std::string&)> tell);
 
 /// `detail`: empty or "0" for the first one, "1" for the second.

@@ -116,7 +116,7 @@ Result<std::unique_ptr<ExternalWatchdog>> start_process(const std::string& path,
 }  // namespace
 
 Result<std::unique_ptr<WatchdogMemory>> WatchdogMemory::make(std::uint8_t endpoint, std::span<const std::uint8_t> off) {
-  CATENA_ASSERT(off.size() <= watchdog::Page::kMostOffBytes);
+  CATENA_ASSERT(off.size() <= watchdog::Page::kMaxOffBytes);
   Descriptor fd(memfd_create("catena-watchdog", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (fd.get() < 0 || ftruncate(fd.get(), sizeof(watchdog::Page)) != 0 ||
       fcntl(fd.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)

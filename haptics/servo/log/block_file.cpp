@@ -74,7 +74,7 @@ bool BlockFile::write_all(const void* data, std::size_t size) {
 
 bool BlockFile::write(BlockType type, std::string_view payload) {
   if (error_ != 0) return false;
-  if (payload.size() > kMostPayload) {
+  if (payload.size() > kMaxPayload) {
     error_ = EFBIG;
     return false;
   }

@@ -14,7 +14,7 @@ constexpr std::size_t kWindow = std::size_t{64} << 10;
 
 bool is_head(const char* bytes, BlockHead& head) {
   std::memcpy(&head, bytes, sizeof head);
-  return head.mark == BlockHead::kBlockMark && head.head_hash == hash_of(bytes, BlockHead::kHashed) && head.length <= kMostPayload;
+  return head.mark == BlockHead::kBlockMark && head.head_hash == hash_of(bytes, BlockHead::kHashed) && head.length <= kMaxPayload;
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ struct BlockHead {
 };
 static_assert(sizeof(BlockHead) == 40);
 
-inline constexpr std::uint64_t kMostPayload = std::uint64_t{64} << 20;  ///< of any block; a longer one is damaged
+inline constexpr std::uint64_t kMaxPayload = std::uint64_t{64} << 20;  ///< of any block; a longer one is damaged
 
 inline constexpr int kTickWords = 24;
 inline constexpr int kLinkWords = 20;

@@ -25,8 +25,8 @@
 
 namespace catena::haptics::log {
 
-inline constexpr int kMostWords = kTickWords + kLinkWords * kMaxLinks + kWidgetWords * exchange::kMaxWidgets;
-using Words = std::array<std::uint64_t, kMostWords>;
+inline constexpr int kMaxWords = kTickWords + kLinkWords * kMaxLinks + kWidgetWords * exchange::kMaxWidgets;
+using Words = std::array<std::uint64_t, kMaxWords>;
 
 /// What a record holds beside the tick's own.
 struct Shape {
@@ -42,7 +42,7 @@ struct LogTick {
   exchange::HapticState output;
 };
 
-/// The number of words written; `words` has room for kMostWords.
+/// The number of words written; `words` has room for kMaxWords.
 int pack(const ProbeSample& input, const exchange::HapticState& output, std::uint64_t* words) noexcept;
 
 /// False where a word is none that a tick can write (a status without a name, say); `tick` is then half filled.

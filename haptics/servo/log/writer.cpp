@@ -26,7 +26,7 @@ namespace {
 
 // A message of the ring: tick, epoch, links, then the record.
 constexpr std::size_t kMessageHead = 3;
-using Message = std::array<std::uint64_t, kMessageHead + kMostWords>;
+using Message = std::array<std::uint64_t, kMessageHead + kMaxWords>;
 
 }  // namespace
 
@@ -121,7 +121,7 @@ void LogWriter::Parts::loop() {
 Result<std::unique_ptr<LogWriter>> LogWriter::open(const std::string& path, LogHeader header, const std::vector<std::string>& inputs,
                                                    const LogOptions& options) {
   CATENA_CHECK(check_output(path, inputs));
-  if (header.scene_text.size() > kMostPayload / 2)
+  if (header.scene_text.size() > kMaxPayload / 2)
     return Error{path + ": the scene's text is too long to be recorded: expected at most 32 MiB"};
   std::error_code ignored;
   if (header.working_folder.empty()) header.working_folder = std::filesystem::current_path(ignored).string();

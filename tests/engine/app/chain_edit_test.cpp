@@ -9,6 +9,7 @@
 #include "engine/app/viewer/edit/new_widget.h"
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/shell/scene_host.h"
+#include "engine/base/json_edit.h"
 #include "haptics/extract/extract.h"
 #include "tests/support/support.h"
 
@@ -88,7 +89,7 @@ TEST(ChainEdit, KeysThatAreAddedHaveValuesThatCanBeRead) {
       CATENA_CHECK(haptics::extract_program(scene));
       return Done{};
     });
-    for (const LinkKey& key : keys_of(type)) {
+    for (const schema::Key& key : keys_of(type)) {
       const ChainRow row = chain_rows(f.host->scene(), {})[0];
       // one of the two excludes the other
       if (row.node.find(key.name) != nullptr || key.name == "coefficient" || key.name == "method") continue;
@@ -111,7 +112,7 @@ constexpr const char* kDrawn = R"({
 /// The link's field and level as its text has them.
 std::pair<std::string, std::string> surface_of(const json::Node& link) {
   const json::Node* level = link.find("level");
-  return {scene::field_of_level(link), level == nullptr ? "" : json_of(*level)};
+  return {scene::field_of_level(link), level == nullptr ? "" : json::node_text(*level)};
 }
 
 TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
@@ -123,7 +124,7 @@ TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
     ASSERT_TRUE(f.host->set("/chain/-", *new_link(f.host->scene(), type, probe, 4), "add"));
     ChainRow row = chain_rows(f.host->scene(), {})[0];
     // a surface that may be stated, is
-    for (const LinkKey& key : keys_of(type))
+    for (const schema::Key& key : keys_of(type))
       if (key.name == "surface" && row.node.find("surface") == nullptr) {
         ASSERT_TRUE(f.host->apply(added_key(f.host->scene(), row, key, probe, 4), "add")) << type;
         row = chain_rows(f.host->scene(), {})[0];
@@ -134,8 +135,8 @@ TEST(ChainEdit, WhatIsAddedLiesOnTheSurfaceThatIsDrawn) {
     EXPECT_EQ(field, "ball") << type;
     EXPECT_EQ(level, "1.2345678901") << type << ": all digits of what is drawn";
     // from one field to another: its surface follows a widget, and so does what is felt
-    for (const LinkKey& key : keys_of(type))
-      if (key.kind == LinkKey::Kind::scalar_field) {
+    for (const schema::Key& key : keys_of(type))
+      if (key.role == schema::Role::scalar_field) {
         const Outcome done = f.host->apply(changed_field(f.host->scene(), row, key, "other", probe), "field");
         ASSERT_TRUE(done) << type << ": " << done.error().message;
       }

@@ -94,7 +94,7 @@ TEST(Controls, NeitherEyeNorHandLeavesTheWorld) {
         for (int k = 0; k < 1000; ++k) {
           apply(c, input(50, -20, notches));
           ASSERT_TRUE(is_finite(c.view.position) && is_finite(c.hand)) << k;
-          ASSERT_LE(std::max(max_abs(c.view.position), max_abs(c.hand)), kMostEyeCoordinate) << k;
+          ASSERT_LE(std::max(max_abs(c.view.position), max_abs(c.hand)), kMaxEyeCoordinate) << k;
           ASSERT_EQ(eye_problem(c.view.position, c.view.target), "") << k;
         }
       }

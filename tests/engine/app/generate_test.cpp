@@ -94,6 +94,14 @@ TEST(Info, PrintsTheSchemaOfScenes) {
   EXPECT_NE(info.out.find("\"isosurface\""), std::string::npos);
 }
 
+TEST(Info, ChecksTheDeviceToo) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", "{\n\"device\": {\"type\": \"mouse\", \"rate\": 99}}");
+  const auto info = test::run_catena({"info", folder / "s.json"});
+  EXPECT_EQ(info.exit_code, 2) << info.out;
+  EXPECT_NE(info.err.find("s.json:2: \"rate\""), std::string::npos) << info.err;
+}
+
 TEST(Info, PrintsTheKeysOfAPart) {
   const auto info = test::run_catena({"info", "--keys", "slices"});
   ASSERT_EQ(info.exit_code, 0) << info.err;

@@ -13,9 +13,9 @@
 namespace catena {
 namespace golden_test {
 
-constexpr double kMostRmse = 0.5;   // of 8-bit RGB
-constexpr int kFar = 8;             // a pixel further off than this
-constexpr double kMostFar = 0.002;  // share of such pixels
+constexpr double kMaxRmse = 0.5;   // of 8-bit RGB
+constexpr int kFar = 8;            // a pixel further off than this
+constexpr double kMaxFar = 0.002;  // share of such pixels
 
 struct Golden {
   const char* name;
@@ -70,8 +70,8 @@ TEST_P(GoldenPicture, IsAsItWasLookedAt) {
     }
     far_pixels += worst > kFar;
   }
-  EXPECT_LE(std::sqrt(squares / (3.0 * double(pixels))), kMostRmse);
-  EXPECT_LE(double(far_pixels) / double(pixels), kMostFar);
+  EXPECT_LE(std::sqrt(squares / (3.0 * double(pixels))), kMaxRmse);
+  EXPECT_LE(double(far_pixels) / double(pixels), kMaxFar);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GoldenPicture, testing::ValuesIn(kGoldens), [](const auto& golden) {

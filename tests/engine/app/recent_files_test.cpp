@@ -55,7 +55,7 @@ TEST(RecentFiles, TenAtMost) {
     test::write_file(name, "");
     recent.add(name);
   }
-  ASSERT_EQ(recent.shown().size(), kMostRecentFiles);
+  ASSERT_EQ(recent.shown().size(), kMaxRecentFiles);
   EXPECT_EQ(recent.shown().front(), folder / "14.json");
   EXPECT_EQ(recent.shown().back(), folder / "5.json");
 }

@@ -5,6 +5,7 @@
 
 #include "engine/app/viewer/edit/pointers.h"
 #include "engine/app/viewer/edit/transfer_edit.h"
+#include "engine/base/json_edit.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/write_values.h"
 #include "tests/support/support.h"
@@ -76,7 +77,7 @@ TEST(TransferPoints, APointStaysBetweenItsNeighboursAndWithinThePlot) {
   EXPECT_GT(points[1].value, 0.999);
   move_point(points, kFrame, 1, -7, 2);
   EXPECT_GT(points[1].value, 0);
-  EXPECT_EQ(points[1].alpha, kMostAlpha);
+  EXPECT_EQ(points[1].alpha, kMaxAlpha);
   move_point(points, kFrame, 0, -7, -1);
   EXPECT_EQ(points[0].value, 0);
   EXPECT_EQ(points[0].alpha, 0);
@@ -164,7 +165,7 @@ TEST(Pointers, AreThoseOfTheItemsOfLists) {
   EXPECT_EQ(pointer_of(*root), "");
   EXPECT_EQ(pointer_of(*root->find("volumes")), "");
   EXPECT_EQ(pointer_of(json::Node{}), "");
-  EXPECT_EQ(node_text(*root), "{\"volumes\": [{\"a\": [[1, \"x\\\"y\"], null, true]}, 5]}");
+  EXPECT_EQ(json::node_text(*root), "{\"volumes\": [{\"a\": [[1, \"x\\\"y\"], null, true]}, 5]}");
 }
 
 /// A document of one volume over a small ball, as drawn.

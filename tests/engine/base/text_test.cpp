@@ -21,7 +21,7 @@ std::uint64_t peak_bytes() {
   return static_cast<std::uint64_t>(used.ru_maxrss) << 10;
 }
 
-std::string why_not(const std::string& path, std::uint64_t most = kMostTextBytes) {
+std::string why_not(const std::string& path, std::uint64_t most = kMaxTextBytes) {
   const auto text = read_text(path, "a list", most);
   return text ? "read" : text.error().message;
 }
@@ -65,7 +65,7 @@ TEST(ReadText, ASizeBeyondTheLimitIsSaidBeforeAnythingIsAllocated) {
   ASSERT_EQ(::truncate(path.c_str(), off_t{1} << 40), 0);
   const std::uint64_t before = peak_bytes();
   EXPECT_EQ(why_not(path), path + ": is 1048576 MiB large; a list of at most 1024 MiB was expected");
-  EXPECT_EQ(why_not(path, kMostJsonBytes), path + ": is 1048576 MiB large; a list of at most 128 MiB was expected");
+  EXPECT_EQ(why_not(path, kMaxJsonBytes), path + ": is 1048576 MiB large; a list of at most 128 MiB was expected");
   EXPECT_LT(peak_bytes() - before, 64u << 20);
   test::write_file(folder / "short", "0123456789");
   EXPECT_EQ(why_not(folder / "short", 10), "read");

@@ -363,6 +363,18 @@ TEST(Trace, HeartFibresAreSmooth) {
   EXPECT_EQ(lines, 20);
 }
 
+// before, a place whose own rounding is coarser than the tolerance made steps of 1e-13 L without end
+TEST(Trace, FarFromTheOriginTheRoundingIsTheTolerance) {
+  const auto made = field::make_analytic("helix");
+  ASSERT_TRUE(made);
+  for (const double far : {1e6, 1e9, 1e15, 1e30}) {
+    const auto curve = trace({made->vector.get()}, {0.5, 0, far}, {});
+    ASSERT_TRUE(curve) << curve.error().message;
+    EXPECT_LT((*curve)->knots().size(), 100000u) << far;
+    for (const Knot& knot : (*curve)->knots()) ASSERT_TRUE(is_finite(knot.p) && is_finite(knot.t)) << far;
+  }
+}
+
 TEST(Trace, RealFlowsEndAndStayBounded) {
   const std::string path = test::shared_data("combustor_cfd.vdb");
   if (path.empty()) GTEST_SKIP() << "combustor_cfd.vdb is not beside the checkout";

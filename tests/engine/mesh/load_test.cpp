@@ -17,7 +17,7 @@ void expect_box(const Soup& soup) {
   const MeshPtr mesh = mesh_of(soup);
   EXPECT_EQ(mesh->triangles().size(), 12u);
   EXPECT_EQ(mesh->vertices().size(), 8u);
-  EXPECT_EQ(mesh->open_edges() + mesh->turned_edges(), 0u);
+  EXPECT_EQ(mesh->open_edges() + mesh->misoriented_edges(), 0u);
   EXPECT_EQ(mesh->lowest(), Vec3(-1, -2, -3));
   EXPECT_EQ(mesh->highest(), Vec3(1, 2, 3));
 }

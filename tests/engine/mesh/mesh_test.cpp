@@ -13,7 +13,7 @@ TEST(TriangleMesh, BoxIsWeldedAndClosed) {
   const MeshPtr box = mesh_of(box_soup({-1, -2, -3}, {1, 2, 3}));
   EXPECT_EQ(box->triangles().size(), 12u);
   EXPECT_EQ(box->vertices().size(), 8u);
-  EXPECT_EQ(box->open_edges() + box->crowded_edges() + box->turned_edges() + box->dropped(), 0u);
+  EXPECT_EQ(box->open_edges() + box->non_manifold_edges() + box->misoriented_edges() + box->dropped(), 0u);
   EXPECT_EQ(box->length(), 6);
   EXPECT_EQ(box->scale(), 8);
   EXPECT_EQ(box->lowest(), Vec3(-1, -2, -3));
@@ -41,7 +41,7 @@ TEST(TriangleMesh, CountsOpenCrowdedAndTurnedEdges) {
   add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0}, {-1, -1, 0});
   add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
   const MeshPtr crowded = mesh_of(book);
-  EXPECT_EQ(crowded->crowded_edges(), 1u);
+  EXPECT_EQ(crowded->non_manifold_edges(), 1u);
   EXPECT_EQ(crowded->open_edges(), 9u);
   // around the spine in a ring
   for (std::uint32_t f = 0; f < crowded->triangles().size(); ++f)
@@ -56,7 +56,7 @@ TEST(TriangleMesh, CountsOpenCrowdedAndTurnedEdges) {
     }
   Soup turned = box_soup();
   std::swap(turned.triangles[0][0], turned.triangles[0][1]);
-  EXPECT_EQ(mesh_of(turned)->turned_edges(), 3u);
+  EXPECT_EQ(mesh_of(turned)->misoriented_edges(), 3u);
 }
 
 TEST(TriangleMesh, DropsTrianglesWithoutAnArea) {

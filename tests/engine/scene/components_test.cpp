@@ -61,6 +61,11 @@ TEST(Components, WhatIsWrittenReadsBack) {
       "streamlines", R"({"field": "v", "seeds": {"evenly_spaced": {"distance": 0.5, "count": 20000}}, "color": [0, 1, 0], "arrows": 2})");
 }
 
+TEST(Components, AnEditorsSchemaIsNamedByAString) {
+  EXPECT_TRUE(parse_scene(R"({"$schema": "scene.schema.json"})", "s.json"));
+  EXPECT_FALSE(parse_scene(R"({"$schema": 3})", "s.json"));
+}
+
 TEST(Components, AWordIsReadAsTheObjectIsWithANote) {
   const std::string seeds = R"("streamlines": [{"field": "v", "seeds": [[1, 0, 0]], )";
   const Scene old = scene_of(seeds + R"("color_by": "speed", "color": "magma", "range": [0, 2]}])");

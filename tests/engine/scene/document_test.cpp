@@ -163,18 +163,18 @@ TEST(Document, TheHistoryIsBounded) {
   for (int i = 0; i < 1050; ++i) expect_done(document.set("/isosurfaces/0/level", std::to_string(2 + i), "level"));
   std::size_t steps = 0;
   for (; document.can_undo(); document.undo()) ++steps;
-  EXPECT_EQ(steps, Document::kMostSteps);
+  EXPECT_EQ(steps, Document::kMaxSteps);
   EXPECT_NE(document.text().find("\"level\": 51}"), std::string::npos) << document.text();
   EXPECT_TRUE(document.is_modified());
 
-  Document large = open_text(folder, "{} //" + std::string(Document::kMostBytes / 10, ' '));
+  Document large = open_text(folder, "{} //" + std::string(Document::kMaxBytes / 10, ' '));
   for (int i = 0; i < 15; ++i) expect_done(large.set("/jitter", i % 2 == 0 ? "true" : "false", "jitter"));
   for (steps = 0; large.can_undo(); large.undo()) ++steps;
   EXPECT_EQ(steps, 8u);  // nine texts of a tenth and some bytes
   EXPECT_TRUE(large.is_modified());
 
   // one text larger than all that is kept is still there
-  Document huge = open_text(folder, "{} //" + std::string(Document::kMostBytes + 10, ' '));
+  Document huge = open_text(folder, "{} //" + std::string(Document::kMaxBytes + 10, ' '));
   expect_done(huge.set("/jitter", "true", "jitter"));
   EXPECT_NE(huge.text().find("jitter"), std::string::npos);
   EXPECT_FALSE(huge.can_undo());

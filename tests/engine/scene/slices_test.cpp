@@ -94,7 +94,7 @@ TEST(SceneMeshes, LooksAreReadAndChecked) {
   for (const auto& [keys, expected] : {std::pair{R"(, "opacity": -0.1)", "opacity"},
                                        {R"(, "opacity": 1.1)", "a number from 0 to 1 was expected"},
                                        {R"(, "shading": "round")", "flat"},
-                                       {R"(, "range": [0, 1])", "\"color_by\": a field was expected"},
+                                       {R"(, "range": [0, 1])", "expected within \"color_by\""},
                                        {R"(, "color_by": "t")", "unknown field"}}) {
     const auto wrong = mesh(keys);
     ASSERT_FALSE(wrong) << keys;

@@ -166,7 +166,7 @@ TEST(Log, EveryFieldOfARecordComesBack) {
     widget.held = static_cast<std::uint8_t>(&widget - out.widgets.data());
   }
   Words words{};
-  ASSERT_EQ(pack(tick.input, out, words.data()), kMostWords);
+  ASSERT_EQ(pack(tick.input, out, words.data()), kMaxWords);
   LogTick got;
   ASSERT_TRUE(unpack(words, shape_of(out), got));
   EXPECT_EQ(got.input.t_s, tick.input.t_s);

@@ -35,7 +35,7 @@ struct Packet {
 
 void nap_ms(std::int64_t ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
-constexpr std::size_t kMostPackets = 200000;
+constexpr std::size_t kMaxPackets = 200000;
 
 /// A device that does nothing by itself: what it is told is what the motors have. It rests 10 mm deep in the ball.
 class Plain final : public Device {
@@ -44,7 +44,7 @@ class Plain final : public Device {
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override { return {.position_m = {0, 0, 0.13}}; }
   void write(const DeviceOutput& output) noexcept override {
-    if (packets_.size() < kMostPackets) packets_.push_back({now_ns(), stopped_ ? 0 : norm(output.force_n)});
+    if (packets_.size() < kMaxPackets) packets_.push_back({now_ns(), stopped_ ? 0 : norm(output.force_n)});
   }
   void stop() noexcept override { stopped_ = true; }
   void resume() noexcept override { stopped_ = false; }
@@ -60,7 +60,7 @@ std::unique_ptr<Device> emulated_falcon(const std::shared_ptr<SharedEmulatedFalc
     const std::scoped_lock lock(shared->mutex);
     EXPECT_TRUE(shared->device.mechanism().hold({0, 0, 0.175}));
     shared->device.on_exchange([&](const EmulatedFalcon::Exchange& e) {
-      if (packets.size() < kMostPackets) packets.push_back({now_ns(), norm(e.force_n)});
+      if (packets.size() < kMaxPackets) packets.push_back({now_ns(), norm(e.force_n)});
     });
   }
   auto falcon = usb::Falcon::open(std::make_unique<EmulatedSource>(shared, true));
@@ -74,7 +74,7 @@ TEST(StoppedProgram, DISABLED_HoldsAHandAndIsStopped) {
   const std::string path = test::child_variable("CATENA_PACKETS_OF_THE_CHILD");
   if (path.empty()) GTEST_SKIP() << "the child of this suite";
   std::vector<Packet> packets;
-  packets.reserve(kMostPackets);
+  packets.reserve(kMaxPackets);
   auto shared = std::make_shared<SharedEmulatedFalcon>(EmulatedFalconOptions{.homed = true});
   const bool plain = test::child_variable("CATENA_DEVICE_OF_THE_CHILD") == "plain";
   std::unique_ptr<Device> device = plain ? std::make_unique<Plain>(packets) : emulated_falcon(shared, packets);

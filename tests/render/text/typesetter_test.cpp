@@ -119,7 +119,7 @@ TEST(GlyphAtlas, EveryGlyphKeepsItsPixelsAndAFullImageStartsAnew) {
   for (double size = 300; atlas.generation() == 0 && size < 400; ++size)
     for (char32_t c = U'A'; c <= U'Z'; ++c) ASSERT_NE(atlas.get(*font, font->glyph_of(c), size, 0, 0), nullptr);
   EXPECT_EQ(atlas.generation(), 1u);
-  EXPECT_EQ(atlas.height(), GlyphAtlas::kMostHeight);
+  EXPECT_EQ(atlas.height(), GlyphAtlas::kMaxHeight);
   check(U'Q', 30, 1, 0);
 }
 

@@ -13,27 +13,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string text_of(const json::Node& node) {
-  std::string text;
-  switch (node.kind) {
-    case json::Kind::null:
-      return "null";
-    case json::Kind::boolean:
-      return node.boolean ? "true" : "false";
-    case json::Kind::number:
-      return json::number_text(node.number);
-    case json::Kind::string:
-      return json::string_text(node.string);
-    case json::Kind::array:
-      for (const json::Node& item : node.items) text += (text.empty() ? "" : ", ") + text_of(item);
-      return "[" + text + "]";
-    case json::Kind::object:
-      for (const auto& [key, member] : node.members) text += (text.empty() ? "" : ", ") + json::string_text(key) + ": " + text_of(member);
-      return "{" + text + "}";
-  }
-  return text;
-}
-
 json::Node* member_of(json::Node& object, std::string_view key) {
   const auto found = std::ranges::find_if(object.members, [&](const auto& member) { return member.first == key; });
   return found == object.members.end() ? nullptr : &found->second;
@@ -74,7 +53,7 @@ Result<AddedFile> edits_to_add(const std::string& open_text, const std::string& 
     for (auto& [name, node] : own->members) {
       const std::string as = free_among(fields, name);
       if (json::Node* file = member_of(node, "file")) file->string = named_from(from, to, file->string);
-      result.edits.push_back({"/fields/" + json::pointer_step(as), text_of(node)});
+      result.edits.push_back({"/fields/" + json::pointer_step(as), json::node_text(node)});
       result.names.emplace_back(name, as);
     }
   const auto renamed = [&](const std::string& name) {
@@ -88,7 +67,7 @@ Result<AddedFile> edits_to_add(const std::string& open_text, const std::string& 
       if (json::Node* field = member_of(item, "field")) field->string = renamed(field->string);
       if (json::Node* file = member_of(item, "file")) file->string = named_from(from, to, file->string);
       if (json::Node* name = member_of(item, "name")) name->string = free_among(meshes, name->string);
-      result.edits.push_back({std::string("/") + part + "/-", text_of(item)});
+      result.edits.push_back({std::string("/") + part + "/-", json::node_text(item)});
     }
   }
   return result;

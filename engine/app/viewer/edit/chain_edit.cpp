@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "engine/app/viewer/edit/scene_items.h"
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
 #include "engine/scene/link_feature.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/presets/modes.h"
@@ -12,22 +14,8 @@ namespace catena::app {
 
 namespace {
 
-using Kind = LinkKey::Kind;
-
-LinkKey key_of(const schema::Key& key) {
-  using schema::Form;
-  using schema::Role;
-  LinkKey out{key.name, key.help, Kind::other, key.is_required, false, key.words, key.is_stated};
-  out.positive = key.limits.lo == 0.0;
-  if (key.form == Form::number) out.kind = Kind::number;
-  if (key.form == Form::boolean) out.kind = Kind::boolean;
-  if (key.form == Form::vector && key.count == 3) out.kind = Kind::vector;
-  if (key.form == Form::word) out.kind = Kind::choice;
-  if (key.role == Role::scalar_field) out.kind = Kind::scalar_field;
-  if (key.role == Role::vector_field) out.kind = Kind::vector_field;
-  if (key.role == Role::mesh) out.kind = Kind::mesh;
-  return out;
-}
+using schema::Form;
+using schema::Role;
 
 /// The field if it can be loaded and is of that kind.
 field::AnyField use(scene::Scene& scene, const std::string& name, bool vectors) {
@@ -49,27 +37,6 @@ std::string level_at(const field::ScalarField& field, const Vec3& probe) {
 
 }  // namespace
 
-std::string json_of(const json::Node& node) {
-  std::string out;
-  switch (node.kind) {
-    case json::Kind::null:
-      return "null";
-    case json::Kind::boolean:
-      return node.boolean ? "true" : "false";
-    case json::Kind::number:
-      return scene::text_of(node.number);
-    case json::Kind::string:
-      return scene::text_of(node.string);
-    case json::Kind::array:
-      for (const json::Node& item : node.items) out += (out.empty() ? "" : ", ") + json_of(item);
-      return "[" + out + "]";
-    case json::Kind::object:
-      for (const auto& [key, value] : node.members) out += (out.empty() ? "" : ", ") + scene::text_of(key) + ": " + json_of(value);
-      return "{" + out + "}";
-  }
-  return out;
-}
-
 std::vector<ChainRow> chain_rows(const scene::Scene& scene, const std::vector<std::string>& link_names) {
   std::vector<ChainRow> rows;
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
@@ -88,15 +55,14 @@ std::vector<ChainRow> chain_rows(const scene::Scene& scene, const std::vector<st
   return rows;
 }
 
-std::vector<LinkKey> keys_of(std::string_view type) {
-  std::vector<LinkKey> out;
+schema::Keys keys_of(std::string_view type) {
   const haptics::ConstraintType* constraint = haptics::find_constraint(type);
   const haptics::ReadyMode* mode = haptics::find_ready_mode(type);
-  if (constraint == nullptr && mode == nullptr) return out;
-  for (const schema::Key& key : constraint != nullptr ? constraint->keys : mode->keys) out.push_back(key_of(key));
+  if (constraint == nullptr && mode == nullptr) return {};
+  schema::Keys keys = constraint != nullptr ? constraint->keys : mode->keys;
   for (const schema::Key& key : haptics::common_keys())
-    if (key.name == "stiffness" || key.name == "snap" || key.name == "release") out.push_back(key_of(key));
-  return out;
+    if (key.form == Form::number) keys.push_back(key);
+  return keys;
 }
 
 std::vector<std::string> link_types() {
@@ -122,64 +88,71 @@ std::vector<std::string> meshes_of(const scene::Scene& scene) {
   return out;
 }
 
-std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Node& link, const Vec3& probe, double length) {
-  const auto along = [&](double x) { return scene::text_of(probe + Vec3(x * length, 0, 0)); };
-  switch (key.kind) {
-    case Kind::vector:
-      if (key.name == "normal") return "[0, 0, 1]";
-      if (key.name == "direction") return "[1, 0, 0]";
-      if (key.name == "size") return scene::text_of(Vec3(0.2 * length));
-      return along(key.name == "to" ? 0.1 : 0);
-    case Kind::number: {
-      if (key.name == "level") {
-        if (const json::Node* name = link.find(scene::level_field_key(link)); name != nullptr) {
-          const field::AnyField field = use(scene, name->string, false);
-          if (!field.scalar) return {};
-          field::Cursor cursor;
-          // what is felt is what is seen
-          const std::string seen = drawn_level(scene, name->string, field.scalar->sample(probe, cursor).value);
-          return seen.empty() ? level_at(*field.scalar, probe) : seen;
-        }
-        return {};
-      }
-      if (key.name == "radius") return scene::text_of(0.1 * length);
-      if (key.name == "search") {
-        const json::Node* radius = link.find("radius");
-        return scene::text_of(std::max(0.1 * length, radius != nullptr ? 2 * radius->number : 0));
-      }
-      if (key.name == "stiffness") return scene::text_of(scene.coupling.stiffness_n_per_m);
-      if (key.name == "time") return "0.05";
-      if (key.name == "coefficient") return "2";
-      if (key.name == "amplitude") return "0.5";
-      if (key.name == "tolerance") return "1e-4";
-      if (key.name == "min_speed") return "0";
-      if (key.name == "release") return scene::text_of(0.05 * length);
-      if (key.name == "tau_min") return scene::text_of(0.001 * length);
-      if (key.name == "threshold") return scene::text_of(0.005 * length);
-      if (key.name == "tau_max") return scene::text_of(0.01 * length);
-      return scene::text_of(0.02 * length);
-    }
-    case Kind::choice:
-      return key.words.empty() ? "" : scene::text_of(key.words.front());
-    case Kind::boolean:
+namespace {
+
+/// "0.1 L" as a number, or JSON text; empty: it is words.
+std::string length_or_json(const std::string& begin, double length) {
+  if (begin.ends_with(" L"))
+    if (const auto share = parse_double(std::string_view(begin).substr(0, begin.size() - 2))) return scene::text_of(*share * length);
+  return json::parse(begin, "begin") ? begin : std::string();
+}
+
+std::string first_level(scene::Scene& scene, const json::Node& link, const Vec3& probe) {
+  const json::Node* name = link.find(scene::level_field_key(link));
+  if (name == nullptr) return {};
+  const field::AnyField field = use(scene, name->string, false);
+  if (!field.scalar) return {};
+  field::Cursor cursor;
+  // what is felt is what is seen
+  const std::string seen = drawn_level(scene, name->string, field.scalar->sample(probe, cursor).value);
+  return seen.empty() ? level_at(*field.scalar, probe) : seen;
+}
+
+std::string first_number(const scene::Scene& scene, const schema::Key& key, double length) {
+  for (const std::string& begin : {key.begin, key.fallback})
+    if (const std::string text = length_or_json(begin, length); !text.empty()) return text;
+  return scene::text_of(key.unit == "N/m" ? scene.coupling.stiffness_n_per_m : 0.02 * length);
+}
+
+std::string first_vector(const schema::Key& key, const Vec3& probe, double length) {
+  if (key.begin == "hand + 0.1 L") return scene::text_of(probe + Vec3(0.1 * length, 0, 0));
+  const std::string text = length_or_json(key.begin, length);
+  if (const auto edge = parse_double(text)) return scene::text_of(Vec3(*edge));
+  return text.empty() ? scene::text_of(probe) : text;
+}
+
+/// The name of a field or a mesh that fits, as JSON text.
+std::string first_name(scene::Scene& scene, Role role) {
+  if (role == Role::mesh) {
+    const auto meshes = meshes_of(scene);
+    return meshes.empty() ? "" : scene::text_of(meshes.front());
+  }
+  const bool vectors = role == Role::vector_field;
+  if (const std::string seen = drawn_field(scene); !vectors && use(scene, seen, false).get() != nullptr) return scene::text_of(seen);
+  for (const std::string& name : fields_of(scene, vectors))
+    if (use(scene, name, vectors).get() != nullptr) return scene::text_of(name);
+  return {};
+}
+
+}  // namespace
+
+std::string first_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length) {
+  if (key.role == Role::level) return first_level(scene, link, probe);
+  if (key.role == Role::scalar_field || key.role == Role::vector_field || key.role == Role::mesh) return first_name(scene, key.role);
+  switch (key.form) {
+    case Form::number:
+      return first_number(scene, key, length);
+    case Form::vector:
+      return first_vector(key, probe, length);
+    case Form::word:
+      return scene::text_of(key.words.front());
+    case Form::boolean:
       return "true";
-    case Kind::scalar_field:
-      if (const std::string seen = drawn_field(scene); use(scene, seen, false).get() != nullptr) return scene::text_of(seen);
-      [[fallthrough]];
-    case Kind::vector_field:
-      for (const std::string& name : fields_of(scene, key.kind == Kind::vector_field))
-        if (use(scene, name, key.kind == Kind::vector_field).get() != nullptr) return scene::text_of(name);
-      return {};
-    case Kind::mesh: {
-      const auto meshes = meshes_of(scene);
-      return meshes.empty() ? "" : scene::text_of(meshes.front());
-    }
-    case Kind::other:
-      if (key.name == "points")
-        return scene::text_of(std::vector<Vec3>{probe, probe + Vec3(0.1 * length, 0, 0), probe + Vec3(0.1 * length, 0.1 * length, 0)});
+    case Form::places:
+      return scene::text_of(std::vector<Vec3>{probe, probe + Vec3(0.1 * length, 0, 0), probe + Vec3(0.1 * length, 0.1 * length, 0)});
+    default:
       return {};
   }
-  return {};
 }
 
 Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length) {
@@ -192,14 +165,14 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
   json::Node link;
   link.kind = json::Kind::object;
   std::string text = "\"name\": " + scene::text_of(name) + ", \"type\": " + scene::text_of(type);
-  for (const LinkKey& key : keys_of(type)) {
-    if (!key.required && !key.stated) continue;
+  for (const schema::Key& key : keys_of(type)) {
+    if (!key.is_required && !key.is_stated) continue;
     const std::string value = first_value(scene, key, link, probe, length);
     if (value.empty())
       return Error{"a " + std::string(type) + " needs a " +
-                   (key.kind == Kind::vector_field   ? "vector field"
-                    : key.kind == Kind::scalar_field ? "scalar field"
-                    : key.kind == Kind::mesh         ? "mesh"
+                   (key.role == Role::vector_field   ? "vector field"
+                    : key.role == Role::scalar_field ? "scalar field"
+                    : key.role == Role::mesh         ? "mesh"
                                                      : key.name) +
                    ", which the scene does not have"};
     if (auto node = json::parse(value, "link")) link.members.emplace_back(key.name, std::move(*node));
@@ -208,7 +181,7 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
   return "{" + text + "}";
 }
 
-std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const Vec3& probe,
+std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow& row, const schema::Key& key, const Vec3& probe,
                                              double length) {
   const std::string value = first_value(scene, key, row.node, probe, length);
   if (value.empty()) return {};
@@ -217,14 +190,14 @@ std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow
   if (key.name != "surface" || row.node.find("level") != nullptr) return edits;
   json::Node link = row.node;
   if (auto surface = json::parse(value, "surface")) link.members.emplace_back("surface", std::move(*surface));
-  for (const LinkKey& other : keys_of(row.type))
-    if (other.name == "level")
+  for (const schema::Key& other : keys_of(row.type))
+    if (other.role == Role::level)
       if (const std::string level = first_value(scene, other, link, probe, length); !level.empty())
         edits.push_back({row.pointer("level"), level});
   return edits;
 }
 
-std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const std::string& name,
+std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const schema::Key& key, const std::string& name,
                                                  const Vec3& probe) {
   std::vector<scene::Document::Edit> edits{{row.pointer(key.name), scene::text_of(name)}};
   if (scene::field_of_level(row.node).empty() || key.name != scene::level_field_key(row.node)) return edits;
@@ -232,8 +205,8 @@ std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const Chai
   json::Node link = row.node;
   for (auto& [member, value] : link.members)
     if (member == key.name) value.string = name;
-  for (const LinkKey& other : keys_of(row.type))
-    if (other.name == "level")
+  for (const schema::Key& other : keys_of(row.type))
+    if (other.role == Role::level)
       if (const std::string level = first_value(scene, other, link, probe, 1); !level.empty())
         edits.push_back({row.pointer("level"), level});
   return edits;
@@ -251,7 +224,7 @@ std::vector<std::string> levels_along(const scene::Scene& scene, const ChainRow&
 }
 
 std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b) {
-  return {{a.pointer(), json_of(b.node)}, {b.pointer(), json_of(a.node)}};
+  return {{a.pointer(), json::node_text(b.node)}, {b.pointer(), json::node_text(a.node)}};
 }
 
 }  // namespace catena::app

@@ -23,17 +23,8 @@ struct ChainRow {
 
 std::vector<ChainRow> chain_rows(const scene::Scene& scene, const std::vector<std::string>& link_names);
 
-/// How a key of a link is edited.
-struct LinkKey {
-  enum class Kind { number, vector, choice, boolean, scalar_field, vector_field, mesh, other };
-  std::string name, help;
-  Kind kind = Kind::other;
-  bool required = false, positive = false;
-  std::vector<std::string> words;  ///< of a choice
-  bool stated = false;             ///< a new link states it though it need not
-};
 /// The keys of a type in the registry's order, with stiffness, snap and release; empty for an unknown type.
-std::vector<LinkKey> keys_of(std::string_view type);
+schema::Keys keys_of(std::string_view type);
 
 /// All types of links and ready-made modes.
 std::vector<std::string> link_types();
@@ -43,15 +34,15 @@ std::vector<std::string> link_types();
 /// as parts of `length` (that of all that is there). An error where the scene has no such field.
 Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length);
 /// What a key that lacks begins with, JSON text; empty: nothing is known to be sane.
-std::string first_value(scene::Scene& scene, const LinkKey& key, const json::Node& link, const Vec3& probe, double length);
+std::string first_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length);
 
 /// A key that the link lacks, with what it needs beside it; empty: nothing is known to be sane.
-std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const Vec3& probe,
+std::vector<scene::Document::Edit> added_key(scene::Scene& scene, const ChainRow& row, const schema::Key& key, const Vec3& probe,
                                              double length);
 
 /// The link's key names another field now; where the link lies on a level of it, the level is that of the surface that is drawn, or one
 /// that the field has.
-std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const LinkKey& key, const std::string& name,
+std::vector<scene::Document::Edit> changed_field(scene::Scene& scene, const ChainRow& row, const schema::Key& key, const std::string& name,
                                                  const Vec3& probe);
 
 /// Pointers to the levels that go along with the link's own, so that what is felt stays what is seen: of the drawn surface that the link
@@ -60,9 +51,6 @@ std::vector<std::string> levels_along(const scene::Scene& scene, const ChainRow&
 
 /// Two neighbours change places, as one step. The comments within the two links go.
 std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b);
-
-/// A value as JSON text on one line.
-std::string json_of(const json::Node& node);
 
 /// Names of the scene's fields of a kind (those that are not loaded count as either), and of its meshes.
 std::vector<std::string> fields_of(const scene::Scene& scene, bool vectors);

@@ -10,7 +10,7 @@
 namespace catena::app {
 
 namespace {
-constexpr std::size_t kMostMagnitudes = 1u << 20;
+constexpr std::size_t kMaxMagnitudes = 1u << 20;
 }
 
 std::vector<float> histogram_bars(const std::vector<float>& sorted, double lo, double hi, int bars) {
@@ -61,7 +61,7 @@ SortedValues FieldValues::of(scene::Scene& scene, scene::Entity field) {
     if (any.scalar) {
       job->values = scene::sorted_values(*any.scalar->grid());
     } else {
-      auto values = std::make_shared<std::vector<float>>(scene::sample_magnitudes(*any.vector->grid(), kMostMagnitudes));
+      auto values = std::make_shared<std::vector<float>>(scene::sample_magnitudes(*any.vector->grid(), kMaxMagnitudes));
       std::sort(values->begin(), values->end());
       job->values = std::move(values);
     }

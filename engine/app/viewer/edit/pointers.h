@@ -13,7 +13,4 @@ using TextEdits = std::vector<scene::Document::Edit>;
 /// "/volumes/2" for the item that was read from there (its label is "volumes[2]"); empty where it is no item of a list.
 std::string pointer_of(const json::Node& item);
 
-/// The node as JSON on one line, without its comments.
-std::string node_text(const json::Node& node);
-
 }  // namespace catena::app

@@ -5,6 +5,7 @@
 
 #include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/app/viewer/edit/pointers.h"
+#include "engine/base/json_edit.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/link_feature.h"
 #include "engine/scene/write_values.h"
@@ -60,7 +61,7 @@ std::string felt_level(const scene::Scene& scene, const std::string& field) {
   std::string text;
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     if (!text.empty() || scene::field_of_level(link.node) != field) return;
-    text = json_of(*link.node.find("level"));
+    text = json::node_text(*link.node.find("level"));
   });
   return text;
 }

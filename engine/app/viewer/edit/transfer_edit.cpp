@@ -56,7 +56,7 @@ std::optional<TransferEdit> transfer_edit(const scene::Volume& volume, double sm
   for (const auto& e : transfer.extinctions) thickest = std::max(thickest, e.sigma);
   edit.unit = thickest > 0 ? -std::log1p(-kThickest) / thickest : smallest_edge;
   edit.unit = rounded_in(edit.unit, 0, edit.unit, 100);
-  for (const auto& e : transfer.extinctions) edit.opacities.push_back({e.value, std::min(-std::expm1(-e.sigma * edit.unit), kMostAlpha)});
+  for (const auto& e : transfer.extinctions) edit.opacities.push_back({e.value, std::min(-std::expm1(-e.sigma * edit.unit), kMaxAlpha)});
   return edit;
 }
 

@@ -64,7 +64,7 @@ bool take_out(Points& points, std::size_t index) {
   return true;
 }
 
-double usable(double alpha) { return std::isfinite(alpha) ? std::clamp(alpha, 0.0, kMostAlpha) : 0.0; }
+double usable(double alpha) { return std::isfinite(alpha) ? std::clamp(alpha, 0.0, kMaxAlpha) : 0.0; }
 
 /// The points to either side of a value and how far it is between them.
 template <class Points>

@@ -14,7 +14,8 @@ namespace catena::app {
 
 namespace {
 
-using Kind = LinkKey::Kind;
+using schema::Form;
+using schema::Role;
 
 ImVec4 color_of(exchange::Status status, bool active) {
   using exchange::Status;
@@ -67,11 +68,11 @@ Vec3 probe_of(const PanelContext& context) {
   return felt.tick > 0 && is_finite(felt.probe) ? felt.probe : context.hand.first_probe();
 }
 
-void draw_name_choice(PanelContext& context, const ChainRow& row, const LinkKey& key, const std::vector<std::string>& words,
+void draw_name_choice(PanelContext& context, const ChainRow& row, const schema::Key& key, const std::vector<std::string>& words,
                       const std::string& now) {
   std::string chosen = now;
   if (!choose(key.name.c_str(), words, chosen)) return;
-  const bool field = key.kind == Kind::scalar_field || key.kind == Kind::vector_field;
+  const bool field = key.role == Role::scalar_field || key.role == Role::vector_field;
   if (field)
     context.edits.set(changed_field(context.scene.scene(), row, key, chosen, probe_of(context)), key.name);
   else
@@ -79,30 +80,30 @@ void draw_name_choice(PanelContext& context, const ChainRow& row, const LinkKey&
 }
 
 /// One key that the link states.
-void draw_stated(PanelContext& context, const ChainRow& row, const LinkKey& key, const json::Node& value, double length) {
+void draw_stated(PanelContext& context, const ChainRow& row, const schema::Key& key, const json::Node& value, double length) {
   const std::string pointer = row.pointer(key.name);
   const bool number = value.kind == json::Kind::number, word = value.kind == json::Kind::string;
   const double speed = key.name == "stiffness" ? 2 : key.name == "level" ? 0 : 0.001 * length;
-  if (key.kind == Kind::number && number) {
+  if (key.form == Form::number && number) {
     NumberItem item{key.name.c_str(), pointer, value.number, 0, 0, speed};
-    if (key.positive) item.hi = 1e9;
+    if (key.limits.lo == 0.0) item.hi = 1e9;
     if (key.name == "level") item.along = levels_along(context.scene.scene(), row);
     edit_number(context.edits, item);
-  } else if (key.kind == Kind::vector && value.items.size() == 3) {
+  } else if (key.form == Form::vector && key.count == 3 && value.items.size() == 3) {
     if (const auto v = json::as_vec3(value, key.name)) {
       edit_vector(context.edits, key.name.c_str(), pointer, *v, speed);
-      const bool place = key.name != "normal" && key.name != "direction" && key.name != "size";
+      const bool place = (key.unit == "world" && !key.begin.ends_with(" L")) || key.begin.starts_with("hand");
       if (place && ImGui::SmallButton(("to the probe##" + key.name).c_str()))
         context.edits.set(pointer, scene::text_of(probe_of(context)), key.name);
     }
-  } else if (key.kind == Kind::choice && word) {
+  } else if (key.form == Form::word && word) {
     draw_name_choice(context, row, key, key.words, value.string);
-  } else if (key.kind == Kind::boolean && value.kind == json::Kind::boolean) {
+  } else if (key.form == Form::boolean && value.kind == json::Kind::boolean) {
     bool on = value.boolean;
     if (ImGui::Checkbox(key.name.c_str(), &on)) context.edits.set(pointer, on ? "true" : "false", key.name);
-  } else if ((key.kind == Kind::scalar_field || key.kind == Kind::vector_field) && word) {
-    draw_name_choice(context, row, key, fields_of(context.scene.scene(), key.kind == Kind::vector_field), value.string);
-  } else if (key.kind == Kind::mesh && word) {
+  } else if ((key.role == Role::scalar_field || key.role == Role::vector_field) && word) {
+    draw_name_choice(context, row, key, fields_of(context.scene.scene(), key.role == Role::vector_field), value.string);
+  } else if (key.role == Role::mesh && word) {
     draw_name_choice(context, row, key, meshes_of(context.scene.scene()), value.string);
   } else {
     ImGui::TextDisabled("%s: in the text", key.name.c_str());
@@ -111,8 +112,8 @@ void draw_stated(PanelContext& context, const ChainRow& row, const LinkKey& key,
 
 void draw_keys(PanelContext& context, const ChainRow& row) {
   const double length = length_of(context);
-  std::vector<LinkKey> absent;
-  for (const LinkKey& key : keys_of(row.type)) {
+  schema::Keys absent;
+  for (const schema::Key& key : keys_of(row.type)) {
     const json::Node* value = row.node.find(key.name);
     if (value == nullptr) {
       absent.push_back(key);
@@ -120,13 +121,13 @@ void draw_keys(PanelContext& context, const ChainRow& row) {
     }
     draw_stated(context, row, key, *value, length);
     tip(key.help);
-    if (key.required) continue;
+    if (key.is_required) continue;
     ImGui::SameLine();
     if (ImGui::SmallButton(("x##" + key.name).c_str())) context.edits.remove(row.pointer(key.name), "remove " + key.name);
     tip("the default again");
   }
   if (absent.empty() || !ImGui::BeginCombo("##key", "add a key", ImGuiComboFlags_HeightLarge)) return;
-  for (const LinkKey& key : absent) {
+  for (const schema::Key& key : absent) {
     if (ImGui::Selectable(key.name.c_str())) {
       const auto edits = added_key(context.scene.scene(), row, key, probe_of(context), length);
       if (edits.empty())
@@ -222,7 +223,7 @@ void draw_coupling(PanelContext& context) {
   edit_number(context.edits, {"stiffness", "/coupling/stiffness", c.stiffness_n_per_m, 0, 5000, 2, "%.4g N/m"});
   tip("of links that do not say; a device may allow less");
   edit_number(context.edits, {"damping", "/coupling/damping", c.damping_ns_per_m, 0, 100, 0.02, "%.3g N s/m"});
-  edit_number(context.edits, {"most force", "/coupling/max_force", c.max_force_n, 0, 40, 0.02, "%.3g N"});
+  edit_number(context.edits, {"maximum force", "/coupling/max_force", c.max_force_n, 0, 40, 0.02, "%.3g N"});
 }
 
 void draw_chain(PanelContext& context) {

@@ -34,7 +34,7 @@ void draw_capabilities(const haptics::DeviceCapabilities& c) {
   text += c.max_force_n > 0 ? fmt::format(", {:.3g} N", c.max_force_n) : ", no force";
   if (c.has_orientation) text += c.max_torque_nm > 0 ? fmt::format(", turns, {:.2g} N m", c.max_torque_nm) : ", turns";
   ImGui::TextDisabled("%s", text.c_str());
-  tip("edge of the cube that the hand reaches, buttons, the most force");
+  tip("edge of the cube that the hand reaches, buttons, the maximum force");
 }
 
 void draw_buttons(std::uint32_t pressed, int count) {

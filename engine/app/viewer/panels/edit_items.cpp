@@ -74,10 +74,6 @@ void edit_slider(Edits& edits, const char* label, double value, double lo, doubl
     edits.drag(pointer, scene::text_of(rounded_in(now, lo, hi, 1000)), label);
 }
 
-void edit_share(Edits& edits, const char* label, double value, const std::string& pointer) {
-  edit_slider(edits, label, value, 0, 1, pointer, "%.2f");
-}
-
 void edit_color(Edits& edits, const char* label, const Color& color, const std::string& pointer) {
   float rgb[3] = {color.r, color.g, color.b};
   if (ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_NoInputs))

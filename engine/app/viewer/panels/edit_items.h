@@ -19,7 +19,6 @@ void end_item();
 void edit_boolean(Edits& edits, const char* label, bool value, const std::string& pointer);
 void edit_slider(Edits& edits, const char* label, double value, double lo, double hi, const std::string& pointer,
                  const char* format = "%.3g");
-void edit_share(Edits& edits, const char* label, double value, const std::string& pointer);  ///< 0..1
 void edit_color(Edits& edits, const char* label, const Color& color, const std::string& pointer);
 
 /// The keys of a part of the scene ("slices") that are a boolean, a word, or a number within two bounds, for one item of it, with their

@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/base/json_edit.h"
 
 namespace catena::app {
 
@@ -12,7 +13,7 @@ std::optional<std::string> stated_object(const PanelContext& context, const std:
   const auto root = json::parse(context.scene.document().text(), "scene");
   const json::Node* node = root ? root->find(key) : nullptr;
   if (node == nullptr || node->kind != json::Kind::object) return std::nullopt;
-  return node_text(*node);
+  return json::node_text(*node);
 }
 
 /// A top-level key that is true, false or an object. What stood there comes back when it is switched on again.

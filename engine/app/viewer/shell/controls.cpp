@@ -102,7 +102,7 @@ void toggle_projection(render::View& view) {
 }
 
 static bool is_possible(const render::View& view) {
-  const bool high = !view.orthographic || (view.height >= kLeastEyeHeight && view.height <= kMostEyeHeight);
+  const bool high = !view.orthographic || (view.height >= kLeastEyeHeight && view.height <= kMaxEyeHeight);
   return high && eye_problem(view.position, view.target).empty();
 }
 
@@ -140,7 +140,7 @@ Changed apply(Controls& controls, const Input& input) {
   }
   // neither eye nor hand leaves the world
   if (!is_possible(controls.view)) controls.view = view_before;
-  if (!is_finite(controls.hand) || max_abs(controls.hand) > kMostEyeCoordinate) controls.hand = hand_before;
+  if (!is_finite(controls.hand) || max_abs(controls.hand) > kMaxEyeCoordinate) controls.hand = hand_before;
   return changed;
 }
 

@@ -106,7 +106,7 @@ std::optional<LeftDraft> find_left_draft(const std::string& scene_path) {
     if (at && (!newest || *at > newest->at_s)) newest = LeftDraft{it->path().string(), {}, *at};
   }
   if (!newest) return std::nullopt;
-  auto text = read_text(newest->path, "unsaved work (JSON)", kMostJsonBytes);
+  auto text = read_text(newest->path, "unsaved work (JSON)", kMaxJsonBytes);
   if (!text) return std::nullopt;
   newest->text = std::move(*text);
   return newest;

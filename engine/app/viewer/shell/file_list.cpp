@@ -45,7 +45,7 @@ Result<std::vector<FileEntry>> list_folder(const std::string& folder, bool scene
   if (code) return Error{one_line(folder + ": " + code.message() + "; a folder that can be read was expected")};
   std::vector<FileEntry> entries;
   for (; it != fs::directory_iterator(); it.increment(code)) {
-    if (code || entries.size() >= kMostEntries) break;
+    if (code || entries.size() >= kMaxEntries) break;
     const std::string name = it->path().filename().string();
     if (name.empty() || name[0] == '.') continue;
     std::error_code ignored;

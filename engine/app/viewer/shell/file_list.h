@@ -21,8 +21,8 @@ bool is_scene_name(const std::string& path);
 /// ".json", and the endings of the data files and meshes that say their own layout.
 const std::vector<std::string_view>& openable_endings();
 
-/// Folders first, then the files that Catena opens, each by name; hidden ones are left out. At most kMostEntries.
-inline constexpr std::size_t kMostEntries = 5000;
+/// Folders first, then the files that Catena opens, each by name; hidden ones are left out. At most kMaxEntries.
+inline constexpr std::size_t kMaxEntries = 5000;
 Result<std::vector<FileEntry>> list_folder(const std::string& folder, bool scenes_only = false);
 
 /// What is typed, made absolute: "~" is the home folder, a relative path starts at `folder`.

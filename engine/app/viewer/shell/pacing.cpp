@@ -43,7 +43,7 @@ NextPicture Pacing::moving(const SceneKind& kind) {
   };
   std::uint32_t scale = 1;
   // the fast raycast saves pixels by itself
-  while (!kind.fast && scale < kMostScale && !fits(scale)) scale *= 2;
+  while (!kind.fast && scale < kMaxScale && !fits(scale)) scale *= 2;
   by_moving_ = true;
   finished_ = false;
   return ask(step, scale);

@@ -15,7 +15,7 @@
 namespace catena::app {
 
 inline constexpr double kBudgetMs = 50;
-inline constexpr std::uint32_t kMostScale = 4;
+inline constexpr std::uint32_t kMaxScale = 4;
 
 /// What the scene asks of the rays.
 struct SceneKind {
@@ -54,8 +54,7 @@ class Pacing {
   bool may_estimate() const { return finished_ && kind_.rays && !by_moving_ && !rmse_; }
   const Quality& quality() const { return quality_; }
   std::optional<double> rmse() const { return rmse_; }  ///< of the picture that is shown, where it was estimated
-  double shown_ms() const { return shown_ms_; }
-  double budget_ms() const { return budget_ms_; }  ///< of a picture while something moves
+  double budget_ms() const { return budget_ms_; }       ///< of a picture while something moves
 
   /// "fast, step 4, every 4th pixel, 32 ms"
   std::string words() const;

@@ -11,7 +11,7 @@ namespace catena::app {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMostSteps = 4000;
+constexpr int kMaxSteps = 4000;
 
 struct Span {
   double enter = 0, leave = kInfinity;
@@ -115,7 +115,7 @@ std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const 
     edge = std::min(edge, item.grid->mapping().smallest_edge());
   }
   if (marched.empty()) return std::nullopt;
-  const double step = std::max(0.5 * edge, (all.leave - all.enter) / kMostSteps);
+  const double step = std::max(0.5 * edge, (all.leave - all.enter) / kMaxSteps);
 
   // a projection stands for its whole ray: the first one that shows anything
   for (const Marched& m : marched)

@@ -19,7 +19,7 @@ namespace catena::app {
 namespace {
 
 constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
-constexpr int kMostWaits = 30;
+constexpr int kMaxWaits = 30;
 
 }  // namespace
 
@@ -191,7 +191,7 @@ void PictureView::update_values() {
 void PictureView::write_asked() {
   const bool of_window = asked_.value_or(false);
   const bool there = of_window ? screen_->is_shown() : screen_->has_picture();
-  if (!asked_ || !there || (shared_.pacing.again().scale > 1 && waits_++ < kMostWaits)) return;
+  if (!asked_ || !there || (shared_.pacing.again().scale > 1 && waits_++ < kMaxWaits)) return;
   waits_ = 0;
   asked_.reset();
   std::error_code code;

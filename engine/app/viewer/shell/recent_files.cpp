@@ -25,13 +25,13 @@ std::string users_path() {
 std::vector<std::string> read_list(const std::string& path) {
   std::error_code code;
   if (path.empty() || !fs::is_regular_file(path, code) || fs::file_size(path, code) > kLargestList || code) return {};
-  const auto text = read_text(path, "a list of files", kMostJsonBytes);
+  const auto text = read_text(path, "a list of files", kMaxJsonBytes);
   const auto root = text ? json::parse(*text, path) : Result<json::Node>(Error{});
   const json::Node* list = root ? root->find("files") : nullptr;
   std::vector<std::string> files;
   if (list == nullptr) return files;
   for (const json::Node& item : list->items)
-    if (item.kind == json::Kind::string && files.size() < kMostRecentFiles) files.push_back(item.string);
+    if (item.kind == json::Kind::string && files.size() < kMaxRecentFiles) files.push_back(item.string);
   return files;
 }
 
@@ -65,7 +65,7 @@ void RecentFiles::add(const std::string& file) {
   if (std::vector<std::string> now = read_list(path_); !now.empty()) files_ = std::move(now);
   std::erase(files_, whole.string());
   files_.insert(files_.begin(), whole.string());
-  if (files_.size() > kMostRecentFiles) files_.resize(kMostRecentFiles);
+  if (files_.size() > kMaxRecentFiles) files_.resize(kMaxRecentFiles);
   if (path_.empty()) return;
   // a list that cannot be kept is one of this run
   const Outcome kept = write_list(path_, files_);

@@ -7,7 +7,7 @@
 
 namespace catena::app {
 
-inline constexpr std::size_t kMostRecentFiles = 10;
+inline constexpr std::size_t kMaxRecentFiles = 10;
 
 class RecentFiles {
  public:

@@ -58,8 +58,8 @@ Outcome Screen::show(const render::UiItems& ui) {
     CATENA_TRY(fits_, renderer_->present(*swapchain_, &ui));
     return Done{};
   }();
-  constexpr int kMostLosses = 3;
-  if (!shown && renderer_->device().lost() && ++losses_ <= kMostLosses) return recover();
+  constexpr int kMaxLosses = 3;
+  if (!shown && renderer_->device().lost() && ++losses_ <= kMaxLosses) return recover();
   if (shown) losses_ = 0;
   is_shown_ = is_shown_ || shown;
   return shown;
