@@ -1,5 +1,7 @@
-/// Where an eye may be: what the picture's numbers (doubles on the way to floats, whose squares are taken) still resolve. Any thread.
+/// Where an eye may be: what the picture's numbers (doubles on the way to floats, whose squares are taken) still resolve; and how many
+/// lights it may have. Any thread.
 #pragma once
+#include <cstddef>
 #include <string>
 
 #include "engine/base/vec.h"
@@ -8,6 +10,9 @@ namespace catena {
 
 /// World units; degrees; the height of an orthographic picture in world units.
 inline constexpr double kMaxEyeCoordinate = 1e15, kLeastFovyDeg = 1e-3, kMaxFovyDeg = 179.9, kMaxEyeHeight = 1e15, kLeastEyeHeight = 1e-15;
+
+/// Lights of one picture.
+inline constexpr std::size_t kMaxLights = 4;
 
 /// What is wrong with an eye's place, and what was expected, as a sentence; empty: nothing. A target counts as the eye's own place
 /// where the difference of the two is rounding.

@@ -169,6 +169,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 }  // namespace
 
+std::string free_name(const std::string& name, const std::function<bool(const std::string&)>& is_taken) {
+  std::string free = name;
+  for (int n = 2; is_taken(free); ++n) free = name + "_" + std::to_string(n);
+  return free;
+}
+
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& words) {
   if (word.empty() || word.size() > 40) return {};
   std::size_t best = 3;

@@ -1,6 +1,7 @@
 /// Text from the outside world: whole files, words quoted for a one-line message, and the word that was probably meant.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,9 @@ std::string alternatives(const std::vector<std::string_view>& words);
 
 /// Whether a name ends so, any case; `lower_case` is.
 bool has_ending(std::string_view name, std::string_view lower_case);
+
+/// `name`, or the first of name_2, name_3, ... that is not taken.
+std::string free_name(const std::string& name, const std::function<bool(const std::string&)>& is_taken);
 
 /// ` (did you mean "stiffness"?)` where one of `words` is near, else nothing.
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& words);

@@ -307,7 +307,6 @@ struct Light {
   double intensity = 1;
   bool with_camera = false;
 };
-inline constexpr std::size_t kMaxLights = 4;
 
 struct Background {
   Color color{0, 0, 0};

@@ -27,25 +27,28 @@ void add_files(const json::Node& object, const schema::Keys& keys, std::vector<c
   }
 }
 
+/// Of an item of a part, or of the part itself.
+void add_files(const json::Node& item, const schema::Component& component, std::vector<const json::Node*>& names) {
+  add_files(item, component.keys, names);
+  for (const schema::Variant& variant : component.variants) add_files(item, variant.keys, names);
+  if (schema::find(component.keys, "color_by") != nullptr) add_string(item, "transfer", names);  // beside "color_by" as a word
+}
+
 /// The values that name files, in the text's order.
 std::vector<const json::Node*> file_names(const json::Node& root) {
   std::vector<const json::Node*> names;
   for (const schema::Component& component : scene_components()) {
     const json::Node* part = root.find(component.name);
     if (part == nullptr) continue;
-    schema::Keys keys = component.keys;
-    for (const schema::Variant& variant : component.variants)
-      for (const schema::Key& key : variant.keys)
-        if (schema::find(keys, key.name) == nullptr) keys.push_back(key);
-    add_files(*part, keys, names);
-    for (const json::Node& item : part->items) add_files(item, keys, names);
+    for (const json::Node& item : part->items) add_files(item, component, names);
     if (component.shape == schema::Component::Shape::map)
-      for (const auto& [name, item] : part->members) add_files(item, keys, names);
-    for (const json::Node& item : part->items)  // beside "color_by" as a word
-      if (schema::find(keys, "transfer") == nullptr && schema::find(keys, "color_by") != nullptr) add_string(item, "transfer", names);
+      for (const auto& [name, item] : part->members) add_files(item, component, names);
+    else
+      add_files(*part, component, names);
   }
   if (const json::Node* device = root.find("device")) add_string(*device, "firmware", names);
   std::sort(names.begin(), names.end(), [](const json::Node* a, const json::Node* b) { return a->begin < b->begin; });
+  names.erase(std::unique(names.begin(), names.end()), names.end());  // a key of several variants
   return names;
 }
 

@@ -1,4 +1,5 @@
 /// What shows where things stand: "bounding_box", "axes", "ground", "fog": true, false or an object; "lights": a list.
+#include "engine/base/eye_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/scene_keys.h"

@@ -39,7 +39,7 @@ const Table<Volume>& volume_table() {
     t.hand(
         color_by_key(ColorSubjects::rays),
         [](Scene& scene, const json::Node& item, Volume& v) { return read_color_by(scene, item, ColorSubjects::rays, v.color_by); },
-        [](const Scene& scene, const Volume& v) { return v.color_by ? write_color_by(scene, *v.color_by) : std::string(); });
+        [](const Scene& scene, const Volume& v) { return v.color_by ? text_of(scene, *v.color_by) : std::string(); });
     t.check([](Scene&, const json::Node& item, Volume& volume) -> Outcome {
       if (volume.projection == Volume::Projection::composite) return Done{};
       const std::string beside =
@@ -84,7 +84,7 @@ const Table<Isosurface>& isosurface_table() {
     t.hand(
         color_by_key(ColorSubjects::rays),
         [](Scene& scene, const json::Node& item, Isosurface& s) { return read_color_by(scene, item, ColorSubjects::rays, s.color_by); },
-        [](const Scene& scene, const Isosurface& s) { return s.color_by ? write_color_by(scene, *s.color_by) : std::string(); });
+        [](const Scene& scene, const Isosurface& s) { return s.color_by ? text_of(scene, *s.color_by) : std::string(); });
     return t;
   }();
   return table;
@@ -92,7 +92,7 @@ const Table<Isosurface>& isosurface_table() {
 
 /// An item of "meshes": the file, which is felt and drawn, and how it is drawn.
 struct MeshItem {
-  std::string name, file;
+  std::string name;
   MeshSource source;
   SurfaceMesh surface;
   bool drawn = true;
@@ -101,16 +101,15 @@ struct MeshItem {
 Outcome read_mesh_name(Scene& scene, const json::Node& item, MeshItem& mesh) {
   CATENA_TRY(mesh.name, json::require_string(item, "name"));
   const json::Node& node = *item.find("name");
-  if (!is_name(mesh.name))
-    return json::error_at(node, "mesh name " + in_quotes(mesh.name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+  CATENA_CHECK(check_name("mesh", mesh.name, node));
   if (find_mesh(scene, mesh.name))
     return json::error_at(node, "a second mesh is called " + in_quotes(mesh.name) + "; a name of its own was expected");
   return Done{};
 }
 
 Outcome read_mesh_file(Scene& scene, const json::Node& item, MeshItem& mesh) {
-  CATENA_TRY(mesh.file, json::require_string(item, "file"));
-  mesh.source.path = resolved_path(scene.path, mesh.file);
+  CATENA_TRY(const std::string file, json::require_string(item, "file"));
+  mesh.source.path = resolved_path(scene.path, file);
   if (const std::string fault = mesh_fault(mesh.source.path); !fault.empty())
     return json::error_at(*item.find("file"), "mesh " + in_quotes(mesh.name) + ": file " + fault);
   return Done{};
@@ -126,28 +125,22 @@ Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
     if (const json::Node* node = item.find(key))
       return json::error_at(*node,
                             in_quotes(key) + " is given, but nothing says of what; it was expected within \"color_by\": {\"field\": NAME}");
-  CATENA_TRY(surface.color, read_color(item, "color", surface.color));
-  return Done{};
+  return schema::read_value(schema::color("color", ""), item, surface.color);
 }
 
 const Table<MeshItem>& mesh_table() {
   static const auto table = [] {
     Table<MeshItem> t;
-    t.hand(schema::identifier("name", "By which a link names it.").required(), read_mesh_name,
-           [](const Scene&, const MeshItem& m) { return schema::write_value(m.name); });
-    t.hand(schema::file("file", "The file: " + alternatives(mesh::mesh_endings()) + ".").required(), read_mesh_file,
-           [](const Scene&, const MeshItem& m) { return schema::write_value(m.file); });
+    t.hand(schema::identifier("name", "By which a link names it.").required(), read_mesh_name);
+    t.hand(schema::file("file", "The file: " + alternatives(mesh::mesh_endings()) + ".").required(), read_mesh_file);
     t.bind(
         schema::number("scale", "", "World units per unit of the file.").positive(),
         [](auto& m) -> auto& { return m.source.placement.scale; });
     t.bind(
         schema::vec3("offset", "world", "Added after the scale."), [](auto& m) -> auto& { return m.source.placement.offset; });
     t.bind(schema::boolean("drawn", "False: it is only felt."), &MeshItem::drawn);
-    t.hand(schema::color("color", "Its colour, without `color_by`.").by_default(schema::write_value(SurfaceMesh{}.color)), read_mesh_color,
-           [](const Scene&, const MeshItem& m) { return m.surface.color_by ? std::string() : schema::write_value(m.surface.color); });
-    t.beside(color_by_key(ColorSubjects::surfaces), [](const Scene& scene, const MeshItem& m) {
-      return m.surface.color_by ? write_color_by(scene, *m.surface.color_by) : std::string();
-    });
+    t.hand(schema::color("color", "Its colour, without `color_by`.").by_default(schema::write_value(SurfaceMesh{}.color)), read_mesh_color);
+    t.beside(color_by_key(ColorSubjects::surfaces));
     t.bind(
         opacity_key("Of one side."), [](auto& m) -> auto& { return m.surface.opacity; });
     t.bind(
@@ -167,15 +160,13 @@ const Table<MeshItem>& mesh_table() {
 const Table<Cursor>& cursor_table() {
   static const auto table = [] {
     Table<Cursor> t;
-    t.hand(
-        schema::vec3("probe", "world", "Where the hand stands in a still picture."),
-        [](Scene&, const json::Node& node, Cursor& cursor) -> Outcome {
-          CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
-          if (probe) cursor.probe = *probe;
-          cursor.visible = cursor.visible || probe;
-          return Done{};
-        },
-        [](const Scene&, const Cursor& c) { return c.visible ? schema::write_value(c.probe) : std::string(); });
+    t.hand(schema::vec3("probe", "world", "Where the hand stands in a still picture."),
+           [](Scene&, const json::Node& node, Cursor& cursor) -> Outcome {
+             CATENA_TRY(const auto probe, json::get_optional_vec3(node, "probe"));
+             if (probe) cursor.probe = *probe;
+             cursor.visible = cursor.visible || probe;
+             return Done{};
+           });
     t.bind(schema::number("size", "world", "Radius of its ball.").positive().by_default("fitted"), &Cursor::size);
     return t;
   }();
@@ -214,13 +205,6 @@ Outcome read_cursor(Scene& scene, const json::Node& node) {
 }
 
 }  // namespace
-
-Result<Color> read_color(const json::Node& object, std::string_view key, const Color& fallback) {
-  const json::Node* node = object.find(key);
-  if (node == nullptr) return fallback;
-  CATENA_TRY(const Vec3 c, json::as_vec3(*node, key));
-  return as_color(c, *node, key);
-}
 
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
   CATENA_TRY(const std::string name, json::require_string(object, key));

@@ -232,12 +232,16 @@ bool is_name(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
+Outcome check_name(const std::string& kind, const std::string& name, const json::Node& node) {
+  if (is_name(name)) return Done{};
+  return json::error_at(node, kind + " name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+}
+
 Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<FieldOverride>& overrides) {
   if (fields != nullptr) {
     CATENA_CHECK(json::expect_object(*fields, "fields"));
     for (const auto& [name, node] : fields->members) {
-      if (!is_name(name))
-        return json::error_at(node, "field name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+      CATENA_CHECK(check_name("field", name, node));
       const auto has_name = [&name = name](const FieldOverride& o) { return o.name == name; };
       const bool replaced = std::any_of(overrides.begin(), overrides.end(), has_name);
       FieldSource source;

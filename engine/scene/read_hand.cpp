@@ -20,8 +20,7 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
     const json::Node& name_node = *item.find("name");
-    if (!is_name(name))
-      return json::error_at(name_node, "link name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+    CATENA_CHECK(check_name("link", name, name_node));
     if (name == "t" || name == "probe" || name == "force")
       return json::error_at(name_node,
                             "link name " + in_quotes(name) + " is taken by the tick CSV; another name than t, probe, force was expected");
@@ -37,7 +36,7 @@ Outcome read_chain(Scene& scene, const json::Node& node) {
 
 Keys modes_keys() {
   return {schema::identifier("name", "Shown in `--details`.").required(),
-          schema::texts("links", "Links of the chain, in the order of this mode.").as(Role::link).required(),
+          schema::texts("links", "Links of the chain, in the order of this mode.").required(),
           schema::object("on", {}, "A switch, as of a link.").required()};
 }
 
@@ -48,9 +47,7 @@ Outcome read_modes(Scene& scene, const json::Node& node) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(json::only_keys(item, schema::names_of(modes_keys())));
     CATENA_TRY(const std::string name, json::require_string(item, "name"));
-    if (!is_name(name))
-      return json::error_at(*item.find("name"),
-                            "mode name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+    CATENA_CHECK(check_name("mode", name, *item.find("name")));
     bool twice = false;
     scene.world.each<Mode>([&](Entity, const Mode& other) { twice = twice || other.name == name; });
     if (twice) return json::error_at(*item.find("name"), "duplicate mode name " + in_quotes(name) + "; unique names were expected");

@@ -86,23 +86,22 @@ Outcome read_color_by(Scene& scene, const json::Node& item, ColorSubjects subjec
   return read_object(scene, *node, subjects, *out);
 }
 
-std::string write_color_by(const Scene& scene, const ColorBy& by) {
+std::string text_of(const Scene& scene, const ColorBy& by) {
   std::string out = by.what == ColorBy::What::field ? "{\"field\": " + text_of(std::string_view(scene.world.get<Name>(by.field).value))
                                                     : "{\"quantity\": " + text_of(kQuantities[by.what == ColorBy::What::speed ? 0 : 1]);
   for (const auto& [key, value] : scale_members(by.colors, by.named)) out += ", \"" + key + "\": " + value;
   return out + "}";
 }
 
-std::vector<std::pair<std::string, std::string>> scale_members(const std::vector<TransferFunction::ColorPoint>& colors,
-                                                               const NamedColors& named) {
-  std::vector<std::pair<std::string, std::string>> out;
+schema::Members scale_members(const std::vector<TransferFunction::ColorPoint>& colors, const NamedColors& named) {
+  schema::Members out;
   if (!colors.empty()) out.emplace_back("color", text_of(colors));
   if (colors.empty() && !named.map.empty()) out.emplace_back("color", text_of(std::string_view(named.map)));
   if (colors.empty() && named.range) out.emplace_back("range", text_of(*named.range));
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> transfer_members(const TransferFunction& transfer) {
+schema::Members transfer_members(const TransferFunction& transfer) {
   auto out = scale_members(transfer.colors, transfer.named);
   if (!transfer.opacities.empty()) out.emplace_back("opacity", text_of(transfer.opacities));
   if (!transfer.opacities.empty() && transfer.opacity_unit > 0) out.emplace_back("opacity_unit", text_of(transfer.opacity_unit));

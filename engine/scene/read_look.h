@@ -11,12 +11,10 @@ enum class ColorSubjects { rays, surfaces, lines };
 Key color_by_key(ColorSubjects subjects);
 /// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.
 Outcome read_color_by(Scene& scene, const json::Node& item, ColorSubjects subjects, std::optional<ColorBy>& out);
-std::string write_color_by(const Scene& scene, const ColorBy& by);
 /// "color" and "range" as members.
-std::vector<std::pair<std::string, std::string>> scale_members(const std::vector<TransferFunction::ColorPoint>& colors,
-                                                               const NamedColors& named);
+schema::Members scale_members(const std::vector<TransferFunction::ColorPoint>& colors, const NamedColors& named);
 
 /// A volume's colours and opacities.
-std::vector<std::pair<std::string, std::string>> transfer_members(const TransferFunction& transfer);
+schema::Members transfer_members(const TransferFunction& transfer);
 
 }  // namespace catena::scene

@@ -62,6 +62,8 @@ Outcome each_item(const json::Node& node, Read&& read) {
 
 /// [a-z][a-z0-9_]*
 bool is_name(std::string_view text);
+/// `kind` says in the message what is called so: "mesh".
+Outcome check_name(const std::string& kind, const std::string& name, const json::Node& node);
 
 /// Relative paths start at the scene file's folder.
 std::string resolved_path(const std::string& scene_path, const std::string& file);
@@ -70,8 +72,6 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
 /// The entity of the field that member `key` of `object` names; an error lists the known ones.
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
 
-/// Member `key` as [r, g, b], 0..1.
-Result<Color> read_color(const json::Node& object, std::string_view key, const Color& fallback);
 /// Rows [value, r, g, b], values rising.
 Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::Node& node, std::string_view what);
 

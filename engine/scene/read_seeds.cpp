@@ -126,10 +126,7 @@ Result<Seeds> read_seeds(const Scene& scene, const json::Node& node) {
   if (node.kind != json::Kind::object) {
     if (node.kind != json::Kind::array || node.items.empty())
       return json::error_at(node, "\"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected");
-    json::Node holder;
-    holder.kind = json::Kind::object;
-    holder.members.emplace_back("seeds", node);
-    CATENA_CHECK(schema::read_value(schema::places("seeds", "", ""), holder, seeds.points));
+    CATENA_CHECK(schema::read_places(node, "seeds", seeds.points));
     return seeds;
   }
   if (node.find("widget") != nullptr) return read_followed(scene, node);

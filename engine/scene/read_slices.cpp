@@ -84,7 +84,7 @@ Outcome read_contours(Scene& scene, const json::Node& item, Slice& slice) {
   if (ways != 1)
     return json::error_at(*node,
                           "contours say their levels in no way, or in several; one of \"levels\", \"count\" and \"spacing\" was expected");
-  return contours_table().read(scene, *node, *slice.contours);
+  return contours_table().read_known(scene, *node, *slice.contours);
 }
 
 Outcome read_colors(Scene& scene, const json::Node& item, Slice& slice) {
@@ -95,9 +95,7 @@ Outcome read_colors(Scene& scene, const json::Node& item, Slice& slice) {
   return Done{};
 }
 
-using Members = std::vector<std::pair<std::string, std::string>>;
-
-Members plane_members(const Scene& scene, const Slice& slice) {
+schema::Members plane_members(const Scene& scene, const Slice& slice) {
   if (slice.widget) return {{"widget", schema::write_value(scene.world.get<Name>(slice.widget).value)}};
   for (int i = 0; i < 3; ++i) {
     Vec3 axis(0.0), at(0.0);

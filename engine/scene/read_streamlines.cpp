@@ -23,8 +23,7 @@ Outcome read_line_color(Scene& scene, const json::Node& item, StreamlineSet& set
                                        (node == color && color->kind == json::Kind::array ? " is a table" : " is given") +
                                        ", but nothing says of what; it was expected within \"color_by\": {\"field\": NAME} or "
                                        "{\"quantity\": \"speed\" or \"arc_length\"}");
-  CATENA_TRY(set.color, read_color(item, "color", set.color));
-  return Done{};
+  return schema::read_value(schema::color("color", ""), item, set.color);
 }
 
 Outcome read_set_seeds(Scene& scene, const json::Node& item, StreamlineSet& set) {
@@ -45,10 +44,9 @@ const Table<StreamlineSet>& streamlines_table() {
     t.hand(schema::color("color", "Of all lines, without `color_by`.").by_default(schema::write_value(StreamlineSet{}.color)),
            read_line_color,
            [](const Scene&, const StreamlineSet& set) { return set.color_by ? std::string() : schema::write_value(set.color); });
-    t.beside(color_by_key(ColorSubjects::lines), [](const Scene& scene, const StreamlineSet& set) {
-      return set.color_by ? write_color_by(scene, *set.color_by) : std::string();
-    });
-    t.bind(schema::word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres."), &StreamlineSet::line);
+    t.beside(color_by_key(ColorSubjects::lines),
+             [](const Scene& scene, const StreamlineSet& set) { return set.color_by ? text_of(scene, *set.color_by) : std::string(); });
+    t.bind(schema::line_kind_key(), &StreamlineSet::line);
     t.bind(schema::number("min_speed", "value", "Speeds up to this end a line.").not_negative(), &StreamlineSet::min_speed);
     t.bind(schema::number("length", "world", "Longest arc length in each direction.").positive().by_default("10 L"),
            &StreamlineSet::length);

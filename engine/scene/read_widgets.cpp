@@ -81,7 +81,7 @@ Table<Widget> cutting_plane_table() {
   t.group({schema::direction("normal", "Its normal, of any length: this or the next."),
            schema::vector("orientation", 4, "", "A unit quaternion `[w, x, y, z]`; its z is the normal.")},
           read_facing, [](const Scene&, const Widget& widget) {
-            return Table<Widget>::Members{{"orientation", text_of(widget.spec.pose.orientation)}};
+            return schema::Members{{"orientation", text_of(widget.spec.pose.orientation)}};
           });
   bind_size(
       t, size_key("snap", "The plane takes hold of the hand within this distance.", "0.02 L"),
@@ -168,10 +168,7 @@ Outcome read_along(Scene& scene, const json::Node& item, Widget& widget) {
 
 Table<Widget> ruler_table() {
   Table<Widget> t = rake_table();
-  t.hand(schema::texts("along", "Links that its ends keep to: it measures along their line or surface.")
-             .as(Role::link)
-             .items(1, 0)
-             .by_default("straight"),
+  t.hand(schema::texts("along", "Links that its ends keep to: it measures along their line or surface.").items(1, 0).by_default("straight"),
          read_along,
          [](const Scene&, const Widget& widget) { return widget.along.empty() ? std::string() : schema::write_value(widget.along); });
   return t;
@@ -220,15 +217,13 @@ const Table<Widget>& common_table() {
 
 Outcome read_widget(Scene& scene, const json::Node& item) {
   CATENA_TRY(const std::string name, json::require_string(item, "name"));
-  if (!is_name(name))
-    return json::error_at(*item.find("name"),
-                          "widget name " + in_quotes(name) + " is not allowed; a name like [a-z][a-z0-9_]* was expected");
+  CATENA_CHECK(check_name("widget", name, *item.find("name")));
   if (find_widget(scene, name))
     return json::error_at(*item.find("name"), "a second widget is called " + in_quotes(name) + "; a name of its own was expected");
   CATENA_CHECK(json::require_string(item, "type"));
   CATENA_TRY(const int index, json::get_choice(item, "type", 0, {std::begin(kWords), std::end(kWords)}));
   const WidgetType& type = types()[static_cast<std::size_t>(index)];
-  CATENA_CHECK(json::only_keys(item, schema::names_of(schema::joined(common_table().keys(), type.own.keys()))));
+  CATENA_CHECK(json::only_keys(item, schema::names_of(common_table().keys(), type.own.keys())));
   Widget widget;
   widget.where = item;
   widget.spec.kind = type.kind;

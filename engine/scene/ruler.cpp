@@ -6,6 +6,7 @@
 #include "engine/flow/curve.h"
 #include "engine/geodesics/geodesics.h"
 #include "engine/scene/link_feature.h"
+#include "engine/schema/values.h"
 
 namespace catena::scene {
 namespace {
@@ -45,8 +46,7 @@ Result<Track> curve_track(Scene& scene, const Link& link) {
   CATENA_TRY(const field::AnyField any, use_field(scene, name, *link.node.find("field")));
   if (!any.vector) return json::error_at(*link.node.find("field"), "a streamline needs a vector field");
   flow::Flow flow{any.vector.get()};
-  CATENA_TRY(const int kind, json::get_choice(link.node, "kind", 0, {"vector", "line"}));
-  flow.line = kind == 1;
+  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link.node, flow.line));
   CATENA_TRY(flow.min_speed, json::get_number(link.node, "min_speed", 0, json::Range::not_negative));
   Vec3 seed;
   if (const Entity widget = named_widget(scene, seed_node)) {

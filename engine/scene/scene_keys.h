@@ -6,7 +6,6 @@
 
 namespace catena::scene {
 
-using schema::as_color;
 using schema::Key;
 using schema::Keys;
 using schema::Role;

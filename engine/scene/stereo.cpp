@@ -40,16 +40,13 @@ const Table<Stereo>& stereo_table() {
   static const auto table = [] {
     Table<Stereo> t;
     const Key mode = schema::word("mode", {kWords.begin(), kWords.end()}, "How the eyes' pictures are put together.");
-    t.hand(
-        mode.by_default("\"mono\""),
-        [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
-          CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(stereo_word(stereo.mode))));
-          const auto named = stereo_mode(word);
-          if (!named) return json::error_at(*node.find("mode"), "\"mode\" is not known; " + stereo_words() + " was expected");
-          stereo.mode = *named;
-          return Done{};
-        },
-        [](const Scene&, const Stereo& stereo) { return schema::write_value(std::string(stereo_word(stereo.mode))); });
+    t.hand(mode.by_default("\"mono\""), [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
+      CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(stereo_word(stereo.mode))));
+      const auto named = stereo_mode(word);
+      if (!named) return json::error_at(*node.find("mode"), "\"mode\" is not known; " + stereo_words() + " was expected");
+      stereo.mode = *named;
+      return Done{};
+    });
     t.bind(schema::number("separation", "world", "Of neighbouring eyes.")
                .within(0, kMaxStereoSeparation)
                .by_default("a 30th of `zero_parallax`"),

@@ -39,6 +39,8 @@ std::string text_of(const Scene& scene, const Isosurface& surface);
 std::string text_of(const Scene& scene, const Slice& slice);
 std::string text_of(const Scene& scene, const StreamlineSet& set);
 std::string text_of(const Scene& scene, const std::string& name, const Widget& widget);
+/// "color_by".
+std::string text_of(const Scene& scene, const ColorBy& by);
 
 /// The keys that state a widget's pose, with their values; no value: the key goes, as another says it.
 using Members = std::vector<std::pair<std::string, std::optional<std::string>>>;

@@ -91,6 +91,7 @@ Key any_of(const std::string& name, Keys choices, const std::string& help) {
 }
 Key named(const std::string& name, Role role, const std::string& help) { return text(name, help).as(role); }
 Key file(const std::string& name, const std::string& help) { return text(name, help).as(Role::file); }
+Key line_kind_key() { return word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").by_default("\"vector\""); }
 
 const Key* find(const Keys& keys, std::string_view name) {
   for (const Key& key : keys)
@@ -106,6 +107,12 @@ Keys joined(Keys first, const Keys& second) {
 std::vector<std::string_view> names_of(const Keys& keys) {
   std::vector<std::string_view> names;
   for (const Key& key : keys) names.push_back(key.name);
+  return names;
+}
+
+std::vector<std::string_view> names_of(const Keys& first, const Keys& second) {
+  std::vector<std::string_view> names = names_of(first);
+  for (const Key& key : second) names.push_back(key.name);
   return names;
 }
 

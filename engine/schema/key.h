@@ -35,7 +35,7 @@ enum class Form {
 };
 
 /// What of the scene a value names or stands for.
-enum class Role { none, scalar_field, vector_field, any_field, mesh, widget, link, level, seed, file };
+enum class Role { none, scalar_field, vector_field, any_field, mesh, widget, level, file };
 
 /// Bounds of a number, or of each number of a vector. An open bound does not belong to the range.
 struct Limits {
@@ -146,12 +146,15 @@ Key any_of(const std::string& name, Keys choices, const std::string& help);
 /// The name of a field, a mesh, a widget.
 Key named(const std::string& name, Role role, const std::string& help);
 Key file(const std::string& name, const std::string& help);
+/// "kind" of a vector field: vectors, or lines without a direction.
+Key line_kind_key();
 
 const Key* find(const Keys& keys, std::string_view name);
 /// `first`, then `second`.
 Keys joined(Keys first, const Keys& second);
 /// The names of the keys, for json::only_keys.
 std::vector<std::string_view> names_of(const Keys& keys);
+std::vector<std::string_view> names_of(const Keys& first, const Keys& second);
 /// The words of a choice as json::get_choice takes them.
 std::vector<std::string_view> words_of(const Key& key);
 

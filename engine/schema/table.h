@@ -15,13 +15,15 @@
 
 namespace catena::schema {
 
+/// Keys with their values as JSON text.
+using Members = std::vector<std::pair<std::string, std::string>>;
+
 template <class T, class C>
 class Table {
  public:
   using Read = std::function<Outcome(C&, const json::Node& object, T&)>;
   /// The value as JSON text; empty: the key is not written.
   using Write = std::function<std::string(const C&, const T&)>;
-  using Members = std::vector<std::pair<std::string, std::string>>;
   using WriteMany = std::function<Members(const C&, const T&)>;
 
   /// `access`: a pointer to a member, or a function from (const) T& to a reference. Its default is that of a T, where the key has no words

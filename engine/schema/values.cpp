@@ -29,8 +29,7 @@ std::string list(const Items& items) {
   return out + "]";
 }
 
-}  // namespace
-
+/// "KEY is VALUE; a number from 0 to 1 was expected" where the number is not within the key's limits.
 Outcome check_limits(const Key& key, const json::Node& node) {
   if (key.limits.contains(node.number)) return Done{};
   const std::string unit = key.unit.empty() || key.unit == "world" || key.unit == "value" ? "" : " " + key.unit;
@@ -38,6 +37,8 @@ Outcome check_limits(const Key& key, const json::Node& node) {
   const std::string range = l.lo && l.hi ? "from " + to_text(*l.lo) + " to " + to_text(*l.hi) : l.words();
   return json::error_at(node, in_quotes(key.name) + " is " + to_text(node.number) + "; a number " + range + unit + " was expected");
 }
+
+}  // namespace
 
 Outcome read_value(const Key& key, const json::Node& object, double& out) {
   if (is_absent(key, object)) return Done{};
@@ -81,19 +82,6 @@ Outcome read_value(const Key& key, const json::Node& object, Mat3& out) {
   return Done{};
 }
 
-Outcome read_value(const Key& key, const json::Node& object, std::array<double, 2>& out) {
-  if (is_absent(key, object)) return Done{};
-  const json::Node& node = *object.find(key.name);
-  const std::string expected = "; two rising numbers [lo, hi] were expected";
-  if (node.kind != json::Kind::array || node.items.size() != 2) return json::error_at(node, in_quotes(key.name) + " is no pair" + expected);
-  for (std::size_t i = 0; i < 2; ++i) {
-    CATENA_TRY(out[i], json::as_number(node.items[i], key.name + "[" + std::to_string(i) + "]"));
-  }
-  if (!(out[0] < out[1]))
-    return json::error_at(node, in_quotes(key.name) + " is [" + to_text(out[0]) + ", " + to_text(out[1]) + "]" + expected);
-  return Done{};
-}
-
 Outcome read_value(const Key& key, const json::Node& object, std::array<std::string, 3>& out) {
   if (is_absent(key, object)) return Done{};
   const json::Node& node = *object.find(key.name);
@@ -117,30 +105,20 @@ Outcome read_value(const Key& key, const json::Node& object, std::vector<double>
   return Done{};
 }
 
-Outcome read_value(const Key& key, const json::Node& object, std::vector<std::string>& out) {
-  if (is_absent(key, object)) return Done{};
-  const json::Node& node = *object.find(key.name);
-  if (node.kind != json::Kind::array) return json::error_at(node, wrong_list(key, "names"));
+Outcome read_places(const json::Node& node, std::string_view what, std::vector<Vec3>& out) {
+  if (node.kind != json::Kind::array || node.items.empty())
+    return json::error_at(node, in_quotes(what) + " is no list of places or empty; at least one [x, y, z] was expected");
   out.clear();
+  out.reserve(node.items.size());
   for (const json::Node& item : node.items) {
-    CATENA_TRY(std::string name, json::as_string(item, key.name));
-    out.push_back(std::move(name));
+    CATENA_TRY(const Vec3 p, json::as_vec3(item, what));
+    out.push_back(p);
   }
   return Done{};
 }
 
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out) {
-  if (is_absent(key, object)) return Done{};
-  const json::Node& node = *object.find(key.name);
-  if (node.kind != json::Kind::array || node.items.empty())
-    return json::error_at(node, in_quotes(key.name) + " is no list of places or empty; at least one [x, y, z] was expected");
-  out.clear();
-  out.reserve(node.items.size());
-  for (const json::Node& item : node.items) {
-    CATENA_TRY(const Vec3 p, json::as_vec3(item, key.name));
-    out.push_back(p);
-  }
-  return Done{};
+  return is_absent(key, object) ? Outcome(Done{}) : read_places(*object.find(key.name), key.name, out);
 }
 
 Result<Color> as_color(const Vec3& c, const json::Node& node, std::string_view what) {

@@ -19,12 +19,12 @@ Outcome read_value(const Key& key, const json::Node& object, bool& out);  ///< o
 Outcome read_value(const Key& key, const json::Node& object, std::string& out);
 Outcome read_value(const Key& key, const json::Node& object, Vec3& out);
 Outcome read_value(const Key& key, const json::Node& object, Mat3& out);
-Outcome read_value(const Key& key, const json::Node& object, std::array<double, 2>& out);  ///< rising
 Outcome read_value(const Key& key, const json::Node& object, std::array<std::string, 3>& out);
 Outcome read_value(const Key& key, const json::Node& object, std::vector<double>& out);
-Outcome read_value(const Key& key, const json::Node& object, std::vector<std::string>& out);
 Outcome read_value(const Key& key, const json::Node& object, std::vector<Vec3>& out);
 Outcome read_value(const Key& key, const json::Node& object, Color& out);
+/// A list of [x, y, z], at least one.
+Outcome read_places(const json::Node& node, std::string_view what, std::vector<Vec3>& out);
 /// The index of a word.
 Outcome read_choice(const Key& key, const json::Node& object, int& out);
 
@@ -43,9 +43,6 @@ std::string write_value(const Color& value);  ///< components, which are floats,
 
 /// Three numbers from 0 to 1 as a colour.
 Result<Color> as_color(const Vec3& components, const json::Node& node, std::string_view what);
-
-/// "KEY is VALUE; a number from 0 to 1 was expected" where the number is not within the key's limits.
-Outcome check_limits(const Key& key, const json::Node& node);
 
 /// An enum: its words in their order.
 template <class E>

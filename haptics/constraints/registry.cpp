@@ -102,12 +102,10 @@ schema::Key level_key(const std::string& help) {
 schema::Key length_key(const std::string& name, const std::string& help) {
   return schema::number(name, "world", help).not_negative().or_field();
 }
-schema::Key line_kind_key() {
-  return schema::word("kind", {"vector", "line"}, "`line`: v and -v are the same, as for fibres.").by_default("\"vector\"");
-}
 schema::Key free_key(const std::string& above) {
   return schema::word("free", {"none", "above", "below"}, "Where the hand moves freely: `above` is " + above + ".").by_default("\"none\"");
 }
+schema::Key law_key(const std::string& help) { return schema::word("law", {"safe", "printed"}, help).by_default("\"safe\""); }
 
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context) {
   CATENA_CHECK(json::expect_object(link, "a link of the chain"));
@@ -115,7 +113,7 @@ Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& lin
   const ConstraintType* type = find_constraint(word);
   if (!type)
     return json::error_at(*link.find("type"), fmt::format("unknown constraint type \"{}\"; expected one of {}", word, known_types()));
-  CATENA_CHECK(json::only_keys(link, schema::names_of(schema::joined(common_keys(), type->keys))));
+  CATENA_CHECK(json::only_keys(link, schema::names_of(common_keys(), type->keys)));
   CATENA_TRY(std::shared_ptr<const Constraint> made, type->build(link, context));
   return wrap_snap(link, type->releases_itself, std::move(made), context);
 }

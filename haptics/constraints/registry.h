@@ -51,10 +51,10 @@ schema::Key vector_field_key(const std::string& name);
 schema::Key level_key(const std::string& help);
 /// A length of zero or more, in world units, that may follow a field.
 schema::Key length_key(const std::string& name, const std::string& help);
-/// "kind": vectors, or lines without a direction.
-schema::Key line_kind_key();
 /// "free"; `above` says where that side is.
 schema::Key free_key(const std::string& above);
+/// "law" of modulated friction.
+schema::Key law_key(const std::string& help);
 
 /// Builds one link's constraint: looks the type up, refuses unknown keys, calls its build, wraps it where it snaps or releases.
 Result<std::shared_ptr<const Constraint>> build_constraint(const json::Node& link, const BuildContext& context);

@@ -41,7 +41,6 @@ struct LightItem {
   Color color{1, 1, 1};  ///< times the intensity
   bool with_camera = false;
 };
-inline constexpr std::size_t kMaxLights = 4;
 
 /// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
 struct FogItem {

@@ -7,6 +7,20 @@
 
 namespace catena::render {
 
+namespace {
+
+/// One texel a brick.
+Result<vk::Image> make_image(vk::Device& device, const std::array<std::int32_t, 3>& bricks, VkFormat format) {
+  vk::ImageInfo info;
+  info.type = VK_IMAGE_TYPE_3D;
+  info.format = format;
+  info.extent = {std::uint32_t(bricks[0]), std::uint32_t(bricks[1]), std::uint32_t(bricks[2])};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  return vk::Image::create(device, info);
+}
+
+}  // namespace
+
 // Chamfer distance of the largest coordinate to the nearest brick of another kind, for all kinds at once: two sweeps over the 13
 // neighbours that come before (after) a brick. Outside the grid nothing is of another kind.
 std::vector<std::uint8_t> plain_distances(const std::array<std::int32_t, 3>& bricks, const std::vector<std::uint16_t>& kind) {
@@ -43,12 +57,7 @@ Result<BrickMap> make_word_map(vk::Device& device, const GridMirror& mirror, std
   CATENA_ASSERT(mirror.drawable && high.size() == mirror.ranges.size());
   BrickMap map;
   map.total = map.active = high.size();
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.format = VK_FORMAT_R32_UINT;
-  info.extent = {std::uint32_t(mirror.bricks[0]), std::uint32_t(mirror.bricks[1]), std::uint32_t(mirror.bricks[2])};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  CATENA_TRY(map.image, vk::Image::create(device, info));
+  CATENA_TRY(map.image, make_image(device, mirror.bricks, VK_FORMAT_R32_UINT));
   const std::size_t plane = std::size_t(mirror.bricks[0]) * mirror.bricks[1];
   CATENA_CHECK(vk::upload_planes(device, map.image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     std::vector<std::uint32_t> words(plane * count);
@@ -92,12 +101,7 @@ Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, 
   const std::vector<std::uint8_t> distance = plain_distances(packed.bricks, kind);
   PlainMap map;
   map.leaping = double(std::count_if(distance.begin(), distance.end(), [](std::uint8_t d) { return d > 0; })) / double(distance.size());
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.format = VK_FORMAT_R8_UINT;
-  info.extent = {std::uint32_t(packed.bricks[0]), std::uint32_t(packed.bricks[1]), std::uint32_t(packed.bricks[2])};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  CATENA_TRY(map.image, vk::Image::create(device, info));
+  CATENA_TRY(map.image, make_image(device, packed.bricks, VK_FORMAT_R8_UINT));
   const std::size_t plane = std::size_t(packed.bricks[0]) * packed.bricks[1];
   CATENA_CHECK(vk::upload_planes(device, map.image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     std::memcpy(out, distance.data() + first * plane, count * plane);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "engine/base/eye_limits.h"
 #include "render/mirror/half.h"
 #include "render/passes/embedded_shaders.h"
 #include "render/passes/pack.h"

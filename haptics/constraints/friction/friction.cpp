@@ -2,6 +2,7 @@
 
 #include "engine/field/magnitude.h"
 #include "engine/flow/flow.h"
+#include "engine/schema/values.h"
 #include "haptics/constraints/friction/contact.h"
 #include "haptics/constraints/friction/safe_direction.h"
 #include "haptics/constraints/rules/read_field.h"
@@ -283,8 +284,7 @@ Result<std::shared_ptr<const Constraint>> build_friction(const json::Node& link,
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "friction", context));
   spec.field = field;
   spec.largest = field::largest_magnitude(*field);
-  CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
-  spec.line = kind == 1;
+  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.line));
   CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::optional, context));
   if (!spec.contact.surface) spec.contact.length = field->length();
   CATENA_TRY(spec.threshold, get_parameter(link, "threshold", kThreshold * spec.contact.length, json::Range::not_negative, context));
@@ -297,7 +297,7 @@ ConstraintType friction_constraint() {
   return {"friction",
           "Friction across a vector field; along the field the hand moves freely.",
           "section 6.1",
-          {vector_field_key("field").required(), line_kind_key(),
+          {vector_field_key("field").required(), schema::line_kind_key(),
            length_key("threshold", "Distance at which the proxy slips across the field.").by_default("0.005 L"), surface_key(),
            surface_level_key()},
           build_friction};

@@ -2,6 +2,7 @@
 
 #include "engine/field/magnitude.h"
 #include "engine/flow/flow.h"
+#include "engine/schema/values.h"
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/friction/contact.h"
 #include "haptics/constraints/friction/safe_direction.h"
@@ -87,10 +88,8 @@ Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::N
   ModulatedFrictionSpec spec;
   CATENA_TRY(const field::VectorFieldPtr field, require_vector_field(link, "field", "modulated_friction", context));
   spec.field = field;
-  CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
-  spec.line = kind == 1;
-  CATENA_TRY(const int law, json::get_choice(link, "law", 0, {"safe", "printed"}));
-  spec.printed = law == 1;
+  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.line));
+  CATENA_CHECK(schema::read_value(law_key(""), link, spec.printed));
   CATENA_TRY(spec.contact, read_contact(link, SurfaceKey::required, context));
   const double length = spec.contact.length;
   CATENA_TRY(spec.least, get_parameter(link, "tau_min", kLeast * length, json::Range::not_negative, context));
@@ -103,17 +102,17 @@ Result<std::shared_ptr<const Constraint>> build_modulated_friction(const json::N
 }  // namespace
 
 ConstraintType modulated_friction_constraint() {
-  return {
-      "modulated_friction",
-      "Friction that is harder the more normal the field is to the surface.",
-      "section 6.1, Eqs. 7-9",
-      {schema::named("field", schema::Role::vector_field, "A vector field; its angle to the surface sets the threshold.").required(),
-       line_kind_key(), schema::named("surface", schema::Role::scalar_field, "A scalar field; its gradient is the normal.").required(),
-       level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
-       length_key("tau_min", "Threshold where the field is tangential.").by_default("0.001 L"),
-       length_key("tau_max", "Threshold where the field is normal.").by_default("0.01 L"),
-       schema::word("law", {"safe", "printed"}, "`safe`: harder the more normal; `printed`: Eq. 7 to the letter.").by_default("\"safe\"")},
-      build_modulated_friction};
+  return {"modulated_friction",
+          "Friction that is harder the more normal the field is to the surface.",
+          "section 6.1, Eqs. 7-9",
+          {schema::named("field", schema::Role::vector_field, "A vector field; its angle to the surface sets the threshold.").required(),
+           schema::line_kind_key(),
+           schema::named("surface", schema::Role::scalar_field, "A scalar field; its gradient is the normal.").required(),
+           level_key("Keeps the proxy on this level of `surface`; without it the drag is in space."),
+           length_key("tau_min", "Threshold where the field is tangential.").by_default("0.001 L"),
+           length_key("tau_max", "Threshold where the field is normal.").by_default("0.01 L"),
+           law_key("`safe`: harder the more normal; `printed`: Eq. 7 to the letter.")},
+          build_modulated_friction};
 }
 
 }  // namespace catena::haptics

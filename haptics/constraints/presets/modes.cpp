@@ -13,10 +13,10 @@ ReadyMode anisotropic_friction() {
       "other common keys to the first.",
       "section 6.1, Eqs. 7-9",
       {scalar_field_key("surface").required(), level_key("The value on the surface.").required(), vector_field_key("field").required(),
-       line_kind_key(), length_key("threshold", "Slip across the field.").by_default("0.005 L"),
+       schema::line_kind_key(), length_key("threshold", "Slip across the field.").by_default("0.005 L"),
        length_key("tau_min", "Slip along the field where it is tangential.").by_default("0.001 L"),
-       length_key("tau_max", "Slip along the field where it is normal.").by_default("0.01 L"),
-       schema::word("law", {"safe", "printed"}, "As of `modulated_friction`.").by_default("\"safe\""), free_key("where values are larger")},
+       length_key("tau_max", "Slip along the field where it is normal.").by_default("0.01 L"), law_key("As of `modulated_friction`."),
+       free_key("where values are larger")},
       {{"surface", "isosurface", {{"surface", "field"}, {"level", "level"}, {"free", "free"}}},
        {"direction",
         "friction",
@@ -62,7 +62,7 @@ Result<std::vector<json::Node>> expand_link(const json::Node& item) {
 
   // the mode's own keys
   CATENA_TRY(const std::string name, json::require_string(item, "name"));
-  CATENA_CHECK(json::only_keys(item, schema::names_of(schema::joined(common_keys(), mode->keys))));
+  CATENA_CHECK(json::only_keys(item, schema::names_of(common_keys(), mode->keys)));
   for (const schema::Key& key : mode->keys) {
     if (!key.is_required || item.find(key.name) != nullptr) continue;
     if (key.form == schema::Form::number) {

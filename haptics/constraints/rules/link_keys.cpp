@@ -93,7 +93,7 @@ Result<Switch> read_switch(const json::Node& holder) {
     return json::error_at(*other,
                           button ? "\"force_below\" belongs to \"force_above\", not to \"button\"; only \"toggle\" was expected beside it"
                                  : "\"toggle\" belongs to \"button\", not to \"force_above\"; only \"force_below\" was expected beside it");
-  CATENA_CHECK(switch_table().read({}, *node, on));
+  CATENA_CHECK(switch_table().read_known({}, *node, on));
   return on;
 }
 
@@ -120,7 +120,7 @@ Result<Align> read_align(const json::Node& link, const Coupling& coupling, const
     return json::error_at(*node, "\"align\" needs a proxy of the link's own; \"method\": \"chain\" was expected in \"coupling\"");
   out.on = true;
   out.stiffness_nm_per_rad = coupling.rotational_stiffness_nm_per_rad;
-  CATENA_CHECK(align_table().read({}, *node, out));
+  CATENA_CHECK(align_table().read_known({}, *node, out));
   return out;
 }
 

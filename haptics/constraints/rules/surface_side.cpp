@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "engine/schema/values.h"
 #include "haptics/constraints/rules/read_parameter.h"
 
 namespace catena::haptics {
@@ -112,10 +113,7 @@ double travel_of(const SideMemory& memory, const Vec3& probe, double gap, const 
 
 Result<SideSpec> read_side_rules(const json::Node& link, bool has_sides, const BuildContext& context) {
   SideSpec spec;
-  if (has_sides) {
-    CATENA_TRY(const int side, json::get_choice(link, "free", 0, {"none", "above", "below"}));
-    spec.free = static_cast<FreeSide>(side);
-  }
+  if (has_sides) CATENA_CHECK(schema::read_value(free_key(""), link, spec.free));
   if (link.find("snap") != nullptr) return spec;  // snap.h lets go
   CATENA_TRY(spec.release, get_parameter(link, "release", 0.0, json::Range::positive, context));
   return spec;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "engine/flow/flow.h"
+#include "engine/schema/values.h"
 #include "haptics/constraints/rules/read_field.h"
 #include "haptics/constraints/streamline/online.h"
 #include "haptics/constraints/streamline/selected.h"
@@ -37,8 +38,7 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
   // keys
   OnlineSpec spec;
   spec.field = field;
-  CATENA_TRY(const int kind, json::get_choice(link, "kind", 0, {"vector", "line"}));
-  spec.line = kind == 1;
+  CATENA_CHECK(schema::read_value(schema::line_kind_key(), link, spec.line));
   CATENA_TRY(spec.min_speed, json::get_number(link, "min_speed", 0, json::Range::not_negative));
   // neighbouring fibres of noisy data part quickly: what is not stated is chosen so that online and selected agree to 1e-6 L
   const bool cells = spec.line && field->is_grid();
@@ -72,27 +72,24 @@ Result<std::shared_ptr<const Constraint>> build_streamline(const json::Node& lin
 }  // namespace
 
 ConstraintType streamline_constraint() {
-  return {"streamline",
-          "Holds the proxy on a streamline: one that is traced once, or one that is integrated in every tick.",
-          "section 4, Eqs. 1-4",
-          {vector_field_key("field").required(),
-           schema::vec3("seed", "world", "A place on the line.")
-               .by_default("the probe where the link is switched on")
-               .as(schema::Role::seed)
-               .or_widget()
-               .stated(),
-           schema::word("follow", {kFollow.begin(), kFollow.end()},
-                        "`selected`: on the traced curve, with a seed; `online`: integrated every tick.")
-               .by_default("`selected` with a seed"),
-           schema::word("method", {kMethods.begin(), kMethods.end()},
-                        "Integrator of online following, which it implies; `linear` is Eqs. 1-2 as printed.")
-               .by_default("`rkf34`; sampled line fields `dp54`"),
-           schema::number("tolerance", "L", "Embedded error of one online step.")
-               .limited({0.0, 1.0, true, true})
-               .begins("1e-4")
-               .by_default("1e-9; sampled line fields 1e-13"),
-           line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").not_negative().by_default("0")},
-          build_streamline};
+  return {
+      "streamline",
+      "Holds the proxy on a streamline: one that is traced once, or one that is integrated in every tick.",
+      "section 4, Eqs. 1-4",
+      {vector_field_key("field").required(),
+       schema::vec3("seed", "world", "A place on the line.").by_default("the probe where the link is switched on").or_widget().stated(),
+       schema::word("follow", {kFollow.begin(), kFollow.end()},
+                    "`selected`: on the traced curve, with a seed; `online`: integrated every tick.")
+           .by_default("`selected` with a seed"),
+       schema::word("method", {kMethods.begin(), kMethods.end()},
+                    "Integrator of online following, which it implies; `linear` is Eqs. 1-2 as printed.")
+           .by_default("`rkf34`; sampled line fields `dp54`"),
+       schema::number("tolerance", "L", "Embedded error of one online step.")
+           .limited({0.0, 1.0, true, true})
+           .begins("1e-4")
+           .by_default("1e-9; sampled line fields 1e-13"),
+       schema::line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").not_negative().by_default("0")},
+      build_streamline};
 }
 
 }  // namespace catena::haptics

@@ -6,6 +6,7 @@
 
 #include "engine/base/json.h"
 #include "engine/base/json_edit.h"
+#include "engine/base/text.h"
 
 namespace catena::app {
 
@@ -19,8 +20,7 @@ json::Node* member_of(json::Node& object, std::string_view key) {
 }
 
 std::string free_among(std::set<std::string>& taken, const std::string& name) {
-  std::string free = name;
-  for (int n = 2; taken.contains(free); ++n) free = name + "_" + std::to_string(n);
+  std::string free = free_name(name, [&](const std::string& n) { return taken.contains(n); });
   taken.insert(free);
   return free;
 }

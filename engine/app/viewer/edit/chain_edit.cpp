@@ -6,6 +6,7 @@
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
+#include "engine/base/text.h"
 #include "engine/scene/link_feature.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/presets/modes.h"
@@ -159,8 +160,8 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
   // a name that is free
   std::vector<std::string> taken{"t", "probe", "force"};
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) { taken.push_back(link.name); });
-  std::string name(type);
-  for (int n = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++n) name = std::string(type) + "_" + std::to_string(n);
+  const std::string name =
+      free_name(std::string(type), [&](const std::string& n) { return std::find(taken.begin(), taken.end(), n) != taken.end(); });
 
   json::Node link;
   link.kind = json::Kind::object;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/app/viewer/edit/chain_edit.h"
+#include "engine/base/text.h"
 #include "engine/scene/widgets.h"
 #include "engine/scene/write_values.h"
 
@@ -34,9 +35,8 @@ Result<std::string> new_widget(const scene::Scene& scene, const std::string& typ
   using widget::Kind;
   const std::vector<std::string> types = widget_types();
   const auto kind = static_cast<Kind>(std::find(types.begin(), types.end(), type) - types.begin());
-  const std::string base = kind == Kind::cutting_plane ? "cut" : type;
-  std::string name = base;
-  for (int n = 2; scene::find_widget(scene, name); ++n) name = base + "_" + std::to_string(n);
+  const std::string name =
+      free_name(kind == Kind::cutting_plane ? "cut" : type, [&](const std::string& n) { return bool(scene::find_widget(scene, n)); });
 
   const Vec3 middle = bounds.empty() ? Vec3(0.0) : bounds.centre(), size = bounds.empty() ? Vec3(1.0) : bounds.hi - bounds.lo;
   const Vec3 half = kind == Kind::box ? size * 0.25 : Vec3(0.25 * max_abs(size), 0, 0);

@@ -89,11 +89,16 @@ json::Node value_of(const json::Node& item, const schema::Key& key) {
   return usual ? *usual : json::Node();
 }
 
+bool is_plain(const schema::Key& key) {
+  using schema::Form;
+  return key.form == Form::boolean || key.form == Form::word || (key.form == Form::number && key.limits.lo && key.limits.hi);
+}
+
 void edit_plain_key(Edits& edits, const schema::Key& key, const json::Node& value, const std::string& pointer) {
   const std::string label = key.name == "clip" ? "cut by the clip planes" : key.name;
   if (key.form == schema::Form::boolean && value.kind == json::Kind::boolean) {
     edit_boolean(edits, label.c_str(), value.boolean, pointer);
-  } else if (key.form == schema::Form::number && key.limits.lo && key.limits.hi && value.kind == json::Kind::number) {
+  } else if (key.form == schema::Form::number && value.kind == json::Kind::number) {
     edit_slider(edits, label.c_str(), value.number, *key.limits.lo, *key.limits.hi, pointer, "%.2f");
   } else if (key.form == schema::Form::word && value.kind == json::Kind::string) {
     std::string chosen = value.string;
@@ -110,7 +115,7 @@ void edit_plain_keys(Edits& edits, const std::string& part, const json::Node& it
   for (const schema::Component& component : scene::scene_components()) {
     if (component.name != part) continue;
     for (const schema::Key& key : component.keys)
-      if (key.name != "visible" && std::find(but.begin(), but.end(), key.name) == but.end())
+      if (is_plain(key) && key.name != "visible" && std::find(but.begin(), but.end(), key.name) == but.end())
         edit_plain_key(edits, key, value_of(item, key), pointer_of(item) + "/" + key.name);
   }
 }

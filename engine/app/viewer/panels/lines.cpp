@@ -28,11 +28,15 @@ void choose_what(Edits& edits, const scene::Scene& scene, const scene::Streamlin
       change.push_back({pointer + "/color_by", std::nullopt});
       change.push_back({pointer + "/color", scene::text_of(set.color)});
     } else {
-      const bool named = set.color_by && !set.color_by->named.map.empty(), quantity = choice == "speed" || choice == "arc_length";
-      const std::string map = named ? set.color_by->named.map : std::string(scene::kDefaultLineMap);
+      const bool named = set.color_by && !set.color_by->named.map.empty();
+      scene::ColorBy by;
+      by.what = choice == "speed"        ? scene::ColorBy::What::speed
+                : choice == "arc_length" ? scene::ColorBy::What::arc_length
+                                         : scene::ColorBy::What::field;
+      if (by.what == scene::ColorBy::What::field) by.field = scene::find_field(scene, choice);
+      by.named.map = named ? set.color_by->named.map : std::string(scene::kDefaultLineMap);
       if (set.color_by) change.push_back({pointer + "/color", std::nullopt});
-      change.push_back({pointer + "/color_by", std::string(quantity ? "{\"quantity\": " : "{\"field\": ") + scene::text_of(choice) +
-                                                   ", \"color\": " + scene::text_of(map) + "}"});
+      change.push_back({pointer + "/color_by", scene::text_of(scene, by)});
     }
     edits.set(change, "colours");
   }
