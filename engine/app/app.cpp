@@ -1,4 +1,4 @@
-#include "engine/app/app.h"
+#include "engine/app/command.h"
 
 #include <fmt/core.h>
 
@@ -8,9 +8,7 @@
 #include <new>
 #include <system_error>
 
-#include "engine/app/command.h"
-#include "engine/app/lost_output.h"
-#include "engine/app/number_option.h"
+#include "engine/app/options.h"
 #include "engine/app/process_limits.h"
 #include "engine/base/clock.h"
 #include "engine/base/memory_limit.h"

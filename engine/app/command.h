@@ -63,4 +63,7 @@ class Progress {
   bool terminal_, shown_ = false;
 };
 
+/// The program `catena`: one file a subcommand. Exit codes: 0 done; 2 bad input, with one clear line on stderr and no output
+/// file; 1 the machine failed (no Vulkan device, no display, out of memory), or a replay does not repeat its recording.
+int run(int argc, char** argv);
 }  // namespace catena::app

@@ -6,8 +6,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/device_check.h"
-#include "engine/app/hand/crash_guard.h"
-#include "engine/app/hand/interrupt.h"
+#include "engine/app/hand/signals.h"
 #include "engine/base/json_text.h"
 #include "engine/base/numbers.h"
 #include "engine/base/tell.h"

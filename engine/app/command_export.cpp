@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "engine/app/command.h"
-#include "engine/app/log_scene.h"
+#include "engine/app/replay_log.h"
 #include "engine/app/run_files.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"

@@ -10,13 +10,10 @@
 #include <utility>
 
 #include "engine/app/command.h"
-#include "engine/app/hand/crash_guard.h"
-#include "engine/app/hand/hand_setup.h"
-#include "engine/app/hand/interrupt.h"
 #include "engine/app/hand/open_hand.h"
-#include "engine/app/hand/realtime_option.h"
 #include "engine/app/hand/recording.h"
-#include "engine/app/number_option.h"
+#include "engine/app/hand/signals.h"
+#include "engine/app/options.h"
 #include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"

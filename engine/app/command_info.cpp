@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "engine/app/command.h"
-#include "engine/app/info_log.h"
+#include "engine/app/replay_log.h"
 #include "engine/app/scene_schema.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -18,7 +18,7 @@
 #include "engine/scene/ruler.h"
 #include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
-#include "engine/schema/markdown.h"
+#include "engine/schema/documents.h"
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/device/settings.h"

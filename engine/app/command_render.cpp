@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "engine/app/command.h"
-#include "engine/app/number_option.h"
+#include "engine/app/options.h"
 #include "engine/app/render/options.h"
 
 namespace catena::app {

@@ -8,11 +8,10 @@
 #include <optional>
 
 #include "engine/app/command.h"
-#include "engine/app/probe_samples.h"
+#include "engine/app/felt_cursor.h"
 #include "engine/app/replay_log.h"
 #include "engine/app/tick_csv.h"
-#include "engine/app/widget_csv.h"
-#include "engine/base/csv_paths.h"
+#include "engine/base/csv.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "haptics/device/registry.h"

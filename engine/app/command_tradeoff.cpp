@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "engine/app/command.h"
-#include "engine/app/tradeoff/figures.h"
+#include "engine/app/tradeoff/results.h"
 #include "engine/base/text.h"
 
 namespace catena::app {

@@ -2,13 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "engine/app/annotate_option.h"
 #include "engine/app/command.h"
-#include "engine/app/hand/realtime_option.h"
-#include "engine/app/number_option.h"
+#include "engine/app/options.h"
 #include "engine/app/run_files.h"
-#include "engine/app/size_option.h"
-#include "engine/app/stereo_option.h"
 #include "engine/app/viewer/viewer.h"
 
 namespace catena::app {

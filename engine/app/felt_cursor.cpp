@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/app/probe_samples.h"
-#include "engine/scene/systems.h"
+#include "engine/scene/prepare.h"
 
 namespace catena::app {
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/csv.h"
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
 #include "haptics/chain/tick.h"
@@ -31,5 +32,13 @@ class FeltPath {
   std::unique_ptr<haptics::ChainScratch> scratch_;
   exchange::HapticState last_;
 };
+
+/// A probe path as read (engine/base) as the tick takes it (haptics/chain).
+inline std::vector<haptics::ProbeSample> probe_samples(const std::vector<ProbeRow>& rows) {
+  std::vector<haptics::ProbeSample> samples;
+  samples.reserve(rows.size());
+  for (const ProbeRow& row : rows) samples.push_back({row.t_s, row.position, row.buttons, row.orientation});
+  return samples;
+}
 
 }  // namespace catena::app

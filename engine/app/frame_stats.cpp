@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/base/json_text.h"
-#include "engine/base/quantile.h"
+#include "engine/base/numbers.h"
 
 namespace catena::app {
 

@@ -1,3 +1,3 @@
-#include "engine/app/app.h"
+#include "engine/app/command.h"
 
 int main(int argc, char** argv) { return catena::app::run(argc, argv); }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/output_check.h"
+#include "engine/base/output_file.h"
 #include "engine/scene/scene.h"
 
 namespace catena::app {
@@ -27,7 +27,7 @@ class RunFiles {
   void writes(const std::string& option, const std::string& path);
 
   const std::vector<std::string>& inputs() const { return inputs_; }
-  /// Before anything is opened for writing (output_check.h).
+  /// Before anything is opened for writing (engine/base/output_file.h).
   Outcome check() const { return check_outputs(outputs_, inputs_); }
 
  private:

@@ -1,7 +1,7 @@
 #include "engine/app/scene_schema.h"
 
 #include "engine/scene/scene.h"
-#include "engine/schema/json_schema.h"
+#include "engine/schema/documents.h"
 #include "haptics/constraints/registry.h"
 #include "haptics/device/settings.h"
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
-#include "engine/base/too_many_files.h"
+#include "engine/base/result.h"
 
 namespace catena {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/json_layout.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 

@@ -1,4 +1,4 @@
-#include "engine/base/json_layout.h"
+#include "engine/base/json_edit.h"
 
 #include <algorithm>
 

@@ -1,8 +1,11 @@
 #include "engine/base/numbers.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+
+#include "engine/base/result.h"
 
 namespace catena {
 
@@ -49,5 +52,84 @@ std::optional<double> parse_double(std::string_view text) {
   return value;
 }
 std::optional<long long> parse_integer(std::string_view text) { return parse<long long>(text); }
+
+namespace {
+
+constexpr double kNoRange = 1e-12, kSlack = 1e-9;
+constexpr std::size_t kMaxFixed = 6;
+
+/// mantissa 10^exponent, the mantissa 1, 2, 5 or 10.
+struct Step {
+  int mantissa = 1, exponent = 0;
+  double value() const { return mantissa * std::pow(10.0, exponent); }
+};
+
+/// The nice number nearest to x > 0.
+Step nice(double x) {
+  int exponent = static_cast<int>(std::floor(std::log10(x)));
+  const double fraction = x / std::pow(10.0, exponent);
+  return {fraction < 1.5 ? 1 : fraction < 3 ? 2 : fraction < 7 ? 5 : 10, exponent};
+}
+
+/// count 10^exponent as text without an exponent, with -exponent decimals.
+std::string fixed_text(long long count, int exponent) {
+  std::string digits = std::to_string(std::llabs(count));
+  if (exponent >= 0) {
+    if (count != 0) digits.append(static_cast<std::size_t>(exponent), '0');
+  } else {
+    const auto decimals = static_cast<std::size_t>(-exponent);
+    if (digits.size() <= decimals) digits.insert(0, decimals + 1 - digits.size(), '0');
+    digits.insert(digits.size() - decimals, ".");
+  }
+  return (count < 0 ? "-" : "") + digits;
+}
+
+/// The same with one digit before the point and an exponent: "2.5e-7".
+std::string exponent_text(long long count, int exponent) {
+  if (count == 0) return "0";
+  std::string digits = std::to_string(std::llabs(count));
+  exponent += static_cast<int>(digits.size()) - 1;
+  while (digits.size() > 1 && digits.back() == '0') digits.pop_back();
+  if (digits.size() > 1) digits.insert(1, ".");
+  return (count < 0 ? "-" : "") + digits + "e" + std::to_string(exponent);
+}
+
+/// The most digits that a label shows.
+std::size_t most_digits(const std::vector<std::string>& labels) {
+  std::size_t most = 0;
+  for (const std::string& label : labels)
+    most = std::max(most, static_cast<std::size_t>(std::count_if(label.begin(), label.end(), [](char c) { return c >= '0' && c <= '9'; })));
+  return most;
+}
+
+}  // namespace
+
+std::vector<Tick> nice_ticks(double lo, double hi, int about) {
+  CATENA_ASSERT(about >= 2);
+  if (!std::isfinite(lo) || !std::isfinite(hi)) return {};
+  if (lo > hi) std::swap(lo, hi);
+  const double size = std::max(std::fabs(lo), std::fabs(hi));
+  // halves: the difference of two large numbers must not overflow
+  const double half = 0.5 * hi - 0.5 * lo;
+  if (!(half > 0.5 * kNoRange * size) || !(half > 1e-300)) return {{lo, to_text(lo)}};
+
+  const Step step = nice(half / (0.5 * std::max(2, about - 1)));
+  const double unit = step.value();
+  const auto first = static_cast<long long>(std::ceil(lo / unit - kSlack)), last = static_cast<long long>(std::floor(hi / unit + kSlack));
+  int exponent = step.exponent, mantissa = step.mantissa;
+  if (mantissa == 10) ++exponent, mantissa = 1;
+  std::vector<std::string> fixed, scientific;
+  const bool readable = std::abs(exponent) <= 40;
+  for (long long k = first; k <= last; ++k) {
+    if (readable) fixed.push_back(fixed_text(k * mantissa, exponent));
+    scientific.push_back(exponent_text(k * mantissa, exponent));
+  }
+  const std::size_t digits = most_digits(fixed);
+  const bool plain = readable && (digits <= kMaxFixed || digits <= most_digits(scientific));
+  const std::vector<std::string>& labels = plain ? fixed : scientific;
+  std::vector<Tick> ticks;
+  for (const std::string& label : labels) ticks.push_back({parse_double(label).value_or(0), label});
+  return ticks;
+}
 
 }  // namespace catena

@@ -1,5 +1,8 @@
-/// An output that is either complete or not there: written to an unfinished file beside its place (part_file.h), renamed by commit().
-/// Places that are no regular files (/dev/stdout, /dev/full, pipes) are written directly. Errors name the path and why.
+/// Outputs: the check before anything is written, the unfinished file (PartFile), and the output that is whole or not there (OutputFile).
+///
+/// The rule that no output of a run is one of its inputs, and no two outputs are one file: said before anything is opened for writing.
+/// Two names are one file where they lead to one thing on the disk (device and inode: links of both kinds, ./x, x/../x), or, where nothing
+/// is there yet, to one place once links on the way are followed. Letters keep their case. Devices and pipes are nobody's own.
 #pragma once
 #include <cstdint>
 #include <cstdio>
@@ -8,12 +11,61 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/base/output_check.h"
-#include "engine/base/part_file.h"
 #include "engine/base/result.h"
 
 namespace catena {
 
+/// A file that a run will write; an empty path: it will not.
+struct Output {
+  std::string option;  ///< that names it: "--stats"
+  std::string path;
+};
+
+/// One line: a missing folder, a folder as the file, an output that is one of the inputs, or two outputs that are one file.
+Outcome check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs);
+/// The same for one output.
+Outcome check_output(const std::string& path, const std::vector<std::string>& inputs);
+
+/// Two names of one place, whether or not it exists yet. Devices and pipes are nobody's own.
+bool same_file(const std::string& a, const std::string& b);
+
+/// The unfinished file that an output is written to before it is renamed to its place, so that the place holds the old content or the new
+/// one, whole. It lies beside its place under a name of its own, NAME.part<pid>-<random>; it is made by this program alone (O_EXCL: never
+/// what somebody put there, never through a link) and locked (flock) while it is written. What programs that have ended left of the same
+/// output is removed when it is written again.
+class PartFile {
+ public:
+  /// `owner_only`: nobody else may read it. A place that exists keeps its permissions. Error: "PATH: cannot write: why".
+  static Result<PartFile> create(const std::string& path, bool owner_only = false);
+  ~PartFile();  ///< removes it, unless it was committed
+  PartFile(PartFile&& other) noexcept;
+  PartFile& operator=(PartFile&&) = delete;
+
+  const std::string& path() const { return path_; }
+  const std::string& name() const { return name_; }
+  int descriptor() const { return descriptor_; }
+  /// Renames it to its place. An error leaves what was there.
+  Outcome commit();
+  /// As commit(), but for a place where nothing may be: false where something is.
+  Result<bool> commit_new();
+  /// The file's descriptor, and with it the lock, are the caller's from now on. After a commit.
+  int release();
+
+ private:
+  PartFile(std::string path, std::string name, int descriptor) : path_(std::move(path)), name_(std::move(name)), descriptor_(descriptor) {}
+
+  std::string path_, name_;  ///< name_ empty: nothing to remove
+  int descriptor_ = -1;
+};
+
+/// The name of an unfinished file or folder for `path`; another one at every call.
+std::string part_name(const std::string& path);
+
+/// Removes unfinished files and folders for `path` whose programs have ended.
+void remove_stale_parts(const std::string& path);
+
+/// An output that is either complete or not there: written to an unfinished file beside its place, renamed by commit().
+/// Places that are no regular files (/dev/stdout, /dev/full, pipes) are written directly. Errors name the path and why.
 class OutputFile {
  public:
   static Result<OutputFile> open(const std::string& path);

@@ -1,4 +1,4 @@
-#include "engine/base/part_file.h"
+#include "engine/base/output_file.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/too_many_files.h"
+#include "engine/base/result.h"
 
 namespace catena {
 

@@ -1,11 +1,19 @@
-/// The outside world's answer: a value, or one sentence that a person can act on. Never thrown, never used in a tick.
+/// What went wrong, in two kinds: a bug, which ends the program (CATENA_ASSERT), and an error of the outside world (Result).
+///
+/// A bug in Catena itself: checked in every build type, prints the place and aborts.
 #pragma once
+#include <cerrno>
 #include <string>
 #include <utility>
 #include <variant>
 
-#include "engine/base/assert.h"
+namespace catena {
+[[noreturn]] void assertion_failed(const char* expression, const char* file, int line);
+}
 
+#define CATENA_ASSERT(expression) ((expression) ? static_cast<void>(0) : ::catena::assertion_failed(#expression, __FILE__, __LINE__))
+
+/// The outside world's answer: a value, or one sentence that a person can act on. Never thrown, never used in a tick.
 namespace catena {
 
 struct Error {
@@ -58,3 +66,10 @@ using Outcome = Result<Done>;
 #define CATENA_TRY(declaration, expression) CATENA_TRY_(CATENA_CONCAT(try_result_, __LINE__), declaration, expression)
 #define CATENA_CHECK(expression) \
   if (auto check_result = (expression); !check_result) return check_result.error()
+
+/// Whether a file cannot be opened because this process, or the machine, may have no more open: an error of the machine, not of the file.
+namespace catena {
+
+inline bool too_many_files(int code) { return code == EMFILE || code == ENFILE; }
+
+}  // namespace catena

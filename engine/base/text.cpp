@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "engine/base/memory_limit.h"
-#include "engine/base/too_many_files.h"
+#include "engine/base/result.h"
 
 namespace catena {
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/field/analytic_formula.h"
-
 namespace catena::field {
 namespace {
 

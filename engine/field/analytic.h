@@ -3,11 +3,14 @@
 ///        sphere plane torus constant linear gaussian marschner-lobb tanh (scalars);
 ///        left-ventricle with the parts density, transmural (scalars) and fibre (vector, a line field).
 #pragma once
+#include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/base/vec.h"
 #include "engine/field/field.h"
 
 namespace catena::field {
@@ -24,5 +27,26 @@ bool is_analytic(std::string_view name);
 /// The grids that `generate` writes for this name: the name itself, or the parts.
 std::vector<std::string_view> analytic_parts(std::string_view name);
 Result<AnyField> make_analytic(std::string_view name, const AnalyticParameters& parameters = {});
+
+/// Private to this room: the closed forms as plain functions. The scale is applied by the field around them.
+struct ScalarFormula {
+  std::string_view name;
+  double (*value)(const Vec3& p, Vec3& gradient);
+  double min, max;  ///< over all space
+};
+
+struct VectorFormula {
+  std::string_view name;
+  Vec3 (*value)(const Vec3& p);
+};
+
+std::span<const ScalarFormula> scalar_formulas();
+std::span<const VectorFormula> vector_formulas();
+
+/// The left ventricle: see analytic_formulas.cpp.
+double ventricle_density(const Vec3& p, Vec3& gradient);
+double ventricle_transmural(const Vec3& p, Vec3& gradient);
+/// False (and zero) away from the wall.
+bool ventricle_fibre(const Vec3& p, Vec3& fibre);
 
 }  // namespace catena::field

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base/assert.h"
 #include "engine/base/memory_limit.h"
-#include "engine/base/parallel_for.h"
+#include "engine/base/result.h"
+#include "engine/base/threads.h"
 #include "engine/field/grid_make.h"
 
 namespace catena::field {

@@ -1,9 +1,15 @@
 /// The file formats that hold fields, by the endings of their names (any case). Who asks for an ending, or prints which there are, asks
-/// here. To add one: a reader with a row of the registry, NAME_format() in loaders.h, and a line in formats.cpp. Any thread.
+/// here. To add one: a reader with a row of the registry, NAME_format() below, and a line in formats.cpp. Any thread.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/base/result.h"
+#include "engine/field/dense.h"
+#include "engine/field/load.h"
+#include "engine/field/units.h"
 
 namespace catena::field {
 
@@ -15,5 +21,50 @@ bool needs_layout(std::string_view path);
 std::vector<std::string_view> field_endings(bool bare = false);
 /// ".vdb, .nii, .nii.gz or .raw", for a sentence.
 std::string field_file_words();
+
+/// Private to this room: the checks that every reader makes of a path.
+
+/// The size of a regular file that can be opened; else an error that names it.
+Result<std::uint64_t> readable_file(const std::string& path);
+/// The file's name without folder and extension.
+std::string stem_of(const std::string& path);
+
+/// For who reads a format: this room, and programs that bring one of their own. One reader a format, and the counters they keep.
+
+/// A file that holds one box of numbers, opened: its layout is checked and fits into the memory that is allowed.
+struct DenseFile {
+  std::string name;    ///< of its grid
+  std::string type;    ///< as `info` prints it
+  std::string prefix;  ///< of a phrase about its values: "x.raw: the data "
+  Mapping mapping;
+  int components = 1;  ///< 1 or 3
+  DenseSource source;  ///< keeps the file open
+};
+Result<AnyField> load_dense(const DenseFile& file);
+
+/// One row of the registry of formats (formats.cpp).
+struct FileFormat {
+  std::vector<std::string_view> endings;  ///< of names, lower-case
+  bool needs_layout = false;              ///< the file says nothing about itself: LoadRequest::raw goes with it
+  /// Either a box of numbers is opened, or one grid of the file is loaded.
+  Result<DenseFile> (*open)(const LoadRequest& request) = nullptr;
+  Result<AnyField> (*load)(const LoadRequest& request) = nullptr;
+  Result<std::vector<GridInfo>> (*describe)(const std::string& path) = nullptr;
+  Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< nullptr: the format has none
+};
+/// One more, at start-up, before anything reads a file.
+void add_format(FileFormat format);
+FileFormat vdb_format();
+FileFormat nifti_format();
+FileFormat raw_format();
+/// nullptr: none. `ending`: which of its endings.
+const FileFormat* format_of(std::string_view path, std::string_view* ending = nullptr);
+
+Units nifti_units(const std::string& path, const std::string& grid);
+Units vdb_units(const std::string& path, const std::string& grid);
+
+void count_file();
+void count_grid();
+void count_mask();
 
 }  // namespace catena::field

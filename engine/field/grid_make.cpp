@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "engine/field/dense.h"
 #include "engine/field/grid_storage.h"
-#include "engine/field/nano_erode.h"
+#include "engine/field/nano_stats.h"
 
 namespace catena::field {
 namespace {

@@ -8,9 +8,7 @@
 #include <new>
 
 #include "engine/base/text.h"
-#include "engine/field/files.h"
 #include "engine/field/formats.h"
-#include "engine/field/loaders.h"
 
 namespace catena::field {
 namespace {

@@ -7,8 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "engine/field/files.h"
-#include "engine/field/loaders.h"
+#include "engine/field/formats.h"
 #include "engine/field/number_type.h"
 
 namespace catena::field {

@@ -5,8 +5,7 @@
 #include <fstream>
 #include <vector>
 
-#include "engine/field/files.h"
-#include "engine/field/loaders.h"
+#include "engine/field/formats.h"
 #include "engine/field/number_type.h"
 
 namespace catena::field {

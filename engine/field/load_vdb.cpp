@@ -1,9 +1,9 @@
 // OpenVDB files, as the program catena-read hands them over. What it wrote is believed as far as it is checked here.
 #include <fmt/format.h>
 
+#include "engine/field/formats.h"
 #include "engine/field/grid_make.h"
-#include "engine/field/loaders.h"
-#include "engine/field/nano_check.h"
+#include "engine/field/nano_stats.h"
 #include "engine/field/vdb_reader.h"
 
 namespace catena::field {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "engine/base/parallel_for.h"
+#include "engine/base/threads.h"
 #include "engine/field/dense.h"
 #include "engine/field/grid.h"
 

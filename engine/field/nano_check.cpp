@@ -1,13 +1,12 @@
-#include "engine/field/nano_check.h"
+#include "engine/field/nano_stats.h"
 
 #include <fmt/format.h>
 
 #include <cstring>
 #include <set>
 
-#include "engine/base/parallel_for.h"
+#include "engine/base/threads.h"
 #include "engine/field/nano_nodes.h"
-#include "engine/field/nano_stats.h"
 
 namespace catena::field {
 namespace {

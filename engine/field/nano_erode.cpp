@@ -1,9 +1,9 @@
-#include "engine/field/nano_erode.h"
+#include "engine/field/nano_stats.h"
 
 #include <array>
 #include <bit>
 
-#include "engine/base/parallel_for.h"
+#include "engine/base/threads.h"
 #include "engine/field/nano_nodes.h"
 
 namespace catena::field {

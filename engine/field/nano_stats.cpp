@@ -5,8 +5,7 @@
 #include <limits>
 #include <mutex>
 
-#include "engine/base/parallel_for.h"
-#include "engine/field/nano_mask.h"
+#include "engine/base/threads.h"
 #include "engine/field/nano_nodes.h"
 
 namespace catena::field {

@@ -1,9 +1,22 @@
-/// Private to this room and to engine/vdb: what a buffer holds. Work grows with the buffer's bytes, never with the extent of its tiles.
+/// Private to this room: a NanoVDB buffer that somebody else wrote is looked at as hostile before it is used. Every byte that a fetch or
+/// a walk over the nodes would follow is compared with what NanoBuilder would have written there; values may be any.
+///   sizes and counts fit the buffer to the byte; the nodes' arrays lie where they must; each child is the next of its array and lies
+///   where its parent's entry does; root entries are aligned, near, and each there once; a mask's tiles are 0 or 1 as their states
 #pragma once
+#include <cstddef>
+#include <span>
+
+#include "engine/base/result.h"
 #include "engine/field/grid.h"
 #include "engine/field/nano_build.h"
 
 namespace catena::field {
+
+/// An error is a phrase. T: float, nanovdb::Vec3f or nanovdb::ValueMask. The bytes are aligned to 32.
+template <class T>
+Outcome check_nano(std::span<const std::byte> bytes);
+
+/// Private to this room and to engine/vdb: what a buffer holds. Work grows with the buffer's bytes, never with the extent of its tiles.
 
 using NanoMask = nanovdb::NanoGrid<nanovdb::ValueMask>;
 
@@ -35,5 +48,13 @@ NanoStats stats_of(const nanovdb::NanoGrid<T>& grid, const NanoMask* valid);
 
 /// Of a mask: the number of its voxels.
 std::uint64_t count_of(const NanoMask& mask);
+
+/// Private to this room and to engine/vdb: from valid voxels to valid cells.
+///   bit at ijk: the voxels ijk + (0 or 1, 0 or 1, 0 or 1) are all valid and within the box of the grid that is masked
+/// Along an axis of one layer a cell has no thickness. Work and memory grow with the surface of large tiles, not with what they hold.
+
+/// Memory comes from `allocate`, in one piece of the exact size; before, `ask` is told the bytes and may refuse.
+Result<NanoMemory> erode(const NanoMask& valid, const ActiveBox& box, const NanoAllocator& allocate,
+                         const std::function<Outcome(double bytes)>& ask);
 
 }  // namespace catena::field

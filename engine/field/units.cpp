@@ -11,7 +11,7 @@
 #include <optional>
 #include <sstream>
 
-#include "engine/field/loaders.h"
+#include "engine/field/formats.h"
 #include "engine/field/vdb_reader.h"
 
 namespace catena::field {

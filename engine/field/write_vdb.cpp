@@ -4,13 +4,11 @@
 #include <cmath>
 #include <glm/matrix.hpp>
 
-#include "engine/base/assert.h"
-#include "engine/field/files.h"
+#include "engine/base/result.h"
+#include "engine/field/formats.h"
 #include "engine/field/grid_storage.h"
-#include "engine/field/loaders.h"
-#include "engine/field/nano_mask.h"
 #include "engine/field/nano_nodes.h"
-#include "engine/field/vdb_stream.h"
+#include "engine/field/vdb_reader.h"
 
 namespace catena::field {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <thread>
 
-#include "engine/base/parallel_for.h"
+#include "engine/base/threads.h"
 #include "engine/flow/batch_step.h"
-#include "engine/flow/hermite.h"
+#include "engine/flow/curve.h"
 #include "engine/flow/trace_parts.h"
 
 namespace catena::flow {

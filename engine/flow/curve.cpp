@@ -4,8 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "engine/base/assert.h"
-#include "engine/flow/hermite.h"
+#include "engine/base/result.h"
 
 namespace catena::flow {
 

@@ -7,8 +7,8 @@
 /// Off the haptic thread, but without allocation.
 #pragma once
 #include "engine/field/grid.h"
+#include "engine/flow/curve.h"
 #include "engine/flow/flow.h"
-#include "engine/flow/hermite.h"
 #include "engine/flow/runge_kutta.h"
 
 namespace catena::flow {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "engine/base/assert.h"
-#include "engine/flow/hermite.h"
+#include "engine/base/result.h"
+#include "engine/flow/curve.h"
 
 namespace catena::flow {
 

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::geodesics {
 namespace {

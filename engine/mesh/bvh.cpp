@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::mesh {
 namespace {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/base/json.h"
-#include "engine/exchange/coupling_method.h"
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"

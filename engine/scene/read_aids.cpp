@@ -2,7 +2,7 @@
 #include "engine/base/eye_limits.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/read_parts.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::scene {

@@ -1,7 +1,7 @@
 /// What is written over the picture: "scalar_bars", "labels", "title", "orientation_marker", "status", "overlay".
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/read_parts.h"
 
 namespace catena::scene {
 namespace {

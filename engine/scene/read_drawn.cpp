@@ -4,8 +4,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/read_look.h"
-#include "engine/scene/read_transfer.h"
+#include "engine/scene/read_parts.h"
 
 namespace catena::scene {
 namespace {

@@ -5,7 +5,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/read_parts.h"
 #include "engine/scene/units.h"
 
 namespace catena::scene {

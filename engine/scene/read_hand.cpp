@@ -1,7 +1,7 @@
 /// What the hand feels: "chain", "modes", "coupling", "workspace", "device".
 #include "engine/base/text.h"
 #include "engine/exchange/haptic_state.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/read_parts.h"
 
 namespace catena::scene {
 namespace {

@@ -4,9 +4,8 @@
 /// (middle 0.5, sharpness 0); 1 becomes kMaxOpaque, since an opacity per unit length stays below 1.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/color_spaces.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/read_parts.h"
-#include "engine/scene/read_transfer.h"
 #include "engine/schema/values.h"
 
 namespace catena::scene {

@@ -4,9 +4,14 @@
 #pragma once
 #include <string>
 
+#include "engine/base/json.h"
 #include "engine/base/text.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/components.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/write_values.h"
 #include "engine/schema/key.h"
+#include "engine/schema/table.h"
 
 namespace catena::scene {
 
@@ -78,5 +83,86 @@ Result<std::vector<TransferFunction::ColorPoint>> read_color_table(const json::N
 /// The widget that member "widget" of `object` names, one of `kinds`; `wanted` says them in words ("a cutting plane or a box").
 Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<widget::Kind> kinds,
                                 std::string_view wanted);
+
+/// Keys that several components of a scene have, and how the types of this room are read and written. Inside this room only.
+
+using schema::Key;
+using schema::Keys;
+using schema::Role;
+template <class T>
+using Table = schema::Table<T, Scene>;
+
+/// Binds a key that names a field to the entity of it; absent and not required: none.
+template <class T, class C, class Access>
+void bind_field(schema::Table<T, C>& table, const Key& key, Access access) {
+  table.hand(
+      key,
+      [key, access](C& scene, const json::Node& object, T& out) -> Outcome {
+        if (!key.is_required && object.find(key.name) == nullptr) return Done{};
+        CATENA_TRY(std::invoke(access, out), read_field_name(scene, object, key.name));
+        return Done{};
+      },
+      [access](const Scene& scene, const T& in) {
+        const Entity field = std::invoke(access, in);
+        return field ? schema::write_value(scene.world.get<Name>(field).value) : std::string();
+      });
+}
+
+/// "clip" and "visible" of what is drawn. The second is read by read_visible (hidden.h), which knows the entity.
+Key clip_key();
+Key visible_key();
+Key opacity_key(const std::string& help);
+/// "color", "range" and "transfer" where values become colours.
+Keys color_scale_keys(std::string_view map = kDefaultLineMap, const std::string& range = "that of the values");
+/// Those, and a volume's opacities.
+Keys transfer_keys();
+
+/// The keys of a list's item under `name`.
+template <class T>
+schema::Component list_of(const std::string& name, const std::string& help, const Table<T>& table, int most = 0) {
+  return {name, help, schema::Component::Shape::list, table.keys(), most};
+}
+
+/// "color_by": colours that follow values, one shape wherever it stands. Inside this room only.
+
+/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), or lines (which know their speed and length, too).
+enum class ColorSubjects { rays, surfaces, lines };
+
+Key color_by_key(ColorSubjects subjects);
+/// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.
+Outcome read_color_by(Scene& scene, const json::Node& item, ColorSubjects subjects, std::optional<ColorBy>& out);
+/// "color" and "range" as members.
+schema::Members scale_members(const std::vector<TransferFunction::ColorPoint>& colors, const NamedColors& named);
+
+/// A volume's colours and opacities.
+schema::Members transfer_members(const TransferFunction& transfer);
+
+/// "seeds" of streamlines; read_seeds itself is in lines.h, as `trace` reads the same. Inside this room only.
+Key seeds_key();
+std::string write_seeds(const Scene& scene, const Seeds& seeds);
+
+/// Colours and opacities of the scene file, inside this room only. An object that colours by values takes
+///   "color"     a table [[value, r, g, b], ...], or the name of a colour map (color_maps.h)
+///   "range"     [lo, hi], the values between which a named map lies; without it those of the data
+///   "transfer"  instead of both: a file, relative to the scene's. Either an object with a volume's keys, or ParaView's
+///               exported colour map (read_paraview.cpp). "range" beside it lays its tables anew, from their own ends to lo..hi
+/// and a volume, or a transfer file, besides
+///   "opacity" with "opacity_unit", or "extinction", and "gradient_opacity": [[gradient, factor], ...], field units per world
+///   unit, 0 <= factor <= 1, which multiplies the extinction.
+/// Errors name the file, the scene's or the transfer file, and the line.
+struct ColorScale {
+  std::vector<TransferFunction::ColorPoint> colors;
+  NamedColors named;  ///< where `colors` is empty
+};
+
+/// "color", "range" and "transfer" of an object.
+Result<ColorScale> read_color_scale(const std::string& scene_path, const json::Node& object);
+/// The keys of a volume.
+Result<TransferFunction> read_transfer(const std::string& scene_path, const json::Node& object);
+
+/// A transfer file's text; `path` is for the messages.
+Result<TransferFunction> parse_transfer(std::string_view text, const std::string& path);
+/// ParaView's colour map: an array of one object with "RGBPoints".
+Result<TransferFunction> read_paraview_map(const json::Node& root);
 
 }  // namespace catena::scene

@@ -1,8 +1,8 @@
 /// Where lines begin: places, a pattern, or a widget.
-#include "engine/scene/read_seeds.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/lines.h"
+#include "engine/scene/read_parts.h"
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {

@@ -2,8 +2,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/read_look.h"
-#include "engine/scene/read_transfer.h"
+#include "engine/scene/read_parts.h"
 #include "engine/scene/widgets.h"
 
 namespace catena::scene {

@@ -3,8 +3,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/lines.h"
-#include "engine/scene/read_look.h"
-#include "engine/scene/read_seeds.h"
+#include "engine/scene/read_parts.h"
 
 namespace catena::scene {
 namespace {

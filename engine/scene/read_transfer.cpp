@@ -1,4 +1,4 @@
-#include "engine/scene/read_transfer.h"
+#include "engine/scene/read_parts.h"
 #include "engine/schema/values.h"
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
-#include "engine/scene/read_parts.h"
 
 namespace catena::scene {
 namespace {

@@ -1,7 +1,7 @@
 /// "widgets": what the hand takes hold of and moves, by type.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/read_parts.h"
 #include "engine/scene/widgets.h"
 #include "engine/scene/write_values.h"
 
@@ -125,7 +125,7 @@ Table<Widget> isolevel_table() {
   return t;
 }
 
-Table<Widget> box_table() {
+Table<Widget> box_widget_table() {
   Table<Widget> t;
   t.bind(schema::vec3("lo", "world", "Its lowest corner.").required(), kPoint<0>);
   t.bind(schema::vec3("hi", "world", "Its highest corner, above `lo` on every axis.").required(), kPoint<1>);
@@ -187,7 +187,7 @@ const std::vector<WidgetType>& types() {
       {Kind::seed, "A place from which a line begins.", seed_table()},
       {Kind::rake, "A segment along which lines begin.", rake_table()},
       {Kind::isolevel, "A place that names a level: its field's value there.", isolevel_table()},
-      {Kind::box, "A box that clips.", box_table()},
+      {Kind::box, "A box that clips.", box_widget_table()},
       {Kind::ruler, "A length between two ends.", ruler_table()}};
   return all;
 }

@@ -2,9 +2,12 @@
 ///   streamline   arc length on the link's curve, between its places nearest to the ends; on a closed line the shorter way round
 ///   isosurface   a shortest path on the level set (engine/geodesics)
 ///   mesh         a shortest path on the mesh (engine/geodesics)
-/// Which of them a link is, its keys say (link_feature.h). Of several the first streamline counts, or else the first surface. World units.
+/// Which of them a link is, its keys say. Of several the first streamline counts, or else the first surface. World units.
 /// Frame thread, off the tick.
 #pragma once
+#include <string>
+
+#include "engine/base/json.h"
 #include "engine/scene/scene.h"
 
 namespace catena::scene {
@@ -24,5 +27,16 @@ const RulerMeasure* ruler_measure(const Scene& scene, Entity ruler);
 
 /// Between the places of the curve nearest to the ends.
 RulerMeasure measure_along(const flow::CurvePtr& curve, const Vec3& from, const Vec3& to);
+
+/// What of the scene a link of the chain lies on. Its keys say it, whatever its type: `seed` with `field` is a streamline, `level` with
+/// `surface` or `field` a level of that field, `mesh` a mesh. A new constraint that has these keys is measured along, follows and is
+/// followed like the others. Pure.
+enum class LinkFeature { none, curve, level, mesh };
+
+LinkFeature feature_of(const json::Node& link);
+/// Which key names the field of the link's level: "surface", or else "field".
+const char* level_field_key(const json::Node& link);
+/// The name of that field; empty: the link lies on no level.
+std::string field_of_level(const json::Node& link);
 
 }  // namespace catena::scene

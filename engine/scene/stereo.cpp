@@ -3,29 +3,29 @@
 #include <array>
 
 #include "engine/base/numbers.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/read_parts.h"
 
 namespace catena::scene {
 namespace {
 
-constexpr std::array<std::string_view, kStereoModes> kWords{
+constexpr std::array<std::string_view, kStereoModes> kStereoWords{
     "mono",     "left",          "right",          "side-by-side",      "side-by-side-half", "cross-eyed", "top-bottom", "top-bottom-half",
     "anaglyph", "anaglyph-grey", "row-interlaced", "column-interlaced", "checkerboard"};
 
 }  // namespace
 
-std::string_view stereo_word(StereoMode mode) { return kWords[static_cast<std::size_t>(mode)]; }
+std::string_view stereo_word(StereoMode mode) { return kStereoWords[static_cast<std::size_t>(mode)]; }
 
 std::optional<StereoMode> stereo_mode(std::string_view word) {
-  for (std::size_t i = 0; i < kWords.size(); ++i)
-    if (kWords[i] == word) return static_cast<StereoMode>(i);
+  for (std::size_t i = 0; i < kStereoWords.size(); ++i)
+    if (kStereoWords[i] == word) return static_cast<StereoMode>(i);
   return std::nullopt;
 }
 
 std::string stereo_words() {
   std::string text;
-  for (std::size_t i = 0; i < kWords.size(); ++i)
-    text += std::string(i == 0 ? "" : i + 1 == kWords.size() ? " or " : ", ") + std::string(kWords[i]);
+  for (std::size_t i = 0; i < kStereoWords.size(); ++i)
+    text += std::string(i == 0 ? "" : i + 1 == kStereoWords.size() ? " or " : ", ") + std::string(kStereoWords[i]);
   return text;
 }
 
@@ -39,7 +39,7 @@ namespace {
 const Table<Stereo>& stereo_table() {
   static const auto table = [] {
     Table<Stereo> t;
-    const Key mode = schema::word("mode", {kWords.begin(), kWords.end()}, "How the eyes' pictures are put together.");
+    const Key mode = schema::word("mode", {kStereoWords.begin(), kStereoWords.end()}, "How the eyes' pictures are put together.");
     t.hand(mode.by_default("\"mono\""), [](Scene&, const json::Node& node, Stereo& stereo) -> Outcome {
       CATENA_TRY(const std::string word, json::get_string(node, "mode", std::string(stereo_word(stereo.mode))));
       const auto named = stereo_mode(word);

@@ -2,7 +2,7 @@
 
 #include "engine/base/text.h"
 #include "engine/field/units.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/read_parts.h"
 
 namespace catena::scene {
 

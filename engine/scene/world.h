@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::scene {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/base/rotation.h"
+#include "engine/base/vec.h"
 #include "engine/scene/components.h"
 
 namespace catena::scene {

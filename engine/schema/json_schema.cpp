@@ -1,4 +1,4 @@
-#include "engine/schema/json_schema.h"
+#include "engine/schema/documents.h"
 
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
@@ -36,7 +36,7 @@ std::string list_schema(const std::string& item, const Key& key) {
   return R"("type": "array", "items": {)" + item + "}" + items_limits(key);
 }
 
-/// The value that follows a field (haptics/constraints/rules/read_parameter.h).
+/// The value that follows a field (haptics/constraints/rules/link_keys.h).
 const char* const kFieldMap =
     R"({"type": "object", "required": ["field", "map"], "properties": {"field": {"type": "string", "description": "The field that is asked, at the proxy."}, "map": {"type": "array", "minItems": 1, "description": "Pairs [value, output], values rising, linear between them.", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}}, "of": {"enum": ["value", "gradient", "magnitude"]}, "normalise": {"type": "boolean", "description": "The values of the map run from 0 to 1 over the range of the field."}, "outside": {"type": "number", "description": "The output where the field says nothing; by default the first one."}}, "additionalProperties": false})";
 const char* const kWidget =

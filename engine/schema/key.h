@@ -1,6 +1,6 @@
 /// A key of the scene file, stated once: what it takes, its unit, its range, its default, and one sentence for a person. A component of
 /// the scene (a volume, a link of the chain, a light ...) is a list of them. Its reader and writer (table.h), the JSON Schema
-/// (json_schema.h), the tables of docs/scene.md (markdown.h), the files that a scene names and the window's controls all come from it.
+/// (documents.h), the tables of docs/scene.md, the files that a scene names and the window's controls all come from it.
 ///
 ///   schema::number("radius", "world", "Its radius.").positive().required()
 ///   schema::word("shading", {"flat", "smooth"}, "How it is lit.")

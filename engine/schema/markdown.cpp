@@ -1,4 +1,4 @@
-#include "engine/schema/markdown.h"
+#include "engine/schema/documents.h"
 
 #include "engine/base/numbers.h"
 

@@ -6,7 +6,7 @@
 
 #include "engine/base/text.h"
 #include "engine/field/grid_make.h"
-#include "engine/field/nano_erode.h"
+#include "engine/field/nano_stats.h"
 #include "engine/vdb/open_file.h"
 #include "engine/vdb/to_nano.h"
 

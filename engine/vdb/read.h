@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "engine/vdb/answer_file.h"
+#include "engine/vdb/open_file.h"
 
 namespace catena::vdb {
 

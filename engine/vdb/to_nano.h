@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/base/parallel_for.h"
+#include "engine/base/threads.h"
 #include "engine/field/nano_build.h"
 
 namespace catena::vdb {

@@ -1,7 +1,7 @@
 #include "engine/widget/cutting_plane.h"
 
-#include "engine/widget/geometry.h"
-#include "engine/widget/grip.h"
+#include "engine/widget/handles.h"
+#include "engine/widget/widget.h"
 
 namespace catena::widget {
 

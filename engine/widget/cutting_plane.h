@@ -9,7 +9,7 @@
 ///   turn freely        [sphere];  R = (smallest rotation from the last arm to this one) R, so that it goes on from where it was
 /// An arm is the direction from c to the proxy, in the plane where there is one.
 #pragma once
-#include "engine/widget/reach.h"
+#include "engine/widget/handles.h"
 
 namespace catena::widget {
 

@@ -1,3 +1,25 @@
+/// A translation of a widget (widget.h, Grip): planes across the axes of a frame, through the place where the hand took it.
+/// World units. Haptic thread: no allocation, lock, throw.
+#pragma once
+#include "engine/widget/widget.h"
+
+namespace catena::widget {
+
+/// Adds the planes that hold a probe here; sets state.held.
+void add_planes(const Spec& spec, State& state, const Vec3& probe, Plan& plan) noexcept;
+/// How far the widget has moved along each axis of the frame: exactly 0 where it is held.
+Vec3 displacement(const Spec& spec, const State& state, const Vec3& proxy) noexcept;
+/// The same in world axes: what does not move adds nothing, to the bit.
+Vec3 moved(const Vec3& from, const Quat& frame, const Vec3& displacement) noexcept;
+
+/// What of a widget a probe is near. World units.
+struct Reach {
+  std::int8_t handle = -1;  ///< the handle; -1: none
+  bool sphere = false;
+  bool plane = false;
+  double distance = 0;  ///< from the nearest of these
+};
+
 /// The widgets that are held by handles: seed, rake, isolevel, box, ruler. x the probe, h a handle.
 ///   hover   |x - h| <= near, the nearest handle (the one that has the probe keeps it as long as that holds): [point at h]
 ///   drag    the planes of a Grip:
@@ -6,11 +28,6 @@
 ///     or what they had when that is less
 ///     isolevel: the two planes along the gradient stay, the handle moves with the probe; where there is no gradient, as a seed
 ///     an end of a ruler with `along`: those links of the scene; the end is their last proxy
-#pragma once
-#include "engine/widget/reach.h"
-
-namespace catena::widget {
-
 int handle_count(Kind kind) noexcept;  ///< 0: a cutting plane
 /// WidgetReport says which is which.
 Vec3 handle_position(Kind kind, const Pose& pose, int handle) noexcept;

@@ -9,7 +9,7 @@
 #pragma once
 #include <span>
 
-#include "engine/widget/state.h"
+#include "engine/widget/widget.h"
 
 namespace catena::widget {
 

@@ -1,3 +1,38 @@
+/// Small geometry of the widgets. Lengths in world units. + - * / and square roots only, so that bits repeat. Any thread; allocates
+/// nothing.
+#pragma once
+#include <array>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "engine/base/vec.h"
+#include "engine/exchange/haptic_state.h"
+#include "engine/field/field.h"
+
+namespace catena::widget {
+
+/// Axis i of the frame q, world: unit.
+inline Vec3 axis_of(const Quat& q, int i) noexcept { return rotate(q, i == 0 ? Vec3(1, 0, 0) : i == 1 ? Vec3(0, 1, 0) : Vec3(0, 0, 1)); }
+
+/// u beyond -zone..zone, 0 within: continuous, and one to one beyond.
+inline double deadzone(double u, double zone) noexcept { return u > zone ? u - zone : u < -zone ? u + zone : 0; }
+
+/// v without its part along the unit vector n, unit; zero where nothing is left.
+inline Vec3 direction_across(const Vec3& v, const Vec3& n) noexcept {
+  const Vec3 d = direction(v - n * dot(n, v));
+  return direction(d - n * dot(n, d));
+}
+
+/// The rotation about the unit axis e that turns a onto b, both unit and square to e. Its vector part is a multiple of e to the bit.
+///   cos(t/2) = |a + b| / 2,  sin(t/2) = |b - a| / 2, with the sign of e . (a x b)
+inline Quat turn_about(const Vec3& e, const Vec3& a, const Vec3& b) noexcept {
+  const double c = 0.5 * norm(a + b), s = dot(e, cross(a, b)) < 0 ? -0.5 * norm(b - a) : 0.5 * norm(b - a);
+  const double length = std::sqrt(c * c + s * s);
+  if (!(length > 0)) return kNoRotation;
+  return {c / length, e.x * (s / length), e.y * (s / length), e.z * (s / length)};
+}
+
 /// What the widgets are (paper, section 6.2 and Figure 6): things in the scene that the hand takes hold of. Plain components; the machine
 /// that steps them is a function over these, run by the tick, so that the mouse, a haptic device and a replayed path drive one and the
 /// same. World units.
@@ -7,14 +42,6 @@
 ///   isolevel       a handle on an isosurface, points[0]; its level is the field's value there
 ///   box            from points[0], the least corner, to points[1]
 ///   ruler          from points[0] to points[1]
-#pragma once
-#include <memory>
-#include <vector>
-
-#include "engine/exchange/widget_report.h"
-#include "engine/field/field.h"
-
-namespace catena::widget {
 
 using exchange::kMaxWidgets;
 using Mode = exchange::WidgetMode;
@@ -44,5 +71,60 @@ struct Spec {
   std::shared_ptr<const field::ScalarField> field;  ///< isolevel
   std::vector<int> along;                           ///< ruler: links of the program that its ends keep to while they are dragged
 };
+
+/// What a widget remembers from tick to tick, and what it asks of the chain. Plain data, no pointers. World units.
+
+/// A feature that a link of the program has been put on; widgets share four links: planes x, y, z, and the sphere.
+struct Shape {
+  enum class Kind : std::uint8_t { none, plane, sphere, point };
+  Kind kind = Kind::none;
+  Vec3 origin{0.0};
+  Vec3 normal{0.0};   ///< plane: unit
+  double radius = 0;  ///< sphere
+  bool operator==(const Shape&) const = default;
+};
+
+inline constexpr int kSlots = 4, kSphereSlot = 3;
+inline constexpr std::array<const char*, kSlots> kLinkNames{"widget_x", "widget_y", "widget_z", "widget_sphere"};
+
+/// The chain that a widget asks for in this tick.
+struct Plan {
+  bool alone = false;  ///< the scene's links are off
+  bool along = false;  ///< Spec::along in place of slots
+  int count = 0;
+  std::array<std::int8_t, kSlots> slots{};  ///< in order
+  std::array<Shape, kSlots> shapes{};       ///< by slot
+  void add(int slot, const Shape& shape) noexcept {
+    slots[static_cast<std::size_t>(count++)] = static_cast<std::int8_t>(slot);
+    shapes[static_cast<std::size_t>(slot)] = shape;
+  }
+};
+
+/// A translation: planes through `grab` across the axes of `frame`.
+///   held where fixed, or within `step` of the plane and not loose;  displacement along axis i: 0 where held, u_i where loose, else
+///   deadzone(u_i, step), with u_i = axis_i . (proxy - grab): continuous, and a function of the probe alone (no path)
+struct Grip {
+  Vec3 grab{0.0};           ///< the probe at the press
+  Quat frame{kNoRotation};  ///< world from the axes
+  std::uint8_t fixed = 0;   ///< bits: axes that never move
+  std::uint8_t loose = 0;   ///< bits: axes that always move
+};
+
+struct State {
+  bool known = false;    ///< begun
+  bool gripped = false;  ///< by the button
+  bool rebase = false;   ///< a turn: the next arm is where it goes on from
+  Mode mode = Mode::away;
+  std::int8_t handle = -1;
+  std::int8_t axis = -1;  ///< of a turn; -1: free
+  std::uint8_t held = 0;  ///< planes that are active
+  std::uint32_t revision = 0;
+  Pose pose;
+  double value = 0;
+  Pose start;     ///< at the press
+  Grip grip;      ///< translate, drag
+  Vec3 arm{0.0};  ///< turn: unit, about an axis at its start, freely in the last tick
+};
+static_assert(std::is_trivially_copyable_v<State> && std::is_trivially_copyable_v<Plan>);
 
 }  // namespace catena::widget

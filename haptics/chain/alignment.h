@@ -2,7 +2,7 @@
 ///   q_0: the tool's orientation;  q_i = A q_(i-1),  A the smallest rotation that turns the tool's axis q_(i-1) a_i onto n_i
 ///   n_i: the axis of the link's primitive at its proxy (the normal of a plane, the tangent of a line); "either": the nearer of +-n_i
 ///   torque = sum w_i kappa_i log(q_i q_(i-1)^-1) + what fades after a switch - b_r omega,  omega = log(q_0(t) q_0(t - dt)^-1) / dt
-/// kappa_i is at most the device's (limits.h). Where the positional proxy lets its probe through, or there is no axis, q_i = q_(i-1).
+/// kappa_i is at most the device's (constraint.h). Where the positional proxy lets its probe through, or there is no axis, q_i = q_(i-1).
 /// The spring of one link has the energy 1/2 kappa angle^2: it gives back what it took while n_i rests; at the ridge (the axis square
 /// to n_i for "either", opposite to it for "same") the torque turns over, but never exceeds kappa pi/2 or kappa pi.
 /// Asking for n_i may cost a field fetch, which counts; at the cap the last n_i is kept. N m, radians, world axes; log of angles uses
@@ -10,7 +10,7 @@
 #pragma once
 #include <span>
 
-#include "haptics/chain/fade.h"
+#include "haptics/chain/switching.h"
 
 namespace catena::haptics {
 

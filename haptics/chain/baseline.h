@@ -1,13 +1,13 @@
 /// The baselines that the paper compares the chain with (section 3): one proxy p for all links, F = K S (p - x) - b v.
-///   pipe     [6]   the constraints are applied again and again, p = advance_i(p), until all are satisfied; baseline_pipe.cpp
-///   balance  [13]  p balances the springs to the probe and to the links' linear primitives; baseline_balance.cpp
-///   closest  [9]   of the constraints' own projections of the probe, the nearest; baseline_closest.cpp
-///   linear   [7]   the probe's move along what the linear primitives at p leave free, never corrected; baseline_linear.cpp
+///   pipe     [6]   the constraints are applied again and again, p = advance_i(p), until all are satisfied; baseline_spans.cpp
+///   balance  [13]  p balances the springs to the probe and to the links' linear primitives; baseline.cpp
+///   closest  [9]   of the constraints' own projections of the probe, the nearest; baseline_spans.cpp
+///   linear   [7]   the probe's move along what the linear primitives at p leave free, never corrected; baseline_spans.cpp
 /// Release: a link that holds lets go in the tick in which |x - p| >= its release, and p is found again without it. It takes hold
 /// again by the probe x itself: one-sided links on the free side, two-sided ones where x crosses the surface or comes within a
 /// tenth of release. Where no link holds p = x, bit for bit.
 /// Every link reports p. A link that holds reports an equal share of F (weight 1 / their number, stiffness K), the others none;
-/// no weights rise at a switch: the step of the whole force fades (fade.h).
+/// no weights rise at a switch: the step of the whole force fades (switching.h).
 /// In LinkState `proxy` stays the constraint's own. Haptic thread: no allocation, lock, throw or unbounded loop.
 #pragma once
 #include "haptics/chain/switching.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptics/chain/plain_values.h"
+#include "haptics/chain/state_hash.h"
 
 namespace catena::haptics {
 

@@ -1,6 +1,4 @@
-/// The interface of every constraint (paper, section 3). A Constraint object is the immutable specification, made off the
-/// tick; what changes from tick to tick is in LinkState (plain data), and caches that never change a result in LinkScratch.
-/// `start` and `advance` run on the haptic thread: no allocation, lock, throw, or unbounded loop; same bits for same input.
+/// What a device, not a scene, allows. All off by default: `replay` without a device has none. Metres of hand, newtons.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,13 +8,34 @@
 #include <new>
 #include <type_traits>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/field.h"
-#include "engine/widget/state.h"
-#include "haptics/chain/plain_values.h"
+#include "engine/widget/widget.h"
+#include "haptics/chain/state_hash.h"
 
 namespace catena::haptics {
+
+struct Limits {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  double max_stiffness_n_per_m = kNone;                ///< cap of every k_i
+  double max_rotational_stiffness_nm_per_rad = kNone;  ///< cap of the rotational coupling
+  double max_force_n = kNone;                          ///< |F|, direction kept
+  double max_torque_nm = kNone;                        ///< |torque|, direction kept
+  double slew_n_per_s = kNone;                         ///< |dF/dt|; never delays a force's way to zero on a fault
+  double ramp_in_s = 0;                                ///< 0..1 from the moment the force is switched on
+  double ramp_out_s = 0.02;                            ///< to zero, after too many late ticks
+  int late_ticks = 5;                                  ///< so many late ticks in a row hold the last force; more ramp out
+  bool passivity = false;                              ///< observer and controller
+  double damping_ns_per_m = 0;                         ///< the device's own, on which the observer may count
+  double delay_s = 0;                                  ///< from the pose to the force: the observer counts the force that acted
+  double max_added_damping_ns_per_m = kNone;           ///< most that the passivity controller may add; more shakes a light device
+};
+
+/// The interface of every constraint (paper, section 3). A Constraint object is the immutable specification, made off the
+/// tick; what changes from tick to tick is in LinkState (plain data), and caches that never change a result in LinkScratch.
+/// `start` and `advance` run on the haptic thread: no allocation, lock, throw, or unbounded loop; same bits for same input.
 
 using exchange::kMaxLinks;
 using exchange::Status;

@@ -11,7 +11,7 @@
 /// same, within 1000 ticks. With default limits and normal ticks it changes nothing, to the bit. Haptic thread.
 #pragma once
 #include "engine/exchange/haptic_state.h"
-#include "haptics/chain/limits.h"
+#include "haptics/chain/constraint.h"
 
 namespace catena::haptics {
 

@@ -13,7 +13,7 @@
 ///             class of sampled-data systems", J. Robotic Systems 14(1), 1997). A surplus is not kept: it would pay for what
 ///             an unstable contact gives out later.
 ///   granted   to the hand by the program, not to be taken back by the controller: the jumps of V at switches, snaps and
-///             programs, weights and ramps that rise, what fades (fade.h) as far as the springs that were taken away had it, cues, and
+///             programs, weights and ramps that rise, what fades (switching.h) as far as the springs that were taken away had it, cues, and
 ///             links that are sources of energy by what they are (Constraint::is_source: gradient_force), which have no storage
 ///   controller  a damping: where B and its last step together are below 0, as much as takes that within the next tick if the hand
 ///             goes on as it does, at most max_added_damping; then it goes within 30 ms, so that it does not buzz. Against a hand that

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/exchange/coupling_method.h"
+#include "engine/exchange/haptic_state.h"
 #include "haptics/chain/constraint.h"
-#include "haptics/chain/limits.h"
 #include "haptics/chain/parameter.h"
 
 namespace catena::haptics {

@@ -1,20 +1,20 @@
 /// One tick: a pure function of (program, state, probe). The servo thread, `replay`, the tests and the benchmarks run this.
 ///   chain (section 5):  p_0 = probe;  p_i = advance_i(p_(i-1))
 ///   force:  F = sum w_i k_i S (p_i - p_(i-1)) - b v,  v = S (x_k - x_(k-1)) / (t_k - t_(k-1));  |F| <= max_force
-///   plus what fades out after a switch (fade.h) and the cues of links that the hand leaves (indication.h), if any
+///   plus what fades out after a switch (switching.h) and the cues of links that the hand leaves (indication.h), if any
 ///   torque: of links that align the tool (alignment.h), if any
 /// The baselines (baseline.h) keep one proxy p instead: F = K S (p - x) - b v.
 /// then the guard (guard.h): what the device's limits and the tick's condition leave of it, and the ledger (passivity.h).
 /// Widgets (widgets.h) add their links to the chain, or run alone while one is grabbed, and follow the last proxy.
-/// No k_i, and no K of a baseline's force, is above the device's cap (limits.h).
+/// No k_i, and no K of a baseline's force, is above the device's cap (constraint.h).
 /// A non-finite probe (or time) holds all proxies, gives zero force and BAD_PROBE. A clock that goes back stands still for a tick.
 #pragma once
 #include "haptics/chain/alignment.h"
 #include "haptics/chain/baseline.h"
-#include "haptics/chain/fade.h"
 #include "haptics/chain/guard.h"
 #include "haptics/chain/indication.h"
 #include "haptics/chain/passivity.h"
+#include "haptics/chain/switching.h"
 #include "haptics/chain/widgets.h"
 
 namespace catena::haptics {
@@ -53,5 +53,9 @@ struct ChainScratch {
 
 /// Advances `state` and fills `out` (everything but what the servo writes).
 void tick(const Program& program, const ProbeSample& probe, ChainState& state, ChainScratch& scratch, exchange::HapticState& out) noexcept;
+
+/// A new program takes over: links of the same name and the same recipe (or constraint object) keep their state, all others start anew
+/// in the next tick. Widgets: widgets.h. Haptic thread: no allocation.
+void rebind(const Program& from, const Program& to, ChainState& state, ChainScratch& scratch) noexcept;
 
 }  // namespace catena::haptics

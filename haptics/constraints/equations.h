@@ -27,7 +27,7 @@ inline Vec3 tangential(const Vec3& e, const Vec3& n) noexcept { return e - n * d
 /// harder to drag the more normal the field is to the surface, as the paper's text says.
 inline double drag_threshold(double hard, double tau_min, double tau_max) noexcept { return (1 - hard) * tau_min + hard * tau_max; }
 
-/// Eqs. 8-9: u = cos(theta) = [grad s . v] sigma(|grad s| |v|). Both vectors come safely normalised (safe_direction.h); sigma is the
+/// Eqs. 8-9: u = cos(theta) = [grad s . v] sigma(|grad s| |v|). Both vectors come safely normalised (friction/contact.h); sigma is the
 /// product of their factors, which goes to 0 where one of them is ill-defined.
 inline double cosine(const Vec3& field, double field_factor, const Vec3& surface, double surface_factor) noexcept {
   return field_factor * surface_factor * dot(field, surface);

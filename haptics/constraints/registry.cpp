@@ -2,26 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "haptics/constraints/forces/gradient_force.h"
-#include "haptics/constraints/forces/viscosity.h"
-#include "haptics/constraints/friction/drag.h"
+#include "haptics/constraints/forces/forces.h"
 #include "haptics/constraints/friction/friction.h"
-#include "haptics/constraints/friction/modulated_friction.h"
-#include "haptics/constraints/friction/texture.h"
 #include "haptics/constraints/isosurface/isosurface.h"
 #include "haptics/constraints/mesh/mesh.h"
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/rules/link_keys.h"
 #include "haptics/constraints/rules/snap.h"
-#include "haptics/constraints/shapes/box.h"
-#include "haptics/constraints/shapes/line.h"
-#include "haptics/constraints/shapes/plane.h"
-#include "haptics/constraints/shapes/point.h"
-#include "haptics/constraints/shapes/polyline.h"
-#include "haptics/constraints/shapes/segment.h"
-#include "haptics/constraints/shapes/sphere.h"
+#include "haptics/constraints/shapes/shapes.h"
 #include "haptics/constraints/streamline/streamline.h"
-#include "haptics/constraints/streamline/vortex_core.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,7 +1,6 @@
 #include "haptics/constraints/widget_link.h"
 
-#include "haptics/constraints/shapes/plane_surface.h"
-#include "haptics/constraints/shapes/sphere_surface.h"
+#include "haptics/constraints/shapes/surface_shapes.h"
 
 namespace catena::haptics {
 namespace {

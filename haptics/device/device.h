@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/base/rotation.h"
+#include "engine/base/vec.h"
 
 namespace catena::haptics {
 
@@ -69,6 +69,18 @@ class Device {
   /// What is written counts again. Haptic thread: before the servo's first tick, and in the first normal tick after a stop; the
   /// guard starts that tick's force at zero.
   virtual void resume() noexcept {}
+};
+
+/// No device: the probe rests at the origin, forces go nowhere. Haptic thread.
+class NullDevice final : public Device {
+ public:
+  NullDevice() { capabilities_.name = "null"; }
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+  DeviceInput read() noexcept override { return {}; }
+  void write(const DeviceOutput&) noexcept override {}
+
+ private:
+  DeviceCapabilities capabilities_;
 };
 
 }  // namespace catena::haptics

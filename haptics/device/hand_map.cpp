@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::haptics {
 namespace {

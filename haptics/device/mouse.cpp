@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::haptics {
 

@@ -1,7 +1,7 @@
 #include "haptics/device/recorded_path.h"
 
-#include "engine/base/assert.h"
-#include "engine/base/csv_paths.h"
+#include "engine/base/csv.h"
+#include "engine/base/result.h"
 
 namespace catena::haptics {
 

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 
-#include "engine/base/csv_paths.h"
+#include "engine/base/csv.h"
 #include "engine/base/numbers.h"
-#include "haptics/device/emulator/open_emulated_falcon.h"
+#include "haptics/device/device.h"
+#include "haptics/device/emulator/emulated_transport.h"
 #include "haptics/device/hand_map.h"
 #include "haptics/device/mouse.h"
-#include "haptics/device/null_device.h"
 #include "haptics/device/recorded_path.h"
 #include "haptics/device/simulated_hand.h"
-#include "haptics/device/simulated_tool.h"
 #include "haptics/device/spacemouse.h"
-#include "haptics/device/usb/open_falcon.h"
+#include "haptics/device/usb/falcon.h"
 
 namespace catena::haptics {
 namespace {

@@ -11,8 +11,8 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "engine/base/assert.h"
-#include "engine/base/start_thread.h"
+#include "engine/base/result.h"
+#include "engine/base/threads.h"
 
 namespace catena::haptics {
 namespace {

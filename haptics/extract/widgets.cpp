@@ -1,4 +1,4 @@
-#include "haptics/extract/widgets.h"
+#include "haptics/extract/extract.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "haptics/device/safe_stiffness.h"
+#include "haptics/device/mechanism.h"
 
 namespace catena::haptics {
 

@@ -1,6 +1,6 @@
 /// What a device may be asked for: its own capabilities, bounded by what the person says. Off the tick.
 /// A device with force output, where the settings do not say otherwise:
-///   stiffness   the safe one at the servo's rate (haptics/device/safe_stiffness.h); rotational the same
+///   stiffness   the safe one at the servo's rate (haptics/device/mechanism.h); rotational the same
 ///   force       the device's most; a larger number of the person's is taken at its word
 ///   slew        from nothing to the device's maximum force in 2 ms: max_force / 2 ms, at most 10 kN/s. Contact at hand speed is slower
 ///   ramp in     0.5 s;  ramp out 20 ms after more than 5 late ticks
@@ -8,7 +8,7 @@
 ///               times that on (m / T without delay), damping itself shakes the device
 /// A device without force output (mouse, null, recorded path): none of this, but what the person states.
 #pragma once
-#include "haptics/chain/limits.h"
+#include "haptics/chain/constraint.h"
 #include "haptics/device/settings.h"
 
 namespace catena::haptics {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "engine/base/clock.h"
-#include "engine/base/quantile.h"
+#include "engine/base/numbers.h"
 
 namespace catena::haptics {
 

@@ -1,10 +1,63 @@
 #include "haptics/servo/report.h"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <bit>
 
 #include "engine/base/json_text.h"
 
 namespace catena::haptics {
+
+std::size_t Histogram::bucket(std::uint64_t ns) noexcept {
+  if (ns < kSub) return static_cast<std::size_t>(ns);
+  const int octave = static_cast<int>(std::bit_width(ns)) - 1;
+  if (octave >= kTopBit) return kBuckets - 1;
+  const int shift = octave - kSubBits;
+  return static_cast<std::size_t>(kSub * static_cast<std::uint64_t>(shift) + (ns >> shift));
+}
+
+double Histogram::first_ns(std::size_t bucket) {
+  if (bucket < kSub) return static_cast<double>(bucket);
+  const std::uint64_t shift = bucket / kSub - 1;
+  return static_cast<double>((bucket - kSub * shift) << shift);
+}
+
+double Histogram::middle_ns(std::size_t bucket) {
+  return bucket < kSub ? first_ns(bucket) : 0.5 * (first_ns(bucket) + first_ns(bucket + 1) - 1);
+}
+
+void Histogram::add(std::int64_t ns) noexcept {
+  const auto value = static_cast<std::uint64_t>(std::max<std::int64_t>(0, ns));
+  std::atomic<std::uint64_t>& count = counts_[bucket(value)];
+  count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  if (value > max_ns_.load(std::memory_order_relaxed)) max_ns_.store(value, std::memory_order_relaxed);
+}
+
+HistogramFigures Histogram::figures() const {
+  std::array<std::uint64_t, kBuckets> counts;
+  HistogramFigures out;
+  for (std::size_t i = 0; i < kBuckets; ++i) out.count += counts[i] = counts_[i].load(std::memory_order_relaxed);
+  if (out.count == 0) return out;
+  const double max_ns = static_cast<double>(max_ns_.load(std::memory_order_relaxed));
+  out.max_us = 1e-3 * max_ns;
+  const auto quantile_us = [&](double q) {
+    const auto rank = std::min(out.count - 1, static_cast<std::uint64_t>(q * static_cast<double>(out.count)));
+    std::uint64_t below = 0;
+    std::size_t i = 0;
+    while (i + 1 < kBuckets && below + counts[i] <= rank) below += counts[i++];
+    return 1e-3 * std::min(middle_ns(i), max_ns);
+  };
+  out.p50_us = quantile_us(0.5);
+  out.p99_us = quantile_us(0.99);
+  out.p999_us = quantile_us(0.999);
+  constexpr std::size_t kPerBin = kSub / 8;
+  for (std::size_t i = 0; i < kBuckets; i += kPerBin) {
+    HistogramFigures::Bin bin{1e-3 * first_ns(i), 0};
+    for (std::size_t k = 0; k < kPerBin; ++k) bin.count += counts[i + k];
+    if (bin.count > 0) out.bins.push_back(bin);
+  }
+  return out;
+}
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <ctime>
 
-#include "engine/base/assert.h"
 #include "engine/base/clock.h"
-#include "engine/base/start_thread.h"
+#include "engine/base/result.h"
+#include "engine/base/threads.h"
 #include "haptics/servo/watchdog.h"
 
 namespace catena::haptics {

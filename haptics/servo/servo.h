@@ -1,3 +1,30 @@
+/// Who wants every tick: the recording (haptics/servo/log/). Called on the haptic thread after each tick, before it is
+/// published: no allocation, lock or throw, and it returns at once. `begin` comes before the first `put` of a sink that is taken up.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/exchange/triple_buffer.h"
+#include "haptics/chain/state_hash.h"
+#include "haptics/chain/tick.h"
+#include "haptics/device/device.h"
+#include "haptics/servo/pace.h"
+#include "haptics/servo/report.h"
+
+namespace catena::haptics {
+
+class TickSink {
+ public:
+  virtual ~TickSink() = default;
+  /// A sink that a running servo takes up: the state before the tick that `put` gets next.
+  virtual void begin(const ChainState& state) noexcept { static_cast<void>(state); }
+  /// `input` and `output` as the tick had them; the servo's timings are in `output`.
+  virtual void put(const ProbeSample& input, const exchange::HapticState& output) noexcept = 0;
+};
+
 /// The haptic thread: a thin shell around the tick. Wakes at absolute deadlines (pace.h), reads the device, takes the newest program
 /// (never waits), runs the tick, writes the force, publishes one HapticState.
 /// Two threads touch a Servo: the frame side calls the public functions, the haptic thread runs the loop; a third one, the watchdog,
@@ -8,23 +35,6 @@
 /// the watchdog has seen it or, after the whole program stood still (SIGSTOP), the haptic thread itself. A tick that stood still within
 /// itself stops the device before it writes.
 /// NO_DEVICE the device is not ready; LATE its time is more than two periods after the last tick's; else NORMAL.
-#pragma once
-#include <atomic>
-#include <memory>
-#include <thread>
-#include <vector>
-
-#include "engine/base/result.h"
-#include "engine/exchange/triple_buffer.h"
-#include "haptics/chain/rebind.h"
-#include "haptics/chain/state_hash.h"
-#include "haptics/device/device.h"
-#include "haptics/servo/pace.h"
-#include "haptics/servo/report.h"
-#include "haptics/servo/tick_sink.h"
-
-namespace catena::haptics {
-
 class Watchdog;
 
 struct ServoOptions {

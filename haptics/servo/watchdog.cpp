@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
-#include "engine/base/start_thread.h"
+#include "engine/base/threads.h"
 #include "haptics/servo/realtime.h"
 
 namespace catena::haptics {

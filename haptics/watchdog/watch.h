@@ -1,3 +1,42 @@
+/// The page of memory that a program which drives a device and its watchdog process share. The program's threads store into it, the
+/// process looks: no system call in a tick.
+///   The program tells:    how often it has ticked and exchanged packets; whether a packet with a force may be at the device.
+///   The holder            is who may write to the device: the program, or the watchdog once the program has been silent. The watchdog
+///                         takes hold by compare-and-exchange; the program takes it back, by a store, after a zero of its own.
+/// All numbers are lock-free atomics, which hold across processes.
+#pragma once
+#include <atomic>
+#include <cstdint>
+
+namespace catena::haptics::watchdog {
+
+enum class Holder : std::uint32_t { program, watchdog };
+
+struct Page {
+  static constexpr std::uint32_t kMark = 0x47444f47;
+  static constexpr std::size_t kMaxOffBytes = 64;
+
+  // before the process starts
+  std::uint32_t mark = kMark;
+  std::uint32_t silence_ms = 50;     ///< so long without a tick or a packet while `pushing`
+  std::uint32_t endpoint = 0;        ///< bulk OUT
+  std::uint32_t off_bytes = 0;       ///< of `off`
+  std::uint8_t off[kMaxOffBytes]{};  ///< the packet that takes the force away
+
+  // the program's threads
+  std::atomic<std::uint32_t> ticks{0};    ///< haptic thread: orders written
+  std::atomic<std::uint32_t> cycles{0};   ///< I/O thread: round trips begun
+  std::atomic<std::uint32_t> pushing{0};  ///< 1 before a packet with a force leaves; 0 once a zero has been acknowledged
+
+  std::atomic<Holder> holder{Holder::program};
+
+  // the watchdog
+  std::atomic<std::uint32_t> takeovers{0};  ///< how often it has taken hold
+  std::atomic<std::uint32_t> zeros{0};      ///< off packets that were acknowledged
+};
+static_assert(std::atomic<std::uint32_t>::is_always_lock_free && std::atomic<Holder>::is_always_lock_free);
+static_assert(sizeof(Page) <= 4096);
+
 /// The watchdog process's work: takes the force away where the program cannot.
 ///   The program is silent while it pushes (SIGSTOP, a hung I/O thread): takes hold, and writes the off packet until it is
 ///   acknowledged, then again every silence_ms until the program takes its device back.
@@ -6,10 +45,6 @@
 /// behind what the program has under way, and that request alone completes in the call: transfers submitted the other way, as libusb
 /// does, share one queue of completions with the program's, and two processes would take each other's.
 /// No allocation, no exception.
-#pragma once
-#include "haptics/watchdog/page.h"
-
-namespace catena::haptics::watchdog {
 
 /// What the watchdog reads from the lifeline, a stream socket: told to end, it writes nothing.
 inline constexpr char kQuit = 'q';

@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/prepare.h"
-#include "render/extract/extract_aids.h"
-#include "render/extract/extract_lines.h"
-#include "render/extract/extract_overlay.h"
-#include "render/extract/extract_stereo.h"
-#include "render/extract/extract_surfaces.h"
-#include "render/extract/extract_widgets.h"
-#include "render/extract/scene_parts.h"
+#include "render/extract/extract_parts.h"
 
 namespace catena::render {
 

@@ -1,10 +1,9 @@
-#include "render/extract/extract_aids.h"
+#include "render/extract/extract_parts.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/ticks.h"
-#include "render/extract/scene_parts.h"
+#include "engine/base/numbers.h"
 
 namespace catena::render {
 namespace {

@@ -1,17 +1,16 @@
-#include "render/extract/extract_lines.h"
+#include "render/extract/extract_parts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "engine/base/assert.h"
 #include "engine/base/numbers.h"
+#include "engine/base/result.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/lines.h"
 #include "render/extract/flatten.h"
-#include "render/extract/scene_parts.h"
 
 namespace catena::render {
 

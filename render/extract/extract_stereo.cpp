@@ -1,4 +1,4 @@
-#include "render/extract/extract_stereo.h"
+#include "render/extract/extract_parts.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "render/extract/extract_widgets.h"
+#include "render/extract/extract_parts.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "engine/scene/ruler.h"
-#include "render/extract/plane_outline.h"
-#include "render/extract/scene_parts.h"
 #include "render/extract/widget_shapes.h"
 
 namespace catena::render {

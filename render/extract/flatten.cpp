@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 

@@ -1,12 +1,23 @@
-/// Private to this room: the parts that widgets are drawn with, none too thin for the view. Frame thread.
+/// Where a plane cuts a box: a convex polygon of 3 to 6 corners, in order around the normal. World units. Any thread.
 #pragma once
 #include <span>
+#include <vector>
 
 #include "render/frame/camera.h"
 #include "render/frame/frame_packet.h"
 
 namespace catena::render {
 
+/// Two unit vectors across `normal` (unit), right-handed with it.
+struct Across {
+  Vec3 u, v;
+};
+Across across(const Vec3& normal);
+
+/// Empty where they do not meet in an area. A face of the box that lies in the plane is its outline.
+std::vector<Vec3> plane_outline(const Vec3& point, const Vec3& normal, const Bounds& box);
+
+/// Private to this room: the parts that widgets are drawn with, none too thin for the view. Frame thread.
 Color mixed(const Color& a, const Color& b, float share_of_b);
 /// Brighter and a little towards white; 0: as it is.
 Color brighter(const Color& color, float share);

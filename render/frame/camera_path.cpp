@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/assert.h"
 #include "engine/base/csv.h"
 #include "engine/base/eye_limits.h"
 #include "engine/base/numbers.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 namespace {

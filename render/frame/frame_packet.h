@@ -13,7 +13,6 @@
 #include "engine/geometry/plane.h"
 #include "render/frame/overlay_items.h"
 #include "render/frame/packing.h"
-#include "render/frame/shared_list.h"
 
 namespace catena::field {
 class ScalarGrid;

@@ -13,8 +13,8 @@
 #include <exception>
 #include <optional>
 
-#include "engine/base/assert.h"
 #include "engine/base/output_file.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "render/image/png_writer.h"
 
 namespace catena::render {

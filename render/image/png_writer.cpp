@@ -5,8 +5,8 @@
 #include <csetjmp>
 #include <vector>
 
-#include "engine/base/assert.h"
 #include "engine/base/output_file.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/base/parallel_for.h"
+#include "engine/base/threads.h"
 #include "render/mirror/brick_map.h"
-#include "render/mirror/half.h"
+#include "render/mirror/packed_volume.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

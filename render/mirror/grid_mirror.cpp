@@ -9,8 +9,8 @@
 #include <unordered_map>
 
 #include "engine/base/memory_limit.h"
-#include "engine/base/parallel_for.h"
-#include "render/mirror/half.h"
+#include "engine/base/threads.h"
+#include "render/mirror/packed_volume.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

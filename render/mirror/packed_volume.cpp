@@ -7,7 +7,7 @@
 #include <cstring>
 #include <mutex>
 
-#include "engine/base/parallel_for.h"
+#include "engine/base/threads.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

@@ -2,10 +2,17 @@
 
 #include <algorithm>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "shaders/shared/frame.h"
 
 namespace catena::render {
+namespace {
+
+#include "spirv/table.inc"
+
+}  // namespace
+
+std::span<const EmbeddedShader> embedded_shaders() { return kEmbedded; }
 
 namespace {
 

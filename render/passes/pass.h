@@ -1,22 +1,34 @@
-/// A pass: one kind of thing that a picture can hold. It declares which targets it reads and writes; the renderer (renderer.cpp) holds
-/// the passes in order and derives clears, barriers and groups from the declarations. A pass is created when a packet first wants
-/// it; a scene without streamlines has no streamline pass.
-///   wanted -> prepare (uploads, pipelines) -> bounds (they fix near, far and the rays) -> record
-/// Frame thread only. To add one: a class here beside its shader, a line in passes.h and one in the list of renderer.cpp.
+/// The shaders of the program by name, "compose.frag": what a viewer needs in order to put others in their place. Any thread.
 #pragma once
 #include <array>
 #include <memory>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "render/frame/frame_packet.h"
 #include "render/mirror/mirrors.h"
 #include "render/raycast/camera_rays.h"
-#include "render/raycast/ray_scene.h"
 #include "render/raycast/render_settings.h"
 #include "render/vk/commands.h"
+#include "render/vk/pipeline.h"
 #include "render/vk/resources.h"
 
 namespace catena::render {
+
+struct EmbeddedShader {
+  std::string_view name;
+  vk::Spirv words;
+};
+
+/// One for every file of shaders/passes, in the order of their names.
+std::span<const EmbeddedShader> embedded_shaders();
+
+/// A pass: one kind of thing that a picture can hold. It declares which targets it reads and writes; the renderer (renderer.cpp) holds
+/// the passes in order and derives clears, barriers and groups from the declarations. A pass is created when a packet first wants
+/// it; a scene without streamlines has no streamline pass.
+///   wanted -> prepare (uploads, pipelines) -> bounds (they fix near, far and the rays) -> record
+/// Frame thread only. To add one: a class here beside its shader, a line in passes.h and one in the list of renderer.cpp.
 
 /// A set of targets, by bits.
 using TargetSet = unsigned;

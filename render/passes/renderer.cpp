@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "engine/base/eye_limits.h"
-#include "render/mirror/half.h"
-#include "render/passes/embedded_shaders.h"
+#include "render/mirror/packed_volume.h"
 #include "render/passes/pack.h"
+#include "render/passes/pass.h"
 #include "render/passes/passes.h"
 #include "render/passes/ui.h"
 #include "render/vk/swapchain.h"

@@ -17,7 +17,7 @@
 
 #include "engine/base/result.h"
 #include "render/frame/frame_packet.h"
-#include "render/frame/ui_items.h"
+#include "render/frame/overlay_items.h"
 #include "render/image/picture.h"
 #include "render/mirror/mirrors.h"
 #include "render/raycast/render_settings.h"
@@ -107,7 +107,7 @@ class Renderer {
   /// The window's image that paint_window() or present() with a user interface painted last, opaque.
   Result<Picture> read_back_window();
 
-  /// Pictures from now on are drawn with `words` in the place of the embedded shader "compose.frag" (or another of embedded_shaders.h).
+  /// Pictures from now on are drawn with `words` in the place of the embedded shader "compose.frag" (or another of pass.h).
   /// An error where there is no such shader, or where it uses a binding that the program does not bind; nothing has changed then.
   /// False: these words are in use already.
   Result<bool> replace_shader(std::string_view name, std::vector<std::uint32_t> words);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "shaders/shared/frame.h"
 
 namespace catena::render {

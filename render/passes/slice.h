@@ -7,7 +7,7 @@
 #pragma once
 #include <map>
 
-#include "render/passes/peel.h"
+#include "render/passes/triangles.h"
 #include "render/raycast/bound_grids.h"
 
 namespace catena::render {

@@ -10,7 +10,7 @@
 #include <map>
 #include <memory>
 
-#include "render/frame/ui_items.h"
+#include "render/frame/overlay_items.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <optional>
 
-#include "engine/base/assert.h"
 #include "engine/base/clock.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 namespace {

@@ -9,7 +9,6 @@
 #include "render/mirror/brick_map.h"
 #include "render/mirror/packed_volume.h"
 #include "render/raycast/camera_rays.h"
-#include "render/raycast/ray_scene.h"
 #include "render/raycast/render_settings.h"
 #include "render/raycast/transfer_tables.h"
 #include "render/vk/commands.h"

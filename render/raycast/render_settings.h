@@ -1,9 +1,12 @@
 /// How well and how fast: what renderer and passes are told beside the packet.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 
 #include "render/mirror/grid_mirror.h"
+#include "render/vk/resources.h"
 
 namespace catena::render {
 
@@ -41,5 +44,36 @@ struct RenderSettings {
 RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2, jittered
 RenderSettings balanced_settings();   ///< every 4th pixel at step 2.5, refined where the picture asks for it; where it cannot: step 1
 RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
+
+/// What rays are told and what they meet beside grids.
+inline constexpr VkFormat kVolumeFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< of what rays blend; premultiplied
+
+struct RaySettings {
+  double step_voxels = 1;
+  double termination = 1.0 / 512;
+  bool skip = true;
+  bool jitter = false;
+};
+
+/// Something translucent that triangles drew, to be blended with what rays meet, in order: premultiplied colours, and the depth t
+/// (shaders/shared/frame.h, R32_SFLOAT) of each; NO_DEPTH: nothing at this pixel. Of the picture's size.
+struct Layer {
+  vk::Image* color = nullptr;
+  vk::Image* depth = nullptr;
+};
+
+/// What a picture's rays meet beside grids.
+struct RayScene {
+  const vk::Image* opaque_depth = nullptr;  ///< null: nothing opaque
+  std::span<const Layer> layers{};
+  const vk::Image* none = nullptr;  ///< bound where there is nothing
+};
+
+/// An item with the mirror of its grid, and of the grid that colours it, if there is one.
+template <class Item>
+struct Mirrored {
+  const Item* item = nullptr;
+  std::shared_ptr<const GridMirror> mirror, colors;
+};
 
 }  // namespace catena::render

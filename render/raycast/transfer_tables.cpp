@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 

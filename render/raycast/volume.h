@@ -6,7 +6,7 @@
 #include <map>
 
 #include "render/raycast/bound_grids.h"
-#include "render/raycast/ray_scene.h"
+#include "render/raycast/render_settings.h"
 
 namespace catena::render {
 

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::render {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <vector>
 
-#include "render/vk/check.h"
+#include "render/vk/instance.h"
 
 namespace catena::render::vk {
 

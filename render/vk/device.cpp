@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "render/vk/check.h"
+#include "render/vk/instance.h"
 
 namespace catena::render::vk {
 

@@ -1,8 +1,6 @@
-/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
-/// the layer and the loader are counted and their texts kept; tests assert that there are none.
+/// Every VkResult becomes a Result with one sentence.
 #pragma once
 #include <vulkan/vulkan.h>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -12,6 +10,20 @@
 
 #include "engine/base/result.h"
 
+namespace catena::render::vk {
+
+const char* result_name(VkResult result);
+/// "Vulkan could not WHAT: VK_ERROR_..."
+Error vulkan_error(VkResult result, const std::string& what);
+
+}  // namespace catena::render::vk
+
+/// Returns an error from the function around it unless the call succeeds.
+#define CATENA_VK(call, what) \
+  if (const VkResult vk_result = (call); vk_result != VK_SUCCESS) return ::catena::render::vk::vulkan_error(vk_result, what)
+
+/// The Vulkan instance: version 1.3, with the validation layer (synchronization checks on) when asked for. Warnings and errors of
+/// the layer and the loader are counted and their texts kept; tests assert that there are none.
 namespace catena::render::vk {
 
 /// Where a window's surface comes from; the viewer passes it, headless programs have none.

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "render/vk/check.h"
+#include "render/vk/instance.h"
 
 namespace catena::render::vk {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "render/vk/check.h"
+#include "render/vk/instance.h"
 
 namespace catena::render::vk {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "render/vk/check.h"
 #include "render/vk/commands.h"
+#include "render/vk/instance.h"
 
 namespace catena::render::vk {
 namespace {

@@ -21,10 +21,10 @@ CATENA_SHARED_BEGIN
 struct GridData {
   vec3 origin, origin_x, origin_y;
   vec3 direction, direction_x, direction_y;
-  vec3 lo, hi;           // the box of voxel centres, local
+  vec3 lo, hi;                // the box of voxel centres, local
   vec3 domain_lo, domain_hi;  // what is drawn of it: all, but for grids mirrored at less than their resolution
-  vec3 texel;            // 1 / size of the value image
-  mat3 world_gradient;   // world = world_gradient * local gradient
+  vec3 texel;                 // 1 / size of the value image
+  mat3 world_gradient;        // world = world_gradient * local gradient
   float value_offset, value_scale;
   // volumes: the table's first entry, its last index, and the value range it spans
   uint table_start, table_last;
@@ -35,8 +35,8 @@ struct GridData {
   // isosurfaces
   float level, opacity;
   vec3 color;
-  uint clipped;          // the clip planes count for it
-  uint id;               // of the object
+  uint clipped;  // the clip planes count for it
+  uint id;       // of the object
 };
 
 // A light from far away; the direction points to it, and is unit: in world axes, in the view's for triangles.
@@ -58,21 +58,21 @@ struct ClipData {
 };
 
 struct FrameData {
-  vec2 half_size;        // of the picture, pixels
-  vec2 axis;             // the pixel place where the view axis meets the picture, counted from its corner
-  vec2 slope;            // world units a pixel at depth 1 from the eye; 0 if orthographic
+  vec2 half_size;  // of the picture, pixels
+  vec2 axis;       // the pixel place where the view axis meets the picture, counted from its corner
+  vec2 slope;      // world units a pixel at depth 1 from the eye; 0 if orthographic
   vec3 right, up, forward;
   float reference_depth;
-  float front;           // the first depth that is seen: the eye's plane
+  float front;                  // the first depth that is seen: the eye's plane
   float depth_near, depth_far;  // buffer depth: perspective near / z, orthographic (far - z) / (far - near)
   uint orthographic;
-  float spacing;         // pixel place of a fragment: spacing * fragment + first
+  float spacing;  // pixel place of a fragment: spacing * fragment + first
   vec2 first;
-  float step_world;      // length of a ray's segments
-  float termination;     // a ray ends when less gets through
+  float step_world;   // length of a ray's segments
+  float termination;  // a ray ends when less gets through
   uint clip_count;
   ClipData clips[MAX_CLIPS];
-  uint light_count;      // 0: a headlight
+  uint light_count;  // 0: a headlight
   LightData lights[MAX_LIGHTS];
   FogData fog;
   GridData grids[MAX_GRIDS];
@@ -94,11 +94,11 @@ struct MeshFrameData {
   uint light_count;
   LightData lights[MAX_LIGHTS];
   FogData fog;
-  vec4 clips[MAX_CLIPS]; // kept where dot(xyz, position) + w >= 0
+  vec4 clips[MAX_CLIPS];  // kept where dot(xyz, position) + w >= 0
 };
 
 struct ComposeData {
-  vec4 background;       // alpha 0: transparent
+  vec4 background;  // alpha 0: transparent
 };
 
 CATENA_SHARED_END

@@ -19,14 +19,14 @@ struct LayerData {
 };
 
 struct SliceData {
-  ClipData plane;        // the distance from it, along the pixel's ray
-  vec3 normal;           // unit, world
-  float clip_slack;      // a slice that lies in a clip plane is kept: world units
+  ClipData plane;    // the distance from it, along the pixel's ray
+  vec3 normal;       // unit, world
+  float clip_slack;  // a slice that lies in a clip plane is kept: world units
   uint lit;
-  uint color_last;       // the table's last row
+  uint color_last;  // the table's last row
   uint level_count;
   vec3 line_color;
-  float half_width;      // of the lines, pixels
+  float half_width;  // of the lines, pixels
 };
 
 CATENA_SHARED_END

@@ -16,7 +16,7 @@ CATENA_SHARED_BEGIN
 struct OverlayShape {
   vec2 origin, axis_x, axis_y;
   vec2 lo, hi;
-  vec4 color;   // straight alpha
+  vec4 color;  // straight alpha
   vec4 size;
   vec2 texel;
   uint first_stop, last_stop;
@@ -33,8 +33,8 @@ struct OverlayStop {
 };
 
 struct OverlayData {
-  vec2 half_size;      // of the picture, pixels
-  float depth_slack;   // world units
+  vec2 half_size;     // of the picture, pixels
+  float depth_slack;  // world units
   uint has_depth;
 };
 

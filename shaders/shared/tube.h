@@ -3,20 +3,20 @@
 #define CATENA_SHARED_TUBE_H
 #include "shaders/shared/language.h"
 
-#define RING_SHIFT 4           // a vertex index is ring << RING_SHIFT | side
-#define RING_GAP 3u            // in the place of the sides: nothing is drawn up to this ring, nor from it on
-#define RING_SIDES_SHIFT 30    // in the colour's two highest bits: 8, 12 or 16 sides as 0, 1, 2; or RING_GAP
-#define RING_COLOR_MOST 1023   // each of the others has ten
+#define RING_SHIFT 4          // a vertex index is ring << RING_SHIFT | side
+#define RING_GAP 3u           // in the place of the sides: nothing is drawn up to this ring, nor from it on
+#define RING_SIDES_SHIFT 30   // in the colour's two highest bits: 8, 12 or 16 sides as 0, 1, 2; or RING_GAP
+#define RING_COLOR_MOST 1023  // each of the others has ten
 
 CATENA_SHARED_BEGIN
 
 struct TubeRingData {
-  vec3 centre;           // relative to the origin of all
+  vec3 centre;  // relative to the origin of all
   float radius;
   float lean;            // of the surface's normals along the tangent: 0 on the wall, -1 and 1 at the tips of the caps
   uint tangent, normal;  // unit, in octahedral coordinates, two signed 16-bit shares
   uint color;
-  uint id;               // as a mesh vertex's
+  uint id;  // as a mesh vertex's
 };
 
 CATENA_SHARED_END

@@ -1,4 +1,4 @@
-// What is drawn over a window's picture (render/frame/ui_items.h).
+// What is drawn over a window's picture (render/frame/overlay_items.h).
 #ifndef CATENA_SHARED_UI_H
 #define CATENA_SHARED_UI_H
 #include "shaders/shared/language.h"

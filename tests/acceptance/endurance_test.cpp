@@ -1,6 +1,6 @@
 // Endurance: no allocation in a million ticks of a chain, and nothing that is not finite in ten million hostile ticks over every
 // constraint type of the conformance table, on good fields, fields ridden with NaN, and fields scaled to the ends of the doubles.
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "tests/acceptance/hostile.h"
 #include "tests/acceptance/reference.h"
 #include "tests/haptics/constraints/examples.h"

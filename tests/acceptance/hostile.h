@@ -2,7 +2,7 @@
 #pragma once
 #include <limits>
 
-#include "haptics/chain/rebind.h"
+#include "haptics/chain/tick.h"
 #include "tests/acceptance/chain_rig.h"
 
 namespace catena::acceptance {

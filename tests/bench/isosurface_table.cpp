@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
-#include "engine/base/quantile.h"
+#include "engine/base/numbers.h"
 #include "engine/field/grid.h"
 #include "render/image/picture.h"
 #include "render/passes/renderer.h"

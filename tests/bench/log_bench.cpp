@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "engine/base/clock.h"
-#include "engine/base/quantile.h"
+#include "engine/base/numbers.h"
 #include "haptics/device/recorded_path.h"
 #include "haptics/servo/log/writer.h"
 #include "haptics/servo/servo.h"

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "engine/base/clock.h"
-#include "engine/base/quantile.h"
+#include "engine/base/numbers.h"
 #include "engine/field/grid.h"
 #include "render/image/picture.h"
 #include "render/quality/quality.h"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/base/csv_paths.h"
+#include "engine/base/csv.h"
 #include "tests/fuzz/mutate.h"
 
 namespace catena {

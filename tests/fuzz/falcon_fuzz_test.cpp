@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "haptics/device/usb/falcon_boot.h"
 #include "haptics/device/usb/falcon_codec.h"
-#include "haptics/device/usb/falcon_image.h"
 #include "haptics/device/usb/falcon_kinematics.h"
 #include "tests/fuzz/mutate.h"
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "engine/scene/prepare.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/systems.h"
 #include "haptics/extract/extract.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/support.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/scene/color_maps.h"
-#include "engine/scene/read_transfer.h"
+#include "engine/scene/read_parts.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/support.h"
 

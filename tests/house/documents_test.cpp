@@ -88,8 +88,7 @@ TEST(Documents, EveryPageIsReachedFromTheReadme) {
     for (const std::string& link : matches(contents(page), R"(\]\(([^)#\s]+\.md)[^)]*\))"))
       open.insert((fs::path(page).parent_path() / link).lexically_normal().string());
   }
-  for (const std::string& document : documents())
-    EXPECT_TRUE(reached.contains(document) || !document.starts_with("docs/")) << document;
+  for (const std::string& document : documents()) EXPECT_TRUE(reached.contains(document) || !document.starts_with("docs/")) << document;
 }
 
 TEST(Documents, EveryFileThatTheyNameIsThere) {

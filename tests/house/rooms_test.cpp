@@ -153,7 +153,7 @@ TEST(Rooms, HeavyLibrariesStayInTheirRooms) {
   only_in("nanovdb/", {"engine/field/", "engine/vdb/"});
   only_in("nifti1_io.h", {"engine/field/"});
   only_in("json/", {"engine/base/json"});
-  only_in("tbb/", {"engine/base/parallel_for"});
+  only_in("tbb/", {"engine/base/threads"});
   only_in("vulkan/", {"render/", "engine/app/viewer/"});
   only_in("GLFW/", {"engine/app/viewer/"});
   only_in("seccomp.h", {"engine/vdb/"});

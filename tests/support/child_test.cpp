@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::test {
 

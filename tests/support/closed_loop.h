@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "haptics/chain/rebind.h"
+#include "haptics/chain/tick.h"
 #include "haptics/device/simulated_hand.h"
 
 namespace catena::test {

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 
 namespace {
 void* counted(std::size_t size) {

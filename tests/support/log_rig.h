@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "haptics/chain/rebind.h"
+#include "haptics/chain/tick.h"
 #include "haptics/servo/log/log_replay.h"
 #include "haptics/servo/log/writer.h"
 #include "tests/support/simple_links.h"

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "engine/base/assert.h"
 #include "engine/base/numbers.h"
+#include "engine/base/result.h"
 #include "tests/support/support.h"
 
 namespace catena::test {

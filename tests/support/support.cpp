@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::test {
 

@@ -1,7 +1,7 @@
 #include "engine/app/hand/recording.h"
 
 #include "engine/app/command.h"
-#include "engine/app/log_scene.h"
+#include "engine/app/replay_log.h"
 #include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 

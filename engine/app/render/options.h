@@ -1,12 +1,14 @@
 /// What `catena render` was asked for, as it came from the command line.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/app/annotate_option.h"
-#include "engine/app/color_option.h"
-#include "engine/app/stereo_option.h"
+#include "engine/app/options.h"
 #include "engine/base/result.h"
+#include "render/frame/camera.h"
+#include "render/frame/camera_path.h"
+#include "render/quality/quality.h"
 
 namespace catena::app {
 
@@ -38,5 +40,33 @@ struct RenderOptions {
 
 /// All of the work. An Error: bad input; throws MachineFailure for the rest.
 Outcome render_pictures(const RenderOptions& options);
+
+/// Where the camera is in each frame: the scene's, a key-framed path's, or along an axis; fitted, zoomed, raised and turned.
+class CameraMotion {
+ public:
+  /// Checks the words and numbers of the options and reads the path.
+  /// `hand_s`: the duration of the hand's path where it is played, else 0.
+  static Result<CameraMotion> make(const RenderOptions& options, double hand_s);
+  /// --frames, or what the duration of --camera or of the hand's path comes to at --fps, or 1.
+  int frames() const { return frames_; }
+  /// Of frame 0 .. frames() - 1. `base`: the scene's view; `bounds`: of all that is drawn.
+  render::View at(const render::View& base, const Bounds& bounds, double aspect, int frame) const;
+
+ private:
+  std::optional<render::CameraPath> path_;
+  std::optional<Vec3> towards_eye_;
+  bool fit_ = false;
+  double orbit_deg_ = 0, elevation_deg_ = 0, zoom_ = 1;
+  int frames_ = 1;
+};
+
+/// "--quality Q" and the scene's "quality": draft, balanced, reference, time=MS, error=E or step=VOXELS.
+/// Settings, or a goal that they have yet to be measured for.
+struct Quality {
+  render::RenderSettings settings;
+  std::optional<render::QualityGoal> goal;
+};
+
+Result<Quality> parse_quality(const std::string& words);
 
 }  // namespace catena::app

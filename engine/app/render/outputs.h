@@ -1,14 +1,25 @@
-/// The files of `catena render`: what is checked before any work, and what is open while frames are drawn.
-/// Numbered names ("turn_%03d.png") are a file a frame, committed with it; a video takes all frames; a plain name the first frame.
-/// Videos and plain names are committed last, all together.
+/// "turn_%03d.png" names every picture of a sequence; a plain name is the first picture's.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "engine/app/render/options.h"
 #include "engine/app/render/sinks.h"
 #include "engine/app/run_files.h"
+#include "render/frame/frame_packet.h"
 
 namespace catena::app {
+
+bool is_numbered(const std::string& path);
+/// The name of one picture; a plain name as it is.
+std::string numbered(const std::string& path, int frame);
+
+/// "1 volume, 3 streamlines, 1 cursor": what a packet draws.
+std::string what_is_drawn(const render::FramePacket& packet);
+
+/// The files of `catena render`: what is checked before any work, and what is open while frames are drawn.
+/// Numbered names ("turn_%03d.png") are a file a frame, committed with it; a video takes all frames; a plain name the first frame.
+/// Videos and plain names are committed last, all together.
 
 /// Refuses: kinds of file that do not exist, no ffmpeg, sizes that a video cannot hold, an output that is an input or another output.
 Outcome check_outputs(const RenderOptions& options, const PictureShape& shape, int frames, RunFiles files);

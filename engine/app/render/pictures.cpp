@@ -7,20 +7,17 @@
 #include "engine/app/command.h"
 #include "engine/app/felt_cursor.h"
 #include "engine/app/frame_stats.h"
-#include "engine/app/hand/interrupt.h"
-#include "engine/app/render/camera_motion.h"
-#include "engine/app/render/describe.h"
+#include "engine/app/hand/signals.h"
+#include "engine/app/options.h"
 #include "engine/app/render/options.h"
 #include "engine/app/render/outputs.h"
-#include "engine/app/render/quality_words.h"
-#include "engine/app/size_option.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_stereo.h"
+#include "render/extract/extract_parts.h"
 
 namespace catena::app {
 

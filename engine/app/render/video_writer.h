@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-#include "engine/base/part_file.h"
+#include "engine/base/output_file.h"
 #include "engine/base/result.h"
 
 namespace catena::app {

@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "engine/app/command.h"
-#include "engine/app/tradeoff/figures.h"
-#include "engine/app/tradeoff/hand.h"
+#include "engine/app/tradeoff/results.h"
 
 namespace catena::app {
 

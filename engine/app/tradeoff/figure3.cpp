@@ -10,8 +10,7 @@
 #include <numbers>
 
 #include "engine/app/command.h"
-#include "engine/app/tradeoff/figures.h"
-#include "engine/app/tradeoff/hand.h"
+#include "engine/app/tradeoff/results.h"
 #include "engine/base/numbers.h"
 
 namespace catena::app {

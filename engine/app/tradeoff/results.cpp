@@ -5,15 +5,14 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
-#include "engine/base/part_file.h"
 #include "engine/base/text.h"
+#include "haptics/extract/extract.h"
 
 namespace catena::app {
 
@@ -121,5 +120,15 @@ Outcome ResultFolder::commit() {
   created_ = false;
   return Done{};
 }
+
+Hand::Hand(const std::string& text) : state_(std::make_unique<haptics::ChainState>()), scratch_(std::make_unique<haptics::ChainScratch>()) {
+  auto scene = scene::parse_scene(text, "figure");
+  CATENA_ASSERT(static_cast<bool>(scene));
+  auto program = haptics::extract_program(*scene);
+  CATENA_ASSERT(static_cast<bool>(program));
+  program_ = *program;
+}
+
+std::string to_json(const Vec3& v) { return "[" + to_text(v.x) + ", " + to_text(v.y) + ", " + to_text(v.z) + "]"; }
 
 }  // namespace catena::app

@@ -3,16 +3,16 @@
 ///   stiffness-damping.csv  the device's own damping, at 1, 2 and 4 kHz, and at 1 kHz with a period of delay
 ///   stiffness-delay.csv    the delay, 0.5 N s/m at 1 kHz
 ///   stiffness-virtual.csv  the coupling's damping, 0.5 N s/m at 1 kHz without and with a period of delay
-/// Columns: passive, the derived limit 2 b / (T + 2 t_d) (haptics/device/safe_stiffness.h); stable, the largest spring at which
+/// Columns: passive, the derived limit 2 b / (T + 2 t_d) (haptics/device/mechanism.h); stable, the largest spring at which
 /// the swing dies away; controlled, the largest of a rising row (steps of a quarter) at which the passivity controller still
 /// keeps the energy within 5 % of what the spring had at the start.
 #include <cmath>
 #include <numbers>
 
 #include "engine/app/command.h"
-#include "engine/app/tradeoff/figures.h"
+#include "engine/app/tradeoff/results.h"
 #include "haptics/chain/tick.h"
-#include "haptics/device/safe_stiffness.h"
+#include "haptics/device/mechanism.h"
 #include "haptics/device/simulated_hand.h"
 #include "haptics/extract/extract.h"
 #include "haptics/servo/limits_for.h"

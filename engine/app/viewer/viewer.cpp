@@ -5,7 +5,7 @@
 #include "engine/app/viewer/shell/session.h"
 #include "engine/base/tell.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_stereo.h"
+#include "render/extract/extract_parts.h"
 #include "render/image/picture.h"
 
 namespace catena::app {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/render/quality_words.h"
+#include "engine/app/render/options.h"
 #include "engine/app/viewer/shell/hand_host.h"
 #include "engine/scene/document.h"
 #include "render/vk/device.h"

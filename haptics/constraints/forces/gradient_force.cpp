@@ -1,8 +1,7 @@
-#include "haptics/constraints/forces/gradient_force.h"
+#include "haptics/constraints/forces/forces.h"
 
 #include "engine/field/magnitude.h"
-#include "haptics/constraints/rules/read_field.h"
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,6 +1,6 @@
-#include "haptics/constraints/forces/viscosity.h"
+#include "haptics/constraints/forces/forces.h"
 
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -3,7 +3,7 @@
 #include "engine/field/grid.h"
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface/reach.h"
-#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,3 +1,33 @@
+/// Safe normalisation (the sigma of the paper's Eq. 9): an absolute eps would break under a change of units.
+///   m = max|v_i|; not 0 < m < inf: direction 0, factor 0.   w = v / m, r = |w|, d = w / r, q = min((m / X) r, 1e3),
+///   factor = q^2 / (q^2 + 1e-12), X the field's largest magnitude (engine/field/magnitude.h); X = 0 gives 0.
+/// Any thread.
+#pragma once
+#include <optional>
+
+#include "engine/base/vec.h"
+#include "haptics/constraints/isosurface/level.h"
+#include "haptics/constraints/registry.h"
+
+namespace catena::haptics {
+
+struct SafeDirection {
+  Vec3 d{0.0};
+  double factor = 0;  ///< 1, but 0 where the field is ill-defined
+};
+
+/// `normal` (unit, or zero): only what is tangential to it counts, v - (v.n) n.
+inline SafeDirection safe_direction(const Vec3& v, double largest, const Vec3& normal = Vec3(0.0)) noexcept {
+  const double m = max_abs(v);
+  if (!(m > 0) || !is_finite(v) || !(largest > 0)) return {};
+  Vec3 w = m > 1e-300 ? v * (1 / m) : Vec3(v.x / m, v.y / m, v.z / m);
+  w = w - normal * dot(w, normal);
+  const double r = std::sqrt(dot(w, w));
+  if (!(r > 0)) return {};
+  const double q = std::min(m / largest * r, 1e3);
+  return {w * (1 / r), q * q / (q * q + 1e-12)};
+}
+
 /// The ground that friction acts on: all of space, or one level set s = level of a scalar field, on which probe and proxy lie.
 /// Shared by drag, friction, modulated_friction and texture.
 ///   touching   on a level, friction acts only while the incoming probe x is on it: |s - level| / |grad s| <= 1e-6 L, one fetch.
@@ -12,14 +42,6 @@
 ///   broken     a field that is not finite at x: the probe passed through, CRITICAL.
 /// A resting probe gives a resting proxy bit for bit: nothing is asked while x and p keep their bits (after BUDGET it goes on).
 /// Residual: the larger of the distance from the level and |x - p| - limit. Lengths in world units. Haptic thread.
-#pragma once
-#include <optional>
-
-#include "haptics/constraints/isosurface/level.h"
-#include "haptics/constraints/registry.h"
-
-namespace catena::haptics {
-
 struct ContactSpec {
   field::ScalarFieldPtr surface;  ///< none: all of space
   std::optional<double> level;    ///< none: the surface only says which way is normal
@@ -113,5 +135,31 @@ class Contact {
 
 /// The larger of 0 and v; 0 for a NaN: a threshold is never negative.
 inline double safe_threshold(double v) noexcept { return v > 0 ? v : 0; }
+
+/// Isotropic friction in space or on a level set: |x - p| <= tau leaves p, bit for bit, else p slides to |x - p| = tau. What tau
+/// is at the proxy, before it moves, the constraint says: drag, texture. The ground's rules are those of friction/contact.h.
+/// Haptic thread: no allocation, lock or throw.
+class ContactDrag : public Constraint {
+ public:
+  explicit ContactDrag(ContactSpec contact) : contact_(std::move(contact)) {}
+
+  void start(const Vec3& probe, LinkState& state, LinkScratch&) const noexcept final {
+    memory_of<ContactMemory>(state) = ContactMemory{};
+    state.proxy = probe;
+  }
+  void advance(const Vec3& probe, LinkState& state, LinkScratch& scratch) const noexcept final {
+    Contact contact(contact_, probe, memory_of<ContactMemory>(state), state, scratch);
+    if (!contact.begin()) return;
+    const double tau = safe_threshold(threshold(contact.proxy(), state, scratch));
+    if (!contact.drag(tau)) return contact.lose();
+    contact.end(tau, Status::ok);
+  }
+  bool is_sane(const LinkState& state) const noexcept final { return haptics::is_sane(memory_of<ContactMemory>(state)); }
+  double domain_length() const noexcept final { return contact_.length; }
+
+ private:
+  virtual double threshold(const Vec3& p, LinkState& state, LinkScratch& scratch) const noexcept = 0;
+  ContactSpec contact_;
+};
 
 }  // namespace catena::haptics

@@ -1,7 +1,7 @@
-#include "haptics/constraints/friction/drag.h"
+#include "haptics/constraints/friction/friction.h"
 
-#include "haptics/constraints/friction/contact_drag.h"
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/friction/contact.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -4,9 +4,7 @@
 #include "engine/flow/flow.h"
 #include "engine/schema/values.h"
 #include "haptics/constraints/friction/contact.h"
-#include "haptics/constraints/friction/safe_direction.h"
-#include "haptics/constraints/rules/read_field.h"
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -23,4 +23,32 @@ namespace catena::haptics {
 
 ConstraintType friction_constraint();
 
+/// Isotropic drag: the proxy stays until the probe pulls it.                              (paper, section 3)
+///   |x - p| <= tau: p stays, bit for bit;   else p <- x - tau (x - p) / |x - p|, so that |x - p| = tau
+/// Norm-based: the same in all directions. In a loop of amplitude A it takes 4 K tau (A - tau) from the hand.
+/// Keys: `threshold` (tau, world units, may follow a field: asked at the proxy before it moves); `surface` and `level`: on a
+/// level set, where probe and proxy stay on it and |x - p| is the chord; its rules are those of friction/contact.h.
+/// Without a surface closed form, no fetch. Starts at the incoming probe. Statuses: OK; on a surface FREE, NO_SURFACE, CRITICAL.
+ConstraintType drag_constraint();
+
+/// Drag on a surface, modulated by the field's angle to it: the proxy p_f of the paper's section 6.1, Eqs. 7-9, Figure 5(b).
+///   u = cos(theta) = sigma_s sigma_v d_s.d_v,  d_s along grad s, d_v along v, sigma the safe normalisation (contact.h)
+///   law "safe" (default)   tau_f = (1 - |u|) tau_min + |u| tau_max
+///   law "printed"          tau_f = u tau_min + (1 - u) tau_max     (Eq. 7)
+/// Eq. 7 as printed is the easiest to drag where the field is along the normal, while the text around it says the hardest; and
+/// for u < 0 it goes beyond tau_max. It is kept as it is, except that tau_f is never negative. In ill-defined regions u = 0.
+/// u, tau_min, tau_max are taken at p_f before it moves; then the isotropic drag below with tau_f.
+/// Keys: `field`, `kind` (line: v ~ -v, u = |u|), `surface`, `level` (keeps the proxy on it; without, drag in space), `tau_min`
+/// (default 0.001 L), `tau_max` (default 0.01 L), `law`. Statuses: those of `drag`. At most two fetches at rest.
+ConstraintType modulated_friction_constraint();
+
+/// Haptic texture: drag whose threshold is modulated in space, felt as stick and slip.    (paper, section 3: friction and texture)
+///   tau(p) = threshold (1 + amplitude w(p)),  w = (T(x) + T(y) + T(z)) / 3,  T a triangle wave of the world coordinate, -1..1,
+///   of period `wavelength`, -1 at multiples of it
+/// At the proxy before it moves. A sweep along an axis has a force of exactly that period; amplitude 1 along the diagonal
+/// takes tau down to 0. Texture by data is a map on `threshold`.
+/// Keys: `threshold` (base, world units), `amplitude` (0..1, default 0.5), `wavelength` (world units), `surface`, `level`; the
+/// rules on a surface and the statuses are those of `drag`.
+ConstraintType texture_constraint();
+
 }  // namespace catena::haptics

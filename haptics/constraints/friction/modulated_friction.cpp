@@ -1,13 +1,11 @@
-#include "haptics/constraints/friction/modulated_friction.h"
+#include "haptics/constraints/friction/friction.h"
 
 #include "engine/field/magnitude.h"
 #include "engine/flow/flow.h"
 #include "engine/schema/values.h"
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/friction/contact.h"
-#include "haptics/constraints/friction/safe_direction.h"
-#include "haptics/constraints/rules/read_field.h"
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,9 +1,9 @@
-#include "haptics/constraints/friction/texture.h"
+#include "haptics/constraints/friction/friction.h"
 
 #include <fmt/format.h>
 
-#include "haptics/constraints/friction/contact_drag.h"
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/friction/contact.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,8 +1,7 @@
 #include "haptics/constraints/isosurface/cell_walk.h"
 
 #include "haptics/constraints/equations.h"
-#include "haptics/constraints/isosurface/cells.h"
-#include "haptics/constraints/isosurface/piece_move.h"
+#include "haptics/constraints/isosurface/piece.h"
 
 namespace catena::haptics {
 namespace {

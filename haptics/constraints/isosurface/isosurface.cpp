@@ -3,9 +3,8 @@
 #include "haptics/constraints/equations.h"
 #include "haptics/constraints/isosurface/analytic.h"
 #include "haptics/constraints/isosurface/cell_walk.h"
-#include "haptics/constraints/isosurface/descent.h"
 #include "haptics/constraints/isosurface/reach.h"
-#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/rules/link_keys.h"
 #include "haptics/constraints/rules/surface_side.h"
 
 namespace catena::haptics {

@@ -3,7 +3,7 @@
 /// Keys: `field`, `level`, `free` (none | above | below, by field value), `release`; the rules are those of surface_side.h.
 ///   reach (isosurface/reach.h)          from anywhere to the level: march, bracket, Illinois; then a scan of 26 directions
 ///   closest (isosurface/analytic.h)     formulas: Newton with the surface's curvature, SR1
-///   descent (isosurface/descent.h)      formulas with folds, where that is stuck: down on the surface, in a trust region
+///   descent (isosurface/reach.h)      formulas with folds, where that is stuck: down on the surface, in a trust region
 ///   cell walk (isosurface/cell_walk.h)  grids: exact within each trilinear cell, from cell to cell
 /// Search radius: 2 L around the first probe (the probe clamped to the domain on grids) along the gradient, then L along 26
 /// directions. Off the level by at most 1e-11 L (formulas), 1e-9 L (grids); from the closest point by at most 1e-6 L.

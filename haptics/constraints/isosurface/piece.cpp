@@ -79,4 +79,138 @@ double Piece::outside(const Vec3& f, int& axis) const noexcept {
   return worst;
 }
 
+namespace {
+
+constexpr double kConverged = 1e-10;  // of L: within a piece
+constexpr double kNearFace = 1e-10;   // voxels: a step out that cannot be shortened into the cell starts on the face
+constexpr double kLeastSlope = 0.87;  // of the last point's: less is a fold
+constexpr double kFlat = 0.25;        // voxels: so far off the level a straight way may end
+
+}  // namespace
+
+Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, bool steepest, Vec3& f, PieceSample& s, Vec3& t) noexcept {
+  const field::Mapping& mapping = field.grid()->mapping();
+  const double length = field.length(), voxel = field.voxel();
+  for (int i = 0; i < 40 && !field.exhausted(); ++i) {
+    if (!s.usable) return Followed::blocked;
+    const double size = norm(t);
+    if (size <= std::max(kConverged * length, 1e-15 * norm(probe - piece.world(f)))) return Followed::converged;
+    Vec3 u = steepest ? t : piece.newton(f, probe, s, t);
+    const double wanted = norm(u);
+    if (wanted > 2 * voxel) u = u * (2 * voxel / wanted);
+
+    bool accepted = false;
+    for (int trial = 0; trial < 30 && !accepted && !field.exhausted(); ++trial, u = u * 0.35) {
+      Vec3 g;
+      int axis;
+      if (!piece.retract(f, u, s, g)) continue;
+      if (piece.outside(g, axis) <= 0) {
+        const double won = piece.gain(probe, f, g);
+        accepted = won >= 1e-4 * dot(t, u);
+        if (!accepted && size <= 1e-5 * length) {
+          const PieceSample next = piece.sample(g);
+          accepted = next.usable && norm(piece.tangential(g, probe, next)) <= 0.5 * size;
+        }
+        if (accepted) f = g;
+        continue;
+      }
+
+      // an inner end of the bracket: the first halving that stays in the cell
+      double low = 0, high = 1, v_low = 0, v_high = piece.outside(g, axis);
+      Vec3 outer = g, within = f;
+      bool inner = false;
+      const bool hurried = field.hurried();
+      int exit_axis;
+      const double first = hurried ? std::min(0.5, piece.part_inside(f, piece.frame().index_step(mapping, u), exit_axis)) : 0.5;
+      for (double alpha = first; alpha > 1e-14 && !field.exhausted(); alpha *= 0.5) {
+        if (!piece.retract(f, u * alpha, s, g)) continue;  // a fold: nearer by there is none
+        int worst;
+        const double v = piece.outside(g, worst);
+        if (v <= 0) {
+          low = alpha;
+          v_low = v;
+          within = g;
+          inner = true;
+          break;
+        }
+        high = alpha;
+        v_high = v;
+        axis = worst;
+        outer = g;
+      }
+      if (!inner) {
+        // a rounding away from a face, but not on it
+        for (int a = axis, k = 0; k < 3; ++k, a = (a + 1) % 3) {
+          const double face = f[a] < 0.5 ? 0.0 : 1.0;
+          if (piece.frame().held[static_cast<std::size_t>(a)] || f[a] == face || std::fabs(f[a] - face) > kNearFace) continue;
+          f[a] = face;
+          return Followed::landed;
+        }
+        return Followed::blocked;
+      }
+
+      // land on the face: false position on how far the point is outside, to the last bit; where time is short by Illinois' rule (an
+      // end is halved only where it stays twice), which needs a quarter of the steps
+      double a = v_low, b = v_high;
+      int stays = 0;
+      double along = 0;
+      for (int k = 0; k < 80 && high - low > 1e-16 * high && v_high > 1e-15 && !(hurried && v_low > -kFaceSlack) && !field.exhausted();
+           ++k) {
+        double w = k % 4 == 3 || !(a < 0) ? 0.5 : a / (a - b);
+        if (!(w > 0 && w < 1)) w = 0.5;
+        const double mid = low + (high - low) * w;
+        if (!(mid > low && mid < high) || !piece.retract(f, u * mid, s, g, along)) break;
+        if (!hurried) along = 0;
+        const double v = piece.outside(g, axis);
+        const bool replaces_low = v <= 0;
+        const double other = hurried && stays != (replaces_low ? 1 : -1) ? 1 : 0.5;
+        stays = replaces_low ? 1 : -1;
+        if (replaces_low)
+          low = mid, within = g, a = v_low = v, b *= other;
+        else
+          high = mid, b = v_high = v, outer = g, a *= other;
+      }
+      if (hurried && v_low > -kFaceSlack) outer = within, v_high = 0;
+      if (v_high > 1e-9) {
+        // a fold between: as far as the cell's level goes
+        accepted = piece.gain(probe, f, within) >= 1e-4 * low * dot(t, u);
+        if (accepted) f = within;
+        continue;
+      }
+      piece.outside(outer, axis);
+      for (int k = 0; k < 3; ++k) outer[k] = std::min(std::max(outer[k], 0.0), 1.0);
+      outer[axis] = outer[axis] < 0.5 ? 0.0 : 1.0;
+      if (!(piece.gain(probe, f, outer) > 0)) continue;
+      f = outer;
+      return Followed::landed;
+    }
+    if (!accepted) return size <= kRelease * length ? Followed::converged : Followed::blocked;
+    s = piece.sample(f);
+    t = piece.tangential(f, probe, s);
+  }
+  return Followed::converged;
+}
+
+bool cross_cell(const LevelField& field, const PieceFrames& frames, const Piece& piece, const field::ScalarCell& cell, unsigned held,
+                const Vec3& probe, const PieceSample& s, const Vec3& t, Vec3& f) noexcept {
+  const field::Mapping& mapping = field.grid()->mapping();
+  const Vec3 d = piece.frame().index_step(mapping, t);
+  int axis;
+  const double part = piece.part_inside(f, d, axis);
+  if (axis < 0) return false;
+  Vec3 exit = f + d * part;
+  for (int a = 0; a < 3; ++a) exit[a] = std::min(std::max(exit[a], 0.0), 1.0);
+  exit[axis] = d[axis] > 0 ? 1 : 0;
+
+  const Piece face(mapping, cell, field.level(), frames.of[held | 1u << axis], field.steps());
+  const PieceSample there = face.sample(exit);
+  Vec3 g;
+  int worst;
+  if (!there.usable || there.slope < kLeastSlope * s.slope || std::fabs(there.distance) > kFlat * field.voxel()) return false;
+  if (!face.retract(exit, Vec3(0.0), there, g) || face.outside(g, worst) > 0) return false;
+  if (!(piece.gain(probe, f, g) > 0)) return false;
+  f = g;
+  return true;
+}
+
 }  // namespace catena::haptics

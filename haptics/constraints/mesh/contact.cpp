@@ -1,6 +1,6 @@
 #include "haptics/constraints/mesh/contact.h"
 
-#include "haptics/constraints/mesh/planes.h"
+#include "haptics/constraints/mesh/walk.h"
 
 namespace catena::haptics {
 namespace {

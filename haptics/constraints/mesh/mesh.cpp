@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFarthest = 1e6;  // in the mesh's own frame: a probe beyond is drawn in, towards the mesh
 constexpr double kReachOfWalk = 32;
-constexpr double kSearchRadius = 4e6;
+constexpr double kMeshSearchRadius = 4e6;
 constexpr double kShortest = 1e-300;
 
 Vec3 own_of(const mesh::TriangleMesh& mesh, const Vec3& probe, double farthest) {
@@ -42,7 +42,7 @@ class MeshSurface final : public Surface {
   SideValue side(const Vec3&) noexcept override { return {0, true, false}; }
 
   Hold place(const Vec3& probe) noexcept override {
-    const mesh::Nearest nearest = nearest_to(mesh_, own(probe), kSearchRadius, memory_.at.face, state_);
+    const mesh::Nearest nearest = nearest_to(mesh_, own(probe), kMeshSearchRadius, memory_.at.face, state_);
     if (!nearest.found) return {};
     return hold({nearest.at, nearest.complete, 0});
   }
@@ -218,7 +218,7 @@ class OneSidedMesh final : public Constraint {
     const Vec3 x = own_of(*mesh_, probe, kFarthest);
     memory.god = GodObject{};
     memory.god.p = x;
-    const mesh::Nearest nearest = nearest_to(*mesh_, x, kSearchRadius, memory.hint, state);
+    const mesh::Nearest nearest = nearest_to(*mesh_, x, kMeshSearchRadius, memory.hint, state);
     if (!nearest.found) return true;
     memory.hint = nearest.at.face;
     const Vec3 normal = direction(mesh::normal_at(*mesh_, nearest.at)) * outside();

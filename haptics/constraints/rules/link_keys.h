@@ -1,12 +1,29 @@
-/// What every link may say beside its constraint: its switch ("on"), the cue when it is left ("indicate"), the tool's axis ("align"). The
-/// structs and their models are in haptics/chain/program.h.
+/// The field that a link names under a key, of the kind that it needs. `who` is the link in the message: "friction". Off the tick.
 #pragma once
 #include "engine/schema/key.h"
+#include "haptics/chain/parameter.h"
 #include "haptics/chain/program.h"
 #include "haptics/constraints/registry.h"
 
 namespace catena::haptics {
 
+Result<field::ScalarFieldPtr> require_scalar_field(const json::Node& link, std::string_view key, std::string_view who,
+                                                   const BuildContext& context);
+Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::string_view key, std::string_view who,
+                                                   const BuildContext& context);
+/// The link's `level`: a value that the field attains. `key` is the one that names the field.
+Result<double> require_level(const json::Node& link, std::string_view key, const field::ScalarField& field);
+
+/// Reads a Parameter of a link: a number, or an object {"field": NAME, "map": [[value, output], ...], "of": "value" |
+/// "gradient" | "magnitude", "normalise": true, "outside": output}. The model is in haptics/chain/parameter.h.
+
+/// The key's value, or `fallback` where it is absent. Every output must lie in `range`.
+Result<Parameter> get_parameter(const json::Node& link, std::string_view key, const Parameter& fallback, json::Range range,
+                                const BuildContext& context);
+Result<Parameter> require_parameter(const json::Node& link, std::string_view key, json::Range range, const BuildContext& context);
+
+/// What every link may say beside its constraint: its switch ("on"), the cue when it is left ("indicate"), the tool's axis ("align"). The
+/// structs and their models are in haptics/chain/program.h.
 schema::Key switch_key();
 schema::Key indication_key();
 schema::Key align_key();

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "engine/schema/values.h"
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,4 +1,4 @@
-#include "haptics/constraints/shapes/box.h"
+#include "haptics/constraints/shapes/shapes.h"
 
 #include <limits>
 

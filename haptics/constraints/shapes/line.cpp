@@ -1,4 +1,4 @@
-#include "haptics/constraints/shapes/line.h"
+#include "haptics/constraints/shapes/shapes.h"
 
 #include "haptics/constraints/shapes/closed_form.h"
 

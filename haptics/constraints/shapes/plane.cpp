@@ -1,6 +1,6 @@
-#include "haptics/constraints/shapes/plane.h"
+#include "haptics/constraints/shapes/shapes.h"
 
-#include "haptics/constraints/shapes/plane_surface.h"
+#include "haptics/constraints/shapes/surface_shapes.h"
 
 namespace catena::haptics {
 namespace {

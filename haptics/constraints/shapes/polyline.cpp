@@ -1,4 +1,4 @@
-#include "haptics/constraints/shapes/polyline.h"
+#include "haptics/constraints/shapes/shapes.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "haptics/constraints/shapes/straight.h"
+#include "haptics/constraints/shapes/closed_form.h"
 
 namespace catena::haptics {
 

@@ -1,7 +1,6 @@
-#include "haptics/constraints/shapes/segment.h"
+#include "haptics/constraints/shapes/shapes.h"
 
 #include "haptics/constraints/shapes/closed_form.h"
-#include "haptics/constraints/shapes/straight.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,10 +1,9 @@
 #include "haptics/constraints/streamline/online.h"
 
+#include "engine/flow/curve.h"
 #include "engine/flow/derivatives.h"
 #include "engine/flow/flow.h"
-#include "engine/flow/hermite.h"
 #include "haptics/constraints/equations.h"
-#include "haptics/constraints/streamline/cells.h"
 
 namespace catena::haptics {
 namespace {

@@ -1,14 +1,13 @@
 #include "haptics/constraints/streamline/selected.h"
 
 #include "engine/flow/curve.h"
-#include "engine/flow/hermite.h"
 
 namespace catena::haptics {
 namespace {
 
 constexpr std::int32_t kKnotCap = 4096, kKnotsAStep = 2;
 constexpr double kFarSquared = 1e100;
-constexpr double kFar = 1e280;  ///< beyond, only the probe's direction counts, and products would overflow
+constexpr double kHugeDistance = 1e280;  ///< beyond, only the probe's direction counts, and products would overflow
 
 class SelectedStreamline final : public Constraint {
  public:
@@ -25,7 +24,7 @@ class SelectedStreamline final : public Constraint {
   }
 
   void advance(const Vec3& far_probe, LinkState& state, LinkScratch&) const noexcept override {
-    const Vec3 probe = max_abs(far_probe) > kFar ? far_probe * 1e-20 : far_probe;
+    const Vec3 probe = max_abs(far_probe) > kHugeDistance ? far_probe * 1e-20 : far_probe;
     SelectedMemory& memory = memory_of<SelectedMemory>(state);
     state.status = Status::ok;
     state.residual = 0;

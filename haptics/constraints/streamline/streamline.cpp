@@ -6,7 +6,7 @@
 
 #include "engine/flow/flow.h"
 #include "engine/schema/values.h"
-#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/rules/link_keys.h"
 #include "haptics/constraints/streamline/online.h"
 #include "haptics/constraints/streamline/selected.h"
 

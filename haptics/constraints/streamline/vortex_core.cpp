@@ -1,10 +1,10 @@
-#include "haptics/constraints/streamline/vortex_core.h"
+#include "haptics/constraints/streamline/streamline.h"
 
 #include <fmt/format.h>
 
 #include "engine/flow/derivatives.h"
 #include "haptics/constraints/isosurface/level.h"
-#include "haptics/constraints/rules/read_field.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 namespace catena::haptics {
 namespace {

@@ -4,8 +4,8 @@
 #include <pthread.h>
 #include <sched.h>
 
-#include "engine/base/assert.h"
-#include "engine/base/start_thread.h"
+#include "engine/base/result.h"
+#include "engine/base/threads.h"
 
 namespace catena::haptics::usb {
 namespace {

@@ -13,12 +13,14 @@
 #pragma once
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "engine/base/clock.h"
 #include "engine/exchange/triple_buffer.h"
 #include "haptics/device/device.h"
+#include "haptics/device/registry.h"
 #include "haptics/device/usb/falcon_boot.h"
 #include "haptics/device/usb/falcon_session.h"
 #include "haptics/device/usb/watchdog_process.h"
@@ -124,5 +126,16 @@ class Falcon final : public Device {
   std::int64_t pushes_since_ns_ = 0;  ///< the last write, if it was a force; 0: it was none
   std::uint64_t seen_takeovers_ = 0;
 };
+
+/// The Falcon for the registry: which are on the bus, and how one is opened by its number. Off the tick.
+
+/// Those on the USB bus as "falcon", "falcon:1", ...; a "falcon" that is not present where there is none.
+void list_falcons(std::vector<DeviceInfo>& to);
+
+/// Tells the share of an upload, ten lines a try; for FalconBootOptions::progress.
+std::function<bool(int attempt, double share)> boot_progress_lines(std::function<void(const std::string&)> tell);
+
+/// `detail`: empty or "0" for the first one, "1" for the second.
+Result<std::unique_ptr<Device>> open_falcon(const std::string& detail, const DeviceSettings& settings);
 
 }  // namespace catena::haptics::usb

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "haptics/device/usb/transport.h"
+#include "haptics/device/usb/ftdi.h"
 
 struct libusb_context;
 struct libusb_device_handle;

@@ -1,10 +1,10 @@
-#include "haptics/device/usb/open_falcon.h"
+#include "haptics/device/usb/falcon.h"
 
 #include <fmt/format.h>
 
 #include "engine/base/helper_process.h"
 #include "engine/base/numbers.h"
-#include "haptics/device/usb/falcon_image.h"
+#include "haptics/device/usb/falcon_boot.h"
 #include "haptics/device/usb/libusb_transport.h"
 
 namespace catena::haptics::usb {

@@ -15,8 +15,8 @@
 #include <ctime>
 #include <new>
 
-#include "engine/base/assert.h"
 #include "engine/base/helper_process.h"
+#include "engine/base/result.h"
 #include "haptics/watchdog/watch.h"
 
 namespace catena::haptics::usb {

@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "haptics/device/usb/transport.h"
-#include "haptics/watchdog/page.h"
+#include "haptics/device/usb/ftdi.h"
+#include "haptics/watchdog/watch.h"
 
 namespace catena::haptics::usb {
 

@@ -4,13 +4,70 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
 #include "engine/base/hash.h"
 
 namespace catena::haptics::log {
+
+namespace {
+
+class File final : public Source {
+ public:
+  File(int descriptor, std::uint64_t size) : descriptor_(descriptor), size_(size) {}
+  ~File() override { ::close(descriptor_); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  std::uint64_t size() const override { return size_; }
+  bool read(std::uint64_t offset, void* to, std::size_t bytes) override {
+    auto* at = static_cast<char*>(to);
+    while (bytes > 0) {
+      const ssize_t got = ::pread(descriptor_, at, bytes, static_cast<off_t>(offset));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) return false;
+      at += got;
+      offset += static_cast<std::uint64_t>(got);
+      bytes -= static_cast<std::size_t>(got);
+    }
+    return true;
+  }
+
+ private:
+  int descriptor_;
+  std::uint64_t size_;
+};
+
+class Memory final : public Source {
+ public:
+  explicit Memory(std::string_view bytes) : bytes_(bytes) {}
+  std::uint64_t size() const override { return bytes_.size(); }
+  bool read(std::uint64_t offset, void* to, std::size_t bytes) override {
+    if (offset > bytes_.size() || bytes > bytes_.size() - offset) return false;
+    std::memcpy(to, bytes_.data() + offset, bytes);
+    return true;
+  }
+
+ private:
+  std::string_view bytes_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Source>> open_file(const std::string& path) {
+  const auto cannot = [&](const char* why) { return Error{path + ": cannot read: " + why + "; a recording (.catlog) was expected"}; };
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return cannot(std::strerror(errno));
+  struct stat about {};
+  if (::fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode)) {
+    ::close(descriptor);
+    return cannot("it is no regular file");
+  }
+  return std::unique_ptr<Source>(std::make_unique<File>(descriptor, static_cast<std::uint64_t>(about.st_size)));
+}
+
+std::unique_ptr<Source> from_memory(std::string_view bytes) { return std::make_unique<Memory>(bytes); }
 
 namespace {
 
@@ -109,5 +166,56 @@ void BlockFile::discard() {
 }
 
 std::string BlockFile::error() const { return error_ == 0 ? std::string() : cannot_write(path_, error_); }
+
+namespace {
+
+constexpr std::uint64_t kHeadBytes = sizeof(BlockHead);
+constexpr std::size_t kWindow = std::size_t{64} << 10;
+
+bool is_head(const char* bytes, BlockHead& head) {
+  std::memcpy(&head, bytes, sizeof head);
+  return head.mark == BlockHead::kBlockMark && head.head_hash == hash_of(bytes, BlockHead::kHashed) && head.length <= kMaxPayload;
+}
+
+}  // namespace
+
+bool BlockReader::read_head(std::uint64_t at, BlockHead& head) {
+  char bytes[kHeadBytes];
+  return source_->read(at, bytes, kHeadBytes) && is_head(bytes, head);
+}
+
+// Moves on to the next place where a block's own 32 bytes are good.
+bool BlockReader::find_next_head() {
+  std::string window;
+  BlockHead head;
+  for (std::uint64_t from = at_ + 1; from + kHeadBytes <= source_->size();) {
+    window.resize(std::min<std::uint64_t>(kWindow, source_->size() - from));
+    if (!source_->read(from, window.data(), window.size())) return false;
+    const std::size_t places = window.size() - kHeadBytes + 1;
+    for (std::size_t k = 0; k < places; ++k) {
+      if (!is_head(window.data() + k, head)) continue;
+      at_ = from + k;
+      return true;
+    }
+    from += places;
+  }
+  return false;
+}
+
+BlockReader::Found BlockReader::next() {
+  const std::uint64_t size = source_->size();
+  if (at_ >= size) return Found::end;
+  if (size - at_ < kHeadBytes) return Found::cut_off;
+  if (!read_head(at_, head_)) {
+    if (find_next_head()) return Found::damaged;
+    return Found::cut_off;
+  }
+  if (head_.length > size - at_ - kHeadBytes) return Found::cut_off;
+  payload_.resize(head_.length);
+  const bool good =
+      source_->read(at_ + kHeadBytes, payload_.data(), payload_.size()) && hash_of(payload_.data(), payload_.size()) == head_.payload_hash;
+  at_ += kHeadBytes + head_.length;
+  return good ? Found::block : Found::damaged;
+}
 
 }  // namespace catena::haptics::log

@@ -1,6 +1,4 @@
-/// The writing end of a log: whole blocks, each with one write(2), straight into the file under its own name, so that what is
-/// written survives the death of the process at any moment. `sync` (fdatasync) makes it survive the machine's, too.
-/// The first failure is kept; after it nothing is written. One thread.
+/// Where a log's bytes come from: a file, or memory. Off the tick.
 #pragma once
 #include <memory>
 #include <string>
@@ -11,6 +9,20 @@
 
 namespace catena::haptics::log {
 
+class Source {
+ public:
+  virtual ~Source() = default;
+  virtual std::uint64_t size() const = 0;  ///< as it was when it was opened
+  /// False where the bytes cannot be read.
+  virtual bool read(std::uint64_t offset, void* to, std::size_t bytes) = 0;
+};
+
+Result<std::unique_ptr<Source>> open_file(const std::string& path);
+std::unique_ptr<Source> from_memory(std::string_view bytes);  ///< which outlive it
+
+/// The writing end of a log: whole blocks, each with one write(2), straight into the file under its own name, so that what is
+/// written survives the death of the process at any moment. `sync` (fdatasync) makes it survive the machine's, too.
+/// The first failure is kept; after it nothing is written. One thread.
 class BlockFile {
  public:
   /// Replaces what is there, unless another process is writing it. Writes the preamble.
@@ -34,6 +46,37 @@ class BlockFile {
   std::string path_, buffer_;
   int descriptor_ = -1, error_ = 0;
   std::uint64_t sequence_ = 0, bytes_ = 0;
+};
+
+/// The blocks of a log one after the other, damaged ones passed over (format.h). Every byte is looked at a bounded number of times, and
+/// no more memory is taken than a block has bytes in the file. Off the tick.
+class BlockReader {
+ public:
+  explicit BlockReader(std::unique_ptr<Source> source) : source_(std::move(source)) {}
+
+  enum class Found {
+    block,
+    damaged,  ///< one or more blocks are passed over
+    end,      ///< the file ends with the last block
+    cut_off   ///< what follows is no complete block
+  };
+  Found next();
+
+  // of the last block found
+  BlockType type() const { return static_cast<BlockType>(head_.type); }
+  std::uint64_t sequence() const { return head_.sequence; }
+  std::string_view payload() const { return payload_; }
+
+  Source& source() { return *source_; }
+
+ private:
+  bool read_head(std::uint64_t at, BlockHead& head);
+  bool find_next_head();
+
+  std::unique_ptr<Source> source_;
+  std::uint64_t at_ = kPreambleBytes;
+  BlockHead head_;
+  std::string payload_;
 };
 
 }  // namespace catena::haptics::log

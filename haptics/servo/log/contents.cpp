@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "engine/base/hash.h"
-#include "haptics/servo/log/bytes.h"
+#include "haptics/servo/log/format.h"
 
 namespace catena::haptics::log {
 

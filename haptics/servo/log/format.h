@@ -1,3 +1,70 @@
+/// How a recording is laid out, and the bytes of its payloads.
+///
+/// Payloads as bytes: numbers and strings appended, and read back with every length checked against what is there.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace catena::haptics::log {
+
+class ByteWriter {
+ public:
+  template <class T>
+  void put(const T& value) {
+    static_assert(std::is_arithmetic_v<T>);
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + sizeof value);
+    std::memcpy(bytes_.data() + at, &value, sizeof value);
+  }
+  void put_string(std::string_view text) {
+    put(static_cast<std::uint32_t>(text.size()));
+    bytes_.append(text);
+  }
+  void put_bytes(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+  std::string& bytes() { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+/// After the first read past the end everything reads as zero and `good` is false.
+class ByteReader {
+ public:
+  explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
+  template <class T>
+  T get() {
+    static_assert(std::is_arithmetic_v<T>);
+    T value{};
+    if (const char* from = take(sizeof value)) std::memcpy(&value, from, sizeof value);
+    return value;
+  }
+  std::string get_string() {
+    const auto size = get<std::uint32_t>();
+    const char* from = take(size);
+    return from != nullptr ? std::string(from, size) : std::string();
+  }
+  /// nullptr where fewer are left.
+  const char* take(std::size_t size) {
+    if (!good_ || size > bytes_.size() - at_) {
+      good_ = false;
+      return nullptr;
+    }
+    const char* from = bytes_.data() + at_;
+    at_ += size;
+    return from;
+  }
+  bool good() const { return good_; }
+  bool finished() const { return good_ && at_ == bytes_.size(); }  ///< all read, nothing left
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+  bool good_ = true;
+};
+
 /// The recording's format, version 2. A reader needs this header alone.
 ///
 /// All numbers are in the byte order of the machine that wrote them (the mark says which); doubles are IEEE 754 bytes, exact.
@@ -16,7 +83,7 @@
 /// u8 known (0: nobody told the writer what follows; the rest is empty),
 ///            u8 text (0: the header's scene text, 1: its own), string scene text,
 ///            limits: f64 stiffness N/m, rotational stiffness N m/rad, force N, torque N m, slew N/s, ramp in s, ramp out s,
-///                    damping N s/m, delay s, most added damping N s/m; i32 late ticks; u8 passivity   (haptics/chain/limits.h;
+///                    damping N s/m, delay s, most added damping N s/m; i32 late ticks; u8 passivity   (haptics/chain/constraint.h;
 ///                    infinity: none)
 ///            coupling: f64 stiffness N/m, damping N s/m, max force N, ramp s, rotational stiffness N m/rad, rotational damping
 ///                    N m s/rad; u8 combination                                   (haptics/chain/program.h)
@@ -37,11 +104,6 @@
 ///
 /// A file cut at any byte holds every block that is complete. A block whose hashes do not fit is damaged: where its own 32 bytes
 /// are good its length is, too; else the next block is found by its mark.
-#pragma once
-#include <cstdint>
-
-namespace catena::haptics::log {
-
 inline constexpr unsigned char kMagic[8] = {0x89, 'C', 'A', 'T', 'L', 'O', 'G', '\n'};
 inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;

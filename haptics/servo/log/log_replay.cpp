@@ -4,7 +4,7 @@
 
 #include "engine/base/clock.h"
 #include "haptics/chain/check_state.h"
-#include "haptics/chain/rebind.h"
+#include "haptics/chain/tick.h"
 
 namespace catena::haptics::log {
 

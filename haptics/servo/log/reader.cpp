@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "haptics/servo/log/bytes.h"
+#include "haptics/servo/log/format.h"
 
 namespace catena::haptics::log {
 

@@ -4,7 +4,7 @@
 #pragma once
 #include <array>
 
-#include "haptics/servo/log/block_reader.h"
+#include "haptics/servo/log/block_file.h"
 #include "haptics/servo/log/contents.h"
 #include "haptics/servo/log/record.h"
 

@@ -12,7 +12,7 @@
 /// and for every widget, behind the links, 12 words:
 ///   0-2    points[0]      3-5  points[1]       6-9   orientation w x y z                  10  value
 ///   11     bytes: u32 revision, u8 mode, i8 handle, u8 held, u8 0
-/// Names and units: engine/exchange/haptic_state.h, widget_report.h, haptics/chain/tick.h. Timings are single precision; all else is exact.
+/// Names and units: engine/exchange/haptic_state.h, haptics/chain/tick.h. Timings are single precision; all else is exact.
 /// `pack` runs on the haptic thread: no allocation, lock or throw.
 #pragma once
 #include <array>

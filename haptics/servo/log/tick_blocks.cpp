@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "engine/base/assert.h"
-#include "haptics/servo/log/bytes.h"
+#include "engine/base/result.h"
+#include "haptics/servo/log/format.h"
 
 namespace catena::haptics::log {
 

@@ -15,9 +15,8 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
-#include "engine/base/start_thread.h"
 #include "engine/base/tell.h"
-#include "haptics/servo/log/ring.h"
+#include "engine/base/threads.h"
 #include "haptics/servo/log/tick_blocks.h"
 
 namespace catena::haptics::log {

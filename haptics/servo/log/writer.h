@@ -11,7 +11,7 @@
 
 #include "engine/base/result.h"
 #include "haptics/servo/log/contents.h"
-#include "haptics/servo/tick_sink.h"
+#include "haptics/servo/servo.h"
 
 namespace catena::haptics::log {
 

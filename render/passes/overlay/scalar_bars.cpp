@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "render/passes/overlay/canvas.h"
 
 namespace catena::render {

@@ -1,4 +1,4 @@
-#include "engine/app/viewer/edit/add_file.h"
+#include "engine/app/viewer/edit/new_items.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // What the chain and widget panels write into the scene's text.
 #include "engine/app/viewer/edit/chain_edit.h"
-#include "engine/scene/link_feature.h"
+#include "engine/scene/ruler.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "engine/app/viewer/edit/new_widget.h"
+#include "engine/app/viewer/edit/new_items.h"
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/shell/scene_host.h"
 #include "engine/base/json_edit.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/app/hand/hand_setup.h"
+#include "engine/app/hand/open_hand.h"
 #include "engine/app/viewer/shell/commands.h"
 #include "engine/base/eye_limits.h"
 

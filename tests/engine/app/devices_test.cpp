@@ -5,7 +5,7 @@
 
 #include "engine/app/device_check.h"
 #include "engine/base/json.h"
-#include "haptics/device/null_device.h"
+#include "haptics/device/device.h"
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/emulator/boot_image.h"
 #include "tests/support/program.h"

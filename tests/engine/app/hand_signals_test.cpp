@@ -7,10 +7,9 @@
 #include <system_error>
 #include <thread>
 
-#include "engine/app/hand/crash_guard.h"
-#include "engine/app/hand/interrupt.h"
+#include "engine/app/hand/signals.h"
 #include "engine/app/process_limits.h"
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 #include "haptics/device/device.h"
 
 namespace hand_signals_test {

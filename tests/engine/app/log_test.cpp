@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "engine/app/log_scene.h"
+#include "engine/app/replay_log.h"
 #include "haptics/extract/extract.h"
 #include "tests/fuzz/log_bytes.h"
 #include "tests/support/log_rig.h"

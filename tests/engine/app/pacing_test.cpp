@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/app/viewer/shell/pulse_clock.h"
-
 namespace catena::app {
 namespace pacing_test {
 

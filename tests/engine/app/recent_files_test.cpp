@@ -1,4 +1,4 @@
-#include "engine/app/viewer/shell/recent_files.h"
+#include "engine/app/viewer/shell/file_list.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

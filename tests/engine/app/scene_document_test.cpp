@@ -8,7 +8,7 @@
 #include <set>
 
 #include "engine/app/scene_schema.h"
-#include "engine/schema/markdown.h"
+#include "engine/schema/documents.h"
 #include "tests/support/support.h"
 
 namespace scene_document_test {

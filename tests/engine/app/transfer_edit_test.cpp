@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/app/viewer/edit/pointers.h"
+#include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/edit/transfer_edit.h"
 #include "engine/base/json_edit.h"
 #include "engine/scene/scene.h"

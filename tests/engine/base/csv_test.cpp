@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "engine/base/csv_paths.h"
 #include "engine/base/memory_limit.h"
 #include "tests/support/support.h"
 

@@ -1,4 +1,4 @@
-#include "engine/base/output_check.h"
+#include "engine/base/output_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "engine/base/rotation.h"
+#include "engine/base/vec.h"
 
 #include <gtest/gtest.h>
 

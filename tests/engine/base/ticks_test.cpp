@@ -1,12 +1,10 @@
-#include "engine/base/ticks.h"
+#include "engine/base/numbers.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
-
-#include "engine/base/numbers.h"
 
 namespace catena {
 namespace ticks_test {

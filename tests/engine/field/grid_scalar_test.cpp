@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "engine/field/analytic.h"
 #include "tests/engine/field/field_helpers.h"
 

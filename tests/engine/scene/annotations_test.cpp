@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/scene/prepare.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/systems.h"
 
 namespace catena::scene {
 namespace annotations_test {

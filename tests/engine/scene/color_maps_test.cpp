@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "engine/scene/color_spaces.h"
-
 namespace catena::scene {
 namespace color_maps_test {
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/load.h"
+#include "engine/scene/prepare.h"
 #include "engine/scene/scene.h"
-#include "engine/scene/systems.h"
 #include "engine/scene/transfer.h"
 #include "tests/support/support.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/scene/lines.h"
-#include "engine/scene/systems.h"
+#include "engine/scene/prepare.h"
 
 namespace catena::scene {
 namespace widgets_test {

@@ -10,8 +10,6 @@
 
 #include "engine/base/helper_process.h"
 #include "engine/field/load.h"
-#include "engine/field/nano_check.h"
-#include "engine/field/nano_erode.h"
 #include "engine/field/nano_nodes.h"
 #include "engine/field/nano_stats.h"
 #include "engine/field/vdb_reader.h"

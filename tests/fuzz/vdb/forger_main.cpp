@@ -11,7 +11,7 @@
 #include <iterator>
 #include <string>
 
-#include "engine/vdb/answer_file.h"
+#include "engine/vdb/open_file.h"
 
 namespace {
 constexpr int kAnswer = 3;

@@ -6,9 +6,9 @@
 #include <cstring>
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
-#include "haptics/chain/rebind.h"
+#include "engine/base/memory_limit.h"
 #include "haptics/chain/state_hash.h"
+#include "haptics/chain/tick.h"
 #include "tests/support/axis_link.h"
 #include "tests/support/simple_links.h"
 

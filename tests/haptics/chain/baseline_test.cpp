@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "haptics/chain/tick.h"
 #include "tests/haptics/constraints/rig.h"

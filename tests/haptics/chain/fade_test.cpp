@@ -1,9 +1,9 @@
-#include "haptics/chain/fade.h"
+#include "haptics/chain/switching.h"
 
 #include <functional>
 #include <random>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "tests/haptics/chain/order_links.h"
 
 namespace catena::haptics {

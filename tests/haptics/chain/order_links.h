@@ -2,7 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "haptics/chain/rebind.h"
+#include "haptics/chain/tick.h"
 
 namespace catena::test {
 

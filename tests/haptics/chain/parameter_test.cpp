@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "engine/field/analytic.h"
 #include "engine/field/grid.h"
 #include "haptics/chain/tick.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptics/chain/rebind.h"
+#include "haptics/chain/tick.h"
 #include "tests/support/simple_links.h"
 
 namespace passivity_test {

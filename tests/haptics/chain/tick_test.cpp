@@ -5,8 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
-#include "haptics/chain/rebind.h"
+#include "engine/base/memory_limit.h"
 #include "haptics/chain/state_hash.h"
 #include "tests/support/simple_links.h"
 

@@ -1,7 +1,7 @@
 // No switch, reorder or change of shape makes a force jump; what a tick costs in memory; that it repeats; hostile input.
 #include <random>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "haptics/chain/state_hash.h"
 #include "tests/haptics/chain/order_links.h"
 #include "tests/haptics/chain/widget_hand.h"

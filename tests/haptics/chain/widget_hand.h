@@ -2,7 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
-#include "haptics/chain/rebind.h"
+#include "haptics/chain/tick.h"
 #include "haptics/constraints/widget_link.h"
 
 namespace catena::test {

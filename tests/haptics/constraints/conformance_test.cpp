@@ -1,6 +1,6 @@
 // What every constraint must keep, whatever it is: finite output, rest when the probe rests, bounded fetches, no allocation,
 // the same bits for the same input. A type of the registry without examples here fails.
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "tests/haptics/constraints/examples.h"
 
 namespace catena::haptics::tests {

@@ -1,4 +1,4 @@
-#include "haptics/constraints/rules/read_parameter.h"
+#include "haptics/constraints/rules/link_keys.h"
 
 #include "tests/haptics/constraints/rig.h"
 

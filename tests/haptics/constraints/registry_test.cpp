@@ -1,6 +1,6 @@
 #include <set>
 
-#include "engine/schema/json_schema.h"
+#include "engine/schema/documents.h"
 #include "haptics/constraints/presets/modes.h"
 #include "tests/haptics/constraints/rig.h"
 

@@ -1,6 +1,6 @@
 #include "haptics/constraints/rules/snap.h"
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "haptics/constraints/streamline/selected.h"
 #include "tests/haptics/constraints/rig.h"
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "tests/engine/flow/advect.h"
 #include "tests/haptics/constraints/streamline_fixture.h"
 

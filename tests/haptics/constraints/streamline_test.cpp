@@ -3,7 +3,7 @@
 #include <cstring>
 #include <random>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "haptics/constraints/streamline/selected.h"
 #include "tests/haptics/constraints/streamline_fixture.h"
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "tests/haptics/constraints/friction_fixture.h"
 
 namespace catena::haptics::tests {

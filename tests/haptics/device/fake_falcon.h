@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "haptics/device/usb/falcon_codec.h"
-#include "haptics/device/usb/transport.h"
+#include "haptics/device/usb/ftdi.h"
 
 namespace catena::haptics::usb::test {
 

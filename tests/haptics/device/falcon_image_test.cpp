@@ -1,4 +1,4 @@
-#include "haptics/device/usb/falcon_image.h"
+#include "haptics/device/usb/falcon_boot.h"
 
 #include <gtest/gtest.h>
 

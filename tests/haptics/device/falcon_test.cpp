@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/fake_falcon.h"
 

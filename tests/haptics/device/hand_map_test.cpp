@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "engine/base/allocation_guard.h"
+#include "engine/base/memory_limit.h"
 #include "haptics/device/registry.h"
 #include "tests/haptics/device/scripted_device.h"
 

@@ -6,7 +6,6 @@
 
 #include "haptics/device/mechanism.h"
 #include "haptics/device/registry.h"
-#include "haptics/device/safe_stiffness.h"
 #include "tests/support/support.h"
 
 namespace simulated_hand_test {

@@ -1,10 +1,10 @@
 /// The simulated 6-DOF device in a closed loop with the rotational chain.
-#include "haptics/device/simulated_tool.h"
+#include "haptics/device/simulated_hand.h"
 
 #include <gtest/gtest.h>
 
-#include "haptics/device/null_device.h"
-#include "haptics/device/safe_stiffness.h"
+#include "haptics/device/device.h"
+#include "haptics/device/mechanism.h"
 #include "haptics/servo/servo.h"
 #include "tests/support/axis_link.h"
 

@@ -1,10 +1,9 @@
-#include "haptics/extract/widgets.h"
+#include "haptics/extract/extract.h"
 
 #include <gtest/gtest.h>
 
 #include "engine/scene/widgets.h"
 #include "haptics/chain/tick.h"
-#include "haptics/extract/extract.h"
 #include "tests/support/support.h"
 
 namespace catena::haptics {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "haptics/device/safe_stiffness.h"
+#include "haptics/device/mechanism.h"
 #include "tests/support/closed_loop.h"
 #include "tests/support/simple_links.h"
 

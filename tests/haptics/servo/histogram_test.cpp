@@ -1,4 +1,4 @@
-#include "haptics/servo/histogram.h"
+#include "haptics/servo/report.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "engine/base/quantile.h"
+#include "engine/base/numbers.h"
 
 namespace catena::haptics {
 namespace histogram_test {

@@ -5,8 +5,8 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "engine/base/allocation_guard.h"
-#include "haptics/servo/log/ring.h"
+#include "engine/base/memory_limit.h"
+#include "haptics/servo/log/tick_blocks.h"
 #include "tests/haptics/servo/log_fixture.h"
 
 namespace log_writer_test {

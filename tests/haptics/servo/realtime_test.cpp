@@ -15,7 +15,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "haptics/device/null_device.h"
+#include "haptics/device/device.h"
 #include "haptics/servo/servo.h"
 #include "tests/support/child_test.h"
 

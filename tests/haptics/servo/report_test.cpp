@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "engine/base/json.h"
-#include "haptics/device/null_device.h"
+#include "haptics/device/device.h"
 #include "haptics/servo/servo.h"
 
 namespace catena::haptics {

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "render/compile/shader_watch.h"
-#include "render/passes/embedded_shaders.h"
+#include "render/passes/pass.h"
 #include "tests/render/support/frames.h"
 #include "tests/support/support.h"
 

@@ -1,4 +1,4 @@
-#include "render/frame/camera_moves.h"
+#include "render/frame/camera.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "engine/scene/systems.h"
-#include "render/extract/bar_ticks.h"
+#include "engine/scene/prepare.h"
 #include "render/extract/extract.h"
+#include "render/extract/extract_parts.h"
 
 namespace catena::render {
 namespace extract_overlay_test {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "render/extract/extract.h"
-#include "render/extract/extract_widgets.h"
-#include "render/extract/plane_outline.h"
+#include "render/extract/extract_parts.h"
+#include "render/extract/widget_shapes.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {

@@ -1,7 +1,7 @@
 /// What follows a widget, in the packet: wherever the hand carries it, the frame goes on.
 #include <gtest/gtest.h>
 
-#include "engine/scene/systems.h"
+#include "engine/scene/prepare.h"
 #include "engine/scene/widgets.h"
 #include "render/extract/extract.h"
 

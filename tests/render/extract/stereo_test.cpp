@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "render/extract/extract_stereo.h"
+#include "render/extract/extract_parts.h"
 #include "render/frame/camera.h"
 
 namespace catena::render {

@@ -5,7 +5,7 @@
 #include "engine/field/grid.h"
 #include "engine/field/magnitude.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_surfaces.h"
+#include "render/extract/extract_parts.h"
 #include "tests/support/support.h"
 
 namespace catena::render {

@@ -1,4 +1,4 @@
-#include "render/mirror/half.h"
+#include "render/mirror/packed_volume.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 
 #include "render/frame/camera.h"
 #include "render/stereo/eyes.h"
-#include "render/stereo/projections.h"
 #include "tests/render/support/frames.h"
 
 namespace catena::test {

@@ -1,10 +1,9 @@
 /// Kooima's projection and a headset's tangents against their printed formulae and against where points must land.
-#include "render/stereo/projections.h"
+#include "render/stereo/eyes.h"
 
 #include <gtest/gtest.h>
 
 #include "render/frame/camera.h"
-#include "render/stereo/eyes.h"
 
 namespace catena::render {
 namespace projections_test {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::test {
 

@@ -7,7 +7,7 @@
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/link_feature.h"
+#include "engine/scene/ruler.h"
 #include "engine/scene/write_values.h"
 #include "haptics/constraints/presets/modes.h"
 

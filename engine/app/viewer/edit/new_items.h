@@ -2,9 +2,12 @@
 /// thread.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/scene/document.h"
 #include "engine/scene/scene.h"
+#include "render/frame/camera.h"
 
 namespace catena::app {
 
@@ -22,5 +25,26 @@ bool can_show(const field::AnyField& field, ShowAs as);
 /// field as it is drawn.
 std::string new_item(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
                      const std::vector<float>& sorted);
+
+/// These functions make a widget to begin with, as JSON text for "/widgets/-": it stands in the middle of all that is there and has a
+/// quarter of its size. Frame thread.
+
+/// "cutting_plane", "seed", ...
+std::vector<std::string> widget_types();
+/// An error where the scene has no field that an isolevel could stand on.
+Result<std::string> new_widget(const scene::Scene& scene, const std::string& type, const Bounds& bounds);
+
+/// This file makes a data file join an open scene: what the file's own scene would hold (a field and a volume or lines, or a mesh) becomes
+/// edits of the open one's text. Pure, any thread.
+struct AddedFile {
+  std::vector<scene::Document::Edit> edits;
+  /// Names in the file's own scene, and in the open one, where they differ if they were taken.
+  std::vector<std::pair<std::string, std::string>> names;
+};
+
+/// `added_path` is where the text of `added` stands: its relative names start there; they are stated relative to the open scene's folder
+/// if they lie within, else absolute.
+Result<AddedFile> edits_to_add(const std::string& open_text, const std::string& open_path, const std::string& added_text,
+                               const std::string& added_path);
 
 }  // namespace catena::app

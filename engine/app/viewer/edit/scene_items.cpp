@@ -1,16 +1,25 @@
 #include "engine/app/viewer/edit/scene_items.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/app/viewer/edit/chain_edit.h"
-#include "engine/app/viewer/edit/pointers.h"
 #include "engine/base/json_edit.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/link_feature.h"
+#include "engine/scene/ruler.h"
+#include "engine/scene/widgets.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {
+
+std::string pointer_of(const json::Node& item) {
+  const std::size_t open = item.label.find('[');
+  if (item.line <= 0 || open == std::string::npos || open == 0 || !item.label.ends_with(']')) return {};
+  const std::string index = item.label.substr(open + 1, item.label.size() - open - 2);
+  if (index.empty() || !std::all_of(index.begin(), index.end(), [](char c) { return c >= '0' && c <= '9'; })) return {};
+  return "/" + item.label.substr(0, open) + "/" + index;
+}
 
 std::string name_of(const scene::Scene& scene, scene::Entity entity) {
   return scene.world.has<scene::Name>(entity) ? scene.world.get<scene::Name>(entity).value : std::string();
@@ -72,6 +81,32 @@ std::string drawn_field(const scene::Scene& scene) {
     if (field.empty() && !scene::is_hidden(scene.world, e)) field = name_of(scene, surface.field);
   });
   return field;
+}
+
+namespace {
+
+bool is_held(exchange::WidgetMode mode) {
+  using Mode = exchange::WidgetMode;
+  return mode == Mode::translate || mode == Mode::turn || mode == Mode::drag;
+}
+
+}  // namespace
+
+std::vector<WidgetEdits::Ended> WidgetEdits::take(const scene::Scene& scene) {
+  std::vector<Ended> ended;
+  std::map<std::string, bool> held;
+  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+    const std::string& place = widget.where.label;
+    held[place] = is_held(widget.state.mode);
+    const auto before = held_.find(place);
+    if (before == held_.end() || !before->second || held[place]) return;
+    Ended end{"move " + scene.world.get<scene::Name>(e).value, {}};
+    for (auto& [key, value] : scene::pose_members(widget.spec.kind, widget.state.pose))
+      end.edits.push_back({pointer_of(widget.where) + "/" + key, std::move(value)});
+    ended.push_back(std::move(end));
+  });
+  held_ = std::move(held);
+  return ended;
 }
 
 }  // namespace catena::app

@@ -1,12 +1,21 @@
-/// Items of the scene by their components, for panels: where they stand in the text, what belongs together. Pure, frame thread.
+/// These functions say where things stand in the scene's text (RFC 6901), and what their text is. Pure, any thread.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.h"
+#include "engine/scene/document.h"
 #include "engine/scene/scene.h"
 
 namespace catena::app {
 
+using TextEdits = std::vector<scene::Document::Edit>;
+
+/// "/volumes/2" for the item that was read from there (its label is "volumes[2]"); empty where it is no item of a list.
+std::string pointer_of(const json::Node& item);
+
+/// Items of the scene by their components, for panels: where they stand in the text, what belongs together. Pure, frame thread.
 std::string name_of(const scene::Scene& scene, scene::Entity entity);
 std::vector<std::string> field_names(const scene::Scene& scene);
 
@@ -23,5 +32,19 @@ std::string drawn_level(const scene::Scene& scene, const std::string& field, dou
 std::string felt_level(const scene::Scene& scene, const std::string& field);
 /// The field of the first surface that is drawn; empty: none is.
 std::string drawn_field(const scene::Scene& scene);
+
+/// When the hand lets go of a widget, where it stands becomes an edit of the scene's text: one step of undo. Frame thread.
+class WidgetEdits {
+ public:
+  struct Ended {
+    std::string what;  ///< "move cut"
+    std::vector<scene::Document::Edit> edits;
+  };
+  /// What ended since the last call.
+  std::vector<Ended> take(const scene::Scene& scene);
+
+ private:
+  std::map<std::string, bool> held_;  ///< by the widget's place in the text
+};
 
 }  // namespace catena::app

@@ -1,13 +1,53 @@
+/// These functions do what a hand does to the points of a transfer function: find, add, move, remove. Values rise strictly after every
+/// step, whatever is asked: a point stays between its neighbours, the outermost within the plot. Pure, any thread.
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "engine/app/viewer/edit/field_values.h"
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/scene/components.h"
+
+namespace catena::app {
+
+using OpacityPoints = std::vector<scene::TransferFunction::OpacityPoint>;
+using ColorPoints = std::vector<scene::TransferFunction::ColorPoint>;
+
+inline constexpr double kMaxAlpha = 0.9999;  ///< alpha < 1: a wall would have no sigma
+
+/// The nearest handle within `reach` pixels; of those at one place the last.
+std::optional<std::size_t> point_at(const OpacityPoints& points, const PlotFrame& frame, double x, double y, double reach);
+/// Colours by x alone.
+std::optional<std::size_t> point_at(const ColorPoints& points, const PlotFrame& frame, double x, double reach);
+
+/// The index of the new point; none where there is no room between its neighbours, or the value is no number.
+std::optional<std::size_t> add_point(OpacityPoints& points, const PlotFrame& frame, double value, double alpha);
+/// It has the colour that was shown there.
+std::optional<std::size_t> add_point(ColorPoints& points, const PlotFrame& frame, double value);
+
+/// As near to the place as the neighbours allow. A point beyond the plot stays beyond it until it is moved.
+void move_point(OpacityPoints& points, const PlotFrame& frame, std::size_t index, double value, double alpha);
+void move_point(ColorPoints& points, const PlotFrame& frame, std::size_t index, double value);
+
+/// False: the last one stays.
+bool remove_point(OpacityPoints& points, std::size_t index);
+bool remove_point(ColorPoints& points, std::size_t index);
+
+/// What is drawn at a value: sigma linear between the points, constant beyond them. Of no points 0, or grey.
+double alpha_at(const OpacityPoints& points, double value);
+Color color_at(const ColorPoints& points, double value);
+
+/// Lays the points anew, from where they reach to lo..hi. False (and nothing is changed) where they would fall together.
+bool lay_over(ColorPoints& colors, OpacityPoints& opacities, double lo, double hi);
+/// From the least to the greatest value of both; none of no points.
+std::optional<std::array<double, 2>> reach_of(const ColorPoints& colors, const OpacityPoints& opacities);
+
 /// This file leads from a volume as it is drawn to one whose transfer function stands in the scene as points and looks the same, and has
 /// the edits of the scene's text that make it what the hand wants. Where the points came from a file, extinctions or the histogram, the
 /// first edit states them all.
 ///   alpha = 1 - exp(-sigma u), u the opacity unit; a volume without opacities gets that at which the thickest point has alpha 0.6
 /// Pure, any thread.
-#pragma once
-#include "engine/app/viewer/edit/pointers.h"
-#include "engine/app/viewer/edit/transfer_points.h"
-
-namespace catena::app {
 
 /// What the editor holds of a volume while it edits.
 struct TransferEdit {

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "engine/app/hand/hand_setup.h"
+#include "engine/app/hand/open_hand.h"
 #include "engine/app/viewer/panels/edit_items.h"
 #include "engine/app/viewer/panels/panel.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/app/viewer/edit/plot_frame.h"
+#include "engine/app/viewer/edit/field_values.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::app {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/viewer/edit/pointers.h"
+#include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/edit/transfer_edit.h"
 #include "engine/app/viewer/panels/edit_items.h"
 #include "engine/app/viewer/panels/panel.h"

@@ -1,18 +1,16 @@
-/// A panel is one part of the side window, one file in panels/: it shows what is there, notes edits of the scene (context.edits, see
-/// edit/edits.h), and asks for what else the window can do (context.commands, see shell/commands.h). Nothing here waits for anything.
-/// To add one: a file with a function that returns its Panel, and that function's name in the list of panels.cpp. Frame thread, between
-/// Gui::begin and end.
+/// LookState is what the panels of the scene's look remember from frame to frame. Frame thread.
 #pragma once
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/app/viewer/edit/edits.h"
-#include "engine/app/viewer/panels/look_state.h"
+#include "engine/app/viewer/edit/field_values.h"
+#include "engine/app/viewer/edit/transfer_edit.h"
 #include "engine/app/viewer/shell/controls.h"
 #include "engine/app/viewer/shell/draft.h"
-#include "engine/app/viewer/shell/frame_times.h"
 #include "engine/app/viewer/shell/hand_host.h"
 #include "engine/app/viewer/shell/layout.h"
 #include "engine/app/viewer/shell/pacing.h"
@@ -21,6 +19,30 @@
 #include "engine/app/viewer/shell/values.h"
 
 namespace catena::app {
+
+struct LookState {
+  FieldValues values;
+  int press = 0;  ///< counts presses of the pointer: names drags
+
+  /// A drag in a plot: where the handle would be, by the pointer alone.
+  double at_x = 0, at_y = 0;
+
+  /// The transfer function being edited.
+  struct Transfer {
+    std::string volume;                         ///< its pointer
+    std::optional<std::size_t> opacity, color;  ///< selected points
+    std::optional<TransferEdit> before;         ///< as it was when the drag began
+    std::optional<PlotFrame> frame;             ///< stands still while something is dragged
+    bool whole_range = false;
+  } transfer;
+
+  std::map<std::string, std::string> switched_off;  ///< pointer to the text that stood there
+};
+
+/// A panel is one part of the side window, one file in panels/: it shows what is there, notes edits of the scene (context.edits, see
+/// edit/edits.h), and asks for what else the window can do (context.commands, see shell/commands.h). Nothing here waits for anything.
+/// To add one: a file with a function that returns its Panel, and that function's name in the list of panels.cpp. Frame thread, between
+/// Gui::begin and end.
 
 /// One line for the person, at the bottom of the window for a while.
 struct Message {

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "engine/app/viewer/edit/new_widget.h"
+#include "engine/app/viewer/edit/new_items.h"
 #include "engine/app/viewer/panels/edit_items.h"
 #include "engine/app/viewer/panels/panel.h"
 #include "engine/scene/widgets.h"

@@ -1,15 +1,15 @@
 /// A Command is anything that a person can ask of the window. A key, a menu entry, a button of a panel and a dropped file push a Command
 /// into one queue; Session::carry_out applies it, in order, after every stroke and every frame of the interface. What needs no more than
 /// its name is an Action, described once in the table of commands.cpp: its menu entry, its keys and its line in the list of keys come from
-/// there. To add one: a name below, a row of the table, a case in session_commands.cpp. Frame thread.
+/// there. To add one: a name below, a row of the table, a case in session_input.cpp. Frame thread.
 #pragma once
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "engine/app/render/quality_words.h"
-#include "engine/app/viewer/edit/pointers.h"
+#include "engine/app/render/options.h"
+#include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/shell/keys.h"
 
 namespace catena::app {

@@ -7,7 +7,7 @@
 #include "engine/app/viewer/shell/camera_paths.h"
 #include "engine/app/viewer/shell/commands.h"
 #include "engine/base/eye_limits.h"
-#include "render/frame/camera_moves.h"
+#include "render/frame/camera.h"
 
 namespace catena::app {
 

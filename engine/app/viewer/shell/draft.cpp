@@ -14,7 +14,7 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/base/part_file.h"
+#include "engine/base/output_file.h"
 #include "engine/base/text.h"
 
 namespace catena::app {

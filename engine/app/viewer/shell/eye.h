@@ -1,7 +1,7 @@
 /// Eye moves the view as commands, held keys and the turntable say, and the scene's camera with it. Frame thread.
 #pragma once
 #include "engine/app/viewer/shell/camera_paths.h"
-#include "engine/app/viewer/shell/scene_loader.h"
+#include "engine/app/viewer/shell/scene_host.h"
 #include "engine/app/viewer/shell/shared.h"
 
 namespace catena::app {

@@ -7,7 +7,7 @@
 
 #include "engine/app/viewer/shell/window.h"
 #include "engine/base/result.h"
-#include "render/frame/ui_items.h"
+#include "render/frame/overlay_items.h"
 
 namespace catena::app {
 

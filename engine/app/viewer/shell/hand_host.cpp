@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "engine/app/hand/hand_setup.h"
+#include "engine/app/hand/open_hand.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
-#include "engine/scene/systems.h"
+#include "engine/scene/prepare.h"
 #include "haptics/extract/extract.h"
 
 namespace catena::app {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/app/hand/crash_guard.h"
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/hand/recording.h"
+#include "engine/app/hand/signals.h"
 #include "haptics/device/mouse.h"
 #include "haptics/device/registry.h"
 

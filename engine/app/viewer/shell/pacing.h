@@ -5,11 +5,15 @@
 ///   still:  time=MS: quarter -> half -> every pixel; error=E: the same until a picture's estimated error is at most E;
 ///           draft, balanced, reference, step=VOXELS: that setting at once
 #pragma once
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 
-#include "engine/app/render/quality_words.h"
+#include "engine/app/render/options.h"
+#include "haptics/servo/report.h"
 #include "render/quality/refinement.h"
 
 namespace catena::app {
@@ -73,6 +77,58 @@ class Pacing {
   bool finished_ = false;
   double shown_ms_ = 0;
   std::optional<double> rmse_;
+};
+
+/// FrameTimes records how long pictures took, for the panel and for --frame-stats; its size is fixed however long the session is.
+class FrameTimes {
+ public:
+  static constexpr std::size_t kRecent = 240;
+
+  /// A picture was drawn in `ms` and stood in the window at `now_ns`.
+  void add(double ms, std::int64_t now_ns);
+  /// One more user interface was laid over a picture, in `ms`.
+  void add_interface(double ms) { interface_.add(static_cast<std::int64_t>(1e6 * ms)); }
+
+  int count() const { return count_; }
+  haptics::HistogramFigures draw() const { return draw_.figures(); }
+  haptics::HistogramFigures period() const { return period_.figures(); }  ///< from picture to picture, pauses of a second left out
+  haptics::HistogramFigures interface() const { return interface_.figures(); }
+  /// The newest kRecent pictures, milliseconds, as a ring that begins at `recent_first()`.
+  const std::array<float, kRecent>& recent() const { return recent_; }
+  std::size_t recent_first() const { return static_cast<std::size_t>(count_) % kRecent; }
+
+  /// {"frames", "draw_us", "period_us", "interface_us": {"p50", "p99", "p999", "max", "count", "bins"}}
+  std::string json() const;
+
+ private:
+  haptics::Histogram draw_, period_, interface_;
+  std::array<float, kRecent> recent_{};
+  int count_ = 0;
+  std::int64_t last_ns_ = 0;
+};
+
+/// PulseClock moves the scene's phase as time goes by: pulses run along streamlines while somebody looks. Pure logic: the time is told.
+class PulseClock {
+ public:
+  static constexpr double kTurnsPerS = 0.5;
+  static constexpr double kStepS = 0.04;  ///< no more than 25 new pictures a second for pulses alone
+
+  /// The phase (0 to 1) to draw now; nothing where it has not moved. While not `running` time does not count.
+  std::optional<double> advance(std::int64_t now_ns, bool running, double phase) {
+    const std::optional<std::int64_t> before = last_ns_;
+    if (!running || !before) {
+      last_ns_ = running ? std::optional(now_ns) : std::nullopt;
+      return std::nullopt;
+    }
+    const double s = 1e-9 * static_cast<double>(now_ns - *before);
+    if (s < kStepS) return std::nullopt;
+    last_ns_ = now_ns;
+    const double next = phase + kTurnsPerS * s;
+    return next - std::floor(next);
+  }
+
+ private:
+  std::optional<std::int64_t> last_ns_;  ///< of the last step; none: it stands
 };
 
 }  // namespace catena::app

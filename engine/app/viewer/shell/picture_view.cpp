@@ -10,7 +10,7 @@
 #include "engine/base/tell.h"
 #include "engine/scene/units.h"
 #include "render/extract/extract.h"
-#include "render/extract/extract_stereo.h"
+#include "render/extract/extract_parts.h"
 #include "render/image/picture.h"
 #include "render/quality/quality.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/app/run_files.h"
-#include "engine/app/viewer/edit/add_file.h"
+#include "engine/app/viewer/edit/new_items.h"
 #include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/scene/write_values.h"

@@ -6,9 +6,9 @@
 
 #include "engine/app/viewer/shell/draft.h"
 #include "engine/app/viewer/shell/eye.h"
+#include "engine/app/viewer/shell/file_list.h"
 #include "engine/app/viewer/shell/picture_view.h"
-#include "engine/app/viewer/shell/recent_files.h"
-#include "engine/app/viewer/shell/scene_loader.h"
+#include "engine/app/viewer/shell/scene_host.h"
 #include "engine/app/viewer/shell/shared.h"
 
 namespace catena::app {

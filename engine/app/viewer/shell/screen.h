@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/app/viewer/shell/window.h"
-#include "render/frame/ui_items.h"
+#include "render/frame/overlay_items.h"
 #include "render/passes/renderer.h"
 #include "render/vk/swapchain.h"
 

@@ -4,11 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "engine/app/hand/interrupt.h"
-#include "engine/app/viewer/edit/widget_edits.h"
+#include "engine/app/hand/signals.h"
+#include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/shell/eye.h"
+#include "engine/app/viewer/shell/pacing.h"
 #include "engine/app/viewer/shell/picture_view.h"
-#include "engine/app/viewer/shell/pulse_clock.h"
 #include "engine/app/viewer/shell/scene_files.h"
 #include "engine/app/viewer/shell/shared.h"
 
@@ -45,7 +45,7 @@ class Session {
   Input routed(Input input);
   Gui::Frame interface_frame();
 
-  // session_commands.cpp
+  // session_input.cpp
   void carry_out();
   void carry_out(const Command& command);
   void act(Action action);

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "engine/base/tell.h"
-#include "render/passes/embedded_shaders.h"
+#include "render/passes/pass.h"
 
 namespace catena::app {
 namespace {

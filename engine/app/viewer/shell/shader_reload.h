@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "render/compile/shader_watch.h"
+#include "render/compile/compile_shader.h"
 #include "render/passes/renderer.h"
 
 namespace catena::app {

@@ -1,5 +1,5 @@
 /// The emulator's mechanism against golden values of the device, which pin the driver's kinematics too.
-#include "haptics/device/emulator/delta_legs.h"
+#include "haptics/device/emulator/emulated_mechanism.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <thread>
 
-#include "haptics/device/emulator/open_emulated_falcon.h"
 #include "haptics/device/usb/falcon.h"
 
 namespace catena::haptics {

@@ -11,7 +11,7 @@
 #include <cstdarg>
 #include <cstring>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::haptics::tests {
 namespace {

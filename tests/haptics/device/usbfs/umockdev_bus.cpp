@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-#include "engine/base/assert.h"
+#include "engine/base/result.h"
 
 namespace catena::haptics::tests {
 namespace {

@@ -1,0 +1,70 @@
+/// Ctrl-C, Ctrl-Z, a closed terminal or pipe and `kill` as a flag to look at: work that holds a device ends by its own way out, for a
+/// process that is killed or suspended leaves the last force at the device. So do the signals that would end the program otherwise:
+/// user signals, timers, limits on processor time, real-time signals; these are an error of the machine. Crashes: below.
+/// One at a time.
+#pragma once
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "haptics/device/device.h"
+
+namespace catena::app {
+
+class Interrupt {
+ public:
+  Interrupt();
+  explicit Interrupt(std::vector<int> asking);  ///< only these
+  ~Interrupt();                                 ///< as it was before
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  bool asked() const { return flag(); }
+  const std::atomic<bool>& flag() const;
+  /// An error ("ended by SIGXCPU (CPU time limit exceeded)") if it was not a person who asked.
+  Outcome outcome() const;
+
+ private:
+  void take(int signal_number, bool only_default);
+
+  struct Before {
+    int signal_number;
+    struct sigaction action;
+  };
+  std::vector<Before> before_;
+};
+
+/// The work was asked to end because the reader of its output has gone.
+bool ended_by_broken_pipe();
+
+/// A program that crashes lets the hand go first: SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGABRT (assertions) and SIGQUIT
+/// stop the device, wait until it has confirmed its zero (at most 1 s), say in one line whether it has, and then do what they would have
+/// done. The handler runs on the thread that crashed, the others go on: it stores atomics, writes, sleeps, raises. Device::stop() and
+/// at_rest() are safe in it. The thread that makes the guard has a second stack for it, so that a full one is covered there; on others it
+/// is not. Not covered: SIGKILL, a power cut, a crash of the device's own I/O thread. One at a time.
+class CrashGuard {
+ public:
+  explicit CrashGuard(haptics::Device& device);  ///< which outlives it
+  ~CrashGuard();                                 ///< as it was before; on the same thread
+  CrashGuard(const CrashGuard&) = delete;
+  CrashGuard& operator=(const CrashGuard&) = delete;
+
+ private:
+  static constexpr std::array kSignals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGABRT, SIGQUIT};
+  std::array<struct sigaction, kSignals.size()> before_{};
+  std::vector<char> stack_;
+  stack_t stack_before_{};
+};
+
+enum class LetGo : unsigned char {
+  nobody,      ///< no guard holds a device
+  off,         ///< the device holds no force
+  unconfirmed  ///< it was told so, but has not answered; a device with a watchdog process is left to it
+};
+
+/// Stops the device that a guard holds, if any, and waits for its zero: for who ends the process otherwise. Safe in a signal handler.
+LetGo let_go() noexcept;
+
+}  // namespace catena::app

@@ -1,0 +1,165 @@
+/// Options that several commands share, one section each: numbers, --size, --stereo, what is annotated, colours, real time.
+///
+/// "--rate", "--seconds" and their like: finite numbers within bounds. CLI11's own checks let "nan" through, print bounds of 309 digits,
+/// and it takes an empty word for 0 behind them: refuse_empty_numbers.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/app/hand/open_hand.h"
+#include "engine/base/numbers.h"
+#include "engine/base/result.h"
+#include "engine/base/text.h"
+#include "engine/scene/components.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/stereo.h"
+#include "render/extract/extract_parts.h"
+
+namespace catena::app {
+
+inline CLI::Validator number_between(double least, double most) {
+  return CLI::Validator(
+      [least, most](const std::string& text) -> std::string {
+        const auto value = parse_double(text);
+        if (value && *value >= least && *value <= most) return {};
+        const std::string range =
+            most < std::numeric_limits<double>::max() ? "from " + to_text(least) + " to " + to_text(most) : "of at least " + to_text(least);
+        return in_quotes(text) + " is out of range; a finite number " + range + " was expected";
+      },
+      "");
+}
+
+inline CLI::Validator number_at_least(double least) { return number_between(least, std::numeric_limits<double>::max()); }
+
+inline CLI::Validator number_above_zero() {
+  return CLI::Validator(
+      [](const std::string& text) -> std::string {
+        const auto value = parse_double(text);
+        if (value && *value > 0 && *value <= std::numeric_limits<double>::max()) return {};
+        return in_quotes(text) + " is out of range; a finite number above 0 was expected";
+      },
+      "");
+}
+
+/// An empty value of an option that takes numbers is said before any other check sees it. After all options of `command` are there.
+inline void refuse_empty_numbers(CLI::App& command) {
+  for (CLI::Option* option : command.get_options([](const CLI::Option* o) { return o->get_expected_min() > 0; })) {
+    const std::string type = option->get_type_name();
+    if (!type.starts_with("INT") && !type.starts_with("UINT") && !type.starts_with("FLOAT")) continue;
+    option->transform(CLI::Validator(
+        [](std::string& text) -> std::string { return text.empty() ? "the value is empty; a number was expected" : ""; }, ""));
+  }
+}
+
+/// "--size WxH".
+inline constexpr std::uint32_t kMaxPixels = 16384;  ///< each way, of a picture drawn in one piece
+
+struct Size {
+  std::uint32_t width = 1024, height = 768;
+};
+
+/// `most`: pixels each way.
+inline Result<Size> parse_size(const std::string& text, int most = kMaxPixels) {
+  const auto x = text.find('x');
+  if (x != std::string::npos) {
+    const auto width = parse_integer(text.substr(0, x)), height = parse_integer(text.substr(x + 1));
+    if (width && height && *width >= 1 && *height >= 1 && *width <= most && *height <= most)
+      return Size{static_cast<std::uint32_t>(*width), static_cast<std::uint32_t>(*height)};
+  }
+  return Error{"--size " + text + ": expected WIDTHxHEIGHT, each 1 to " + std::to_string(most) + ", such as 1024x768"};
+}
+
+/// "--stereo MODE", "--eye-separation S" and "--zero-parallax F": over what the scene says.
+struct StereoChoice {
+  std::string mode;
+  std::optional<double> separation, zero_parallax;
+
+  Outcome apply(scene::Stereo& stereo) const {
+    if (!mode.empty()) {
+      const auto known = scene::stereo_mode(mode);
+      if (!known) return Error{"--stereo " + mode + ": expected " + scene::stereo_words()};
+      stereo.mode = *known;
+    }
+    if (separation) {
+      if (!(*separation >= 0) || !std::isfinite(*separation))
+        return Error{"--eye-separation: expected a finite number of at least 0, world units"};
+      stereo.separation = separation;
+    }
+    if (zero_parallax) {
+      if (!(*zero_parallax > 0) || !std::isfinite(*zero_parallax))
+        return Error{"--zero-parallax: expected a finite number above 0, world units"};
+      stereo.zero_parallax = zero_parallax;
+    }
+    return Done{};
+  }
+};
+
+/// Several pictures in one may be more than a picture can hold.
+inline Outcome check_packed(const scene::Stereo& stereo, const Size& size) {
+  const auto packed = render::packed_size(render::packing_of(stereo), render::views_of(stereo), size.width, size.height);
+  if (packed.width >= 1 && packed.height >= 1 && packed.width <= kMaxPixels && packed.height <= kMaxPixels) return Done{};
+  return Error{"--size " + std::to_string(size.width) + "x" + std::to_string(size.height) + ": with " +
+               std::to_string(render::views_of(stereo)) + " views " + std::string(scene::stereo_word(stereo.mode)) + " the picture has " +
+               std::to_string(packed.width) + "x" + std::to_string(packed.height) + " pixels, expected 1 to " + std::to_string(kMaxPixels) +
+               " each way"};
+}
+
+inline void add_stereo_options(CLI::App& command, StereoChoice& choice) {
+  command.add_option("--stereo", choice.mode,
+                     scene::stereo_words() + " (default: the scene's); each eye has the size of --size, *-half squeezes all into it");
+  command.add_option("--eye-separation", choice.separation,
+                     "between the eyes, world units (default: the scene's, or a 30th of --zero-parallax)");
+  command.add_option("--zero-parallax", choice.zero_parallax,
+                     "distance from the eyes to where both see the same, world units (default: the scene's, or the camera's target)");
+}
+
+}  // namespace catena::app
+
+/// Options that write over the picture of a scene or a bare file: --title TEXT, --scalar-bar, --orientation-marker.
+namespace CLI {
+class App;
+}
+
+namespace catena::app {
+
+struct AnnotateOptions {
+  std::string title;
+  bool scalar_bar = false, orientation_marker = false;
+};
+void add_annotate_options(CLI::App& command, AnnotateOptions& options);
+
+/// Adds them to what the scene has; a scalar bar for the first thing that has colours, unless the scene has bars already.
+Outcome annotate(scene::Scene& scene, const AnnotateOptions& options);
+
+}  // namespace catena::app
+
+/// --colormap NAME and --range LO HI: how a bare data file is coloured.
+namespace CLI {
+class App;
+}
+
+namespace catena::app {
+
+struct ColorOption {
+  std::string map;
+  std::vector<std::string> range;
+
+  void add_to(CLI::App& command);
+  Result<scene::NamedColors> named() const;
+};
+
+/// "--realtime on|off" and "--cpu N": how hard the servo's thread tries.
+inline void add_realtime_options(CLI::App& command, RealtimeChoice& choice) {
+  command.add_option("--realtime", choice.realtime, "fixed priority and locked memory for the servo, where permitted")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  command.add_option("--cpu", choice.cpu, "the core that the servo stays on; default: the last one, with a fixed priority")
+      ->check(CLI::Range(0, 4095));
+}
+
+}  // namespace catena::app

@@ -1,0 +1,73 @@
+#include "engine/app/render/options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/numbers.h"
+#include "render/frame/camera.h"
+
+namespace catena::app {
+
+Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
+  CameraMotion motion;
+  if (!std::isfinite(o.orbit_deg)) return Error{"--orbit: expected a finite angle in degrees"};
+  if (!(std::fabs(o.elevation_deg) <= 90)) return Error{"--elevation: expected an angle from -90 to 90 degrees"};
+  if (!(o.zoom >= 1e-3 && o.zoom <= 1e6)) return Error{"--zoom: expected a factor from 0.001 to 1000000"};
+  if (!o.view.empty()) {
+    motion.towards_eye_ = render::axis_direction(o.view);
+    if (!motion.towards_eye_) return Error{"--view " + o.view + ": expected +x, -x, +y, -y, +z, -z (the way the camera looks) or iso"};
+  }
+  if (!o.camera.empty()) {
+    if (motion.towards_eye_ || o.fit) return Error{"--camera " + o.camera + ": goes without --view and --fit"};
+    CATENA_TRY(motion.path_, render::read_camera_path(o.camera));
+  }
+  motion.fit_ = o.fit;
+  motion.orbit_deg_ = o.orbit_deg;
+  motion.elevation_deg_ = o.elevation_deg;
+  motion.zoom_ = o.zoom;
+  const double by_path = std::max(motion.path_ ? motion.path_->duration_s() : 0.0, hand_s) * o.fps + 1;
+  if (o.frames == 0 && by_path > kMaxFrames)
+    return Error{(o.camera.empty() ? o.probe : o.camera) + ": at " + std::to_string(o.fps) +
+                 " frames a second there are more than 100000: expected --frames N"};
+  motion.frames_ = o.frames > 0 ? o.frames : std::max(1, static_cast<int>(std::lround(by_path)));
+  return motion;
+}
+
+render::View CameraMotion::at(const render::View& base, const Bounds& bounds, double aspect, int frame) const {
+  render::View view = base;
+  if (path_) view = path_->at(view, path_->start_s() + (frames_ > 1 ? path_->duration_s() * frame / (frames_ - 1) : 0));
+  if (towards_eye_) {
+    view = render::fit_view(bounds, aspect, *towards_eye_, base.fovy_deg);
+    view.orthographic = base.orthographic;
+  } else if (fit_) {
+    view = render::fitted(view, bounds, aspect);
+  }
+  view.window = base.window;
+  view = render::zoomed(view, zoom_);
+  return render::turned(view, orbit_deg_ * frame / frames_, elevation_deg_);
+}
+
+Result<Quality> parse_quality(const std::string& words) {
+  using Kind = render::QualityGoal::Kind;
+  if (words == "draft") return Quality{render::draft_settings(), {}};
+  if (words == "balanced") return Quality{render::balanced_settings(), {}};
+  if (words == "reference") return Quality{render::reference_settings(), {}};
+  for (const auto& [prefix, kind] : {std::pair{"error=", Kind::error}, std::pair{"time=", Kind::time}}) {
+    if (!words.starts_with(prefix)) continue;
+    const auto value = parse_double(words.substr(std::string_view(prefix).size()));
+    if (value && std::isfinite(*value) && *value > 0) return Quality{render::balanced_settings(), render::QualityGoal{kind, *value}};
+    return Error{"--quality " + words + ": expected a positive number of " + (kind == Kind::error ? "1/255" : "milliseconds")};
+  }
+  if (words.starts_with("step=")) {
+    const auto step = parse_double(words.substr(5));
+    if (step && std::isfinite(*step) && *step >= 0.01 && *step <= 100) {
+      render::RenderSettings settings;
+      settings.step_voxels = *step;
+      return Quality{settings, {}};
+    }
+    return Error{"--quality " + words + ": expected a step of 0.01 to 100 voxels"};
+  }
+  return Error{"--quality " + words + ": expected draft, balanced, reference, time=MS, error=E or step=VOXELS"};
+}
+
+}  // namespace catena::app

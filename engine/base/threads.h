@@ -1,0 +1,33 @@
+/// A thread, or one sentence why this machine gives none (limits on processes or memory): std::thread alone would throw, and end a
+/// program that holds a device.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "engine/base/result.h"
+
+namespace catena {
+
+/// "the servo: no thread more can be started (...)": an Error of the machine.
+Error no_thread(const std::string& what, const std::system_error& error);
+
+/// `what` needs it: "the servo". Out of memory is still std::bad_alloc.
+template <class Body>
+Result<std::thread> start_thread(const std::string& what, Body&& body) {
+  try {
+    return std::thread(std::forward<Body>(body));
+  } catch (const std::system_error& error) {
+    return no_thread(what, error);
+  }
+}
+
+/// The only user of TBB in Catena's own code. Serial under the thread sanitizer (libtbb is not instrumented).
+
+/// Calls body(begin, end) over [0, count) in pieces of at least `grain`, on all cores. Blocks until done.
+void parallel_for(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+}  // namespace catena

@@ -1,0 +1,122 @@
+/// A plane as the rules of surface_side.h see it: height h(x) = n . (x - point), projection x - n h(x). n is unit.
+/// World units. Haptic thread: no allocation, lock, throw.
+#pragma once
+#include <limits>
+
+#include "haptics/constraints/shapes/closed_form.h"
+
+namespace catena::haptics {
+
+struct PlaneShape {
+  Vec3 point, normal;
+};
+
+class PlaneSurface final : public Surface {
+ public:
+  using Shape = PlaneShape;
+  using Memory = NoMemory;
+  PlaneSurface(const Shape& shape, Memory&, const SideMemory&) : point_(shape.point), normal_(shape.normal) {}
+  static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
+  SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
+  Hold place(const Vec3& probe) noexcept override {
+    // a second projection takes off what rounding left
+    Vec3 proxy = probe - normal_ * height(probe);
+    proxy = proxy - normal_ * height(proxy);
+    return {true, proxy, std::fabs(height(proxy)), Status::ok};
+  }
+  Hold slide(const Vec3& probe) noexcept override { return place(probe); }
+  Hold cross(const Vec3&, const Vec3& probe) noexcept override { return place(probe); }
+  Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
+  Vec3 normal() const noexcept override { return normal_; }
+  double domain_length() const noexcept override { return kSceneLength; }
+  bool primitive(const Vec3& at, Primitive& out) noexcept {
+    out = {Primitive::Kind::plane, place(at).proxy, normal_};
+    return true;
+  }
+
+ private:
+  double height(const Vec3& at) const { return dot(normal_, at - point_); }
+  Vec3 point_, normal_;
+};
+
+/// A sphere as the rules of surface_side.h see it; the model is in shapes.h. World units. Haptic thread: no allocation, lock, throw.
+struct SphereShape {
+  Vec3 center;
+  double radius;
+  bool catches;  // free above: a thin sphere is not passed within one tick
+};
+
+class SphereSurface final : public Surface {
+ public:
+  using Shape = SphereShape;
+  struct Memory {
+    Vec3 normal;  // at the point held; against the way in while a thin sphere is held on its near half
+  };
+  SphereSurface(const Shape& shape, Memory& memory, const SideMemory& side)
+      : center_(shape.center), radius_(shape.radius), catches_(shape.catches), memory_(memory), side_(side) {}
+
+  static bool is_sane(const Shape&, const Memory&) noexcept { return true; }
+  SideValue side(const Vec3& at) noexcept override { return {height(at), true, false}; }
+
+  Hold place(const Vec3& probe) noexcept override {
+    const Vec3 n = direction(probe - center_);
+    if (max_abs(n) > 0)
+      memory_.normal = n;
+    else if (!(max_abs(memory_.normal) > 0))
+      memory_.normal = Vec3(1, 0, 0);
+    normal_ = memory_.normal;
+    return on_sphere(center_ + normal_ * radius_);
+  }
+
+  Hold slide(const Vec3& probe) noexcept override { return side_.sheet && height(probe) > 0 ? near_side(probe) : place(probe); }
+
+  Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
+    const double before = height(from), after = height(probe);
+    if (before <= 0 && after <= 0) return {};
+    if (before < 0 || after <= 0 || (before == 0 && !catches_)) return place(probe);
+
+    // both outside: where the segment enters
+    const Vec3 u = from - center_, way = direction(probe - from);
+    const double middle = -dot(u, way), apart = norm(u + way * middle);
+    if (!(apart < radius_)) return {};
+    const double s = middle - std::sqrt((radius_ - apart) * (radius_ + apart));
+    if (!(s >= -1e-9 * radius_ && s <= norm(probe - from))) return {};
+    if (!catches_) return place(probe);
+    memory_.normal = -way;
+    return near_side(probe);
+  }
+
+  Hold near_by(const Vec3& probe, double limit) noexcept override { return std::fabs(height(probe)) <= limit ? place(probe) : Hold{}; }
+  Vec3 normal() const noexcept override { return normal_; }
+  double march_step() const noexcept override { return std::numeric_limits<double>::min(); }
+  double domain_length() const noexcept override { return std::max(kSceneLength, 2 * radius_); }
+
+  bool primitive(const Vec3& at, Primitive& out) noexcept {
+    const Hold hold = slide(at);
+    if (!hold.found) return false;
+    out = {Primitive::Kind::plane, hold.proxy, normal_};
+    return true;
+  }
+
+ private:
+  double height(const Vec3& at) const { return norm(at - center_) - radius_; }
+  Hold on_sphere(const Vec3& proxy) const { return {true, proxy, std::fabs(height(proxy)), Status::ok}; }
+
+  Hold near_side(const Vec3& probe) noexcept {
+    const Vec3 w = probe - center_, q = w - memory_.normal * dot(w, memory_.normal);
+    const double apart = norm(q);
+    if (!(apart < radius_)) return {};
+    const Vec3 proxy = center_ + q + memory_.normal * std::sqrt((radius_ - apart) * (radius_ + apart));
+    normal_ = direction(proxy - center_);
+    return on_sphere(proxy);
+  }
+
+  Vec3 center_;
+  double radius_;
+  bool catches_;
+  Memory& memory_;
+  const SideMemory& side_;
+  Vec3 normal_{0.0};
+};
+
+}  // namespace catena::haptics

@@ -1,0 +1,120 @@
+/// Private to this room: what every part of the extraction asks of the scene.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/stereo.h"
+#include "render/frame/camera.h"
+#include "render/frame/frame_packet.h"
+#include "render/frame/overlay_items.h"
+
+namespace catena::render {
+
+/// "?" where it has none.
+inline std::string name_of(const scene::Scene& scene, scene::Entity entity) {
+  return scene.world.has<scene::Name>(entity) ? scene.world.get<scene::Name>(entity).value : std::string("?");
+}
+
+/// In order of insertion; a copy, so that components may be added meanwhile.
+template <class T>
+std::vector<scene::Entity> owners_of(const scene::World& world) {
+  std::vector<scene::Entity> owners;
+  world.each<T>([&](scene::Entity e, const T&) { owners.push_back(e); });
+  return owners;
+}
+
+/// Private to this room: bounding box, axes, ground, fog and lights into the packet. Frame thread.
+///   bounding box   the twelve edges of a field's domain, true to rotated and sheared grids; else of the box of all that is drawn
+///   axes           three edges of that box with ticks at round numbers (along the world's axes)
+///   ground         a checkerboard across z, just below all that is drawn
+///   fog            from the nearest to the farthest view depth of all that is drawn
+
+/// After everything else that is drawn, and after the view: `drawn` is its box.
+void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+/// The fog alone: its range follows the packet's view.
+void set_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+
+/// Private to this room: streamline sets and the local indicator into the packet. Frame thread.
+///   tubes       every line of a set is flattened once; with "color_by" each point has a colour: the value there, by the table
+///   arrows      cones on the line, "arrows" apart, the seed's in the middle of the first gap
+///   pulse       brightness runs along the line: a cosine of period `pulse` in arc length, moved by the scene's phase
+///   indicator   the exact tracer's line through the probe, half the length to either side; nothing where the flow has no line
+
+/// Flattens the lines.
+Outcome prepare_streamlines(scene::Scene& scene);
+void extract_streamlines(const scene::Scene& scene, FramePacket& packet);
+/// After the cursors.
+Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
+
+/// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
+/// "color_by".
+const std::vector<scene::TransferFunction::ColorPoint>* shown_colors(const scene::World& made, scene::Entity set);
+
+/// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
+Color table_color(const std::vector<scene::TransferFunction::ColorPoint>& table, double value);
+
+/// Private to this room: the scene's annotations into the packet's overlay. After everything else: bars show the colours that volumes
+/// and streamlines have got. Frame thread.
+void extract_overlay(const scene::Scene& scene, FramePacket& packet);
+
+/// From a scene's stereo mode to the eyes of a packet. Called by extract_frame; again by who moves the packet's view afterwards.
+Packing packing_of(const scene::Stereo& stereo);
+/// How many pictures are packed; 1 where one eye or the view itself is shown.
+std::size_t views_of(const scene::Stereo& stereo);
+/// Eyes that no picture has both of, for they are too far apart: one sentence.
+Outcome check_eyes(const FramePacket& packet, const scene::Stereo& stereo);
+/// Sets `eyes` and `packing` from the packet's view, width and height.
+void set_eyes(FramePacket& packet, const scene::Stereo& stereo);
+
+/// Meshes and slices of the scene as plain data. A vector field is shown by its magnitude: on slices by a grid of the magnitudes at the
+/// voxels, made once and interpolated between them; on meshes at each vertex.
+
+/// The drawn mesh is the felt one: the same object of the scene. Colours by a field are those of its values at the vertices;
+/// grey outside its domain.
+/// Makes plain triangles of the meshes.
+Outcome prepare_meshes(scene::Scene& scene);
+void extract_meshes(const scene::Scene& scene, FramePacket& packet);
+
+/// Errors: a plane that misses the field, a spacing that gives more than scene::kMaxContours lines, a vector grid too large for
+/// its magnitudes.
+Outcome prepare_slices(scene::Scene& scene);
+Outcome extract_slices(const scene::Scene& scene, FramePacket& packet);
+
+/// Levels within lo..hi: those listed, `count` of them at equal distances with the ends left out, or all multiples of `spacing`.
+Result<std::vector<double>> contour_levels(const scene::Slice::Contours& contours, double lo, double hi);
+
+/// Private to this room: the scene's widgets (engine/widget/widget.h; paper, Figure 6a) as tubes and arrows. Frame thread.
+///   cutting plane  where its plane cuts the box of what is drawn (a square of edge L where it cuts nothing); the sphere as three great
+///                  circles, each across one axis and in that axis' colour: x red, y green, z blue; an arrow along the normal
+///                    explore     the plane's border is thick and bright
+///                    translate   a double arrow along every axis that is free, a square across every axis that is held
+///                    rotate      the circles are thick; turn: the more so. The circle that is held is bright
+///   seed           a ball in a ring that faces the eye
+///   rake, ruler    a tube with balls at its ends and its middle; the ruler's length is written beside it, and the way that it measures
+///                  along a curve or a surface is drawn beside its straight line
+///   isolevel       a ball, and an arrow along the field's gradient
+///   box            twelve edges, a ball on every face and one in the middle
+/// A handle that is hovered over is larger and brighter, one that is dragged brighter still; the axes along which it is free show as
+/// double arrows. No tube is thinner than about a pixel of the packet's view, no ball smaller than a few. Clip planes do not touch
+/// widgets, and the camera is not fitted to them.
+
+/// Measures the rulers (engine/scene/ruler.h). After scene::drive_widgets.
+Outcome prepare_widgets(scene::Scene& scene);
+/// After the view is known. `drawn` is the box of the data, which outlines a cutting plane.
+void extract_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+/// What of it follows the view, made anew.
+void set_widgets(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+
+/// Private to this room: nice values along a scalar bar and how they are written. Pure, any thread.
+///   values   of engine/base/numbers.h, about `count` of them
+///   texts    with the decimals that the step needs; where numbers are very large or small a common factor "x 10^n" is taken out.
+///            A format of the user's ("%.2f") is taken as it is, without a factor.
+struct BarScale {
+  std::vector<BarTick> ticks;
+  std::string factor;
+};
+BarScale bar_scale(double lo, double hi, int count, const std::string& format);
+
+}  // namespace catena::render
