@@ -32,6 +32,7 @@ struct ConstraintType {
   Result<std::shared_ptr<const Constraint>> (*build)(const json::Node& link, const BuildContext& context);
   bool releases_itself = false;  ///< has its own rule for `release` (unless the link has `snap`); others are wrapped by snap.h
   bool has_axis = true;          ///< a normal or a tangent, which "align" may turn the tool onto; false for a place
+  std::string feels{};           ///< the part of a scene whose items a link of this type lies on, "isosurfaces"; empty: none
 };
 
 const std::vector<ConstraintType>& registry();

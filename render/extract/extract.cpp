@@ -51,7 +51,7 @@ Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
     CATENA_TRY(auto color_by, color_source(scene, volume.color_by));
-    const std::uint32_t id = packet.add_object("volume", name_of(scene, volume.field));
+    const std::uint32_t id = packet.add_object("volume", name_of(scene, volume.field), volume.where.label);
     packet.volumes.push_back(
         {std::move(grid), std::move(transfer), volume.shade, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
   }
@@ -65,7 +65,7 @@ Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
     CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or(surface.where, "level")));
     CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
-    const std::uint32_t id = packet.add_object("isosurface", name_of(scene, surface.field));
+    const std::uint32_t id = packet.add_object("isosurface", name_of(scene, surface.field), surface.where.label);
     packet.isosurfaces.push_back(
         {std::move(grid), surface.level, surface.color, static_cast<float>(surface.opacity), id, surface.clipped, std::move(color_by)});
   }

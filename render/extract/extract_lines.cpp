@@ -210,7 +210,7 @@ void extract_streamlines(const scene::Scene& scene, FramePacket& packet) {
   scene.world.each<scene::StreamlineSet>([&](scene::Entity e, const scene::StreamlineSet& set) {
     if (is_hidden(scene.world, e)) return;
     const FlatLines& flat = scene.made.get<FlatLines>(e);
-    const std::uint32_t id = packet.add_object("streamlines", name_of(scene, set.field));
+    const std::uint32_t id = packet.add_object("streamlines", name_of(scene, set.field), set.where.label);
     const auto add = [&](auto& items, auto item) {
       item.id = id;
       item.clipped = set.clipped;

@@ -150,8 +150,8 @@ Outcome prepare_meshes(scene::Scene& scene) {
 void extract_meshes(const scene::Scene& scene, FramePacket& packet) {
   scene.world.each<scene::SurfaceMesh>([&](scene::Entity e, const scene::SurfaceMesh& surface) {
     if (is_hidden(scene.world, e)) return;
-    MeshItem item{scene.made.get<PlainMesh>(e).geometry, surface.color, packet.add_object("mesh", name_of(scene, surface.mesh)),
-                  surface.clipped};
+    MeshItem item{scene.made.get<PlainMesh>(e).geometry, surface.color,
+                  packet.add_object("mesh", name_of(scene, surface.mesh), surface.where.label), surface.clipped};
     item.opacity = static_cast<float>(surface.opacity);
     item.smooth = surface.smooth;
     item.edges = surface.edges;
@@ -205,7 +205,7 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
       item.line_color = slice.contours->color;
       item.line_width = static_cast<float>(slice.contours->width);
     }
-    item.id = packet.add_object("slice", name_of(scene, slice.shown.field));
+    item.id = packet.add_object("slice", name_of(scene, slice.shown.field), slice.where.label);
     item.clipped = slice.clipped;
     packet.slices.push_back(std::move(item));
   }

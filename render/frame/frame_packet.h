@@ -51,6 +51,7 @@ struct FogItem {
 struct ObjectName {
   std::uint32_t id = 0;
   std::string kind, name;
+  std::string item{};  ///< where it stands in the scene, "isosurfaces[1]"; empty: it is no item of a list
 };
 
 /// Piecewise-linear over field values; sigma is extinction per world unit.
@@ -217,8 +218,8 @@ struct FramePacket {
   std::vector<ObjectName> objects;
 
   /// The next id, from 1 on.
-  std::uint32_t add_object(std::string kind, std::string name) {
-    objects.push_back({std::uint32_t(objects.size() + 1), std::move(kind), std::move(name)});
+  std::uint32_t add_object(std::string kind, std::string name, std::string item = {}) {
+    objects.push_back({std::uint32_t(objects.size() + 1), std::move(kind), std::move(name), std::move(item)});
     return objects.back().id;
   }
 };

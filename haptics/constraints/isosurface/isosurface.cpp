@@ -365,7 +365,9 @@ ConstraintType isosurface_constraint() {
           "Eqs. 5-6",
           {scalar_field_key("field").required(), level_key("The value on the surface.").required(), free_key("where values are larger")},
           build_isosurface,
-          true};
+          true,
+          true,
+          "isosurfaces"};
 }
 
 }  // namespace catena::haptics

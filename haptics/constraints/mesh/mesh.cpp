@@ -260,7 +260,9 @@ ConstraintType mesh_constraint() {
       "section 3; god-object",
       {schema::named("mesh", schema::Role::mesh, "One of the scene's `meshes`.").required(), free_key("where the normals point, outside")},
       build_mesh,
-      true};
+      true,
+      true,
+      "meshes"};
 }
 
 }  // namespace catena::haptics

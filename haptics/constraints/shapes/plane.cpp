@@ -23,7 +23,9 @@ ConstraintType plane_constraint() {
           {schema::vec3("point", "world", "A point of the plane.").required(),
            schema::direction("normal", "Its normal, of any length.").begins("[0, 0, 1]").required(), free_key("where the normal points")},
           build_plane,
-          true};
+          true,
+          true,
+          "slices"};
 }
 
 }  // namespace catena::haptics

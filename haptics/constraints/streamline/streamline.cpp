@@ -89,7 +89,10 @@ ConstraintType streamline_constraint() {
            .begins("1e-4")
            .by_default("1e-9; sampled line fields 1e-13"),
        schema::line_kind_key(), schema::number("min_speed", "value", "Speeds up to this count as zero.").not_negative().by_default("0")},
-      build_streamline};
+      build_streamline,
+      false,
+      true,
+      "streamlines"};
 }
 
 }  // namespace catena::haptics

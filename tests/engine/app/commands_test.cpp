@@ -122,7 +122,7 @@ R                    the first view again
 T                    turntable, until T or the mouse
 V                    fly: W S A D or arrows, E up, Q down, shift faster, left drag looks about, wheel: pace; V or Esc ends it
 right drag, control  move the hand in the picture's plane (wheel: depth)
-H                    hand mode: the mouse is the hand, the left button its button 1
+H                    the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1
 space                the hand's button 1
 F                    a haptic device's forces on and off (off at first)
 device button 1      takes hold of widgets, selects; what the scene's "on" says

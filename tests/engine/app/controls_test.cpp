@@ -156,7 +156,7 @@ TEST(Controls, OKeepsTheSizeOfThingsInTheTargetsPlane) {
 }
 
 TEST(Controls, TheHandFollowsThePointerInThePicturesPlane) {
-  for (const int way : {0, 1, 2}) {
+  for (const int way : {0, 1}) {
     Controls c = controls();
     c.hand = {0.2, 1.0, -0.3};
     const auto camera = render::make_camera(c.view, 320, 240, {});
@@ -164,7 +164,6 @@ TEST(Controls, TheHandFollowsThePointerInThePicturesPlane) {
     Input i = input(40, 25);
     i.right = way == 0;
     i.control = way == 1;
-    c.hand_mode = way == 2;
     const Changed changed = apply(c, i);
     EXPECT_TRUE(changed.hand);
     EXPECT_FALSE(changed.view);
@@ -243,27 +242,81 @@ TEST(HandSetup, TheHandBeginsAtTheFirstSeed) {
   EXPECT_EQ(first_probe(*scene, {}), Vec3(1.0, 0.5, 0.0));
 }
 
-TEST(Controls, TheHandsDepthFollowsWhatHoldsIt) {
+/// The pointer moves to the pixel (x, y) of the picture, from dx to the left.
+Input to_pixel(double x, double y, double dx = 1) {
+  Input i = input(dx, 0);
+  i.x = x - dx;
+  i.y = y;
+  return i;
+}
+
+TEST(Controls, InHandModeTheHandIsUnderThePointerAsDeepAsWhatIsSeenThere) {
   Controls c = controls();
   c.hand_mode = true;
-  c.hand = {0, 1, 0};
-  c.held = Vec3(0, 3, 0);  // two units deeper
-  Input still = input(0, 0, 1);
-  const double before = c.hand.y;
+  c.under = Vec3(0.7, 2, 0.3);
+  begin_hand(c);
+  EXPECT_EQ(c.hand, Vec3(0.7, 2, 0.3));
+  const auto camera = render::make_camera(c.view, 320, 240, {});
+  c.under = render::unproject(camera, 80, 60, 7.5);
+  EXPECT_TRUE(apply(c, to_pixel(80, 60)).hand);
+  EXPECT_LE(norm(c.hand - *c.under), 1e-12);
+  // pushed in, it stays as deep below what is seen
+  Input wheel = to_pixel(80, 60, 0);
+  wheel.wheel = 3;
+  apply(c, wheel);
+  const double push = c.push;
+  EXPECT_NEAR(push, 0.03 * 7.5, 1e-12);
+  EXPECT_NEAR(render::project(camera, c.hand)->z, 7.5 + push, 1e-12);
+  EXPECT_NEAR(render::project(camera, c.hand)->x, 80, 1e-9) << "along the view";
+  c.under = render::unproject(camera, 90, 65, 7.2);
+  apply(c, to_pixel(90, 65));
+  EXPECT_NEAR(render::project(camera, c.hand)->z, 7.2 + push, 1e-12);
+  // where nothing is seen the depth stays, and a button holds it over whatever is seen
+  c.under.reset();
+  apply(c, to_pixel(200, 100));
+  EXPECT_NEAR(render::project(camera, c.hand)->z, 7.2 + push, 1e-12);
+  c.under = render::unproject(camera, 210, 100, 3.0);
+  Input drag = to_pixel(210, 100);
+  drag.left = true;
+  apply(c, drag);
+  EXPECT_NEAR(render::project(camera, c.hand)->z, 7.2 + push, 1e-12);
+  EXPECT_NEAR(render::project(camera, c.hand)->x, 210, 1e-9);
+}
+
+TEST(Controls, TheHandsDepthFollowsWhatHoldsIt) {
+  const auto at = [](double depth) {
+    Controls c = controls();
+    c.hand_mode = true;
+    c.hand = {0, depth - 10, 0};
+    c.held = Vec3(0, 3, 0);
+    return c;
+  };
+  const auto depth = [](const Controls& c) { return render::project(render::make_camera(c.view, 320, 240, {}), c.hand)->z; };
+  Controls c = at(11);
+  Input still = to_pixel(160, 120, 0);
+  still.wheel = 1;
   apply(c, still);
-  EXPECT_LT(std::fabs(c.hand.y - before), 0.2) << "the wheel alone presses";
-  c.hand = {0, 1, 0};
-  Input sideways = input(Controls::kDepthPixels / 2, 0);
-  apply(c, sideways);
-  EXPECT_NEAR(c.hand.y, 2, 1e-9) << "half the way";
-  sideways.dx = 10 * Controls::kDepthPixels;
-  apply(c, sideways);
-  EXPECT_NEAR(c.hand.y, 3, 1e-9) << "all of it, and no further";
+  EXPECT_NEAR(depth(c), 11.11, 1e-9) << "the wheel alone presses";
+  c = at(11);
+  apply(c, to_pixel(190, 120, Controls::kDepthPixels / 2));
+  EXPECT_NEAR(depth(c), 12, 1e-9) << "half the way";
+  apply(c, to_pixel(190, 120, 10 * Controls::kDepthPixels));
+  EXPECT_NEAR(depth(c), 13, 1e-9) << "all of it, and no further";
+  // what is seen far before or behind is not what holds
+  c = at(13);
+  c.under = Vec3(0, -4, 0);
+  apply(c, to_pixel(161, 120));
+  EXPECT_NEAR(depth(c), 13, 1e-9);
+  c.under = Vec3(0, 3.2, 0);
+  apply(c, to_pixel(160, 120));
+  EXPECT_NEAR(depth(c), 13.2, 1e-9);
+  // only in hand mode
+  c = at(11);
   c.hand_mode = false;
-  c.hand = {0, 1, 0};
-  sideways.control = true;
-  apply(c, sideways);
-  EXPECT_NEAR(c.hand.y, 1, 1e-9) << "only in hand mode";
+  Input drag = input(30, 0);
+  drag.control = true;
+  apply(c, drag);
+  EXPECT_NEAR(depth(c), 11, 1e-9);
 }
 
 TEST(Controls, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
@@ -273,17 +326,18 @@ TEST(Controls, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
   EXPECT_EQ(yielding({0, 0, 1}, force, 8), Vec3(0, 0, 1));
   EXPECT_EQ(yielding({2, 1, 0}, force, 8), Vec3(2, 1, 0));
   EXPECT_EQ(yielding({0, 0, -1}, Vec3(0.0), 8), Vec3(0, 0, -1));
-  // with the button alone, as before, the hand goes with the mouse
-  Controls free = controls(), held = controls();
-  free.force_n = held.force_n = {-8, 0, 0};
-  free.max_force_n = held.max_force_n = 8;
-  held.hand_mode = true;
-  Input i = input(40, 0);
-  i.right = true;
-  apply(free, i);
-  apply(held, i);
-  EXPECT_NEAR(held.hand.x, 0.25 * free.hand.x, 1e-12);
-  EXPECT_GT(free.hand.x, 0);
+  // the wheel pushes less where something pushes back, and pulls out as it is turned
+  Controls c = controls();
+  c.hand_mode = true;
+  c.force_n = {0, -8, 0};
+  c.max_force_n = 8;
+  Input in = to_pixel(160, 120, 0), out = in;
+  in.wheel = 1;
+  out.wheel = -1;
+  apply(c, in);
+  EXPECT_NEAR(c.hand.y, 0.25 * 0.1, 1e-12);
+  apply(c, out);
+  EXPECT_NEAR(c.hand.y, 0.025 - 0.10025, 1e-12);
 }
 
 TEST(Controls, InFlightALeftDragLooksAboutAndTheWheelSetsThePace) {

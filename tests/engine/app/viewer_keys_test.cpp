@@ -11,6 +11,7 @@ namespace viewer_keys_test {
 constexpr const char* kScene = R"({
   "fields": {"d": {"analytic": "gaussian", "resolution": 64}},
   "volumes": [{"field": "d"}],
+  "chain": [{"name": "p", "type": "point", "position": [0, 0, 0]}],
   "background": [0, 0.3, 0] })";
 
 class ViewerKeys : public testing::Test {

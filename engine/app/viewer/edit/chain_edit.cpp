@@ -156,7 +156,8 @@ std::string first_value(scene::Scene& scene, const schema::Key& key, const json:
   }
 }
 
-Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length) {
+Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length,
+                             const std::vector<std::pair<std::string, std::string>>& given) {
   // a name that is free
   std::vector<std::string> taken{"t", "probe", "force"};
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) { taken.push_back(link.name); });
@@ -167,8 +168,9 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
   link.kind = json::Kind::object;
   std::string text = "\"name\": " + scene::text_of(name) + ", \"type\": " + scene::text_of(type);
   for (const schema::Key& key : keys_of(type)) {
-    if (!key.is_required && !key.is_stated) continue;
-    const std::string value = first_value(scene, key, link, probe, length);
+    const auto known = std::ranges::find(given, key.name, &std::pair<std::string, std::string>::first);
+    if (known == given.end() && !key.is_required && !key.is_stated) continue;
+    const std::string value = known != given.end() ? known->second : first_value(scene, key, link, probe, length);
     if (value.empty())
       return Error{"a " + std::string(type) + " needs a " +
                    (key.role == Role::vector_field   ? "vector field"

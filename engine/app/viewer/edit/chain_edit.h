@@ -32,7 +32,9 @@ std::vector<std::string> link_types();
 /// A link with sane keys, as JSON text: the field of a surface that is drawn, or else the first field or mesh of the scene that fits
 /// (loaded if need be); the level of the surface that is drawn, or else one that the field has at the probe; places at the probe; lengths
 /// as parts of `length` (that of all that is there). An error where the scene has no such field.
-Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length);
+/// `given`: keys that are known already, with their JSON text; those that the type does not have are left out.
+Result<std::string> new_link(scene::Scene& scene, std::string_view type, const Vec3& probe, double length,
+                             const std::vector<std::pair<std::string, std::string>>& given = {});
 /// What a key that lacks begins with, JSON text; empty: nothing is known to be sane.
 std::string first_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length);
 

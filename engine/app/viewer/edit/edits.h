@@ -37,6 +37,9 @@ class Edits {
     commands_.push_back(Edit{std::move(edits), what, what + " " + std::to_string(state_.gesture)});
   }
 
+  /// A link that lies on that item (feel.h).
+  void feel(const std::string& item) { commands_.push_back(Feel{item}); }
+
   EditState& state() { return state_; }
 
  private:

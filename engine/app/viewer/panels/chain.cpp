@@ -24,37 +24,42 @@ ImVec4 color_of(exchange::Status status, bool active) {
   return {1, 0.7f, 0.35f, 1};
 }
 
-/// What the words of a status mean, for the pointer.
-const char* meaning_of(exchange::Status status) {
+/// A status in plain words, and what it means, for the pointer.
+struct StatusWords {
+  const char *plain, *meaning;
+};
+StatusWords words_of(exchange::Status status) {
   switch (status) {
     case exchange::Status::ok:
-      return "it holds";
+      return {"holds", "the link holds the hand, or is ready to"};
     case exchange::Status::free:
-      return "the hand moves freely here, or the link is switched off";
+      return {"free", "the hand moves freely here, or the link is switched off"};
     case exchange::Status::released:
-      return "it has let go, or has not taken hold yet";
+      return {"let go", "it has let go, or has not taken hold yet"};
     case exchange::Status::budget:
-      return "the best place that one tick could find; it goes on in the next";
+      return {"searching", "the best place that one tick could find; it goes on in the next"};
     case exchange::Status::critical:
-      return "held at a critical point, or where the field says nothing";
+      return {"no direction", "held at a critical point, or where the field says nothing"};
     case exchange::Status::boundary:
-      return "held at the end of the domain";
+      return {"at the end", "held at the end of the domain"};
     case exchange::Status::no_surface:
-      return "nothing to hold within reach";
+      return {"out of reach", "nothing to hold within reach"};
     case exchange::Status::bad_probe:
-      return "the probe is not finite";
+      return {"no place", "the probe is not finite"};
   }
-  return "";
+  return {"", ""};
 }
 
-void draw_live(const exchange::LinkReport& link, const std::string& name, double most_n) {
+void draw_live(const exchange::LinkReport& link, const std::string& name, double most_n, const std::string& unit_length) {
   const double share = norm(link.force_n);
   ImGui::ProgressBar(static_cast<float>(most_n > 0 ? share / most_n : 0), {-1, 0.8f * ImGui::GetFrameHeight()},
                      fmt::format("{:.2f} N", share).c_str());
   tip(name + ": its share of the force, of the most that the coupling allows");
-  ImGui::TextDisabled("off by %.2g  gap %.3g  w %.2f", link.residual, link.gap, link.weight);
-  tip("distance of the proxy from the constraint; from the proxy before it (world units); weight");
-  ImGui::TextDisabled("k %.0f N/m  %d evaluations", link.stiffness_n_per_m, static_cast<int>(link.evaluations));
+  ImGui::TextDisabled("%.3g%s from the hand", link.gap, unit_length.empty() ? "" : (" " + unit_length).c_str());
+  tip(
+      fmt::format("the gap: from the link's proxy to its probe, the proxy before it. The proxy is off its constraint by {:.2g}; weight "
+                  "{:.2f}, stiffness {:.0f} N/m, {} field evaluations in the last tick",
+                  link.residual, link.weight, link.stiffness_n_per_m, static_cast<int>(link.evaluations)));
 }
 
 /// The length of everything, for keys that begin as a part of it.
@@ -164,7 +169,8 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
   for (const std::size_t link : row.links) {
     if (link >= static_cast<std::size_t>(felt.link_count)) continue;
     const exchange::LinkReport& report = felt.links[link];
-    const char* word = row.enabled ? exchange::status_word(report.status) : "off";
+    const StatusWords words = words_of(report.status);
+    const char* word = row.enabled ? words.plain : "off";
     if (row.links.size() == 1) {
       ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
     } else {
@@ -172,8 +178,9 @@ std::optional<Move> draw_row(PanelContext& context, const ChainRow& row, std::si
       ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(word).x);
     }
     ImGui::TextColored(row.enabled ? color_of(report.status, report.active) : ImVec4(0.6f, 0.6f, 0.6f, 1), "%s", word);
-    tip(row.enabled ? meaning_of(report.status) : "switched off by the box before its name");
-    draw_live(report, context.hand.link_names()[link], most_n);
+    tip(row.enabled ? std::string(words.meaning) + " (" + exchange::status_word(report.status) + ")"
+                    : "switched off by the box before its name");
+    draw_live(report, context.hand.link_names()[link], most_n, context.state.unit_length);
   }
   if (open) {
     if (ImGui::ArrowButton("##up", ImGuiDir_Up) && row.index > 0) move = Move{row.index, -1};
@@ -197,8 +204,8 @@ void draw_sum(const PanelContext& context, double most_n) {
   const exchange::HapticState& felt = context.hand.felt();
   Vec3 sum(0.0);
   for (int i = 0; i < felt.link_count; ++i) sum += felt.links[static_cast<std::size_t>(i)].force_n;
-  ImGui::Text("Links %.2f N, hand %.2f N", norm(sum), norm(felt.force_n));
-  tip(fmt::format("the sum of the shares, and what the hand gets after damping, fading and all limits; at most {:g} N", most_n));
+  ImGui::Text("Force %.2f N, of the links %.2f N", norm(felt.force_n), norm(sum));
+  tip(fmt::format("what the hand gets after damping, fading and all limits, at most {:g} N; and the sum of the links' shares", most_n));
   if (felt.force_state == exchange::ForceState::on) return;
   ImGui::SameLine();
   ImGui::TextDisabled("%s", exchange::force_state_word(felt.force_state));
@@ -229,7 +236,11 @@ void draw_coupling(PanelContext& context) {
 void draw_chain(PanelContext& context) {
   const double most_n = context.scene.scene().coupling.max_force_n;
   const std::vector<ChainRow> rows = chain_rows(context.scene.scene(), context.hand.link_names());
-  draw_sum(context, most_n);
+  if (rows.empty()) {
+    ImGui::TextWrapped("Nothing is felt yet: click Feel beside a surface, or point at it in the picture and press H.");
+  } else {
+    draw_sum(context, most_n);
+  }
   ImGui::Separator();
   std::optional<Move> move;
   for (const ChainRow& row : rows)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/viewer/edit/feel.h"
 #include "engine/app/viewer/edit/field_values.h"
 #include "engine/scene/write_values.h"
 
@@ -51,6 +52,12 @@ bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::
     if (!visible) ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     open = ImGui::TreeNodeEx("##open", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_AllowItemOverlap, "%s", name.c_str());
     if (!visible) ImGui::PopStyleColor();
+    if (can_feel(where.label.substr(0, where.label.find('[')))) {
+      const float width = ImGui::CalcTextSize("Feel").x + 2 * ImGui::GetStyle().FramePadding.x;
+      ImGui::SameLine(ImGui::GetContentRegionMax().x - button - width - ImGui::GetStyle().ItemSpacing.x);
+      if (ImGui::Button("Feel", {width, 0})) edits.feel(where.label);
+      short_tip("the hand feels this: a link of the chain that lies on it, and goes along with it");
+    }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
     if (ImGui::Button("x", {button, 0})) edits.remove(pointer, "remove " + word);
     short_tip("remove");

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/app/viewer/edit/feel.h"
 #include "engine/app/viewer/panels/look_parts.h"
 #include "engine/scene/hidden.h"
 
@@ -10,7 +10,16 @@ namespace catena::app {
 
 namespace {
 
-void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& field) {
+/// The slice's edits, and those of the links that feel its plane: they lie on the new one.
+TextEdits with_links(const scene::Scene& scene, const scene::Slice& slice, TextEdits edits, const Vec3& point, const Vec3& normal) {
+  for (const std::string& link : felt_planes(scene, slice.point, slice.normal)) {
+    edits.push_back({link + "/point", scene::text_of(point)});
+    edits.push_back({link + "/normal", scene::text_of(normal)});
+  }
+  return edits;
+}
+
+void draw_plane(Edits& edits, const scene::Scene& scene, const scene::Slice& slice, const field::Field& field) {
   const std::string pointer = pointer_of(slice.where);
   if (slice.where.find("widget") != nullptr) {
     ImGui::TextDisabled("the plane follows a widget");
@@ -26,15 +35,21 @@ void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& fie
     const auto edit = [&](const char* key, std::optional<std::string> value) {
       return scene::Document::Edit{pointer + "/" + key, std::move(value)};
     };
-    if (which == 3)
+    if (which == 3) {
       edits.set({edit("axis", std::nullopt), edit("at", std::nullopt), edit("point", scene::text_of(slice.point)),
                  edit("normal", scene::text_of(slice.normal))},
                 "slice");
-    else
-      edits.set({edit("point", std::nullopt), edit("normal", std::nullopt), edit("axis", scene::text_of(std::string(1, "xyz"[which]))),
-                 edit("at", scene::text_of(free ? std::clamp(slice.point[which], box.lo[which], box.hi[which])
-                                                : rounded_in(middle[which], box.lo[which], box.hi[which])))},
-                "slice");
+      return;
+    }
+    Vec3 at(0.0), normal(0.0);
+    normal[which] = 1;
+    at[which] =
+        free ? std::clamp(slice.point[which], box.lo[which], box.hi[which]) : rounded_in(middle[which], box.lo[which], box.hi[which]);
+    edits.set(with_links(scene, slice,
+                         {edit("point", std::nullopt), edit("normal", std::nullopt),
+                          edit("axis", scene::text_of(std::string(1, "xyz"[which]))), edit("at", scene::text_of(at[which]))},
+                         at, normal),
+              "slice");
     return;
   }
   short_tip("the axis across which the slice lies");
@@ -44,8 +59,11 @@ void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& fie
     double at = slice.point[which];
     ImGui::SetNextItemWidth(-FLT_MIN);
     if (ImGui::SliderScalar("##at", ImGuiDataType_Double, &at, &lo, &hi, "%.5g",
-                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat))
-      edits.drag(pointer + "/at", scene::text_of(std::clamp(rounded_in(at, lo, hi), lo, hi)), "slice");
+                            ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat)) {
+      Vec3 to = slice.point;
+      to[which] = std::clamp(rounded_in(at, lo, hi), lo, hi);
+      edits.drag(with_links(scene, slice, {{pointer + "/at", scene::text_of(to[which])}}, to, slice.normal), "slice");
+    }
     return;
   }
   double point[3] = {slice.point.x, slice.point.y, slice.point.z}, normal[3] = {slice.normal.x, slice.normal.y, slice.normal.z};
@@ -53,12 +71,12 @@ void draw_plane(Edits& edits, const scene::Slice& slice, const field::Field& fie
   if (ImGui::DragScalarN("point", ImGuiDataType_Double, point, 3, step, nullptr, nullptr, "%.4g", ImGuiSliderFlags_NoRoundToFormat)) {
     Vec3 to;
     for (int k = 0; k < 3; ++k) to[k] = rounded_in(point[k], 0, field.length(), 20000);
-    edits.drag(pointer + "/point", scene::text_of(to), "slice");
+    edits.drag(with_links(scene, slice, {{pointer + "/point", scene::text_of(to)}}, to, slice.normal), "slice");
   }
   if (ImGui::DragScalarN("normal", ImGuiDataType_Double, normal, 3, 0.005f, nullptr, nullptr, "%.3f", ImGuiSliderFlags_NoRoundToFormat)) {
     Vec3 to;
     for (int k = 0; k < 3; ++k) to[k] = rounded_in(normal[k], 0, 1, 1000);
-    if (max_abs(to) > 0) edits.drag(pointer + "/normal", scene::text_of(to), "slice");
+    if (max_abs(to) > 0) edits.drag(with_links(scene, slice, {{pointer + "/normal", scene::text_of(to)}}, slice.point, to), "slice");
   }
 }
 
@@ -97,7 +115,7 @@ void draw_slices(PanelContext& context) {
     if (!begin_item(edits, slice.where, !is_hidden(scene.world, e), "slice", name_of(scene, slice.shown.field))) return;
     const scene::FieldSource& source = scene.world.get<scene::FieldSource>(slice.shown.field);
     const field::Field* field = source.drawn.get() != nullptr ? source.drawn.get() : source.loaded.get();
-    if (field != nullptr) draw_plane(edits, slice, *field);
+    if (field != nullptr) draw_plane(edits, scene, slice, *field);
     edit_color_scale(edits, slice.where, slice.shown);
     draw_contours(edits, slice);
     edit_plain_keys(edits, "slices", slice.where, {"axis"});

@@ -67,7 +67,7 @@ constexpr CommandRow kCommandRows[] = {
      {GLFW_KEY_H},
      kNoStroke,
      kHand,
-     "hand mode: the mouse is the hand, the left button its button 1"},
+     "the mouse is the hand, on what is under the pointer; the wheel pushes, the left button is its button 1"},
     by_pointer(kHand, "space", "the hand's button 1"),
     {Action::forces, "Forces", {GLFW_KEY_F}, kNoStroke, kHand, "a haptic device's forces on and off (off at first)"},
     by_pointer(kHand, "device button 1", "takes hold of widgets, selects; what the scene's \"on\" says"),

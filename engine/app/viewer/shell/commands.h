@@ -83,6 +83,10 @@ struct ChooseQuality {
 };
 /// The error of the picture at rest is looked at: asked with every frame that shows it.
 struct EstimateError {};
+/// A link of the chain that lies on that item, "isosurfaces[0]" (edit/feel.h), and the mouse as the hand.
+struct Feel {
+  std::string item;
+};
 /// Another device that holds the probe.
 struct ChooseDevice {
   std::string name;
@@ -92,7 +96,7 @@ struct Record {
 };
 
 using Command = std::variant<Action, Edit, OpenFile, DropFile, AnswerToDropped, SaveAs, GiveUpSaving, AnswerToUnsaved, AnswerToLeft,
-                             ChooseStereo, ChooseQuality, EstimateError, ChooseDevice, Record>;
+                             ChooseStereo, ChooseQuality, EstimateError, Feel, ChooseDevice, Record>;
 using Commands = std::vector<Command>;
 
 /// What a stroke asks of the program when it is no text for the interface. `fly`: letters and arrows fly, and ask for nothing.

@@ -35,17 +35,33 @@ void pan(render::View& view, const Input& input) {
   view.target += shift;
 }
 
+/// The depth of what the hand of a mouse is on: `now` where nothing says another.
+double depth_beneath(const Controls& controls, const render::Camera& camera, const Input& input, double now) {
+  constexpr double kNear = 0.05;  // of the depth: what is seen is what holds
+  const auto under = controls.under ? render::project(camera, *controls.under) : std::nullopt;
+  const auto held = controls.held ? render::project(camera, *controls.held) : std::nullopt;
+  if (under && (!held || std::abs(under->z - held->z) <= kNear * held->z + 1.5 * std::abs(controls.push))) return under->z;
+  if (!held) return now;
+  return now + std::min(1.0, std::hypot(input.dx, input.dy) / Controls::kDepthPixels) * (held->z - now);
+}
+
 void move_hand(Controls& controls, const Input& input) {
   const render::Camera camera = camera_of(controls.view, input);
   auto place = render::project(camera, controls.hand);
   if (!place) place = render::project(camera, controls.view.target);  // the hand was behind the eye: back into the picture
   if (!place) return;
-  double depth = place->z;
-  const auto held = controls.held && controls.hand_mode ? render::project(camera, *controls.held) : std::nullopt;
-  if (held) depth += std::min(1.0, std::hypot(input.dx, input.dy) / Controls::kDepthPixels) * (held->z - depth);
-  depth *= 1 + kDepthPerNotch * input.wheel;
-  const Vec3 moved = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
-  controls.hand = controls.hand_mode ? controls.hand + yielding(moved - controls.hand, controls.force_n, controls.max_force_n) : moved;
+  if (!controls.hand_mode) {
+    const double depth = place->z * (1 + kDepthPerNotch * input.wheel);
+    controls.hand = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
+    return;
+  }
+  const Vec3 ahead = -1.0 * camera.back, pushed = kDepthPerNotch * input.wheel * place->z * ahead;
+  const double by_wheel = dot(yielding(pushed, controls.force_n, controls.max_force_n), ahead);
+  // the depth that the push counts from
+  double base = place->z - controls.push;
+  if ((input.dx != 0 || input.dy != 0) && controls.buttons == 0) base = depth_beneath(controls, camera, input, base);
+  controls.push += by_wheel;
+  controls.hand = render::unproject(camera, input.x + input.dx, input.y + input.dy, base + controls.push);
 }
 
 /// Along an axis, all in the picture; the angle and the projection stay.
@@ -104,6 +120,11 @@ void toggle_projection(render::View& view) {
 static bool is_possible(const render::View& view) {
   const bool high = !view.orthographic || (view.height >= kLeastEyeHeight && view.height <= kMaxEyeHeight);
   return high && eye_problem(view.position, view.target).empty();
+}
+
+void begin_hand(Controls& controls) {
+  controls.push = 0;
+  if (controls.under) controls.hand = *controls.under;
 }
 
 Changed apply(Controls& controls, const Input& input) {

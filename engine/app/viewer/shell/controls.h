@@ -1,8 +1,9 @@
 /// Controls say what mouse and keys do, apart from any window: plain input goes in, a new view and a new place of the hand come out.
 ///   orbit: left drag     pan: middle drag, or shift and left drag     zoom: wheel
-///   hand:  right drag, or control held, or hand mode (H): motion on the plane through the probe parallel to the picture,
-///          wheel for depth; in hand mode the left button (anywhere the space bar) is the device's button 1
-///   In hand mode the mouse pushes harder the harder it is held back: motion against the force moves the hand less (yielding).
+///   hand:  right drag, or control held: motion on the plane through the probe parallel to the picture, wheel for depth
+///   hand mode (H): the hand is under the pointer, as deep as what is seen there, and the wheel pushes it in from there (Controls::push);
+///          the left button (anywhere the space bar) is the device's button 1, and while it is down the depth stays
+///   In hand mode the mouse pushes harder the harder it is held back: the wheel against the force moves the hand less (yielding).
 ///   fly (V): left drag looks about, wheel changes the pace; the keys are camera_paths.h's
 #pragma once
 #include <cstdint>
@@ -38,9 +39,11 @@ struct Controls {
   bool hand_mode = false;
   Vec3 force_n{0.0};       ///< on the hand, world axes
   double max_force_n = 0;  ///< 0: the mouse yields to nothing
-  /// Where the chain holds the hand. A mouse says nothing of depth: as it moves over the picture the hand's depth goes over to the
-  /// held place's, by the share (pixels moved) / kDepthPixels, so that it follows what it touches; the wheel alone presses in.
-  std::optional<Vec3> held{};
+  // A mouse says nothing of depth. In hand mode it is that of what lies under the pointer; where the chain holds the hand elsewhere in
+  // depth, or nothing is there, it goes over to the held place's, by the share (pixels moved) / kDepthPixels; else it stays.
+  std::optional<Vec3> under{};  ///< the place that is seen under the pointer at the end of the motion
+  std::optional<Vec3> held{};   ///< where the chain holds the hand
+  double push = 0;              ///< of the wheel, along the view, beyond that depth; world units
   static constexpr double kDepthPixels = 60;
   bool fly = false;
   double fly_speed = 1;    ///< times kFlySizesPerS
@@ -54,6 +57,8 @@ struct Changed {
 };
 
 Changed apply(Controls& controls, const Input& input);
+/// Hand mode begins: the hand goes onto what is under the pointer, if that is known.
+void begin_hand(Controls& controls);
 /// What a command of the eye makes of the view, in a picture of that width / height; true: the view is another. Those of all other
 /// commands, and those that need something to look at where there is nothing, change nothing.
 bool apply(Controls& controls, Action action, double aspect);
@@ -61,8 +66,8 @@ bool apply(Controls& controls, Action action, double aspect);
 bool takes_hold(const Input& input);
 bool takes_hold(Action action);
 
-/// What is left of the mouse's motion in hand mode: the part against the force counts less, down to a quarter at the greatest force. Out of
-/// the thing that pushes, and along it, the hand goes with the mouse.
+/// What is left of a motion of the hand in hand mode: the part against the force counts less, down to a quarter at the greatest force. Out
+/// of the thing that pushes, and along it, the hand goes with the mouse.
 Vec3 yielding(const Vec3& motion, const Vec3& force_n, double max_force_n);
 
 /// Turns the eye about the target: `yaw` about the view's up, `pitch` (radians, upwards) short of the poles.

@@ -2,49 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/app/viewer/shell/ray_span.h"
 #include "engine/field/grid.h"
 
 namespace catena::app {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMaxSteps = 4000;
-
-struct Span {
-  double enter = 0, leave = kInfinity;
-  bool empty() const { return !(enter < leave); }
-};
-
-/// Where the ray lies within the half space that a plane keeps.
-void cut(Span& span, const render::Ray& ray, const Plane& plane) {
-  const double rate = dot(plane.normal, ray.direction), start = dot(plane.normal, ray.origin - plane.point);
-  if (rate == 0) {
-    if (start < 0) span.leave = -kInfinity;
-  } else if (rate > 0) {
-    span.enter = std::max(span.enter, -start / rate);
-  } else {
-    span.leave = std::min(span.leave, -start / rate);
-  }
-}
-
-Span domain_span(const field::Field& field, const render::Ray& ray) {
-  const Vec3 o = field.mapping().index_from_world(ray.origin), d = field.mapping().index_from_world_linear * ray.direction;
-  const field::Box& box = field.index_box();
-  Span span;
-  for (int a = 0; a < 3; ++a) {
-    if (d[a] == 0) {
-      if (o[a] < box.lo[a] || o[a] > box.hi[a]) span.leave = -kInfinity;
-      continue;
-    }
-    const double s = (box.lo[a] - o[a]) / d[a], t = (box.hi[a] - o[a]) / d[a];
-    span.enter = std::max(span.enter, std::min(s, t));
-    span.leave = std::min(span.leave, std::max(s, t));
-  }
-  return span;
-}
 
 double factor_at(const std::vector<std::array<double, 2>>& rows, double x) {
   if (rows.empty()) return 1;
@@ -162,6 +128,15 @@ std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, dou
   const auto place = pick_volume(packet, ray, opaque ? dot(behind - ray.origin, ray.direction) : kInfinity);
   if (!opaque || (place && place->opacity >= kHalfOpaque)) return place;
   return PickedPlace{behind, id, false};
+}
+
+std::optional<PickedPlace> pick_thing(const render::FramePacket& packet, double x, double y) {
+  if (!packet.eyes.empty()) return std::nullopt;
+  const render::Camera camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
+  const render::Ray ray = render::ray_through(camera, x, y);
+  const auto solid = pick_solid(packet, ray, kInfinity);
+  const auto place = pick_volume(packet, ray, solid ? dot(solid->world - ray.origin, ray.direction) : kInfinity);
+  return solid && !(place && place->opacity >= kHalfOpaque) ? solid : place;
 }
 
 std::string object_words(const render::FramePacket& packet, std::uint32_t id) {

@@ -31,6 +31,14 @@ std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const 
 /// none.
 std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, double y, double depth, std::uint32_t id);
 
+/// The nearest solid thing on the ray, up to `farthest`: isosurfaces, slices, meshes, tubes, opaque or not, of which the clip planes keep
+/// something there. Not the hand, nor aids and widgets: it is what the hand can be put onto. Isosurfaces: the first change of sign in
+/// steps of half a voxel, refined by bisection; a tube: where the ray enters its cylinder.
+std::optional<PickedPlace> pick_solid(const render::FramePacket& packet, const render::Ray& ray, double farthest);
+
+/// What a picture of the packet without the hand would show in its place `x, y`: as pick, without a picture. Nothing where there are eyes.
+std::optional<PickedPlace> pick_thing(const render::FramePacket& packet, double x, double y);
+
 /// "isosurface density"; empty for 0 and for ids of no object.
 std::string object_words(const render::FramePacket& packet, std::uint32_t id);
 

@@ -1,11 +1,11 @@
 #include "engine/app/viewer/shell/picture_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "engine/app/viewer/shell/file_list.h"
-#include "engine/app/viewer/shell/pick.h"
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
 #include "engine/scene/units.h"
@@ -184,6 +184,39 @@ void PictureView::update_values() {
   const auto texel = screen_->pick(x, y);
   if (!texel) return;
   if (const auto place = pick(*shown_, x, y, texel->depth, texel->id)) state.pointer = at(place->world, object_words(*shown_, place->id));
+}
+
+std::optional<PickedPlace> PictureView::picked_at(double window_x, double window_y) const {
+  const Area& area = shared_.state.area;
+  if (!shown_ || shared_.state.untitled || !area.contains(window_x, window_y)) return std::nullopt;
+  return pick_thing(*shown_, (window_x - area.x) / area.width * shown_->width, (window_y - area.y) / area.height * shown_->height);
+}
+
+std::optional<PickedPlace> PictureView::under_pointer() const {
+  const ViewState& state = shared_.state;
+  return state.pointer_on_picture ? picked_at(state.pointer_x, state.pointer_y) : std::nullopt;
+}
+
+std::string PictureView::item_of(std::uint32_t id) const {
+  return shown_ && id > 0 && id <= shown_->objects.size() ? shown_->objects[id - 1].item : std::string();
+}
+
+std::optional<Vec3> PictureView::seen_place(const std::string& item) const {
+  constexpr int kLattice = 24;
+  if (const auto here = under_pointer(); here && item_of(here->id) == item) return here->world;
+  const Area& area = shared_.state.area;
+  std::optional<Vec3> place;
+  double least = 2;
+  for (int j = 0; j < kLattice; ++j)
+    for (int i = 0; i < kLattice; ++i) {
+      const double x = (i + 0.5) / kLattice, y = (j + 0.5) / kLattice, away = std::hypot(x - 0.5, y - 0.5);
+      if (away >= least) continue;
+      const auto there = picked_at(area.x + x * area.width, area.y + y * area.height);
+      if (!there || item_of(there->id) != item) continue;
+      least = away;
+      place = there->world;
+    }
+  return place;
 }
 
 // ---- to a file ----

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/app/viewer/shell/pick.h"
 #include "engine/app/viewer/shell/shader_reload.h"
 #include "engine/app/viewer/shell/shared.h"
 
@@ -46,6 +47,12 @@ class PictureView {
   void damage() { damaged_ = true; }
   /// Another scene: nothing of the last picture counts.
   void forget();
+  /// What lies under the pointer beside the hand; nothing where it is not on the picture, or the picture has several eyes.
+  std::optional<PickedPlace> under_pointer() const;
+  /// A place where the item ("isosurfaces[0]") is seen: under the pointer, or else the nearest to the middle of the picture on a lattice.
+  std::optional<Vec3> seen_place(const std::string& item) const;
+  /// "isosurfaces[0]"; empty: an id of no item.
+  std::string item_of(std::uint32_t id) const;
   /// The pointer may be over something else.
   void look_again() { picked_stale_ = true; }
 
@@ -58,6 +65,7 @@ class PictureView {
 
  private:
   Result<render::FramePacket> packet(std::uint32_t width, std::uint32_t height) const;
+  std::optional<PickedPlace> picked_at(double window_x, double window_y) const;
   void tell_notes() const;
   void update_values();
 

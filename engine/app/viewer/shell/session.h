@@ -49,6 +49,8 @@ class Session {
   void carry_out();
   void carry_out(const Command& command);
   void act(Action action);
+  void begin_hand();
+  void feel(const std::string& item, std::optional<Vec3> at);
   void close();
 
   Gui gui_;

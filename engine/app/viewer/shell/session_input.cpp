@@ -1,6 +1,7 @@
 // The one place where commands are carried out.
 #include <utility>
 
+#include "engine/app/viewer/edit/feel.h"
 #include "engine/app/viewer/shell/session.h"
 
 namespace catena::app {
@@ -38,15 +39,16 @@ void Session::carry_out(const Command& command) {
     scene.scene().stereo.mode = asked.mode;
     changed_ = true;
   };
-  std::visit(Overloaded{[&](Action action) { act(action); },
-                        [&](const Edit& edit) { state.say_if_wrong(scene.apply(edit.edits, edit.what, edit.drag)); },
-                        [&](const OpenFile& file) { files_.open(file.path); }, [&](const DropFile& file) { files_.drop(file.path); },
-                        [&](const SaveAs& file) { files_.save_as(file.path); }, [&](GiveUpSaving) { files_.give_up_saving(); },
-                        [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
-                        [&](AnswerToLeft answer) { files_.answer(answer); },
-                        [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); },
-                        [&](EstimateError) { wants_error_ = true; }, choose_stereo, choose_device, record},
-             command);
+  std::visit(
+      Overloaded{[&](Action action) { act(action); },
+                 [&](const Edit& edit) { state.say_if_wrong(scene.apply(edit.edits, edit.what, edit.drag)); },
+                 [&](const OpenFile& file) { files_.open(file.path); }, [&](const DropFile& file) { files_.drop(file.path); },
+                 [&](const SaveAs& file) { files_.save_as(file.path); }, [&](GiveUpSaving) { files_.give_up_saving(); },
+                 [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
+                 [&](AnswerToLeft answer) { files_.answer(answer); },
+                 [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); }, [&](EstimateError) { wants_error_ = true; },
+                 [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); }, choose_stereo, choose_device, record},
+      command);
 }
 
 void Session::act(Action action) {
@@ -86,7 +88,7 @@ void Session::act(Action action) {
     case Action::pulses:
       return toggle(pulses_run_);
     case Action::hand_mode:
-      return toggle(shared_.controls.hand_mode);
+      return shared_.controls.hand_mode ? toggle(shared_.controls.hand_mode) : begin_hand();
     case Action::forces:
       return shared_.hand.set_forces(!shared_.hand.forces());
     case Action::first_view:
@@ -103,6 +105,40 @@ void Session::act(Action action) {
       changed_ = eye_.act(action) || changed_;
       return;
   }
+}
+
+/// The hand goes onto what is under the pointer. A chain that holds nothing yet gets that very thing.
+void Session::begin_hand() {
+  Controls& controls = shared_.controls;
+  controls.hand_mode = true;
+  if (!shared_.hand.is_mouse()) return;
+  const auto under = picture_.under_pointer();
+  const std::string item = under ? picture_.item_of(under->id) : std::string();
+  const scene::World& world = std::as_const(shared_.scene).scene().world;
+  if (world.count<scene::Link>() == 0) {
+    if (!item.empty())
+      feel(item, under->world);
+    else
+      shared_.state.say("nothing is felt yet: point at a thing in the picture and press H, or click Feel beside its name");
+  }
+  controls.under = under ? std::optional(under->world) : std::nullopt;
+  app::begin_hand(controls);
+  shared_.hand.move_mouse(shared_.scene.scene(), controls.hand, controls.buttons);
+}
+
+/// `at`: a place where it is seen.
+void Session::feel(const std::string& item, std::optional<Vec3> at) {
+  SceneHost& scene = shared_.scene;
+  ViewState& state = shared_.state;
+  const double edge = scene.bounds.longest_edge();
+  const auto thing = app::feel(scene.scene(), item, at, shared_.controls.view.position, edge > 0 ? edge : 4);
+  if (!thing) return state.say(thing.error().message, true);
+  if (const std::string by = felt_by(scene.scene(), *thing); !by.empty())
+    return state.say(thing->words + " is felt already, by the link " + by);
+  const Outcome done = scene.apply({{"/chain/-", thing->link}}, "feel " + thing->words, {});
+  if (!done) return state.say(done.error().message, true);
+  shared_.controls.hand_mode = true;
+  state.say("felt: " + thing->words + (shared_.hand.is_mouse() ? ". The pointer is the hand; the wheel pushes, Esc ends it" : ""));
 }
 
 /// What is open above all goes first; the program stays.
@@ -191,8 +227,14 @@ Changed Session::take_piece(Input piece) {
   if (piece.dropped.size() > 1) shared_.state.say("several files were dropped: the last one counts");
   if (!piece.dropped.empty()) commands.push_back(DropFile{piece.dropped.back()});
   carry_out();
-  if (takes_hold(piece)) shared_.controls.turntable = false;
-  return apply(shared_.controls, routed(piece));
+  Controls& controls = shared_.controls;
+  if (takes_hold(piece)) controls.turntable = false;
+  const Input input = routed(piece);
+  if (controls.hand_mode && shared_.hand.is_mouse() && (input.dx != 0 || input.dy != 0)) {
+    const auto under = picture_.under_pointer();
+    controls.under = under ? std::optional(under->world) : std::nullopt;
+  }
+  return apply(controls, input);
 }
 
 /// What the interface holds is not the scene's: a drag belongs to where it began.

@@ -1,0 +1,183 @@
+#include "engine/app/viewer/edit/feel.h"
+
+#include <cmath>
+#include <limits>
+
+#include "engine/app/viewer/edit/chain_edit.h"
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/scene/lines.h"
+#include "engine/scene/write_values.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr std::string_view kVolumes = "volumes";
+
+const haptics::ConstraintType* type_that_feels(std::string_view part) {
+  for (const haptics::ConstraintType& type : haptics::registry())
+    if (type.feels == part) return &type;
+  return nullptr;
+}
+
+/// "isosurfaces" of "isosurfaces[2]".
+std::string part_of(const std::string& item) { return item.substr(0, item.find('[')); }
+
+/// The side of a level on which the eye is: by the gradient where it was pointed at, or else by the field's corners, which are outside.
+const char* side_of_eye(const field::ScalarField& field, double level, const std::optional<Vec3>& at, const Vec3& eye) {
+  field::Cursor cursor;
+  if (at) {
+    const double rises = dot(field.sample(*at, cursor).gradient, eye - *at);
+    if (rises != 0) return rises > 0 ? "above" : "below";
+  }
+  int above = 0;
+  const field::Box& box = field.index_box();
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 corner((k & 1) != 0 ? box.hi.x : box.lo.x, (k & 2) != 0 ? box.hi.y : box.lo.y, (k & 4) != 0 ? box.hi.z : box.lo.z);
+    above += field.sample(field.mapping().world_from_index(corner), cursor).value > level ? 1 : -1;
+  }
+  return above > 0 ? "above" : "below";
+}
+
+/// What an item gives to the link that lies on it: keys and JSON text; and its words.
+struct Given {
+  std::vector<std::pair<std::string, std::string>> keys;
+  std::string words;
+};
+
+Result<Given> given_by(scene::Scene& scene, const scene::Isosurface& surface, const std::optional<Vec3>& at, const Vec3& eye) {
+  const std::string name = name_of(scene, surface.field);
+  CATENA_TRY(const field::AnyField field, scene::use_field(scene, surface.field, surface.where));
+  if (!field.scalar) return Error{in_quotes(name) + " is no scalar field: it has no surface to feel"};
+  const std::string level =
+      surface.level_from ? "{\"widget\": " + scene::text_of(name_of(scene, surface.level_from)) + "}" : scene::text_of(surface.level);
+  return Given{{{"field", scene::text_of(name)},
+                {"level", level},
+                {"free", scene::text_of(std::string(side_of_eye(*field.scalar, surface.level, at, eye)))}},
+               "isosurface " + name + " at " + to_text(surface.level)};
+}
+
+Result<Given> given_by(scene::Scene& scene, const scene::Volume& volume, const std::optional<Vec3>& at, const Vec3& eye) {
+  const std::string name = name_of(scene, volume.field);
+  if (!at) return Error{"no place of volume " + name + " is pointed at: point at it in the picture and press H"};
+  CATENA_TRY(const field::AnyField field, scene::use_field(scene, volume.field, volume.where));
+  if (!field.scalar) return Error{in_quotes(name) + " is no scalar field: it has no surface to feel"};
+  field::Cursor cursor;
+  const field::ScalarSample here = field.scalar->sample(*at, cursor);
+  if (!here.inside || !std::isfinite(here.value)) return Error{"volume " + name + " has no value at the place that is pointed at"};
+  // four digits: a level is a choice, not a measurement
+  const double unit = here.value != 0 ? std::pow(10.0, std::floor(std::log10(std::abs(here.value))) - 3) : 1;
+  const double rounded = std::round(here.value / unit) * unit;
+  const bool fits = rounded > field.scalar->min_value() && rounded < field.scalar->max_value();
+  const double level = fits ? rounded : here.value;
+  return Given{{{"field", scene::text_of(name)},
+                {"level", scene::text_of(level)},
+                {"free", scene::text_of(std::string(side_of_eye(*field.scalar, level, at, eye)))}},
+               "isosurface of volume " + name + " at " + to_text(level)};
+}
+
+Result<Given> given_by(scene::Scene& scene, scene::Entity entity, const scene::StreamlineSet& set, const std::optional<Vec3>& at) {
+  const std::string name = name_of(scene, set.field);
+  Given given{{{"field", scene::text_of(name)}}, "streamline of " + name};
+  if (set.line) given.keys.emplace_back("kind", "\"line\"");
+  if (set.min_speed > 0) given.keys.emplace_back("min_speed", scene::text_of(set.min_speed));
+  if (set.seeds.widget && set.seeds.count == 1) {
+    given.keys.emplace_back("seed", "{\"widget\": " + scene::text_of(name_of(scene, set.seeds.widget)) + "}");
+    return given;
+  }
+  CATENA_TRY(const std::vector<flow::CurvePtr> lines, scene::use_lines(scene, entity));
+  const flow::Curve* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const flow::CurvePtr& line : lines) {
+    for (const flow::Knot& knot : line->knots()) {
+      const Vec3 away = at ? knot.p - *at : Vec3(0.0);
+      if (!(dot(away, away) < least)) continue;
+      least = dot(away, away);
+      nearest = line.get();
+      if (!at) break;
+    }
+  }
+  if (nearest == nullptr) return Error{"streamlines of " + name + " have no line to feel"};
+  given.keys.emplace_back("seed", scene::text_of(nearest->position(0)));
+  return given;
+}
+
+Result<Given> given_by(const scene::Scene& scene, const scene::Slice& slice) {
+  if (slice.where.find("widget") != nullptr) return Error{"this slice follows a widget, which the hand takes hold of itself"};
+  return Given{{{"point", scene::text_of(slice.point)}, {"normal", scene::text_of(slice.normal)}},
+               "slice " + name_of(scene, slice.shown.field)};
+}
+
+Given given_by(const scene::Scene& scene, const scene::SurfaceMesh& surface) {
+  const std::string name = name_of(scene, surface.mesh);
+  return {{{"mesh", scene::text_of(name)}, {"free", "\"above\""}}, "mesh " + name};
+}
+
+/// A copy of the component that was read from `item`: loading a field may move the others.
+template <class T>
+std::optional<T> item_of(const scene::Scene& scene, const std::string& item, scene::Entity* entity = nullptr) {
+  std::optional<T> found;
+  scene.world.each<T>([&](scene::Entity e, const T& part) {
+    if (found || part.where.label != item) return;
+    found = part;
+    if (entity != nullptr) *entity = e;
+  });
+  return found;
+}
+
+Result<Given> given_by(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye) {
+  if (const auto surface = item_of<scene::Isosurface>(scene, item)) return given_by(scene, *surface, at, eye);
+  if (const auto volume = item_of<scene::Volume>(scene, item)) return given_by(scene, *volume, at, eye);
+  scene::Entity entity;
+  if (const auto set = item_of<scene::StreamlineSet>(scene, item, &entity)) return given_by(scene, entity, *set, at);
+  if (const auto slice = item_of<scene::Slice>(scene, item)) return given_by(scene, *slice);
+  if (const auto mesh = item_of<scene::SurfaceMesh>(scene, item)) return given_by(scene, *mesh);
+  return Error{item + " is not there any more"};
+}
+
+}  // namespace
+
+bool can_feel(std::string_view part) { return part == kVolumes || type_that_feels(part) != nullptr; }
+
+Result<FeltThing> feel(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye, double length) {
+  const std::string part = part_of(item);
+  const haptics::ConstraintType* type = type_that_feels(part == kVolumes ? "isosurfaces" : part);
+  if (type == nullptr) return Error{part + " cannot be felt"};
+  CATENA_TRY(const Given given, given_by(scene, item, at, eye));
+  CATENA_TRY(const std::string link, new_link(scene, type->type, at.value_or(eye), length, given.keys));
+  return FeltThing{link, given.words};
+}
+
+std::string felt_by(const scene::Scene& scene, const FeltThing& thing) {
+  const auto wanted = json::parse(thing.link, "link");
+  std::string name;
+  scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    if (!name.empty() || !wanted) return;
+    for (const auto& [key, value] : wanted->members) {
+      if (key == "name" || key == "free" || key == "release") continue;
+      const json::Node* stated = link.node.find(key);
+      if (stated == nullptr || json::node_text(*stated) != json::node_text(value)) return;
+    }
+    name = link.name;
+  });
+  return name;
+}
+
+std::vector<std::string> felt_planes(const scene::Scene& scene, const Vec3& point, const Vec3& normal) {
+  std::vector<std::string> pointers;
+  const auto is = [](const json::Node* node, const Vec3& v) {
+    if (node == nullptr) return false;
+    const auto stated = json::as_vec3(*node, "plane");
+    return stated && *stated == v;
+  };
+  const haptics::ConstraintType* type = type_that_feels("slices");
+  scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    if (type == nullptr || link.type != type->type || !is(link.node.find("point"), point) || !is(link.node.find("normal"), normal)) return;
+    if (const std::string pointer = pointer_of(link.node); !pointer.empty()) pointers.push_back(pointer);
+  });
+  return pointers;
+}
+
+}  // namespace catena::app

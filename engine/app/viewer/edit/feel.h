@@ -1,0 +1,36 @@
+/// "Feel": the link of the chain that lies on a thing that is drawn, so that what is felt is what is seen.
+///   isosurface    the same field and level (or the widget that states it); free on the eye's side
+///   volume        the isosurface at the value of the place that was pointed at
+///   streamlines   the line through the place nearest to the one that was pointed at: its own seed, or the widget that holds it
+///   slice         its plane
+///   mesh          the mesh; free outside
+/// Which type of link that is, its registry says (ConstraintType::feels). The link follows the thing: what changes the one in the window
+/// changes the other in the same step (scene_items.h). Frame thread.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/app/viewer/edit/scene_items.h"
+
+namespace catena::app {
+
+/// Whether items of this part of the scene ("isosurfaces") can be felt.
+bool can_feel(std::string_view part);
+
+struct FeltThing {
+  std::string link;   ///< JSON text, for "/chain/-"
+  std::string words;  ///< "isosurface brain at 45"
+};
+
+/// `item`: where it stands in the scene, "isosurfaces[0]" (json::Node::label). `at`: the place of it that was pointed at, where one was;
+/// a volume needs it. `eye`: where it is seen from. `length`: of all that is there. An error says why it cannot be felt.
+Result<FeltThing> feel(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye, double length);
+
+/// The name of a link that lies on that very thing already; empty: none does.
+std::string felt_by(const scene::Scene& scene, const FeltThing& thing);
+
+/// Pointers to the places and normals of all links that lie on the slice's plane, to be changed along with it: (pointer to the link).
+std::vector<std::string> felt_planes(const scene::Scene& scene, const Vec3& point, const Vec3& normal);
+
+}  // namespace catena::app

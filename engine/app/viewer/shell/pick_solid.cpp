@@ -1,0 +1,120 @@
+// What a ray meets first of the solid things of a packet.
+#include <cmath>
+
+#include "engine/app/viewer/shell/pick.h"
+#include "engine/app/viewer/shell/ray_span.h"
+#include "engine/field/grid.h"
+
+namespace catena::app {
+
+namespace {
+
+constexpr int kMaxSolidSteps = 8000, kBisections = 48;
+
+/// The nearest so far.
+struct Nearest {
+  const render::Ray& ray;
+  double t;
+  std::uint32_t id = 0;
+
+  Vec3 at(double s) const { return ray.origin + s * ray.direction; }
+  void offer(double s, std::uint32_t of) {
+    if (!(s >= 0) || !(s < t)) return;
+    t = s;
+    id = of;
+  }
+};
+
+Span kept(const render::FramePacket& packet, bool clipped, const render::Ray& ray, Span span) {
+  if (clipped)
+    for (const Plane& plane : packet.clip) cut(span, ray, plane);
+  return span;
+}
+
+void meet(Nearest& nearest, const render::IsosurfaceItem& item, Span span) {
+  span.leave = std::min(span.leave, nearest.t);
+  if (span.empty()) return;
+  field::Cursor cursor;
+  const auto over = [&](double t) {
+    const field::ScalarSample s = item.grid->sample(nearest.at(t), cursor);
+    return s.inside ? s.value - item.level : std::nan("");
+  };
+  const double step = std::max(0.5 * item.grid->mapping().smallest_edge(), (span.leave - span.enter) / kMaxSolidSteps);
+  double before = over(span.enter);
+  for (double t = span.enter; t < span.leave;) {
+    const double next = std::min(t + step, span.leave), now = over(next);
+    if (std::isfinite(before) && std::isfinite(now) && (before < 0) != (now < 0)) {
+      double lo = t, hi = next;
+      for (int i = 0; i < kBisections; ++i) {
+        const double middle = 0.5 * (lo + hi);
+        ((over(middle) < 0) == (before < 0) ? lo : hi) = middle;
+      }
+      return nearest.offer(hi, item.id);
+    }
+    before = now;
+    t = next;
+  }
+}
+
+void meet(Nearest& nearest, const render::SliceItem& item, const Span& span) {
+  const double rate = dot(item.normal, nearest.ray.direction);
+  if (rate == 0) return;
+  const double t = dot(item.normal, item.point - nearest.ray.origin) / rate;
+  if (!(t >= span.enter && t <= span.leave)) return;
+  field::Cursor cursor;
+  if (item.grid->sample(nearest.at(t), cursor).inside) nearest.offer(t, item.id);
+}
+
+/// T. Moeller, B. Trumbore, "Fast, minimum storage ray-triangle intersection", J. Graphics Tools 2 (1997), both sides.
+void meet(Nearest& nearest, const render::MeshItem& item, const Span& span) {
+  const std::vector<Vec3>& places = item.geometry->vertices;
+  const std::vector<std::uint32_t>& corners = item.geometry->triangles;
+  const Vec3 d = nearest.ray.direction;
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    const Vec3 &a = places[corners[i]], ab = places[corners[i + 1]] - a, ac = places[corners[i + 2]] - a;
+    const Vec3 p = cross(d, ac);
+    const double det = dot(ab, p);
+    if (det == 0) continue;
+    const Vec3 from = nearest.ray.origin - a;
+    const double u = dot(from, p) / det;
+    if (!(u >= 0 && u <= 1)) continue;
+    const Vec3 q = cross(from, ab);
+    const double v = dot(d, q) / det;
+    if (!(v >= 0 && u + v <= 1)) continue;
+    const double t = dot(ac, q) / det;
+    if (t >= span.enter && t <= span.leave) nearest.offer(t, item.id);
+  }
+}
+
+/// Each piece as an endless cylinder, where the ray enters it between the piece's ends (or within a radius of them).
+void meet(Nearest& nearest, const render::TubeItem& item, const Span& span) {
+  const Vec3 d = nearest.ray.direction;
+  const double r2 = item.radius * item.radius;
+  for (std::size_t i = 0; i + 1 < item.points.size(); ++i) {
+    const Vec3 &a = item.points[i], along = item.points[i + 1] - a, from = nearest.ray.origin - a;
+    const double length2 = dot(along, along);
+    if (!(length2 > 0)) continue;
+    // across the piece
+    const Vec3 across = d - dot(d, along) / length2 * along, start = from - dot(from, along) / length2 * along;
+    const double aa = dot(across, across), b = dot(across, start), c = dot(start, start) - r2, root = b * b - aa * c;
+    if (!(aa > 0) || !(root >= 0)) continue;
+    const double t = (-b - std::sqrt(root)) / aa, share = dot(from + t * d, along) / length2;
+    const double slack = item.radius / std::sqrt(length2);
+    if (share >= -slack && share <= 1 + slack && t >= span.enter && t <= span.leave) nearest.offer(t, item.id);
+  }
+}
+
+}  // namespace
+
+std::optional<PickedPlace> pick_solid(const render::FramePacket& packet, const render::Ray& ray, double farthest) {
+  Nearest nearest{ray, farthest};
+  for (const render::IsosurfaceItem& item : packet.isosurfaces)
+    meet(nearest, item, kept(packet, item.clipped, ray, domain_span(*item.grid, ray)));
+  for (const render::SliceItem& item : packet.slices) meet(nearest, item, kept(packet, item.clipped, ray, domain_span(*item.grid, ray)));
+  for (const render::MeshItem& item : packet.meshes) meet(nearest, item, kept(packet, item.clipped, ray, {}));
+  for (const render::TubeItem& item : packet.tubes) meet(nearest, item, kept(packet, item.clipped, ray, {}));
+  if (nearest.id == 0) return std::nullopt;
+  return PickedPlace{nearest.at(nearest.t), nearest.id, false};
+}
+
+}  // namespace catena::app

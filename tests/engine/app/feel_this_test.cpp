@@ -1,0 +1,213 @@
+// "Feel": what the hand feels is the very thing that is drawn. Random pixels of each kind of thing are pointed at; the link that the window
+// makes of that is felt by the tick of `replay`, and the place where it holds the hand is held against the depth that the picture shows.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/app/tradeoff/results.h"
+#include "engine/app/viewer/edit/feel.h"
+#include "engine/app/viewer/shell/pick.h"
+#include "engine/app/viewer/shell/scene_host.h"
+#include "render/extract/extract.h"
+#include "tests/render/support/frames.h"
+#include "tests/support/mesh_shapes.h"
+
+namespace catena::app {
+namespace feel_this_test {
+
+constexpr int kPixels = 20, kTicks = 400;
+
+class FeelThis : public test::PictureTest {
+ protected:
+  void show(const std::string& text) {
+    test::write_file(folder_ / "scene.json", text);
+    auto document = scene::Document::open(folder_ / "scene.json");
+    ASSERT_TRUE(document) << document.error().message;
+    auto opened = SceneHost::open(std::move(*document), {});
+    ASSERT_TRUE(opened) << opened.error().message;
+    host_.emplace(std::move(*opened));
+    auto packet = render::make_frame(host_->scene(), 320, 240);
+    ASSERT_TRUE(packet) << packet.error().message;
+    packet_ = std::move(*packet);
+    draw(packet_);
+    camera_ = render::make_camera(packet_.view, packet_.width, packet_.height, Bounds());
+  }
+
+  /// A pixel that shows an item of the part, away from its silhouette, and its place.
+  std::optional<PickedPlace> random_place(const std::string& part) {
+    std::uniform_int_distribution<int> column(4, 315), row(4, 235);
+    for (int tries = 0; tries < 4000; ++tries) {
+      const double x = column(random_) + 0.5, y = row(random_) + 0.5;
+      bool inner = true;
+      for (const auto& [dx, dy] : {std::pair{0, 0}, {-3, 0}, {3, 0}, {0, -3}, {0, 3}}) {
+        const auto there = pick_thing(packet_, x + dx, y + dy);
+        inner = inner && there && item_of(*there).starts_with(part);
+      }
+      if (!inner) continue;
+      pixel_ = {x, y};
+      return pick_thing(packet_, x, y);
+    }
+    return std::nullopt;
+  }
+  std::string item_of(const PickedPlace& place) const { return packet_.objects[place.id - 1].item; }
+  double pixel_at(const Vec3& p) const { return render::pixel_size(camera_, render::project(camera_, p)->z); }
+  /// What the picture shows in that pixel: the depth that the device drew.
+  Vec3 drawn_at(double x, double y) {
+    const auto texel = renderer_->pick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    EXPECT_TRUE(texel);
+    return render::unproject(camera_, x, y, texel->depth);
+  }
+
+  struct Felt {
+    Vec3 touched{0.0}, pressed{0.0};  ///< the proxy where the hand is put, and once it is pushed
+    double force_n = 0;
+    Vec3 hand{0.0};
+    std::string words;
+  };
+  /// As the window does: the link, then the hand on the place, then pushed along the view.
+  Felt feel_at(const PickedPlace& place, double push) {
+    Felt felt;
+    const auto thing = feel(host_->scene(), item_of(place), place.world, packet_.view.position, 4);
+    EXPECT_TRUE(thing) << thing.error().message;
+    if (!thing) return felt;
+    felt.words = thing->words;
+    const std::string text = host_->document().text();
+    const std::string with_link = text.substr(0, text.rfind('}')) + ", \"chain\": [" + thing->link + "]}";
+    Hand hand(with_link);
+    const Vec3 ahead = direction(place.world - packet_.view.position);
+    for (int k = 0; k <= kTicks; ++k) {
+      const double share = std::max(0.0, (k - 50) / double(kTicks - 50));
+      felt.hand = place.world + share * push * ahead;
+      const exchange::HapticState& state = hand.at(1e-3 * k, felt.hand);
+      if (k == 0) felt.touched = state.links[0].proxy;
+      felt.pressed = state.links[0].proxy;
+      felt.force_n = norm(state.force_n);
+    }
+    return felt;
+  }
+
+  test::TemporaryFolder folder_;
+  std::optional<SceneHost> host_;
+  render::FramePacket packet_;
+  render::Camera camera_;
+  std::array<double, 2> pixel_{};
+  std::mt19937 random_{20261122};
+};
+
+TEST_F(FeelThis, WhatThePointerShowsIsWhatThePictureShows) {
+  show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 48}, "flow": {"analytic": "hill", "resolution": 32}},
+           "isosurfaces": [{"field": "g", "level": 0.4}], "slices": [{"field": "g", "axis": "x", "at": -0.7}],
+           "streamlines": [{"field": "flow", "radius": 0.03, "length": 3, "seeds": [[0.2, 0.1, -0.4], [0.5, 0.5, 0.1]]}],
+           "clip": [{"plane": {"point": [0.1, 0, 0], "normal": [-1, -0.3, 0.2]}}]})");
+  int things = 0;
+  for (int k = 0; k < 800; ++k) {
+    const double x = std::uniform_int_distribution<int>(0, 319)(random_) + 0.5,
+                 y = std::uniform_int_distribution<int>(0, 239)(random_) + 0.5;
+    const auto place = pick_thing(packet_, x, y);
+    const auto texel = renderer_->pick(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    ASSERT_TRUE(texel);
+    // at an edge either may win
+    bool edge = false;
+    for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+      const auto u = static_cast<std::uint32_t>(std::clamp(int(x) + dx, 0, 319)),
+                 v = static_cast<std::uint32_t>(std::clamp(int(y) + dy, 0, 239));
+      edge = edge || renderer_->pick(u, v)->id != texel->id;
+    }
+    if (edge) continue;
+    EXPECT_EQ(place ? place->id : 0, texel->id) << x << " " << y;
+    if (!place || texel->id == 0) continue;
+    ++things;
+    EXPECT_NEAR(render::project(camera_, place->world)->z, texel->depth, 1.5 * pixel_at(place->world)) << object_words(packet_, place->id);
+  }
+  EXPECT_GT(things, 60);
+}
+
+TEST_F(FeelThis, AnIsosurfaceIsFeltWhereItIsDrawn) {
+  show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 48}}, "isosurfaces": [{"field": "g", "level": 0.37}],
+           "camera": {"position": [5, -3, 2], "target": [0, 0, 0]}, "workspace": {"metres_per_unit": 0.05}})");
+  for (int k = 0; k < kPixels; ++k) {
+    const auto place = random_place("isosurfaces");
+    ASSERT_TRUE(place);
+    const Felt felt = feel_at(*place, 0.05);
+    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world)) << felt.words;
+    EXPECT_LE(norm(felt.touched - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(place->world)) << felt.words;
+    // pressed: the proxy stays on what is drawn
+    const auto at = render::project(camera_, felt.pressed);
+    const Vec3 drawn = drawn_at(std::floor(at->x) + 0.5, std::floor(at->y) + 0.5);
+    EXPECT_LE(norm(drawn - felt.pressed), 3 * pixel_at(felt.pressed)) << "half a pixel sideways on an oblique surface";
+    EXPECT_GT(felt.force_n, 0.05);
+    EXPECT_GT(norm(felt.hand - felt.pressed), 0.01);
+  }
+  EXPECT_EQ(feel_at(*random_place("isosurfaces"), 0.05).words, "isosurface g at 0.37");
+}
+
+TEST_F(FeelThis, AVolumeIsFeltAtTheValueThatIsPointedAt) {
+  show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 48}},
+           "volumes": [{"field": "g", "extinction": [[0.3, 0], [0.31, 40], [1, 40]]}], "workspace": {"metres_per_unit": 0.05}})");
+  for (int k = 0; k < kPixels; ++k) {
+    const auto place = random_place("volumes");
+    ASSERT_TRUE(place);
+    const Felt felt = feel_at(*place, 0.05);
+    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world)) << felt.words;
+    EXPECT_GT(felt.force_n, 0.05);
+  }
+}
+
+TEST_F(FeelThis, AStreamlineIsTheOneThatIsPointedAt) {
+  show(R"({"fields": {"flow": {"analytic": "helix", "resolution": 40}},
+           "streamlines": [{"field": "flow", "radius": 0.04, "length": 2, "seeds": [[0.6, 0, -0.8], [-0.5, 0.2, 0.1], [0, 0.9, 0.4]]}],
+           "workspace": {"metres_per_unit": 0.05}})");
+  std::set<std::string> links;
+  for (int k = 0; k < kPixels; ++k) {
+    const auto place = random_place("streamlines");
+    ASSERT_TRUE(place);
+    links.insert(feel(host_->scene(), item_of(*place), place->world, packet_.view.position, 4)->link);
+    const Felt felt = feel_at(*place, 0.2);
+    EXPECT_LE(norm(felt.touched - place->world), 0.04 + pixel_at(place->world)) << "the line within the tube";
+    EXPECT_GT(felt.force_n, 0.05);
+  }
+  EXPECT_GE(links.size(), 2u) << "the picture shows several lines";
+}
+
+TEST_F(FeelThis, ASliceIsItsPlane) {
+  show(
+      R"({"fields": {"g": {"analytic": "gaussian", "resolution": 32}}, "slices": [{"field": "g", "point": [0, 0.1, 0], "normal": [1, -2, 0.5]}],
+           "workspace": {"metres_per_unit": 0.05}})");
+  for (int k = 0; k < kPixels; ++k) {
+    const auto place = random_place("slices");
+    ASSERT_TRUE(place);
+    const Felt felt = feel_at(*place, 0.1);
+    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world));
+    EXPECT_LE(std::abs(dot(direction(Vec3(1, -2, 0.5)), felt.pressed - Vec3(0, 0.1, 0))), 1e-9);
+    EXPECT_GT(felt.force_n, 0.05);
+  }
+}
+
+TEST_F(FeelThis, AMeshIsItself) {
+  test::write_file(folder_ / "ball.stl", test::binary_stl(test::sphere_soup(24, 0.8)));
+  show(R"({"meshes": [{"name": "ball", "file": ")" + (folder_ / "ball.stl") + R"("}], "workspace": {"metres_per_unit": 0.05}})");
+  for (int k = 0; k < kPixels; ++k) {
+    const auto place = random_place("meshes");
+    ASSERT_TRUE(place);
+    const Felt felt = feel_at(*place, 0.05);
+    EXPECT_LE(norm(felt.touched - place->world), pixel_at(place->world));
+    EXPECT_GT(felt.force_n, 0.05);
+  }
+}
+
+TEST_F(FeelThis, WhatIsFeltAlreadyIsSaidAndWhatCannotBeFeltSaysWhy) {
+  show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 16}}, "isosurfaces": [{"field": "g", "level": 0.5}],
+           "volumes": [{"field": "g"}], "slices": [{"field": "g", "widget": "cut"}], "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}],
+           "chain": [{"name": "skin", "type": "isosurface", "field": "g", "level": 0.5, "free": "below"}]})");
+  const auto thing = feel(host_->scene(), "isosurfaces[0]", std::nullopt, Vec3(9, 9, 9), 4);
+  ASSERT_TRUE(thing);
+  EXPECT_EQ(felt_by(host_->scene(), *thing), "skin");
+  EXPECT_NE(feel(host_->scene(), "volumes[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("point at it"), std::string::npos);
+  EXPECT_NE(feel(host_->scene(), "slices[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("widget"), std::string::npos);
+  EXPECT_FALSE(can_feel("lights"));
+  for (const char* part : {"isosurfaces", "streamlines", "slices", "meshes", "volumes"}) EXPECT_TRUE(can_feel(part)) << part;
+}
+
+}  // namespace feel_this_test
+}  // namespace catena::app
