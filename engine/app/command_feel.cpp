@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/app/command.h"
+#include "engine/app/felt.h"
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/hand/recording.h"
 #include "engine/app/hand/signals.h"
@@ -84,7 +85,7 @@ class StatusLine {
 
 /// Until the time is over or somebody asks to end.
 void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const FeelOptions& options,
-          const Interrupt& interrupt, StatusLine& line) {
+          const Interrupt& interrupt, StatusLine& line, Felt& felt) {
   constexpr double kStep = 0.02, kLine = 1;
   const std::int64_t start = now_ns();
   exchange::HapticState state;
@@ -94,7 +95,7 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
   while (!interrupt.asked()) {
     const double t = 1e-3 * ms_since(start);
     if (options.seconds > 0 && t >= options.seconds) return;
-    servo.take(state);
+    if (servo.take(state)) felt.add(state);
     line.tell(device.status_text());
     if (recording.failed() && !std::exchange(told_of_recording, true))
       line.say(options.record + ": the recording has stopped; the rest is felt only");
@@ -137,11 +138,13 @@ Outcome feel(const FeelOptions& options) {
   print_out(fmt::format("{} at {:g} Hz, forces {}; 1 world unit is {:.4g} m of the hand{}\n", printable(hand.device->capabilities().name),
                         servo_options.rate_hz, options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends"));
   StatusLine line(*program);
-  wait(servo, *hand.device, recording, options, interrupt, line);
+  Felt felt;
+  wait(servo, *hand.device, recording, options, interrupt, line, felt);
   servo.stop();
   line.end();
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
+  print_out(felt.sentences(*program), kPatienceMs);
   print_out(haptics::servo_summary(servo.report(), printable(hand.device->capabilities().name)), kPatienceMs);
   return interrupt.outcome();
 }

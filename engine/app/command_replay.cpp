@@ -3,17 +3,16 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <memory>
 #include <optional>
 
 #include "engine/app/command.h"
+#include "engine/app/felt.h"
 #include "engine/app/felt_cursor.h"
 #include "engine/app/replay_log.h"
 #include "engine/app/tick_csv.h"
 #include "engine/base/csv.h"
 #include "engine/base/output_file.h"
-#include "engine/base/text.h"
 #include "haptics/device/registry.h"
 #include "haptics/extract/extract.h"
 #include "haptics/servo/limits_for.h"
@@ -22,33 +21,6 @@
 namespace catena::app {
 
 namespace {
-
-// What the hand felt, for a person to read.
-struct Felt {
-  double max_force_n = 0, mean_force_n = 0;
-  std::array<double, exchange::kMaxLinks> max_gap{};
-  std::array<std::map<std::string, std::uint64_t>, exchange::kMaxLinks> statuses;
-
-  void add(const exchange::HapticState& state) {
-    const double force = norm(state.force_n);
-    max_force_n = std::max(max_force_n, force);
-    mean_force_n += force;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(state.link_count); ++i) {
-      max_gap[i] = std::max(max_gap[i], state.links[i].gap);
-      ++statuses[i][exchange::status_word(state.links[i].status)];
-    }
-  }
-  void print(const haptics::Program& program, const haptics::ReplayStats& stats) const {
-    fmt::print("{} ticks, {:.3f} us each (p99 {:.3f} us), force up to {:.3g} N, {:.3g} N on average\n", stats.ticks,
-               1e-3 * stats.tick_ns_p50, 1e-3 * stats.tick_ns_p99, max_force_n,
-               stats.ticks > 0 ? mean_force_n / static_cast<double>(stats.ticks) : 0.0);
-    for (std::size_t i = 0; i < program.links.size(); ++i) {
-      fmt::print("  {}: up to {:.4g} from its probe;", printable(program.links[i].name), max_gap[i]);
-      for (const auto& [word, count] : statuses[i]) fmt::print(" {} {}", word, count);
-      fmt::print("\n");
-    }
-  }
-};
 
 // A scene that names its device is replayed as that device would give it; without one nothing is limited.
 Result<haptics::Limits> device_limits(const scene::Scene& scene, const std::string& path) {
@@ -122,7 +94,7 @@ Outcome replay_scene(const ReplayOptions& options) {
     files.push_back(&*json);
   }
   CATENA_CHECK(commit_all(files));
-  felt.print(*program, stats);
+  fmt::print("{}", felt.text(*program, stats));
   fmt::print("{}", use.text(*program));
   return Done{};
 }

@@ -46,7 +46,7 @@ Keys grid_keys() {
           schema::any_of("valid", {schema::text("", ""), schema::null()},
                          "The BoolGrid that masks the field; null for none. The default one may be missing.")
               .by_default("\"valid\""),
-          unit_key()};
+          unit_key(), schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
 }
 
 /// What a file without a header says of itself in the scene.
@@ -110,8 +110,10 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
       request.valid_required = true;
     }
   }
+  CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
   if (const std::string fault = file_fault(request.path); !replaced && !fault.empty())
-    return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + fault);
+    return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + fault +
+                                                  (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
   source.file = std::move(request);
   return Done{};
 }

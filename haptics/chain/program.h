@@ -54,7 +54,7 @@ struct Link {
   Indication indication;
   Align align;
   double release = 0;        ///< baselines only: lets go where |probe - proxy| >= release, world units; 0: never
-  bool one_sided = false;    ///< baselines only: it has a free side
+  bool one_sided = false;    ///< it has a free side; it is told here for the baselines and for what a person reads
   std::uint64_t recipe = 0;  ///< what it was built from: links of the same name and recipe keep their state; 0: of the same object
 };
 

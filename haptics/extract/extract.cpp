@@ -45,7 +45,6 @@ Result<json::Node> node_for_baseline(const json::Node& from, CouplingMethod meth
     CATENA_TRY(link.release, json::as_number(*release, "release", json::Range::positive));
     std::erase_if(node.members, [](const auto& member) { return member.first == "release"; });
   }
-  if (const json::Node* side = from.find("free"); side != nullptr && has("free")) link.one_sided = side->string != "none";
   if (method == CouplingMethod::linear && has("follow") && node.find("follow") == nullptr && node.find("method") == nullptr) {
     json::Node online;
     online.kind = json::Kind::string;
@@ -84,6 +83,7 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
   CATENA_TRY(const bool enabled, json::get_boolean(from, "enabled", true));
   link.on.never = !enabled;
   CATENA_TRY(link.indication, read_indication(from));
+  if (const json::Node* side = from.find("free")) link.one_sided = side->string != "none";
   if (coupling.method == CouplingMethod::chain) {
     CATENA_TRY(link.constraint, build_constraint(from, noting));
   } else {

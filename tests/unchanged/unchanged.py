@@ -10,6 +10,7 @@ are left out of the comparison, nothing else. The exceptions: lines
 """
 import argparse
 import fnmatch
+import glob
 import json
 import math
 import os
@@ -115,7 +116,7 @@ def main():
     chain_schema = json.loads(run(programs[0], ["info", "--schema"], folders[0])[1])
     if "items" not in chain_schema:  # a schema of whole scenes
         chain_schema = chain_schema["properties"]["chain"]
-    cases = [("assets/scenes/" + n, None) for n in sorted(os.listdir(os.path.join(ROOT, "assets", "scenes"))) if n.endswith(".json")]
+    cases = [(name, None) for name in sorted(glob.glob("assets/scenes/**/*.json", root_dir=ROOT, recursive=True))]
     cases += [(name + ".json", text) for name, text in scenes.all_of(chain_schema, options.generated, options.bad)]
     cases = [case for case in cases if options.only in case[0]]
 

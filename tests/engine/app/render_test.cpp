@@ -241,14 +241,14 @@ TEST(Render, CombustorIsSeenAndFeltFromOneScene) {
   const std::string assets = test::source_dir() + "/assets/";
   const test::TemporaryFolder folder;
   const auto felt =
-      program({"replay", assets + "scenes/combustor.json", "--probe", assets + "probes/combustor.csv", "-o", folder / "t.csv"});
+      program({"replay", assets + "scenes/data/combustor.json", "--probe", assets + "probes/combustor.csv", "-o", folder / "t.csv"});
   ASSERT_EQ(felt.exit_code, 0) << felt.err;
   const test::Table ticks = test::Table::read(folder / "t.csv");
   int both = 0;
   for (std::size_t row = 0; row < ticks.rows(); ++row)
     both += ticks.word(row, "curve_status") == "OK" && ticks.word(row, "surface_status") == "OK";
   EXPECT_GT(both, 100) << "the hand is on the streamline and pressed into the isosurface";
-  const auto seen = program({"render", assets + "scenes/combustor.json", "--probe", assets + "probes/combustor.csv", "-o",
+  const auto seen = program({"render", assets + "scenes/data/combustor.json", "--probe", assets + "probes/combustor.csv", "-o",
                              test::binary_dir() + "/app-combustor.png", "--size", "256x192", "--validation"});
   EXPECT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_EQ(seen.err.find("validation"), std::string::npos) << seen.err;

@@ -341,4 +341,27 @@ TEST(Replay, OrientationsComeBackAsRotationalProxiesAndTorque) {
   EXPECT_EQ(plain.header().size(), 4u + 2 * 7 + 3);
 }
 
+TEST(Replay, SaysWhatWasFeltInASentenceForEachLink) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", R"({"fields": {"ball": {"analytic": "sphere"}}, "workspace": {"metres_per_unit": 0.05},
+    "coupling": {"stiffness": 300, "max_force": 2.5},
+    "chain": [{"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.25},
+              {"name": "rail", "type": "line", "point": [0, 0, 0], "direction": [1, 0, 0]},
+              {"name": "far", "type": "sphere", "center": [9, 0, 0], "radius": 1, "free": "above"}]})");
+  // From outside straight in, to a depth of 0.3 units, in half a second: 15 mm of the hand.
+  std::string path = "t,x,y,z\n";
+  for (int k = 0; k <= 500; ++k) path += to_text(1e-3 * k) + "," + to_text(1.2 - 1e-3 * k) + ",0,0\n";
+  test::write_file(folder / "p.csv", path);
+  const ProgramResult run = catena_program({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "t.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  // it lets go at 0.25 units, 12.5 mm: 3.8 N, of which the coupling passes 2.5 N
+  EXPECT_NE(run.out.find("  skin: pressed 12.5 mm deep, own share at most 2.5 N; held 0.25 of 0.50 s, let go once. Gap 0.2"),
+            std::string::npos)
+      << run.out;
+  EXPECT_NE(run.out.find("  rail: pulled up to 0 mm off, own share at most 0 N; held 0.50 of 0.50 s. Gap 0 units; ticks OK 501\n"),
+            std::string::npos)
+      << run.out;
+  EXPECT_NE(run.out.find("  far: not touched. Gap 0 units; ticks FREE 501\n"), std::string::npos) << run.out;
+}
+
 }  // namespace replay_test

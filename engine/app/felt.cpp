@@ -1,0 +1,81 @@
+#include "engine/app/felt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/text.h"
+#include "engine/base/vec.h"
+
+namespace catena::app {
+
+namespace {
+
+bool holds(exchange::Status status) {
+  using exchange::Status;
+  return status != Status::free && status != Status::released && status != Status::no_surface && status != Status::bad_probe;
+}
+
+/// "12.5 mm", or "3 m" from one metre on.
+std::string hand_length(double metres) { return metres < 1 ? fmt::format("{:.3g} mm", 1e3 * metres) : fmt::format("{:.3g} m", metres); }
+
+}  // namespace
+
+void Felt::add(const exchange::HapticState& state) {
+  const double step_s = begun_ ? state.t_s - last_s_ : 0;
+  if (!begun_) first_s_ = state.t_s;
+  begun_ = true;
+  last_s_ = state.t_s;
+  const double force_n = norm(state.force_n);
+  max_force_n_ = std::max(max_force_n_, force_n);
+  summed_force_n_ += force_n;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(state.link_count); ++i) {
+    const exchange::LinkReport& link = state.links[i];
+    Touch& touch = touches_[i];
+    ++touch.statuses[exchange::status_word(link.status)];
+    touch.max_gap = std::max(touch.max_gap, link.gap);
+    touch.max_force_n = std::max(touch.max_force_n, norm(link.force_n));
+    const bool now = holds(link.status);
+    if (now) touch.held_s += step_s;
+    if (now && !touch.holding) ++touch.holds;
+    if (touch.holding && link.status == exchange::Status::released) ++touch.let_go;
+    touch.holding = now;
+  }
+}
+
+std::string Felt::sentence(const Touch& touch, const haptics::Link& link, const haptics::Program& program) const {
+  if (touch.holds == 0) return "not touched";
+  const std::string length = hand_length(program.metres_per_unit * touch.max_gap);
+  const double share_n = std::min({touch.max_force_n, program.coupling.max_force_n, program.limits.max_force_n});
+  std::string text = link.one_sided ? fmt::format("pressed {} deep", length) : fmt::format("pulled up to {} off", length);
+  text += fmt::format(
+      "{}; held {:.2f} of {:.2f} s",
+      program.links.size() == 1 ? fmt::format(", at most {:.2g} N", max_force_n_) : fmt::format(", own share at most {:.2g} N", share_n),
+      touch.held_s, last_s_ - first_s_);
+  if (touch.let_go == 1) text += ", let go once";
+  if (touch.let_go > 1) text += fmt::format(", let go {} times", touch.let_go);
+  return text;
+}
+
+std::string Felt::sentences(const haptics::Program& program) const {
+  std::string text;
+  for (std::size_t i = 0; i < program.links.size(); ++i)
+    text += printable(program.links[i].name) + ": " + sentence(touches_[i], program.links[i], program) + "\n";
+  return text;
+}
+
+std::string Felt::text(const haptics::Program& program, const haptics::ReplayStats& stats) const {
+  std::string text = fmt::format("{} ticks, {:.3f} us each (p99 {:.3f} us), force up to {:.3g} N, {:.3g} N on average\n", stats.ticks,
+                                 1e-3 * stats.tick_ns_p50, 1e-3 * stats.tick_ns_p99, max_force_n_,
+                                 stats.ticks > 0 ? summed_force_n_ / static_cast<double>(stats.ticks) : 0.0);
+  for (std::size_t i = 0; i < program.links.size(); ++i) {
+    const Touch& touch = touches_[i];
+    text += fmt::format("  {}: {}. Gap {:.4g} units; ticks", printable(program.links[i].name), sentence(touch, program.links[i], program),
+                        touch.max_gap);
+    for (const auto& [word, count] : touch.statuses) text += fmt::format(" {} {}", word, count);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace catena::app
