@@ -26,30 +26,43 @@ class ComposePass final : public Pass {
   Outcome record(vk::Commands& commands, Frame& frame) override;
 
  private:
+  Result<const vk::Pipeline*> pipeline(Frame& frame, bool ghost);
   Upsampler upsample_;
   std::map<std::pair<VkFormat, std::uint32_t>, vk::Pipeline> pipelines_;
   vk::Buffer uniform_;
 };
 
-Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
-  Targets& targets = frame.targets;
-  const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume), ghost = frame.has(target::ghost);
-  const std::array<float, 4>& background = frame.packet.background;
-  if (frame.half_lattice) {
-    CATENA_ASSERT(!ghost);  // nothing opaque is drawn with it, so no hand
-    return upsample_.record(commands, *frame.half_lattice, opaque ? &targets.opaque_color : nullptr, targets.none, background,
-                            frame.half_area, targets.picture);
-  }
-
-  vk::Pipeline& pipeline = pipelines_[{targets.picture_format, (opaque ? 1u : 0u) | (volume ? 2u : 0u) | (ghost ? 4u : 0u)}];
+Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost) {
+  const VkFormat format = frame.targets.picture_format;
+  const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
+  vk::Pipeline& pipeline = pipelines_[{format, (opaque ? 1u : 0u) | (volume ? 2u : 0u) | (ghost ? 4u : 0u)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kComposeVertexShader;
     info.fragment = kComposeFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}, {3, vk::Resource::texture}};
     info.constants = {opaque, volume, ghost};
-    info.colors = {targets.picture_format};
+    info.colors = {format};
     CATENA_TRY(pipeline, vk::Pipeline::create(frame.device, info));
+  }
+  return &pipeline;
+}
+
+/// All of it without the ghost, then once more what the ghost's area holds.
+Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
+  Targets& targets = frame.targets;
+  const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
+  const bool ghost = frame.has(target::ghost) && frame.ghost_area.extent.width > 0 && frame.ghost_area.extent.height > 0;
+  const std::array<float, 4>& background = frame.packet.background;
+  if (frame.half_lattice) {
+    CATENA_ASSERT(!ghost);  // nothing opaque is drawn with it, so no hand
+    return upsample_.record(commands, *frame.half_lattice, opaque ? &targets.opaque_color : nullptr, targets.none, background,
+                            frame.half_area, targets.picture);
+  }
+  CATENA_TRY(const vk::Pipeline* plain, pipeline(frame, false));
+  const vk::Pipeline* with_ghost = nullptr;
+  if (ghost) {
+    CATENA_TRY(with_ghost, pipeline(frame, true));
   }
   shared::ComposeData data{};
   data.background = {background[0], background[1], background[2], background[3]};
@@ -59,8 +72,13 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
                                   {1, vk::Resource::texture, nullptr, opaque ? &targets.opaque_color : &targets.none, nullptr},
                                   {2, vk::Resource::texture, nullptr, volume ? &targets.volume : &targets.none, nullptr},
                                   {3, vk::Resource::texture, nullptr, ghost ? &targets.ghost : &targets.none, nullptr}};
-  commands.bind(pipeline, bindings);
+  commands.bind(*plain, bindings);
   commands.draw_triangle();
+  if (with_ghost) {
+    commands.scissor(frame.ghost_area);
+    commands.bind(*with_ghost, bindings);
+    commands.draw_triangle();
+  }
   commands.end_pass();
   return Done{};
 }

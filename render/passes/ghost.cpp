@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 
 #include "engine/base/result.h"
 #include "render/passes/passes.h"
@@ -33,13 +34,17 @@ class GhostPass final : public Pass {
 
   /// The depth buffer starts anew: what is solid is drawn, and a ghost is hidden by nothing but itself.
   Outcome record(vk::Commands& commands, Frame& frame) override {
-    frame.targets.begin(commands, kWrites, kWrites);
-    if (frame.ghost_indices > 0) {
-      CATENA_TRY(const vk::Binding numbers, frame.ghosts->frame_binding(frame.device, frame.rays));
-      const vk::Binding bindings[] = {numbers, {1, vk::Resource::texture, nullptr, &frame.targets.opaque_id, nullptr}};
-      commands.bind(pipeline_, bindings);
-      frame.ghosts->draw(commands, frame.ghost_indices);
-    }
+    frame.ghost_area = {};
+    if (frame.ghost_indices == 0) return Done{};
+    std::array<Vec3, 8> corners;
+    for (int i = 0; i < 8; ++i) corners[std::size_t(i)] = frame.ghosts->bounds().corner(i);
+    frame.ghost_area = covered_area(corners, frame.rays.camera);
+    if (frame.ghost_area.extent.width == 0 || frame.ghost_area.extent.height == 0) return Done{};
+    CATENA_TRY(const vk::Binding numbers, frame.ghosts->frame_binding(frame.device, frame.rays));
+    const vk::Binding bindings[] = {numbers, {1, vk::Resource::texture, nullptr, &frame.targets.opaque_id, nullptr}};
+    frame.targets.begin(commands, kWrites, kWrites, frame.ghost_area);
+    commands.bind(pipeline_, bindings);
+    frame.ghosts->draw(commands, frame.ghost_indices);
     commands.end_pass();
     return Done{};
   }

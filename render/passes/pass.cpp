@@ -92,7 +92,7 @@ vk::Image& Targets::image(TargetSet one) {
   }
 }
 
-void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared) {
+void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared, const std::optional<VkRect2D>& area) {
   std::vector<vk::ColorTarget> colors;
   for (const TargetSet one :
        {target::opaque_color, target::opaque_depth, target::opaque_id, target::volume, target::picture, target::ghost}) {
@@ -103,7 +103,7 @@ void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared)
   vk::DepthTarget depth;
   if ((writes & target::depth_buffer) != 0)
     depth = {&depth_buffer, (cleared & target::depth_buffer) != 0 ? std::optional(0.0f) : std::nullopt};
-  commands.begin_pass(colors, depth);
+  commands.begin_pass(colors, depth, area);
 }
 
 Result<std::shared_ptr<const GridMirror>> Frame::mirror(const field::ScalarGrid& grid) const {

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -60,8 +61,8 @@ struct Targets {
   /// Bytes that ensure() would have to add for these.
   std::uint64_t bytes_to_come(std::uint32_t width, std::uint32_t height, TargetSet needed) const;
   vk::Image& image(TargetSet one);
-  /// Begins rendering into `writes`; what `cleared` names starts empty, the rest keeps what is there.
-  void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared);
+  /// Begins rendering into `writes`, within `area` if there is one; what `cleared` names starts empty, the rest keeps what is there.
+  void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared, const std::optional<VkRect2D>& area = {});
 };
 
 class Triangles;
@@ -84,6 +85,7 @@ struct Frame {
   /// The hands that shine through what hides them: the first indices of the cursor's triangles. The cursor's pass states them in prepare().
   Triangles* ghosts = nullptr;
   std::uint32_t ghost_indices = 0;
+  VkRect2D ghost_area{};  ///< the pixels of target::ghost that hold anything; the others were never cleared
 
   bool has(TargetSet targets_) const { return (written & targets_) != 0; }
   /// The grid on the device, in the texel format that this packet asks for. Kept while packets name it.

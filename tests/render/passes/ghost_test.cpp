@@ -208,6 +208,24 @@ TEST_F(Ghost, IsThereInBothEyesAndInEveryTile) {
     }
 }
 
+TEST_F(Ghost, AHandBesideThePictureOrAroundTheEyeDoesNoHarm) {
+  FramePacket packet = inside_ball(true);
+  const Picture before = draw(packet);
+  packet.cursors[0].probe.x = 60;
+  FramePacket off = packet;
+  off.cursors[0].ghost = false;
+  EXPECT_EQ(max_difference(draw(packet), draw(off)), 0);
+  packet.cursors[0].size = 0;  // nothing is drawn
+  EXPECT_EQ(max_difference(draw(packet), draw(off)), 0);
+  // the eye is within the ball and sees it from inside, behind a part of the surface
+  packet = packet_of({16, 5, 16}, {16, 16, 16}, 60);
+  packet.isosurfaces.push_back(ball());
+  packet.cursors.push_back(hand(16, true));
+  packet.cursors[0].size = 12;
+  draw(packet, {}, "around");
+  EXPECT_EQ(max_difference(draw(inside_ball(true)), before), 0);
+}
+
 TEST_F(Ghost, ADropLineLeadsToItsFoot) {
   FramePacket packet = inside_ball(true);
   packet.cursors[0].probe = {18, 16, 18};
