@@ -165,9 +165,11 @@ void carry_over(Scene& old, Scene& fresh) {
   carry_widgets(old, fresh);
   fresh.phase = old.phase;
   Cursor& cursor = fresh.world.get<Cursor>(fresh.cursor);
-  const double size = cursor.size;
+  const Cursor said = cursor;
   cursor = std::move(old.world.get<Cursor>(old.cursor));
-  cursor.size = size;
+  cursor.size = said.size;
+  cursor.ghost = said.ghost;
+  cursor.drop_line = said.drop_line;
 }
 
 }  // namespace catena::scene

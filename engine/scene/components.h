@@ -203,6 +203,8 @@ struct Cursor {
   Vec3 force_n{0.0};
   double size = 0;  ///< glyph radius, world units; 0: fitted
   bool visible = false;
+  bool ghost = true;           ///< shines through what hides it
+  bool drop_line = false;      ///< a line leads down to the floor of what is drawn
   bool pseudo_haptic = false;  ///< nothing pushes the hand: lag and colour show the force
 };
 

@@ -167,6 +167,11 @@ const Table<Cursor>& cursor_table() {
              return Done{};
            });
     t.bind(schema::number("size", "world", "Radius of its ball.").positive().by_default("fitted"), &Cursor::size);
+    t.bind(schema::boolean("ghost", "Hand, proxies and force shine through what hides them."), &Cursor::ghost);
+    t.bind(schema::boolean("drop_line",
+                           "A thin line from the hand down to the floor of the domain, with a small cross where it meets it, says how deep "
+                           "the hand is."),
+           &Cursor::drop_line);
     return t;
   }();
   return table;

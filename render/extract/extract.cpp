@@ -98,11 +98,29 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
     CursorItem item{
         cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving, packet.add_object("cursor", "")};
     if (cursor.pseudo_haptic) item.strain = strain_of(scene, cursor);
+    item.ghost = cursor.ghost;
+    if (cursor.drop_line) item.foot = item.probe;  // extract_feet lowers it
     item.active.resize(item.proxies.size(), true);
     item.leaving.resize(item.proxies.size(), 0.0);
     if (!(item.size > 0)) item.size = std::max(kCursorShare * (drawn.empty() ? 4.0 : drawn.diagonal()), kCursorOverTube * widest_tube);
     packet.cursors.push_back(std::move(item));
   });
+}
+
+/// Where the drop lines end: below the probe on the ground, if the scene states one, else on the lowest face of the box of what is drawn,
+/// along the world's axis that the view's up is nearest to. Nothing is dropped from below that, or where nothing is drawn.
+void extract_feet(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  const Vec3 up = scene.ground ? Vec3(0, 0, 1) : packet.view.up;
+  int axis = 2;
+  for (const int other : {1, 0})
+    if (std::fabs(up[other]) > std::fabs(up[axis])) axis = other;
+  const double sign = up[axis] < 0 ? -1 : 1;
+  for (CursorItem& cursor : packet.cursors) {
+    if (!cursor.foot) continue;
+    const double floor = scene.ground ? ground_height(*scene.ground, drawn) : (sign > 0 ? drawn.lo : drawn.hi)[axis];
+    (*cursor.foot)[axis] = floor;
+    if (drawn.empty() || !(sign * (cursor.probe[axis] - floor) > 0)) cursor.foot.reset();
+  }
 }
 
 View view_of(const scene::Scene& scene, const FramePacket& packet) {
@@ -185,6 +203,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   packet.view = view_of(scene, packet);
   // the box, its axes and the ground stay where the data are while the hand goes elsewhere
   const Bounds drawn = drawn_bounds(packet);
+  extract_feet(scene, drawn, packet);
   extract_aids(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
   extract_widgets(scene, data_bounds(packet), packet);
   set_eyes(packet, scene.stereo);

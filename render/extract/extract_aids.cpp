@@ -113,7 +113,7 @@ void add_ground(const scene::Ground& ground, const Bounds& drawn, FramePacket& p
   const double diagonal = bounds.diagonal();
   const double size = ground.size > 0 ? ground.size : ground.tile > 0 ? kTilesAcross * ground.tile : kGroundShare * diagonal;
   const int tiles = std::clamp(static_cast<int>(std::lround(ground.tile > 0 ? size / ground.tile : kTilesAcross)), 1, 1000);
-  const double edge = size / tiles, z = ground.at.value_or(bounds.lo.z - kGroundGap * diagonal);
+  const double edge = size / tiles, z = ground_height(ground, bounds);
   const std::uint32_t id = packet.add_object("ground", "");
   for (int shade = 0; shade < 2; ++shade) {
     auto geometry = std::make_shared<MeshGeometry>();
@@ -150,6 +150,10 @@ FogItem fog_of(const scene::Fog& fog, const Bounds& drawn, const FramePacket& pa
 
 void set_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   if (scene.fog) packet.fog = fog_of(*scene.fog, drawn, packet);
+}
+
+double ground_height(const scene::Ground& ground, const Bounds& drawn) {
+  return ground.at.value_or(drawn.lo.z - kGroundGap * drawn.diagonal());
 }
 
 void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {

@@ -31,6 +31,9 @@ std::vector<scene::Entity> owners_of(const scene::World& world) {
 ///   ground         a checkerboard across z, just below all that is drawn
 ///   fog            from the nearest to the farthest view depth of all that is drawn
 
+/// The height of the ground below what is drawn: stated, or a little lower than all of it.
+double ground_height(const scene::Ground& ground, const Bounds& drawn);
+
 /// After everything else that is drawn, and after the view: `drawn` is its box.
 void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 /// The fog alone: its range follows the packet's view.

@@ -174,6 +174,8 @@ struct CursorItem {
   /// Where nothing can push back (a mouse), the picture does: the cursor is the last proxy, the probe a small ball on a tether whose
   /// colour and width say the force, 0..1 of the largest. None: as it is.
   std::optional<double> strain{};
+  bool ghost = true;           ///< it shines through what hides it
+  std::optional<Vec3> foot{};  ///< a thin line leads from the probe to here, to a cross at right angles to it
   bool operator==(const CursorItem&) const = default;
 };
 

@@ -1,5 +1,6 @@
 #include <map>
 
+#include "engine/base/result.h"
 #include "render/passes/passes.h"
 #include "render/raycast/fast_volume.h"
 #include "render/vk/commands.h"
@@ -19,34 +20,49 @@ class ComposePass final : public Pass {
   explicit ComposePass(vk::Device& device) : upsample_(device) {}
   static Result<std::unique_ptr<Pass>> create(vk::Device& device) { return std::unique_ptr<Pass>(new ComposePass(device)); }
   PassUse use(const Frame& frame) const override {
-    return {frame.written & (target::opaque_color | target::volume), target::picture, true};
+    return {frame.written & (target::opaque_color | target::volume | target::ghost), target::picture, true};
   }
   Outcome prepare(Frame&) override { return Done{}; }
   Outcome record(vk::Commands& commands, Frame& frame) override;
 
  private:
+  Result<const vk::Pipeline*> pipeline(Frame& frame, bool ghost);
   Upsampler upsample_;
   std::map<std::pair<VkFormat, std::uint32_t>, vk::Pipeline> pipelines_;
   vk::Buffer uniform_;
 };
 
-Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
-  Targets& targets = frame.targets;
+Result<const vk::Pipeline*> ComposePass::pipeline(Frame& frame, bool ghost) {
+  const VkFormat format = frame.targets.picture_format;
   const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
-  const std::array<float, 4>& background = frame.packet.background;
-  if (frame.half_lattice)
-    return upsample_.record(commands, *frame.half_lattice, opaque ? &targets.opaque_color : nullptr, targets.none, background,
-                            frame.half_area, targets.picture);
-
-  vk::Pipeline& pipeline = pipelines_[{targets.picture_format, (opaque ? 1u : 0u) | (volume ? 2u : 0u)}];
+  vk::Pipeline& pipeline = pipelines_[{format, (opaque ? 1u : 0u) | (volume ? 2u : 0u) | (ghost ? 4u : 0u)}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kComposeVertexShader;
     info.fragment = kComposeFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}};
-    info.constants = {opaque, volume};
-    info.colors = {targets.picture_format};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::texture}, {3, vk::Resource::texture}};
+    info.constants = {opaque, volume, ghost};
+    info.colors = {format};
     CATENA_TRY(pipeline, vk::Pipeline::create(frame.device, info));
+  }
+  return &pipeline;
+}
+
+/// All of it without the ghost, then once more what the ghost's area holds.
+Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
+  Targets& targets = frame.targets;
+  const bool opaque = frame.has(target::opaque_color), volume = frame.has(target::volume);
+  const bool ghost = frame.has(target::ghost) && frame.ghost_area.extent.width > 0 && frame.ghost_area.extent.height > 0;
+  const std::array<float, 4>& background = frame.packet.background;
+  if (frame.half_lattice) {
+    CATENA_ASSERT(!ghost);  // nothing opaque is drawn with it, so no hand
+    return upsample_.record(commands, *frame.half_lattice, opaque ? &targets.opaque_color : nullptr, targets.none, background,
+                            frame.half_area, targets.picture);
+  }
+  CATENA_TRY(const vk::Pipeline* plain, pipeline(frame, false));
+  const vk::Pipeline* with_ghost = nullptr;
+  if (ghost) {
+    CATENA_TRY(with_ghost, pipeline(frame, true));
   }
   shared::ComposeData data{};
   data.background = {background[0], background[1], background[2], background[3]};
@@ -54,9 +70,15 @@ Outcome ComposePass::record(vk::Commands& commands, Frame& frame) {
   targets.begin(commands, target::picture, target::picture);
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, opaque ? &targets.opaque_color : &targets.none, nullptr},
-                                  {2, vk::Resource::texture, nullptr, volume ? &targets.volume : &targets.none, nullptr}};
-  commands.bind(pipeline, bindings);
+                                  {2, vk::Resource::texture, nullptr, volume ? &targets.volume : &targets.none, nullptr},
+                                  {3, vk::Resource::texture, nullptr, ghost ? &targets.ghost : &targets.none, nullptr}};
+  commands.bind(*plain, bindings);
   commands.draw_triangle();
+  if (with_ghost) {
+    commands.scissor(frame.ghost_area);
+    commands.bind(*with_ghost, bindings);
+    commands.draw_triangle();
+  }
   commands.end_pass();
   return Done{};
 }

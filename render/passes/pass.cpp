@@ -47,6 +47,7 @@ Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t h
   CATENA_CHECK(want(target::opaque_id, kIdFormat, color | read));
   CATENA_CHECK(want(target::depth_buffer, kDepthBufferFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
   CATENA_CHECK(want(target::volume, kVolumeFormat, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
+  CATENA_CHECK(want(target::ghost, kGhostFormat, color));
   if (!none) {
     CATENA_CHECK(fit(device, none, kPictureFormat, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT));
     CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
@@ -67,6 +68,7 @@ std::uint64_t Targets::bytes_to_come(std::uint32_t width, std::uint32_t height, 
   add(target::opaque_id, opaque_id, kIdFormat);
   add(target::depth_buffer, depth_buffer, kDepthBufferFormat);
   add(target::volume, volume, kVolumeFormat);
+  add(target::ghost, ghost, kGhostFormat);
   return a_pixel * width * height;
 }
 
@@ -82,15 +84,18 @@ vk::Image& Targets::image(TargetSet one) {
       return depth_buffer;
     case target::volume:
       return volume;
+    case target::ghost:
+      return ghost;
     default:
       CATENA_ASSERT(one == target::picture);
       return picture;
   }
 }
 
-void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared) {
+void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared, const std::optional<VkRect2D>& area) {
   std::vector<vk::ColorTarget> colors;
-  for (const TargetSet one : {target::opaque_color, target::opaque_depth, target::opaque_id, target::volume, target::picture}) {
+  for (const TargetSet one :
+       {target::opaque_color, target::opaque_depth, target::opaque_id, target::volume, target::picture, target::ghost}) {
     if ((writes & one) == 0) continue;
     const std::array<float, 4> empty{one == target::opaque_depth ? NO_DEPTH : 0.0f, 0, 0, 0};
     colors.push_back({&image(one), (cleared & one) != 0 ? std::optional(empty) : std::nullopt});
@@ -98,7 +103,7 @@ void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared)
   vk::DepthTarget depth;
   if ((writes & target::depth_buffer) != 0)
     depth = {&depth_buffer, (cleared & target::depth_buffer) != 0 ? std::optional(0.0f) : std::nullopt};
-  commands.begin_pass(colors, depth);
+  commands.begin_pass(colors, depth, area);
 }
 
 Result<std::shared_ptr<const GridMirror>> Frame::mirror(const field::ScalarGrid& grid) const {

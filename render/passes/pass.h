@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -33,7 +34,7 @@ std::span<const EmbeddedShader> embedded_shaders();
 /// A set of targets, by bits.
 using TargetSet = unsigned;
 namespace target {
-inline constexpr TargetSet opaque_color = 1, opaque_depth = 2, opaque_id = 4, depth_buffer = 8, volume = 16, picture = 32;
+inline constexpr TargetSet opaque_color = 1, opaque_depth = 2, opaque_id = 4, depth_buffer = 8, volume = 16, picture = 32, ghost = 64;
 /// Everything that solid things draw into.
 inline constexpr TargetSet opaque = opaque_color | opaque_depth | opaque_id | depth_buffer;
 }  // namespace target
@@ -42,6 +43,8 @@ inline constexpr VkFormat kOpaqueFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kDepthValueFormat = VK_FORMAT_R32_SFLOAT;  ///< depth t of shared/frame.h
 inline constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT;            ///< the object's id, 0: none
 inline constexpr VkFormat kDepthBufferFormat = VK_FORMAT_D32_SFLOAT;
+/// What of the hand shines through, premultiplied. Its alpha is negative where nothing opaque hides it: the volume's alpha counts there.
+inline constexpr VkFormat kGhostFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;            ///< straight alpha
 inline constexpr VkFormat kFloatPictureFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  ///< the same, not rounded
 
@@ -50,7 +53,7 @@ std::vector<VkFormat> opaque_formats();
 
 /// The images that passes hand to each other, created when a pass first needs them and again when the size changes.
 struct Targets {
-  vk::Image opaque_color, opaque_depth, opaque_id, depth_buffer, volume, picture;
+  vk::Image opaque_color, opaque_depth, opaque_id, depth_buffer, volume, picture, ghost;
   VkFormat picture_format = kPictureFormat;  ///< or kFloatPictureFormat; pipelines that draw into the picture follow it
   vk::Image none;                            ///< one texel, bound where a pass has no input
 
@@ -58,9 +61,11 @@ struct Targets {
   /// Bytes that ensure() would have to add for these.
   std::uint64_t bytes_to_come(std::uint32_t width, std::uint32_t height, TargetSet needed) const;
   vk::Image& image(TargetSet one);
-  /// Begins rendering into `writes`; what `cleared` names starts empty, the rest keeps what is there.
-  void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared);
+  /// Begins rendering into `writes`, within `area` if there is one; what `cleared` names starts empty, the rest keeps what is there.
+  void begin(vk::Commands& commands, TargetSet writes, TargetSet cleared, const std::optional<VkRect2D>& area = {});
 };
+
+class Triangles;
 
 /// One picture while it is made: what its passes share.
 struct Frame {
@@ -76,6 +81,11 @@ struct Frame {
   /// The nearest first at every pixel, at most MAX_LAYERS. A pass before the raycast appends them in prepare() and draws them in
   /// record(); the raycast blends them, also where there is no volume.
   std::vector<Layer> layers{};
+
+  /// The hands that shine through what hides them: the first indices of the cursor's triangles. The cursor's pass states them in prepare().
+  Triangles* ghosts = nullptr;
+  std::uint32_t ghost_indices = 0;
+  VkRect2D ghost_area{};  ///< the pixels of target::ghost that hold anything; the others were never cleared
 
   bool has(TargetSet targets_) const { return (written & targets_) != 0; }
   /// The grid on the device, in the texel format that this packet asks for. Kept while packets name it.

@@ -41,7 +41,14 @@ extern const PassEntry kRaycastPass;
 /// value alone.
 bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet);
 
-/// Volume over opaque over background, into the finished picture (RGBA8, straight alpha).
+/// The hand where something hides it (CursorItem::ghost): its triangles once more, with a depth buffer of their own, into target::ghost.
+///   alpha    kGhostFace where the surface faces the eye .. kGhostRim at its silhouette, an outline
+///   hidden   1 behind something opaque: another object's id is at the pixel; else the alpha of the volume there, which `compose`
+///   multiplies
+/// So a hand that nothing hides leaves the picture as it is. Depths and ids do not know of it.
+extern const PassEntry kGhostPass;
+
+/// Ghost over volume over opaque over background, into the finished picture (RGBA8, straight alpha).
 extern const PassEntry kComposePass;
 
 /// Text and flat shapes over the finished picture: scalar bars, labels, title, orientation marker, status. They are drawn into an image

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <iterator>
-#include <tuple>
 
 #include "render/passes/passes.h"
 #include "render/passes/triangles.h"
@@ -94,25 +93,59 @@ struct OpaqueMeshes {
   }
 };
 
-struct Cursors {
-  using Items = std::tuple<std::vector<CursorItem>, std::vector<IndicatorItem>>;
+/// Hands, those that shine through first, and indicators.
+class CursorPass final : public Pass {
+ public:
   static constexpr int kIndicatorSides = 12;
-  static auto of(const FramePacket& packet) { return std::tie(packet.cursors, packet.indicators); }
-  template <class References>
-  static void add(Shape& shape, const References& items) {
-    const auto& [cursors, indicators] = items;
-    for (const CursorItem& cursor : cursors) {
+  static Result<std::unique_ptr<Pass>> create(vk::Device& device) {
+    CATENA_TRY(TriangleDrawer drawer, TriangleDrawer::create(device));
+    return std::unique_ptr<Pass>(new CursorPass(std::move(drawer)));
+  }
+  PassUse use(const Frame&) const override { return {0, target::opaque}; }
+
+  Outcome prepare(Frame& frame) override {
+    const FramePacket& packet = frame.packet;
+    if (packet.cursors != cursors_ || packet.indicators != indicators_) {
+      cursors_.clear();
+      indicators_.clear();
+      Shape shape;
+      add_cursors(shape, packet, true);
+      ghost_indices_ = std::uint32_t(shape.triangles.size());
+      add_cursors(shape, packet, false);
+      for (const IndicatorItem& indicator : packet.indicators) add_indicator(shape, indicator);
+      CATENA_CHECK(triangles_.upload(frame.device, shape));
+      cursors_ = packet.cursors;
+      indicators_ = packet.indicators;
+    }
+    frame.ghosts = &triangles_;
+    frame.ghost_indices = ghost_indices_;
+    return Done{};
+  }
+  Bounds bounds() const override { return triangles_.bounds(); }
+  Outcome record(vk::Commands& commands, Frame& frame) override { return drawer_.draw(commands, frame.rays, triangles_); }
+
+ private:
+  explicit CursorPass(TriangleDrawer drawer) : drawer_(std::move(drawer)) {}
+  static void add_cursors(Shape& shape, const FramePacket& packet, bool ghosts) {
+    for (const CursorItem& cursor : packet.cursors) {
+      if (cursor.ghost != ghosts) continue;
       const std::size_t first = shape.vertices.size();
       add_cursor(shape, cursor);
       mark(shape, first, cursor.id, false);
     }
-    for (const IndicatorItem& indicator : indicators) {
-      const std::size_t first = shape.vertices.size();
-      add_tube(shape, indicator.tube, kIndicatorSides);
-      add_cone(shape, indicator.arrow.base, indicator.arrow.tip, indicator.arrow.radius, indicator.arrow.color);
-      mark(shape, first, indicator.tube.id, false);
-    }
   }
+  static void add_indicator(Shape& shape, const IndicatorItem& indicator) {
+    const std::size_t first = shape.vertices.size();
+    add_tube(shape, indicator.tube, kIndicatorSides);
+    add_cone(shape, indicator.arrow.base, indicator.arrow.tip, indicator.arrow.radius, indicator.arrow.color);
+    mark(shape, first, indicator.tube.id, false);
+  }
+
+  TriangleDrawer drawer_;
+  Triangles triangles_;
+  std::uint32_t ghost_indices_ = 0;
+  std::vector<CursorItem> cursors_;
+  std::vector<IndicatorItem> indicators_;
 };
 
 /// Tubes as rings (tubes.h), and their arrowheads.
@@ -175,6 +208,6 @@ const PassEntry kStreamlinePass{
     "streamlines", [](const Frame& frame) { return !frame.packet.tubes.empty() || !frame.packet.arrows.empty(); }, StreamlinePass::create};
 
 const PassEntry kCursorPass{"cursor", [](const Frame& frame) { return !frame.packet.cursors.empty() || !frame.packet.indicators.empty(); },
-                            ShapePass<Cursors>::create};
+                            CursorPass::create};
 
 }  // namespace catena::render

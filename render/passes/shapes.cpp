@@ -345,10 +345,21 @@ void add_pseudo_haptic(Shape& shape, const CursorItem& cursor) {
   if (held != cursor.probe) add_ball(shape, cursor.probe, 0.45 * cursor.size, {0.6f, 0.62f, 0.66f});
 }
 
+/// From the probe to its foot, which is marked by a cross.
+void add_drop_line(Shape& shape, const CursorItem& cursor) {
+  if (!is_finite(*cursor.foot) || *cursor.foot == cursor.probe) return;
+  const Color grey{0.62f, 0.62f, 0.62f};
+  const double radius = 0.15 * cursor.size, reach = 1.5 * cursor.size;
+  add_cylinder(shape, cursor.probe, *cursor.foot, radius, grey);
+  const Vec3 down = direction(*cursor.foot - cursor.probe), one = any_perpendicular(down), other = cross(down, one);
+  for (const Vec3& arm : {one, other}) add_cylinder(shape, *cursor.foot - reach * arm, *cursor.foot + reach * arm, radius, grey);
+}
+
 }  // namespace
 
 void add_cursor(Shape& shape, const CursorItem& cursor) {
   if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
+  if (cursor.foot) add_drop_line(shape, cursor);
   if (cursor.strain) return add_pseudo_haptic(shape, cursor);
   const Color white{0.95f, 0.95f, 0.95f}, lime{0.60f, 0.95f, 0.25f};
   add_ball(shape, cursor.probe, cursor.size, white);

@@ -63,7 +63,8 @@ Color leaving_color(double leaving);
 /// Probe ball, a ball a proxy (larger than a tube of the fitted radius: it covers the line it sits on), cylinders
 /// probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length, along F, from the probe.
 /// A link that the hand is leaving: its cylinder takes leaving_color and gets thicker; one that has let go: three rings of
-/// leaving_color(1) around the place where it would hold.
+/// leaving_color(1) around the place where it would hold. With a foot: a grey line of 0.15 size from the probe to there, and a cross of
+/// 1.5 size to each side, in the plane across the line.
 void add_cursor(Shape& shape, const CursorItem& cursor);
 /// 2.5 glyph radii a newton, between 2 (anything felt can be seen) and 16 radii; 0 without a force.
 double cursor_arrow_length(double force_n, double size);

@@ -16,7 +16,9 @@ class Triangles {
   bool empty() const { return index_count_ == 0; }
   /// Writes the frame's numbers and binds them at 0.
   Result<vk::Binding> frame_binding(vk::Device& device, const CameraRays& rays);
-  void draw(vk::Commands& commands) const { commands.draw_indexed(vertices_, indices_, index_count_); }
+  void draw(vk::Commands& commands) const { draw(commands, index_count_); }
+  /// The first of them: a multiple of three indices.
+  void draw(vk::Commands& commands, std::uint32_t indices) const { commands.draw_indexed(vertices_, indices_, indices); }
 
  private:
   vk::Buffer vertices_, indices_, uniform_;

@@ -110,7 +110,7 @@ void Commands::blit(const Image& from, VkImage to, VkExtent2D extent) {
                  VK_FILTER_LINEAR);
 }
 
-void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth) {
+void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth, const std::optional<VkRect2D>& area) {
   VkExtent3D extent = depth.image ? depth.image->info().extent : colors.front().image->info().extent;
   std::vector<VkRenderingAttachmentInfo> attachments;
   for (const ColorTarget& target : colors) {
@@ -136,7 +136,7 @@ void Commands::begin_pass(std::span<const ColorTarget> colors, const DepthTarget
   }
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  info.renderArea = {{0, 0}, {extent.width, extent.height}};
+  info.renderArea = area.value_or(VkRect2D{{0, 0}, {extent.width, extent.height}});
   info.layerCount = 1;
   info.colorAttachmentCount = std::uint32_t(attachments.size());
   info.pColorAttachments = attachments.data();

@@ -79,7 +79,8 @@ class Commands {
   void blit(const Image& from, VkImage to, VkExtent2D extent);
 
   // passes
-  void begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth);  ///< moves the targets to their layouts
+  /// Moves the targets to their layouts. Draws and clears within `area`, which is not empty; none: everywhere.
+  void begin_pass(std::span<const ColorTarget> colors, const DepthTarget& depth, const std::optional<VkRect2D>& area = {});
   void end_pass();
   void scissor(const VkRect2D& area);
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings);

@@ -2,14 +2,16 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// volume over opaque over background, premultiplied floats; written as straight alpha. Display values are not converted.
+// ghost over volume over opaque over background, premultiplied floats; written as straight alpha. Display values are not converted.
 #include "shaders/shared/frame.h"
 
 layout(constant_id = 0) const uint HAS_OPAQUE = 0;
 layout(constant_id = 1) const uint HAS_VOLUME = 0;
+layout(constant_id = 2) const uint HAS_GHOST = 0;
 layout(scalar, binding = 0) uniform Compose { ComposeData compose; };
 layout(binding = 1) uniform texture2D opaque_color;
 layout(binding = 2) uniform texture2D volume_color;
+layout(binding = 3) uniform texture2D ghost_color;
 layout(location = 0) out vec4 out_color;
 
 void main() {
@@ -19,9 +21,17 @@ void main() {
     const vec4 c = texelFetch(opaque_color, at, 0);
     sum = c + (1.0 - c.a) * sum;
   }
+  float volume_alpha = 0.0;
   if (HAS_VOLUME != 0u) {
     const vec4 c = texelFetch(volume_color, at, 0);
     sum = c + (1.0 - c.a) * sum;
+    volume_alpha = c.a;
+  }
+  if (HAS_GHOST != 0u) {
+    // as much as is hidden: all behind something opaque, else (alpha below 0) the volume's share
+    const vec4 c = texelFetch(ghost_color, at, 0);
+    const vec4 ghost = (c.a < 0.0 ? volume_alpha : 1.0) * vec4(c.rgb, abs(c.a));
+    sum = ghost + (1.0 - ghost.a) * sum;
   }
   out_color = sum.a > 0.0 ? vec4(sum.rgb / sum.a, sum.a) : vec4(0.0);
 }

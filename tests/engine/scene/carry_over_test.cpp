@@ -189,7 +189,7 @@ TEST(CarryOver, WhatOthersKeepGoesWithAnEqualDescription) {
 }
 
 TEST(CarryOver, TheHandStaysWhereItIs) {
-  Scene old = scene_of("{}"), fresh = scene_of(R"({"cursor": {"size": 0.25}})");
+  Scene old = scene_of("{}"), fresh = scene_of(R"({"cursor": {"size": 0.25, "ghost": false, "drop_line": true}})");
   Cursor& cursor = old.world.get<Cursor>(old.cursor);
   cursor.probe = {1, 2, 3};
   cursor.names = {"a"};
@@ -203,6 +203,8 @@ TEST(CarryOver, TheHandStaysWhereItIs) {
   EXPECT_EQ(after.proxies.size(), 1u);
   EXPECT_TRUE(after.visible);
   EXPECT_EQ(after.size, 0.25);
+  EXPECT_FALSE(after.ghost);
+  EXPECT_TRUE(after.drop_line);
   EXPECT_EQ(fresh.phase, 3.5);
 }
 

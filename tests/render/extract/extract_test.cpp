@@ -293,6 +293,35 @@ TEST(Extract, TheCursorShowsOnceItIsVisible) {
   EXPECT_TRUE(packet_of(scene).cursors.empty());
 }
 
+TEST(Extract, ADropLineEndsOnTheFloor) {
+  const auto foot = [](const std::string& more, const Vec3& probe) {
+    scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}])" + more + "}");
+    scene::Cursor& cursor = scene.world.get<scene::Cursor>(scene.cursor);
+    cursor.visible = true;
+    cursor.probe = probe;
+    const FramePacket packet = packet_of(scene);
+    EXPECT_EQ(packet.cursors.size(), 1u);
+    EXPECT_TRUE(packet.cursors[0].ghost);
+    return packet.cursors[0].foot;
+  };
+  const Vec3 probe(0.1, 0.2, 0.3);
+  scene::Scene scene = scene_of("{\"fields\": {" + kSphere + R"(}, "isosurfaces": [{"field": "s", "level": 1}]})");
+  const Bounds box = data_bounds(packet_of(scene));
+  const std::string line = R"(, "cursor": {"drop_line": true})";
+  EXPECT_EQ(foot("", probe), std::nullopt);
+  EXPECT_EQ(foot(line, probe), Vec3(0.1, 0.2, box.lo.z));
+  EXPECT_EQ(foot(line, {0.1, 0.2, box.lo.z - 0.1}), std::nullopt) << "the hand is below the floor";
+  // down is the world's axis that the view's up is nearest to, but a ground lies across z
+  const std::string camera = R"(, "camera": {"position": [0, 0, 9], "target": [0, 0, 0], "up": [0.3, -1, 0]})";
+  EXPECT_EQ(foot(line + camera, probe), Vec3(0.1, box.hi.y, 0.3));
+  EXPECT_EQ(foot(line + camera + R"(, "ground": {"at": -7})", probe), Vec3(0.1, 0.2, -7));
+  EXPECT_LT(foot(line + R"(, "ground": true)", probe)->z, box.lo.z);
+  // nothing is drawn
+  scene::Scene empty = scene_of("{\"cursor\": {\"probe\": [0, 0, 1], \"drop_line\": true, \"ghost\": false}}");
+  EXPECT_EQ(packet_of(empty).cursors[0].foot, std::nullopt);
+  EXPECT_FALSE(packet_of(empty).cursors[0].ghost);
+}
+
 TEST(Extract, TheFittedCameraSeesEverything) {
   scene::Scene scene =
       scene_of("{\"fields\": {" + kSphere + "," + kCircle +

@@ -234,6 +234,29 @@ TEST(Shapes, ALinkThatTheHandIsLeavingIsSeen) {
   EXPECT_GT(leaving_color(1).r - leaving_color(1).g, 0.5f);
 }
 
+TEST(Shapes, ADropLineEndsInACross) {
+  CursorItem item = cursor();
+  item.foot = Vec3(0.0, 0.0, -5.0);
+  Shape shape;
+  add_cursor(shape, item);
+  expect_closed(shape);
+  expect_outward(shape);
+  double lowest = 0, widest = 0, thickest = 0;
+  for (const MeshVertex& v : shape.vertices) {
+    lowest = std::min(lowest, v.position.z);
+    if (v.position.z < -4.9) widest = std::max(widest, std::hypot(v.position.x, v.position.y));
+    if (v.position.z < -4.9) thickest = std::max(thickest, std::fabs(v.position.z + 5));
+  }
+  EXPECT_NEAR(lowest, -5.015, 1e-6);
+  EXPECT_NEAR(widest, std::hypot(0.15, 0.015), 1e-6);
+  EXPECT_NEAR(thickest, 0.015, 1e-6);
+  item.foot = item.probe;
+  Shape none, plain;
+  add_cursor(none, item);
+  add_cursor(plain, cursor());
+  EXPECT_EQ(none.vertices.size(), plain.vertices.size());
+}
+
 TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
   CursorItem item = cursor();
   item.active = {true, true};
