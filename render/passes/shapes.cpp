@@ -323,6 +323,16 @@ Color strain_color(double strain) {
   return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)};
 }
 
+/// The force, from where it acts.
+void add_force(Shape& shape, const CursorItem& cursor, const Vec3& from) {
+  const Color lime{0.60f, 0.95f, 0.25f};
+  const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.size) : 0;
+  if (!(length > 0)) return;
+  const Vec3 along = direction(cursor.force_n), tip = from + length * along, neck = tip - 1.1 * cursor.size * along;
+  add_cylinder(shape, from, neck, 0.25 * cursor.size, lime);
+  add_cone(shape, neck, tip, 0.55 * cursor.size, lime);
+}
+
 /// The hand as a mouse feels it: it is where the chain holds it, and lags behind the probe.
 void add_pseudo_haptic(Shape& shape, const CursorItem& cursor) {
   Vec3 held = cursor.probe, before = cursor.probe;
@@ -339,9 +349,11 @@ void add_pseudo_haptic(Shape& shape, const CursorItem& cursor) {
     if (held != before) add_ball(shape, held, 0.5 * cursor.size, link_color(i, true));
     before = held;
   }
+  // white while nothing pushes, and soon of the force's colour: a push along the view hides the tether behind this ball
   const Color calm{0.95f, 0.95f, 0.95f};
-  const auto t = static_cast<float>(std::clamp(*cursor.strain, 0.0, 1.0));
+  const auto t = static_cast<float>(std::clamp(8 * *cursor.strain, 0.0, 1.0));
   add_ball(shape, held, cursor.size, {calm.r + t * (color.r - calm.r), calm.g + t * (color.g - calm.g), calm.b + t * (color.b - calm.b)});
+  add_force(shape, cursor, held);
   if (held != cursor.probe) add_ball(shape, cursor.probe, 0.45 * cursor.size, {0.6f, 0.62f, 0.66f});
 }
 
@@ -361,7 +373,7 @@ void add_cursor(Shape& shape, const CursorItem& cursor) {
   if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
   if (cursor.foot) add_drop_line(shape, cursor);
   if (cursor.strain) return add_pseudo_haptic(shape, cursor);
-  const Color white{0.95f, 0.95f, 0.95f}, lime{0.60f, 0.95f, 0.25f};
+  const Color white{0.95f, 0.95f, 0.95f};
   add_ball(shape, cursor.probe, cursor.size, white);
 
   // every proxy, joined to the one before; radii fall a little, so that balls in one place do not fight
@@ -379,13 +391,7 @@ void add_cursor(Shape& shape, const CursorItem& cursor) {
     before = cursor.proxies[i];
   }
 
-  // the force, from the probe
-  const double length = is_finite(cursor.force_n) ? cursor_arrow_length(norm(cursor.force_n), cursor.size) : 0;
-  if (length > 0) {
-    const Vec3 along = direction(cursor.force_n), tip = cursor.probe + length * along, neck = tip - 1.1 * cursor.size * along;
-    add_cylinder(shape, cursor.probe, neck, 0.25 * cursor.size, lime);
-    add_cone(shape, neck, tip, 0.55 * cursor.size, lime);
-  }
+  add_force(shape, cursor, cursor.probe);
 }
 
 }  // namespace catena::render

@@ -61,7 +61,8 @@ Color link_color(std::size_t i, bool active);
 Color leaving_color(double leaving);
 
 /// Probe ball, a ball a proxy (larger than a tube of the fitted radius: it covers the line it sits on), cylinders
-/// probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length, along F, from the probe.
+/// probe -> p1 -> p2 .., and an arrow for the force: cursor_arrow_length, along F, from the probe, or
+/// from where the hand is held where the picture stands for a device (CursorItem::strain).
 /// A link that the hand is leaving: its cylinder takes leaving_color and gets thicker; one that has let go: three rings of
 /// leaving_color(1) around the place where it would hold. With a foot: a grey line of 0.15 size from the probe to there, and a cross of
 /// 1.5 size to each side, in the plane across the line.

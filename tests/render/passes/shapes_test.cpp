@@ -276,18 +276,19 @@ TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
   item.strain = 1;
   add_cursor(most, item);
   // the cursor is where the last link holds it, the probe is the small ball of the two
-  double at_proxy = 0, at_probe = 0;
+  double at_proxy = 0, at_probe = 0, highest = 0;
   for (const MeshVertex& v : calm.vertices) {
     const double from_proxy = norm(v.position - Vec3(1.0, 2.0, 0.0)), from_probe = norm(v.position);
     if (from_proxy < 0.101) at_proxy = std::max(at_proxy, from_proxy);
     if (from_probe < 0.09) at_probe = std::max(at_probe, from_probe);
-    EXPECT_LE(v.position.z, 0.101) << "no arrow";
+    highest = std::max(highest, v.position.z);
   }
+  EXPECT_NEAR(highest, cursor_arrow_length(norm(item.force_n), item.size), 1e-9) << "the arrow begins where the hand is held";
   EXPECT_NEAR(at_proxy, 0.1, 1e-6);
   EXPECT_NEAR(at_probe, 0.045, 1e-3);
   expect_closed(most);
   expect_outward(most);
-  EXPECT_LT(reddest_far_from(calm, item.probe), 0.5f);
+  EXPECT_LT(reddest_far_from(calm, item.probe), 0.5f) << "green, and the calm colour";
   EXPECT_GT(reddest_far_from(half, item.probe), 0.6f);
   EXPECT_GT(reddest_far_from(most, item.probe), 0.85f);
 }

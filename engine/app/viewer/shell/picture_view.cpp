@@ -65,7 +65,12 @@ Result<render::FramePacket> PictureView::packet(std::uint32_t width, std::uint32
   scene::Scene& scene = shared_.scene.scene();
   const auto eye = render::view_size(render::packing_of(scene.stereo), render::views_of(scene.stereo), std::max(kLeastPixels, width),
                                      std::max(kLeastPixels, height));
-  return render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
+  // a hand that the mouse holds says how deep it is
+  const auto drop_line = [&]() -> bool& { return scene.world.get<scene::Cursor>(scene.cursor).drop_line; };
+  const bool stated = std::exchange(drop_line(), drop_line() || shared_.controls.hand_mode);
+  auto packet = render::make_frame(scene, static_cast<std::uint32_t>(eye.width), static_cast<std::uint32_t>(eye.height));
+  drop_line() = stated;
+  return packet;
 }
 
 std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file) {
