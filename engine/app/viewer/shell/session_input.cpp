@@ -229,8 +229,10 @@ Changed Session::take_piece(Input piece) {
   carry_out();
   Controls& controls = shared_.controls;
   if (takes_hold(piece)) controls.turntable = false;
-  const Input input = routed(piece);
-  if (controls.hand_mode && shared_.hand.is_mouse() && (input.dx != 0 || input.dy != 0)) {
+  Input input = routed(piece);
+  if (controls.hand_mode && shared_.hand.is_mouse()) {
+    // over a panel the hand stays where it is: a way that leads there does not move it
+    if (!shared_.state.pointer_on_picture && !shared_.state.pointer_pressed) input.dx = input.dy = input.wheel = 0;
     const auto under = picture_.under_pointer();
     controls.under = under ? std::optional(under->world) : std::nullopt;
   }
