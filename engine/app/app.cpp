@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -33,6 +34,31 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
   std::string command = "catena";
   for (const CLI::App* sub : program.get_subcommands()) command += " " + sub->get_name();
   return std::string(error.what()) + " (see " + command + " --help)";
+}
+
+/// What was typed and nothing knows: a command, or an option of the command; with the nearest that there is. Empty: none is strange.
+std::string unknown_word(const CLI::App& program, int argc, char** argv) {
+  const CLI::App* command = nullptr;
+  std::vector<std::string> commands, options;
+  for (const CLI::App* sub : program.get_subcommands([](const CLI::App*) { return true; })) {
+    commands.push_back(sub->get_name());
+    if (argc > 1 && sub->get_name() == argv[1]) command = sub;
+  }
+  const auto said = [](const char* kind, const std::string& word, const std::vector<std::string>& known) {
+    const std::vector<std::string_view> views(known.begin(), known.end());
+    return "there is no " + std::string(kind) + " " + in_quotes(word) + suggestion(word, views);
+  };
+  if (argc > 1 && command == nullptr && argv[1][0] != '-')
+    return said("command", argv[1], commands) + "; one of " + joined({commands.begin(), commands.end()}) + " was expected";
+  if (command == nullptr || !command->get_subcommands([](const CLI::App*) { return true; }).empty()) return {};
+  for (const CLI::Option* option : command->get_options())
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = argv[i], name = word.substr(0, word.find('='));
+    if (word == "--") return {};
+    if (name.starts_with("--") && std::find(options.begin(), options.end(), name) == options.end()) return said("option", name, options);
+  }
+  return {};
 }
 
 // --memory MB, of every command: where its data comes from is the reader's business
@@ -73,7 +99,8 @@ int parse_and_work(int argc, char** argv) {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
-    return bad_input(usage_message(program, error));
+    const std::string unknown = unknown_word(program, argc, argv);
+    return bad_input(unknown.empty() ? usage_message(program, error) : unknown);
   }
   const Outcome done = chosen();
   if (!done) return done.error().machine ? machine_failed(done.error().message) : bad_input(done.error().message);

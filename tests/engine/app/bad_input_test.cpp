@@ -228,4 +228,16 @@ TEST_F(BadArguments, AnEmptyNumberIsRefusedByEveryOption) {
   refused({"feel", s, "--seconds", ""}, {}, {"--seconds", empty});
 }
 
+TEST(BadWords, WhatNothingKnowsIsNamedWithTheNearestThatThereIs) {
+  const auto says = [](const std::vector<std::string>& words) {
+    const test::ProgramResult run = test::run_catena(words);
+    EXPECT_EQ(run.exit_code, 2);
+    return run.err;
+  };
+  EXPECT_EQ(says({"rendr", "a.json"}).find("catena: there is no command \"rendr\" (did you mean \"render\"?); one of render, replay,"), 0u);
+  EXPECT_EQ(says({"bogus"}).find("catena: there is no command \"bogus\"; one of"), 0u);
+  EXPECT_EQ(says({"render", "a.json", "--frmes=3"}), "catena: there is no option \"--frmes\" (did you mean \"--frames\"?)\n");
+  EXPECT_NE(says({"render"}).find("is required"), std::string::npos);
+}
+
 }  // namespace bad_input_test

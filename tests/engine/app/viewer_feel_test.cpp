@@ -1,6 +1,9 @@
 // "Feel" in a real window: a scene without a chain, the pointer on its surface, H, the wheel.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "tests/support/program.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
 
@@ -39,6 +42,17 @@ TEST_F(ViewerFeel, WhereNothingIsUnderThePointerTheSceneStaysAsItIs) {
             0)
       << log();
   EXPECT_EQ(test::read_file(folder_ / "ball.json").find("chain"), std::string::npos);
+}
+
+TEST_F(ViewerFeel, ASceneMadeForADataFileIsSavedWhereThePersonIsNotBesideTheData) {
+  std::filesystem::create_directory(folder_ / "data");
+  ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder_ / "data/g.vdb", "--resolution", "16"}).exit_code, 0);
+  ASSERT_EQ(
+      test::drive_window(folder_, "data/g.vdb --size 900x600", "keys o ctrl+s; sleep 0.5; keys Return; written g.vdb.json\nkeys ctrl+q"), 0)
+      << log();
+  EXPECT_EQ(log().find("never"), std::string::npos) << log();
+  EXPECT_FALSE(test::exists(folder_ / "data/g.vdb.json"));
+  EXPECT_NE(test::read_file(folder_ / "g.vdb.json").find("data/g.vdb"), std::string::npos) << "named from where the scene is";
 }
 
 }  // namespace viewer_feel_test

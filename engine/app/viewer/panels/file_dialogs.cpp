@@ -43,10 +43,11 @@ std::string size_words(std::uintmax_t bytes) {
   return words;
 }
 
-std::string start_folder(const PanelContext& context) {
+/// The scene's own; where one that has none is saved: the one that the program was started in.
+std::string start_folder(const PanelContext& context, bool saves = false) {
   std::error_code code;
   fs::path folder = fs::absolute(context.scene.document().path(), code).parent_path();
-  if (code || !fs::is_directory(folder, code)) folder = fs::current_path(code);
+  if (code || !fs::is_directory(folder, code) || (saves && !context.state.owns_file)) folder = fs::current_path(code);
   return folder.lexically_normal().string();
 }
 
@@ -149,7 +150,7 @@ void draw_save(PanelContext& context) {
   static Browser browser;
   browser.scenes_only = true;
   ViewState& state = context.state;
-  if (state.ask.save_as) browser.folder = start_folder(context);
+  if (state.ask.save_as) browser.folder = start_folder(context, true);
   if (!begin("Save as", state.ask.save_as, browser, context, fs::path(context.scene.document().path()).filename().string())) return;
   bool chosen = draw_list(browser);
   chosen = draw_typed(browser) || chosen;

@@ -75,6 +75,7 @@ struct ViewState {
 
   // files
   bool untitled = false;            ///< nothing is open: the window says how to begin
+  bool owns_file = true;            ///< the scene's path is its own; else it was made for a data file and is saved where the person says
   std::string loading;              ///< the path that is being opened; empty: none
   std::vector<std::string> recent;  ///< paths, the newest first
 

@@ -44,17 +44,20 @@ void draw_recording(PanelContext& context) {
                : "every tick, from now on, with the scene as it is and as you edit it; catena replay --log runs it again");
     return;
   }
+  // Stop is where Record was
   const haptics::log::LogStatus status = recording.status();
-  ImGui::TextWrapped("%s", recording.path().c_str());
+  ImGui::SetNextItemWidth(-1);
+  std::string path = recording.path();
+  ImGui::InputText("##file", path.data(), path.size() + 1, ImGuiInputTextFlags_ReadOnly);
+  if (ImGui::Button("Stop")) {
+    context.ask(Record{});
+    name[0] = 0;
+  }
   const int s = static_cast<int>(recording.seconds());
   ImGui::Text("%d:%02d  %llu ticks, %.1f MB", s / 60, s % 60, static_cast<unsigned long long>(status.ticks),
               1e-6 * static_cast<double>(status.bytes));
   if (status.lost > 0) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%llu ticks lost", static_cast<unsigned long long>(status.lost));
   if (status.failed) ImGui::TextColored({1, 0.5f, 0.4f, 1}, "writing has failed");
-  if (ImGui::Button("Stop")) {
-    context.ask(Record{});
-    name[0] = 0;
-  }
 }
 
 }  // namespace

@@ -27,7 +27,9 @@ void choose_style(float scale) {
   style.FrameRounding = 3;
   style.GrabRounding = 3;
   style.WindowBorderSize = 0;
+  // the side window lets the picture through a little; menus and questions do not
   style.Colors[ImGuiCol_WindowBg].w = 0.88f;
+  style.Colors[ImGuiCol_PopupBg].w = style.Colors[ImGuiCol_MenuBarBg].w = 1;
   style.ScaleAllSizes(scale);
 }
 

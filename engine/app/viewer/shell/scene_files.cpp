@@ -35,9 +35,9 @@ Result<LoadedScene> load_first(SceneHost& scene, HandHost& hand, std::uint32_t w
   return loaded;
 }
 
-SceneFiles::SceneFiles(Shared& shared, Eye& eye, PictureView& picture)
-    : shared_(shared), eye_(eye), picture_(picture), owns_file_(is_scene_name(shared.options.source)) {
+SceneFiles::SceneFiles(Shared& shared, Eye& eye, PictureView& picture) : shared_(shared), eye_(eye), picture_(picture) {
   shared_.state.untitled = shared.options.source.empty();
+  shared_.state.owns_file = is_scene_name(shared.options.source);
 }
 
 void SceneFiles::begin() {
@@ -80,14 +80,13 @@ void SceneFiles::answer(AnswerToUnsaved given) {
 
 // ---- saving ----
 
-/// Where the scene comes from; a scene that comes from nowhere, or would write over another file, is asked about.
+/// Where the scene comes from; for one that was made for a data file, or comes from nowhere, the person says where: nothing is written
+/// beside data unasked.
 void SceneFiles::save() {
-  std::error_code code;
-  const std::string& path = shared_.scene.document().path();
-  if (shared_.state.untitled || (!owns_file_ && std::filesystem::exists(path, code)))
+  if (shared_.state.untitled || !shared_.state.owns_file)
     shared_.state.ask.save_as = true;
   else
-    save_as(path);
+    save_as(shared_.scene.document().path());
 }
 
 void SceneFiles::save_as(const std::string& path) {
@@ -105,7 +104,7 @@ bool SceneFiles::write(const std::string& path) {
   if (!saved) return false;
   draft_.remove();
   eye_.saved();
-  owns_file_ = true;
+  state.owns_file = true;
   state.untitled = false;
   remember(scene.document().path());
   return true;
@@ -156,7 +155,7 @@ void SceneFiles::replace_scene(LoadedScene loaded, const std::string& path) {
   SceneHost& scene = shared_.scene;
   scene = std::move(loaded.host);
   show(loaded);
-  owns_file_ = is_scene_name(path);
+  state.owns_file = is_scene_name(path);
   if (!scene.scene().quality.empty() && !shared_.options.quality_stated)
     if (auto quality = parse_quality(scene.scene().quality)) shared_.pacing = Pacing(*quality);
   scene.touch();

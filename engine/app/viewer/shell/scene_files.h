@@ -62,7 +62,6 @@ class SceneFiles {
   RecentFiles recent_;
   SceneLoader loader_;
   bool loading_adds_ = false;          ///< what is being loaded joins the scene
-  bool owns_file_;                     ///< the scene was read from, or saved to, the file of its path
   std::optional<Leaving> after_save_;  ///< what a save that succeeds goes on with
   bool ended_ = false;
   Draft draft_;  ///< what is not saved

@@ -149,7 +149,7 @@ std::optional<Failure> Session::run() {
     const Changed by_input = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
     // what has changed since the last picture
     const bool opened = files_.take_loaded(), edited = take_edits(), news = shared_.hand.take(scene.scene());
-    live = live || news || files_.is_loading();
+    live = live || news || files_.is_loading() || shared_.hand.recording().running();
     if (news) keep_widgets();
     minimised = picture_.is_minimised();
     if (minimised) {
