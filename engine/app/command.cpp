@@ -52,7 +52,9 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
     return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
-  return scene::scene_for_file(path, {}, colors);
+  auto scene = scene::scene_for_file(path, {}, colors);
+  if (scene) tell_notes(scene->notes);
+  return scene;
 }
 
 std::string human_bytes(double bytes) {

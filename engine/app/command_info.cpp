@@ -16,6 +16,7 @@
 #include "engine/mesh/load.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/ruler.h"
+#include "engine/scene/scene.h"
 #include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
 #include "engine/schema/documents.h"
@@ -70,6 +71,8 @@ Outcome describe_file(const std::string& path) {
     }
     fmt::print("  bytes        {} ({})\n", g.bytes, human_bytes(static_cast<double>(g.bytes)));
   }
+  if (field::needs_layout(path)) return Done{};
+  if (const std::string look = scene::look_of_file(path); !look.empty()) fmt::print("{}\n", printable(look));
   return Done{};
 }
 

@@ -21,16 +21,11 @@ Units nifti_units(const std::string& path, const std::string&) {
   int swapped = 0;
   const std::unique_ptr<nifti_1_header, decltype(&std::free)> header(nifti_read_header(path.c_str(), &swapped, 0), &std::free);
   if (!header) return {};
-  switch (XYZT_TO_SPACE(header->xyzt_units)) {
-    case NIFTI_UNITS_METER:
-      return {{}, "m"};
-    case NIFTI_UNITS_MM:
-      return {{}, "mm"};
-    case NIFTI_UNITS_MICRON:
-      return {{}, "µm"};
-    default:
-      return {};
-  }
+  Units units;
+  const int code = XYZT_TO_SPACE(header->xyzt_units);
+  units.length = code == NIFTI_UNITS_METER ? "m" : code == NIFTI_UNITS_MM ? "mm" : code == NIFTI_UNITS_MICRON ? "µm" : "";
+  units.patient = header->sform_code > 0 || header->qform_code > 0;
+  return units;
 }
 
 Units vdb_units(const std::string& path, const std::string& grid) {
@@ -49,7 +44,9 @@ Units vdb_units(const std::string& path, const std::string& grid) {
     if (words.name != name) continue;
     if (is_unit(words.unit)) units.value = words.unit;
     if (is_unit(words.unit_length)) units.length = words.unit_length;
+    units.level_set = words.level_set;
   }
+  units.patient = units.value == "HU" || units.length == "mm";
   return units;
 }
 

@@ -177,6 +177,7 @@ std::string encode(const ReadReply& r) {
     e.words(w.name);
     e.words(w.unit);
     e.words(w.unit_length);
+    e.flag(w.level_set);
   }
   e.number(r.confinement.landlock_version);
   e.flag(r.confinement.seccomp);
@@ -201,6 +202,7 @@ Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
     w.name = d.words();
     w.unit = d.words();
     w.unit_length = d.words();
+    w.level_set = d.flag();
     r.words.push_back(std::move(w));
   }
   r.confinement.landlock_version = d.number<std::uint32_t>();

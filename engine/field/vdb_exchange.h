@@ -44,9 +44,10 @@ struct Confinement {
   bool seccomp = false;
 };
 
-/// Text metadata of a grid that may name units.
+/// Text metadata of a grid that may name units, and whether it says that it is a level set.
 struct GridWords {
   std::string name, unit, unit_length;
+  bool level_set = false;
 };
 
 struct ReadReply {

@@ -7,20 +7,11 @@
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
-#include "engine/scene/color_maps.h"
+#include "engine/scene/first_look.h"
 #include "engine/scene/read_parts.h"
-#include "engine/scene/transfer.h"
-#include "engine/scene/write_values.h"
 
 namespace catena::scene {
 namespace {
-
-constexpr int kLattice = 5;           // seeds an axis
-constexpr double kSlowShare = 0.05;   // of the fastest seed: not worth a line
-constexpr double kLengthShare = 2.0;  // of L, in each direction
-constexpr double kDrawnTolerance = 1e-7;
-constexpr std::size_t kSeedsPerLine = 4;
-constexpr Color kLineColor{0.96f, 0.66f, 0.26f};
 
 /// The grid asked for; else the only one; else the first scalar one, else the first vector one.
 Result<field::AnyField> load_best(field::LoadRequest& request) {
@@ -36,33 +27,6 @@ Result<field::AnyField> load_best(field::LoadRequest& request) {
   return field::load(request);
 }
 
-/// Points of a lattice inside the domain where the flow is not slow.
-std::vector<Vec3> lattice_seeds(const field::VectorField& field) {
-  struct Candidate {
-    Vec3 p;
-    double speed;
-  };
-  std::vector<Candidate> candidates;
-  double fastest = 0;
-  field::Cursor cursor;
-  const field::Box& box = field.index_box();
-  for (int k = 0; k < kLattice; ++k)
-    for (int j = 0; j < kLattice; ++j)
-      for (int i = 0; i < kLattice; ++i) {
-        const Vec3 share = Vec3(i + 0.5, j + 0.5, k + 0.5) / static_cast<double>(kLattice);
-        const Vec3 p = field.mapping().world_from_index(box.lo + share * (box.hi - box.lo));
-        const field::VectorSample sample = field.sample(p, cursor);
-        const double speed = norm(sample.value);
-        if (!sample.inside || !(speed > 0) || !std::isfinite(speed)) continue;
-        candidates.push_back({p, speed});
-        fastest = std::max(fastest, speed);
-      }
-  std::vector<Vec3> seeds;
-  for (const Candidate& c : candidates)
-    if (c.speed >= kSlowShare * fastest) seeds.push_back(c.p);
-  return seeds;
-}
-
 /// A name that the scene file allows, as like the grid's as can be.
 std::string field_name(std::string_view grid) {
   std::string name;
@@ -73,37 +37,6 @@ std::string field_name(std::string_view grid) {
       name += (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? c : '_';
   }
   return is_name(name) ? name : is_name("field_" + name) && !name.empty() ? "field_" + name : "field";
-}
-
-/// , "color": MAP, "range": [LO, HI]
-std::string color_members(const NamedColors& colors) {
-  std::string text;
-  if (!colors.map.empty()) text += ", \"color\": " + json::string_text(colors.map);
-  if (colors.range) text += ", \"range\": " + text_of(*colors.range);
-  return text;
-}
-
-/// A map that is named without a range reaches over the values that the opacity follows, not over all.
-std::string volume_text(const std::string& field, const field::ScalarGrid& grid, NamedColors colors) {
-  if (!colors.map.empty() && !colors.range) {
-    TransferFunction transfer;
-    complete_transfer(transfer, grid);
-    const double lo = transfer.colors.front().value, hi = transfer.colors.back().value;
-    if (is_color_range(lo, hi)) colors.range = {lo, hi};
-  }
-  return "  \"volumes\": [{\"field\": " + field + color_members(colors) + ", \"shade\": true}]\n";
-}
-
-std::string streamlines_text(const std::string& field, const field::VectorField& flow, const std::vector<Vec3>& seeds,
-                             const NamedColors& colors) {
-  std::string text = "  \"streamlines\": [\n    {\"field\": " + field;
-  const bool colored = !colors.map.empty() || colors.range;
-  text += colored ? ", \"color_by\": {\"quantity\": \"speed\"" + color_members(colors) + "}" : ", \"color\": " + text_of(kLineColor);
-  text +=
-      ", \"length\": " + text_of(kLengthShare * flow.length()) + ", \"tolerance\": " + text_of(kDrawnTolerance) + ",\n     \"seeds\": [";
-  for (std::size_t i = 0; i < seeds.size(); ++i)
-    text += (i == 0 ? "" : i % kSeedsPerLine == 0 ? ",\n               " : ", ") + text_of(seeds[i]);
-  return text + "]}\n  ]\n";
 }
 
 /// The file's other grids, to be shown when somebody asks for them; nothing loads them before.
@@ -143,7 +76,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
     CATENA_TRY(bare.mesh, mesh::load_mesh(path));
-    bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}]\n}\n";
+    bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
   if (field::needs_layout(path))
@@ -152,19 +85,25 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   bare.request.grid = grid;
   CATENA_TRY(bare.field, load_best(bare.request));
   const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
+  const FirstLook look = bare.field.scalar ? first_look(name, *bare.field.scalar->grid(), field::units_of(path, bare.request.grid), colors)
+                                           : first_look(name, *bare.field.vector->grid(), colors);
+  bare.note = name + " " + look.note;
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
+  if (look.whole) {
+    bare.text += ", \"valid\": null";
+    bare.request.valid_grid.reset();
+    CATENA_TRY(bare.field, field::load(bare.request));
+  }
   bare.text += "}";
   if (grid.empty()) bare.text += other_fields(bare.request, file, name);
-  bare.text += "}";
-  if (bare.field.scalar) {
-    bare.text += ",\n" + volume_text(name, *bare.field.scalar->grid(), colors);
-  } else {
-    const std::vector<Vec3> seeds = lattice_seeds(*bare.field.vector);
-    bare.text += seeds.empty() ? "\n" : ",\n" + streamlines_text(name, *bare.field.vector, seeds, colors);
-  }
-  bare.text += "}\n";
+  bare.text += "},\n" + look.parts + "\n}\n";
   return bare;
+}
+
+std::string look_of_file(const std::string& path) {
+  const auto bare = describe_bare_file(path, {}, {});
+  return bare ? bare->note : std::string();
 }
 
 void adopt_loaded(const BareFile& bare, Scene& scene) {
@@ -183,11 +122,13 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid, c
   CATENA_TRY(const BareFile bare, describe_bare_file(path, grid, colors));
   CATENA_TRY(Scene scene, parse_scene(bare.text, path));
   adopt_loaded(bare, scene);
+  if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);
   // the text is nowhere: its lines would say nothing
   forget_lines<FieldSource>(scene);
   forget_lines<MeshSource>(scene);
   forget_lines<SurfaceMesh>(scene);
   forget_lines<Volume>(scene);
+  forget_lines<Isosurface>(scene);
   forget_lines<StreamlineSet>(scene);
   if (bare.field.get() != nullptr)
     CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(grid.empty() ? bare.field.get()->name() : grid)), {}));

@@ -9,6 +9,7 @@ namespace catena::scene {
 struct BareFile {
   std::string text;        ///< a scene file; it names the data file without its folder
   std::string scene_path;  ///< where that scene file would be: FILE.json beside it
+  std::string note;        ///< what the data look like, and why; of a mesh nothing
   field::LoadRequest request;
   field::AnyField field;  ///< either this
   mesh::MeshPtr mesh;     ///< or this

@@ -18,7 +18,8 @@ namespace catena::scene {
 struct Scene {
   std::string path;
   std::vector<std::string> files;  ///< all that its text and the overrides name, as the scene opens them, read so far or not
-  std::vector<std::string> notes;  ///< about what still reads, but is written in another way now: "FILE:LINE: ..."
+  /// About what still reads, but is written in another way now: "FILE:LINE: ..."; of a data file: what it looks like.
+  std::vector<std::string> notes;
   World world;
   /// What was made from it, by the same entities: traced lines, sorted values, measured rulers, polylines for the eye. Nothing here is of
   /// the scene: it can be dropped, and is made again.
@@ -62,10 +63,13 @@ struct FieldOverride {
 /// file that it names must exist.
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
 Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
-/// A bare data file: its (first usable) scalar grid as a volume with a transfer function from its histogram, a vector grid
-/// as streamlines, a triangle mesh as it is; the camera is fitted. `colors` may name a colour map and a range: a volume's
-/// opacity follows the range, lines show the speed by them.
+/// A bare data file: its (first usable) scalar grid as the kind of its data is best shown (first_look.h), a vector grid as streamlines,
+/// a triangle mesh as it is; the camera is fitted to what can be seen. `colors` may name a colour map and a range: a scalar grid is then a
+/// volume whose opacity follows the range, lines show the speed by them.
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
+
+/// What such a file looks like, and why, in one sentence; nothing of a mesh and of a file that cannot be shown.
+std::string look_of_file(const std::string& path);
 
 /// What a scene file may say, part by part (engine/schema): docs/scene.md, the JSON Schema and the reader are made of it. The links of
 /// "chain" and the keys of "device" are described by the rooms that read them.

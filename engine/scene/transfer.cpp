@@ -50,9 +50,9 @@ double weight(const Range& range, double value) {
   return x * x * (3 - 2 * x);
 }
 
-/// Calls take(origin, extent) for blocks of 8^3 voxels spread over the box, at most about `most` voxels in all.
-template <class Take>
-void each_block(const field::Box& box, std::size_t most, Take&& take) {
+}  // namespace
+
+void each_block(const field::Box& box, std::size_t most, const TakeBlock& take) {
   const field::Index3 lo{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
   const field::Index3 size{static_cast<int>(box.hi.x - box.lo.x) + 1, static_cast<int>(box.hi.y - box.lo.y) + 1,
                            static_cast<int>(box.hi.z - box.lo.z) + 1};
@@ -67,8 +67,6 @@ void each_block(const field::Box& box, std::size_t most, Take&& take) {
         take(origin, extent, static_cast<std::size_t>(extent.x * extent.y * extent.z));
       }
 }
-
-}  // namespace
 
 std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most) {
   std::vector<float> values, block;

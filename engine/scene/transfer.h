@@ -4,6 +4,7 @@
 ///   away; else the lowest value. w(s) = smoothstep of |s - b| from a 6 % margin to the far end of the range;
 ///   sigma(s) = k w(s), k such that a ray across the domain meets an optical depth of 2.5 on average.
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -11,6 +12,11 @@
 #include "engine/scene/components.h"
 
 namespace catena::scene {
+
+/// Calls take(origin, extent, voxels) for blocks of 8^3 voxels (less at the box's end) spread over the box, at most about `most` voxels in
+/// all.
+using TakeBlock = std::function<void(const field::Index3&, const field::Index3&, std::size_t)>;
+void each_block(const field::Box& box, std::size_t most, const TakeBlock& take);
 
 /// At most about `most` finite values of valid cells' voxels, spread over the grid in blocks of 8^3.
 std::vector<float> sample_values(const field::ScalarGrid& grid, std::size_t most);

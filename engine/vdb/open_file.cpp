@@ -175,7 +175,9 @@ void OpenFile::words(field::ReadReply& reply) {
     reply.unit_length = unit_of(metadata_, {"unit_length"});
     for (const VdbEntry& entry : entries()) {
       const openvdb::GridBase::Ptr grid = directory_.streamed ? streamed_.at(entry.unique_name) : read_at(entry, true);
-      if (grid) reply.words.push_back({entry.name, unit_of(*grid, {"unit", "units"}), unit_of(*grid, {"unit_length"})});
+      if (!grid) continue;
+      const bool level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+      reply.words.push_back({entry.name, unit_of(*grid, {"unit", "units"}), unit_of(*grid, {"unit_length"}), level_set});
     }
   } catch (const std::exception&) {
     // reading the grid says what is wrong with it

@@ -8,6 +8,7 @@
 #include "engine/scene/hidden.h"
 #include "engine/scene/prepare.h"
 #include "render/extract/extract_parts.h"
+#include "render/extract/first_view.h"
 
 namespace catena::render {
 
@@ -126,7 +127,7 @@ void extract_feet(const scene::Scene& scene, const Bounds& drawn, FramePacket& p
 View view_of(const scene::Scene& scene, const FramePacket& packet) {
   const scene::Camera& camera = scene.camera;
   if (camera.given) return {camera.position, camera.target, camera.up, camera.fovy_deg, camera.orthographic, camera.height};
-  return fit_view(packet_bounds(packet), static_cast<double>(packet.width) / packet.height);
+  return first_view(scene, packet);
 }
 
 }  // namespace
@@ -175,6 +176,7 @@ Outcome prepare_frame(scene::Scene& scene) {
   CATENA_CHECK(prepare_meshes(scene));
   CATENA_CHECK(prepare_slices(scene));
   CATENA_CHECK(prepare_streamlines(scene));
+  prepare_visible(scene);
   return prepare_widgets(scene);
 }
 

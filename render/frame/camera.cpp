@@ -1,5 +1,6 @@
 #include "render/frame/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -185,6 +186,53 @@ View fit_view(const Bounds& given, double aspect, const Vec3& towards_eye, doubl
   view.up = std::fabs(dot(axes.back, direction(up))) < 0.999 ? up : axes.up;
   view.fovy_deg = fovy_deg;
   view.height = 2.1 * half_height;
+  return view;
+}
+
+namespace {
+
+/// The largest of a x + b z over the places, or the quantile that leaves the ignored ones out.
+double support(const std::vector<FitPlaces>& clouds, const Vec3& along) {
+  double most = -INFINITY;
+  std::vector<double> reach;
+  for (const FitPlaces& cloud : clouds) {
+    if (cloud.places.empty()) continue;
+    reach.clear();
+    for (const Vec3& p : cloud.places) reach.push_back(dot(p, along));
+    const auto n = static_cast<std::ptrdiff_t>((1 - cloud.ignored) * static_cast<double>(reach.size() - 1));
+    std::nth_element(reach.begin(), reach.begin() + n, reach.end());
+    most = std::max(most, reach[static_cast<std::size_t>(n)]);
+  }
+  return most;
+}
+
+}  // namespace
+
+View fit_view(const std::vector<FitPlaces>& clouds, double aspect, double width, double height, const Vec3& towards_eye, double fovy_deg,
+              const Vec3& up) {
+  if (std::ranges::all_of(clouds, [](const FitPlaces& c) { return c.places.empty(); })) return fit_view(Bounds(), aspect, towards_eye);
+  Camera axes;
+  set_axes(axes, towards_eye, up);
+  const double tan_y = std::tan(0.5 * fovy_deg * std::numbers::pi / 180), tan_x = tan_y * aspect;
+  // across each axis of the picture: the eye's place, and how far back it must be
+  struct Across {
+    double at = 0, back = 0;
+  };
+  const auto across = [&](const Vec3& axis, double t) {
+    const double high = support(clouds, axis + t * axes.back), low = support(clouds, -1.0 * axis + t * axes.back);
+    return Across{0.5 * (high - low), 0.5 * (high + low) / t};
+  };
+  const Across x = across(axes.right, width * tan_x), y = across(axes.up, height * tan_y);
+  const double near = support(clouds, axes.back), far = -support(clouds, -1.0 * axes.back);
+  const double middle = 0.5 * (near + far);
+  double back = std::max(x.back, y.back);
+  if (!(back > near)) back = near + std::max(1e-6 * std::fabs(near), near > far ? near - far : 1.0);  // a single point, or a line of sight
+  View view;
+  view.target = x.at * axes.right + y.at * axes.up + middle * axes.back;
+  view.position = view.target + (back - middle) * axes.back;
+  view.up = std::fabs(dot(axes.back, direction(up))) < 0.999 ? up : axes.up;
+  view.fovy_deg = fovy_deg;
+  view.height = 2 * tan_y * (back - middle);
   return view;
 }
 

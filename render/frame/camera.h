@@ -62,6 +62,19 @@ Vec3 default_direction();
 View fit_view(const Bounds& bounds, double aspect, const Vec3& towards_eye = default_direction(), double fovy_deg = 30,
               const Vec3& up = Vec3(0.0, 0.0, 1.0));
 
+/// Places to fit a picture to. `ignored`: the share of them that may lie outside, for specks.
+struct FitPlaces {
+  std::vector<Vec3> places;
+  double ignored = 0;
+};
+/// A view whose middle is the middle of the places as it shows them, and in which they take `width` and `height` of the picture: one of
+/// the two exactly, the other at most. Shares from 0 to 1. In perspective every place p = (x, y, z) in the axes of the eye (z towards it)
+/// lies between two planes through the eye e, and so for y:
+///   p_y - e_y <= t (e_z - p_z),  e_y - p_y <= t (e_z - p_z),   t = share tan(fovy / 2)
+/// whose sums over the farthest places to either side give e_y, and the least e_z. No places count as the box -1..1.
+View fit_view(const std::vector<FitPlaces>& clouds, double aspect, double width, double height,
+              const Vec3& towards_eye = default_direction(), double fovy_deg = 30, const Vec3& up = Vec3(0.0, 0.0, 1.0));
+
 /// Moves of a camera: turned about what it looks at, closer, along an axis, fitted. Angles in degrees. Pure functions, any thread.
 
 /// Turns the camera by `azimuth` about the axis `up` through its target (counter-clockwise seen from above), after raising it by

@@ -103,16 +103,27 @@ TEST(ColorMapProgram, DataFilesAreColouredAsAsked) {
   const Picture plain = draw({folder / "g.vdb", "--size", "64x48"}, "bare");
   const Picture red = draw({folder / "g.vdb", "--size", "64x48", "--colormap", "grey", "--range", "0", "1"}, "bare-grey");
   EXPECT_NE(plain.rgba, red.rgba);
+  // grey over the backdrop, which is bluer by 13 of 255, and grey alone where it is dense
+  const auto bluer = [](const Picture& picture, std::uint32_t x, std::uint32_t y) {
+    return int(picture.pixel(x, y)[2]) - int(picture.pixel(x, y)[0]);
+  };
   for (std::uint32_t y = 0; y < 48; ++y)
-    for (std::uint32_t x = 0; x < 64; ++x) EXPECT_NEAR(red.pixel(x, y)[0], red.pixel(x, y)[2], 1) << "grey all over";
+    for (std::uint32_t x = 0; x < 64; ++x) EXPECT_NEAR(bluer(red, x, y), 6.5, 7.5) << "grey all over";
+  EXPECT_EQ(bluer(red, 1, 1), 13);
+  EXPECT_LT(bluer(red, 32, 24), 5);
+  EXPECT_GT(red.pixel(32, 24)[0], red.pixel(1, 1)[0] + 30);
+  int greener = 0;
+  for (std::uint32_t y = 0; y < 48; ++y)
+    for (std::uint32_t x = 0; x < 64; ++x) greener = std::max(greener, int(plain.pixel(x, y)[1]) - int(plain.pixel(x, y)[0]));
+  EXPECT_GT(greener, 20) << "not grey without the map";
   // lines show their speed
   ASSERT_EQ(program({"generate", "circle", "-o", folder / "c.vdb", "--resolution", "16"}).exit_code, 0);
   const Picture lines = draw({folder / "c.vdb", "--size", "64x48", "--colormap", "grey_r"}, "bare-lines");
   bool any = false;
   for (std::uint32_t y = 0; y < 48; ++y)
     for (std::uint32_t x = 0; x < 64; ++x) {
-      any = any || lines.pixel(x, y)[0] > 40;
-      EXPECT_NEAR(lines.pixel(x, y)[0], lines.pixel(x, y)[2], 1);
+      any = any || lines.pixel(x, y)[0] > 60;
+      EXPECT_NEAR(bluer(lines, x, y), 6.5, 7.5);
     }
   EXPECT_TRUE(any);
 }

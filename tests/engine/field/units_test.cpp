@@ -52,6 +52,28 @@ TEST(Units, AVdbGridSaysItsOwn) {
   EXPECT_EQ(units_of(folder / "a.vdb", "other").value, "") << "the file's word may belong to either field";
 }
 
+TEST(Units, WhatTheValuesStandFor) {
+  openvdb::initialize();
+  const catena::test::TemporaryFolder folder;
+  auto distance = openvdb::FloatGrid::create(), fog = openvdb::FloatGrid::create();
+  distance->setName("distance");
+  distance->setGridClass(openvdb::GRID_LEVEL_SET);
+  fog->setName("fog");
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  openvdb::io::File file(folder / "a.vdb");
+  file.write({distance, fog});
+  file.close();
+  EXPECT_TRUE(units_of(folder / "a.vdb", "distance").level_set);
+  EXPECT_FALSE(units_of(folder / "a.vdb", "fog").level_set);
+  EXPECT_FALSE(units_of(folder / "a.vdb", "distance").patient);
+  distance->insertMeta("unit", openvdb::StringMetadata("HU"));
+  openvdb::io::File scan(folder / "b.vdb");
+  scan.write({distance, fog});
+  scan.close();
+  EXPECT_TRUE(units_of(folder / "b.vdb", "distance").patient);
+  EXPECT_FALSE(units_of(folder / "b.vdb", "fog").patient);
+}
+
 TEST(Units, FreeTextIsTakenWhereItIsPlain) {
   EXPECT_EQ(units_of_text("HU, mm", true).value, "HU");
   EXPECT_EQ(units_of_text("HU, mm", true).length, "mm");

@@ -343,21 +343,22 @@ TEST(Document, ADataFileIsTheSceneThatShowsIt) {
     std::string text;
     s.world.each<Volume>(
         [&](Entity, const Volume& v) { text += text_of(v.transfer.colors) + text_of(v.transfer.extinctions) + text_of(v.shade); });
+    text += text_of(s.background);
     return text;
   };
   EXPECT_GT(tables(scene).size(), 500u);
   EXPECT_EQ(tables(scene), tables(*bare));
-  expect_done(document.set("/volumes/0/opacity", "[[0.2, 0], [0.7, 0.1]]", "opacity"));
+  expect_done(document.set("/volumes/0/extinction", "[[0.2, 0], [0.7, 0.1]]", "extinction"));
   expect_done(document.save());
   EXPECT_EQ(open(document.path()).text(), document.text());
   EXPECT_NE(message_of(Document::open(folder / "a b\"c.vdb", {{"ball", "x.vdb", ""}})).find("expected"), std::string::npos);
   EXPECT_NE(message_of(Document::open(document.path(), {}, {"viridis", {}})).find("expected"), std::string::npos);
 }
 
-TEST(Document, ANamedMapLeavesABareVolumesOpacity) {
+TEST(Document, TheNameOfAMapLeavesABareVolumesOpacity) {
   const test::TemporaryFolder folder;
   write_grids(folder / "a.vdb");
-  const auto plain = scene_for_file(folder / "a.vdb"), named = scene_for_file(folder / "a.vdb", {}, {"magma", {}});
+  const auto plain = scene_for_file(folder / "a.vdb", {}, {"grey", {}}), named = scene_for_file(folder / "a.vdb", {}, {"magma", {}});
   ASSERT_TRUE(plain && named) << message_of(named);
   const auto transfer = [](const Scene& s) {
     TransferFunction found;
@@ -375,7 +376,7 @@ TEST(Document, AMeshFileAndAFlow) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "q.obj", kQuad);
   Document document = open(folder / "q.obj");
-  EXPECT_EQ(document.text(), "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": \"q.obj\"}]\n}\n");
+  EXPECT_EQ(document.text(), "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": \"q.obj\"}],\n  \"background\": [0.13, 0.15, 0.18]\n}\n");
   Scene scene = *document.read();
   scene.world.each<MeshSource>([](Entity, const MeshSource& source) { EXPECT_NE(source.loaded, nullptr); });
   const auto swirl = *field::make_analytic("circle");
@@ -387,7 +388,8 @@ TEST(Document, AMeshFileAndAFlow) {
     ASSERT_TRUE(set.color_by);
     EXPECT_EQ(set.color_by->named.map, "viridis");
     EXPECT_EQ((*set.color_by->named.range)[1], 1.5);
-    EXPECT_EQ(set.seeds.points.size(), 120u);
+    ASSERT_TRUE(set.seeds.pattern);
+    EXPECT_EQ(set.seeds.pattern->kind, SeedPattern::Kind::evenly_spaced);
   });
 }
 

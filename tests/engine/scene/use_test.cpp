@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/load.h"
+#include "engine/scene/lines.h"
 #include "engine/scene/prepare.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/transfer.h"
@@ -138,7 +139,10 @@ TEST(SceneForFile, VectorsBecomeStreamlines) {
   ASSERT_TRUE(scene) << message_of(scene);
   EXPECT_EQ(scene->world.count<Volume>(), 0u);
   scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
-    EXPECT_EQ(set.seeds.points.size(), 120u);  // 125 less the five on the axis, where the swirl is zero
+    ASSERT_TRUE(set.seeds.pattern);
+    EXPECT_EQ(set.seeds.pattern->kind, SeedPattern::Kind::evenly_spaced);
+    ASSERT_TRUE(set.color_by);
+    EXPECT_EQ(set.color_by->what, ColorBy::What::speed);
     EXPECT_GT(set.length, 0);
   });
   EXPECT_TRUE(find_field(*scene, "flow"));
@@ -215,8 +219,9 @@ TEST(SceneForFile, RealScansAreTransparentInTheAir) {
   for (const auto& [name, air, tissue] : {std::tuple{"cranium_ct.vdb", -1000.0, 1500.0}, std::tuple{"colin27_brain_mr.vdb", 0.0, 100.0}}) {
     const std::string path = test::shared_data(name);
     if (path.empty()) GTEST_SKIP() << "no shared data";
-    auto scene = scene_for_file(path);
+    auto scene = scene_for_file(path, {}, {"dusk", {}});
     ASSERT_TRUE(scene) << message_of(scene);
+    ASSERT_EQ(scene->world.count<Volume>(), 1u);
     scene->world.each<Volume>([&, air = air, tissue = tissue](Entity, const Volume& volume) {
       const auto sigma = [&](double value) {
         double best = 1e300, found = 0;
@@ -237,13 +242,17 @@ TEST(SceneForFile, RealFlowsHaveLinesInside) {
     auto scene = scene_for_file(path, "velocity");
     ASSERT_TRUE(scene) << message_of(scene);
     ASSERT_EQ(scene->world.count<StreamlineSet>(), 1u) << name;
-    scene->world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) {
-      const auto any = use_field(*scene, set.field, set.where);
-      ASSERT_TRUE(any);
-      for (const Vec3& seed : set.seeds.points)
-        EXPECT_TRUE(use_curve(*scene, {any->vector.get(), set.line, set.min_speed}, seed, set.where, set.length)) << name;
-      EXPECT_EQ(scene->curves.size(), set.seeds.points.size());
-    });
+    ASSERT_TRUE(prepare(*scene));
+    Entity lines;
+    scene->world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { lines = e; });
+    const auto curves = use_lines(*scene, lines);
+    ASSERT_TRUE(curves) << message_of(curves);
+    EXPECT_GT(curves->size(), 20u) << name;
+    const Bounds box = use_field(*scene, scene->world.get<StreamlineSet>(lines).field, {})->get()->world_bounds(),
+                 drawn = lines_bounds(*scene, lines);
+    EXPECT_TRUE(drawn.lo.x >= box.lo.x - 1e-6 * box.diagonal()) << name;
+    EXPECT_LE(drawn.hi.z, box.hi.z + 1e-6 * box.diagonal()) << name;
+    EXPECT_GT(drawn.diagonal(), 0.5 * box.diagonal()) << name;
   }
 }
 

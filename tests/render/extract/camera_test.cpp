@@ -153,6 +153,45 @@ TEST(Camera, FitShowsTheWholeBoxAndFillsThePicture) {
       }
 }
 
+TEST(Camera, FitToPlacesFillsTheShareExactlyAndCentresThem) {
+  FitPlaces cloud;
+  for (int i = 0; i < 200; ++i) cloud.places.push_back({9 * std::sin(1.7 * i), 20 + 5 * std::cos(2.3 * i), 3 * std::sin(0.9 * i)});
+  for (const double aspect : {0.4, 1.0, 2.5})
+    for (const Vec3& towards : {default_direction(), Vec3(0.0, 0.0, 1.0), Vec3(-1.0, 0.2, -0.4)}) {
+      const View view = fit_view({cloud}, aspect, 0.6, 0.8, towards);
+      const Camera c = make_camera(view, 400 * aspect, 400, Bounds());
+      Bounds seen;
+      for (const Vec3& p : cloud.places) {
+        const auto at = project(c, p);
+        ASSERT_TRUE(at);
+        seen.add({at->x / (400 * aspect), at->y / 400, 0});
+      }
+      const Vec3 size = seen.hi - seen.lo;
+      EXPECT_LT(size.x, 0.6 + 1e-9);
+      EXPECT_LT(size.y, 0.8 + 1e-9);
+      EXPECT_TRUE(size.x > 0.6 - 1e-6 || size.y > 0.8 - 1e-6) << size.x << " " << size.y;
+      EXPECT_NEAR(size.y > 0.8 - 1e-6 ? seen.centre().y : seen.centre().x, 0.5, 1e-9);
+    }
+}
+
+TEST(Camera, FitToPlacesLeavesSpecksOut) {
+  FitPlaces cloud;
+  for (int i = 0; i < 1000; ++i) cloud.places.push_back({std::sin(1.7 * i), std::cos(2.3 * i), std::sin(0.9 * i)});
+  const double near = norm(fit_view({cloud}, 1, 0.8, 0.8).position);
+  cloud.places.push_back({50, 0, 0});
+  EXPECT_GT(norm(fit_view({cloud}, 1, 0.8, 0.8).position), 5 * near);
+  cloud.ignored = 0.002;
+  EXPECT_NEAR(norm(fit_view({cloud}, 1, 0.8, 0.8).position), near, 0.1 * near);
+}
+
+TEST(Camera, FitToOnePlaceOrNone) {
+  for (const std::vector<FitPlaces>& clouds : {std::vector<FitPlaces>{}, {{}}, {{{Vec3(5.0)}, 0}}}) {
+    const View view = fit_view(clouds, 1, 0.8, 0.8);
+    EXPECT_TRUE(is_finite(view.position));
+    EXPECT_GT(norm(view.position - view.target), 0.5);
+  }
+}
+
 TEST(Camera, FitOfNothingAndOfAPoint) {
   const View nothing = fit_view(Bounds(), 1);
   EXPECT_TRUE(is_finite(nothing.position));

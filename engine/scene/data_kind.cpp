@@ -1,0 +1,225 @@
+#include "engine/scene/data_kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <unordered_set>
+
+#include "engine/base/numbers.h"
+#include "engine/scene/transfer.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr std::size_t kMostVoxels = 1u << 20;
+constexpr int kKindBins = 256, kEdge = 8;
+constexpr int kMostLabels = 2048;
+constexpr double kAsGood = 0.995;  // of the best threshold
+// the background, see data_kind.h
+constexpr double kBackgroundFull = 0.05, kBackgroundEnd = 0.2, kBackgroundWidth = 0.02;
+// level sets
+constexpr double kUnitSlope = 0.05, kUnitSlopes = 0.9;
+// Hounsfield units
+constexpr double kAirLo = -1100, kAirHi = -850, kSoftLo = -150, kSoftHi = 200, kTissueShare = 0.05, kLeastHounsfield = -5000;
+constexpr double kEqualNeighbours = 0.6;
+// solids: two plateaus
+constexpr double kPlateau = 0.1, kPlateaus = 0.9, kLeastPlateau = 0.02;
+// scans
+constexpr double kBrightFrom = 0.3, kBrightLeast = 0.0002, kBrightMost = 0.04, kRough = 0.45;
+constexpr double kEmpty = 0.6;
+
+/// What is summed over the neighbours in blocks.
+struct Neighbours {
+  double first = 0, second = 0;
+  std::size_t pairs = 0, equal = 0, slopes = 0, unit_slopes = 0;
+};
+
+double share(std::size_t part, std::size_t all) { return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all); }
+
+/// The bins of the values over lo..hi.
+using Bins = std::array<std::size_t, kKindBins>;
+
+int bin_of(double value, double lo, double hi) {
+  return static_cast<int>(std::clamp((value - lo) / (hi - lo) * kKindBins, 0.0, kKindBins - 1.0));
+}
+
+/// The bin behind which the two classes differ most: the middle of all that differ as much, as where nothing lies between them.
+int otsu_bin(const Bins& bins) {
+  double all = 0, sum = 0;
+  for (int i = 0; i < kKindBins; ++i) all += double(bins[i]), sum += double(i) * double(bins[i]);
+  double below = 0, below_sum = 0, best = -1;
+  std::array<double, kKindBins> apart_by{};
+  for (int i = 0; i + 1 < kKindBins; ++i) {
+    below += double(bins[i]);
+    below_sum += double(i) * double(bins[i]);
+    if (!(below > 0) || !(below < all)) continue;
+    const double apart = below_sum / below - (sum - below_sum) / (all - below);
+    apart_by[i] = below * (all - below) * apart * apart;
+    best = std::max(best, apart_by[i]);
+  }
+  const auto is_best = [&](double between) { return between >= kAsGood * best; };
+  const auto first = std::find_if(apart_by.begin(), apart_by.end(), is_best);
+  const auto last = std::find_if(apart_by.rbegin(), apart_by.rend(), is_best).base() - 1;
+  return static_cast<int>((first - apart_by.begin() + (last - apart_by.begin())) / 2);
+}
+
+void measure_values(std::vector<float>& values, DataFacts& facts) {
+  const std::size_t n = values.size();
+  std::unordered_set<float> distinct;
+  facts.whole_numbers = true;
+  facts.least = values.front();
+  std::size_t air = 0, soft = 0;
+  for (const float v : values) {
+    facts.least = std::min(facts.least, double(v));
+    if (v != std::nearbyint(v)) facts.whole_numbers = false;
+    if (distinct.size() <= kMostLabels) distinct.insert(v);
+    air += v >= kAirLo && v <= kAirHi;
+    soft += v >= kSoftLo && v <= kSoftHi;
+  }
+  facts.distinct = static_cast<int>(distinct.size());
+  facts.air_share = share(air, n);
+  facts.soft_share = share(soft, n);
+  facts.empty_share = share(static_cast<std::size_t>(std::count(values.begin(), values.end(), static_cast<float>(facts.least))), n);
+  facts.lo = quantile(values, 0.001);
+  facts.hi = quantile(values, 0.999);
+  const double brightest = quantile(values, 0.9999);
+  facts.background = facts.threshold = facts.lo;
+  if (!(facts.lo < facts.hi)) return;
+
+  Bins bins{};
+  for (const float v : values) ++bins[bin_of(v, facts.lo, facts.hi)];
+  const auto fullest = std::max_element(bins.begin(), bins.end()) - bins.begin();
+  if (share(bins[fullest], n) > kBackgroundFull && double(fullest) < kBackgroundEnd * kKindBins)
+    facts.background = facts.lo + (double(fullest) + 0.5) / kKindBins * (facts.hi - facts.lo);
+  facts.threshold = facts.lo + (otsu_bin(bins) + 1.0) / kKindBins * (facts.hi - facts.lo);
+
+  for (const float v : values) facts.mean += std::clamp(double(v), facts.lo, facts.hi) / static_cast<double>(n);
+  std::size_t near = 0, low = 0, high = 0, bright = 0;
+  const double width = kBackgroundWidth * (facts.hi - facts.lo), tenth = kPlateau * (facts.hi - facts.lo);
+  const double bright_from = facts.background + kBrightFrom * (brightest - facts.background);
+  for (const float v : values) {
+    near += std::fabs(v - facts.background) < width;
+    low += v <= facts.lo + tenth;
+    high += v >= facts.hi - tenth;
+    bright += v > bright_from;
+  }
+  facts.background_share = share(near, n);
+  facts.bright_share = share(bright, n);
+  if (share(low, n) >= kLeastPlateau && share(high, n) >= kLeastPlateau) facts.plateau_share = share(low + high, n);
+}
+
+/// Of one block of 8^3; values that are not valid are NaN.
+void measure_neighbours(const std::vector<float>& block, const field::Mapping& mapping, const DataFacts& facts, Neighbours& sums) {
+  const double width = kBackgroundWidth * (facts.hi - facts.lo);
+  const auto at = [&](int x, int y, int z) { return double(block[static_cast<std::size_t>((z * kEdge + y) * kEdge + x)]); };
+  const auto is_foreground = [&](double v) { return std::fabs(v - facts.background) >= width; };
+  for (int z = 0; z < kEdge; ++z)
+    for (int y = 0; y < kEdge; ++y)
+      for (int x = 0; x + 2 < kEdge; ++x) {
+        const double a = at(x, y, z), b = at(x + 1, y, z), c = at(x + 2, y, z);
+        if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c) || !is_foreground(b)) continue;
+        sums.first += 0.5 * (std::fabs(b - a) + std::fabs(c - b));
+        sums.second += std::fabs(a - 2 * b + c);
+        if (!is_foreground(a)) continue;
+        ++sums.pairs;
+        sums.equal += a == b;
+      }
+  for (int z = 1; z + 1 < kEdge; z += 2)
+    for (int y = 1; y + 1 < kEdge; y += 2)
+      for (int x = 1; x + 1 < kEdge; x += 2) {
+        const Vec3 slope(at(x + 1, y, z) - at(x - 1, y, z), at(x, y + 1, z) - at(x, y - 1, z), at(x, y, z + 1) - at(x, y, z - 1));
+        const double length = norm(mapping.world_gradient(0.5 * slope));
+        if (!std::isfinite(length) || length == 0) continue;
+        ++sums.slopes;
+        sums.unit_slopes += std::fabs(length - 1) <= kUnitSlope;
+      }
+}
+
+}  // namespace
+
+DataFacts data_facts(const field::ScalarGrid& grid, const field::Units& units) {
+  DataFacts facts;
+  facts.level_set = units.level_set;
+  facts.hounsfield = units.value == "HU";
+  facts.patient = units.patient;
+  facts.masked = grid.has_mask();
+
+  // blocks spread over the box, each whole: an edge that the box cuts off is left out
+  std::vector<float> blocks, block(kEdge * kEdge * kEdge), values;
+  std::vector<std::uint8_t> valid(block.size());
+  each_block(grid.index_box(), kMostVoxels, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+    block.assign(block.size(), 0.f);
+    const std::span<float> part(block.data(), count);
+    grid.read_block(origin, extent, part);
+    if (facts.masked) {
+      grid.read_cell_valid(origin, extent, valid);
+      for (std::size_t i = 0; i < count; ++i)
+        if (valid[i] == 0) block[i] = NAN;
+    }
+    for (const float v : part)
+      if (std::isfinite(v)) values.push_back(v);
+    if (count == block.size()) blocks.insert(blocks.end(), block.begin(), block.end());
+  });
+  if (values.empty()) return facts;
+  measure_values(values, facts);
+
+  Neighbours sums;
+  for (std::size_t i = 0; i < blocks.size(); i += block.size()) {
+    std::copy_n(blocks.begin() + static_cast<std::ptrdiff_t>(i), block.size(), block.begin());
+    measure_neighbours(block, grid.mapping(), facts, sums);
+  }
+  facts.equal_share = share(sums.equal, sums.pairs);
+  facts.roughness = sums.first > 0 ? sums.second / sums.first : 0;
+  facts.distance_share = share(sums.unit_slopes, sums.slopes);
+  return facts;
+}
+
+DataKind kind_of(const DataFacts& f) {
+  const bool rough = f.roughness >= kRough;
+  const bool both_signs = f.lo < 0 && f.hi > 0;
+  if (f.level_set || (both_signs && f.distance_share >= kUnitSlopes)) return DataKind::level_set;
+  if (f.hounsfield) return DataKind::ct;
+  if (f.least >= kLeastHounsfield && f.air_share >= kTissueShare && f.soft_share >= kTissueShare) return DataKind::ct;
+  if (f.whole_numbers && f.distinct > 1 && f.distinct <= kMostLabels && f.equal_share >= kEqualNeighbours) return DataKind::label_map;
+  if (f.plateau_share >= kPlateaus || (!f.whole_numbers && f.equal_share >= kEqualNeighbours)) return DataKind::solid;
+  if (!f.patient && !f.masked && f.least >= 0 && f.least < f.hi && f.empty_share >= kEmpty) return DataKind::cloud;
+  if (rough && f.bright_share >= kBrightLeast && f.bright_share <= kBrightMost) return DataKind::angiogram;
+  if (f.patient && rough) return DataKind::mr;
+  return DataKind::simulation;
+}
+
+std::string_view kind_word(DataKind kind) {
+  constexpr std::string_view words[] = {"a level set",  "a CT",       "a label map", "a solid body",
+                                        "an angiogram", "an MR scan", "a cloud",     "a simulation"};
+  return words[static_cast<int>(kind)];
+}
+
+std::string why(DataKind kind, const DataFacts& f) {
+  const auto percent = [](double part) { return fmt::format("{:.3g} %", 100 * part); };
+  switch (kind) {
+    case DataKind::level_set:
+      return f.level_set ? "the file says so"
+                         : "values of both signs, and the slope is 1 in " + percent(f.distance_share) + " of the places";
+    case DataKind::ct:
+      return f.hounsfield ? "its unit is HU"
+                          : percent(f.air_share) + " of the values are air near -1000, " + percent(f.soft_share) + " soft tissue near 0";
+    case DataKind::label_map:
+      return fmt::format("{} different whole numbers, and {} of all neighbours are equal", f.distinct, percent(f.equal_share));
+    case DataKind::solid:
+      return f.plateau_share >= kPlateaus ? percent(f.plateau_share) + " of the values are at either end of the range"
+                                          : percent(f.equal_share) + " of all neighbours are equal";
+    case DataKind::angiogram:
+      return "only " + percent(f.bright_share) + " of the values are bright, and they are rough";
+    case DataKind::mr:
+      return fmt::format("of a patient or an animal, without a scale, and rough ({:.2f})", f.roughness);
+    case DataKind::cloud:
+      return percent(f.empty_share) + " of the box are empty";
+    case DataKind::simulation:
+      return fmt::format("a quantity that fills its domain (roughness {:.2f})", f.roughness);
+  }
+  return {};
+}
+
+}  // namespace catena::scene

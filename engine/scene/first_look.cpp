@@ -1,0 +1,294 @@
+#include "engine/scene/first_look.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
+#include "engine/flow/seeds.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/data_kind.h"
+#include "engine/scene/transfer.h"
+#include "engine/scene/write_values.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr Color kBackdrop{0.13f, 0.15f, 0.18f};
+constexpr Color kBone{0.94f, 0.89f, 0.79f}, kSkin{0.87f, 0.67f, 0.56f}, kTissue{0.86f, 0.76f, 0.69f}, kSolid{0.72f, 0.77f, 0.84f};
+constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25;
+constexpr double kLabelSkin = 0.18;                                   // opacity: what makes the shape of flat colours seen
+constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;  // optical depths of a ray across the domain
+constexpr double kMostlyEmpty = 0.5;                                  // of the values: the background
+constexpr std::size_t kMostVectors = 1u << 18;
+constexpr std::size_t kParts = 3;                                                            // an axis: each gives a start
+constexpr double kOpposite = -0.5, kOppositeShare = 0.001;                                   // of neighbours: the cosine, and how many
+constexpr double kUnitSpread = 0.02;                                                         // of unit vectors' lengths
+constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // of lines: by the domain's diagonal
+constexpr double kStill = 0.05;  // of the fastest: where half of the field is slower, no line is drawn there
+constexpr Color kFibre{0.90f, 0.62f, 0.42f};
+constexpr const char* kQuantityMap = "viridis";
+
+/// A level that a surface can have: within the values.
+bool has_level(const field::ScalarGrid& grid, double level) { return level > grid.min_value() && level < grid.max_value(); }
+
+/// With as many digits as say it to a thousandth of the range.
+double rounded(double value, const DataFacts& facts) {
+  const double step = std::pow(10, std::floor(std::log10(std::max(facts.hi - facts.lo, 1e-30))) - 2);
+  return std::round(value / step) * step;
+}
+
+double three_digits(double value) {
+  if (value == 0 || !std::isfinite(value)) return value;
+  const double step = std::pow(10, std::floor(std::log10(std::fabs(value))) - 2);
+  return std::round(value / step) * step;
+}
+
+std::string surface(const std::string& field, double level, const Color& color, double opacity = 1) {
+  return "{\"field\": " + field + ", \"level\": " + text_of(level) + ", \"color\": " + text_of(color) +
+         (opacity < 1 ? ", \"opacity\": " + text_of(opacity) : "") + "}";
+}
+
+std::string surfaces(const std::vector<std::string>& items) {
+  std::string text = "  \"isosurfaces\": [";
+  for (std::size_t i = 0; i < items.size(); ++i) text += (i > 0 ? ",\n                  " : "") + items[i];
+  return text + "]";
+}
+
+/// , "color": MAP, "range": [LO, HI]
+std::string color_members(const NamedColors& colors) {
+  std::string text;
+  if (!colors.map.empty()) text += ", \"color\": " + json::string_text(colors.map);
+  if (colors.range) text += ", \"range\": " + text_of(*colors.range);
+  return text;
+}
+
+std::string bar_of(const std::string& what, const std::string& title, bool box = true) {
+  return ",\n  \"scalar_bars\": [{" + what + ", \"title\": " + title + "}]" + (box ? ",\n  \"bounding_box\": true" : "");
+}
+
+/// In the colours that are asked for. A map that is named without a range reaches over the values that the opacity follows, not over all.
+std::string colored_volume(const std::string& field, const field::ScalarGrid& grid, NamedColors colors) {
+  if (!colors.map.empty() && !colors.range) {
+    TransferFunction transfer;
+    complete_transfer(transfer, grid);
+    const double lo = transfer.colors.front().value, hi = transfer.colors.back().value;
+    if (is_color_range(lo, hi)) colors.range = {lo, hi};
+  }
+  return "  \"volumes\": [{\"field\": " + field + color_members(colors) + ", \"shade\": true}]";
+}
+
+std::string quantity(const std::string& field, const field::ScalarGrid& grid, const DataFacts& facts) {
+  double lo = rounded(facts.lo, facts), hi = rounded(facts.hi, facts);
+  if (!is_color_range(lo, hi)) return colored_volume(field, grid, {kQuantityMap, {}});
+  // what is empty is left out; without an empty part the low values can be seen, too
+  const bool empty = facts.background_share > kMostlyEmpty;
+  const double clear = 1 / std::max(grid.length(), 1e-300);
+  std::string text = "  \"volumes\": [{\"field\": " + field + ", \"color\": " + text_of(kQuantityMap) +
+                     ", \"range\": " + text_of(std::array<double, 2>{lo, hi}) + ",\n               \"extinction\": ";
+  std::string rows = "[";
+  const double mean = std::max((facts.mean - facts.lo) / (facts.hi - facts.lo), 1e-3);
+  const double most = std::clamp(kMeanDepth / mean, kMeanDepth, kMostDepth);
+  for (const auto& [share, depth] : {std::pair{0.0, empty ? 0.0 : kLowDepth}, {0.1, kLowDepth}, {1.0, most}})
+    rows += (share > 0 ? ", [" : "[") + text_of(rounded(lo + share * (hi - lo), facts)) + ", " + text_of(three_digits(depth * clear)) + "]";
+  text += rows + "]}]";
+  return text + bar_of("\"volume\": 0", field, !empty && !facts.masked);
+}
+
+std::string computed_tomography(const std::string& field, const field::ScalarGrid& grid, const DataFacts& facts) {
+  std::vector<std::string> items;
+  const bool bone = has_level(grid, kBoneLevel);
+  if (bone) items.push_back(surface(field, kBoneLevel, kBone));
+  if (has_level(grid, kSkinLevel)) items.push_back(surface(field, kSkinLevel, kSkin, bone ? kSkinOpacity : 1));
+  return items.empty() ? quantity(field, grid, facts) : surfaces(items);
+}
+
+/// The n-th of colours that differ from each other: hues a golden section apart, at three lightnesses.
+Color label_color(int n) {
+  const double hue = std::fmod(0.61803398875 * n, 1.0) * 6;
+  constexpr double kSaturation[] = {0.55, 0.75, 0.45}, kValue[] = {0.95, 0.75, 0.85};
+  const double s = kSaturation[n % 3], v = kValue[n / 3 % 3];
+  const auto component = [&](double shift) {
+    const double k = std::fmod(shift + hue, 6.0);
+    return static_cast<float>(v - v * s * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
+  };
+  return {component(5), component(3), component(1)};
+}
+
+std::string labels(const std::string& field, const field::ScalarGrid& grid) {
+  std::set<float> found;
+  for (const float v : sample_values(grid, 1u << 20)) found.insert(v);
+  std::string colors;
+  int n = 0;
+  for (const float v : found) {
+    if (v == 0) continue;
+    const Color color = label_color(n++);
+    const auto row = [&](double value) { return "[" + text_of(value) + ", " + text_of(color).substr(1); };
+    colors += (colors.empty() ? "" : ",\n                         ") + row(v - 0.45) + ", " + row(v + 0.45);
+  }
+  const double edge = grid.mapping().smallest_edge();
+  return "  \"volumes\": [{\"field\": " + field + ",\n               \"color\": [" + colors +
+         "],\n               \"opacity\": [[0.4, 0], [0.6, 0.9]], \"gradient_opacity\": [[0, 1], [" + text_of(0.05 / edge) + ", 0]]}],\n" +
+         surfaces({surface(field, 0.5, {1, 1, 1}, kLabelSkin)});
+}
+
+std::string angiogram(const std::string& field, const DataFacts& facts) {
+  const double lo = rounded(facts.background, facts), hi = rounded(facts.hi, facts);
+  return "  \"volumes\": [{\"field\": " + field + ", \"color\": \"grey\", \"range\": " + text_of(std::array<double, 2>{lo, hi}) +
+         ", \"opacity\": [[" + text_of(lo) + ", 0], [" + text_of(hi) + ", 0.95]], \"projection\": \"maximum\"}]";
+}
+
+/// Lines or fibres: unit vectors have no speed to show, and where neighbours point to opposite sides v and -v mean the same.
+struct FlowFacts {
+  double slow = 0, fast = 0;  ///< the 2 and the 99 percentile of the magnitudes
+  double middle = 0;          ///< their median
+  double moving = 0;          ///< share of the values: not still
+  bool unit = false, axes = false;
+  std::vector<Vec3> fastest;  ///< world: the fastest place of each of 3^3 parts of the box
+};
+
+double share_above(const std::vector<float>& values, double least) {
+  const auto many = std::count_if(values.begin(), values.end(), [&](float v) { return v >= least; });
+  return values.empty() ? 0 : static_cast<double>(many) / static_cast<double>(values.size());
+}
+
+FlowFacts flow_facts(const field::VectorGrid& grid) {
+  FlowFacts facts;
+  std::vector<float> speeds, block;
+  std::size_t pairs = 0, opposite = 0;
+  std::array<std::pair<double, Vec3>, kParts * kParts * kParts> fastest{};
+  const field::Box& box = grid.index_box();
+  field::Cursor cursor;
+  each_block(grid.index_box(), kMostVectors, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
+    block.resize(3 * count);
+    grid.read_block(origin, extent, block);
+    const auto vector = [&](std::size_t i) { return Vec3(block[3 * i], block[3 * i + 1], block[3 * i + 2]); };
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 v = vector(i);
+      const double speed = norm(v);
+      if (!std::isfinite(speed)) continue;
+      const field::Index3 at{origin.x + static_cast<int>(i) % extent.x, origin.y + static_cast<int>(i) / extent.x % extent.y,
+                             origin.z + static_cast<int>(i) / (extent.x * extent.y)};
+      if (grid.has_mask() && !grid.cell(at, cursor).valid) continue;
+      speeds.push_back(static_cast<float>(speed));
+      const Vec3 place(at.x, at.y, at.z);
+      std::size_t part = 0;
+      for (int a = 2; a >= 0; --a)
+        part = kParts * part + static_cast<std::size_t>(kParts * (place[a] - box.lo[a]) / (box.hi[a] - box.lo[a] + 1));
+      if (speed > fastest[part].first) fastest[part] = {speed, place};
+      if (static_cast<int>(i) % extent.x + 1 == extent.x) continue;
+      const Vec3 next = vector(i + 1);
+      if (!(speed > 0) || !(norm(next) > 0)) continue;
+      ++pairs;
+      opposite += dot(v, next) < kOpposite * speed * norm(next);
+    }
+  });
+  for (const auto& [speed, place] : fastest)
+    if (speed > 0) facts.fastest.push_back(grid.mapping().world_from_index(place));
+  facts.slow = quantile(speeds, 0.02);
+  facts.middle = quantile(speeds, 0.5);
+  facts.fast = quantile(speeds, 0.99);
+  if (!(facts.fast > 0)) facts.fast = quantile(speeds, 1);
+  facts.moving = share_above(speeds, kStill * facts.fast);
+  facts.unit = facts.fast > 0 && facts.fast - facts.slow < kUnitSpread * facts.fast;
+  facts.axes = facts.unit && double(opposite) > kOppositeShare * double(pairs);
+  return facts;
+}
+
+}  // namespace
+
+std::string soft_background() { return "  \"background\": " + text_of(kBackdrop); }
+
+FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, const field::Units& units, NamedColors colors) {
+  const DataFacts facts = data_facts(grid, units);
+  const DataKind kind = kind_of(facts);
+  FirstLook look;
+  look.whole = facts.masked && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
+  look.note = "looks like " + std::string(kind_word(kind)) + ": " + why(kind, facts);
+  const auto level = [&](double value) {
+    return has_level(grid, rounded(value, facts)) ? rounded(value, facts) : 0.5 * (grid.min_value() + grid.max_value());
+  };
+  const bool one_value = !(grid.min_value() < grid.max_value());
+  if (!colors.map.empty() || colors.range || one_value) {
+    look.parts = colored_volume(field, grid, colors);
+  } else {
+    switch (kind) {
+      case DataKind::ct:
+        look.parts = computed_tomography(field, grid, facts);
+        break;
+      case DataKind::mr:
+        look.parts = surfaces({surface(field, level(0.5 * (facts.background + facts.threshold)), kTissue)});
+        break;
+      case DataKind::label_map:
+        look.parts = labels(field, grid);
+        break;
+      case DataKind::solid:
+        look.parts = surfaces({surface(field, level(facts.threshold), kSolid)});
+        break;
+      case DataKind::level_set:
+        look.parts = surfaces({surface(field, level(0), kSolid)});
+        break;
+      case DataKind::angiogram:
+        look.parts = angiogram(field, facts);
+        break;
+      case DataKind::cloud:
+        look.parts = colored_volume(field, grid, {"grey", {}});
+        break;
+      case DataKind::simulation:
+        look.parts = quantity(field, grid, facts);
+        break;
+    }
+  }
+  look.parts += ",\n" + soft_background();
+  return look;
+}
+
+FirstLook first_look(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors) {
+  const FlowFacts facts = flow_facts(grid);
+  const double diagonal = grid.world_bounds().diagonal();
+  // where most of the field stands still, what moves is narrow
+  const bool narrow = facts.middle < kStill * facts.fast;
+  const double size = narrow ? std::clamp(std::cbrt(facts.moving), kNarrowest, 1.0) : 1;
+  const double distance = three_digits(kApart * size * diagonal), radius = three_digits(kLineWidth * std::sqrt(size) * diagonal);
+  const bool named = !colors.map.empty() || colors.range, plain = facts.unit && !named;
+  FirstLook look;
+  look.note = facts.unit ? "looks like fibres: all vectors are as long" : "looks like a flow";
+  NamedColors shown = colors;
+  if (!named) shown.map = kQuantityMap;
+  const std::array<double, 2> speeds{three_digits(facts.slow), three_digits(facts.fast)};
+  if (!shown.range && is_color_range(speeds[0], speeds[1])) shown.range = speeds;
+
+  // a line must begin somewhere, and be as long as lines are apart
+  const double still = narrow ? three_digits(kStill * facts.fast) : 0;
+  flow::EvenlySpaced spacing{distance, 0.5, facts.fastest, 1};
+  flow::BatchOptions options;
+  options.length = three_digits(kLineLength * diagonal);
+  if (!(facts.fast > 0)) {
+    look.note = "looks like a flow that stands still";
+    look.parts = soft_background();
+  } else if (flow::evenly_spaced({&grid, facts.axes, still}, spacing, options).empty()) {
+    const Vec3 middle = grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
+    look.parts = "  \"slices\": [";
+    for (int axis = 0; axis < 3; ++axis)
+      look.parts += std::string(axis > 0 ? ",\n             " : "") + "{\"field\": " + field + ", \"axis\": \"" + "xyz"[axis] +
+                    "\", \"at\": " + text_of(middle[axis]) + color_members(shown) + "}";
+    look.parts += "]" + bar_of("\"slice\": 0", field) + ",\n" + soft_background();
+  } else {
+    look.parts = "  \"streamlines\": [{\"field\": " + field;
+    if (facts.axes) look.parts += ", \"kind\": \"line\"";
+    if (still > 0) look.parts += ", \"min_speed\": " + text_of(still);
+    look.parts += plain ? ", \"color\": " + text_of(kFibre) : ", \"color_by\": {\"quantity\": \"speed\"" + color_members(shown) + "}";
+    look.parts += ", \"radius\": " + text_of(radius) + ", \"length\": " + text_of(options.length) +
+                  ",\n                   \"seeds\": {\"evenly_spaced\": {\"distance\": " + text_of(distance) +
+                  ",\n                                               \"start\": " + text_of(facts.fastest) + "}}}]";
+    if (!plain) look.parts += bar_of("\"streamlines\": 0", field, !grid.has_mask());
+    look.parts += ",\n" + soft_background();
+  }
+  return look;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,34 @@
+/// How data are shown of which nobody says how: the parts of a scene file, chosen by the kind of the data (data_kind.h). Inside this room
+/// only. Levels and ranges are values of the field.
+///   CT           the skin (-300 HU, translucent) over the bone (250 HU), where the values reach them
+///   MR           the surface of what is not background: halfway from the background to Otsu's threshold, which dark tissue lies below
+///   label map    a volume with a colour a label; cells between two labels are left out, for a value between them is no label
+///   solid        the surface at Otsu's threshold; a level set's at 0
+///   angiogram    the brightest value along each ray, grey
+///   cloud        a shaded volume, grey to white
+///   simulation   a volume with a perceptual map and its scalar bar, in its box
+///   flow         lines that keep a distance from each other, coloured by speed with a scalar bar, in the box; fibres (unit length) in one
+///                colour; three slices of the speed where no line begins
+/// A stated colour map or range makes it a volume in these colours, whatever the kind.
+#pragma once
+#include <string>
+
+#include "engine/field/grid.h"
+#include "engine/field/units.h"
+#include "engine/scene/components.h"
+
+namespace catena::scene {
+
+struct FirstLook {
+  std::string parts;   ///< members of a scene's object, without a comma at either end
+  bool whole = false;  ///< the mask only cuts away what is empty: without it surfaces are closed, with it they end in torn cells
+  std::string note;    ///< one sentence: what the data look like, and why
+};
+
+/// `field`: its name in the scene, as JSON.
+FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, const field::Units& units, NamedColors colors);
+FirstLook first_look(const std::string& field, const field::VectorGrid& grid, const NamedColors& colors);
+/// Of a mesh: what goes beside it.
+std::string soft_background();
+
+}  // namespace catena::scene

@@ -1,0 +1,282 @@
+#include "render/extract/first_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/field/grid.h"
+#include "engine/field/units.h"
+#include "engine/scene/hidden.h"
+#include "render/extract/extract.h"
+#include "render/extract/extract_parts.h"
+
+namespace catena::render {
+namespace {
+
+constexpr double kMostPlaces = 1 << 18;
+constexpr double kLeastOpacity = 0.02, kThickness = 1.0 / 25;  // of a volume that can be seen
+constexpr double kSpecks = 0.002;                              // of the rows: may lie outside
+constexpr double kHeight = 0.8, kWidth = 0.9;                  // of the picture
+constexpr double kPicturePt = 576, kBarPt = 92, kLyingBarPt = 52, kTitlePt = 30, kAxesShare = 0.84;
+constexpr double kFlat = 0.4;  // of the middle edge
+
+/// What was seen of a thing, and of what it was made.
+template <class T>
+struct Seen {
+  std::uint64_t version = 0;
+  double level = 0;
+  std::vector<std::array<double, 2>> extinctions;
+  std::vector<Vec3> places;
+};
+
+/// Rows of the lattice along x, with the next rows in y and z; values that are not valid are NaN.
+class Rows {
+ public:
+  explicit Rows(const field::ScalarGrid& grid) : grid_(grid) {
+    const field::Box& box = grid.index_box();
+    for (int a = 0; a < 3; ++a) {
+      lo_[a] = static_cast<int>(box.lo[a]);
+      size_[a] = static_cast<int>(box.hi[a]) - lo_[a] + 1;
+    }
+    const double voxels = double(size_[0]) * size_[1] * size_[2];
+    step_ = std::max(1, static_cast<int>(std::ceil(std::cbrt(voxels / kMostPlaces))));
+    for (int a = 0; a < 3; ++a) count_[a] = (size_[a] - 1) / step_ + 1;
+  }
+
+  int count(int axis) const { return count_[axis]; }
+  Vec3 world(double i, double j, double k) const {
+    return grid_.mapping().world_from_index(Vec3(lo_[0] + i * step_, lo_[1] + j * step_, lo_[2] + k * step_));
+  }
+
+  void read(int j, int k, std::vector<float>& row) {
+    row.assign(static_cast<std::size_t>(count_[0]), NAN);
+    if (j >= count_[1] || k >= count_[2]) return;
+    whole_.resize(static_cast<std::size_t>(size_[0]));
+    const int y = lo_[1] + j * step_, z = lo_[2] + k * step_;
+    grid_.read_block({lo_[0], y, z}, {size_[0], 1, 1}, whole_);
+    valid_.assign(whole_.size(), 1);
+    // a cell is valid, not a voxel: those of the last layers belong to the cells before them
+    const auto cell = [&](int a, int at) { return std::min(at, lo_[a] + std::max(size_[a] - 2, 0)); };
+    if (grid_.has_mask()) grid_.read_cell_valid({lo_[0], cell(1, y), cell(2, z)}, {size_[0], 1, 1}, valid_);
+    for (int i = 0; i < count_[0]; ++i)
+      if (valid_[static_cast<std::size_t>(cell(0, lo_[0] + i * step_) - lo_[0])] != 0)
+        row[static_cast<std::size_t>(i)] = whole_[static_cast<std::size_t>(i) * static_cast<std::size_t>(step_)];
+  }
+
+ private:
+  const field::ScalarGrid& grid_;
+  int lo_[3]{}, size_[3]{}, count_[3]{}, step_ = 1;
+  std::vector<float> whole_;
+  std::vector<std::uint8_t> valid_;
+};
+
+/// The first and the last place of a row, along an axis.
+struct Ends {
+  int axis = 0;
+  double first = INFINITY, last = -INFINITY;
+  Vec3 first_place{0.0}, last_place{0.0};
+  void add(const Vec3& index) {
+    if (index[axis] < first) first = index[axis], first_place = index;
+    if (index[axis] > last) last = index[axis], last_place = index;
+  }
+  void give(const Rows& rows, std::vector<Vec3>& places) const {
+    if (first > last) return;
+    places.push_back(rows.world(first_place.x, first_place.y, first_place.z));
+    if (last > first) places.push_back(rows.world(last_place.x, last_place.y, last_place.z));
+  }
+};
+
+double extinction_of(const std::vector<std::array<double, 2>>& table, double value) {
+  if (table.empty()) return 0;
+  if (value <= table.front()[0]) return table.front()[1];
+  for (std::size_t i = 1; i < table.size(); ++i)
+    if (value <= table[i][0]) {
+      const double t = (value - table[i - 1][0]) / (table[i][0] - table[i - 1][0]);
+      return table[i - 1][1] + t * (table[i][1] - table[i - 1][1]);
+    }
+  return table.back()[1];
+}
+
+std::vector<Vec3> corners_of(const Bounds& bounds) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8 && !bounds.empty(); ++i) corners.push_back(bounds.corner(i));
+  return corners;
+}
+
+std::vector<Vec3> domain_of(const field::ScalarGrid& grid) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back(grid.corner(i));
+  return corners;
+}
+
+/// What clip planes keep.
+std::vector<Vec3> kept(std::vector<Vec3> places, const FramePacket& packet) {
+  std::erase_if(places, [&](const Vec3& p) {
+    return std::ranges::any_of(packet.clip, [&](const Plane& plane) { return dot(p - plane.point, plane.normal) < 0; });
+  });
+  return places;
+}
+
+/// Where the plane of a slice crosses the edges of its grid's domain.
+std::vector<Vec3> slice_places(const SliceItem& slice) {
+  std::vector<Vec3> places;
+  for (int i = 0; i < 8; ++i)
+    for (int axis = 1; axis < 8; axis *= 2) {
+      if ((i & axis) != 0) continue;
+      const Vec3 a = slice.grid->corner(i), b = slice.grid->corner(i | axis);
+      const double from = dot(a - slice.point, slice.normal), to = dot(b - slice.point, slice.normal);
+      if (from == to || (from < 0) == (to < 0)) continue;
+      places.push_back(a + from / (from - to) * (b - a));
+    }
+  return places;
+}
+
+template <class T>
+void add_seen(const scene::Scene& scene, const FramePacket& packet, std::vector<FitPlaces>& clouds) {
+  for (const scene::Entity e : owners_of<T>(scene.world)) {
+    if (scene::is_hidden(scene.world, e)) continue;
+    const field::AnyField& any = scene::drawn_field(scene, scene.world.get<T>(e).field);
+    std::vector<Vec3> places;
+    if (scene.made.has<Seen<T>>(e)) places = scene.made.get<Seen<T>>(e).places;
+    if (places.empty() && any.scalar && any.scalar->grid() != nullptr) places = domain_of(*any.scalar->grid());
+    clouds.push_back({scene.world.get<T>(e).clipped ? kept(std::move(places), packet) : std::move(places), kSpecks});
+  }
+}
+
+/// A patient's data, as the files say.
+bool is_patient(const scene::Scene& scene) {
+  bool patient = false;
+  scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
+    if (source.file && source.drawn.get() != nullptr) patient = patient || field::units_of(source.file->path, source.file->grid).patient;
+  });
+  return patient;
+}
+
+Vec3 first_direction(const scene::Scene& scene, const std::vector<FitPlaces>& clouds) {
+  if (is_patient(scene)) return Vec3(0.4, 1.0, 0.3);
+  Bounds all;
+  for (const FitPlaces& cloud : clouds)
+    for (const Vec3& p : cloud.places) all.add(p);
+  if (all.empty()) return default_direction();
+  const Vec3 size = all.hi - all.lo;
+  std::array<double, 3> edges{size.x, size.y, size.z};
+  std::ranges::sort(edges);
+  if (!(edges[0] < kFlat * edges[1])) return default_direction();
+  if (size.z == edges[0]) return Vec3(0.25, -0.7, 1.0);
+  return size.y == edges[0] ? Vec3(0.35, -1.0, 0.3) : Vec3(1.0, -0.35, 0.3);
+}
+
+/// The shares of the picture that are left beside bars, titles and the numbers of axes; the middle stays the middle.
+Vec2 room(const scene::Scene& scene, const FramePacket& packet) {
+  const double points = kPicturePt / std::min(packet.width, packet.height);
+  const double width_pt = packet.width * points, height_pt = packet.height * points;
+  double sides[4] = {0, 0, 0, 0};
+  for (const ScalarBarItem& bar : packet.overlay.scalar_bars)
+    sides[int(bar.side)] += bar.side == Side::left || bar.side == Side::right ? kBarPt : kLyingBarPt;
+  if (!packet.overlay.texts.empty()) sides[int(Side::top)] += kTitlePt;
+  const double beside = std::max(sides[int(Side::left)], sides[int(Side::right)]);
+  const double above = std::max(sides[int(Side::top)], sides[int(Side::bottom)]);
+  const auto left_of = [&](double most, double taken_pt, double whole_pt) {
+    return std::clamp(1 - 2 * packet.overlay.scale * taken_pt / whole_pt, 0.3, most);
+  };
+  const Vec2 left(left_of(kWidth, beside, width_pt), left_of(kHeight, above, height_pt));
+  return scene.axes ? kAxesShare * left : left;
+}
+
+}  // namespace
+
+std::vector<Vec3> visible_places(const field::ScalarGrid& grid, double level) {
+  Rows rows(grid);
+  std::vector<Vec3> places;
+  std::vector<float> row, beside, above;
+  for (int k = 0; k < rows.count(2); ++k)
+    for (int j = 0; j < rows.count(1); ++j) {
+      rows.read(j, k, row);
+      rows.read(j + 1, k, beside);
+      rows.read(j, k + 1, above);
+      Ends ends[3]{{0}, {1}, {2}};
+      const auto cross = [&](int axis, double a, double b, Vec3 at) {
+        if (!std::isfinite(a) || !std::isfinite(b) || (a < level) == (b < level)) return;
+        at[axis] += (level - a) / (b - a);
+        ends[axis].add(at);
+      };
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        const Vec3 at(static_cast<double>(i), j, k);
+        if (i + 1 < row.size()) cross(0, row[i], row[i + 1], at);
+        cross(1, row[i], beside[i], at);
+        cross(2, row[i], above[i], at);
+      }
+      for (const Ends& one : ends) one.give(rows, places);
+    }
+  return places;
+}
+
+std::vector<Vec3> visible_places(const field::ScalarGrid& grid, const TransferTable& transfer) {
+  const double least = -std::log(1 - kLeastOpacity) / (kThickness * grid.length());
+  Rows rows(grid);
+  std::vector<Vec3> places;
+  std::vector<float> row;
+  for (int k = 0; k < rows.count(2); ++k)
+    for (int j = 0; j < rows.count(1); ++j) {
+      rows.read(j, k, row);
+      Ends ends;
+      for (std::size_t i = 0; i < row.size(); ++i)
+        if (std::isfinite(row[i]) && extinction_of(transfer.extinctions, row[i]) >= least) ends.add(Vec3(static_cast<double>(i), j, k));
+      ends.give(rows, places);
+    }
+  return places;
+}
+
+void prepare_visible(scene::Scene& scene) {
+  if (scene.camera.given) return;
+  const auto look = [&]<class T>(const T*, const auto& fill) {
+    for (const scene::Entity e : owners_of<T>(scene.world)) {
+      const T& thing = scene.world.get<T>(e);
+      if (scene::is_hidden(scene.world, e)) continue;
+      const field::AnyField& any = scene::drawn_field(scene, thing.field);
+      if (!any.scalar || any.scalar->grid() == nullptr) continue;  // extract_frame says what is wrong
+      const field::ScalarGrid& grid = *any.scalar->grid();
+      if (!scene.made.has<Seen<T>>(e)) scene.made.emplace<Seen<T>>(e);
+      fill(thing, grid, scene.made.get<Seen<T>>(e));
+    }
+  };
+  look(static_cast<const scene::Isosurface*>(nullptr), [](const scene::Isosurface& surface, const field::ScalarGrid& grid, auto& seen) {
+    if (seen.version == grid.version() && seen.level == surface.level) return;
+    seen = {grid.version(), surface.level, {}, visible_places(grid, surface.level)};
+  });
+  look(static_cast<const scene::Volume*>(nullptr), [](const scene::Volume& volume, const field::ScalarGrid& grid, auto& seen) {
+    const TransferTable transfer = transfer_table(volume.transfer, grid);
+    if (seen.version == grid.version() && seen.extinctions == transfer.extinctions) return;
+    seen = {grid.version(), 0, transfer.extinctions, visible_places(grid, transfer)};
+  });
+}
+
+View first_view(const scene::Scene& scene, const FramePacket& packet) {
+  std::vector<FitPlaces> clouds;
+  add_seen<scene::Volume>(scene, packet, clouds);
+  add_seen<scene::Isosurface>(scene, packet, clouds);
+  for (const SliceItem& slice : packet.slices) clouds.push_back({slice.clipped ? kept(slice_places(slice), packet) : slice_places(slice)});
+  for (const MeshItem& mesh : packet.meshes)
+    clouds.push_back({mesh.clipped ? kept(mesh.geometry->vertices, packet) : mesh.geometry->vertices});
+  for (const TubeItem& tube : packet.tubes)
+    clouds.push_back({tube.clipped ? kept({tube.points.begin(), tube.points.end()}, packet)
+                                   : std::vector<Vec3>(tube.points.begin(), tube.points.end())});
+  Bounds rest;
+  for (const ArrowItem& arrow : packet.arrows) rest.add(arrow.tip);
+  for (const IndicatorItem& indicator : packet.indicators)
+    for (const Vec3& p : indicator.tube.points) rest.add(p, indicator.arrow.radius);
+  for (const CursorItem& cursor : packet.cursors) {
+    rest.add(cursor.probe, cursor.size);
+    for (const Vec3& p : cursor.proxies) rest.add(p, cursor.size);
+  }
+  clouds.push_back({corners_of(rest)});
+  // all is clipped away: where it would be
+  if (std::ranges::all_of(clouds, [](const FitPlaces& cloud) { return cloud.places.empty(); }))
+    clouds.push_back({corners_of(packet_bounds(packet))});
+  const Vec3 direction = first_direction(scene, clouds);
+  // an aid that goes about all that is drawn is part of the picture
+  if (scene.bounding_box || scene.axes) clouds.push_back({corners_of(packet_bounds(packet))});
+  const Vec2 share = room(scene, packet);
+  return fit_view(clouds, static_cast<double>(packet.width) / packet.height, share.x, share.y, direction);
+}
+
+}  // namespace catena::render

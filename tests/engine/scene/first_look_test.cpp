@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/field/load.h"
+#include "engine/scene/prepare.h"
+#include "engine/scene/scene.h"
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace first_look_test {
+
+/// A grid of 32^3 over -1..1 in a file, and the scene that shows it; what the scene says can be prepared.
+template <class Value>
+Scene scene_of(const std::string& path, const Value& value, const NamedColors& colors = {}) {
+  constexpr int kSize = 32;
+  const double edge = 2.0 / (kSize - 1);
+  std::vector<float> values;
+  for (int z = 0; z < kSize; ++z)
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) values.push_back(static_cast<float>(value(edge * Vec3(x, y, z) - Vec3(1.0))));
+  const auto grid = field::make_scalar_grid("g", field::Mapping::from_linear(Mat3(edge), Vec3(-1.0)), {kSize, kSize, kSize}, values);
+  const auto written = field::write_vdb(path, {{{grid, nullptr}, "g"}});
+  EXPECT_TRUE(written) << written.error().message;
+  auto scene = scene_for_file(path, {}, colors);
+  EXPECT_TRUE(scene) << scene.error().message;
+  if (!scene) return {};
+  const auto prepared = prepare(*scene);
+  EXPECT_TRUE(prepared) << prepared.error().message;
+  return std::move(*scene);
+}
+
+std::vector<double> levels(const Scene& scene) {
+  std::vector<double> all;
+  scene.world.each<Isosurface>([&](Entity, const Isosurface& surface) { all.push_back(surface.level); });
+  return all;
+}
+
+TEST(FirstLook, BoneUnderSkin) {
+  const test::TemporaryFolder folder;
+  const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? -1000 : norm(p) > 0.7 ? 900 : 40; });
+  EXPECT_EQ(levels(scene), (std::vector<double>{250, -300}));
+  ASSERT_EQ(scene.notes.size(), 1u);
+  EXPECT_NE(scene.notes[0].find("looks like a CT"), std::string::npos) << scene.notes[0];
+  EXPECT_EQ(scene.world.count<Volume>(), 0u);
+}
+
+TEST(FirstLook, ACtWithoutBoneHasAnOpaqueSkin) {
+  const test::TemporaryFolder folder;
+  const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? -1000 : 40; });
+  ASSERT_EQ(levels(scene), std::vector<double>{-300});
+  scene.world.each<Isosurface>([](Entity, const Isosurface& surface) { EXPECT_EQ(surface.opacity, 1); });
+}
+
+TEST(FirstLook, ALevelSetAtZeroAndASolidBetweenItsPlateaus) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(levels(scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) - 0.6; })), std::vector<double>{0});
+  const auto solid = levels(scene_of(folder / "b.vdb", [](const Vec3& p) { return 3 + std::tanh(40 * (norm(p) - 0.6)); }));
+  ASSERT_EQ(solid.size(), 1u);
+  EXPECT_NEAR(solid[0], 3, 0.6);
+}
+
+TEST(FirstLook, EveryLabelHasItsOwnColorOverItsWholeValue) {
+  const test::TemporaryFolder folder;
+  const Scene scene =
+      scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? 0 : 1 + int(2 * (p.x + 1)) + 7 * int(2 * (p.y + 1)); });
+  ASSERT_EQ(scene.world.count<Volume>(), 1u);
+  scene.world.each<Volume>([](Entity, const Volume& volume) {
+    const auto& colors = volume.transfer.colors;
+    ASSERT_EQ(colors.size(), 2 * 16u);
+    for (std::size_t i = 0; i < colors.size(); i += 2) {
+      EXPECT_EQ(colors[i].color, colors[i + 1].color);
+      EXPECT_NEAR(colors[i + 1].value - colors[i].value, 0.9, 1e-9);
+      for (std::size_t j = 0; j < i; j += 2) EXPECT_NE(colors[i].color, colors[j].color) << i << " " << j;
+    }
+    EXPECT_EQ(volume.transfer.gradient_factors.back().factor, 0) << "what lies between two labels is none";
+  });
+}
+
+TEST(FirstLook, AQuantityHasAMapWithItsBarAndItsLowValuesAreSeen) {
+  const test::TemporaryFolder folder;
+  const Scene scene = scene_of(folder / "a.vdb", [](const Vec3& p) { return 1000 + p.x + 0.2 * std::sin(3 * p.y); });
+  ASSERT_EQ(scene.world.count<Volume>(), 1u);
+  EXPECT_EQ(scene.annotations.scalar_bars.size(), 1u);
+  EXPECT_TRUE(scene.bounding_box);
+  scene.world.each<Volume>([](Entity, const Volume& volume) {
+    EXPECT_EQ(volume.transfer.named.map, "viridis");
+    ASSERT_EQ(volume.transfer.extinctions.size(), 3u);
+    EXPECT_GT(volume.transfer.extinctions[0].sigma, 0);
+    EXPECT_GT(volume.transfer.extinctions[2].sigma, volume.transfer.extinctions[1].sigma);
+    EXPECT_NEAR(volume.transfer.extinctions[0].value, 998.8, 0.1);
+    EXPECT_NEAR(volume.transfer.extinctions[2].value, 1001.2, 0.1);
+  });
+}
+
+TEST(FirstLook, AStatedMapMakesAnyKindAVolume) {
+  const test::TemporaryFolder folder;
+  const Scene scene =
+      scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9   ? -1000
+                                                            : norm(p) > 0.7 ? 900
+                                                                            : 40; }, {"magma", {}});
+  EXPECT_TRUE(levels(scene).empty());
+  scene.world.each<Volume>([](Entity, const Volume& volume) { EXPECT_EQ(volume.transfer.named.map, "magma"); });
+  EXPECT_EQ(scene.world.count<Volume>(), 1u);
+}
+
+TEST(FirstLook, OneValueAlone) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(scene_of(folder / "a.vdb", [](const Vec3&) { return 7; }).world.count<Volume>(), 1u);
+}
+
+TEST(FirstLook, FibresHaveOneColorAndNoSpeedBar) {
+  const test::TemporaryFolder folder;
+  const auto fibre = *field::make_analytic("uniform"), swirl = *field::make_analytic("helix");
+  ASSERT_TRUE(field::write_vdb(folder / "a.vdb", {{{nullptr, field::sample_on_grid(*fibre.vector, 12, -1, 1)}, "fibre"}}));
+  ASSERT_TRUE(field::write_vdb(folder / "b.vdb", {{{nullptr, field::sample_on_grid(*swirl.vector, 12, -1, 1)}, "flow"}}));
+  for (const auto& [name, colored] : {std::pair{"a.vdb", false}, {"b.vdb", true}}) {
+    auto scene = scene_for_file(folder / name);
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->world.count<StreamlineSet>(), 1u);
+    scene->world.each<StreamlineSet>([&, colored = colored](Entity, const StreamlineSet& set) {
+      EXPECT_EQ(set.color_by.has_value(), colored);
+      EXPECT_TRUE(set.seeds.pattern);
+    });
+    EXPECT_EQ(scene->annotations.scalar_bars.size(), colored ? 1u : 0u);
+  }
+}
+
+TEST(FirstLook, AFieldWithoutLinesIsStillAPicture) {
+  const test::TemporaryFolder folder;
+  // a single voxel that moves: its line is shorter than lines are apart
+  constexpr int kSize = 80;
+  std::vector<float> still(3 * kSize * kSize * kSize, 0.f), dot = still;
+  dot[3 * 36 * (1 + kSize + kSize * kSize)] = 1;
+  for (const auto& [name, xyz, slices] : {std::tuple{"a.vdb", still, 0u}, {"b.vdb", dot, 3u}}) {
+    const auto grid = field::make_vector_grid("v", field::Mapping{}, {kSize, kSize, kSize}, xyz);
+    ASSERT_TRUE(field::write_vdb(folder / name, {{{nullptr, grid}, "v"}}));
+    auto scene = scene_for_file(folder / name);
+    ASSERT_TRUE(scene) << scene.error().message;
+    const auto prepared = prepare(*scene);
+    EXPECT_TRUE(prepared) << prepared.error().message;
+    EXPECT_EQ(scene->world.count<StreamlineSet>(), 0u) << name;
+    EXPECT_EQ(scene->world.count<Slice>(), slices) << name;
+  }
+}
+
+}  // namespace first_look_test
+}  // namespace catena::scene
