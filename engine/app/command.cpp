@@ -52,9 +52,7 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
     return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
-  auto scene = scene::scene_for_file(path, {}, colors);
-  if (scene) tell_notes(scene->notes);
-  return scene;
+  return scene::scene_for_file(path, {}, colors);
 }
 
 std::string human_bytes(double bytes) {

@@ -21,7 +21,10 @@ Outcome annotate(scene::Scene& scene, const AnnotateOptions& options) {
   if (options.orientation_marker && !all.orientation_marker) all.orientation_marker.emplace();
   if (!options.scalar_bar || !all.scalar_bars.empty()) return Done{};
   const auto bar = scene::first_scalar_bar(scene.world);
-  if (!bar) return Error{"--scalar-bar: nothing here has colours; a volume or streamlines with \"color_by\" were expected"};
+  if (!bar)
+    return Error{
+        "--scalar-bar: nothing here has colours; a volume or streamlines with \"color_by\" were expected (--colormap NAME makes a data "
+        "file one)"};
   all.scalar_bars.push_back(*bar);
   return Done{};
 }

@@ -27,7 +27,7 @@ constexpr double kEqualNeighbours = 0.6;
 // solids: two plateaus
 constexpr double kPlateau = 0.1, kPlateaus = 0.9, kLeastPlateau = 0.02;
 // scans
-constexpr double kBrightFrom = 0.3, kBrightLeast = 0.0002, kBrightMost = 0.04, kRough = 0.45;
+constexpr double kBrightFrom = 0.3, kBrightLeast = 0.0002, kBrightMost = 0.04, kRough = 0.6;
 constexpr double kEmpty = 0.6;
 
 /// What is summed over the neighbours in blocks.

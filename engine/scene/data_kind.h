@@ -13,7 +13,7 @@
 ///                neighbours in the foreground are equal
 ///   cloud        of no patient (engine/field/units.h), without a mask and without values below 0; 60 % are exactly the lowest value
 ///   angiogram    0.02 to 4 % of the values are bright (in the upper seven tenths of the way from b to the 99.99 percentile), and the
-///                foreground is rough: second differences of neighbours are 0.45 times the first ones or more, on average
+///                foreground is rough: second differences of neighbours are 0.6 times the first ones or more, on average
 ///   MR           of a patient, and as rough
 ///   simulation   what is left: smooth, dense values that mean a quantity everywhere
 #pragma once

@@ -203,6 +203,8 @@ Outcome render_pictures(const RenderOptions& o) {
     stats.first_frame_ms = frames.first_ms;
     stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
     for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
+    if (!is_scene_file(o.source))
+      for (const std::string& note : scene.notes) tell_from_catena("note: " + note);
     say(words, fmt::format("{}: {}x{}, {}{}, on {}", o.output, picture.width, picture.height, what_is_drawn(packet),
                            stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
     // a frame of many tiles has warmed up by itself

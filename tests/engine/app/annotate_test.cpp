@@ -45,8 +45,8 @@ class Annotate : public testing::Test {
 TEST_F(Annotate, ABareFileTakesATitleABarAndAMarker) {
   const auto made = test::run_catena({"generate", "gaussian", "-o", folder_ / "g.vdb", "--resolution", "24"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  const Picture plain = picture({folder_ / "g.vdb"});
-  const Picture full = picture({folder_ / "g.vdb", "--title", "A Gaussian", "--scalar-bar", "--orientation-marker"});
+  const Picture plain = picture({folder_ / "g.vdb", "--colormap", "magma"});
+  const Picture full = picture({folder_ / "g.vdb", "--colormap", "magma", "--title", "A Gaussian", "--scalar-bar", "--orientation-marker"});
   EXPECT_GT(changed(plain, full, 220, 256), 400) << "the bar at the right";
   EXPECT_GT(changed(plain, full, 0, 40), 50) << "the marker at the left";
   EXPECT_GT(changed(plain, full, 90, 166), 100) << "the title";

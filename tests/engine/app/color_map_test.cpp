@@ -102,6 +102,10 @@ TEST(ColorMapProgram, DataFilesAreColouredAsAsked) {
   ASSERT_EQ(program({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
   const Picture plain = draw({folder / "g.vdb", "--size", "64x48"}, "bare");
   const Picture red = draw({folder / "g.vdb", "--size", "64x48", "--colormap", "grey", "--range", "0", "1"}, "bare-grey");
+  // what was chosen, and why, is said once the picture is there
+  const auto render = program({"render", folder / "g.vdb", "-o", folder / "note.png", "--size", "16x12"});
+  EXPECT_NE(render.err.find("\"gaussian\" looks like a simulation: "), std::string::npos) << render.err;
+  EXPECT_NE(program({"info", folder / "g.vdb"}).out.find("\"gaussian\" looks like a simulation: "), std::string::npos);
   EXPECT_NE(plain.rgba, red.rgba);
   // grey over the backdrop, which is bluer by 13 of 255, and grey alone where it is dense
   const auto bluer = [](const Picture& picture, std::uint32_t x, std::uint32_t y) {

@@ -69,7 +69,9 @@ TEST(DataKind, VesselsAreFewBrightAndRough) {
   };
   EXPECT_EQ(kind(grid_of(vessel)), DataKind::angiogram);
   EXPECT_EQ(kind(grid_of(vessel), kPatient), DataKind::angiogram);
-  // as small and bright, but smooth
+  // as small and bright, but smooth, even on a coarse grid
+  const auto coarse = *field::make_analytic("gaussian");
+  EXPECT_EQ(kind(field::sample_on_grid(*coarse.scalar, 24, -2, 2)), DataKind::simulation);
   EXPECT_EQ(kind(grid_of([](const Vec3& p, int) { return std::exp(-30 * dot(p, p)); })), DataKind::simulation);
 }
 
