@@ -95,7 +95,7 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
   while (!interrupt.asked()) {
     const double t = 1e-3 * ms_since(start);
     if (options.seconds > 0 && t >= options.seconds) return;
-    if (servo.take(state)) felt.add(state);
+    if (servo.take(state) && state.condition != exchange::Condition::no_device) felt.add(state);
     line.tell(device.status_text());
     if (recording.failed() && !std::exchange(told_of_recording, true))
       line.say(options.record + ": the recording has stopped; the rest is felt only");
@@ -144,6 +144,8 @@ Outcome feel(const FeelOptions& options) {
   line.end();
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
+  if (!servo_options.forces && !program->links.empty())
+    print_out("the forces were off: nothing was pushed, the shares are what the links asked for\n", kPatienceMs);
   print_out(felt.sentences(*program), kPatienceMs);
   print_out(haptics::servo_summary(servo.report(), printable(hand.device->capabilities().name)), kPatienceMs);
   return interrupt.outcome();

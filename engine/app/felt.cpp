@@ -48,17 +48,17 @@ std::string Felt::sentence(const Touch& touch, const haptics::Link& link, const 
   const std::string length = hand_length(program.metres_per_unit * touch.max_gap);
   const double share_n = std::min({touch.max_force_n, program.coupling.max_force_n, program.limits.max_force_n});
   std::string text = link.one_sided ? fmt::format("pressed {} deep", length) : fmt::format("pulled up to {} off", length);
-  text += fmt::format(
-      "{}; held {:.2f} of {:.2f} s",
-      program.links.size() == 1 ? fmt::format(", at most {:.2g} N", max_force_n_) : fmt::format(", own share at most {:.2g} N", share_n),
-      touch.held_s, last_s_ - first_s_);
+  text += fmt::format("{}; held {:.2f} of {:.2f} s",
+                      program.links.size() == 1 && max_force_n_ > 0 ? fmt::format(", at most {:.2g} N", max_force_n_)
+                                                                    : fmt::format(", own share at most {:.2g} N", share_n),
+                      touch.held_s, last_s_ - first_s_);
   if (touch.let_go == 1) text += ", let go once";
   if (touch.let_go > 1) text += fmt::format(", let go {} times", touch.let_go);
   return text;
 }
 
 std::string Felt::sentences(const haptics::Program& program) const {
-  std::string text;
+  std::string text = program.links.empty() ? "the chain is empty: there is nothing to feel\n" : "";
   for (std::size_t i = 0; i < program.links.size(); ++i)
     text += printable(program.links[i].name) + ": " + sentence(touches_[i], program.links[i], program) + "\n";
   return text;
@@ -68,6 +68,7 @@ std::string Felt::text(const haptics::Program& program, const haptics::ReplaySta
   std::string text = fmt::format("{} ticks, {:.3f} us each (p99 {:.3f} us), force up to {:.3g} N, {:.3g} N on average\n", stats.ticks,
                                  1e-3 * stats.tick_ns_p50, 1e-3 * stats.tick_ns_p99, max_force_n_,
                                  stats.ticks > 0 ? summed_force_n_ / static_cast<double>(stats.ticks) : 0.0);
+  if (program.links.empty()) text += "  the chain is empty: there is nothing to feel\n";
   for (std::size_t i = 0; i < program.links.size(); ++i) {
     const Touch& touch = touches_[i];
     text += fmt::format("  {}: {}. Gap {:.4g} units; ticks", printable(program.links[i].name), sentence(touch, program.links[i], program),

@@ -1,5 +1,7 @@
 #include "engine/base/numbers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -19,6 +21,10 @@ std::string to_text(double value) {
   std::string out;
   append_text(out, value);
   return out;
+}
+
+double rounded_to(double value, int digits) {
+  return std::isfinite(value) ? parse_double(fmt::format("{:.{}g}", value, digits)).value_or(value) : value;
 }
 
 std::string_view trim(std::string_view text) {

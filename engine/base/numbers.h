@@ -17,6 +17,9 @@ void append_text(std::string& out, double value);
 std::optional<double> parse_double(std::string_view text);
 std::optional<long long> parse_integer(std::string_view text);
 
+/// The double nearest to the value with so many decimal digits.
+double rounded_to(double value, int digits);
+
 std::string_view trim(std::string_view text);
 
 /// The q-quantile of a sample: the element number floor(q n) of the sorted values, the largest for q = 1; 0 of none.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/viewer/shell/commands.h"
@@ -16,6 +17,9 @@ Controls controls() {
   c.view = c.home = {{0.0, -10.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 30, false, 4};
   return c;
 }
+
+/// A notch of the wheel at the distance 10: 1 % of the height that the picture shows there.
+const double kNotch = 0.01 * 2 * 10 * std::tan(15 * std::numbers::pi / 180);
 
 Input input(double dx, double dy, double wheel = 0) {
   Input i;
@@ -178,7 +182,7 @@ TEST(Controls, InHandModeTheWheelIsDepthAndTheButtonIsTheDevices) {
   Controls c = controls();
   c.hand_mode = true;
   EXPECT_TRUE(apply(c, input(0, 0, 2)).hand);
-  EXPECT_NEAR(c.hand.y, 0.2, 1e-12);  // 1 % of the distance 10, twice, away from the eye
+  EXPECT_NEAR(c.hand.y, 2 * kNotch, 1e-12);  // 1 % of the picture's height at the distance 10, twice, away from the eye
   EXPECT_EQ(c.view.position, c.home.position);
   Input i = input(0, 0);
   i.left = true;
@@ -265,7 +269,7 @@ TEST(Controls, InHandModeTheHandIsUnderThePointerAsDeepAsWhatIsSeenThere) {
   wheel.wheel = 3;
   apply(c, wheel);
   const double push = c.push;
-  EXPECT_NEAR(push, 0.03 * 7.5, 1e-12);
+  EXPECT_NEAR(push, 3 * 0.75 * kNotch, 1e-12);
   EXPECT_NEAR(render::project(camera, c.hand)->z, 7.5 + push, 1e-12);
   EXPECT_NEAR(render::project(camera, c.hand)->x, 80, 1e-9) << "along the view";
   c.under = render::unproject(camera, 90, 65, 7.2);
@@ -296,7 +300,7 @@ TEST(Controls, TheHandsDepthFollowsWhatHoldsIt) {
   Input still = to_pixel(160, 120, 0);
   still.wheel = 1;
   apply(c, still);
-  EXPECT_NEAR(depth(c), 11.11, 1e-9) << "the wheel alone presses";
+  EXPECT_NEAR(depth(c), 11 + 1.1 * kNotch, 1e-9) << "the wheel alone presses";
   c = at(11);
   apply(c, to_pixel(190, 120, Controls::kDepthPixels / 2));
   EXPECT_NEAR(depth(c), 12, 1e-9) << "half the way";
@@ -335,9 +339,9 @@ TEST(Controls, InHandModeTheMouseYieldsToTheForceButNotAwayFromIt) {
   in.wheel = 1;
   out.wheel = -1;
   apply(c, in);
-  EXPECT_NEAR(c.hand.y, 0.25 * 0.1, 1e-12);
+  EXPECT_NEAR(c.hand.y, 0.25 * kNotch, 1e-12);
   apply(c, out);
-  EXPECT_NEAR(c.hand.y, 0.025 - 0.10025, 1e-12);
+  EXPECT_NEAR(c.hand.y, 0.25 * kNotch - (1 + 0.025 * kNotch) * kNotch, 1e-12);
 }
 
 TEST(Controls, InFlightALeftDragLooksAboutAndTheWheelSetsThePace) {

@@ -196,6 +196,26 @@ TEST_F(FeelThis, AMeshIsItself) {
   }
 }
 
+TEST_F(FeelThis, TheFreeSideIsTheEyesAlsoOfAMeshWhoseFacesLookInwards) {
+  mesh::Soup soup = test::sphere_soup(16, 0.8);
+  test::write_file(folder_ / "out.stl", test::binary_stl(soup));
+  for (auto& triangle : soup.triangles) std::swap(triangle[0], triangle[1]);
+  test::write_file(folder_ / "in.stl", test::binary_stl(soup));
+  for (const std::string name : {"out", "in"}) {
+    show(R"({"meshes": [{"name": "ball", "file": ")" + (folder_ / (name + ".stl")) + R"("}], "workspace": {"metres_per_unit": 0.05}})");
+    const auto place = random_place("meshes");
+    ASSERT_TRUE(place);
+    EXPECT_GT(feel_at(*place, 0.05).force_n, 0.05) << name;
+  }
+}
+
+TEST_F(FeelThis, AFieldOfOneValueHasNoSurface) {
+  show(R"({"fields": {"c": {"analytic": "constant", "resolution": 16}}, "volumes": [{"field": "c"}]})");
+  const auto thing = feel(host_->scene(), "volumes[0]", Vec3(0.0), Vec3(9, 9, 9), 4);
+  ASSERT_FALSE(thing);
+  EXPECT_NE(thing.error().message.find("one value everywhere"), std::string::npos);
+}
+
 TEST_F(FeelThis, WhatIsFeltAlreadyIsSaidAndWhatCannotBeFeltSaysWhy) {
   show(R"({"fields": {"g": {"analytic": "gaussian", "resolution": 16}}, "isosurfaces": [{"field": "g", "level": 0.5}],
            "volumes": [{"field": "g"}], "slices": [{"field": "g", "widget": "cut"}], "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [0, 0, 1]}],

@@ -31,8 +31,7 @@ std::string level_at(const field::ScalarField& field, const Vec3& probe) {
   const double middle = std::isfinite(lo + hi) ? 0.5 * (lo + hi) : std::isfinite(lo) ? lo + 1 : std::isfinite(hi) ? hi - 1 : 0;
   // six digits: a level is a choice, not a measurement
   const double level = std::isfinite(here) && here > lo && here < hi ? here : middle;
-  const double unit = level != 0 ? std::pow(10.0, std::floor(std::log10(std::abs(level))) - 5) : 1;
-  const double rounded = std::round(level / unit) * unit;
+  const double rounded = rounded_to(level, 6);
   return scene::text_of(rounded > lo && rounded < hi ? rounded : level);
 }
 

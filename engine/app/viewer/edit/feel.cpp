@@ -67,9 +67,10 @@ Result<Given> given_by(scene::Scene& scene, const scene::Volume& volume, const s
   field::Cursor cursor;
   const field::ScalarSample here = field.scalar->sample(*at, cursor);
   if (!here.inside || !std::isfinite(here.value)) return Error{"volume " + name + " has no value at the place that is pointed at"};
+  if (!(field.scalar->min_value() < field.scalar->max_value()))
+    return Error{"volume " + name + " has one value everywhere: no surface to feel"};
   // four digits: a level is a choice, not a measurement
-  const double unit = here.value != 0 ? std::pow(10.0, std::floor(std::log10(std::abs(here.value))) - 3) : 1;
-  const double rounded = std::round(here.value / unit) * unit;
+  const double rounded = rounded_to(here.value, 4);
   const bool fits = rounded > field.scalar->min_value() && rounded < field.scalar->max_value();
   const double level = fits ? rounded : here.value;
   return Given{{{"field", scene::text_of(name)},
@@ -110,9 +111,19 @@ Result<Given> given_by(const scene::Scene& scene, const scene::Slice& slice) {
                "slice " + name_of(scene, slice.shown.field)};
 }
 
-Given given_by(const scene::Scene& scene, const scene::SurfaceMesh& surface) {
+/// The side of the face at that place on which the eye is, "above" where its normal points; without a place: outside.
+const char* side_of_eye(const mesh::TriangleMesh& mesh, const std::optional<Vec3>& at, const Vec3& eye) {
+  if (!at) return "above";
+  int budget = static_cast<int>(std::min<std::size_t>(4 * mesh.triangles().size() + 64, 1 << 30));
+  const mesh::Nearest nearest = mesh::nearest_point(mesh, *at, std::numeric_limits<double>::infinity(), budget);
+  if (!nearest.found) return "above";
+  return dot(mesh::normal_at(mesh, nearest.at), eye - *at) >= 0 ? "above" : "below";
+}
+
+Result<Given> given_by(scene::Scene& scene, const scene::SurfaceMesh& surface, const std::optional<Vec3>& at, const Vec3& eye) {
   const std::string name = name_of(scene, surface.mesh);
-  return {{{"mesh", scene::text_of(name)}, {"free", "\"above\""}}, "mesh " + name};
+  CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, surface.mesh));
+  return Given{{{"mesh", scene::text_of(name)}, {"free", scene::text_of(std::string(side_of_eye(*mesh, at, eye)))}}, "mesh " + name};
 }
 
 /// A copy of the component that was read from `item`: loading a field may move the others.
@@ -133,7 +144,7 @@ Result<Given> given_by(scene::Scene& scene, const std::string& item, const std::
   scene::Entity entity;
   if (const auto set = item_of<scene::StreamlineSet>(scene, item, &entity)) return given_by(scene, entity, *set, at);
   if (const auto slice = item_of<scene::Slice>(scene, item)) return given_by(scene, *slice);
-  if (const auto mesh = item_of<scene::SurfaceMesh>(scene, item)) return given_by(scene, *mesh);
+  if (const auto mesh = item_of<scene::SurfaceMesh>(scene, item)) return given_by(scene, *mesh, at, eye);
   return Error{item + " is not there any more"};
 }
 

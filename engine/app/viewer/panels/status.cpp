@@ -41,6 +41,18 @@ void draw_force(const PanelContext& context) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the force on the hand, of at most %.3g N", context.scene.scene().coupling.max_force_n);
 }
 
+/// "skin 5.1 mm": the last link that holds the hand, and how far from itself, in millimetres of the hand.
+std::string held_words(const PanelContext& context) {
+  const exchange::HapticState& felt = context.hand.felt();
+  const auto& program = context.hand.program();
+  for (int i = felt.link_count - 1; i >= 0; --i) {
+    const exchange::LinkReport& link = felt.links[static_cast<std::size_t>(i)];
+    if (link.active && link.gap > 0 && static_cast<std::size_t>(i) < context.hand.link_names().size())
+      return fmt::format("{} {:.1f} mm", context.hand.link_names()[static_cast<std::size_t>(i)], 1e3 * program->metres_per_unit * link.gap);
+  }
+  return {};
+}
+
 /// Without panels only what must be read is shown.
 void draw_words_alone(const ViewState& state) {
   const Message* message = newest(state);
@@ -72,6 +84,10 @@ void draw_status(PanelContext& context) {
   if (ImGui::Begin("##status", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings)) {
     draw_force(context);
     ImGui::SameLine();
+    if (const std::string held = held_words(context); !held.empty()) {
+      ImGui::TextUnformatted(held.c_str());
+      ImGui::SameLine();
+    }
     if (!state.loading.empty()) {
       ImGui::TextUnformatted(loading_words(state).c_str());
     } else if (const Message* m = newest(state)) {

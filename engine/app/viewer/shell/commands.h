@@ -83,7 +83,7 @@ struct ChooseQuality {
 };
 /// The error of the picture at rest is looked at: asked with every frame that shows it.
 struct EstimateError {};
-/// A link of the chain that lies on that item, "isosurfaces[0]" (edit/feel.h), and the mouse as the hand.
+/// A link of the chain that lies on that item, "isosurfaces[0]" (edit/feel.h).
 struct Feel {
   std::string item;
 };

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTurnPerHeight = std::numbers::pi;  // a drag over the window's height
 constexpr double kZoomPerNotch = 0.9;
-constexpr double kDepthPerNotch = 0.01;  // of the distance from the eye
+constexpr double kDepthPerNotch = 0.01;  // of the height of what the picture shows where the hand is
 constexpr double kPoleAngle = 0.02;      // radians
 
 Vec3 rotated(const Vec3& v, const Vec3& axis, double angle) {
@@ -50,12 +50,13 @@ void move_hand(Controls& controls, const Input& input) {
   auto place = render::project(camera, controls.hand);
   if (!place) place = render::project(camera, controls.view.target);  // the hand was behind the eye: back into the picture
   if (!place) return;
+  const double notch = kDepthPerNotch * camera.height * render::pixel_size(camera, place->z);
   if (!controls.hand_mode) {
-    const double depth = place->z * (1 + kDepthPerNotch * input.wheel);
+    const double depth = place->z + notch * input.wheel;
     controls.hand = render::unproject(camera, place->x + input.dx, place->y + input.dy, depth);
     return;
   }
-  const Vec3 ahead = -1.0 * camera.back, pushed = kDepthPerNotch * input.wheel * place->z * ahead;
+  const Vec3 ahead = -1.0 * camera.back, pushed = notch * input.wheel * ahead;
   const double by_wheel = dot(yielding(pushed, controls.force_n, controls.max_force_n), ahead);
   // the depth that the push counts from
   double base = place->z - controls.push;

@@ -131,7 +131,6 @@ std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, dou
 }
 
 std::optional<PickedPlace> pick_thing(const render::FramePacket& packet, double x, double y) {
-  if (!packet.eyes.empty()) return std::nullopt;
   const render::Camera camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
   const render::Ray ray = render::ray_through(camera, x, y);
   const auto solid = pick_solid(packet, ray, kInfinity);

@@ -36,7 +36,8 @@ std::optional<PickedPlace> pick(const render::FramePacket& packet, double x, dou
 /// steps of half a voxel, refined by bisection; a tube: where the ray enters its cylinder.
 std::optional<PickedPlace> pick_solid(const render::FramePacket& packet, const render::Ray& ray, double farthest);
 
-/// What a picture of the packet without the hand would show in its place `x, y`: as pick, without a picture. Nothing where there are eyes.
+/// What a picture of the packet without the hand would show in its place `x, y`: as pick, without a picture. Where there are several
+/// eyes, as seen from between them.
 std::optional<PickedPlace> pick_thing(const render::FramePacket& packet, double x, double y);
 
 /// "isosurface density"; empty for 0 and for ids of no object.

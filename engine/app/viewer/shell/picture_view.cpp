@@ -199,7 +199,10 @@ std::optional<PickedPlace> PictureView::picked_at(double window_x, double window
 
 std::optional<PickedPlace> PictureView::under_pointer() const {
   const ViewState& state = shared_.state;
-  return state.pointer_on_picture ? picked_at(state.pointer_x, state.pointer_y) : std::nullopt;
+  // eyes side by side have a place for the pointer each
+  const bool apart = shown_ && !shown_->eyes.empty() && shown_->packing >= render::Packing::side_by_side &&
+                     shown_->packing <= render::Packing::top_bottom_half;
+  return state.pointer_on_picture && !apart ? picked_at(state.pointer_x, state.pointer_y) : std::nullopt;
 }
 
 std::string PictureView::item_of(std::uint32_t id) const {
@@ -207,14 +210,18 @@ std::string PictureView::item_of(std::uint32_t id) const {
 }
 
 std::optional<Vec3> PictureView::seen_place(const std::string& item) const {
-  constexpr int kLattice = 24;
+  // big meshes are looked at triangle by triangle
+  std::size_t triangles = 0;
+  if (shown_)
+    for (const render::MeshItem& mesh : shown_->meshes) triangles += mesh.geometry->triangles.size() / 3;
+  const int lattice = triangles > 200000 ? 8 : 24;
   if (const auto here = under_pointer(); here && item_of(here->id) == item) return here->world;
   const Area& area = shared_.state.area;
   std::optional<Vec3> place;
   double least = 2;
-  for (int j = 0; j < kLattice; ++j)
-    for (int i = 0; i < kLattice; ++i) {
-      const double x = (i + 0.5) / kLattice, y = (j + 0.5) / kLattice, away = std::hypot(x - 0.5, y - 0.5);
+  for (int j = 0; j < lattice; ++j)
+    for (int i = 0; i < lattice; ++i) {
+      const double x = (i + 0.5) / lattice, y = (j + 0.5) / lattice, away = std::hypot(x - 0.5, y - 0.5);
       if (away >= least) continue;
       const auto there = picked_at(area.x + x * area.width, area.y + y * area.height);
       if (!there || item_of(there->id) != item) continue;

@@ -47,7 +47,8 @@ class PictureView {
   void damage() { damaged_ = true; }
   /// Another scene: nothing of the last picture counts.
   void forget();
-  /// What lies under the pointer beside the hand; nothing where it is not on the picture, or the picture has several eyes.
+  /// What lies under the pointer beside the hand; nothing where it is not on the picture, or where the picture shows
+  /// several eyes beside each other.
   std::optional<PickedPlace> under_pointer() const;
   /// A place where the item ("isosurfaces[0]") is seen: under the pointer, or else the nearest to the middle of the picture on a lattice.
   std::optional<Vec3> seen_place(const std::string& item) const;

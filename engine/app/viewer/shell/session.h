@@ -50,6 +50,7 @@ class Session {
   void carry_out(const Command& command);
   void act(Action action);
   void begin_hand();
+  void end_hand();
   void feel(const std::string& item, std::optional<Vec3> at);
   void close();
 

@@ -88,7 +88,7 @@ void Session::act(Action action) {
     case Action::pulses:
       return toggle(pulses_run_);
     case Action::hand_mode:
-      return shared_.controls.hand_mode ? toggle(shared_.controls.hand_mode) : begin_hand();
+      return shared_.controls.hand_mode ? end_hand() : begin_hand();
     case Action::forces:
       return shared_.hand.set_forces(!shared_.hand.forces());
     case Action::first_view:
@@ -107,11 +107,15 @@ void Session::act(Action action) {
   }
 }
 
+void Session::end_hand() {
+  shared_.controls.hand_mode = false;
+  if (shared_.hand.is_mouse()) shared_.state.say("the hand stays where it is; H takes it again");
+}
+
 /// The hand goes onto what is under the pointer. A chain that holds nothing yet gets that very thing.
 void Session::begin_hand() {
   Controls& controls = shared_.controls;
   controls.hand_mode = true;
-  if (!shared_.hand.is_mouse()) return;
   const auto under = picture_.under_pointer();
   const std::string item = under ? picture_.item_of(under->id) : std::string();
   const scene::World& world = std::as_const(shared_.scene).scene().world;
@@ -121,6 +125,7 @@ void Session::begin_hand() {
     else
       shared_.state.say("nothing is felt yet: point at a thing in the picture and press H, or click Feel beside its name");
   }
+  if (!shared_.hand.is_mouse()) return;
   controls.under = under ? std::optional(under->world) : std::nullopt;
   app::begin_hand(controls);
   shared_.hand.move_mouse(shared_.scene.scene(), controls.hand, controls.buttons);
@@ -137,8 +142,17 @@ void Session::feel(const std::string& item, std::optional<Vec3> at) {
     return state.say(thing->words + " is felt already, by the link " + by);
   const Outcome done = scene.apply({{"/chain/-", thing->link}}, "feel " + thing->words, {});
   if (!done) return state.say(done.error().message, true);
-  shared_.controls.hand_mode = true;
-  state.say("felt: " + thing->words + (shared_.hand.is_mouse() ? ". The pointer is the hand; the wheel pushes, Esc ends it" : ""));
+  // a mouse's hand begins on the thing, not somewhere within it
+  Controls& controls = shared_.controls;
+  if (shared_.hand.is_mouse() && at) {
+    controls.hand = *at;
+    controls.push = 0;
+    shared_.hand.move_mouse(scene.scene(), controls.hand, controls.buttons);
+  }
+  const char* how = !shared_.hand.is_mouse() ? ""
+                    : controls.hand_mode     ? ". The wheel pushes; Esc ends it"
+                                             : ". Point at it and press H: the pointer is the hand, the wheel pushes";
+  state.say("felt: " + thing->words + how);
 }
 
 /// What is open above all goes first; the program stays.
@@ -146,9 +160,11 @@ void Session::close() {
   if (gui_.close_popup()) return;
   ViewState& state = shared_.state;
   Controls& controls = shared_.controls;
-  bool* const open[] = {&state.help, &controls.fly, &controls.turntable, &controls.hand_mode, &state.full_screen};
-  for (bool* what : open)
+  bool* const first[] = {&state.help, &controls.fly, &controls.turntable};
+  for (bool* what : first)
     if (std::exchange(*what, false)) return;
+  if (controls.hand_mode) return end_hand();
+  state.full_screen = false;
 }
 
 // What the person does with keys and pointer: for the interface, for a command, for the eye or the hand.
