@@ -53,10 +53,16 @@ class ServoRig {
              tick.links[0].status != exchange::Status::budget;
     });
     // the order may have been written just after the I/O thread looked: two more frames, and one for the tick itself
-    if (!arrived || !frames_pass(bus_, 4)) return false;
-    felt = bus_.with([](EmulatedFalcon& device) { return device.last(); });
-    servo_.take(tick);
-    return true;
+    // a servo that the machine does not let run is let go of by the driver: its motors are off until it is back
+    return arrived && eventually([&] {
+             if (!frames_pass(bus_, 4)) return false;
+             felt = bus_.with([](EmulatedFalcon& device) { return device.last(); });
+             servo_.take(tick);
+             const Vec3 least = force_quantum(grip_m);
+             bool weak = true;  // less than half a count
+             for (int j = 0; j < 3; ++j) weak = weak && std::abs(tick.force_n[j]) <= least[j] + 1e-9;
+             return weak || felt.motors != EmulatedMechanism::Counts{};
+           });
   }
 
   /// The force that the motors get is the tick's, but for whole counts; the proxy is on the surface, the probe is the grip.
