@@ -92,7 +92,7 @@ Stop CellMedium::seed(const Vec3& place, Vec3& u) {
   return rate(q, w, u);
 }
 
-// flat, as direction_at (trace.cpp)
+// flat, as direction_at (flow.cpp)
 [[gnu::flatten]] Stop CellMedium::rate(const Vec3& q, Vec3& w, Vec3& u) const {
   const Vec3 f = q - lo_;
   const auto& c = polynomial_;

@@ -42,11 +42,7 @@ double rounded(double value, const DataFacts& facts) {
   return std::round(value / step) * step;
 }
 
-double three_digits(double value) {
-  if (value == 0 || !std::isfinite(value)) return value;
-  const double step = std::pow(10, std::floor(std::log10(std::fabs(value))) - 2);
-  return std::round(value / step) * step;
-}
+double three_digits(double value) { return rounded_to(value, 3); }
 
 std::string surface(const std::string& field, double level, const Color& color, double opacity = 1) {
   return "{\"field\": " + field + ", \"level\": " + text_of(level) + ", \"color\": " + text_of(color) +

@@ -85,17 +85,6 @@ struct Ends {
   }
 };
 
-double extinction_of(const std::vector<std::array<double, 2>>& table, double value) {
-  if (table.empty()) return 0;
-  if (value <= table.front()[0]) return table.front()[1];
-  for (std::size_t i = 1; i < table.size(); ++i)
-    if (value <= table[i][0]) {
-      const double t = (value - table[i - 1][0]) / (table[i][0] - table[i - 1][0]);
-      return table[i - 1][1] + t * (table[i][1] - table[i - 1][1]);
-    }
-  return table.back()[1];
-}
-
 std::vector<Vec3> corners_of(const Bounds& bounds) {
   std::vector<Vec3> corners;
   for (int i = 0; i < 8 && !bounds.empty(); ++i) corners.push_back(bounds.corner(i));
@@ -220,7 +209,7 @@ std::vector<Vec3> visible_places(const field::ScalarGrid& grid, const TransferTa
       rows.read(j, k, row);
       Ends ends;
       for (std::size_t i = 0; i < row.size(); ++i)
-        if (std::isfinite(row[i]) && extinction_of(transfer.extinctions, row[i]) >= least) ends.add(Vec3(static_cast<double>(i), j, k));
+        if (std::isfinite(row[i]) && piecewise(transfer.extinctions, row[i], 1) >= least) ends.add(Vec3(static_cast<double>(i), j, k));
       ends.give(rows, places);
     }
   return places;

@@ -1,9 +1,8 @@
 /// Private to this room: what can be seen of volumes and isosurfaces, for the camera of a scene that states none. Frame thread.
 ///   isosurface   where neighbours lie on two sides of the level
 ///   volume       values that are at least 2 % opaque over a 25th of the domain's length
-/// On a lattice of at most about 2^18 voxels, in rows along x; of each row its first and its last place, of a
-/// surface along every axis. Kept in scene.made beside the
-/// thing.
+/// On a lattice of at most about 2^18 voxels, in rows along x; of each row its first and its last place, of a surface along every axis.
+/// Kept in scene.made beside the thing.
 ///
 /// The view: from the front, 80 % of the picture's height or 90 % of its width filled, less where a scalar bar, a title or axes take room.
 ///   patient   (engine/field/units.h) from +y, a little from the side and above

@@ -197,6 +197,10 @@ double support(const std::vector<FitPlaces>& clouds, const Vec3& along) {
   std::vector<double> reach;
   for (const FitPlaces& cloud : clouds) {
     if (cloud.places.empty()) continue;
+    if (cloud.ignored == 0) {  // nothing to sort out
+      for (const Vec3& p : cloud.places) most = std::max(most, dot(p, along));
+      continue;
+    }
     reach.clear();
     for (const Vec3& p : cloud.places) reach.push_back(dot(p, along));
     const auto n = static_cast<std::ptrdiff_t>((1 - cloud.ignored) * static_cast<double>(reach.size() - 1));

@@ -1,6 +1,7 @@
 /// The frame packet: everything one picture needs, as plain data. Copied by render/extract; the ECS is not read after it.
 /// Fields are held by shared pointer (kept alive while the frame uses them) and never looked into here.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -53,6 +54,20 @@ struct ObjectName {
   std::string kind, name;
   std::string item{};  ///< where it stands in the scene, "isosurfaces[1]"; empty: it is no item of a list
 };
+
+/// Linear between points (value, columns..) that rise, constant beyond them; 0 without any. Of two at one value the later counts from
+/// there.
+template <class Points>
+double piecewise(const Points& points, double value, std::size_t column) {
+  if (points.empty()) return 0;
+  const auto above = std::upper_bound(points.begin(), points.end(), value, [](double v, const auto& p) { return v < p[0]; });
+  if (above == points.begin()) return points.front()[column];
+  if (above == points.end()) return points.back()[column];
+  const auto& a = *(above - 1);
+  const auto& b = *above;
+  const double f = (value - a[0]) / (b[0] - a[0]);
+  return a[column] + f * (b[column] - a[column]);
+}
 
 /// Piecewise-linear over field values; sigma is extinction per world unit.
 struct TransferTable {

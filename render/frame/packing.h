@@ -67,6 +67,9 @@ inline PackedSize view_size(Packing packing, std::size_t views, std::uint32_t wi
   return size;
 }
 
+/// Each eye has a part of the picture for itself.
+inline bool is_apart(Packing packing) { return packing >= Packing::side_by_side && packing <= Packing::top_bottom_half; }
+
 /// Whether a finished picture has to be shown pixel by pixel.
 inline bool is_interlaced(Packing packing) {
   return packing == Packing::rows || packing == Packing::columns || packing == Packing::checkerboard;

@@ -12,18 +12,6 @@ namespace {
 
 constexpr std::uint32_t kEntries = 4096;
 
-template <class Points>
-double piecewise(const Points& points, double value, std::size_t column) {
-  if (points.empty()) return 0;
-  const auto above = std::upper_bound(points.begin(), points.end(), value, [](double v, const auto& p) { return v < p[0]; });
-  if (above == points.begin()) return points.front()[column];
-  if (above == points.end()) return points.back()[column];
-  const auto& a = *(above - 1);
-  const auto& b = *above;
-  const double f = (value - a[0]) / (b[0] - a[0]);
-  return a[column] + f * (b[column] - a[column]);
-}
-
 }  // namespace
 
 double table_value(const TransferTable& table, double value, int channel) {

@@ -33,11 +33,7 @@ const char* side_of_eye(const field::ScalarField& field, double level, const std
     if (rises != 0) return rises > 0 ? "above" : "below";
   }
   int above = 0;
-  const field::Box& box = field.index_box();
-  for (int k = 0; k < 8; ++k) {
-    const Vec3 corner((k & 1) != 0 ? box.hi.x : box.lo.x, (k & 2) != 0 ? box.hi.y : box.lo.y, (k & 4) != 0 ? box.hi.z : box.lo.z);
-    above += field.sample(field.mapping().world_from_index(corner), cursor).value > level ? 1 : -1;
-  }
+  for (int k = 0; k < 8; ++k) above += field.sample(field.corner(k), cursor).value > level ? 1 : -1;
   return above > 0 ? "above" : "below";
 }
 

@@ -12,18 +12,6 @@ namespace {
 
 constexpr int kMaxSteps = 4000;
 
-double factor_at(const std::vector<std::array<double, 2>>& rows, double x) {
-  if (rows.empty()) return 1;
-  if (x <= rows.front()[0]) return rows.front()[1];
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (x > rows[i][0]) continue;
-    const double width = rows[i][0] - rows[i - 1][0];
-    const double share = width > 0 ? (x - rows[i - 1][0]) / width : 1;
-    return rows[i - 1][1] + share * (rows[i][1] - rows[i - 1][1]);
-  }
-  return rows.back()[1];
-}
-
 struct Marched {
   const render::VolumeItem* item;
   Span span;
@@ -36,7 +24,7 @@ struct Marched {
     if (!s.inside || !std::isfinite(s.value)) return 0;
     const double sigma = extinction_at(item->transfer, s.value);
     if (!(sigma > 0) || item->transfer.gradient_factors.empty()) return sigma;
-    return sigma * factor_at(item->transfer.gradient_factors, norm(s.gradient));
+    return sigma * render::piecewise(item->transfer.gradient_factors, norm(s.gradient), 1);
   }
 };
 
@@ -62,9 +50,7 @@ std::optional<PickedPlace> pick_extreme(const render::VolumeItem& item, const re
 
 }  // namespace
 
-double extinction_at(const render::TransferTable& table, double value) {
-  return table.extinctions.empty() ? 0 : factor_at(table.extinctions, value);
-}
+double extinction_at(const render::TransferTable& table, double value) { return render::piecewise(table.extinctions, value, 1); }
 
 std::optional<PickedPlace> pick_volume(const render::FramePacket& packet, const render::Ray& ray, double farthest) {
   std::vector<Marched> marched;

@@ -200,8 +200,7 @@ std::optional<PickedPlace> PictureView::picked_at(double window_x, double window
 std::optional<PickedPlace> PictureView::under_pointer() const {
   const ViewState& state = shared_.state;
   // eyes side by side have a place for the pointer each
-  const bool apart = shown_ && !shown_->eyes.empty() && shown_->packing >= render::Packing::side_by_side &&
-                     shown_->packing <= render::Packing::top_bottom_half;
+  const bool apart = shown_ && !shown_->eyes.empty() && render::is_apart(shown_->packing);
   return state.pointer_on_picture && !apart ? picked_at(state.pointer_x, state.pointer_y) : std::nullopt;
 }
 
