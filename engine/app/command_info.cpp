@@ -72,7 +72,7 @@ Outcome describe_file(const std::string& path) {
     fmt::print("  bytes        {} ({})\n", g.bytes, human_bytes(static_cast<double>(g.bytes)));
   }
   if (field::needs_layout(path)) return Done{};
-  if (const std::string look = scene::look_of_file(path); !look.empty()) fmt::print("{}\n", printable(look));
+  for (const std::string& line : scene::look_of_file(path)) fmt::print("{}\n", printable(line));
   return Done{};
 }
 
@@ -189,17 +189,20 @@ Outcome print_keys(const std::string& part) {
 
 void add_info(CLI::App& program, Work& chosen) {
   auto path = std::make_shared<std::string>();
-  auto schema = std::make_shared<bool>(false), maps = std::make_shared<bool>(false);
+  auto schema = std::make_shared<bool>(false), maps = std::make_shared<bool>(false), formats = std::make_shared<bool>(false);
   auto part = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
-  command->add_option("FILE", *path,
-                      "a data file (" + joined(field::field_endings(true)) + "), a triangle mesh (" + joined(mesh::mesh_endings()) +
-                          "), a scene (.json) or a recording (.catlog)");
+  command->add_option("FILE", *path, "a data file, a folder of DICOM images, a triangle mesh, a scene (.json) or a recording (.catlog)");
+  command->add_flag("--formats", *formats, "list the endings of the files that are read instead");
   command->add_flag("--schema", *schema, "print the JSON Schema of scenes instead, for an editor");
   command->add_option("--keys", *part, "list the keys of a part of a scene instead: volumes, chain, camera, ...");
   command->add_flag("--colormaps", *maps, "list the colour maps instead");
-  command->callback([&chosen, path, schema, maps, part] {
-    chosen = [path, schema, maps, part]() -> Outcome {
+  command->callback([&chosen, path, schema, maps, part, formats] {
+    chosen = [path, schema, maps, part, formats]() -> Outcome {
+      if (*formats) {
+        fmt::print("fields: {}\nmeshes: {}\nfolders: DICOM images\n", joined(field::field_endings()), joined(mesh::mesh_endings()));
+        return Done{};
+      }
       if (*maps) {
         for (const std::string_view name : scene::color_map_names()) fmt::print("{}\n{}_r\n", name, name);
         return Done{};
@@ -211,7 +214,7 @@ void add_info(CLI::App& program, Work& chosen) {
       if (!part->empty()) return print_keys(*part);
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
       if (is_log_file(*path)) return describe_log(*path);
-      if (mesh::is_mesh_file(*path)) return describe_mesh(*path);
+      if (scene::shows_mesh(*path)) return describe_mesh(*path);
       return is_scene_file(*path) ? describe_scene(*path) : describe_file(*path);
     };
   });

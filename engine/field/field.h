@@ -97,6 +97,7 @@ using VectorFieldPtr = std::shared_ptr<const VectorField>;
 struct AnyField {
   ScalarFieldPtr scalar;
   VectorFieldPtr vector;
+  std::vector<std::string> notes{};  ///< what is not as it was in the file: sentences without an end
   const Field* get() const { return scalar ? static_cast<const Field*>(scalar.get()) : vector.get(); }
 };
 

@@ -14,7 +14,7 @@ namespace catena::field {
 namespace {
 
 std::vector<FileFormat>& registry() {
-  static std::vector<FileFormat> formats{vdb_format(), nifti_format(), raw_format()};
+  static std::vector<FileFormat> formats{vdb_format(), nifti_format(), raw_format(), npy_format(), vtk_format()};
   return formats;
 }
 
@@ -29,6 +29,13 @@ const FileFormat* format_of(std::string_view path, std::string_view* ending) {
         if (ending != nullptr) *ending = one;
         return &format;
       }
+  std::error_code code;
+  if (!std::filesystem::is_directory(path, code)) return nullptr;
+  for (const FileFormat& format : registry())
+    if (format.folders) {
+      if (ending != nullptr) *ending = "";
+      return &format;
+    }
   return nullptr;
 }
 
@@ -46,7 +53,7 @@ std::vector<std::string_view> field_endings(bool bare) {
   return out;
 }
 
-std::string field_file_words() { return alternatives(field_endings()); }
+std::string field_file_words() { return "a data file (.vdb, .nii, .vti, .vtu, .nrrd, .npy, ..; catena info --formats lists all)"; }
 
 Result<std::uint64_t> readable_file(const std::string& path) {
   std::error_code error;

@@ -19,7 +19,7 @@ bool is_field_file(std::string_view path);
 bool needs_layout(std::string_view path);
 /// ".vdb", ".nii", ..; `bare`: of those that say their layout, which can be opened without a scene.
 std::vector<std::string_view> field_endings(bool bare = false);
-/// ".vdb, .nii, .nii.gz or .raw", for a sentence.
+/// "a data file (.vdb, .nii, ..)", for a sentence.
 std::string field_file_words();
 
 /// Private to this room: the checks that every reader makes of a path.
@@ -41,6 +41,8 @@ struct DenseFile {
   DenseSource source;  ///< keeps the file open
 };
 Result<AnyField> load_dense(const DenseFile& file);
+/// Of a format that holds one grid: what there is once it is loaded.
+Result<std::vector<GridInfo>> describe_loaded(const std::string& path);
 
 /// One row of the registry of formats (formats.cpp).
 struct FileFormat {
@@ -51,12 +53,15 @@ struct FileFormat {
   Result<AnyField> (*load)(const LoadRequest& request) = nullptr;
   Result<std::vector<GridInfo>> (*describe)(const std::string& path) = nullptr;
   Units (*units)(const std::string& path, const std::string& grid) = nullptr;  ///< nullptr: the format has none
+  bool folders = false;                                                        ///< it reads folders, too
 };
 /// One more, at start-up, before anything reads a file.
 void add_format(FileFormat format);
 FileFormat vdb_format();
 FileFormat nifti_format();
 FileFormat raw_format();
+FileFormat npy_format();
+FileFormat vtk_format();
 /// nullptr: none. `ending`: which of its endings.
 const FileFormat* format_of(std::string_view path, std::string_view* ending = nullptr);
 

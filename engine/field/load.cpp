@@ -42,6 +42,46 @@ Error unknown_kind(const std::string& path) {
 
 }  // namespace
 
+Result<AnyField> load_dense(const DenseFile& file) {
+  AnyField field;
+  if (file.components == 3) {
+    CATENA_TRY(field.vector, make_dense<VectorGrid>(file.name, file.mapping, file.source, file.prefix));
+  } else {
+    CATENA_TRY(field.scalar, make_dense<ScalarGrid>(file.name, file.mapping, file.source, file.prefix));
+  }
+  count_file();
+  count_grid();
+  return field;
+}
+
+Result<std::vector<GridInfo>> describe_loaded(const std::string& path) {
+  LoadRequest request;
+  request.path = path;
+  const FileFormat* format = format_of(path);
+  std::string type;
+  Result<AnyField> loaded = Error{};
+  if (format->open != nullptr) {
+    CATENA_TRY(const DenseFile file, format->open(request));
+    type = file.type;
+    loaded = load_dense(file);
+  } else {
+    loaded = format->load(request);
+  }
+  CATENA_TRY(const AnyField field, std::move(loaded));
+  const Field& any = *field.get();
+  GridInfo info;
+  info.name = any.name();
+  info.type = !type.empty() ? type : field.scalar ? "float" : "vec3s";
+  info.stats = field.scalar ? field.scalar->grid()->stats() : field.vector->grid()->stats();
+  const Vec3 size = any.index_box().hi - any.index_box().lo;
+  info.size = {std::llround(size.x) + 1, std::llround(size.y) + 1, std::llround(size.z) + 1};
+  info.mapping = any.mapping();
+  info.bytes = field.scalar ? field.scalar->grid()->bytes() : field.vector->grid()->bytes();
+  info.usable = true;
+  info.is_vector = field.vector != nullptr;
+  return std::vector<GridInfo>{info};
+}
+
 void count_file() { ++files; }
 void count_grid() { ++grids; }
 void count_mask() { ++masks; }

@@ -179,24 +179,8 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
   return file;
 }
 
-static Result<std::vector<GridInfo>> describe_nifti(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  CATENA_TRY(const DenseFile file, open_nifti(request));
-  CATENA_TRY(const AnyField field, load_dense(file));
-  const ScalarGrid& grid = *field.scalar->grid();
-  GridInfo info;
-  info.name = grid.name();
-  info.type = file.type;
-  const Index3& size = file.source.size;
-  info.size = {size.x, size.y, size.z};
-  info.mapping = grid.mapping();
-  info.stats = grid.stats();
-  info.bytes = grid.bytes();
-  info.usable = true;
-  return std::vector<GridInfo>{info};
+FileFormat nifti_format() {
+  return {.endings = {".nii", ".nii.gz"}, .open = open_nifti, .describe = describe_loaded, .units = nifti_units};
 }
-
-FileFormat nifti_format() { return {.endings = {".nii", ".nii.gz"}, .open = open_nifti, .describe = describe_nifti, .units = nifti_units}; }
 
 }  // namespace catena::field

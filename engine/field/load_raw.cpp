@@ -95,18 +95,6 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
   return file;
 }
 
-Result<AnyField> load_dense(const DenseFile& file) {
-  AnyField field;
-  if (file.components == 3) {
-    CATENA_TRY(field.vector, make_dense<VectorGrid>(file.name, file.mapping, file.source, file.prefix));
-  } else {
-    CATENA_TRY(field.scalar, make_dense<ScalarGrid>(file.name, file.mapping, file.source, file.prefix));
-  }
-  count_file();
-  count_grid();
-  return field;
-}
-
 static Result<std::vector<GridInfo>> describe_raw(const std::string& path) {
   CATENA_CHECK(readable_file(path));
   return Error{

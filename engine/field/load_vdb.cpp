@@ -4,19 +4,10 @@
 #include "engine/field/formats.h"
 #include "engine/field/grid_make.h"
 #include "engine/field/nano_stats.h"
-#include "engine/field/vdb_reader.h"
+#include "engine/field/reader.h"
 
 namespace catena::field {
 namespace {
-
-bool is_sound(const Mapping& m) {
-  return is_finite(m.origin) && is_finite(m.index_from_world(Vec3(1.0))) && m.smallest_edge() > 0 &&
-         is_finite(m.world_from_index(Vec3(1.0)));
-}
-
-Error damaged(const std::string& path, const std::string& what) {
-  return Error{fmt::format("{}: the file is damaged (of what its reader made of it, {}), expected a sound .vdb file", path, what)};
-}
 
 /// One buffer of the answer, checked.
 template <class T>
@@ -41,9 +32,9 @@ Result<NanoBuffers> buffers_of(const ReaderAnswer& answer) {
 template <class Grid>
 Result<std::shared_ptr<const Grid>> grid_of(const std::string& path, const ReaderAnswer& answer) {
   const ReadReply& reply = answer.reply;
-  if (!is_sound(reply.mapping)) return damaged(path, "the transform cannot be inverted");
+  if (!reply.mapping.is_sound()) return damaged_answer(path, "the transform cannot be inverted");
   auto buffers = buffers_of<typename GridValue<Grid>::Type>(answer);
-  if (!buffers) return damaged(path, buffers.error().message);
+  if (!buffers) return damaged_answer(path, buffers.error().message);
   auto made = grid_from_buffers<Grid>(reply.name, reply.mapping, std::move(*buffers));
   if (!made) return Error{fmt::format("{}: grid \"{}\" {}", path, reply.name, made.error().message)};
   count_file();
@@ -70,8 +61,8 @@ static Result<std::vector<GridInfo>> describe_vdb(const std::string& path) {
   request.path = path;
   CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
   for (GridInfo& grid : answer.reply.grids) {
-    if (!is_sound(grid.mapping)) return damaged(path, "a transform cannot be inverted");
-    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged(path, "a size is negative");
+    if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
+    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
   }
   return std::move(answer.reply.grids);
 }

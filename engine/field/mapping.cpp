@@ -25,6 +25,10 @@ double Mapping::smallest_edge() const {
   return std::min(std::min(norm(j[0]), norm(j[1])), norm(j[2]));
 }
 
+bool Mapping::is_sound() const {
+  return is_finite(origin) && is_finite(index_from_world(Vec3(1.0))) && smallest_edge() > 0 && is_finite(world_from_index(Vec3(1.0)));
+}
+
 Vec3 world_corner(const Mapping& mapping, const Box& box, int i) { return mapping.world_from_index(Bounds{box.lo, box.hi}.corner(i)); }
 
 Bounds world_bounds(const Mapping& mapping, const Box& box) {

@@ -18,6 +18,7 @@ struct Mapping {
   /// A covector: gradient_world = J^-T gradient_index.
   Vec3 world_gradient(const Vec3& g) const { return g * index_from_world_linear; }
   double smallest_edge() const;  ///< of a voxel, world units
+  bool is_sound() const;         ///< finite, and can be inverted
 };
 
 /// A box in index space (grids: voxel centres lo..hi, both included; analytic fields: world coordinates).

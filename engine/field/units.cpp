@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "engine/field/formats.h"
-#include "engine/field/vdb_reader.h"
+#include "engine/field/reader.h"
 
 namespace catena::field {
 

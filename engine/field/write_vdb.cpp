@@ -8,7 +8,7 @@
 #include "engine/field/formats.h"
 #include "engine/field/grid_storage.h"
 #include "engine/field/nano_nodes.h"
-#include "engine/field/vdb_reader.h"
+#include "engine/field/vdb_stream.h"
 
 namespace catena::field {
 namespace {

@@ -10,9 +10,10 @@ constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30;
 /// The registry: one line a format.
 struct Format {
   std::string_view ending;
-  Result<Soup> (*parse)(std::string_view bytes, const std::string& name);
+  Result<Soup> (*parse)(std::string_view bytes, const std::string& name);  ///< nullptr: the reader program does
 };
-constexpr Format kFormats[] = {{".stl", parse_stl}, {".obj", parse_obj}};
+constexpr Format kFormats[] = {{".stl", parse_stl}, {".obj", parse_obj}, {".ply", nullptr}, {".gii", nullptr},
+                               {".vtp", nullptr},   {".vtk", nullptr},   {".vtu", nullptr}, {".vtm", nullptr}};
 
 const Format* format_of(std::string_view path) {
   for (const Format& format : kFormats)
@@ -22,6 +23,7 @@ const Format* format_of(std::string_view path) {
 
 /// The text is gone when the mesh is made.
 Result<Soup> read_soup(const std::string& path) {
+  if (format_of(path)->parse == nullptr) return read_shape(path);
   CATENA_TRY(const std::string bytes, read_text(path, "a triangle mesh (" + alternatives(mesh_endings()) + ")", kMaxBytes));
   return format_of(path)->parse(bytes, path);
 }

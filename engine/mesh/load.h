@@ -1,8 +1,8 @@
-/// Reads triangle meshes: STL (binary and ASCII) and OBJ. Corners are joined as they lie; stored normals, colours, texture
-/// coordinates, groups and materials are not used: the outside is where the corners run counter-clockwise.
-/// OBJ polygons become fans. Refused, with one line "FILE: place: what; what was expected": numbers that are not finite, indices of
-/// vertices that are not there, a file that ends too early or is longer than it says, more than kMaxTriangles, more
-/// than the memory that is allowed (engine/base/memory_limit.h). Off the tick.
+/// Reads triangle meshes: STL (binary and ASCII) and OBJ here; PLY, GIFTI and VTK's surfaces by the program catena-read-vtk. Corners are
+/// joined as they lie; stored normals, colours, texture coordinates, groups and materials are not used: the outside is where the corners
+/// run counter-clockwise. OBJ polygons become fans. Refused, with one line "FILE: place: what; what was expected": numbers that are not
+/// finite, indices of vertices that are not there, a file that ends too early or is longer than it says, more than kMaxTriangles, more than
+/// the memory that is allowed (engine/base/memory_limit.h). Off the tick.
 #pragma once
 #include <string_view>
 
@@ -12,7 +12,7 @@ namespace catena::mesh {
 
 inline constexpr std::size_t kMaxTriangles = 20'000'000;
 
-bool is_mesh_file(std::string_view path);  ///< by its ending, any case
+bool is_mesh_file(std::string_view path);  ///< by its ending, any case; .vtk, .vtu and .vtm may hold fields instead
 const std::vector<std::string_view>& mesh_endings();
 
 /// world = scale * file + offset
@@ -27,5 +27,8 @@ Result<MeshPtr> load_mesh(const std::string& path, const Placement& placement = 
 /// The contents of a file; `name` begins every message.
 Result<Soup> parse_stl(std::string_view bytes, const std::string& name);
 Result<Soup> parse_obj(std::string_view text, const std::string& name);
+
+/// The surface in a file of the reader program: a whole sentence where there is none.
+Result<Soup> read_shape(const std::string& path);
 
 }  // namespace catena::mesh

@@ -72,7 +72,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   BareFile bare;
   bare.scene_path = path + ".json";
   const std::string file = json::string_text(std::filesystem::path(path).filename().string());
-  if (mesh::is_mesh_file(path)) {
+  if (shows_mesh(path)) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
     CATENA_TRY(bare.mesh, mesh::load_mesh(path));
@@ -101,9 +101,19 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   return bare;
 }
 
-std::string look_of_file(const std::string& path) {
+std::vector<std::string> look_of_file(const std::string& path) {
   const auto bare = describe_bare_file(path, {}, {});
-  return bare ? bare->note : std::string();
+  if (!bare) return {};
+  std::vector<std::string> lines{bare->note};
+  lines.insert(lines.end(), bare->field.notes.begin(), bare->field.notes.end());
+  return lines;
+}
+
+bool shows_mesh(const std::string& path) {
+  if (!mesh::is_mesh_file(path)) return false;
+  if (!field::is_field_file(path)) return true;
+  const auto grids = field::describe(path);
+  return !grids || std::none_of(grids->begin(), grids->end(), [](const field::GridInfo& grid) { return grid.usable; });
 }
 
 void adopt_loaded(const BareFile& bare, Scene& scene) {
@@ -123,6 +133,7 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid, c
   CATENA_TRY(Scene scene, parse_scene(bare.text, path));
   adopt_loaded(bare, scene);
   if (!bare.note.empty()) scene.notes.push_back(path + ": " + bare.note);
+  for (const std::string& note : bare.field.notes) scene.notes.push_back(path + ": " + note);
   // the text is nowhere: its lines would say nothing
   forget_lines<FieldSource>(scene);
   forget_lines<MeshSource>(scene);

@@ -19,10 +19,10 @@ constexpr int kMaxNodes = 1024;  // an axis, of a sampled analytic field
 /// Empty where `path` is a file that can be loaded, else what is wrong and what was expected.
 std::string file_fault(const std::string& path) {
   std::error_code code;
-  const std::string wanted = "; a " + field::field_file_words() + " file was expected";
+  const std::string wanted = "; " + field::field_file_words() + " was expected";
   if (!field::is_field_file(path)) return in_quotes(path) + " has an unknown kind" + wanted;
   if (!fs::exists(path, code)) return in_quotes(path) + " does not exist" + wanted;
-  if (!fs::is_regular_file(path, code)) return in_quotes(path) + " is not a file" + wanted;
+  if (!fs::is_regular_file(path, code) && !fs::is_directory(path, code)) return in_quotes(path) + " is not a file" + wanted;
   return {};
 }
 
@@ -42,11 +42,18 @@ Key file_key(bool with_layout) {
 }
 
 Keys grid_keys() {
-  return {file_key(false), schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
+  return {file_key(false),
+          schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
           schema::any_of("valid", {schema::text("", ""), schema::null()},
                          "The BoolGrid that masks the field; null for none. The default one may be missing.")
               .by_default("\"valid\""),
-          unit_key(), schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
+          schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).by_default("0"),
+          schema::word("axes", {"zyx", "xyz"}, "`.npy`, `.npz`: which way an array's indices go; `zyx`: the last one is x.")
+              .by_default("`zyx`"),
+          schema::vec3("spacing", "world", "`.npy`, `.npz`: edges of a voxel.").positive().by_default("`[1, 1, 1]`"),
+          schema::vec3("origin", "world", "`.npy`, `.npz`: place of the first voxel's centre.").by_default("`[0, 0, 0]`"),
+          unit_key(),
+          schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
 }
 
 /// What a file without a header says of itself in the scene.
@@ -90,6 +97,27 @@ const LayoutTable& layout_table() {
   return table;
 }
 
+/// What an array of NumPy does not say of itself, and the step of a series.
+Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
+  CATENA_TRY(request.step, json::get_integer(node, "step", 0, 0, 1'000'000));
+  CATENA_TRY(const std::string axes, json::get_string(node, "axes", "zyx"));
+  if (axes != "zyx" && axes != "xyz")
+    return json::error_at(*node.find("axes"), "\"axes\" is " + in_quotes(axes) + "; \"zyx\" or \"xyz\" was expected");
+  request.axes_xyz = axes == "xyz";
+  for (const char* key : {"axes", "spacing", "origin"})
+    if (node.find(key) != nullptr && !has_ending(request.path, ".npy") && !has_ending(request.path, ".npz"))
+      return json::error_at(*node.find(key), in_quotes(key) + " belongs to arrays of NumPy (.npy, .npz); this file says it itself");
+  if (const json::Node* spacing = node.find("spacing")) {
+    CATENA_TRY(request.spacing, json::as_vec3(*spacing, "spacing"));
+    if (!(request.spacing.x > 0 && request.spacing.y > 0 && request.spacing.z > 0))
+      return json::error_at(*spacing, "\"spacing\" is not positive; three finite numbers > 0 were expected");
+  }
+  if (const json::Node* origin = node.find("origin")) {
+    CATENA_TRY(request.origin, json::as_vec3(*origin, "origin"));
+  }
+  return Done{};
+}
+
 Outcome read_file_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_TRY(const std::string file, json::require_string(node, "file"));
   LoadRequest request;
@@ -109,6 +137,7 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
       request.valid_grid = valid->string;
       request.valid_required = true;
     }
+    CATENA_CHECK(read_array_keys(node, request));
   }
   CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
   if (const std::string fault = file_fault(request.path); !replaced && !fault.empty())

@@ -68,8 +68,12 @@ Result<Scene> parse_scene(std::string_view text, const std::string& path, const 
 /// volume whose opacity follows the range, lines show the speed by them.
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
 
-/// What such a file looks like, and why, in one sentence; nothing of a mesh and of a file that cannot be shown.
-std::string look_of_file(const std::string& path);
+/// What such a file looks like, and why, in one sentence, and what of it is not as it was; nothing of a mesh and of a file that cannot be
+/// shown.
+std::vector<std::string> look_of_file(const std::string& path);
+
+/// Whether a file is shown as a mesh: by its ending, and where that leaves it open because it holds no fields.
+bool shows_mesh(const std::string& path);
 
 /// What a scene file may say, part by part (engine/schema): docs/scene.md, the JSON Schema and the reader are made of it. The links of
 /// "chain" and the keys of "device" are described by the rooms that read them.

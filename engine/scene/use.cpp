@@ -57,6 +57,7 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
     return error;
   }
   source.loaded = *loaded;
+  for (const std::string& note : loaded->notes) scene.notes.push_back((source.file ? source.file->path + ": " : std::string()) + note);
   return source.loaded;
 }
 

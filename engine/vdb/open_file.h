@@ -1,4 +1,5 @@
-/// The file in memory through which catena asks and is answered (engine/field/vdb_exchange.h), from the reader's side.
+/// A .vdb file in memory, with its directory; its grids are read one by one. OpenVDB's own file class opens files by name, which the
+/// reader may not, and trusts what it reads; this one reads from bytes and throws where they end.
 #pragma once
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/io.h>
@@ -6,31 +7,12 @@
 #include <map>
 #include <memory>
 
-#include "engine/field/nano_build.h"
-#include "engine/field/vdb_exchange.h"
+#include "engine/field/reader_exchange.h"
 #include "engine/vdb/memory_stream.h"
 #include "engine/vdb/vdb_directory.h"
 
 namespace catena::vdb {
 
-class AnswerFile {
- public:
-  explicit AnswerFile(int fd) : fd_(fd) {}
-
-  /// An error is a phrase.
-  Result<field::ReadRequest> request() const;
-  /// Zeroed memory that is a part of the file; throws std::bad_alloc. `piece` is where.
-  field::NanoMemory allocate(std::size_t bytes, field::Piece& piece);
-  /// The reply, and the head that says where it is. False where there is no room.
-  bool finish(const field::ReadReply& reply);
-
- private:
-  int fd_;
-  std::uint64_t end_ = field::kPieceAlignment;  ///< of what is taken; the head, and the request, are in the first page
-};
-
-/// A .vdb file in memory, with its directory; its grids are read one by one. OpenVDB's own file class opens files by name, which the
-/// reader may not, and trusts what it reads; this one reads from bytes and throws where they end.
 class OpenFile {
  public:
   /// `path` is for messages. Throws what OpenVDB throws.

@@ -94,7 +94,8 @@ Result<const VdbEntry*> choose(const OpenFile& f, const LoadRequest& request) {
 /// One request while it is answered.
 class Answer {
  public:
-  Answer(const ReadRequest& request, OpenFile& file, AnswerFile& out) : request_(request), what_(request.what), file_(file), out_(out) {}
+  Answer(const ReadRequest& request, OpenFile& file, reader::AnswerFile& out)
+      : request_(request), what_(request.what), file_(file), out_(out) {}
 
   Outcome load(ReadReply& reply) {
     CATENA_TRY(const VdbEntry* entry, choose(file_, what_));
@@ -222,11 +223,11 @@ class Answer {
   const ReadRequest& request_;
   const LoadRequest& what_;
   OpenFile& file_;
-  AnswerFile& out_;
+  reader::AnswerFile& out_;
   bool is_near_ = true;
 };
 
-Outcome answer_or_throw(const ReadRequest& request, std::span<const std::byte> bytes, AnswerFile& out, ReadReply& reply) {
+Outcome answer_or_throw(const ReadRequest& request, std::span<const std::byte> bytes, reader::AnswerFile& out, ReadReply& reply) {
   openvdb::initialize();
   CATENA_TRY(const auto file, OpenFile::open(bytes, request.what.path));
   file->words(reply);
@@ -238,7 +239,7 @@ Outcome answer_or_throw(const ReadRequest& request, std::span<const std::byte> b
 
 }  // namespace
 
-ReadReply answer(const ReadRequest& request, std::span<const std::byte> file, AnswerFile& out) {
+ReadReply answer(const ReadRequest& request, std::span<const std::byte> file, reader::AnswerFile& out) {
   const std::string& path = request.what.path;
   ReadReply reply;
   Outcome done = Done{};

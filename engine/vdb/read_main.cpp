@@ -1,4 +1,5 @@
-// The program catena-read: reads one .vdb file for catena, shut in, into the file in memory that is its descriptor 3 (vdb_exchange.h).
+// The program catena-read: reads one .vdb or .npy file for catena, shut in, into the file in memory that is its descriptor 3
+// (engine/field/reader_exchange.h).
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -8,7 +9,9 @@
 #include <cerrno>
 #include <cstring>
 
-#include "engine/vdb/confine.h"
+#include "engine/base/text.h"
+#include "engine/reader/confine.h"
+#include "engine/reader/npy.h"
 #include "engine/vdb/read.h"
 
 namespace {
@@ -32,7 +35,7 @@ catena::Result<std::span<const std::byte>> map_file(const std::string& path) {
 }  // namespace
 
 int main() {
-  catena::vdb::AnswerFile out(kAnswer);
+  catena::reader::AnswerFile out(kAnswer);
   const auto request = out.request();
   if (!request) {
     static constexpr char kWho[] = "catena-read: a part of catena, which starts it\n";
@@ -40,13 +43,14 @@ int main() {
   }
   catena::field::ReadReply reply;
   const auto file = map_file(request->what.path);
-  const auto confined = catena::vdb::confine({request->memory_bytes, request->cpu_s, true});
+  const auto confined = catena::reader::confine({request->memory_bytes, request->cpu_s, true});
   if (!file)
     reply.error = file.error().message;
   else if (!confined)
     reply.error = request->what.path + ": cannot be read safely: " + confined.error().message;
   else
-    reply = catena::vdb::answer(*request, *file, out);
+    reply = catena::has_ending(request->what.path, ".npy") ? catena::reader::answer_npy(*request, *file, out)
+                                                           : catena::vdb::answer(*request, *file, out);
   if (confined) reply.confinement = *confined;
   ::_exit(out.finish(reply) ? 0 : 3);
 }

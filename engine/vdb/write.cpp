@@ -8,7 +8,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "engine/field/vdb_reader.h"
+#include "engine/field/vdb_stream.h"
 
 namespace catena::vdb {
 namespace {

@@ -1,4 +1,4 @@
-/// What catena-write does once it is shut in: the grids that come as a stream of blocks (engine/field/vdb_reader.h) become a .vdb file.
+/// What catena-write does once it is shut in: the grids that come as a stream of blocks (engine/field/vdb_stream.h) become a .vdb file.
 #pragma once
 #include <functional>
 #include <string>

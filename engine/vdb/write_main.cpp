@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/vdb/confine.h"
+#include "engine/reader/confine.h"
 #include "engine/vdb/write.h"
 
 namespace {
@@ -56,9 +56,9 @@ int main() {
   }
   struct stat status {};
   const bool seekable = ::fstat(kFile, &status) == 0 && S_ISREG(status.st_mode);
-  catena::vdb::ProcessLimits limits;
+  catena::reader::ProcessLimits limits;
   limits.only_memory_files = false;
-  const auto confined = catena::vdb::confine(limits);
+  const auto confined = catena::reader::confine(limits);
   Line line;
   const std::string failure =
       confined ? catena::vdb::write_grids([&](void* to, std::size_t bytes) { return line.take(to, bytes); }, kFile, seekable)

@@ -91,7 +91,7 @@ TEST(SceneFile, FieldSources) {
   expect_error(field("{}"), 2, {"neither", "exactly one", "expected"});
   expect_error(field("{\"file\": \"x.vdb\", \"analytic\": \"circle\"}"), 2, {"both", "exactly one", "expected"});
   expect_error(field("{\"file\":\n\"missing.vdb\"}"), 3, {"missing.vdb", "does not exist", "expected"});
-  expect_error(field("{\"file\": \"missing.txt\"}"), 2, {"missing.txt", "unknown kind", ".vdb, .nii, .nii.gz or .raw"});
+  expect_error(field("{\"file\": \"missing.txt\"}"), 2, {"missing.txt", "unknown kind", "a data file (.vdb, .nii"});
   expect_error(field("{\"analytic\": \"cirle\"}"), 2, {"unknown analytic field \"cirle\"", "saddle", "did you mean \"circle\"?"});
   expect_error(field("{\"analytic\": \"circle\", \"scale\": 0}"), 2, {"\"scale\" is 0", "other than 0 was expected"});
   expect_error(field("{\"analytic\": \"circle\", \"scale\": 1e999}"), 2, {"finite number was expected"});
@@ -111,6 +111,7 @@ TEST(SceneFile, FilesResolveBesideTheScene) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "a.vdb", "x");
   test::write_file(folder / "b.raw", "x");
+  test::write_file(folder / "a.npy", "x");
   test::write_file(
       folder / "s.json",
       "{\"fields\": {\"a\": {\"file\": \"a.vdb\", \"grid\": \"density\", \"valid\": null}, \"c\": {\"file\": \"a.vdb\", \"valid\": "
@@ -140,7 +141,8 @@ TEST(SceneFile, FilesResolveBesideTheScene) {
   EXPECT_NE(message("{\"file\": \"b.raw\", \"shape\": [4, 5, 6], \"type\": \"f32\"}").find("float64"), std::string::npos);
   EXPECT_NE(message("{\"file\": \"a.vdb\", \"shape\": [4, 5, 6]}").find("unknown key \"shape\""), std::string::npos);
   EXPECT_NE(message("{\"file\": \"a.vdb\", \"valid\": 3}").find("name of a BoolGrid"), std::string::npos);
-  EXPECT_NE(message("{\"file\": \".\"}").find("unknown kind"), std::string::npos);
+  EXPECT_NE(message("{\"file\": \"a.vdb\", \"axes\": \"xyz\"}").find("belongs to arrays of NumPy"), std::string::npos);
+  EXPECT_NE(message("{\"file\": \"a.npy\", \"axes\": \"xzy\"}").find("\"zyx\" or \"xyz\""), std::string::npos);
 }
 
 TEST(SceneFile, ScenesThatCannotBeRead) {
@@ -165,7 +167,8 @@ TEST(SceneFile, Overrides) {
   EXPECT_TRUE(a.grid_is_a_wish);
   EXPECT_EQ(scene->world.get<FieldSource>(find_field(*scene, "b")).file->grid, "speed");
   EXPECT_EQ(error_of("{}", {{"a", "gone.vdb", ""}}),
-            "--field a=gone.vdb: file \"gone.vdb\" does not exist; a .vdb, .nii, .nii.gz or .raw file was expected");
+            "--field a=gone.vdb: file \"gone.vdb\" does not exist; a data file (.vdb, .nii, .vti, .vtu, .nrrd, .npy, ..; catena info "
+            "--formats lists all) was expected");
   EXPECT_NE(error_of("{}", {{"A", "gone.vdb", ""}}).find("[a-z][a-z0-9_]*"), std::string::npos);
 }
 

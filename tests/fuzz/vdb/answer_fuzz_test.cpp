@@ -12,7 +12,7 @@
 #include "engine/field/load.h"
 #include "engine/field/nano_nodes.h"
 #include "engine/field/nano_stats.h"
-#include "engine/field/vdb_reader.h"
+#include "engine/field/reader.h"
 #include "tests/fuzz/mutate_bytes.h"
 #include "tests/fuzz/vdb/corpus.h"
 #include "tests/support/support.h"

@@ -11,7 +11,7 @@
 #include <iterator>
 #include <string>
 
-#include "engine/vdb/open_file.h"
+#include "engine/reader/answer_file.h"
 
 namespace {
 constexpr int kAnswer = 3;
@@ -22,7 +22,7 @@ void copy(const std::string& text) {
 }  // namespace
 
 int main() {
-  const auto request = catena::vdb::AnswerFile(kAnswer).request();
+  const auto request = catena::reader::AnswerFile(kAnswer).request();
   if (!request) return 2;
   std::ifstream in(request->what.path, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

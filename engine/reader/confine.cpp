@@ -1,4 +1,4 @@
-#include "engine/vdb/confine.h"
+#include "engine/reader/confine.h"
 
 #include <fcntl.h>
 #include <linux/landlock.h>
@@ -17,7 +17,7 @@
 #include <fstream>
 #include <memory>
 
-namespace catena::vdb {
+namespace catena::reader {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -53,8 +53,25 @@ void set_limits(const ProcessLimits& limits) {
   set_limit(RLIMIT_CORE, 0, 0);
 }
 
-/// No file or folder may be opened, made or removed. 0: the kernel has no Landlock.
-std::uint32_t landlock() {
+/// What the folder allows: reading. False where it cannot be said.
+bool allow_reading(int ruleset, const std::string& folder) {
+  landlock_path_beneath_attr rule{};
+  rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+  rule.parent_fd = ::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  if (rule.parent_fd < 0) return false;
+  const long done = ::syscall(SYS_landlock_add_rule, ruleset, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
+  ::close(rule.parent_fd);
+  return done == 0;
+}
+
+/// The folder becomes the root, by the right that a user has in a namespace of his own, or that root has.
+bool change_root(const std::string& folder) {
+  if (::chroot(folder.c_str()) != 0 && (::unshare(CLONE_NEWUSER) != 0 || ::chroot(folder.c_str()) != 0)) return false;
+  return ::chdir("/") == 0;
+}
+
+/// No file or folder may be opened, made or removed, but for those to read. 0: the kernel has no Landlock.
+std::uint32_t landlock(const std::string& readable_folder) {
   const long version = ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
   if (version < 1) return 0;
   landlock_ruleset_attr rules{};
@@ -67,13 +84,31 @@ std::uint32_t landlock() {
 #endif
   const long ruleset = ::syscall(SYS_landlock_create_ruleset, &rules, sizeof rules, 0);
   if (ruleset < 0) return 0;
+  if (!readable_folder.empty() && !allow_reading(static_cast<int>(ruleset), readable_folder)) {
+    ::close(static_cast<int>(ruleset));
+    return 0;
+  }
   const long done = ::syscall(SYS_landlock_restrict_self, ruleset, 0);
   ::close(static_cast<int>(ruleset));
   return done == 0 ? static_cast<std::uint32_t>(version) : 0;
 }
 
+/// What it takes to find and open files, of which nothing is changed.
+bool allow_opening(scmp_filter_ctx filter) {
+  constexpr int kCalls[] = {SCMP_SYS(stat),       SCMP_SYS(lstat),      SCMP_SYS(newfstatat), SCMP_SYS(statx),      SCMP_SYS(access),
+                            SCMP_SYS(faccessat),  SCMP_SYS(faccessat2), SCMP_SYS(readlink),   SCMP_SYS(readlinkat), SCMP_SYS(getcwd),
+                            SCMP_SYS(getdents64), SCMP_SYS(flock),      SCMP_SYS(fadvise64),  SCMP_SYS(uname),      SCMP_SYS(umask)};
+  for (const int call : kCalls)
+    if (seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) != 0) return false;
+  constexpr scmp_datum_t kWriting = O_ACCMODE | O_CREAT | O_TRUNC;
+  return seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(openat), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, kWriting, O_RDONLY)) == 0 &&
+         seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(open), 1, SCMP_A1(SCMP_CMP_MASKED_EQ, kWriting, O_RDONLY)) == 0 &&
+         seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_SETFD)) == 0 &&
+         seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, F_GETFD)) == 0;
+}
+
 /// What a program needs that reads and writes open descriptors, has threads and memory, and ends. All else is refused with EPERM.
-bool seccomp() {
+bool seccomp(bool opens_files) {
   const std::unique_ptr<void, void (*)(void*)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)), [](void* f) { seccomp_release(f); });
   if (!filter) return false;
   constexpr int kAllowed[] = {SCMP_SYS(read),         SCMP_SYS(pread64),         SCMP_SYS(readv),
@@ -91,6 +126,7 @@ bool seccomp() {
                               SCMP_SYS(exit_group),   SCMP_SYS(getrlimit),       SCMP_SYS(sysinfo)};
   for (const int call : kAllowed)
     if (seccomp_rule_add(filter.get(), SCMP_ACT_ALLOW, call, 0) != 0) return false;
+  if (opens_files && !allow_opening(filter.get())) return false;
   // the sanitizers look through a pipe whether memory can be read
   if (kSanitized)
     for (const int call : {SCMP_SYS(pipe), SCMP_SYS(pipe2)})
@@ -114,16 +150,21 @@ bool seccomp() {
 
 }  // namespace
 
-Result<field::Confinement> confine(const ProcessLimits& limits) {
+Result<field::Confinement> confine(const ProcessLimits& limits, bool* root_changed) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::prctl(PR_SET_DUMPABLE, 0);
   set_limits(limits);
   field::Confinement confinement;
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return Error{std::string("privileges cannot be given up: ") + std::strerror(errno)};
-  confinement.landlock_version = landlock();
-  confinement.seccomp = seccomp();
+  const std::string& folder = limits.readable_folder;
+  confinement.landlock_version = limits.use_landlock ? landlock(folder) : 0;
+  const bool moved = !folder.empty() && confinement.landlock_version == 0 && change_root(folder);
+  if (!folder.empty() && confinement.landlock_version == 0 && !moved)
+    return Error{"this kernel keeps a process neither in a folder (Landlock) nor in a root of its own, expected one that does"};
+  if (root_changed != nullptr) *root_changed = moved;
+  confinement.seccomp = seccomp(!folder.empty());
   if (!confinement.seccomp) return Error{"this kernel does not filter system calls (seccomp), expected one that does"};
   return confinement;
 }
 
-}  // namespace catena::vdb
+}  // namespace catena::reader

@@ -1,5 +1,5 @@
 /// What the readers of foreign files can no longer do once they have shut themselves in: each is tried, in a process made for it.
-#include "engine/vdb/confine.h"
+#include "engine/reader/confine.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,11 +12,12 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
 
 #include "tests/support/support.h"
 
-namespace catena::vdb {
+namespace catena::reader {
 namespace confine_test {
 
 /// Whether the attempt succeeds in a process, shut in or not. 2: it could not be shut in.
@@ -47,6 +48,40 @@ TEST(Confine, NoFiles) {
   expect_only_outside("rename", [&] { return ::rename(path.c_str(), path.c_str()) == 0; });
   expect_only_outside("a folder", [&] { return ::access(folder.path().c_str(), R_OK) == 0; });
   expect_only_outside("memory files", [] { return ::memfd_create("x", 0) >= 0; });
+}
+
+TEST(Confine, OneFolderToReadAndNothingElse) {
+  catena::test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "in/deep");
+  catena::test::write_file(folder / "outside", "text");
+  catena::test::write_file(folder / "in/file", "text");
+  catena::test::write_file(folder / "in/deep/file", "text");
+  std::filesystem::create_symlink("../outside", folder / "in/link");
+  for (const bool landlock : {true, false}) {
+    ProcessLimits limits;
+    limits.readable_folder = folder / "in";
+    limits.use_landlock = landlock;
+    const auto opens = [&](const std::string& name, int flags = O_RDONLY) {
+      return attempt(
+          true, [&] { return ::open(((landlock ? limits.readable_folder : std::string()) + "/" + name).c_str(), flags, 0600) >= 0; },
+          limits);
+    };
+    EXPECT_EQ(opens("file"), 1) << landlock;
+    EXPECT_EQ(opens("deep/file"), 1) << landlock;
+    EXPECT_EQ(opens("../outside"), 0) << landlock;
+    EXPECT_EQ(opens("link"), 0) << landlock;
+    EXPECT_EQ(opens("file", O_WRONLY), 0) << landlock;
+    EXPECT_EQ(opens("new", O_CREAT | O_WRONLY), 0) << landlock;
+    EXPECT_EQ(opens("file", O_RDONLY | O_TRUNC), 0) << landlock;
+    EXPECT_EQ(attempt(
+                  true, [] { return ::open("/etc/passwd", O_RDONLY) >= 0; }, limits),
+              0)
+        << landlock;
+    EXPECT_EQ(attempt(
+                  true, [] { return ::socket(AF_UNIX, SOCK_STREAM, 0) >= 0; }, limits),
+              0)
+        << landlock;
+  }
 }
 
 TEST(Confine, NoSocketsProgramsOrProcesses) {
@@ -92,4 +127,4 @@ TEST(Confine, TimeAndMemoryHaveLimits) {
 #endif
 
 }  // namespace confine_test
-}  // namespace catena::vdb
+}  // namespace catena::reader

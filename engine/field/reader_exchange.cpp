@@ -1,4 +1,4 @@
-#include "engine/field/vdb_exchange.h"
+#include "engine/field/reader_exchange.h"
 
 #include <cstring>
 #include <type_traits>
@@ -138,6 +138,8 @@ std::string encode(const ReadRequest& r) {
   e.flag(r.what.valid_grid.has_value());
   e.words(r.what.valid_grid.value_or(std::string()));
   e.flag(r.what.valid_required);
+  e.number(r.what.step);
+  e.flag(r.what.axes_xyz);
   e.number(r.memory_bytes);
   e.number(r.cpu_s);
   return e.take();
@@ -153,9 +155,11 @@ Result<ReadRequest> decode_request(std::span<const std::byte> bytes) {
   std::string valid = d.words();
   r.what.valid_grid = has_valid ? std::optional(std::move(valid)) : std::nullopt;
   r.what.valid_required = d.flag();
+  r.what.step = d.number<std::int32_t>();
+  r.what.axes_xyz = d.flag();
   r.memory_bytes = d.number<std::uint64_t>();
   r.cpu_s = d.number<std::uint64_t>();
-  if (!d.finished() || mode > static_cast<std::uint8_t>(ReadMode::units)) return Error{"the request is incomplete"};
+  if (!d.finished() || mode > static_cast<std::uint8_t>(ReadMode::shape)) return Error{"the request is incomplete"};
   r.mode = static_cast<ReadMode>(mode);
   return r;
 }
@@ -170,8 +174,20 @@ std::string encode(const ReadReply& r) {
   for (const Piece& p : {r.values, r.voxels, r.cells}) e.piece(p);
   e.number<std::uint64_t>(r.grids.size());
   for (const GridInfo& g : r.grids) put(e, g);
+  for (const std::int64_t n : {r.dense.size.x, r.dense.size.y, r.dense.size.z}) e.number(n);
+  e.number(r.dense.components);
+  e.words(r.dense.type);
+  for (const Piece& p :
+       {r.dense.values, r.dense.valid, r.shape.points, r.shape.triangles, r.shape.lines, r.shape.ends, r.shape.loose, r.shape.values})
+    e.piece(p);
+  e.words(r.shape.value_name);
+  e.number<std::uint64_t>(r.notes.size());
+  for (const std::string& note : r.notes) e.words(note);
+  e.number<std::uint64_t>(r.times.size());
+  for (const double t : r.times) e.number(t);
   e.words(r.units);
   e.words(r.unit_length);
+  e.flag(r.patient);
   e.number<std::uint64_t>(r.words.size());
   for (const GridWords& w : r.words) {
     e.words(w.name);
@@ -195,8 +211,18 @@ Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
   for (Piece* p : {&r.values, &r.voxels, &r.cells}) *p = d.piece();
   constexpr std::size_t kLeastInfo = 16, kLeastWords = 24;
   for (std::uint64_t n = d.count(kLeastInfo); n > 0 && d.ok(); --n) r.grids.push_back(get_info(d));
+  for (std::int64_t* n : {&r.dense.size.x, &r.dense.size.y, &r.dense.size.z}) *n = d.number<std::int64_t>();
+  r.dense.components = d.number<std::int32_t>();
+  r.dense.type = d.words();
+  for (Piece* p : {&r.dense.values, &r.dense.valid, &r.shape.points, &r.shape.triangles, &r.shape.lines, &r.shape.ends, &r.shape.loose,
+                   &r.shape.values})
+    *p = d.piece();
+  r.shape.value_name = d.words();
+  for (std::uint64_t n = d.count(sizeof(std::uint64_t)); n > 0 && d.ok(); --n) r.notes.push_back(d.words());
+  for (std::uint64_t n = d.count(sizeof(double)); n > 0 && d.ok(); --n) r.times.push_back(d.number<double>());
   r.units = d.words();
   r.unit_length = d.words();
+  r.patient = d.flag();
   for (std::uint64_t n = d.count(kLeastWords); n > 0 && d.ok(); --n) {
     GridWords w;
     w.name = d.words();

@@ -1,0 +1,90 @@
+// What the reader programs hand over as numbers, voxel by voxel: VTK's and ITK's formats, and NumPy's. What they wrote is believed as far
+// as it is checked here.
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "engine/base/text.h"
+#include "engine/field/formats.h"
+#include "engine/field/reader.h"
+
+namespace catena::field {
+namespace {
+
+Result<AnyField> load_answered(const LoadRequest& request) {
+  const std::string& path = request.path;
+  CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::load, request));
+  const auto kept = std::make_shared<const ReaderAnswer>(std::move(answer));
+  const ReadReply& reply = kept->reply;
+  const DenseReply& dense = reply.dense;
+  constexpr std::int64_t kMostAxis = 1 << 24;
+  for (const std::int64_t n : {dense.size.x, dense.size.y, dense.size.z})
+    if (n < 1 || n > kMostAxis) return damaged_answer(path, fmt::format("an axis has {} voxels", n));
+  const Index3 n{static_cast<int>(dense.size.x), static_cast<int>(dense.size.y), static_cast<int>(dense.size.z)};
+  const int components = reply.is_vector ? 3 : 1;
+  Mapping mapping = reply.mapping;
+  if (has_ending(path, ".npy") || has_ending(path, ".npz")) {
+    Mat3 linear(0.0);
+    for (int a = 0; a < 3; ++a) linear[a][a] = request.spacing[a];
+    mapping = Mapping::from_linear(linear, request.origin);
+  }
+  if (!mapping.is_sound()) return damaged_answer(path, "the transform cannot be inverted");
+  const std::span<const float> values = kept->numbers<float>(dense.values);
+  const std::span<const std::uint8_t> valid = kept->numbers<std::uint8_t>(dense.valid);
+  const double voxels = static_cast<double>(n.x) * n.y * n.z;
+  if (static_cast<double>(values.size()) != voxels * components || (!valid.empty() && static_cast<double>(valid.size()) != voxels))
+    return damaged_answer(path, "there are not as many values as voxels");
+  CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, components, !valid.empty()));
+  DenseFile file{reply.name, dense.type, path + ": " + reply.name + " ", mapping, components, {}};
+  file.source.size = n;
+  file.source.masked = !valid.empty();
+  file.source.read = [kept, values, valid, n, components](int z, int layers, std::span<float> to, std::span<std::uint8_t> good) -> Outcome {
+    const std::size_t layer = static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y);
+    const std::size_t first = layer * static_cast<std::size_t>(z), count = layer * static_cast<std::size_t>(layers);
+    std::memcpy(to.data(), values.data() + first * static_cast<std::size_t>(components),
+                count * static_cast<std::size_t>(components) * sizeof(float));
+    for (std::size_t i = 0; i < good.size(); ++i) good[i] = valid[first + i] != 0 ? 1 : 0;
+    return Done{};
+  };
+  CATENA_TRY(AnyField field, load_dense(file));
+  field.notes = reply.notes;
+  return field;
+}
+
+Result<std::vector<GridInfo>> describe_answered(const std::string& path) {
+  LoadRequest request;
+  request.path = path;
+  CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
+  for (const GridInfo& grid : answer.reply.grids) {
+    if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
+    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
+  }
+  return std::move(answer.reply.grids);
+}
+
+Units units_answered(const std::string& path, const std::string& grid) {
+  const std::optional<ReadReply> file = unit_words_of(path);
+  if (!file) return {};
+  Units units;
+  units.patient = file->patient;
+  if (is_unit(file->unit_length)) units.length = file->unit_length;
+  for (const GridWords& words : file->words)
+    if (words.name == grid || (grid.empty() && file->words.size() == 1)) units.value = is_unit(words.unit) ? words.unit : "";
+  return units;
+}
+
+}  // namespace
+
+/// .npy: a single array, described by loading it.
+FileFormat npy_format() { return {.endings = {".npy"}, .load = load_answered, .describe = describe_loaded}; }
+
+FileFormat vtk_format() {
+  return {.endings = {".vti",  ".vtr", ".vts", ".vtu", ".vtm",  ".vtmb", ".vtk",   ".pvti", ".pvtr", ".pvts", ".pvtu", ".nrrd",
+                      ".nhdr", ".mha", ".mhd", ".dcm", ".foam", ".case", ".encas", ".cgns", ".nc",   ".cdf",  ".npz"},
+          .load = load_answered,
+          .describe = describe_answered,
+          .units = units_answered,
+          .folders = true};
+}
+
+}  // namespace catena::field

@@ -1,0 +1,50 @@
+/// Private to this room and to engine/mesh: another program is asked for what is in a file, catena-read for a .vdb, catena-read-vtk for
+/// what VTK and ITK read. It reads in a process of its own, shut in, with limits on its time and memory, and writes what it found into a
+/// file in memory that is sealed and mapped here, read-only, without a copy.
+/// What it says is bounded, nothing more: it may have been taken over by the file.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/field/nano_build.h"
+#include "engine/field/reader_exchange.h"
+
+namespace catena::field {
+
+struct ReaderAnswer {
+  ReadReply reply;    ///< without an error
+  NanoMemory memory;  ///< all that the reader wrote
+
+  /// The numbers in a buffer; empty where it is not one, or not a multiple of their size.
+  template <class T>
+  std::span<const T> numbers(const Piece& piece) const {
+    if (piece.offset % kPieceAlignment != 0 || piece.offset > memory.size() || piece.bytes > memory.size() - piece.offset ||
+        piece.bytes % sizeof(T) != 0)
+      return {};
+    return {reinterpret_cast<const T*>(memory.data() + piece.offset), piece.bytes / sizeof(T)};
+  }
+};
+
+/// Errors are whole sentences: those of the reader, or what became of it. Blocks until the reader has ended.
+Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& request);
+
+/// The sentence on an answer that cannot be: "FILE: the file is damaged (of what its reader made of it, WHAT), expected a sound .vdb file".
+Error damaged_answer(const std::string& path, std::string_view what);
+
+/// For tests: another program in its place, and other limits. Zero and empty: what users have.
+struct ReaderSettings {
+  std::string program;
+  std::uint64_t cpu_s = 0;
+  double wall_s = 0;
+};
+ReaderSettings& reader_settings();
+
+/// The processor time that reading a .vdb file of so many bytes may take.
+std::uint64_t reading_time_s(std::uint64_t file_bytes);
+
+/// The words on units of a file, from the last answer about it or from a new one; nothing where it cannot be read.
+std::optional<ReadReply> unit_words_of(const std::string& path);
+
+}  // namespace catena::field

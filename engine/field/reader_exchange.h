@@ -1,0 +1,102 @@
+/// What catena and the programs that read files for it, catena-read (.vdb) and catena-read-vtk (what VTK and ITK read), tell each other.
+/// Private to this room, to engine/reader, engine/vdb and engine/vtk, and to who asks for shapes (engine/mesh). Both sides see one file in
+/// memory:
+///   catena writes       the head (where the request is), the request
+///   the reader writes   buffers (each at a multiple of kPieceAlignment), the reply, and last the head (where the reply is)
+/// What is decoded is held to its bounds, but nothing in it is believed: see check_nano and load_vdb.cpp.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/field/load.h"
+
+namespace catena::field {
+
+inline constexpr std::uint64_t kExchangeMagic = 0x31615644'6e746143;  // "CatnDVa1"
+inline constexpr std::uint32_t kExchangeVersion = 1;
+inline constexpr std::uint64_t kPieceAlignment = 4096;
+
+struct ExchangeHead {
+  std::uint64_t magic = kExchangeMagic;
+  std::uint32_t version = kExchangeVersion;
+  std::uint32_t from_reader = 0;  ///< 0: a request follows; 1: a reply
+  std::uint64_t offset = 0, bytes = 0;
+};
+
+/// load: one grid. describe: what there is. units: words on units alone. shape: what is drawn as it lies, triangles, lines and points.
+enum class ReadMode : std::uint8_t { load, describe, units, shape };
+
+struct ReadRequest {
+  ReadMode mode = ReadMode::load;
+  LoadRequest what;  ///< without the layout of raw files
+  std::uint64_t memory_bytes = 0;
+  std::uint64_t cpu_s = 0;
+};
+
+struct Piece {
+  std::uint64_t offset = 0, bytes = 0;
+};
+
+/// What the reader could shut itself into.
+struct Confinement {
+  std::uint32_t landlock_version = 0;  ///< 0: this kernel has none
+  bool seccomp = false;
+};
+
+/// Numbers that lie in a buffer as they are, x fastest.
+struct DenseReply {
+  Size3 size;                   ///< voxels an axis; x = 0: there are none
+  std::int32_t components = 1;  ///< 1 or 3, one after the other
+  std::string type;             ///< as the file says: "float64", "int16"
+  Piece values;                 ///< 32-bit floats
+  Piece valid;                  ///< a byte a voxel, 0 or 1; empty: all are valid
+};
+
+/// What is drawn as it lies. Numbers of points are 32-bit.
+struct ShapeReply {
+  Piece points;            ///< three doubles a point
+  Piece triangles;         ///< three numbers a triangle
+  Piece lines;             ///< numbers of points, line after line
+  Piece ends;              ///< of each line, one past its last place in `lines`, 64-bit
+  Piece loose;             ///< points that are on no triangle and no line
+  std::string value_name;  ///< of what the points carry; empty: nothing
+  Piece values;            ///< a 32-bit float a point
+};
+
+/// Text metadata of a grid that may name units, and whether it says that it is a level set.
+struct GridWords {
+  std::string name, unit, unit_length;
+  bool level_set = false;
+};
+
+struct ReadReply {
+  std::string error;  ///< not empty: a sentence, and nothing else
+  // load
+  std::string name;
+  bool is_vector = false, masked = false;
+  Mapping mapping;
+  Piece values, voxels, cells;
+  // describe
+  std::vector<GridInfo> grids;
+  // of catena-read-vtk
+  DenseReply dense;
+  ShapeReply shape;
+  std::vector<std::string> notes;  ///< what of the file is not as it was: sentences without an end
+  std::vector<double> times;       ///< of the file's steps; empty: it has none
+  // always
+  std::string units, unit_length;  ///< of the file
+  bool patient = false;            ///< the world is a patient's (engine/field/units.h)
+  std::vector<GridWords> words;
+  Confinement confinement;
+};
+
+std::string encode(const ReadRequest& request);
+std::string encode(const ReadReply& reply);
+/// An error is a phrase.
+Result<ReadRequest> decode_request(std::span<const std::byte> bytes);
+Result<ReadReply> decode_reply(std::span<const std::byte> bytes);
+
+}  // namespace catena::field

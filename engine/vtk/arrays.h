@@ -1,0 +1,55 @@
+/// The arrays of a file by name, whichever blocks they are in, and what becomes of each as a field.
+///   image       one block, an image: voxel by voxel as it lies; values of cells sit in the cells' middles
+///   resampled   anything else with cells that have a volume (resample.h); values of cells are averaged at the points first
+#pragma once
+#include <vtkDataArray.h>
+
+#include <string>
+#include <vector>
+
+#include "engine/field/reader_exchange.h"
+#include "engine/vtk/open.h"
+#include "engine/vtk/resample.h"
+
+namespace catena::vtk {
+
+struct Column {
+  std::string name;  ///< of the grid: the array's own; "NAME (cells)" where points have an array of the same name
+  std::string array;
+  bool of_cells = false;
+  int components = 1;
+  std::vector<std::size_t> blocks;  ///< that have it
+  vtkDataArray* in(const Block& block) const;
+};
+
+/// All that a field can be made of, in the order of the blocks: 1, 2 (a plane's vectors) or 3 components of numbers. Masks, ghosts and
+/// identities are left out.
+std::vector<Column> columns_of(const Opened& opened);
+/// The words of arrays that cannot be fields: "tensor (9 components)".
+std::vector<std::string> others_of(const Opened& opened);
+
+/// The voxels of an image.
+struct ImageGrid {
+  field::Index3 size;  ///< at least 2 an axis: flat data are written twice
+  field::Mapping mapping;
+  bool flat[3] = {false, false, false};
+};
+/// nullopt: it is not an image.
+std::optional<ImageGrid> image_grid(const Opened& opened, const Column& column);
+
+/// Writes the voxels of an image; says whether all were 32-bit floats already, and which are valid (1). `mask`: the name of an array of the
+/// same kind that says so, too; empty: none.
+struct Written {
+  bool exact = true;  ///< no number was rounded
+  bool all_valid = true;
+};
+Written write_image(const Opened& opened, const Column& column, const ImageGrid& grid, const std::string& mask, float* values,
+                    std::uint8_t* valid);
+
+/// The blocks of a column as cells with values at their points. `keep` holds what was made for them.
+std::vector<CellValues> cells_of(const Opened& opened, const Column& column, std::vector<vtkSmartPointer<vtkDataSet>>& keep);
+
+/// Values of the array itself, of all blocks.
+field::GridStats stats_of(const Opened& opened, const Column& column);
+
+}  // namespace catena::vtk

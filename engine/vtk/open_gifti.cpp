@@ -1,0 +1,74 @@
+// GIFTI surfaces, by its own library: points and triangles, millimetres, a patient's axes (right, front, head). Shape and function files
+// without points belong to a surface in another file, and are refused.
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+extern "C" {
+#include <gifti_io.h>
+}
+
+#include <memory>
+
+#include "engine/base/text.h"
+#include "engine/vtk/open.h"
+
+namespace catena::vtk {
+namespace {
+
+struct FreeImage {
+  void operator()(gifti_image* image) const { gifti_free_image(image); }
+};
+
+constexpr int kPoints = NIFTI_INTENT_POINTSET, kTriangles = NIFTI_INTENT_TRIANGLE;
+
+bool is_table(const giiDataArray& array, int datatype, int columns) {
+  return array.datatype == datatype && array.num_dim == 2 && array.dims[0] > 0 && array.dims[1] == columns && array.data != nullptr;
+}
+
+}  // namespace
+
+Result<Opened> open_gifti(const Source& source) {
+  const auto failed = [&](const std::string& what) { return Error{source.shown + ": " + what}; };
+  gifti_set_verb(0);
+  const std::unique_ptr<gifti_image, FreeImage> image(gifti_read_image(source.path.c_str(), 1));
+  if (!image) return failed("cannot be read: it is not a GIFTI file, or it is damaged");
+  const giiDataArray *points = nullptr, *triangles = nullptr;
+  Opened opened;
+  vtkNew<vtkPolyData> poly;
+  for (int i = 0; i < image->numDA; ++i) {
+    const giiDataArray* array = image->darray[i];
+    if (array == nullptr) continue;
+    if (array->intent == kPoints && points == nullptr && is_table(*array, NIFTI_TYPE_FLOAT32, 3)) points = array;
+    if (array->intent == kTriangles && triangles == nullptr && is_table(*array, NIFTI_TYPE_INT32, 3)) triangles = array;
+  }
+  if (points == nullptr) return failed("holds no points: values of a surface that lies in another file are not shown by themselves");
+  if (triangles == nullptr) return failed("holds points without triangles");
+  vtkNew<vtkPoints> places;
+  const auto* xyz = static_cast<const float*>(points->data);
+  const int count = points->dims[0];
+  places->SetNumberOfPoints(count);
+  for (int i = 0; i < count; ++i) places->SetPoint(i, xyz + 3 * static_cast<std::ptrdiff_t>(i));
+  poly->SetPoints(places);
+  vtkNew<vtkCellArray> cells;
+  const bool by_column = triangles->ind_ord == GIFTI_IND_ORD_COL_MAJOR;
+  const auto* ids = static_cast<const int*>(triangles->data);
+  for (int i = 0; i < triangles->dims[0]; ++i) {
+    vtkIdType corner[3];
+    for (int c = 0; c < 3; ++c) {
+      corner[c] = by_column ? ids[static_cast<std::ptrdiff_t>(c) * triangles->dims[0] + i] : ids[3 * static_cast<std::ptrdiff_t>(i) + c];
+      if (corner[c] < 0 || corner[c] >= count) return failed(fmt::format("triangle {} names point {}, of {}", i, corner[c], count));
+    }
+    cells->InsertNextCell(3, corner);
+  }
+  poly->SetPolys(cells);
+  opened.blocks.push_back({poly.GetPointer(), {}});
+  opened.patient = true;
+  opened.unit_length = "mm";
+  return opened;
+}
+
+}  // namespace catena::vtk

@@ -1,0 +1,10 @@
+/// What catena-read-vtk does once it is shut in: one answer to one request.
+#pragma once
+#include "engine/reader/answer_file.h"
+
+namespace catena::vtk {
+
+/// `path`: where the file lies for this process. Nothing is thrown: what is wrong is the reply's error, a whole sentence.
+field::ReadReply answer(const field::ReadRequest& request, const std::string& path, reader::AnswerFile& out);
+
+}  // namespace catena::vtk

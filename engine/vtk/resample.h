@@ -1,0 +1,66 @@
+/// Values on cells of any shape and order become a regular grid with a mask.
+///   h       edges of the voxels along x, y, z: the median extents of the cells, made finer by one factor until the error is small enough
+///   or
+///           the grid as large as it may be
+///   value   at each voxel centre inside a cell: VTK's interpolation in that cell. Voxels within a voxel's diagonal of a cell, outside of
+///   all:
+///           the nearest cell's own polynomial, continued, held within twice its range; so that every place inside a cell lies in a valid
+///           cell of the grid
+///   error   |grid - VTK's interpolation| at random places inside random cells (each as likely, places evenly within it), fixed seed:
+///           99th percentile and maximum, in % of the range of the values (vectors: of the largest length). Foreseen at other places than
+///           it is measured at; where the measure says more, the grid is made again, finer
+/// One thread.
+#pragma once
+#include <vtkDataArray.h>
+#include <vtkDataSet.h>
+
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/base/vec.h"
+#include "engine/field/load.h"
+
+namespace catena::vtk {
+
+/// One block: cells, and values at their points.
+struct CellValues {
+  vtkDataSet* data;
+  vtkDataArray* values;
+};
+
+struct Lattice {
+  field::Index3 size{2, 2, 2};
+  Vec3 spacing{1.0}, origin{0.0};
+  std::size_t voxels() const {
+    return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
+  }
+};
+
+struct ResampleError {
+  double p99 = 0, most = 0;  ///< % of the range
+  double lost = 0;           ///< share of the places that lie in no valid cell of the grid
+};
+
+struct ResamplePlan {
+  Lattice lattice;
+  double p99 = 0;            ///< as foreseen
+  bool fine = true;          ///< it is at most what was wanted
+  double wanted_voxels = 0;  ///< where it is not: about so many would do
+};
+
+inline constexpr double kWantedError = 1;  ///< %
+
+/// An error is a phrase: no cells with a volume, or values that are not finite.
+Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double most_voxels);
+
+struct Resampled {
+  Lattice lattice;
+  std::vector<float> values;        ///< components a voxel
+  std::vector<std::uint8_t> valid;  ///< a byte a voxel
+  ResampleError error;
+  double wanted_voxels = 0;  ///< where the error is too large: about so many would do
+};
+/// As planned, and finer where what comes of it says so.
+Result<Resampled> resample(const std::vector<CellValues>& blocks, double most_voxels);
+
+}  // namespace catena::vtk

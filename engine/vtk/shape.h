@@ -1,0 +1,18 @@
+/// What of a file is drawn as it lies: triangles (polygons, strips and the outsides of volumes are cut into them), lines, and points that
+/// are on neither.
+#pragma once
+#include "engine/reader/answer_file.h"
+#include "engine/vtk/open.h"
+
+namespace catena::vtk {
+
+/// Which kinds a file has.
+struct ShapeKinds {
+  bool volumes = false, surfaces = false, lines = false, points = false;
+};
+ShapeKinds kinds_of(const Opened& opened);
+
+/// Fills the reply's shape. An error is a phrase.
+Outcome answer_shape(const Opened& opened, std::uint64_t memory_bytes, reader::AnswerFile& out, field::ReadReply& reply);
+
+}  // namespace catena::vtk

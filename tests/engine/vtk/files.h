@@ -1,0 +1,218 @@
+/// Small files of other programs' formats as text, for the tests of their readers.
+#pragma once
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "engine/base/vec.h"
+
+namespace catena::test::vtk_files {
+
+using Scalar = std::function<double(const Vec3&)>;
+
+inline std::string array(const std::string& name, const std::string& values, int components = 1, const char* type = "Float64") {
+  return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">{}</DataArray>\n", type, name,
+                     components, values);
+}
+
+/// 4 x 4 x 3 points, spacing 0.5 1 2, origin 10 20 30; values by index.
+inline std::string vti(const std::string& direction, const Scalar& f) {
+  std::string values;
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) values += fmt::format("{} ", f(Vec3(i, j, k)));
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">\n<ImageData WholeExtent=\"0 3 0 3 "
+      "0 2\" "
+      "Origin=\"10 20 30\" Spacing=\"0.5 1 2\" Direction=\"{}\"><Piece Extent=\"0 3 0 3 0 2\"><PointData "
+      "Scalars=\"v\">\n{}</PointData></Piece>"
+      "</ImageData></VTKFile>\n",
+      direction, array("v", values));
+}
+
+/// 3 x 3 x 2 cells of 1 x 2 x 3; values by number.
+inline std::string vti_cells() {
+  std::string values;
+  for (int n = 0; n < 18; ++n) values += fmt::format("{} ", n);
+  return "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 3 0 3 0 2\" Origin=\"0 0 0\" "
+         "Spacing=\"1 2 3\"><Piece Extent=\"0 3 0 3 0 2\"><CellData>" +
+         array("id", values, 1, "Int32") + "</CellData></Piece></ImageData></VTKFile>\n";
+}
+
+/// 4 x 2 x 2 points; those at x = 0 are hidden.
+inline std::string vti_hidden() {
+  std::string values, ghosts;
+  for (int n = 0; n < 16; ++n) values += fmt::format("{} ", n), ghosts += n % 4 == 0 ? "2 " : "0 ";
+  return "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 3 0 1 0 1\" Origin=\"0 0 0\" "
+         "Spacing=\"1 1 1\"><Piece Extent=\"0 3 0 1 0 1\"><PointData>" +
+         array("v", values) + array("vtkGhostType", ghosts, 1, "UInt8") + "</PointData></Piece></ImageData></VTKFile>\n";
+}
+
+/// wind = (x, -y, 2), heat = x on 2 x 2 x 2 points.
+inline std::string legacy_vectors() {
+  std::string text =
+      "# vtk DataFile Version 3.0\nwind\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA "
+      "8\nSCALARS "
+      "heat float 1\nLOOKUP_TABLE default\n0 1 0 1 0 1 0 1\nVECTORS wind float\n";
+  for (int n = 0; n < 8; ++n) text += fmt::format("{} {} 2\n", n & 1, -(n >> 1 & 1));
+  return text;
+}
+
+/// Half a ring, radius 0.5 to 1.5, z from 0 to 1.
+inline std::string vts_ring(int nr, int na, int nz, const Scalar& f) {
+  std::string points, values;
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < na; ++j)
+      for (int i = 0; i < nr; ++i) {
+        const double r = 0.5 + double(i) / (nr - 1), a = std::numbers::pi * j / (na - 1);
+        const Vec3 p(r * std::cos(a), r * std::sin(a), double(k) / (nz - 1));
+        points += fmt::format("{} {} {} ", p.x, p.y, p.z);
+        values += fmt::format("{} ", f(p));
+      }
+  const std::string extent = fmt::format("0 {} 0 {} 0 {}", nr - 1, na - 1, nz - 1);
+  return fmt::format(
+      "<VTKFile type=\"StructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><StructuredGrid WholeExtent=\"{0}\"><Piece "
+      "Extent=\"{0}\"><PointData>{1}</PointData><Points>{2}</Points></Piece></StructuredGrid></VTKFile>\n",
+      extent, array("v", values), array("Points", points, 3));
+}
+
+/// A unit cube as a hexahedron, and a tetrahedron on its face x = 1. "v" at points, "c" in cells.
+inline std::string vtu_mixed(const Scalar& f) {
+  const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {2, 0, 0}};
+  std::string points, values;
+  for (const Vec3& q : p) points += fmt::format("{} {} {} ", q.x, q.y, q.z), values += fmt::format("{} ", f(q));
+  return "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"9\" "
+         "NumberOfCells=\"2\"><PointData>" +
+         array("v", values) + "</PointData><CellData>" + array("c", "1 2") + "</CellData><Points>" + array("Points", points, 3) +
+         "</Points><Cells>" + array("connectivity", "0 1 2 3 4 5 6 7 1 8 2 5", 1, "Int64") + array("offsets", "8 12", 1, "Int64") +
+         array("types", "12 10", 1, "UInt8") + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+/// Of `shape` [z, y, x].
+inline std::string npy(const std::vector<int>& shape, const std::string& type, bool fortran,
+                       const std::function<double(int, int, int)>& f) {
+  std::string head =
+      fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': ({}), }}", type, fortran ? "True" : "False", fmt::join(shape, ", "));
+  while ((10 + head.size() + 1) % 64 != 0) head += ' ';
+  head += '\n';
+  std::string bytes = "\x93NUMPY";
+  bytes += std::string("\1\0", 2);
+  bytes += static_cast<char>(head.size() & 255);
+  bytes += static_cast<char>(head.size() >> 8);
+  bytes += head;
+  const auto put = [&]<class T>(T v) {
+    std::string raw(sizeof v, '\0');
+    std::memcpy(raw.data(), &v, sizeof v);
+    if (type[0] == '>') raw = std::string(raw.rbegin(), raw.rend());
+    bytes += raw;
+  };
+  const auto number = [&](double v) {
+    if (type.ends_with("f8"))
+      put(v);
+    else if (type.ends_with("f4"))
+      put(static_cast<float>(v));
+    else
+      put(static_cast<std::int16_t>(v));
+  };
+  if (fortran)
+    for (int i = 0; i < shape[2]; ++i)
+      for (int j = 0; j < shape[1]; ++j)
+        for (int k = 0; k < shape[0]; ++k) number(f(k, j, i));
+  else
+    for (int k = 0; k < shape[0]; ++k)
+      for (int j = 0; j < shape[1]; ++j)
+        for (int i = 0; i < shape[2]; ++i) number(f(k, j, i));
+  return bytes;
+}
+
+inline std::string bytes_0_to(int n) {
+  std::string bytes;
+  for (int i = 0; i < n; ++i) bytes += static_cast<char>(i);
+  return bytes;
+}
+
+/// 2 x 2 x 2 bytes 0 .. 7, steps 2 3 4, origin 10 20 30.
+inline std::string nrrd(const std::string& space) {
+  return "NRRD0004\ntype: uchar\ndimension: 3\nspace: " + space +
+         "\nsizes: 2 2 2\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nkinds: domain domain domain\nencoding: raw\nspace origin: "
+         "(10,20,30)\n\n" +
+         bytes_0_to(8);
+}
+inline std::string mha(const std::string& orientation) {
+  return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\nTransformMatrix = 1 0 "
+         "0 0 1 0 0 0 "
+         "1\nOffset = 10 20 30\nCenterOfRotation = 0 0 0\nAnatomicalOrientation = " +
+         orientation + "\nElementSpacing = 2 3 4\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + bytes_0_to(8);
+}
+inline std::string mhd(const std::string& data) {
+  return "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementType = MET_FLOAT\nElementDataFile = " + data + "\n";
+}
+
+/// One slice of 3 x 2 stored numbers as explicit little-endian DICOM: value = 2 stored - 1000. `at`: the first pixel's place; rows run
+/// along x, columns along y; a number of the slice so that series are told apart.
+inline std::string dicom(int number, const Vec3& at, const std::vector<int>& stored, const std::string& series = "1.2.3") {
+  std::string bytes(128, '\0');
+  bytes += "DICM";
+  const auto two = [](int v) { return std::string{static_cast<char>(v & 255), static_cast<char>(v >> 8 & 255)}; };
+  const auto element = [&](int group, int tag, const char* kind, std::string value) {
+    if (value.size() % 2 != 0) value += kind[0] == 'U' && kind[1] == 'I' ? '\0' : ' ';
+    std::string out = two(group) + two(tag) + kind;
+    const auto n = static_cast<int>(value.size());
+    if (std::string(kind) == "OB" || std::string(kind) == "OW")
+      out += two(0) + two(n) + two(n >> 16);
+    else
+      out += two(n);
+    return out + value;
+  };
+  std::string meta = element(2, 1, "OB", std::string("\0\1", 2)) + element(2, 2, "UI", "1.2.840.10008.5.1.4.1.1.2") +
+                     element(2, 3, "UI", series + "." + std::to_string(number)) + element(2, 0x10, "UI", "1.2.840.10008.1.2.1") +
+                     element(2, 0x12, "UI", "1.2.3.4");
+  std::string length = two(static_cast<int>(meta.size())) + two(0);
+  bytes += element(2, 0, "UL", length) + meta;
+  std::string pixels;
+  for (const int v : stored) pixels += two(v);
+  bytes += element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.2") + element(8, 0x18, "UI", series + "." + std::to_string(number)) +
+           element(8, 0x60, "CS", "CT") + element(8, 0x103e, "LO", "Chest " + series) + element(0x20, 0xd, "UI", "1.2") +
+           element(0x20, 0xe, "UI", series) + element(0x20, 0x13, "IS", std::to_string(number)) +
+           element(0x20, 0x32, "DS", fmt::format("{}\\{}\\{}", at.x, at.y, at.z)) + element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0") +
+           element(0x20, 0x52, "UI", "1.2.9") + element(0x28, 2, "US", two(1)) + element(0x28, 4, "CS", "MONOCHROME2") +
+           element(0x28, 0x10, "US", two(2)) + element(0x28, 0x11, "US", two(3)) + element(0x28, 0x30, "DS", "0.5\\0.25") +
+           element(0x28, 0x100, "US", two(16)) + element(0x28, 0x101, "US", two(16)) + element(0x28, 0x102, "US", two(15)) +
+           element(0x28, 0x103, "US", two(0)) + element(0x28, 0x1052, "DS", "-1000") + element(0x28, 0x1053, "DS", "2") +
+           element(0x7fe0, 0x10, "OW", pixels);
+  return bytes;
+}
+
+/// A tetrahedron with corners 0, x, y, z at 1, 2, 3.
+inline std::string ply() {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\nproperty list "
+         "uchar int "
+         "vertex_indices\nend_header\n0 0 0\n1 0 0\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+}
+inline std::string gifti() {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<GIFTI Version=\"1.0\" NumberOfDataArrays=\"2\">\n<DataArray "
+         "Intent=\"NIFTI_INTENT_POINTSET\" "
+         "DataType=\"NIFTI_TYPE_FLOAT32\" ArrayIndexingOrder=\"RowMajorOrder\" Dimensionality=\"2\" Dim0=\"4\" Dim1=\"3\" "
+         "Encoding=\"ASCII\" "
+         "Endian=\"LittleEndian\" ExternalFileName=\"\" ExternalFileOffset=\"\">\n<Data>0 0 0 1 0 0 0 2 0 0 0 "
+         "3</Data></DataArray>\n<DataArray "
+         "Intent=\"NIFTI_INTENT_TRIANGLE\" DataType=\"NIFTI_TYPE_INT32\" ArrayIndexingOrder=\"RowMajorOrder\" Dimensionality=\"2\" "
+         "Dim0=\"4\" "
+         "Dim1=\"3\" Encoding=\"ASCII\" Endian=\"LittleEndian\" ExternalFileName=\"\" ExternalFileOffset=\"\">\n<Data>0 2 1 0 1 3 1 2 3 0 "
+         "3 "
+         "2</Data></DataArray>\n</GIFTI>\n";
+}
+inline std::string vtp() {
+  return "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"4\" "
+         "NumberOfPolys=\"4\"><Points>" +
+         array("Points", "0 0 0 1 0 0 0 2 0 0 0 3", 3) + "</Points><Polys>" + array("connectivity", "0 2 1 0 1 3 1 2 3 0 3 2", 1, "Int64") +
+         array("offsets", "3 6 9 12", 1, "Int64") + "</Polys></Piece></PolyData></VTKFile>\n";
+}
+
+}  // namespace catena::test::vtk_files
