@@ -157,6 +157,11 @@ Bounds drawn_bounds(const FramePacket& packet) {
     bounds.add(arrow.base, arrow.radius);
     bounds.add(arrow.tip);
   }
+  for (const GlyphItem& item : packet.glyphs)
+    for (const Glyph& glyph : item.glyphs) {
+      bounds.add(glyph.tail);
+      bounds.add(glyph.tip);
+    }
   return bounds;
 }
 
@@ -176,6 +181,7 @@ Outcome prepare_frame(scene::Scene& scene) {
   CATENA_CHECK(prepare_meshes(scene));
   CATENA_CHECK(prepare_slices(scene));
   CATENA_CHECK(prepare_streamlines(scene));
+  CATENA_CHECK(prepare_glyphs(scene));
   prepare_visible(scene);
   return prepare_widgets(scene);
 }
@@ -199,6 +205,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   extract_meshes(scene, packet);
   CATENA_CHECK(extract_slices(scene, packet));
   extract_streamlines(scene, packet);
+  extract_glyphs(scene, packet);
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);

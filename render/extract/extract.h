@@ -1,4 +1,4 @@
-/// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, the visible cursor, widgets,
+/// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, glyphs, the visible cursor, widgets,
 /// background and camera become one frame packet; the ECS is not read after it. What has to be loaded or made first, prepare_frame
 /// makes, once, and keeps in scene.made; extract_frame only reads. The drawn tube and the felt link are the same curve. Frame thread.
 #pragma once

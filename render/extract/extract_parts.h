@@ -51,12 +51,28 @@ void extract_streamlines(const scene::Scene& scene, FramePacket& packet);
 /// After the cursors.
 Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 
+/// An arrowhead, by the radius of what it sits on.
+inline constexpr double kArrowRadius = 2.4, kArrowLength = 6;
+
+using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
+
 /// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
 /// "color_by".
-const std::vector<scene::TransferFunction::ColorPoint>* shown_colors(const scene::World& made, scene::Entity set);
+const ColorTable* shown_colors(const scene::World& made, scene::Entity set);
 
 /// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
-Color table_color(const std::vector<scene::TransferFunction::ColorPoint>& table, double value);
+Color table_color(const ColorTable& table, double value);
+
+/// Private to this room: arrows at evenly spaced places (engine/scene/even_places.h) into the packet. Frame thread.
+///   length   of the longest: stated, or the spacing; of the others in proportion to their speeds, or all alike
+///   none     where the field is not valid, where it is zero or not faster than "min_speed", and outside what is seen of a slice
+
+/// Makes them, and again when the plane, the level or the data that they stand on have changed. More than scene::kMaxGlyphs of a set are an
+/// error, and where they follow a widget a wider spacing.
+Outcome prepare_glyphs(scene::Scene& scene);
+void extract_glyphs(const scene::Scene& scene, FramePacket& packet);
+/// As shown_colors.
+const ColorTable* glyph_colors(const scene::World& made, scene::Entity set);
 
 /// Private to this room: the scene's annotations into the packet's overlay. After everything else: bars show the colours that volumes
 /// and streamlines have got. Frame thread.
