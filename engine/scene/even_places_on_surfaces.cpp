@@ -10,10 +10,10 @@
 namespace catena::scene {
 namespace {
 
-constexpr double kFineness = 3;       ///< places to choose from are closer than the spacing by so much
+constexpr double kFineness = 4;       ///< places to choose from are closer than the spacing by so much
 constexpr double kMostCells = 128;    ///< an axis, where a level is looked for
 constexpr double kCellsByArea = 1.5;  ///< cells that a surface of one cell's face in size meets, on average over its directions
-constexpr double kPacking = 0.7;      ///< places by spacing^2 of area that are left, about
+constexpr double kPacking = 0.65;      ///< places by spacing^2 of area that are left, about
 constexpr int kNewtonSteps = 8;
 constexpr double kRoot = 1e-9;  ///< of a cell: how well a place lies on the level
 
