@@ -110,7 +110,7 @@ Result<std::vector<Vec3>> places_of(const scene::Scene& scene, const scene::Glyp
   for (;;) {
     CATENA_TRY(scene::EvenPlaces even, places_at(scene, set, basis, spacing));
     if (even.wanted <= most) {
-      const Outcome asked = ask_for_memory(to_text(even.wanted) + " glyphs", kGlyphBytes * even.wanted);
+      const Outcome asked = ask_for_text_memory(to_text(even.wanted) + " glyphs", kGlyphBytes * even.wanted);
       if (!asked) return json::error_at(set.where, asked.error().message);
       return std::move(even.places);
     }

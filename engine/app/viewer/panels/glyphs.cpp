@@ -1,6 +1,7 @@
 // Arrows of vectors: of which field, where they stand, how far apart, how long, their colours.
 #include "engine/app/viewer/edit/chain_edit.h"
 #include "engine/app/viewer/panels/look_parts.h"
+#include "engine/field/grid.h"
 #include "engine/scene/hidden.h"
 
 namespace catena::app {
@@ -90,6 +91,12 @@ void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
   edit_vector(edits, "normal", pointer + "/plane/normal", set.normal, 0.005);
 }
 
+/// A speed of the field, for the step of a drag.
+double fastest(const scene::Scene& scene, const scene::GlyphSet& set) {
+  const auto& vector = scene.world.get<scene::FieldSource>(set.field).loaded.vector;
+  return vector && vector->grid() != nullptr ? vector->grid()->stats().max : 1;
+}
+
 void draw_glyphs(PanelContext& context) {
   Edits& edits = context.edits;
   const scene::Scene& scene = context.scene.scene();
@@ -106,7 +113,7 @@ void draw_glyphs(PanelContext& context) {
                 "of neighbours, world units; at the left end: fitted to the domain");
     edit_fitted(edits, "length", set.where, set.length, 0.5 * length, "of the longest, world units; at the left end: the spacing");
     edit_fitted(edits, "radius", set.where, set.radius, 0.05 * length, "of the longest one's shaft, world units; at the left end: fitted");
-    edit_number(edits, {"min_speed", pointer + "/min_speed", set.min_speed});
+    edit_number(edits, {"min_speed", pointer + "/min_speed", set.min_speed, 0, 1e30, 0.005 * fastest(scene, set)});
     short_tip("slower vectors have no arrow");
     edit_colors(edits, scene, set.where, set.color, set.color_by, {"speed"});
     edit_plain_keys(edits, "glyphs", set.where);
