@@ -302,7 +302,7 @@ struct BoundingBox {
   double radius = 0;
 };
 
-/// Three edges of the box with ticks and numbers.
+/// Three edges of the box with ticks and numbers, of its outline in the picture.
 struct Axes {
   Entity field;  ///< none: everything that is drawn
   json::Node where;

@@ -132,13 +132,6 @@ View view_of(const scene::Scene& scene, const FramePacket& packet) {
 
 }  // namespace
 
-void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
-  packet.view = view;
-  set_fog(scene, packet_bounds(packet), packet);
-  set_widgets(scene, data_bounds(packet), packet);
-  set_eyes(packet, scene.stereo);
-}
-
 Bounds data_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(volume.grid->world_bounds());
@@ -174,6 +167,15 @@ Bounds packet_bounds(const FramePacket& packet) {
     for (const Vec3& p : cursor.proxies) bounds.add(p, cursor.size);
   }
   return bounds;
+}
+
+void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
+  packet.view = view;
+  const Bounds drawn = drawn_bounds(packet);
+  set_box_lines(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
+  set_fog(scene, packet_bounds(packet), packet);
+  set_widgets(scene, data_bounds(packet), packet);
+  set_eyes(packet, scene.stereo);
 }
 
 Outcome prepare_frame(scene::Scene& scene) {

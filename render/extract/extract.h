@@ -19,7 +19,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
 /// The two, one after the other.
 Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height);
 
-/// Another view of the packet of this scene; what follows from the view, the eyes and the fog's range, is made anew.
+/// Another view of the packet of this scene; what follows from the view (the eyes, the edges of the axes, the fog's range) is made anew.
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
 
 /// The world box of the data that the packet draws, which nothing that the hand moves changes: domains of grids, meshes. Empty without.
