@@ -11,9 +11,10 @@ namespace catena::scene {
 namespace {
 
 constexpr double kFineness = 4;       ///< places to choose from are closer than the spacing by so much
+constexpr double kFinest = 4;         ///< places of very small triangles, by step^2 of area
 constexpr double kMostCells = 128;    ///< an axis, where a level is looked for
 constexpr double kCellsByArea = 1.5;  ///< cells that a surface of one cell's face in size meets, on average over its directions
-constexpr double kPacking = 0.65;      ///< places by spacing^2 of area that are left, about
+constexpr double kPacking = 0.65;     ///< places by spacing^2 of area that are left, about
 constexpr int kNewtonSteps = 8;
 constexpr double kRoot = 1e-9;  ///< of a cell: how well a place lies on the level
 
@@ -235,8 +236,12 @@ EvenPlaces even_places_on_mesh(const mesh::TriangleMesh& mesh, double spacing, s
   if (!(wanted <= 4 * static_cast<double>(most) + 1000)) return {{}, wanted};
   std::vector<Candidate> candidates;
   for (std::size_t f = 0; f < mesh.triangles().size(); ++f) {
+    const auto c = corners(f);
+    // of very small triangles as many as their area asks for, so that what is kept does not grow with the mesh
+    const double share = kFinest * 0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / (step * step);
+    if (share < 1 && static_cast<double>(mixed(f)) > share * 0x1p64) continue;
     std::uint64_t number = 0;
-    each_place(corners(f), step, [&](const Vec3& p) { candidates.push_back({mixed(mixed(f) + number++), p}); });
+    each_place(c, step, [&](const Vec3& p) { candidates.push_back({mixed(mixed(f + 1) + number++), p}); });
   }
   return chosen_of(std::move(candidates), spacing, most);
 }
