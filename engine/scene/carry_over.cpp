@@ -156,6 +156,7 @@ void carry_over(Scene& old, Scene& fresh) {
     if (curve.use_count() > 1) fresh.curves.emplace(key, curve);
   if (same_sources(old, fresh)) {
     carry_made<StreamlineSet>(old, fresh);
+    carry_made<GlyphSet>(old, fresh);
     carry_made<Slice>(old, fresh);
     carry_made<SurfaceMesh>(old, fresh);
     carry_made<Volume>(old, fresh);

@@ -183,6 +183,31 @@ struct StreamlineSet {
   bool clipped = true;   ///< the clip planes count
 };
 
+/// Arrows of a vector field, evenly placed; of a line field, rods.
+struct GlyphSet {
+  enum class On { box, plane, slice, isosurface, mesh };
+  enum class At { center, tail, head };
+  Entity field;
+  json::Node where;
+  bool line = false;  ///< "kind": "line"
+  On on = On::box;
+  Entity base{};                     ///< the slice, the isosurface or the mesh that they lie on, drawn or not
+  Vec3 point{0.0}, normal{0, 0, 1};  ///< of a plane of their own
+  Entity widget{};                   ///< the cutting plane that this plane follows
+  std::optional<field::Box> box{};   ///< empty: the field's domain
+  double spacing = 0;                ///< world units; 0: fitted to the domain (even_places.h)
+  bool constant = false;             ///< "scale": "constant": all as long as the longest
+  double length = 0;                 ///< of the longest, world units; 0: the spacing
+  double full_speed = 0;             ///< the speed that has this length; 0: the greatest that is drawn
+  double min_speed = 0;              ///< speeds up to this have none
+  double radius = 0;                 ///< of the longest one's shaft, world units; 0: a share of its length
+  At at = At::center;                ///< what of it lies at its place
+  Color color{1.0f, 0.75f, 0.2f};
+  std::optional<ColorBy> color_by;
+  bool clipped = true;  ///< the clip planes count
+};
+inline constexpr std::size_t kMaxGlyphs = 20000;  ///< of one set
+
 /// A short piece of the streamline through the cursor, with an arrowhead: what the flow does here.
 struct Indicator {
   Entity field;
@@ -277,7 +302,7 @@ struct BoundingBox {
   double radius = 0;
 };
 
-/// Three edges of the box with ticks and numbers.
+/// Three edges of the box with ticks and numbers, of its outline in the picture.
 struct Axes {
   Entity field;  ///< none: everything that is drawn
   json::Node where;

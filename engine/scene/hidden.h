@@ -1,5 +1,5 @@
-/// "visible": false of volumes, isosurfaces, slices, streamlines and meshes: the thing is of the scene, the eye leaves it out. Its numbers
-/// in lists, what follows it and what the hand feels stay as they are. Frame thread.
+/// "visible": false of volumes, isosurfaces, slices, streamlines, glyphs and meshes: the thing is of the scene, the eye leaves it out. Its
+/// numbers in lists, what follows it and what the hand feels stay as they are. Frame thread.
 #pragma once
 #include "engine/scene/scene.h"
 

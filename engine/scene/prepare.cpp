@@ -53,6 +53,25 @@ Outcome trace_lines(Scene& scene) {
   return Done{};
 }
 
+/// The vectors, what colours them, and what they lie on, drawn or not.
+Outcome load_glyphs(Scene& scene) {
+  for (const Entity e : visible<GlyphSet>(scene.world)) {
+    const GlyphSet& set = scene.world.get<GlyphSet>(e);
+    CATENA_CHECK(use_field(scene, set.field, set.where));
+    if (set.color_by && set.color_by->what == ColorBy::What::field) CATENA_CHECK(use_field(scene, set.color_by->field, set.where));
+    if (set.on == GlyphSet::On::mesh) CATENA_CHECK(use_mesh(scene, set.base));
+    if (set.on == GlyphSet::On::slice) {
+      const Slice& slice = scene.world.get<Slice>(set.base);
+      CATENA_CHECK(use_drawn_field(scene, slice.shown.field, slice.where));
+    }
+    if (set.on == GlyphSet::On::isosurface) {
+      const Isosurface& surface = scene.world.get<Isosurface>(set.base);
+      CATENA_CHECK(use_drawn_field(scene, surface.field, surface.where));
+    }
+  }
+  return Done{};
+}
+
 }  // namespace
 
 Outcome prepare(Scene& scene) {
@@ -65,6 +84,7 @@ Outcome prepare(Scene& scene) {
     CATENA_CHECK(use_drawn_field(scene, slice.shown.field, slice.where));
   }
   CATENA_CHECK(trace_lines(scene));
+  CATENA_CHECK(load_glyphs(scene));
   if (scene.bounding_box && scene.bounding_box->field)
     CATENA_CHECK(use_drawn_field(scene, scene.bounding_box->field, scene.bounding_box->where));
   if (scene.axes && scene.axes->field) CATENA_CHECK(use_drawn_field(scene, scene.axes->field, scene.axes->where));
@@ -107,6 +127,12 @@ void drive_planes(Scene& scene, Entity entity, const widget::Pose& pose, WidgetC
     if (slice.widget != entity) return;
     slice.point = pose.points[0];
     slice.normal = normal_of(pose);
+    changes.slices = true;
+  });
+  scene.world.each<GlyphSet>([&](Entity, GlyphSet& set) {
+    if (set.widget != entity) return;
+    set.point = pose.points[0];
+    set.normal = normal_of(pose);
     changes.slices = true;
   });
   for (ClipPlane& plane : scene.clip)

@@ -25,13 +25,14 @@ bool update_widgets(Scene& scene, const exchange::HapticState& state);
 
 /// What changed since the last drive_widgets.
 struct WidgetChanges {
-  bool slices = false, clip = false, seeds = false, levels = false;
+  bool slices = false;  ///< or the planes of glyphs
+  bool clip = false, seeds = false, levels = false;
   bool links = false;  ///< a link of the chain names a widget that moved: the program must be made and published again
   bool any() const { return slices || clip || seeds || levels || links; }
 };
 
-/// Slices, clip planes, seeds and isosurfaces that name a widget follow its pose; a level stays within the values of the field that it is
-/// drawn of. Completes the widgets (use_widget); those that have not moved cost nothing. prepare (prepare.h) calls it.
+/// Slices, planes of glyphs, clip planes, seeds and isosurfaces that name a widget follow its pose; a level stays within the values of the
+/// field that it is drawn of. Completes the widgets (use_widget); those that have not moved cost nothing. prepare (prepare.h) calls it.
 Result<WidgetChanges> drive_widgets(Scene& scene);
 
 }  // namespace catena::scene

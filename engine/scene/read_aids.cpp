@@ -117,7 +117,8 @@ Part bounding_box_part() {
 }
 
 Part axes_part() {
-  return {{"axes", "Three edges of a box with ticks and numbers.", Component::Shape::on_off, axes_table().keys()},
+  return {{"axes", "Three edges of a box with ticks and numbers, of its outline in the picture.", Component::Shape::on_off,
+           axes_table().keys()},
           [](Scene& scene, const json::Node& node) { return read_on_off(scene, node, axes_table(), scene.axes); }};
 }
 

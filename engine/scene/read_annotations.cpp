@@ -10,24 +10,8 @@ constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
 
 /// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
-  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by);
-}
-
-template <class T>
-std::vector<Entity> owners_of(const World& world) {
-  std::vector<Entity> owners;
-  world.each<T>([&](Entity e, const T&) { owners.push_back(e); });
-  return owners;
-}
-
-/// Member `key` as an index into the entities that own a T.
-template <class T>
-Result<Entity> read_index(const Scene& scene, const json::Node& object, std::string_view key, std::string_view what) {
-  const std::vector<Entity> owners = owners_of<T>(scene.world);
-  const json::Node& node = *object.find(key);
-  if (owners.empty()) return json::error_at(node, "the scene has no " + std::string(what) + "; one was expected for a scalar bar");
-  CATENA_TRY(const int index, json::get_integer(object, key, 0, 0, static_cast<int>(owners.size()) - 1));
-  return owners[static_cast<std::size_t>(index)];
+  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
+         (world.has<GlyphSet>(e) && world.get<GlyphSet>(e).color_by);
 }
 
 /// The first thing with colours that shows a field.
@@ -38,31 +22,42 @@ Entity shown_field(const World& world, Entity field) {
   };
   world.each<Volume>([&](Entity e, const Volume& volume) { take(e, volume.field == field); });
   world.each<Slice>([&](Entity e, const Slice& slice) { take(e, slice.shown.field == field); });
-  world.each<StreamlineSet>([&](Entity e, const StreamlineSet& set) {
+  const auto take_set = [&](Entity e, const auto& set) {
     const bool other = set.color_by && set.color_by->what == ColorBy::What::field;
     take(e, (other ? set.color_by->field : set.field) == field);
-  });
+  };
+  world.each<StreamlineSet>(take_set);
+  world.each<GlyphSet>(take_set);
   return found;
 }
 
 Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   int given = 0;
-  for (const char* key : {"volume", "slice", "streamlines", "field"}) given += item.find(key) != nullptr;
+  for (const char* key : {"volume", "slice", "streamlines", "glyphs", "field"}) given += item.find(key) != nullptr;
   if (given != 1)
-    return json::error_at(item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
-                                    "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"field\": NAME was expected");
-  if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes");
-  if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices");
+    return json::error_at(item,
+                          "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
+                              "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"glyphs\": INDEX, \"field\": NAME "
+                              "was expected");
+  const std::string whose = "a scalar bar";
+  if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes", whose);
+  if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices", whose);
   if (const json::Node* node = item.find("streamlines")) {
-    CATENA_TRY(const Entity set, read_index<StreamlineSet>(scene, item, "streamlines", "streamlines"));
+    CATENA_TRY(const Entity set, read_index<StreamlineSet>(scene, item, "streamlines", "streamlines", whose));
     if (!has_colors(scene.world, set))
       return json::error_at(*node, "these streamlines have one colour; a set with \"color_by\" was expected for a scalar bar");
+    return set;
+  }
+  if (const json::Node* node = item.find("glyphs")) {
+    CATENA_TRY(const Entity set, read_index<GlyphSet>(scene, item, "glyphs", "glyphs", whose));
+    if (!has_colors(scene.world, set))
+      return json::error_at(*node, "these glyphs have one colour; a set with \"color_by\" was expected for a scalar bar");
     return set;
   }
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.world, field);
   if (!shown)
-    return json::error_at(*item.find("field"), "no volume, slice or coloured streamlines show " +
+    return json::error_at(*item.find("field"), "no volume, slice, coloured streamlines or glyphs show " +
                                                    in_quotes(scene.world.get<Name>(field).value) + "; a field with colours was expected");
   return shown;
 }
@@ -87,8 +82,8 @@ const Table<ScalarBar>& scalar_bar_table() {
     const auto index = [](const char* key, const char* of) {
       return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000).ranged("an index");
     };
-    t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"),
-             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the four.")},
+    t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"), index("glyphs", "glyphs"),
+             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the five.")},
             [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
               CATENA_TRY(bar.shown, read_shown(scene, item));
               return Done{};

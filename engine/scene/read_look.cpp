@@ -38,6 +38,8 @@ namespace {
 
 constexpr std::string_view kQuantities[] = {"speed", "arc_length"};
 
+bool knows_quantities(ColorSubjects subjects) { return subjects == ColorSubjects::lines || subjects == ColorSubjects::glyphs; }
+
 Outcome take_scale(const Scene& scene, const json::Node& object, ColorBy& by) {
   by.where = object;
   CATENA_TRY(ColorScale scale, read_color_scale(scene.path, object));
@@ -54,11 +56,13 @@ bool is_table(const json::Node& color) {
 Outcome read_object(const Scene& scene, const json::Node& node, ColorSubjects subjects, ColorBy& by) {
   CATENA_CHECK(json::only_keys(node, schema::names_of(*color_by_key(subjects).inner)));
   const json::Node *field = node.find("field"), *quantity = node.find("quantity");
-  if (subjects == ColorSubjects::lines && (field != nullptr) == (quantity != nullptr))
+  if (knows_quantities(subjects) && (field != nullptr) == (quantity != nullptr))
     return json::error_at(node, std::string("\"color_by\" names ") + (field != nullptr ? "both" : "neither") +
                                     " \"field\" and \"quantity\"; exactly one of them was expected");
   if (quantity != nullptr) {
-    CATENA_TRY(const int index, json::get_choice(node, "quantity", 0, {kQuantities[0], kQuantities[1]}));
+    std::vector<std::string_view> known{kQuantities[0]};
+    if (subjects == ColorSubjects::lines) known.push_back(kQuantities[1]);
+    CATENA_TRY(const int index, json::get_choice(node, "quantity", 0, known));
     by.what = index == 0 ? ColorBy::What::speed : ColorBy::What::arc_length;
   } else {
     CATENA_TRY(by.field, read_field_name(scene, node));
@@ -101,6 +105,8 @@ Key color_by_key(ColorSubjects subjects) {
   if (subjects == ColorSubjects::lines)
     keys.push_back(schema::word("quantity", {std::string(kQuantities[0]), std::string(kQuantities[1])},
                                 "Or what the line itself knows: one of `field` and `quantity`."));
+  else if (subjects == ColorSubjects::glyphs)
+    keys.push_back(schema::word("quantity", {std::string(kQuantities[0])}, "Or their speed: one of `field` and `quantity`."));
   else
     keys[0] = keys[0].required();
   return schema::object("color_by", schema::joined(keys, color_scale_keys()), "Colours by values.");
@@ -110,7 +116,8 @@ Outcome read_color_by(Scene& scene, const json::Node& item, ColorSubjects subjec
   const json::Node* node = item.find("color_by");
   if (node == nullptr) return Done{};
   out.emplace();
-  if (node->kind == json::Kind::string && subjects != ColorSubjects::rays) return read_word(scene, item, subjects, *out);
+  if (node->kind == json::Kind::string && (subjects == ColorSubjects::surfaces || subjects == ColorSubjects::lines))
+    return read_word(scene, item, subjects, *out);
   CATENA_CHECK(json::expect_object(*node, "color_by"));
   return read_object(scene, *node, subjects, *out);
 }

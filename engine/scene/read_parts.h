@@ -33,6 +33,7 @@ Part isosurfaces_part();
 Part slices_part();
 Part meshes_part();
 Part streamlines_part();
+Part glyphs_part();
 Part indicator_part();
 Part clip_part();
 Part camera_part();
@@ -69,6 +70,9 @@ Outcome each_item(const json::Node& node, Read&& read) {
 bool is_name(std::string_view text);
 /// `kind` says in the message what is called so: "mesh".
 Outcome check_name(const std::string& kind, const std::string& name, const json::Node& node);
+
+/// A plane in one of three ways; `word` says what lies on it ("slice"). Of a widget, its pose as stated.
+Outcome read_plane(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget);
 
 /// Relative paths start at the scene file's folder.
 std::string resolved_path(const std::string& scene_path, const std::string& file);
@@ -112,6 +116,9 @@ void bind_field(schema::Table<T, C>& table, const Key& key, Access access) {
 Key clip_key();
 Key visible_key();
 Key opacity_key(const std::string& help);
+/// "point", "normal", "axis", "at", "widget" as read_plane takes them.
+Keys plane_keys();
+schema::Members plane_members(const Scene& scene, const Vec3& point, const Vec3& normal, Entity widget);
 /// "color", "range" and "transfer" where values become colours.
 Keys color_scale_keys(std::string_view map = kDefaultLineMap, const std::string& range = "that of the values");
 /// Those, and a volume's opacities.
@@ -125,8 +132,9 @@ schema::Component list_of(const std::string& name, const std::string& help, cons
 
 /// "color_by": colours that follow values, one shape wherever it stands. Inside this room only.
 
-/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), or lines (which know their speed and length, too).
-enum class ColorSubjects { rays, surfaces, lines };
+/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), lines (which know their speed and length, too), or
+/// glyphs (which know their speed, and are never a word).
+enum class ColorSubjects { rays, surfaces, lines, glyphs };
 
 Key color_by_key(ColorSubjects subjects);
 /// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.
@@ -136,6 +144,18 @@ schema::Members scale_members(const std::vector<TransferFunction::ColorPoint>& c
 
 /// A volume's colours and opacities.
 schema::Members transfer_members(const TransferFunction& transfer);
+
+/// Member `key` as an index into the entities that own a T; `what` they are called, and `whose` the index is, for messages.
+template <class T>
+Result<Entity> read_index(const Scene& scene, const json::Node& object, std::string_view key, const std::string& what,
+                          const std::string& whose) {
+  std::vector<Entity> owners;
+  scene.world.each<T>([&](Entity e, const T&) { owners.push_back(e); });
+  const json::Node& node = *object.find(key);
+  if (owners.empty()) return json::error_at(node, "the scene has no " + what + "; one was expected for " + whose);
+  CATENA_TRY(const int index, json::get_integer(object, key, 0, 0, static_cast<int>(owners.size()) - 1));
+  return owners[static_cast<std::size_t>(index)];
+}
 
 /// "seeds" of streamlines; read_seeds itself is in lines.h, as `trace` reads the same. Inside this room only.
 Key seeds_key();

@@ -1,49 +1,13 @@
-/// "slices": a plane, as a point with a normal, an axis with a place on it, or a widget; colours; contours.
+/// "slices": a plane, colours, contours.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
 #include "engine/scene/read_parts.h"
-#include "engine/scene/widgets.h"
 
 namespace catena::scene {
 namespace {
 
 constexpr double kWidest = 100;  // pixels
-
-/// The plane of a widget.
-Outcome read_followed(const Scene& scene, const json::Node& item, Slice& slice) {
-  for (const char* key : {"point", "normal", "axis", "at"})
-    if (const json::Node* node = item.find(key))
-      return json::error_at(*node, in_quotes(key) + " is given beside \"widget\", whose plane the slice follows; one of them was expected");
-  CATENA_TRY(slice.widget, read_widget_name(scene, item, {widget::Kind::cutting_plane}, "a cutting plane"));
-  const widget::Pose& pose = scene.world.get<Widget>(slice.widget).spec.pose;
-  slice.point = pose.points[0];
-  slice.normal = normal_of(pose);
-  return Done{};
-}
-
-Outcome read_plane(Scene& scene, const json::Node& item, Slice& slice) {
-  if (item.find("widget") != nullptr) return read_followed(scene, item, slice);
-  const json::Node *axis = item.find("axis"), *at = item.find("at"), *point = item.find("point"), *normal = item.find("normal");
-  if ((axis || at) && (point || normal))
-    return json::error_at(
-        point ? *point : *normal,
-        "a slice has both an axis and a point or normal; \"axis\" with \"at\", or \"point\" with \"normal\", was expected");
-  if (!axis && !at && !point && !normal)
-    return json::error_at(item, "a slice has no plane; \"widget\", \"axis\" with \"at\", or \"point\" with \"normal\", was expected");
-  if (axis || at) {
-    if (!axis) return json::error_at(*at, "\"at\" is given without \"axis\"; \"x\", \"y\" or \"z\" was expected beside it");
-    CATENA_TRY(const int which, json::get_choice(item, "axis", 0, {"x", "y", "z"}));
-    CATENA_TRY(slice.point[which], json::require_number(item, "at"));
-    slice.normal = Vec3(0.0);
-    slice.normal[which] = 1;
-    return Done{};
-  }
-  CATENA_TRY(slice.point, json::require_vec3(item, "point"));
-  CATENA_TRY(slice.normal, json::require_vec3(item, "normal"));
-  if (max_abs(slice.normal) == 0) return json::error_at(*normal, "\"normal\" is zero; a vector other than [0, 0, 0] was expected");
-  return Done{};
-}
 
 const Table<Slice::Contours>& contours_table() {
   using Contours = Slice::Contours;
@@ -94,18 +58,6 @@ Outcome read_colors(Scene& scene, const json::Node& item, Slice& slice) {
   return Done{};
 }
 
-schema::Members plane_members(const Scene& scene, const Slice& slice) {
-  if (slice.widget) return {{"widget", schema::write_value(scene.world.get<Name>(slice.widget).value)}};
-  for (int i = 0; i < 3; ++i) {
-    Vec3 axis(0.0), at(0.0);
-    axis[i] = 1;
-    at[i] = slice.point[i];
-    if (slice.normal == axis && slice.point == at)
-      return {{"axis", schema::write_value(std::string(1, "xyz"[i]))}, {"at", schema::write_value(slice.point[i])}};
-  }
-  return {{"point", schema::write_value(slice.point)}, {"normal", schema::write_value(slice.normal)}};
-}
-
 const Table<Slice>& slice_table() {
   static const auto table = [] {
     Table<Slice> t;
@@ -113,11 +65,11 @@ const Table<Slice>& slice_table() {
         t, schema::named("field", Role::any_field, "A scalar field, or a vector field, whose magnitude is shown.").required(),
         [](auto& slice) -> auto& { return slice.shown.field; });
     t.group(
-        {schema::vec3("point", "world", "A point of the plane: with `normal`."), schema::direction("normal", "Its normal, of any length."),
-         schema::word("axis", {"x", "y", "z"}, "Or the axis that is its normal: with `at`."),
-         schema::number("at", "world", "Where it crosses the axis."),
-         schema::named("widget", Role::widget, "Or a cutting plane to follow: one of the three.")},
-        read_plane, plane_members);
+        plane_keys(),
+        [](Scene& scene, const json::Node& item, Slice& slice) {
+          return read_plane(scene, item, "slice", slice.point, slice.normal, slice.widget);
+        },
+        [](const Scene& scene, const Slice& slice) { return plane_members(scene, slice.point, slice.normal, slice.widget); });
     t.group(color_scale_keys(), read_colors,
             [](const Scene&, const Slice& slice) { return scale_members(slice.shown.colors, slice.shown.named); });
     t.bind(opacity_key("Of the slice."), &Slice::opacity);

@@ -49,6 +49,7 @@ Result<double> length_of(Scene& scene, const Widget& widget) {
   scene.world.each<Isosurface>([&](Entity, const Isosurface& surface) { drawn.add_field(surface.field, surface.where); });
   scene.world.each<Slice>([&](Entity, const Slice& slice) { drawn.add_field(slice.shown.field, slice.where); });
   scene.world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { drawn.add_field(set.field, set.where); });
+  scene.world.each<GlyphSet>([&](Entity, const GlyphSet& set) { drawn.add_field(set.field, set.where); });
   scene.world.each<SurfaceMesh>([&](Entity, const SurfaceMesh& surface) { drawn.add_mesh(surface.mesh); });
   CATENA_TRY(const double longest, drawn.length());
   if (longest > 0) return longest;

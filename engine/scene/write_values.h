@@ -38,6 +38,7 @@ std::string text_of(const Scene& scene, const Volume& volume);
 std::string text_of(const Scene& scene, const Isosurface& surface);
 std::string text_of(const Scene& scene, const Slice& slice);
 std::string text_of(const Scene& scene, const StreamlineSet& set);
+std::string text_of(const Scene& scene, const GlyphSet& set);
 std::string text_of(const Scene& scene, const std::string& name, const Widget& widget);
 /// "color_by".
 std::string text_of(const Scene& scene, const ColorBy& by);

@@ -132,13 +132,6 @@ View view_of(const scene::Scene& scene, const FramePacket& packet) {
 
 }  // namespace
 
-void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
-  packet.view = view;
-  set_fog(scene, packet_bounds(packet), packet);
-  set_widgets(scene, data_bounds(packet), packet);
-  set_eyes(packet, scene.stereo);
-}
-
 Bounds data_bounds(const FramePacket& packet) {
   Bounds bounds;
   for (const VolumeItem& volume : packet.volumes) bounds.add(volume.grid->world_bounds());
@@ -157,6 +150,11 @@ Bounds drawn_bounds(const FramePacket& packet) {
     bounds.add(arrow.base, arrow.radius);
     bounds.add(arrow.tip);
   }
+  for (const GlyphItem& item : packet.glyphs)
+    for (const Glyph& glyph : item.glyphs) {
+      bounds.add(glyph.tail);
+      bounds.add(glyph.tip);
+    }
   return bounds;
 }
 
@@ -171,11 +169,21 @@ Bounds packet_bounds(const FramePacket& packet) {
   return bounds;
 }
 
+void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
+  packet.view = view;
+  const Bounds drawn = drawn_bounds(packet);
+  set_box_lines(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
+  set_fog(scene, packet_bounds(packet), packet);
+  set_widgets(scene, data_bounds(packet), packet);
+  set_eyes(packet, scene.stereo);
+}
+
 Outcome prepare_frame(scene::Scene& scene) {
   CATENA_CHECK(scene::prepare(scene));
   CATENA_CHECK(prepare_meshes(scene));
   CATENA_CHECK(prepare_slices(scene));
   CATENA_CHECK(prepare_streamlines(scene));
+  CATENA_CHECK(prepare_glyphs(scene));
   prepare_visible(scene);
   return prepare_widgets(scene);
 }
@@ -199,6 +207,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   extract_meshes(scene, packet);
   CATENA_CHECK(extract_slices(scene, packet));
   extract_streamlines(scene, packet);
+  extract_glyphs(scene, packet);
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);

@@ -1,4 +1,4 @@
-/// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, the visible cursor, widgets,
+/// The only door from the scene to the eye: volumes, isosurfaces, meshes, slices, streamline sets, glyphs, the visible cursor, widgets,
 /// background and camera become one frame packet; the ECS is not read after it. What has to be loaded or made first, prepare_frame
 /// makes, once, and keeps in scene.made; extract_frame only reads. The drawn tube and the felt link are the same curve. Frame thread.
 #pragma once
@@ -19,7 +19,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
 /// The two, one after the other.
 Result<FramePacket> make_frame(scene::Scene& scene, std::uint32_t width, std::uint32_t height);
 
-/// Another view of the packet of this scene; what follows from the view, the eyes and the fog's range, is made anew.
+/// Another view of the packet of this scene; what follows from the view (the eyes, the edges of the axes, the fog's range) is made anew.
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet);
 
 /// The world box of the data that the packet draws, which nothing that the hand moves changes: domains of grids, meshes. Empty without.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/numbers.h"
+#include "render/extract/axis_edges.h"
 
 namespace catena::render {
 namespace {
@@ -65,41 +66,51 @@ Bounds box_of_axes(const scene::Scene& scene, const Bounds& drawn) {
   return box;
 }
 
+/// The id of what there is one of; made at the first call.
+std::uint32_t only_object(FramePacket& packet, const std::string& kind) {
+  for (const ObjectName& object : packet.objects)
+    if (object.kind == kind) return object.id;
+  return packet.add_object(kind, "");
+}
+
 void add_bounding_box(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::BoundingBox& box = *scene.bounding_box;
   const Corners corners = corners_of(scene, box.field, drawn);
   const double radius = box.radius > 0 ? box.radius : kLineShare * diagonal_of(corners);
-  const std::uint32_t id = packet.add_object("bounding box", "");
+  const std::uint32_t id = only_object(packet, "bounding box");
   // edges that the axes draw are left to them: two tubes in one place would fight for every pixel
-  std::optional<Bounds> axes;
-  if (scene.axes) axes = box_of_axes(scene, drawn);
-  const auto is_axis = [&](const Vec3& p) { return axes && p == axes->lo && corners[7] == axes->hi; };
+  std::vector<AxisEdge> axes;
+  if (scene.axes)
+    for (const AxisEdge& edge : axis_edges(box_of_axes(scene, drawn), packet.view)) axes.push_back(edge);
+  const auto is_axis = [&](const Vec3& a, const Vec3& b) {
+    return std::ranges::any_of(axes, [&](const AxisEdge& e) { return (e.from == a && e.to == b) || (e.from == b && e.to == a); });
+  };
   for (std::size_t i = 0; i < 8; ++i)
     for (std::size_t axis = 1; axis < 8; axis *= 2)
-      if ((i & axis) == 0 && !is_axis(corners[i]) && !is_axis(corners[i | axis]))
+      if ((i & axis) == 0 && !is_axis(corners[i], corners[i | axis]))
         packet.aids.tubes.push_back(line(corners[i], corners[i | axis], radius, box.color, id));
 }
 
-/// The edges that meet at the corner of least x, y, z; ticks point away from the box.
+/// Ticks point away from the box.
 void add_axes(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
   const scene::Axes& axes = *scene.axes;
   const Bounds box = box_of_axes(scene, drawn);
   const double radius = axes.radius > 0 ? axes.radius : kLineShare * box.diagonal(), tick = kTickShare * box.diagonal();
   const Color color = axes.color;
-  const std::uint32_t id = packet.add_object("axes", "");
+  const std::uint32_t id = only_object(packet, "axes");
+  const auto edges = axis_edges(box, packet.view);
   for (int axis = 0; axis < 3; ++axis) {
-    Vec3 end = box.lo, out(0.0);
-    end[axis] = box.hi[axis];
-    out[axis == 1 ? 0 : 1] = -tick;
-    packet.aids.tubes.push_back(line(box.lo, end, radius, color, id));
+    const AxisEdge& edge = edges[std::size_t(axis)];
+    const Vec3 out = tick * edge.out;
+    packet.aids.tubes.push_back(line(edge.from, edge.to, radius, color, id));
     for (const Tick& t : nice_ticks(box.lo[axis], box.hi[axis], axes.ticks)) {
-      Vec3 at = box.lo;
+      Vec3 at = edge.from;
       at[axis] = t.value;
       packet.aids.tubes.push_back(line(at, at + out, radius, color, id));
-      packet.overlay.labels.push_back(label(at + kLabelReach * out, t.label, kNumberPt, color));
+      packet.overlay.axis_labels.push_back(label(at + kLabelReach * out, t.label, kNumberPt, color));
     }
-    Vec3 middle = 0.5 * box.lo + 0.5 * end + kNameReach * out;
-    packet.overlay.labels.push_back(label(middle, axes.names[std::size_t(axis)], kNamePt, color));
+    const Vec3 middle = 0.5 * edge.from + 0.5 * edge.to + kNameReach * out;
+    packet.overlay.axis_labels.push_back(label(middle, axes.names[std::size_t(axis)], kNamePt, color));
   }
 }
 
@@ -156,9 +167,15 @@ double ground_height(const scene::Ground& ground, const Bounds& drawn) {
   return ground.at.value_or(drawn.lo.z - kGroundGap * drawn.diagonal());
 }
 
-void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+void set_box_lines(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  packet.aids.tubes.clear();
+  packet.overlay.axis_labels.clear();
   if (scene.bounding_box) add_bounding_box(scene, drawn, packet);
   if (scene.axes) add_axes(scene, drawn, packet);
+}
+
+void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet) {
+  set_box_lines(scene, drawn, packet);
   if (scene.ground) add_ground(*scene.ground, drawn, packet);
   set_fog(scene, drawn, packet);
   for (const scene::Light& light : scene.lights) {

@@ -16,16 +16,13 @@ namespace catena::render {
 
 namespace {
 
-constexpr double kTubeShare = 0.003;                    // fitted tube radius by the domain's diagonal
-constexpr double kIndicatorShare = 0.004;               // the same of the indicator
-constexpr double kIndicatorLength = 0.1;                // of L
-constexpr double kArrowRadius = 2.4, kArrowLength = 6;  // by the tube's radius
+constexpr double kTubeShare = 0.003;       // fitted tube radius by the domain's diagonal
+constexpr double kIndicatorShare = 0.004;  // the same of the indicator
+constexpr double kIndicatorLength = 0.1;   // of L
 constexpr double kMaxArrows = 100000;
 constexpr std::size_t kMaxKeptKnots = 2000000;  // of a set: above it the curves go once they are polylines
 constexpr double kPulseShare = 1.0 / 12;        // of a pulse: the longest segment
 constexpr double kDimmest = 0.25;               // brightness between pulses
-
-using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 
 /// What this room keeps beside a StreamlineSet: each curve as a polyline with values, made once.
 struct FlatLines {

@@ -107,16 +107,18 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
     const SliceItem* slice = slice_item(world, e, packet);
     return slice ? Shown{slice->colors, named(world.get<scene::Slice>(e).shown.field)} : Shown{};
   }
-  CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
-  const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
-  const auto* points = shown_colors(scene.made, e);
+  const bool glyphs = world.has<scene::GlyphSet>(e);
+  const ColorTable* points = glyphs ? glyph_colors(scene.made, e) : shown_colors(scene.made, e);
   if (points == nullptr) return {};
   const auto colors = rows_of(*points);
-  switch (set.color_by->what) {
+  const scene::Entity of = glyphs ? world.get<scene::GlyphSet>(e).field : world.get<scene::StreamlineSet>(e).field;
+  const auto& color_by = glyphs ? world.get<scene::GlyphSet>(e).color_by : world.get<scene::StreamlineSet>(e).color_by;
+  CATENA_ASSERT(color_by);
+  switch (color_by->what) {
     case scene::ColorBy::What::field:
-      return {colors, named(set.color_by->field)};
+      return {colors, named(color_by->field)};
     case scene::ColorBy::What::speed:
-      return {colors, with_unit("|" + name_of(scene, set.field) + "|", scene::unit_of(scene, set.field))};
+      return {colors, with_unit("|" + name_of(scene, of) + "|", scene::unit_of(scene, of))};
     case scene::ColorBy::What::arc_length:
       return {colors, with_unit("arc length", scene::unit_length(scene))};
   }

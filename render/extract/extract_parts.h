@@ -27,7 +27,7 @@ std::vector<scene::Entity> owners_of(const scene::World& world) {
 
 /// Private to this room: bounding box, axes, ground, fog and lights into the packet. Frame thread.
 ///   bounding box   the twelve edges of a field's domain, true to rotated and sheared grids; else of the box of all that is drawn
-///   axes           three edges of that box with ticks at round numbers (along the world's axes)
+///   axes           three edges of that box with ticks at round numbers (along the world's axes), on its outline in the picture
 ///   ground         a checkerboard across z, just below all that is drawn
 ///   fog            from the nearest to the farthest view depth of all that is drawn
 
@@ -36,6 +36,8 @@ double ground_height(const scene::Ground& ground, const Bounds& drawn);
 
 /// After everything else that is drawn, and after the view: `drawn` is its box.
 void extract_aids(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
+/// The bounding box and the axes alone: which edges the axes lie on follows the packet's view.
+void set_box_lines(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 /// The fog alone: its range follows the packet's view.
 void set_fog(const scene::Scene& scene, const Bounds& drawn, FramePacket& packet);
 
@@ -51,12 +53,28 @@ void extract_streamlines(const scene::Scene& scene, FramePacket& packet);
 /// After the cursors.
 Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 
+/// An arrowhead, by the radius of what it sits on.
+inline constexpr double kArrowRadius = 2.4, kArrowLength = 6;
+
+using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
+
 /// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
 /// "color_by".
-const std::vector<scene::TransferFunction::ColorPoint>* shown_colors(const scene::World& made, scene::Entity set);
+const ColorTable* shown_colors(const scene::World& made, scene::Entity set);
 
 /// The colour of a value by a table with rising values; its ends beyond them; grey for no number.
-Color table_color(const std::vector<scene::TransferFunction::ColorPoint>& table, double value);
+Color table_color(const ColorTable& table, double value);
+
+/// Private to this room: arrows at evenly spaced places (engine/scene/even_places.h) into the packet. Frame thread.
+///   length   of the longest: stated, or the spacing; of the others in proportion to their speeds, or all alike
+///   none     where the field is not valid, where it is zero or not faster than "min_speed", and outside what is seen of a slice
+
+/// Makes them, and again when the plane, the level or the data that they stand on have changed. More than scene::kMaxGlyphs of a set are an
+/// error, and where they follow a widget a wider spacing.
+Outcome prepare_glyphs(scene::Scene& scene);
+void extract_glyphs(const scene::Scene& scene, FramePacket& packet);
+/// As shown_colors.
+const ColorTable* glyph_colors(const scene::World& made, scene::Entity set);
 
 /// Private to this room: the scene's annotations into the packet's overlay. After everything else: bars show the colours that volumes
 /// and streamlines have got. Frame thread.

@@ -249,6 +249,11 @@ View first_view(const scene::Scene& scene, const FramePacket& packet) {
   for (const TubeItem& tube : packet.tubes)
     clouds.push_back({tube.clipped ? kept({tube.points.begin(), tube.points.end()}, packet)
                                    : std::vector<Vec3>(tube.points.begin(), tube.points.end())});
+  for (const GlyphItem& item : packet.glyphs) {
+    std::vector<Vec3> places;
+    for (const Glyph& glyph : item.glyphs) places.insert(places.end(), {glyph.tail, glyph.tip});
+    clouds.push_back({item.clipped ? kept(std::move(places), packet) : std::move(places)});
+  }
   Bounds rest;
   for (const ArrowItem& arrow : packet.arrows) rest.add(arrow.tip);
   for (const IndicatorItem& indicator : packet.indicators)

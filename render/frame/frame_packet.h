@@ -170,6 +170,24 @@ struct ArrowItem {
   bool operator==(const ArrowItem&) const = default;
 };
 
+/// An arrow of a vector.
+struct Glyph {
+  Vec3 tail{0.0}, tip{0.0};
+  Color color;
+  bool operator==(const Glyph&) const = default;
+};
+
+/// Arrows of one shape: a cylinder and a cone, whose sizes follow each one's length.
+struct GlyphItem {
+  SharedList<Glyph> glyphs;
+  double shaft = 0.06;       ///< its radius
+  double head = 0.36;         ///< the cone's length; 0: none, the cylinder goes to the tip
+  double head_radius = 0.144;  ///< of the cone's base
+  std::uint32_t id = 0;
+  bool clipped = true;
+  bool operator==(const GlyphItem&) const = default;
+};
+
 /// The local indicator: a short piece of the streamline through the cursor, with an arrowhead downstream.
 struct IndicatorItem {
   TubeItem tube;
@@ -223,6 +241,7 @@ struct FramePacket {
   std::vector<SliceItem> slices;
   std::vector<TubeItem> tubes;
   std::vector<ArrowItem> arrows;
+  std::vector<GlyphItem> glyphs;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
   Overlay overlay;

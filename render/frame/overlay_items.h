@@ -90,6 +90,7 @@ struct OverlayFrame {
 struct Overlay {
   std::vector<TextItem> texts;
   std::vector<LabelItem> labels;
+  std::vector<LabelItem> axis_labels;  ///< of the axes, which follow the view
   std::vector<ScalarBarItem> scalar_bars;
   std::optional<OrientationMarkerItem> orientation_marker;
   std::optional<StatusItem> status;
@@ -98,7 +99,9 @@ struct Overlay {
   std::optional<Color> color{};      ///< of all text that has none of its own
   OverlayFrame frame{};
 
-  bool empty() const { return texts.empty() && labels.empty() && scalar_bars.empty() && !orientation_marker && !status; }
+  bool empty() const {
+    return texts.empty() && labels.empty() && axis_labels.empty() && scalar_bars.empty() && !orientation_marker && !status;
+  }
 };
 
 /// What is drawn over a window's picture, at the window's own pixels: triangles with a texture, as an immediate-mode user interface makes

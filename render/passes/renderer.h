@@ -1,5 +1,5 @@
 /// The renderer: a frame packet in, a finished colour image out. It holds the list of passes (pass.h), in order:
-///   aids, widgets, meshes, streamlines, cursor, isosurfaces, slices -> layers -> raycast -> compose
+///   aids, widgets, meshes, streamlines, glyphs, cursor, isosurfaces, slices -> layers -> raycast -> compose
 /// A pass is created when a packet first wants it and goes when one no longer does; mirrors are kept by (grid version, texel
 /// format) and dropped when a packet no longer names the grid. A packet with eyes is drawn once an eye and packed (pack.h); depth and
 /// ids are the first eye's. Frame thread only.

@@ -79,6 +79,24 @@ struct Widgets {
   }
 };
 
+struct GlyphArrows {
+  using Items = std::vector<GlyphItem>;
+  static constexpr int kShaftSides = 8, kHeadSides = 12;
+  static const Items& of(const FramePacket& packet) { return packet.glyphs; }
+  static void add(Shape& shape, const Items& items) {
+    for (const GlyphItem& item : items) {
+      const std::size_t first = shape.vertices.size();
+      for (const Glyph& glyph : item.glyphs) {
+        const Vec3 whole = glyph.tip - glyph.tail, neck = glyph.tip - item.head * whole;
+        const double length = norm(whole);
+        add_cylinder(shape, glyph.tail, neck, item.shaft * length, glyph.color, kShaftSides);
+        if (item.head > 0) add_cone(shape, neck, glyph.tip, item.head_radius * length, glyph.color, kHeadSides);
+      }
+      mark(shape, first, item.id, item.clipped);
+    }
+  }
+};
+
 /// The others are drawn in layers.
 struct OpaqueMeshes {
   using Items = std::vector<MeshItem>;
@@ -206,6 +224,8 @@ const PassEntry kMeshPass{"meshes", [](const Frame& frame) { return std::ranges:
 
 const PassEntry kStreamlinePass{
     "streamlines", [](const Frame& frame) { return !frame.packet.tubes.empty() || !frame.packet.arrows.empty(); }, StreamlinePass::create};
+
+const PassEntry kGlyphPass{"glyphs", [](const Frame& frame) { return !frame.packet.glyphs.empty(); }, ShapePass<GlyphArrows>::create};
 
 const PassEntry kCursorPass{"cursor", [](const Frame& frame) { return !frame.packet.cursors.empty() || !frame.packet.indicators.empty(); },
                             CursorPass::create};

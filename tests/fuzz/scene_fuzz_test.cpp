@@ -29,6 +29,10 @@ const std::string kScene = R"({ // a scene that touches every reader
     {"field": "swirl", "seeds": {"sphere": {"center": [0, 0, 0], "radius": 0.5, "count": 4, "inside": true}}, "pulse": 0.3, "tolerance": 1e-6},
     {"field": "swirl", "seeds": {"isosurface": {"field": "density", "level": 0.4, "count": 5}}, "min_speed": 0.01},
     {"field": "swirl", "seeds": {"evenly_spaced": {"distance": 0.5, "test": 0.6, "start": [[1, 0, 0]], "count": 9}}, "length": 3}],
+  "slices": [{"field": "density", "axis": "z", "at": 0}],
+  "glyphs": [{"field": "swirl", "on": {"slice": 0}, "spacing": 0.3, "scale": "constant", "color_by": {"quantity": "speed", "range": [0, 1]}},
+    {"field": "swirl", "on": {"plane": {"point": [0, 0, 1], "normal": [0, 1, 1]}}, "length": 0.2, "full_speed": 2, "radius": 0.01, "at": "tail"},
+    {"field": "swirl", "on": {"box": {"lo": [0, 0, 0], "hi": [1, 1, 1]}}, "min_speed": 0.1, "kind": "line", "color": [0, 1, 0], "clip": false}],
   "indicator": {"field": "swirl", "length": 0.4, "radius": 0.01, "color": [1, 1, 0]},
   "cursor": {"probe": [0, 0, 1], "size": 0.1},
   /* done */ "background": [0, 0, 0], "quality": "time=8" })";
@@ -59,7 +63,8 @@ const std::string kWidgets = R"({ "fields": {"s": {"analytic": "sphere", "resolu
   "slices": [{"field": "s", "widget": "cut", "contours": {"count": 3}}],
   "clip": [{"widget": "other", "side": "behind"}, {"widget": "b"}],
   "streamlines": [{"field": "v", "seeds": {"widget": "s"}}, {"field": "v", "seeds": {"widget": "r", "count": 4}}],
-  "isosurfaces": [{"field": "s", "level": {"widget": "l"}}] })";
+  "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
+  "glyphs": [{"field": "v", "on": {"plane": {"widget": "cut"}}}, {"field": "v", "on": {"isosurface": 0}}] })";
 
 /// A value, or one line that starts with the file's name.
 bool check(const std::string& text, bool extract) {

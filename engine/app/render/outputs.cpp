@@ -46,6 +46,7 @@ std::string what_is_drawn(const render::FramePacket& packet) {
   add(packet.isosurfaces.size(), "isosurface", "isosurfaces");
   add(packet.meshes.size(), "mesh", "meshes");
   add(packet.tubes.size(), "streamline", "streamlines");
+  add(packet.glyphs.size(), "set of glyphs", "sets of glyphs");
   add(packet.cursors.size(), "cursor", "cursors");
   return text.empty() ? "nothing" : text;
 }

@@ -34,7 +34,9 @@ void draw_texts(Canvas& canvas, const Overlay& overlay) {
 }
 
 void draw_labels(Canvas& canvas, const Overlay& overlay, const Camera& camera, double reference_depth) {
-  for (const LabelItem& label : overlay.labels) {
+  std::vector<LabelItem> labels = overlay.labels;
+  labels.insert(labels.end(), overlay.axis_labels.begin(), overlay.axis_labels.end());
+  for (const LabelItem& label : labels) {
     const auto place = project(camera, label.at);
     if (!place) continue;
     const Vec2 at =

@@ -120,5 +120,27 @@ TEST(Pick, DepthsBecomePlacesOfASphereAndAPlane) {
   EXPECT_FALSE(pick(packet, 80, 60, kNone, 0));
 }
 
+TEST(Pick, AnArrowIsMetOnItsShaftAndItsHead) {
+  render::FramePacket packet;
+  render::GlyphItem item;
+  item.glyphs = {{{0, -2, 0}, {0, 2, 0}, {1, 0, 0}}, {{3, -1, 0}, {3, 1, 0}, {1, 0, 0}}};
+  item.shaft = 0.05;
+  item.head = 0.25;
+  item.head_radius = 0.15;
+  item.id = packet.add_object("glyphs", "v", "glyphs[0]");
+  packet.glyphs = {item};
+  const auto met = [&](double y, double z) { return pick_solid(packet, {{-6, y, z}, {1, 0, 0}}, kNone); };
+  const auto shaft = met(0, 0);
+  ASSERT_TRUE(shaft);
+  EXPECT_NEAR(shaft->world.x, -0.2, 1e-9);
+  EXPECT_EQ(object_words(packet, shaft->id), "glyphs v");
+  ASSERT_TRUE(met(1.5, 0.25));
+  EXPECT_FALSE(met(0, 0.25));
+  EXPECT_FALSE(met(2.7, 0));
+  packet.clip = {{{1, 0, 0}, {1, 0, 0}}};
+  ASSERT_TRUE(met(0, 0));
+  EXPECT_NEAR(met(0, 0)->world.x, 2.9, 1e-9) << "the first one is cut away";
+}
+
 }  // namespace pick_test
 }  // namespace catena::app

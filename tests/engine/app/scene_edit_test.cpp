@@ -84,7 +84,7 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
   for (const char* name : {"ball", "flow", "flat", "exact"}) {
     const auto drawn = scene::use_drawn_field(scene_, scene::find_field(scene_, name), {});
     ASSERT_TRUE(drawn) << drawn.error().message;
-    for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines}) {
+    for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines, ShowAs::glyphs}) {
       if (!can_show(*drawn, as)) continue;
       ++items;
       const Outcome done =
@@ -92,7 +92,7 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
       ASSERT_TRUE(done) << name << " as " << word_of(as) << ": " << done.error().message;
     }
   }
-  EXPECT_EQ(items, 3 + 2 + 3 + 3);
+  EXPECT_EQ(items, 3 + 3 + 3 + 3);
   auto scene = document_->read();
   ASSERT_TRUE(scene) << scene.error().message;
   const auto packet = render::make_frame(*scene, 32, 32);
@@ -101,6 +101,8 @@ TEST_F(EditedScene, EveryWayToShowAFieldMakesAPicture) {
   EXPECT_EQ(packet->isosurfaces.size(), 2u + 3);
   EXPECT_EQ(packet->slices.size(), 4u);
   EXPECT_GT(packet->tubes.size(), 20u);
+  ASSERT_EQ(packet->glyphs.size(), 1u);
+  EXPECT_GT(packet->glyphs[0].glyphs.size(), 100u) << "on the first slice";
 }
 
 TEST_F(EditedScene, TheFeltLevelIsTheSeenOne) {

@@ -61,18 +61,18 @@ bool take_felt_level(const scene::Scene& scene, scene::Entity field, scene::Isos
 }  // namespace
 
 std::string pointer_of_new(ShowAs as) {
-  constexpr const char* pointers[] = {"/volumes/-", "/isosurfaces/-", "/slices/-", "/streamlines/-"};
+  constexpr const char* pointers[] = {"/volumes/-", "/isosurfaces/-", "/slices/-", "/streamlines/-", "/glyphs/-"};
   return pointers[static_cast<int>(as)];
 }
 
 const char* word_of(ShowAs as) {
-  constexpr const char* words[] = {"volume", "isosurface", "slice", "streamlines"};
+  constexpr const char* words[] = {"volume", "isosurface", "slice", "streamlines", "glyphs"};
   return words[static_cast<int>(as)];
 }
 
 bool can_show(const field::AnyField& field, ShowAs as) {
   if (as == ShowAs::slice) return field.get() != nullptr;
-  return as == ShowAs::streamlines ? field.vector != nullptr : field.scalar != nullptr;
+  return as == ShowAs::streamlines || as == ShowAs::glyphs ? field.vector != nullptr : field.scalar != nullptr;
 }
 
 std::string new_item(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
@@ -101,6 +101,18 @@ std::string new_item(const scene::Scene& scene, scene::Entity field, const field
       slice.shown.field = field;
       slice.point = {0, 0, middle.z};
       return scene::text_of(scene, slice);
+    }
+    case ShowAs::glyphs: {
+      scene::GlyphSet set;
+      set.field = field;
+      scene.world.each<scene::Slice>([&](scene::Entity e, const scene::Slice&) {
+        if (set.base) return;
+        set.on = scene::GlyphSet::On::slice;
+        set.base = e;
+      });
+      set.color_by = colors;
+      set.color_by->what = scene::ColorBy::What::speed;
+      return scene::text_of(scene, set);
     }
     case ShowAs::streamlines:
       break;

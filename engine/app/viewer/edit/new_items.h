@@ -11,17 +11,18 @@
 
 namespace catena::app {
 
-enum class ShowAs { volume, isosurface, slice, streamlines };
+enum class ShowAs { volume, isosurface, slice, streamlines, glyphs };
 
 /// Where it goes: "/volumes/-" and so on.
 std::string pointer_of_new(ShowAs as);
 /// "volume" and so on, for the menu of undo.
 const char* word_of(ShowAs as);
-/// A scalar field as all but streamlines, a vector field as a slice (its magnitude) and streamlines.
+/// A scalar field as a volume, an isosurface and a slice, a vector field as a slice (its magnitude), streamlines and glyphs.
 bool can_show(const field::AnyField& field, ShowAs as);
 
 /// The isosurface lies where a link of the chain lies on the field, or else half way between the 2nd and the 98th percentile of `sorted`
-/// (empty: of the field's range), the slice across z through the middle of the domain, the seeds in a ball around it. `values`: of the
+/// (empty: of the field's range), the slice across z through the middle of the domain, the seeds in a ball around it; the
+/// glyphs stand on the first slice that is there, or else in the domain. `values`: of the
 /// field as it is drawn.
 std::string new_item(const scene::Scene& scene, scene::Entity field, const field::AnyField& values, ShowAs as,
                      const std::vector<float>& sorted);

@@ -74,15 +74,15 @@ void show_as(PanelContext& context, scene::Entity entity, ShowAs as) {
 
 void draw_buttons(PanelContext& context, scene::Entity entity, const field::AnyField& shown) {
   bool first = true;
-  for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines}) {
+  for (const ShowAs as : {ShowAs::volume, ShowAs::isosurface, ShowAs::slice, ShowAs::streamlines, ShowAs::glyphs}) {
     if (!can_show(shown, as)) continue;
     if (!first) ImGui::SameLine();
     first = false;
     if (ImGui::SmallButton(fmt::format("+ {}", word_of(as)).c_str())) show_as(context, entity, as);
     short_tip(fmt::format("show the field as {}{}",
-                          as == ShowAs::streamlines  ? ""
-                          : as == ShowAs::isosurface ? "an "
-                                                     : "a ",
+                          as == ShowAs::streamlines || as == ShowAs::glyphs ? ""
+                          : as == ShowAs::isosurface                        ? "an "
+                                                                            : "a ",
                           word_of(as))
                   .c_str());
   }

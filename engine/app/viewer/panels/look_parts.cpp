@@ -76,6 +76,58 @@ void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy
   ImGui::PopID();
 }
 
+void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item, const Color& color,
+                 const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities) {
+  using What = scene::ColorBy::What;
+  const std::string pointer = pointer_of(item), alone = "one colour";
+  const std::string now = !by                       ? alone
+                          : by->what == What::field ? name_of(scene, by->field)
+                          : by->what == What::speed ? "speed"
+                                                    : "arc_length";
+  if (ImGui::BeginCombo("colour by", now.c_str())) {
+    std::vector<std::string> choices{alone};
+    choices.insert(choices.end(), quantities.begin(), quantities.end());
+    for (const std::string& name : field_names(scene)) choices.push_back(name);
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+      const std::string& choice = choices[i];
+      if (!ImGui::Selectable(choice.c_str(), choice == now) || choice == now) continue;
+      // as a word with keys beside it, as it was written once: those go; a stated range or table lies elsewhere for other values
+      TextEdits change{{pointer + "/range", std::nullopt}, {pointer + "/transfer", std::nullopt}};
+      if (choice == alone) {
+        change.push_back({pointer + "/color_by", std::nullopt});
+        change.push_back({pointer + "/color", scene::text_of(color)});
+      } else {
+        scene::ColorBy other;
+        other.what = i > quantities.size() ? What::field : choice == "speed" ? What::speed : What::arc_length;
+        if (other.what == What::field) other.field = scene::find_field(scene, choice);
+        other.named.map = by && !by->named.map.empty() ? by->named.map : std::string(scene::kDefaultLineMap);
+        if (by) change.push_back({pointer + "/color", std::nullopt});
+        change.push_back({pointer + "/color_by", scene::text_of(scene, other)});
+      }
+      edits.set(change, "colours");
+    }
+    ImGui::EndCombo();
+  }
+  if (by)
+    edit_color_scale(edits, item, *by);
+  else
+    edit_color(edits, "colour", color, pointer + "/color");
+}
+
+void edit_fitted(Edits& edits, const char* key, const json::Node& item, double value, double most, const char* hint) {
+  const std::string pointer = pointer_of(item) + "/" + key;
+  auto now = static_cast<float>(value);
+  if (ImGui::SliderFloat(key, &now, 0, static_cast<float>(most), value > 0 ? "%.4g" : "fitted",
+                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_Logarithmic)) {
+    const double to = rounded_in(now, 0, most);
+    if (to > 0)
+      edits.drag(pointer, scene::text_of(to), key);
+    else if (item.find(key) != nullptr)
+      edits.remove(pointer, key);
+  }
+  short_tip(hint);
+}
+
 void draw_bars(const PlotFrame& frame, const SortedValues& values, ImU32 color) {
   if (!values) return;
   const int bars = std::clamp(static_cast<int>((frame.right - frame.left) / 2), 1, 400);

@@ -17,8 +17,15 @@ namespace catena::app {
 
 /// The colours of an item that colours by values: a map's name, reversed or not, its range.
 void edit_color_scale(Edits& edits, const json::Node& item, const scene::ColorBy& by);
+/// Those of an item that has one colour ("color") or the colours of values ("color_by"): a field's, or one of the `quantities` that it
+/// knows itself.
+void edit_colors(Edits& edits, const scene::Scene& scene, const json::Node& item, const Color& color,
+                 const std::optional<scene::ColorBy>& by, const std::vector<std::string>& quantities);
 /// A combo of the maps' names. The name chosen, "_r" with it.
 std::optional<std::string> choose_map(const std::string& now, const char* otherwise);
+
+/// The length `key` of an item, from 0, which takes it out of the text, to `most`.
+void edit_fitted(Edits& edits, const char* key, const json::Node& item, double value, double most, const char* hint);
 
 /// Grey bars of how often values occur.
 void draw_bars(const PlotFrame& frame, const SortedValues& values, ImU32 color);

@@ -86,21 +86,31 @@ void meet(Nearest& nearest, const render::MeshItem& item, const Span& span) {
   }
 }
 
-/// Each piece as an endless cylinder, where the ray enters it between the piece's ends (or within a radius of them).
+/// As an endless cylinder, where the ray enters it between the piece's ends (or within a radius of them).
+void meet_piece(Nearest& nearest, const Vec3& a, const Vec3& b, double radius, std::uint32_t id, const Span& span) {
+  const Vec3 d = nearest.ray.direction, along = b - a, from = nearest.ray.origin - a;
+  const double length2 = dot(along, along);
+  if (!(length2 > 0)) return;
+  // across the piece
+  const Vec3 across = d - dot(d, along) / length2 * along, start = from - dot(from, along) / length2 * along;
+  const double aa = dot(across, across), ab = dot(across, start), c = dot(start, start) - radius * radius, root = ab * ab - aa * c;
+  if (!(aa > 0) || !(root >= 0)) return;
+  const double t = (-ab - std::sqrt(root)) / aa, share = dot(from + t * d, along) / length2, slack = radius / std::sqrt(length2);
+  if (share >= -slack && share <= 1 + slack && t >= span.enter && t <= span.leave) nearest.offer(t, id);
+}
+
 void meet(Nearest& nearest, const render::TubeItem& item, const Span& span) {
-  const Vec3 d = nearest.ray.direction;
-  const double r2 = item.radius * item.radius;
-  for (std::size_t i = 0; i + 1 < item.points.size(); ++i) {
-    const Vec3 &a = item.points[i], along = item.points[i + 1] - a, from = nearest.ray.origin - a;
-    const double length2 = dot(along, along);
-    if (!(length2 > 0)) continue;
-    // across the piece
-    const Vec3 across = d - dot(d, along) / length2 * along, start = from - dot(from, along) / length2 * along;
-    const double aa = dot(across, across), b = dot(across, start), c = dot(start, start) - r2, root = b * b - aa * c;
-    if (!(aa > 0) || !(root >= 0)) continue;
-    const double t = (-b - std::sqrt(root)) / aa, share = dot(from + t * d, along) / length2;
-    const double slack = item.radius / std::sqrt(length2);
-    if (share >= -slack && share <= 1 + slack && t >= span.enter && t <= span.leave) nearest.offer(t, item.id);
+  for (std::size_t i = 0; i + 1 < item.points.size(); ++i)
+    meet_piece(nearest, item.points[i], item.points[i + 1], item.radius, item.id, span);
+}
+
+/// The shaft, and the head as a cylinder half as wide as its base.
+void meet(Nearest& nearest, const render::GlyphItem& item, const Span& span) {
+  for (const render::Glyph& glyph : item.glyphs) {
+    const double length = norm(glyph.tip - glyph.tail);
+    const Vec3 neck = glyph.tip - item.head * (glyph.tip - glyph.tail);
+    meet_piece(nearest, glyph.tail, neck, item.shaft * length, item.id, span);
+    meet_piece(nearest, neck, glyph.tip, 0.5 * item.head_radius * length, item.id, span);
   }
 }
 
@@ -113,6 +123,7 @@ std::optional<PickedPlace> pick_solid(const render::FramePacket& packet, const r
   for (const render::SliceItem& item : packet.slices) meet(nearest, item, kept(packet, item.clipped, ray, domain_span(*item.grid, ray)));
   for (const render::MeshItem& item : packet.meshes) meet(nearest, item, kept(packet, item.clipped, ray, {}));
   for (const render::TubeItem& item : packet.tubes) meet(nearest, item, kept(packet, item.clipped, ray, {}));
+  for (const render::GlyphItem& item : packet.glyphs) meet(nearest, item, kept(packet, item.clipped, ray, {}));
   if (nearest.id == 0) return std::nullopt;
   return PickedPlace{nearest.at(nearest.t), nearest.id, false};
 }

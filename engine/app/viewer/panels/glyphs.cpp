@@ -1,0 +1,128 @@
+// Arrows of vectors: of which field, where they stand, how far apart, how long, their colours.
+#include "engine/app/viewer/edit/chain_edit.h"
+#include "engine/app/viewer/panels/look_parts.h"
+#include "engine/field/grid.h"
+#include "engine/scene/hidden.h"
+
+namespace catena::app {
+
+namespace {
+
+/// Where they can stand: a text of the scene, and what the person reads. The first, without a text, is the field's domain.
+struct Stand {
+  std::string text, words;
+};
+
+template <class T>
+void add_stands(const scene::Scene& scene, const std::string& word, const auto& field_of, std::vector<Stand>& stands) {
+  int index = 0;
+  scene.world.each<T>([&](scene::Entity, const T& item) {
+    stands.push_back(
+        {"{\"" + word + "\": " + std::to_string(index) + "}", word + " " + std::to_string(index) + ", " + name_of(scene, field_of(item))});
+    ++index;
+  });
+}
+
+std::vector<Stand> stands_of(const scene::Scene& scene, const Vec3& middle) {
+  std::vector<Stand> stands{{"", "the domain"}};
+  add_stands<scene::Slice>(
+      scene, "slice", [](const scene::Slice& slice) { return slice.shown.field; }, stands);
+  add_stands<scene::Isosurface>(
+      scene, "isosurface", [](const scene::Isosurface& surface) { return surface.field; }, stands);
+  scene.world.each<scene::MeshSource>([&](scene::Entity e, const scene::MeshSource&) {
+    stands.push_back({"{\"mesh\": " + scene::text_of(name_of(scene, e)) + "}", "mesh " + name_of(scene, e)});
+  });
+  scene.world.each<scene::Widget>([&](scene::Entity e, const scene::Widget& widget) {
+    if (widget.spec.kind == widget::Kind::cutting_plane)
+      stands.push_back({"{\"plane\": {\"widget\": " + scene::text_of(name_of(scene, e)) + "}}", "plane of " + name_of(scene, e)});
+  });
+  for (int a = 0; a < 3; ++a)
+    stands.push_back({"{\"plane\": {\"axis\": \"" + std::string(1, "xyz"[a]) + "\", \"at\": " + scene::text_of(middle[a]) + "}}",
+                      std::string("plane across ") + "xyz"[a]});
+  return stands;
+}
+
+std::string words_of(const scene::Scene& scene, const scene::GlyphSet& set) {
+  using On = scene::GlyphSet::On;
+  switch (set.on) {
+    case On::box:
+      return set.box ? "a box" : "the domain";
+    case On::plane:
+      return set.widget ? "plane of " + name_of(scene, set.widget) : "a plane";
+    case On::slice:
+      return "slice, " + name_of(scene, scene.world.get<scene::Slice>(set.base).shown.field);
+    case On::isosurface:
+      return "isosurface, " + name_of(scene, scene.world.get<scene::Isosurface>(set.base).field);
+    case On::mesh:
+      return "mesh " + name_of(scene, set.base);
+  }
+  return {};
+}
+
+void choose_stand(Edits& edits, const scene::Scene& scene, const scene::GlyphSet& set, const Vec3& middle) {
+  if (!ImGui::BeginCombo("on", words_of(scene, set).c_str())) return;
+  const std::string pointer = pointer_of(set.where) + "/on";
+  for (const Stand& stand : stands_of(scene, middle)) {
+    if (!ImGui::Selectable(stand.words.c_str())) continue;
+    if (!stand.text.empty())
+      edits.set(pointer, stand.text, "glyphs on");
+    else if (set.where.find("on") != nullptr)
+      edits.remove(pointer, "glyphs on");
+  }
+  ImGui::EndCombo();
+}
+
+/// Of a plane or a box of their own.
+void edit_stand(Edits& edits, const scene::GlyphSet& set, double length) {
+  const std::string pointer = pointer_of(set.where) + "/on";
+  const double speed = length / 500;
+  if (set.on == scene::GlyphSet::On::box && set.box) {
+    edit_vector(edits, "lo", pointer + "/box/lo", set.box->lo, speed);
+    edit_vector(edits, "hi", pointer + "/box/hi", set.box->hi, speed);
+  }
+  const json::Node* on = set.where.find("on");
+  const json::Node* plane = on != nullptr ? on->find("plane") : nullptr;
+  if (plane == nullptr || set.widget) return;
+  if (const json::Node* at = plane->find("at")) {
+    edit_number(edits, {"at", pointer + "/plane/at", at->number, 0, 0, speed});
+    return;
+  }
+  edit_vector(edits, "point", pointer + "/plane/point", set.point, speed);
+  edit_vector(edits, "normal", pointer + "/plane/normal", set.normal, 0.005);
+}
+
+/// A speed of the field, for the step of a drag.
+double fastest(const scene::Scene& scene, const scene::GlyphSet& set) {
+  const auto& vector = scene.world.get<scene::FieldSource>(set.field).loaded.vector;
+  return vector && vector->grid() != nullptr ? vector->grid()->stats().max : 1;
+}
+
+void draw_glyphs(PanelContext& context) {
+  Edits& edits = context.edits;
+  const scene::Scene& scene = context.scene.scene();
+  scene.world.each<scene::GlyphSet>([&](scene::Entity e, const scene::GlyphSet& set) {
+    if (!begin_item(edits, set.where, !is_hidden(scene.world, e), "glyphs", name_of(scene, set.field))) return;
+    const std::string pointer = pointer_of(set.where);
+    std::string field = name_of(scene, set.field);
+    if (choose("field", fields_of(scene, true), field)) edits.set(pointer + "/field", scene::text_of(field), "field");
+    const field::Field* loaded = scene.world.get<scene::FieldSource>(set.field).loaded.get();
+    const double length = loaded != nullptr ? loaded->length() : 1;
+    choose_stand(edits, scene, set, loaded != nullptr ? loaded->world_bounds().centre() : Vec3(0.0));
+    edit_stand(edits, set, length);
+    edit_fitted(edits, "spacing", set.where, set.spacing, 0.25 * length,
+                "of neighbours, world units; at the left end: fitted to the domain");
+    edit_fitted(edits, "length", set.where, set.length, 0.5 * length, "of the longest, world units; at the left end: the spacing");
+    edit_fitted(edits, "radius", set.where, set.radius, 0.05 * length, "of the longest one's shaft, world units; at the left end: fitted");
+    edit_number(edits, {"min_speed", pointer + "/min_speed", set.min_speed, 0, 1e30, 0.005 * fastest(scene, set)});
+    short_tip("slower vectors have no arrow");
+    edit_colors(edits, scene, set.where, set.color, set.color_by, {"speed"});
+    edit_plain_keys(edits, "glyphs", set.where);
+    end_item();
+  });
+}
+
+}  // namespace
+
+Panel glyphs_panel() { return {"Glyphs", false, draw_glyphs, has_any<scene::GlyphSet>}; }
+
+}  // namespace catena::app

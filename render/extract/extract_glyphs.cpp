@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/numbers.h"
+#include "engine/field/grid.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/even_places.h"
+#include "engine/scene/hidden.h"
+#include "render/extract/extract_parts.h"
+
+namespace catena::render {
+
+namespace {
+
+using On = scene::GlyphSet::On;
+
+constexpr double kSurfaceShare = 1.0 / 24, kBoxShare = 1.0 / 16;  // fitted spacing by the domain's diagonal
+constexpr double kShaftShare = 0.06;                              // fitted radius of a shaft by its length
+constexpr double kLongestHead = 0.8;                              // of an arrow
+constexpr double kGlyphBytes = 6000;                              // of the triangles of one while they are made
+
+/// All that the places depend on beside the set's own description.
+struct GlyphBasis {
+  std::uint64_t field = 0, shown = 0, base = 0;  ///< versions
+  Vec3 lo{0.0}, hi{0.0};                         ///< of the domain
+  Vec3 point{0.0}, normal{0.0};
+  double level = 0;
+  bool operator==(const GlyphBasis&) const = default;
+};
+
+/// What this room keeps beside a GlyphSet.
+struct MadeGlyphs {
+  std::optional<GlyphBasis> basis;
+  SharedList<Glyph> glyphs;
+  double shaft = 0, head = 0;  ///< by length
+  ColorTable colors;           ///< of "color_by"
+};
+
+/// Where a field has values: a formula is drawn in its box.
+scene::Domain domain_of(const scene::Scene& scene, scene::Entity field) {
+  const scene::FieldSource& source = scene.world.get<scene::FieldSource>(field);
+  if (source.loaded.get()->is_grid()) return {source.loaded.get()->mapping(), source.loaded.get()->index_box()};
+  return {{}, {Vec3(source.box[0]), Vec3(source.box[1])}};
+}
+
+const scene::Slice* slice_of(const scene::Scene& scene, const scene::GlyphSet& set) {
+  return set.on == On::slice ? &scene.world.get<scene::Slice>(set.base) : nullptr;
+}
+
+const scene::Isosurface* surface_of(const scene::Scene& scene, const scene::GlyphSet& set) {
+  return set.on == On::isosurface ? &scene.world.get<scene::Isosurface>(set.base) : nullptr;
+}
+
+GlyphBasis basis_of(const scene::Scene& scene, const scene::GlyphSet& set) {
+  GlyphBasis basis;
+  basis.field = scene::loaded_field(scene, set.field).get()->version();
+  const scene::Domain domain = domain_of(scene, set.field);
+  basis.lo = domain.box.lo;
+  basis.hi = domain.box.hi;
+  if (set.color_by && set.color_by->what == scene::ColorBy::What::field)
+    basis.shown = scene::loaded_field(scene, set.color_by->field).get()->version();
+  basis.point = set.point;
+  basis.normal = set.normal;
+  if (const scene::Slice* slice = slice_of(scene, set)) {
+    basis.base = scene::drawn_field(scene, slice->shown.field).get()->version();
+    basis.point = slice->point;
+    basis.normal = slice->normal;
+  }
+  if (const scene::Isosurface* surface = surface_of(scene, set)) {
+    basis.base = scene::drawn_field(scene, surface->field).get()->version();
+    basis.level = surface->level;
+  }
+  if (set.on == On::mesh) basis.base = scene.world.get<scene::MeshSource>(set.base).loaded->version();
+  return basis;
+}
+
+Result<scene::EvenPlaces> places_at(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis, double spacing) {
+  const scene::Domain domain = domain_of(scene, set.field);
+  switch (set.on) {
+    case On::box:
+      return scene::even_places_in_box(set.box ? scene::Domain{{}, *set.box} : domain, spacing, scene::kMaxGlyphs);
+    case On::plane:
+    case On::slice:
+      return scene::even_places_on_plane(domain, basis.point, basis.normal, spacing, scene::kMaxGlyphs);
+    case On::mesh:
+      return scene::even_places_on_mesh(*scene.world.get<scene::MeshSource>(set.base).loaded, spacing, scene::kMaxGlyphs);
+    case On::isosurface:
+      break;
+  }
+  const scene::Isosurface& surface = *surface_of(scene, set);
+  const field::AnyField& any = scene::drawn_field(scene, surface.field);
+  if (!any.scalar)
+    return json::error_at(json::member_or(surface.where, "field"),
+                          "\"" + name_of(scene, surface.field) + "\" is a vector field; expected a scalar field for an isosurface");
+  CATENA_CHECK(scene::check_level(*any.scalar, surface.level, json::member_or(surface.where, "level")));
+  return scene::even_places_on_level(*any.scalar, surface.level, spacing, scene::kMaxGlyphs);
+}
+
+/// What follows the hand gets wider rather than wrong.
+bool follows_hand(const scene::Scene& scene, const scene::GlyphSet& set) {
+  const scene::Slice* slice = slice_of(scene, set);
+  const scene::Isosurface* surface = surface_of(scene, set);
+  return set.widget || (slice != nullptr && slice->widget) || (surface != nullptr && surface->level_from);
+}
+
+Result<std::vector<Vec3>> places_of(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis, double spacing) {
+  const double most = static_cast<double>(scene::kMaxGlyphs);
+  for (;;) {
+    CATENA_TRY(scene::EvenPlaces even, places_at(scene, set, basis, spacing));
+    if (even.wanted <= most) {
+      const Outcome asked = ask_for_text_memory(to_text(even.wanted) + " glyphs", kGlyphBytes * even.wanted);
+      if (!asked) return json::error_at(set.where, asked.error().message);
+      return std::move(even.places);
+    }
+    if (follows_hand(scene, set) && std::isfinite(even.wanted)) {
+      spacing *= 1.05 * std::sqrt(even.wanted / most);
+      continue;
+    }
+    const std::string count = even.wanted < 1e15 ? to_text(std::round(even.wanted)) : to_text(even.wanted);
+    return json::error_at(json::member_or(set.where, "spacing"), "a \"spacing\" of " + to_text(spacing) + " would give about " + count +
+                                                                     " glyphs; a wider one that gives at most " +
+                                                                     std::to_string(scene::kMaxGlyphs) + " was expected");
+  }
+}
+
+/// A vector, or a line's axis times its magnitude; zero where there is none.
+Vec3 arrow_at(const scene::GlyphSet& set, const field::VectorField& field, const Vec3& p, field::Cursor& cursor) {
+  Vec3 arrow(0.0);
+  if (set.line) {
+    const field::LineSample sample = field.sample_line(p, cursor);
+    if (sample.inside) arrow = sample.speed * sample.axis;
+  } else {
+    const field::VectorSample sample = field.sample(p, cursor);
+    if (sample.inside) arrow = sample.value;
+  }
+  return is_finite(arrow) && norm(arrow) > set.min_speed ? arrow : Vec3(0.0);
+}
+
+double value_at(const field::AnyField& shown, const Vec3& p, field::Cursor& cursor) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (shown.vector) {
+    const field::VectorSample sample = shown.vector->sample(p, cursor);
+    return sample.inside ? norm(sample.value) : none;
+  }
+  const field::ScalarSample sample = shown.scalar->sample(p, cursor);
+  return sample.inside ? sample.value : none;
+}
+
+/// The table, and every glyph's colour by it.
+ColorTable color_glyphs(const scene::Scene& scene, const scene::GlyphSet& set, const std::vector<Vec3>& places,
+                        const std::vector<double>& speeds, std::vector<Glyph>& glyphs) {
+  std::vector<double> values = speeds;
+  if (set.color_by->what == scene::ColorBy::What::field) {
+    field::Cursor cursor;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      values[i] = value_at(scene::loaded_field(scene, set.color_by->field), places[i], cursor);
+  }
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    lo = std::min(lo, value);
+    hi = std::max(hi, value);
+  }
+  if (!(lo <= hi)) lo = hi = 0;
+  ColorTable table = scene::color_table(set.color_by->colors, set.color_by->named, lo, hi);
+  for (std::size_t i = 0; i < glyphs.size(); ++i) glyphs[i].color = table_color(table, values[i]);
+  return table;
+}
+
+Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet& set, const GlyphBasis& basis) {
+  const field::AnyField& any = scene::loaded_field(scene, set.field);
+  if (!any.vector)
+    return json::error_at(json::member_or(set.where, "field"),
+                          "\"" + name_of(scene, set.field) + "\" is a scalar field; expected a vector field for glyphs");
+  const scene::Domain domain = domain_of(scene, set.field);
+  const double diagonal = norm(domain.mapping.world_from_index_linear * (domain.box.hi - domain.box.lo));
+  const double fitted = (set.on == On::box ? kBoxShare : kSurfaceShare) * diagonal, spacing = set.spacing > 0 ? set.spacing : fitted;
+  CATENA_TRY(const std::vector<Vec3> all, places_of(scene, set, basis, spacing));
+
+  // within what is seen of a slice
+  std::optional<scene::Domain> within;
+  if (const scene::Slice* slice = slice_of(scene, set)) {
+    const field::Field& seen = *scene::drawn_field(scene, slice->shown.field).get();
+    within = {seen.mapping(), seen.index_box()};
+  }
+  std::vector<Vec3> places, arrows;
+  std::vector<double> speeds;
+  double fastest = 0;
+  field::Cursor cursor;
+  for (const Vec3& p : all) {
+    if (within && !within->box.contains(within->mapping.index_from_world(p), 1e-9)) continue;
+    const Vec3 arrow = arrow_at(set, *any.vector, p, cursor);
+    if (max_abs(arrow) == 0) continue;
+    places.push_back(p);
+    arrows.push_back(arrow);
+    speeds.push_back(norm(arrow));
+    fastest = std::max(fastest, speeds.back());
+  }
+
+  MadeGlyphs made;
+  made.basis = basis;
+  const double longest = set.length > 0 ? set.length : spacing, full = set.full_speed > 0 ? set.full_speed : fastest;
+  made.shaft = set.radius > 0 ? set.radius / longest : kShaftShare;
+  made.head = set.line ? 0 : std::min(kLongestHead, kArrowLength * made.shaft);
+  const double before = set.at == scene::GlyphSet::At::tail ? 0 : set.at == scene::GlyphSet::At::head ? 1 : 0.5;
+  std::vector<Glyph> glyphs;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec3 whole = (set.constant ? longest : longest * (speeds[i] / full)) * direction(arrows[i]), tail = places[i] - before * whole;
+    glyphs.push_back({tail, tail + whole, set.color});
+  }
+  if (set.color_by) made.colors = color_glyphs(scene, set, places, speeds, glyphs);
+  made.glyphs = std::move(glyphs);
+  return made;
+}
+
+}  // namespace
+
+const ColorTable* glyph_colors(const scene::World& made, scene::Entity set) {
+  if (!made.has<MadeGlyphs>(set) || made.get<MadeGlyphs>(set).colors.empty()) return nullptr;
+  return &made.get<MadeGlyphs>(set).colors;
+}
+
+Outcome prepare_glyphs(scene::Scene& scene) {
+  for (const scene::Entity e : owners_of<scene::GlyphSet>(scene.world)) {
+    if (is_hidden(scene.world, e)) continue;
+    const scene::GlyphSet& set = scene.world.get<scene::GlyphSet>(e);
+    if (!scene.made.has<MadeGlyphs>(e)) scene.made.emplace<MadeGlyphs>(e);
+    const GlyphBasis basis = basis_of(scene, set);
+    if (scene.made.get<MadeGlyphs>(e).basis == basis) continue;
+    CATENA_TRY(MadeGlyphs made, make_glyphs(scene, set, basis));
+    scene.made.get<MadeGlyphs>(e) = std::move(made);
+  }
+  return Done{};
+}
+
+void extract_glyphs(const scene::Scene& scene, FramePacket& packet) {
+  scene.world.each<scene::GlyphSet>([&](scene::Entity e, const scene::GlyphSet& set) {
+    if (is_hidden(scene.world, e)) return;
+    const MadeGlyphs& made = scene.made.get<MadeGlyphs>(e);
+    const std::uint32_t id = packet.add_object("glyphs", name_of(scene, set.field), set.where.label);
+    packet.glyphs.push_back({made.glyphs, made.shaft, made.head, kArrowRadius * made.shaft, id, set.clipped});
+  });
+}
+
+}  // namespace catena::render

@@ -1,0 +1,140 @@
+// "glyphs": every key, what is written reads back, wrong ones name their line.
+#include <gtest/gtest.h>
+
+#include "engine/scene/hidden.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/write_values.h"
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace glyphs_test {
+
+constexpr const char* kFile =
+    "solid m\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid m\n";
+
+class Glyphs : public testing::Test {
+ protected:
+  Result<Scene> parse(const std::string& glyphs, const std::string& more = "") {
+    test::write_file(folder_ / "m.stl", kFile);
+    return parse_scene(R"({"fields": {"s": {"analytic": "sphere"}, "v": {"analytic": "circle"}},
+      "widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 1], "normal": [0, 2, 0]},
+                  {"name": "seed", "type": "seed", "position": [1, 0, 0]}],
+      "slices": [{"field": "s", "axis": "x", "at": 1}, {"field": "s", "axis": "x", "at": 0}],
+      "isosurfaces": [{"field": "s", "level": 1}], "meshes": [{"name": "m", "file": "m.stl", "drawn": false}],)"
+                       "\n\"glyphs\": " +
+                           glyphs + more + "}",
+                       folder_ / "s.json");
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Glyphs, EveryKeyIsRead) {
+  const auto scene = parse(R"([{"field": "v", "on": {"box": {"lo": [0, 0, 0], "hi": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant",
+      "length": 0.5, "full_speed": 2, "min_speed": 0.1, "radius": 0.02, "at": "tail", "color": [1, 0, 0], "clip": false, "visible": false},
+     {"field": "v", "on": {"slice": 1}, "kind": "line", "color_by": {"quantity": "speed", "color": "magma", "range": [0, 2]}},
+     {"field": "v", "on": {"plane": {"widget": "cut"}}, "color_by": {"field": "s"}}, {"field": "v", "on": {"isosurface": 0}, "at": "head"},
+     {"field": "v", "on": {"mesh": "m"}}, {"field": "v"}])");
+  ASSERT_TRUE(scene) << scene.error().message;
+  std::vector<GlyphSet> sets;
+  std::vector<Entity> owners;
+  scene->world.each<GlyphSet>([&](Entity e, const GlyphSet& set) {
+    sets.push_back(set);
+    owners.push_back(e);
+  });
+  ASSERT_EQ(sets.size(), 6u);
+  EXPECT_EQ(sets[0].on, GlyphSet::On::box);
+  EXPECT_EQ(sets[0].box->hi, Vec3(1, 2, 3));
+  EXPECT_EQ(sets[0].spacing, 0.25);
+  EXPECT_TRUE(sets[0].constant);
+  EXPECT_EQ(sets[0].length, 0.5);
+  EXPECT_EQ(sets[0].full_speed, 2);
+  EXPECT_EQ(sets[0].min_speed, 0.1);
+  EXPECT_EQ(sets[0].radius, 0.02);
+  EXPECT_EQ(sets[0].at, GlyphSet::At::tail);
+  EXPECT_EQ(sets[0].color.g, 0);
+  EXPECT_FALSE(sets[0].clipped);
+  EXPECT_TRUE(is_hidden(scene->world, owners[0]));
+  EXPECT_EQ(sets[1].on, GlyphSet::On::slice);
+  EXPECT_EQ(scene->world.get<Slice>(sets[1].base).point.x, 0);
+  EXPECT_TRUE(sets[1].line);
+  EXPECT_EQ(sets[1].color_by->what, ColorBy::What::speed);
+  EXPECT_EQ(sets[2].on, GlyphSet::On::plane);
+  EXPECT_EQ(sets[2].point, Vec3(0, 0, 1));
+  EXPECT_NEAR(sets[2].normal.y, 1, 1e-12);
+  EXPECT_EQ(sets[2].color_by->what, ColorBy::What::field);
+  EXPECT_EQ(sets[3].on, GlyphSet::On::isosurface);
+  EXPECT_EQ(sets[3].at, GlyphSet::At::head);
+  EXPECT_EQ(sets[4].base, find_mesh(*scene, "m")) << "felt, not drawn";
+  // what is not said: the domain, by magnitude, in the middle, clipped
+  EXPECT_EQ(sets[5].on, GlyphSet::On::box);
+  EXPECT_FALSE(sets[5].box || sets[5].constant || sets[5].color_by);
+  EXPECT_EQ(sets[5].spacing, 0);
+  EXPECT_EQ(sets[5].at, GlyphSet::At::center);
+  EXPECT_TRUE(sets[5].clipped);
+}
+
+TEST_F(Glyphs, WhatIsWrittenReadsBack) {
+  for (const std::string item :
+       {R"({"field": "v"})", R"({"field": "v", "on": {"box": {"lo": [0, 0, 0], "hi": [1, 2, 3]}}, "spacing": 0.25, "scale": "constant"})",
+        R"({"field": "v", "on": {"plane": {"axis": "y", "at": 0.5}}, "length": 2, "full_speed": 3, "min_speed": 0.5, "radius": 0.1})",
+        R"({"field": "v", "on": {"plane": {"point": [1, 2, 3], "normal": [0, 1, 1]}}, "at": "head", "color": [1, 0, 0], "clip": false})",
+        R"({"field": "v", "on": {"plane": {"widget": "cut"}}, "kind": "line"})",
+        R"({"field": "v", "on": {"slice": 1}, "color_by": {"quantity": "speed", "color": "magma"}})",
+        R"({"field": "v", "on": {"isosurface": 0}, "color_by": {"field": "s"}})", R"({"field": "v", "on": {"mesh": "m"}})"}) {
+    const auto scene = parse("[" + item + "]");
+    ASSERT_TRUE(scene) << scene.error().message;
+    scene->world.each<GlyphSet>([&](Entity, const GlyphSet& set) { EXPECT_EQ(text_of(*scene, set), item); });
+  }
+}
+
+TEST_F(Glyphs, WrongOnesNameTheirLine) {
+  for (const auto& [text, expected] :
+       {std::pair{R"({})", "an array of objects was expected"},
+        {R"([{}])", "\"field\" is missing"},
+        {R"([{"field": "t"}])", "unknown field"},
+        {R"([{"field": "v", "on": "slice"}])", "an object {...} was expected"},
+        {R"([{"field": "v", "on": {}}])", "names 0 things; one of box, plane, slice, isosurface, mesh was expected"},
+        {R"([{"field": "v", "on": {"slice": 0, "mesh": "m"}}])", "names 2 things"},
+        {R"([{"field": "v", "on": {"surface": 0}}])", "surface"},
+        {R"([{"field": "v", "on": {"slice": 2}}])", "from 0 to 1"},
+        {R"([{"field": "v", "on": {"slice": {"axis": "x", "at": 0}}}])", "slice"},
+        {R"([{"field": "v", "on": {"isosurface": -1}}])", "isosurface"},
+        {R"([{"field": "v", "on": {"mesh": "n"}}])", "unknown mesh \"n\"; known: m"},
+        {R"([{"field": "v", "on": {"box": {"lo": [0, 0, 0]}}}])", "hi"},
+        {R"([{"field": "v", "on": {"box": {"lo": [0, 0, 0], "hi": [1, -1, 1]}}}])", "\"hi\" lies below \"lo\""},
+        {R"([{"field": "v", "on": {"plane": {}}}])", "a set of glyphs has no plane"},
+        {R"([{"field": "v", "on": {"plane": {"axis": "x", "at": 0, "normal": [1, 0, 0]}}}])", "has both an axis and a point or normal"},
+        {R"([{"field": "v", "on": {"plane": {"axis": "x", "at": 0, "offset": 1}}}])", "offset"},
+        {R"([{"field": "v", "on": {"plane": {"widget": "seed"}}}])", "a cutting plane was expected"},
+        {R"([{"field": "v", "spacing": 0}])", "spacing"},
+        {R"([{"field": "v", "length": -1}])", "length"},
+        {R"([{"field": "v", "scale": "speed"}])", "magnitude"},
+        {R"([{"field": "v", "at": "middle"}])", "center"},
+        {R"([{"field": "v", "at": "tail", "kind": "line"}])", "neither head nor tail"},
+        {R"([{"field": "v", "color_by": {"quantity": "arc_length"}}])", "speed"},
+        {R"([{"field": "v", "color_by": {}}])", "neither"},
+        {R"([{"field": "v", "color_by": "speed"}])", "object"},
+        {R"([{"field": "v", "colour": [1, 0, 0]}])", "color"}}) {
+    const auto scene = parse(text);
+    ASSERT_FALSE(scene) << text;
+    EXPECT_NE(scene.error().message.find(expected), std::string::npos) << text << "\n" << scene.error().message;
+    EXPECT_NE(scene.error().message.find("s.json:6: "), std::string::npos) << scene.error().message;
+  }
+  const auto none = parse_scene(R"({"fields": {"v": {"analytic": "circle"}}, "glyphs": [{"field": "v", "on": {"slice": 0}}]})", "s.json");
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("the scene has no slices; one was expected for glyphs"), std::string::npos) << none.error().message;
+}
+
+TEST_F(Glyphs, AScalarBarNamesThem) {
+  const std::string sets = R"([{"field": "v", "color_by": {"quantity": "speed"}}, {"field": "v"}])";
+  const auto scene = parse(sets, R"(, "scalar_bars": [{"glyphs": 0}, {"field": "v"}])");
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->annotations.scalar_bars.size(), 2u);
+  for (const ScalarBar& bar : scene->annotations.scalar_bars) EXPECT_TRUE(scene->world.has<GlyphSet>(bar.shown));
+  const auto one_color = parse(sets, R"(, "scalar_bars": [{"glyphs": 1}])");
+  ASSERT_FALSE(one_color);
+  EXPECT_NE(one_color.error().message.find("these glyphs have one colour"), std::string::npos) << one_color.error().message;
+}
+
+}  // namespace glyphs_test
+}  // namespace catena::scene

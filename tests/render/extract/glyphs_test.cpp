@@ -1,0 +1,251 @@
+// Arrows in the packet against closed forms: where, which way, how long, of which colour; what has none; what they follow.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/field/grid.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/document.h"
+#include "engine/scene/prepare.h"
+#include "engine/scene/widgets.h"
+#include "render/extract/extract.h"
+#include "tests/support/support.h"
+
+namespace catena::render {
+namespace glyphs_test {
+
+constexpr const char* kHead = R"({"fields": {"v": {"analytic": "circle", "resolution": 9}, "s": {"analytic": "sphere", "resolution": 33},
+  "w": {"analytic": "uniform", "direction": [0, 0, 3]}}, )";
+
+scene::Scene scene_of(const std::string& parts) {
+  auto scene = scene::parse_scene(kHead + parts + "}", "s.json");
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? std::move(*scene) : scene::Scene();
+}
+
+FramePacket packet_of(scene::Scene& scene) {
+  auto packet = make_frame(scene, 64, 48);
+  EXPECT_TRUE(packet) << packet.error().message;
+  return packet ? std::move(*packet) : FramePacket();
+}
+
+std::vector<Glyph> glyphs_of(scene::Scene& scene) {
+  const FramePacket packet = packet_of(scene);
+  return packet.glyphs.empty() ? std::vector<Glyph>() : packet.glyphs[0].glyphs.list();
+}
+
+std::vector<Glyph> glyphs_of(const std::string& parts) {
+  scene::Scene scene = scene_of(parts);
+  return glyphs_of(scene);
+}
+
+std::string error_of(const std::string& parts) {
+  scene::Scene scene = scene_of(parts);
+  const auto packet = make_frame(scene, 64, 48);
+  EXPECT_FALSE(packet);
+  return packet ? "" : packet.error().message;
+}
+
+Vec3 middle(const Glyph& glyph) { return 0.5 * (glyph.tail + glyph.tip); }
+
+TEST(ExtractGlyphs, TheyPointAndReachAsTheFieldSays) {
+  // (-y, x, 0): the longest of the square -2..2 that are placed has the length stated, the others their share of it
+  const auto glyphs = glyphs_of(R"("glyphs": [{"field": "v", "on": {"plane": {"axis": "z", "at": 0.5}}, "spacing": 0.4, "length": 0.6}])");
+  ASSERT_GT(glyphs.size(), 90u);
+  double fastest = 0;
+  for (const Glyph& glyph : glyphs) fastest = std::max(fastest, norm(Vec3(middle(glyph).x, middle(glyph).y, 0)));
+  for (const Glyph& glyph : glyphs) {
+    const Vec3 p = middle(glyph), v(-p.y, p.x, 0);
+    EXPECT_NEAR(p.z, 0.5, 1e-12);
+    EXPECT_LT(norm(glyph.tip - glyph.tail - 0.6 / fastest * v), 1e-12);
+    EXPECT_GT(norm(v), 0.3) << "none where the flow stands";
+  }
+}
+
+TEST(ExtractGlyphs, ScaleLengthAndPlace) {
+  const std::string head = R"("glyphs": [{"field": "v", "on": {"plane": {"axis": "z", "at": 0}}, "spacing": 0.5, )";
+  for (const Glyph& glyph : glyphs_of(head + R"("scale": "constant"}])")) EXPECT_NEAR(norm(glyph.tip - glyph.tail), 0.5, 1e-12);
+  const auto full = glyphs_of(head + R"("full_speed": 1, "length": 0.25}])");
+  for (const Glyph& glyph : full) EXPECT_NEAR(norm(glyph.tip - glyph.tail), 0.25 * norm(middle(glyph)), 1e-12);
+  const auto tails = glyphs_of(head + R"("at": "tail"}])"), heads = glyphs_of(head + R"("at": "head"}])");
+  ASSERT_EQ(tails.size(), full.size());
+  for (std::size_t i = 0; i < full.size(); ++i) {
+    EXPECT_LT(norm(tails[i].tail - middle(full[i])), 1e-12);
+    EXPECT_LT(norm(heads[i].tip - middle(full[i])), 1e-12);
+  }
+  for (const Glyph& glyph : glyphs_of(head + R"("min_speed": 1.5}])")) EXPECT_GT(norm(middle(glyph)), 1.5);
+}
+
+TEST(ExtractGlyphs, TheShapeFollowsTheRadiusAndALineHasNoHead) {
+  const std::string head = R"("glyphs": [{"field": "w", "spacing": 1, "length": 0.5, )";
+  scene::Scene scene = scene_of(head + R"("radius": 0.02, "clip": false}])"), line = scene_of(head + R"("kind": "line"}])");
+  const FramePacket arrows = packet_of(scene), rods = packet_of(line);
+  ASSERT_EQ(arrows.glyphs.size(), 1u);
+  const GlyphItem& item = arrows.glyphs[0];
+  EXPECT_EQ(item.glyphs.size(), 5u * 5 * 5);
+  EXPECT_NEAR(item.shaft, 0.04, 1e-12);
+  EXPECT_NEAR(item.head, 0.24, 1e-12);
+  EXPECT_NEAR(item.head_radius, 0.096, 1e-12);
+  EXPECT_FALSE(item.clipped);
+  EXPECT_EQ(arrows.objects[item.id - 1].kind, "glyphs");
+  EXPECT_EQ(arrows.objects[item.id - 1].name, "w");
+  EXPECT_EQ(arrows.objects[item.id - 1].item, "glyphs[0]");
+  EXPECT_NEAR(norm(item.glyphs[0].tip - item.glyphs[0].tail - Vec3(0, 0, 0.5)), 0, 1e-12);
+  ASSERT_EQ(rods.glyphs.size(), 1u);
+  EXPECT_EQ(rods.glyphs[0].head, 0);
+  const Vec3 rod = rods.glyphs[0].glyphs[0].tip - rods.glyphs[0].glyphs[0].tail;
+  EXPECT_NEAR(std::fabs(rod.z), 0.5, 1e-12) << "of either sign";
+  EXPECT_NEAR(packet_bounds(arrows).hi.z, 2.25, 1e-12);
+}
+
+TEST(ExtractGlyphs, ColoursAreThoseOfTheMap) {
+  scene::Scene scene = scene_of(R"("glyphs": [{"field": "v", "on": {"plane": {"axis": "z", "at": 0}}, "spacing": 0.5,
+      "color_by": {"quantity": "speed", "color": [[0, 0, 0, 0], [2, 1, 0.5, 0]]}},
+    {"field": "v", "on": {"plane": {"axis": "z", "at": 0}}, "spacing": 0.5, "color_by": {"field": "s", "color": "magma"}}],
+    "scalar_bars": [{"glyphs": 0}, {"glyphs": 1}])");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.glyphs.size(), 2u);
+  double lo = HUGE_VAL, hi = 0;
+  for (const Glyph& glyph : packet.glyphs[0].glyphs) {
+    const double speed = norm(middle(glyph)), share = std::min(1.0, speed / 2);
+    EXPECT_NEAR(glyph.color.r, share, 1e-6);
+    EXPECT_NEAR(glyph.color.g, 0.5 * share, 1e-6);
+    lo = std::min(lo, speed);
+    hi = std::max(hi, speed);
+  }
+  // the distance from the origin is the speed, too; the map lies between those that are drawn
+  const auto map = scene::named_map("magma", lo, hi);
+  for (const Glyph& glyph : packet.glyphs[1].glyphs) {
+    const double value = norm(middle(glyph));
+    std::size_t k = 1;
+    while (k + 1 < map.size() && map[k].value < value) ++k;
+    const double t = (value - map[k - 1].value) / (map[k].value - map[k - 1].value);
+    EXPECT_NEAR(glyph.color.r, map[k - 1].color.r + t * (map[k].color.r - map[k - 1].color.r), 1e-4);
+  }
+  ASSERT_EQ(packet.overlay.scalar_bars.size(), 2u);
+  EXPECT_EQ(packet.overlay.scalar_bars[0].title, "|v|");
+  EXPECT_EQ(packet.overlay.scalar_bars[0].colors.back()[0], 2);
+  EXPECT_EQ(packet.overlay.scalar_bars[1].title, "s");
+  EXPECT_NEAR(packet.overlay.scalar_bars[1].colors.front()[0], lo, 1e-9);
+  EXPECT_NEAR(packet.overlay.scalar_bars[1].colors.back()[0], hi, 1e-9);
+}
+
+TEST(ExtractGlyphs, WhatIsNotValidHasNone) {
+  // x >= 0 of -2..2 is valid; a voxel of it is no number
+  std::vector<float> values;
+  std::vector<std::uint8_t> valid;
+  const field::Mapping mapping = field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0));
+  for (int i = 0; i < 17 * 17 * 17; ++i) {
+    const bool hole = i == 12 + 17 * (8 + 17 * 8);
+    values.insert(values.end(), {hole ? NAN : 1.0f, 0.5f, 0.0f});
+    valid.push_back(i % 17 >= 8);
+  }
+  scene::Scene scene = scene_of(R"("glyphs": [{"field": "v", "spacing": 0.25}])");
+  scene::FieldSource& source = scene.world.get<scene::FieldSource>(scene::find_field(scene, "v"));
+  source.loaded.vector = field::make_vector_grid("v", mapping, {17, 17, 17}, values, valid);
+  source.drawn = source.loaded;
+  std::size_t in_hole = 0;
+  const auto glyphs = glyphs_of(scene);
+  for (const Glyph& glyph : glyphs) {
+    EXPECT_GT(middle(glyph).x, -1e-9);
+    in_hole += max_abs(middle(glyph) - Vec3(1, 0, 0)) < 0.2;
+  }
+  EXPECT_EQ(in_hole, 0u);
+  EXPECT_NEAR(static_cast<double>(glyphs.size()), 9 * 17 * 17, 30) << "half of the lattice of 17^3";
+}
+
+TEST(ExtractGlyphs, OnASliceWithinWhatIsSeenOfIt) {
+  auto made = scene::parse_scene(R"({"fields": {"v": {"analytic": "uniform"}, "s": {"analytic": "sphere", "box": [-1, 1], "resolution": 5}},
+    "slices": [{"field": "s", "axis": "y", "at": 0.5}], "glyphs": [{"field": "v", "on": {"slice": 0}, "spacing": 0.2}]})",
+                                 "s.json");
+  ASSERT_TRUE(made) << made.error().message;
+  const auto glyphs = glyphs_of(*made);
+  EXPECT_NEAR(static_cast<double>(glyphs.size()), 4 / (0.04 * std::sqrt(0.75)), 12);
+  for (const Glyph& glyph : glyphs) EXPECT_LE(max_abs(middle(glyph)), 1 + 1e-9);
+}
+
+TEST(ExtractGlyphs, OnASurfaceTheyStandOnIt) {
+  const auto glyphs = glyphs_of(R"("isosurfaces": [{"field": "s", "level": 1.5, "visible": false}],
+    "glyphs": [{"field": "v", "on": {"isosurface": 0}, "spacing": 0.25, "at": "tail"}])");
+  ASSERT_GT(glyphs.size(), 250u);
+  for (const Glyph& glyph : glyphs) {
+    EXPECT_NEAR(norm(glyph.tail), 1.5, 0.01);
+    EXPECT_LT(norm(cross(direction(glyph.tip - glyph.tail), direction(Vec3(-glyph.tail.y, glyph.tail.x, 0)))), 1e-9);
+  }
+}
+
+TEST(ExtractGlyphs, TheyFollowWhatTheyStandOn) {
+  scene::Scene scene = scene_of(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0.25], "normal": [0, 0, 1]},
+      {"name": "l", "type": "isolevel", "field": "s", "position": [1, 0, 0]}],
+    "slices": [{"field": "s", "widget": "cut"}], "isosurfaces": [{"field": "s", "level": {"widget": "l"}}],
+    "glyphs": [{"field": "w", "on": {"slice": 0}}, {"field": "w", "on": {"plane": {"widget": "cut"}}}, {"field": "w", "on": {"isosurface": 0}}])");
+  const auto move = [&](const char* name, const Vec3& to) {
+    ASSERT_TRUE(scene::set_widget_pose(scene, scene::find_widget(scene, name), {{to, Vec3(0.0)}, kNoRotation}));
+  };
+  FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.glyphs.size(), 3u);
+  EXPECT_NEAR(middle(packet.glyphs[0].glyphs[0]).z, 0.25, 1e-12);
+  EXPECT_NEAR(middle(packet.glyphs[1].glyphs[0]).z, 0.25, 1e-12);
+  EXPECT_NEAR(norm(middle(packet.glyphs[2].glyphs[0])), 1, 0.02);
+  EXPECT_TRUE(packet_of(scene).glyphs[2].glyphs.is_same(packet.glyphs[2].glyphs)) << "made once";
+  move("cut", {0, 0, -1});
+  move("l", {0, 1.5, 0});
+  packet = packet_of(scene);
+  EXPECT_NEAR(middle(packet.glyphs[0].glyphs[0]).z, -1, 1e-12);
+  EXPECT_NEAR(middle(packet.glyphs[1].glyphs[0]).z, -1, 1e-12);
+  EXPECT_NEAR(norm(middle(packet.glyphs[2].glyphs[0])), 1.5, 0.02);
+  // out of the domain nothing is seen, and the frame goes on
+  move("cut", {0, 0, 40});
+  packet = packet_of(scene);
+  EXPECT_TRUE(packet.glyphs[0].glyphs.empty());
+  EXPECT_TRUE(packet.glyphs[1].glyphs.empty());
+}
+
+TEST(ExtractGlyphs, AnEditOfTheSliceMovesThemAndAnotherEditKeepsThem) {
+  const std::string text = R"({"fields": {"w": {"analytic": "uniform"}}, "slices": [{"field": "w", "axis": "z", "at": 0}],
+    "glyphs": [{"field": "w", "on": {"slice": 0}}], "title": "a"})";
+  const auto parsed = [](const std::string& t) { return std::move(*scene::parse_scene(t, "s.json")); };
+  scene::Scene first = parsed(text);
+  const SharedList<Glyph> before = packet_of(first).glyphs[0].glyphs;
+  std::string other = text;
+  other.replace(other.find("\"a\""), 3, "\"b\"");
+  scene::Scene same = parsed(other);
+  scene::carry_over(first, same);
+  EXPECT_TRUE(packet_of(same).glyphs[0].glyphs.is_same(before));
+  std::string moved = other;
+  moved.replace(moved.find("\"at\": 0"), 7, "\"at\": 1");
+  scene::Scene third = parsed(moved);
+  scene::carry_over(same, third);
+  EXPECT_NEAR(middle(packet_of(third).glyphs[0].glyphs[0]).z, 1, 1e-12);
+}
+
+TEST(ExtractGlyphs, TooManyAreAnErrorThatSaysHowMany) {
+  const std::string e = error_of("\n\"glyphs\": [{\"field\": \"v\",\n\"spacing\": 0.1}]");
+  EXPECT_NE(e.find("s.json:4: a \"spacing\" of 0.1 would give about 68921 glyphs; a wider one that gives at most 20000 was expected"),
+            std::string::npos)
+      << e;
+  for (const char* on : {R"("box": {"lo": [0, 0, 0], "hi": [1, 1, 1]})", R"("plane": {"axis": "x", "at": 0})", R"("isosurface": 0)"})
+    for (const char* spacing : {"1e-3", "1e-9", "1e-30"})
+      EXPECT_NE(error_of(std::string(R"("isosurfaces": [{"field": "s", "level": 1}], "glyphs": [{"field": "v", "spacing": )") + spacing +
+                         ", \"on\": {" + on + "}}]")
+                    .find("at most 20000 was expected"),
+                std::string::npos)
+          << on << spacing;
+  // under a hand they get wider instead
+  const auto glyphs = glyphs_of(R"("widgets": [{"name": "cut", "type": "cutting_plane", "center": [0, 0, 0], "normal": [1, 1, 1]}],
+    "glyphs": [{"field": "w", "spacing": 0.01, "on": {"plane": {"widget": "cut"}}}])");
+  EXPECT_GT(glyphs.size(), 12000u);
+  EXPECT_LE(glyphs.size(), 20000u);
+}
+
+TEST(ExtractGlyphs, WrongFieldsAreNamed) {
+  EXPECT_NE(error_of("\n\"glyphs\": [{\"field\": \"s\"}]").find("s.json:3: \"s\" is a scalar field; expected a vector field for glyphs"),
+            std::string::npos);
+  EXPECT_NE(
+      error_of(R"("isosurfaces": [{"field": "s", "level": 99, "visible": false}], "glyphs": [{"field": "v", "on": {"isosurface": 0}}])")
+          .find("level 99 lies outside"),
+      std::string::npos);
+}
+
+}  // namespace glyphs_test
+}  // namespace catena::render
