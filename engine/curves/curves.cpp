@@ -66,6 +66,7 @@ void Builder::end_line() {
 
 Result<CurveSet> Builder::finish() {
   CurveSet& set = made_;
+  if (set.points.size() > set.first.back()) end_line();
   if (set.lines() == 0)
     return Error{one_line(set.name + ": holds no line of two different points" +
                           (dropped_ > 0 ? fmt::format(" ({} without a length)", dropped_) : std::string()) +

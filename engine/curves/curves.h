@@ -55,7 +55,7 @@ class Builder {
   void end_line();
   std::size_t lines() const { return made_.first.size() - 1; }
 
-  /// The error: no line is left.
+  /// A line that is still open ends here. The error: no line is left.
   Result<CurveSet> finish();
 
  private:

@@ -1,5 +1,7 @@
 #include "engine/scene/bare_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -55,6 +57,11 @@ std::string other_fields(const field::LoadRequest& shown, const std::string& fil
   return text;
 }
 
+std::string curves_note(const curves::CurveSet& set) {
+  return fmt::format("{} curve{} in the colours of their directions, red for x, green for y, blue for z{}{}", set.lines(),
+                     set.lines() == 1 ? "" : "s", set.note.empty() ? "" : "; ", set.note);
+}
+
 void forget_lines(json::Node& node) {
   node.line = 0;
   for (json::Node& item : node.items) forget_lines(item);
@@ -77,6 +84,14 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
       return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
     CATENA_TRY(bare.mesh, mesh::load_mesh(path));
     bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
+    return bare;
+  }
+  if (curves::is_curve_file(path)) {
+    if (!colors.map.empty() || colors.range)
+      return Error{one_line(path + ": curves are shown in the colours of their directions; a colour map goes with a data file")};
+    CATENA_TRY(bare.curves, curves::load_curves(path));
+    bare.note = curves_note(*bare.curves);
+    bare.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
   if (field::needs_layout(path))
@@ -116,6 +131,9 @@ void adopt_loaded(const BareFile& bare, Scene& scene) {
     if (bare.mesh && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5)) && source.placement == mesh::Placement{})
       source.loaded = bare.mesh;
   });
+  scene.world.each<DrawnCurves>([&](Entity, DrawnCurves& source) {
+    if (bare.curves && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5))) source.loaded = bare.curves;
+  });
 }
 
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
@@ -130,6 +148,7 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid, c
   forget_lines<Volume>(scene);
   forget_lines<Isosurface>(scene);
   forget_lines<StreamlineSet>(scene);
+  forget_lines<DrawnCurves>(scene);
   if (bare.field.get() != nullptr)
     CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(grid.empty() ? bare.field.get()->name() : grid)), {}));
   return scene;

@@ -51,6 +51,16 @@ void carry_meshes(Scene& old, Scene& fresh) {
   });
 }
 
+bool same_curves(const DrawnCurves& a, const DrawnCurves& b) { return a.path == b.path || same_file(a.path, b.path); }
+
+void carry_curves(Scene& old, Scene& fresh) {
+  fresh.world.each<DrawnCurves>([&](Entity, DrawnCurves& source) {
+    old.world.each<DrawnCurves>([&](Entity, const DrawnCurves& before) {
+      if (!source.loaded && before.loaded && same_curves(before, source)) source.loaded = before.loaded;
+    });
+  });
+}
+
 // ---- automatic colours and opacities: functions of the drawn grid and of what is stated besides ----
 
 bool same_named(const NamedColors& a, const NamedColors& b) { return a.map == b.map && a.range == b.range; }
@@ -98,6 +108,10 @@ bool same_sources(const Scene& old, const Scene& fresh) {
   fresh.world.each<MeshSource>([&](Entity e, const MeshSource& source) {
     const Entity before = find_mesh(old, fresh.world.get<Name>(e).value);
     same = same && before && same_mesh(old.world.get<MeshSource>(before), source);
+  });
+  fresh.world.each<DrawnCurves>([&](Entity e, const DrawnCurves& source) {
+    const Entity before = find_curves(old, fresh.world.get<Name>(e).value);
+    same = same && before && same_curves(old.world.get<DrawnCurves>(before), source);
   });
   return same;
 }
@@ -150,6 +164,7 @@ void carry_widgets(const Scene& old, Scene& fresh) {
 void carry_over(Scene& old, Scene& fresh) {
   carry_fields(old, fresh);
   carry_meshes(old, fresh);
+  carry_curves(old, fresh);
   carry_transfers(old, fresh);
   // before the lines, which hold their curves
   for (auto& [key, curve] : old.curves)
@@ -157,6 +172,7 @@ void carry_over(Scene& old, Scene& fresh) {
   if (same_sources(old, fresh)) {
     carry_made<StreamlineSet>(old, fresh);
     carry_made<Slice>(old, fresh);
+    carry_made<DrawnCurves>(old, fresh);
     carry_made<SurfaceMesh>(old, fresh);
     carry_made<Volume>(old, fresh);
     carry_made<Isosurface>(old, fresh);

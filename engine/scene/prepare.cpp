@@ -53,6 +53,16 @@ Outcome trace_lines(Scene& scene) {
   return Done{};
 }
 
+Outcome load_curves(Scene& scene) {
+  for (const Entity e : visible<DrawnCurves>(scene.world)) {
+    CATENA_CHECK(use_curves(scene, e));
+    const DrawnCurves& curves = scene.world.get<DrawnCurves>(e);
+    if (curves.color_by && curves.color_by->what == ColorBy::What::field)
+      CATENA_CHECK(use_field(scene, curves.color_by->field, curves.color_by->where));
+  }
+  return Done{};
+}
+
 }  // namespace
 
 Outcome prepare(Scene& scene) {
@@ -65,6 +75,7 @@ Outcome prepare(Scene& scene) {
     CATENA_CHECK(use_drawn_field(scene, slice.shown.field, slice.where));
   }
   CATENA_CHECK(trace_lines(scene));
+  CATENA_CHECK(load_curves(scene));
   if (scene.bounding_box && scene.bounding_box->field)
     CATENA_CHECK(use_drawn_field(scene, scene.bounding_box->field, scene.bounding_box->where));
   if (scene.axes && scene.axes->field) CATENA_CHECK(use_drawn_field(scene, scene.axes->field, scene.axes->where));
@@ -81,6 +92,11 @@ Bounds prepared_bounds(const Scene& scene) {
     if (!source.loaded) return;
     bounds.add(source.loaded->lowest());
     bounds.add(source.loaded->highest());
+  });
+  scene.world.each<DrawnCurves>([&](Entity, const DrawnCurves& source) {
+    if (!source.loaded) return;
+    bounds.add(source.loaded->lowest);
+    bounds.add(source.loaded->highest);
   });
   for (const Entity e : visible<StreamlineSet>(scene.world)) bounds.add(lines_bounds(scene, e));
   return bounds;

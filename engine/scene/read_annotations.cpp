@@ -10,7 +10,8 @@ constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
 
 /// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
-  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by);
+  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
+         (world.has<DrawnCurves>(e) && world.get<DrawnCurves>(e).color_by);
 }
 
 template <class T>
@@ -42,15 +43,17 @@ Entity shown_field(const World& world, Entity field) {
     const bool other = set.color_by && set.color_by->what == ColorBy::What::field;
     take(e, (other ? set.color_by->field : set.field) == field);
   });
+  world.each<DrawnCurves>([&](Entity e, const DrawnCurves& curves) { take(e, curves.color_by && curves.color_by->field == field); });
   return found;
 }
 
 Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   int given = 0;
-  for (const char* key : {"volume", "slice", "streamlines", "field"}) given += item.find(key) != nullptr;
+  for (const char* key : {"volume", "slice", "streamlines", "curves", "field"}) given += item.find(key) != nullptr;
   if (given != 1)
-    return json::error_at(item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
-                                    "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"field\": NAME was expected");
+    return json::error_at(
+        item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
+                  "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"curves\": INDEX, \"field\": NAME was expected");
   if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes");
   if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices");
   if (const json::Node* node = item.find("streamlines")) {
@@ -58,6 +61,12 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
     if (!has_colors(scene.world, set))
       return json::error_at(*node, "these streamlines have one colour; a set with \"color_by\" was expected for a scalar bar");
     return set;
+  }
+  if (const json::Node* node = item.find("curves")) {
+    CATENA_TRY(const Entity curves, read_index<DrawnCurves>(scene, item, "curves", "curves"));
+    if (!has_colors(scene.world, curves))
+      return json::error_at(*node, "these curves show no values; curves with \"color_by\" were expected for a scalar bar");
+    return curves;
   }
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.world, field);
@@ -87,8 +96,8 @@ const Table<ScalarBar>& scalar_bar_table() {
     const auto index = [](const char* key, const char* of) {
       return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000).ranged("an index");
     };
-    t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"),
-             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the four.")},
+    t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"), index("curves", "curves"),
+             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the five.")},
             [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
               CATENA_TRY(bar.shown, read_shown(scene, item));
               return Done{};
@@ -205,6 +214,7 @@ std::optional<ScalarBar> first_scalar_bar(const World& world) {
   world.each<Volume>([&](Entity e, const Volume&) { take(e); });
   world.each<Slice>([&](Entity e, const Slice&) { take(e); });
   world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { take(e); });
+  world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) { take(e); });
   return bar;
 }
 

@@ -33,6 +33,7 @@ Part isosurfaces_part();
 Part slices_part();
 Part meshes_part();
 Part streamlines_part();
+Part curves_part();
 Part indicator_part();
 Part clip_part();
 Part camera_part();
@@ -69,6 +70,9 @@ Outcome each_item(const json::Node& node, Read&& read) {
 bool is_name(std::string_view text);
 /// `kind` says in the message what is called so: "mesh".
 Outcome check_name(const std::string& kind, const std::string& name, const json::Node& node);
+
+/// Empty where `path` is a file that is there and of a known kind, one with these endings.
+std::string file_fault(const std::string& path, bool known, const std::vector<std::string_view>& endings);
 
 /// Relative paths start at the scene file's folder.
 std::string resolved_path(const std::string& scene_path, const std::string& file);
@@ -125,8 +129,9 @@ schema::Component list_of(const std::string& name, const std::string& help, cons
 
 /// "color_by": colours that follow values, one shape wherever it stands. Inside this room only.
 
-/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), or lines (which know their speed and length, too).
-enum class ColorSubjects { rays, surfaces, lines };
+/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), lines (which know their speed and
+/// length, too), or curves from a file (which know their length and the file's values).
+enum class ColorSubjects { rays, surfaces, lines, curves };
 
 Key color_by_key(ColorSubjects subjects);
 /// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.

@@ -86,6 +86,11 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
     scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
       if (const field::Field* field = source.loaded.get()) drawn.add(field->world_bounds());
     });
+    scene.world.each<scene::DrawnCurves>([&](scene::Entity, const scene::DrawnCurves& source) {
+      if (!source.loaded) return;
+      drawn.add(source.loaded->lowest);
+      drawn.add(source.loaded->highest);
+    });
     scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
       if (!source.loaded) return;
       drawn.add(source.loaded->lowest());
@@ -176,6 +181,7 @@ Outcome prepare_frame(scene::Scene& scene) {
   CATENA_CHECK(prepare_meshes(scene));
   CATENA_CHECK(prepare_slices(scene));
   CATENA_CHECK(prepare_streamlines(scene));
+  CATENA_CHECK(prepare_curves(scene));
   prepare_visible(scene);
   return prepare_widgets(scene);
 }
@@ -199,6 +205,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   extract_meshes(scene, packet);
   CATENA_CHECK(extract_slices(scene, packet));
   extract_streamlines(scene, packet);
+  extract_curves(scene, packet);
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);

@@ -107,6 +107,14 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
     const SliceItem* slice = slice_item(world, e, packet);
     return slice ? Shown{slice->colors, named(world.get<scene::Slice>(e).shown.field)} : Shown{};
   }
+  if (world.has<scene::DrawnCurves>(e)) {
+    const auto* points = shown_curve_colors(scene.made, e);
+    if (points == nullptr) return {};
+    const scene::ColorBy& by = *world.get<scene::DrawnCurves>(e).color_by;
+    return {rows_of(*points), by.what == scene::ColorBy::What::field   ? named(by.field)
+                              : by.what == scene::ColorBy::What::value ? by.value
+                                                                       : with_unit("arc length", scene::unit_length(scene))};
+  }
   CATENA_ASSERT(world.has<scene::StreamlineSet>(e) && world.get<scene::StreamlineSet>(e).color_by);
   const scene::StreamlineSet& set = world.get<scene::StreamlineSet>(e);
   const auto* points = shown_colors(scene.made, e);
@@ -117,6 +125,8 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
       return {colors, named(set.color_by->field)};
     case scene::ColorBy::What::speed:
       return {colors, with_unit("|" + name_of(scene, set.field) + "|", scene::unit_of(scene, set.field))};
+    case scene::ColorBy::What::value:
+      break;
     case scene::ColorBy::What::arc_length:
       return {colors, with_unit("arc length", scene::unit_length(scene))};
   }

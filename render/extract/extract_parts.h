@@ -51,6 +51,14 @@ void extract_streamlines(const scene::Scene& scene, FramePacket& packet);
 /// After the cursors.
 Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 
+/// Curves from files as tubes, each line's points as they are, coloured by values, by one colour or by the line's direction. Above
+/// kMostCurvePoints points an even choice of the lines, and packet.left_out says so. Errors: values that the file does not have, more
+/// memory than is allowed.
+inline constexpr std::size_t kMostCurvePoints = 2'000'000;
+Outcome prepare_curves(scene::Scene& scene);
+void extract_curves(const scene::Scene& scene, FramePacket& packet);
+const std::vector<scene::TransferFunction::ColorPoint>* shown_curve_colors(const scene::World& made, scene::Entity curves);
+
 /// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
 /// "color_by".
 const std::vector<scene::TransferFunction::ColorPoint>* shown_colors(const scene::World& made, scene::Entity set);

@@ -233,6 +233,7 @@ struct FramePacket {
   WidgetItems widgets;
   std::optional<bool> jitter;  ///< of rays; overrides RenderSettings::jitter
   std::vector<ObjectName> objects;
+  std::string left_out;  ///< what of the tubes is not drawn, in words; empty: nothing
 
   /// The next id, from 1 on.
   std::uint32_t add_object(std::string kind, std::string name, std::string item = {}) {

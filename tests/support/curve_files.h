@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "engine/curves/load.h"
 
 namespace catena::test {
 
@@ -35,6 +36,12 @@ inline std::string tck_bytes(const Polylines& lines, const std::string& type) {
   }
   triple(Vec3(std::numeric_limits<double>::infinity()));
   return head;
+}
+
+/// As a file of floats gives them.
+inline curves::CurveSetPtr curves_of(const Polylines& lines) {
+  auto set = curves::parse_tck(tck_bytes(lines, "Float32LE"), "made.tck");
+  return set ? std::make_shared<const curves::CurveSet>(std::move(*set)) : nullptr;
 }
 
 struct TrkFile {

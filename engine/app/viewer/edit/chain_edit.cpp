@@ -88,6 +88,13 @@ std::vector<std::string> meshes_of(const scene::Scene& scene) {
   return out;
 }
 
+std::vector<std::string> curves_of(const scene::Scene& scene) {
+  std::vector<std::string> out;
+  scene.world.each<scene::DrawnCurves>(
+      [&](scene::Entity entity, const scene::DrawnCurves&) { out.push_back(scene.world.get<scene::Name>(entity).value); });
+  return out;
+}
+
 namespace {
 
 /// "0.1 L" as a number, or JSON text; empty: it is words.
@@ -121,11 +128,15 @@ std::string first_vector(const schema::Key& key, const Vec3& probe, double lengt
   return text.empty() ? scene::text_of(probe) : text;
 }
 
-/// The name of a field or a mesh that fits, as JSON text.
+/// The name of a field, a mesh or curves that fit, as JSON text.
 std::string first_name(scene::Scene& scene, Role role) {
   if (role == Role::mesh) {
     const auto meshes = meshes_of(scene);
     return meshes.empty() ? "" : scene::text_of(meshes.front());
+  }
+  if (role == Role::curves) {
+    const auto all = curves_of(scene);
+    return all.empty() ? "" : scene::text_of(all.front());
   }
   const bool vectors = role == Role::vector_field;
   if (const std::string seen = drawn_field(scene); !vectors && use(scene, seen, false).get() != nullptr) return scene::text_of(seen);
@@ -138,7 +149,8 @@ std::string first_name(scene::Scene& scene, Role role) {
 
 std::string first_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length) {
   if (key.role == Role::level) return first_level(scene, link, probe);
-  if (key.role == Role::scalar_field || key.role == Role::vector_field || key.role == Role::mesh) return first_name(scene, key.role);
+  if (key.role == Role::scalar_field || key.role == Role::vector_field || key.role == Role::mesh || key.role == Role::curves)
+    return first_name(scene, key.role);
   switch (key.form) {
     case Form::number:
       return first_number(scene, key, length);
@@ -175,6 +187,7 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
                    (key.role == Role::vector_field   ? "vector field"
                     : key.role == Role::scalar_field ? "scalar field"
                     : key.role == Role::mesh         ? "mesh"
+                    : key.role == Role::curves       ? "set of curves"
                                                      : key.name) +
                    ", which the scene does not have"};
     if (auto node = json::parse(value, "link")) link.members.emplace_back(key.name, std::move(*node));
