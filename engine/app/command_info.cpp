@@ -115,6 +115,26 @@ void print_curves(const curves::CurveSet& set, const char* indent) {
   fmt::print("{}bytes        {} ({})\n", indent, set.bytes(), human_bytes(static_cast<double>(set.bytes())));
 }
 
+void print_points(const curves::PointSet& set, const char* indent) {
+  fmt::print("{}points       {}{}\n", indent, set.points.size(), set.note.empty() ? "" : " (" + set.note + ")");
+  fmt::print("{}spacing      {:.6g} in the median\n", indent, set.spacing);
+  fmt::print("{}world box    {} .. {}\n", indent, text(set.lowest), text(set.highest));
+  for (const curves::PointValues& one : set.values) {
+    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+    for (const float v : one.values)
+      if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
+    fmt::print("{}values       {}, {}\n", indent, in_quotes(one.name), lo <= hi ? fmt::format("{:.6g}..{:.6g}", lo, hi) : "none");
+  }
+  fmt::print("{}bytes        {} ({})\n", indent, set.bytes(), human_bytes(static_cast<double>(set.bytes())));
+}
+
+Outcome describe_points(const std::string& path) {
+  CATENA_TRY(const curves::PointSetPtr set, curves::load_points(path));
+  fmt::print("{}: table of points\n", printable(path));
+  print_points(*set, "  ");
+  return Done{};
+}
+
 Outcome describe_curves(const std::string& path) {
   CATENA_TRY(const curves::CurveSetPtr set, curves::load_curves(path));
   fmt::print("{}: curves\n", printable(path));
@@ -186,6 +206,13 @@ Outcome describe_scene(const std::string& path) {
     fmt::print("curves {}: {}\n", printable(scene.world.get<scene::Name>(e).value), printable(set->name));
     print_curves(*set, "  ");
   }
+  std::vector<scene::Entity> all_points;
+  scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints&) { all_points.push_back(e); });
+  for (const scene::Entity e : all_points) {
+    CATENA_TRY(const curves::PointSetPtr set, scene::use_points(scene, e));
+    fmt::print("points {}: {}\n", printable(scene.world.get<scene::Name>(e).value), printable(set->name));
+    print_points(*set, "  ");
+  }
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   if (scene.device) CATENA_CHECK(haptics::read_device_settings(*scene.device, scene.path));
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
@@ -230,7 +257,8 @@ void add_info(CLI::App& program, Work& chosen) {
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
   command->add_option("FILE", *path,
                       "a data file (" + joined(field::field_endings(true)) + "), a triangle mesh (" + joined(mesh::mesh_endings()) +
-                          "), curves (" + joined(curves::curve_endings()) + "), a scene (.json) or a recording (.catlog)");
+                          "), curves (" + joined(curves::curve_endings()) + "), a table of points (" + joined(curves::point_endings()) +
+                          "), a scene (.json) or a recording (.catlog)");
   command->add_flag("--schema", *schema, "print the JSON Schema of scenes instead, for an editor");
   command->add_option("--keys", *part, "list the keys of a part of a scene instead: volumes, chain, camera, ...");
   command->add_flag("--colormaps", *maps, "list the colour maps instead");
@@ -248,6 +276,7 @@ void add_info(CLI::App& program, Work& chosen) {
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
       if (is_log_file(*path)) return describe_log(*path);
       if (mesh::is_mesh_file(*path)) return describe_mesh(*path);
+      if (curves::is_point_file(*path)) return describe_points(*path);
       if (curves::is_curve_file(*path)) return describe_curves(*path);
       return is_scene_file(*path) ? describe_scene(*path) : describe_file(*path);
     };

@@ -7,6 +7,7 @@
 
 #include "engine/base/json.h"
 #include "engine/curves/load.h"
+#include "engine/curves/points.h"
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
@@ -129,6 +130,18 @@ struct DrawnCurves {
   curves::CurveSetPtr loaded;  ///< felt and drawn: one object; none before something asks for it
   double radius = 0;           ///< of the tubes; 0: fitted
   std::optional<Color> color;  ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
+  std::optional<ColorBy> color_by;
+  bool clipped = true;  ///< the clip planes count
+};
+
+/// Points from a table: drawn as balls, and felt by links that name them.
+struct DrawnPoints {
+  json::Node where;
+  std::string path;
+  curves::PointSetPtr loaded;  ///< felt and drawn: one object; none before something asks for it
+  double radius = 0;           ///< of all balls; 0: by `radius_by`, or fitted
+  std::string radius_by;       ///< the column that says each ball's; empty: the column "radius", where the table has one
+  Color color{0.9f, 0.75f, 0.45f};
   std::optional<ColorBy> color_by;
   bool clipped = true;  ///< the clip planes count
 };

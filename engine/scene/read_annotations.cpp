@@ -11,7 +11,8 @@ constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
 /// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
   return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
-         (world.has<DrawnCurves>(e) && world.get<DrawnCurves>(e).color_by);
+         (world.has<DrawnCurves>(e) && world.get<DrawnCurves>(e).color_by) ||
+         (world.has<DrawnPoints>(e) && world.get<DrawnPoints>(e).color_by);
 }
 
 template <class T>
@@ -44,16 +45,17 @@ Entity shown_field(const World& world, Entity field) {
     take(e, (other ? set.color_by->field : set.field) == field);
   });
   world.each<DrawnCurves>([&](Entity e, const DrawnCurves& curves) { take(e, curves.color_by && curves.color_by->field == field); });
+  world.each<DrawnPoints>([&](Entity e, const DrawnPoints& points) { take(e, points.color_by && points.color_by->field == field); });
   return found;
 }
 
 Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   int given = 0;
-  for (const char* key : {"volume", "slice", "streamlines", "curves", "field"}) given += item.find(key) != nullptr;
+  for (const char* key : {"volume", "slice", "streamlines", "curves", "points", "field"}) given += item.find(key) != nullptr;
   if (given != 1)
-    return json::error_at(
-        item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
-                  "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"curves\": INDEX, \"field\": NAME was expected");
+    return json::error_at(item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
+                                    "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"curves\": INDEX, \"points\": "
+                                    "INDEX, \"field\": NAME was expected");
   if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes");
   if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices");
   if (const json::Node* node = item.find("streamlines")) {
@@ -67,6 +69,12 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
     if (!has_colors(scene.world, curves))
       return json::error_at(*node, "these curves show no values; curves with \"color_by\" were expected for a scalar bar");
     return curves;
+  }
+  if (const json::Node* node = item.find("points")) {
+    CATENA_TRY(const Entity points, read_index<DrawnPoints>(scene, item, "points", "points"));
+    if (!has_colors(scene.world, points))
+      return json::error_at(*node, "these points show no values; points with \"color_by\" were expected for a scalar bar");
+    return points;
   }
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.world, field);
@@ -96,12 +104,13 @@ const Table<ScalarBar>& scalar_bar_table() {
     const auto index = [](const char* key, const char* of) {
       return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000).ranged("an index");
     };
-    t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"), index("curves", "curves"),
-             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the five.")},
-            [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
-              CATENA_TRY(bar.shown, read_shown(scene, item));
-              return Done{};
-            });
+    t.group(
+        {index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"), index("curves", "curves"),
+         index("points", "points"), schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the six.")},
+        [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
+          CATENA_TRY(bar.shown, read_shown(scene, item));
+          return Done{};
+        });
     t.bind(schema::text("title", "Over the bar.").by_default("the name of what is shown"), &ScalarBar::title);
     t.bind(schema::word("position", {"right", "left", "bottom", "top"}, "Where in the picture."), &ScalarBar::side);
     t.bind(schema::integer("ticks", "", "About so many.", 2, 50), &ScalarBar::ticks);
@@ -215,6 +224,7 @@ std::optional<ScalarBar> first_scalar_bar(const World& world) {
   world.each<Slice>([&](Entity e, const Slice&) { take(e); });
   world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { take(e); });
   world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) { take(e); });
+  world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) { take(e); });
   return bar;
 }
 

@@ -74,8 +74,6 @@ Outcome read_curves(Scene& scene, const json::Node& node) {
 
 }  // namespace
 
-Part curves_part() {
-  return {list_of("curves", "Curves from a file, such as the fibres of a tractogram.", curves_table()), read_curves};
-}
+Part curves_part() { return {list_of("curves", "Curves from a file, such as the fibres of a tractogram.", curves_table()), read_curves}; }
 
 }  // namespace catena::scene

@@ -60,6 +60,9 @@ Outcome read_object(const Scene& scene, const json::Node& node, ColorSubjects su
   if (subjects == ColorSubjects::curves && (field != nullptr) + (quantity != nullptr) + (value != nullptr) != 1)
     return json::error_at(node,
                           "\"color_by\" names none or several of \"field\", \"value\" and \"quantity\"; exactly one of them was expected");
+  if (subjects == ColorSubjects::points && (field != nullptr) == (value != nullptr))
+    return json::error_at(node, std::string("\"color_by\" names ") + (field != nullptr ? "both" : "neither") +
+                                    " \"field\" and \"value\"; exactly one of them was expected");
   if (value != nullptr) {
     by.what = ColorBy::What::value;
     CATENA_TRY(by.value, json::require_string(node, "value"));
@@ -110,6 +113,8 @@ Key color_by_key(ColorSubjects subjects) {
   if (subjects == ColorSubjects::lines)
     keys.push_back(schema::word("quantity", {std::string(kQuantities[0]), std::string(kQuantities[1])},
                                 "Or what the line itself knows: one of `field` and `quantity`."));
+  else if (subjects == ColorSubjects::points)
+    keys.push_back(schema::text("value", "Or a column of the table, by its name: one of the two."));
   else if (subjects == ColorSubjects::curves) {
     keys.push_back(schema::text("value", "Or what the file says at each point, by its name there."));
     keys.push_back(schema::word("quantity", {std::string(kQuantities[1])}, "Or the way along the line: one of the three."));

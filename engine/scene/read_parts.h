@@ -34,6 +34,7 @@ Part slices_part();
 Part meshes_part();
 Part streamlines_part();
 Part curves_part();
+Part points_part();
 Part indicator_part();
 Part clip_part();
 Part camera_part();
@@ -130,8 +131,9 @@ schema::Component list_of(const std::string& name, const std::string& help, cons
 /// "color_by": colours that follow values, one shape wherever it stands. Inside this room only.
 
 /// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), lines (which know their speed and
-/// length, too), or curves from a file (which know their length and the file's values).
-enum class ColorSubjects { rays, surfaces, lines, curves };
+/// length, too), curves from a file (which know their length and the file's values), or points
+/// (the file's values).
+enum class ColorSubjects { rays, surfaces, lines, curves, points };
 
 Key color_by_key(ColorSubjects subjects);
 /// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.

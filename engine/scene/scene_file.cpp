@@ -12,39 +12,13 @@ namespace {
 /// All parts, in the order in which they are read: fields first, which the others name; widgets name links;
 /// what follows a widget names it; scalar bars name what is drawn.
 const std::vector<Part>& parts() {
-  static const std::vector<Part> all{fields_part(),
-                                     chain_part(),
-                                     widgets_part(),
-                                     modes_part(),
-                                     coupling_part(),
-                                     workspace_part(),
-                                     device_part(),
-                                     volumes_part(),
-                                     isosurfaces_part(),
-                                     meshes_part(),
-                                     slices_part(),
-                                     streamlines_part(),
-                                     curves_part(),
-                                     indicator_part(),
-                                     cursor_part(),
-                                     scalar_bars_part(),
-                                     labels_part(),
-                                     title_part(),
-                                     orientation_marker_part(),
-                                     status_part(),
-                                     overlay_part(),
-                                     camera_part(),
-                                     stereo_part(),
-                                     background_part(),
-                                     quality_part(),
-                                     clip_part(),
-                                     jitter_part(),
-                                     bounding_box_part(),
-                                     axes_part(),
-                                     ground_part(),
-                                     fog_part(),
-                                     lights_part(),
-                                     unit_length_part()};
+  static const std::vector<Part> all{fields_part(),    chain_part(),       widgets_part(), modes_part(),        coupling_part(),
+                                     workspace_part(), device_part(),      volumes_part(), isosurfaces_part(),  meshes_part(),
+                                     slices_part(),    streamlines_part(), curves_part(),  points_part(),       indicator_part(),
+                                     cursor_part(),    scalar_bars_part(), labels_part(),  title_part(),        orientation_marker_part(),
+                                     status_part(),    overlay_part(),     camera_part(),  stereo_part(),       background_part(),
+                                     quality_part(),   clip_part(),        jitter_part(),  bounding_box_part(), axes_part(),
+                                     ground_part(),    fog_part(),         lights_part(),  unit_length_part()};
   return all;
 }
 

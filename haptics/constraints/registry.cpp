@@ -29,6 +29,7 @@ std::vector<ConstraintType>& list_of_types() {
       segment_constraint(),             //
       polyline_constraint(),            //
       curves_constraint(),              //
+      points_constraint(),              //
       plane_constraint(),               //
       sphere_constraint(),              //
       box_constraint(),                 //

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
-#include "engine/curves/curves.h"
+#include "engine/curves/points.h"
 #include "engine/flow/curve.h"
 #include "engine/mesh/mesh.h"
 #include "engine/schema/key.h"
@@ -25,6 +25,8 @@ struct BuildContext {
   std::function<Result<mesh::MeshPtr>(const json::Node& where, const std::string& name)> mesh;
   /// The same of curves from a file.
   std::function<Result<curves::CurveSetPtr>(const json::Node& where, const std::string& name)> curves;
+  /// The same of points from a table.
+  std::function<Result<curves::PointSetPtr>(const json::Node& where, const std::string& name)> points;
 };
 
 struct ConstraintType {

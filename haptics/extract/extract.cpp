@@ -82,6 +82,11 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
     recipe.add(set->version);
     return set;
   };
+  noting.points = [&](const json::Node& where, const std::string& name) -> Result<curves::PointSetPtr> {
+    CATENA_TRY(curves::PointSetPtr set, context.points(where, name));
+    recipe.add(set->version);
+    return set;
+  };
   link.name = from.find("name")->string;
   CATENA_TRY(link.stiffness_n_per_m, get_parameter(from, "stiffness", coupling.stiffness_n_per_m, json::Range::not_negative, noting));
   CATENA_TRY(link.on, read_switch(from));
@@ -170,6 +175,7 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, cons
   };
   context.mesh = [&scene](const json::Node& where, const std::string& name) { return scene::use_mesh(scene, name, where); };
 
+  context.points = [&scene](const json::Node& where, const std::string& name) { return scene::use_points(scene, name, where); };
   context.curves = [&scene](const json::Node& where, const std::string& name) { return scene::use_curves(scene, name, where); };
 
   auto program = std::make_shared<Program>();

@@ -107,6 +107,12 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
     const SliceItem* slice = slice_item(world, e, packet);
     return slice ? Shown{slice->colors, named(world.get<scene::Slice>(e).shown.field)} : Shown{};
   }
+  if (world.has<scene::DrawnPoints>(e)) {
+    const auto* points = shown_point_colors(scene.made, e);
+    if (points == nullptr) return {};
+    const scene::ColorBy& by = *world.get<scene::DrawnPoints>(e).color_by;
+    return {rows_of(*points), by.what == scene::ColorBy::What::field ? named(by.field) : by.value};
+  }
   if (world.has<scene::DrawnCurves>(e)) {
     const auto* points = shown_curve_colors(scene.made, e);
     if (points == nullptr) return {};

@@ -264,6 +264,13 @@ View first_view(const scene::Scene& scene, const FramePacket& packet) {
   for (const MeshItem& mesh : packet.meshes)
     clouds.push_back({mesh.clipped ? kept(mesh.geometry->vertices, packet) : mesh.geometry->vertices});
   add_tubes(packet, clouds);
+  for (const BallsItem& item : packet.balls) {
+    constexpr std::size_t kMost = 200000;
+    std::vector<Vec3> places;
+    for (std::size_t i = 0; i < item.balls->places.size(); i += 1 + item.balls->places.size() / kMost)
+      places.push_back(Vec3(item.balls->places[i]));
+    clouds.push_back({item.clipped ? kept(std::move(places), packet) : std::move(places)});
+  }
   Bounds rest;
   for (const ArrowItem& arrow : packet.arrows) rest.add(arrow.tip);
   for (const IndicatorItem& indicator : packet.indicators)

@@ -49,6 +49,9 @@ std::string what_is_drawn(const render::FramePacket& packet) {
       packet.tubes, [&](const render::TubeItem& tube) { return tube.id > 0 && packet.objects[tube.id - 1].kind == "curves"; }));
   add(packet.tubes.size() - curves, "streamline", "streamlines");
   add(curves, "curve", "curves");
+  std::size_t balls = 0;
+  for (const render::BallsItem& item : packet.balls) balls += item.balls->places.size();
+  add(balls, "point", "points");
   add(packet.cursors.size(), "cursor", "cursors");
   return text.empty() ? "nothing" : text;
 }

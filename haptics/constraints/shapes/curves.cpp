@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
-#include <map>
-#include <mutex>
-
+#include "haptics/constraints/rules/morton.h"
+#include "haptics/constraints/rules/shared_tree.h"
 #include "haptics/constraints/shapes/along_pieces.h"
 #include "haptics/constraints/shapes/shapes.h"
 
@@ -12,16 +11,6 @@ namespace {
 constexpr std::uint32_t kRun = 8;  // pieces of a leaf
 constexpr double kLeastLength = 1e-30;
 constexpr std::size_t kNoLine = ~std::size_t{0};
-
-/// The bits of x, y and z in turn: neighbours along this order are mostly neighbours in space. G. M. Morton, IBM technical report (1966).
-std::uint64_t spread(std::uint64_t x) {
-  x &= 0x1fffff;
-  x = (x | x << 32) & 0x1f00000000ffff;
-  x = (x | x << 16) & 0x1f0000ff0000ff;
-  x = (x | x << 8) & 0x100f00f00f00f00f;
-  x = (x | x << 4) & 0x10c30c30c30c30c3;
-  return (x | x << 2) & 0x1249249249249249;
-}
 
 /// Lines and what finds the closest of them. Piece k leads from point k to the next one.
 struct LineTree {
@@ -67,30 +56,13 @@ struct LineTree {
     order.reserve(runs.size());
     for (const std::uint32_t run : runs) {
       const Tree::Box box = box_of(run);
-      std::uint64_t code = 0;
-      for (int i = 0; i < 3; ++i) {
-        const double share = (0.5 * (static_cast<double>(box.lo[i]) + static_cast<double>(box.hi[i])) - set->lowest[i]) / edge;
-        code |= spread(static_cast<std::uint64_t>(std::clamp(share, 0.0, 1.0) * 2097151)) << i;
-      }
-      order.emplace_back(code, run);
+      order.emplace_back(morton_code(Vec3(box.lo) * 0.5 + Vec3(box.hi) * 0.5, set->lowest, edge), run);
     }
     std::sort(order.begin(), order.end());
     for (std::size_t i = 0; i < runs.size(); ++i) runs[i] = order[i].second;
   }
 };
 using LineTreePtr = std::shared_ptr<const LineTree>;
-
-/// The one tree of (curves, line), while something holds it.
-LineTreePtr shared_tree(const curves::CurveSetPtr& set, std::size_t line) {
-  static std::mutex mutex;
-  static std::map<std::pair<std::uint64_t, std::size_t>, std::weak_ptr<const LineTree>> trees;
-  const std::lock_guard lock(mutex);
-  std::erase_if(trees, [](const auto& entry) { return entry.second.expired(); });
-  std::weak_ptr<const LineTree>& known = trees[{set->version, line}];
-  LineTreePtr tree = known.lock();
-  if (!tree) known = tree = std::make_shared<const LineTree>(set, line);
-  return tree;
-}
 
 struct FileLines {
   static constexpr int kFirstVisits = 512, kVisits = 256, kVisitWork = 6, kMostPieces = 1024;
@@ -132,7 +104,7 @@ Result<std::shared_ptr<const Constraint>> build_curves(const json::Node& link, c
   CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
   if (const auto enough = ask_for_memory(fmt::format("feeling curves \"{}\"", name), LineTree::bytes_for(*set)); !enough)
     return json::error_at(*link.find("curves"), enough.error().message);
-  FileLines shape{shared_tree(set, line)};
+  FileLines shape{shared_tree<LineTree>(set->version, line, [&] { return std::make_shared<const LineTree>(set, line); })};
   if (!(shape.extent() >= kLeastLength))
     return json::error_at(*link.find("curves"),
                           fmt::format("the lines span {}; an extent of at least {} was expected", shape.extent(), kLeastLength));

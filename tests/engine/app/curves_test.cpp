@@ -93,8 +93,8 @@ TEST_F(CurvePictures, OneColourValuesAndLengths) {
   ASSERT_TRUE(lengths);
   EXPECT_NEAR(lengths->tubes[0].colors[5].r, 0.25, 1e-5);
 
-  const auto field = packet_of(scene_of(R"(, "color_by": {"field": "x", "color": [[-1, 0, 0, 0], [1, 1, 0, 0]]})",
-                                        R"(, "fields": {"x": {"analytic": "linear"}})"));
+  const auto field = packet_of(
+      scene_of(R"(, "color_by": {"field": "x", "color": [[-1, 0, 0, 0], [1, 1, 0, 0]]})", R"(, "fields": {"x": {"analytic": "linear"}})"));
   ASSERT_TRUE(field) << field.error().message;
   EXPECT_NEAR(field->tubes[0].colors[13].r, 0.5 + 0.5 * (0.3 + 0.4), 1e-5) << "x + y + z";
 }
@@ -123,6 +123,76 @@ TEST_F(CurvePictures, VeryManyAreDrawnInPartAndSaySo) {
   EXPECT_EQ(packet->tubes.size(), 10u);
   EXPECT_EQ(packet->left_out,
             "curves \"many\": 10 of 11 lines are drawn, evenly chosen, so that they have about 2000000 points; all are felt");
+}
+
+TEST_F(CurvePictures, BallsAreRoundLitAndWhereTheyAre) {
+  test::write_file(folder_ / "p.csv", "x,y,z,v,size\n0,0,0,0,0.5\n1.5,0,0,1,0.25\n0,5,0,2,nan\n");
+  for (const bool flat : {false, true}) {
+    const std::string camera = flat ? R"("projection": "orthographic", "height": 3)" : R"("fovy_deg": 30)";
+    const auto packet = packet_of(R"({"points": [{"name": "p", "file": "p.csv", "radius_by": "size",
+                                       "color_by": {"value": "v", "color": [[0, 1, 0, 0], [1, 0, 1, 0], [2, 0, 0, 1]]}}],
+                                      "scalar_bars": [{"points": 0}],
+                                      "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], )" +
+                                  camera + "}}");
+    ASSERT_TRUE(packet) << packet.error().message;
+    ASSERT_EQ(packet->balls.size(), 1u);
+    EXPECT_EQ(packet->balls[0].balls->places.size(), 2u) << "one has no radius";
+    EXPECT_EQ(packet->overlay.scalar_bars.size(), 1u);
+    const auto picture = draw(*packet, {}, flat ? "flat" : "perspective");
+    EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).r, 1, 0.02);
+    EXPECT_NEAR(hue_at(*packet, picture, {1.5, 0, 0}).g, 1, 0.02);
+    // every pixel: the ball's nearest depth by its formula, or nothing
+    const auto camera_now = render::make_camera(packet->view, packet->width, packet->height, Bounds());
+    const auto depth = renderer_->read_depth();
+    ASSERT_TRUE(depth);
+    int on = 0, wrong = 0;
+    for (std::uint32_t y = 0; y < packet->height; ++y)
+      for (std::uint32_t x = 0; x < packet->width; ++x) {
+        const Vec3 a = render::unproject(camera_now, x + 0.5, y + 0.5, 1), b = render::unproject(camera_now, x + 0.5, y + 0.5, 9);
+        const Vec3 ray = direction(b - a);
+        double expected = std::numeric_limits<double>::infinity();
+        for (const auto& [centre, radius] : {std::pair{Vec3(0.0), 0.5}, {Vec3(1.5, 0, 0), 0.25}}) {
+          const Vec3 off = a - centre;
+          const double root = radius * radius - dot(off, off) + dot(off, ray) * dot(off, ray);
+          if (root > 0) expected = std::min(expected, 6 - (a + ray * (-dot(off, ray) - std::sqrt(root))).z);
+        }
+        const double seen = depth->depth[y * packet->width + x];
+        on += std::isfinite(expected);
+        wrong += std::isfinite(seen) != std::isfinite(expected) || (std::isfinite(seen) && std::fabs(seen - expected) > 0.01);
+      }
+    EXPECT_GT(on, 1000);
+    EXPECT_LE(wrong, on / 100) << "of " << on;
+  }
+}
+
+TEST_F(CurvePictures, AClippedBallShowsItsInside) {
+  test::write_file(folder_ / "p.csv", "x,y,z\n0,0,0\n");
+  const auto packet = packet_of(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "color": [0, 1, 0]}],
+                                    "clip": [{"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}],
+                                    "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}})");
+  ASSERT_TRUE(packet) << packet.error().message;
+  const auto picture = draw(*packet);
+  EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).g, 1, 0.02);
+  const auto depth = renderer_->read_depth();
+  ASSERT_TRUE(depth);
+  EXPECT_NEAR(depth->depth[96 * 256 + 128], 7, 0.01) << "the far half";
+}
+
+TEST(CurveScenes, PointTablesByTheirHeader) {
+  test::TemporaryFolder folder;
+  test::write_file(folder / "table.csv", "id,x,y,z,mass\n1,0,0,0,7\n2,3,4,0,9\n");
+  auto scene = scene::scene_for_file(folder / "table.csv");
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->notes.size(), 1u);
+  EXPECT_NE(scene->notes[0].find("a table of points (it has columns x, y, z): 2 of them as balls, coloured by \"mass\""), std::string::npos)
+      << scene->notes[0];
+  ASSERT_TRUE(render::make_frame(*scene, 64, 48));
+  test::write_file(folder / "other.csv", "t,force\n1,0\n");
+  const auto other = test::run_catena({"render", folder / "other.csv", "-o", folder / "a.png"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("no column is called x"), std::string::npos) << other.err;
+  const auto info = test::run_catena({"info", folder / "table.csv"});
+  EXPECT_NE(info.out.find("spacing      5 in the median"), std::string::npos) << info.out;
 }
 
 TEST(CurveScenes, BareFilesAndInfo) {
@@ -160,6 +230,11 @@ TEST(CurveScenes, MessagesNameThePlace) {
          "the file has no values called \"fa\"; known: none");
   expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {}}]})", "exactly one of them was expected");
   expect(R"({"curves": [{"name": "a", "file": "a.tck"}], "scalar_bars": [{"curves": 0}]})", "show no values");
+  test::write_file(folder / "p.csv", "x,y,z,v\n1,2,3,4\n");
+  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius_by": "w"}]})", "no column of numbers called \"w\"; known: v");
+  expect(R"({"points": [{"name": "p", "file": "p.csv", "color_by": {"value": "w"}}]})", "no column of numbers called \"w\"; known: v");
+  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "radius_by": "v"}]})", "stands beside \"radius\"");
+  expect(R"({"points": [{"name": "p", "file": "p.csv"}], "scalar_bars": [{"points": 0}]})", "show no values");
   test::write_file(folder / "a.tck", "mrtrix tracks\n");
   expect(R"({"curves": [{"name": "a", "file": "a.tck"}]})", "a line END was expected");
 }

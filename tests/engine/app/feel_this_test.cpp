@@ -225,6 +225,24 @@ TEST_F(FeelThis, CurvesFromAFileAreTheLineThatIsPointedAt) {
   EXPECT_GE(held.size(), 4u) << "the picture shows many lines";
 }
 
+TEST_F(FeelThis, PointsOfATableAreThePointThatIsPointedAt) {
+  std::string table = "x,y,z\n";
+  std::uniform_real_distribution<double> place(-0.9, 0.9);
+  for (int k = 0; k < 60; ++k) table += fmt::format("{},{},{}\n", place(random_), place(random_), place(random_));
+  test::write_file(folder_ / "table.csv", table);
+  show(R"({"points": [{"name": "dots", "file": ")" + (folder_ / "table.csv") + R"(", "radius": 0.06}],
+           "workspace": {"metres_per_unit": 0.05}})");
+  for (int k = 0; k < kPixels; ++k) {
+    const auto at = random_place("points");
+    ASSERT_TRUE(at);
+    EXPECT_LE(norm(at->world - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(at->world)) << "picked where it is drawn";
+    const Felt felt = feel_at(*at, 0.03);
+    EXPECT_EQ(felt.words, "points dots");
+    EXPECT_NEAR(norm(felt.pressed - at->world), 0.06, 1e-6) << "the middle of the ball";
+    EXPECT_GT(felt.force_n, 0.05);
+  }
+}
+
 TEST_F(FeelThis, TheFreeSideIsTheEyesAlsoOfAMeshWhoseFacesLookInwards) {
   mesh::Soup soup = test::sphere_soup(16, 0.8);
   test::write_file(folder_ / "out.stl", test::binary_stl(soup));
@@ -255,7 +273,8 @@ TEST_F(FeelThis, WhatIsFeltAlreadyIsSaidAndWhatCannotBeFeltSaysWhy) {
   EXPECT_NE(feel(host_->scene(), "volumes[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("point at it"), std::string::npos);
   EXPECT_NE(feel(host_->scene(), "slices[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("widget"), std::string::npos);
   EXPECT_FALSE(can_feel("lights"));
-  for (const char* part : {"isosurfaces", "streamlines", "slices", "meshes", "curves", "volumes"}) EXPECT_TRUE(can_feel(part)) << part;
+  for (const char* part : {"isosurfaces", "streamlines", "slices", "meshes", "curves", "points", "volumes"})
+    EXPECT_TRUE(can_feel(part)) << part;
 }
 
 }  // namespace feel_this_test

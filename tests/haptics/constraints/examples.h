@@ -39,6 +39,17 @@ inline catena::test::Polylines random_fibres(int lines, int points, double step)
   return all;
 }
 
+inline curves::PointSetPtr point_cloud(int count) {
+  Random random(23);
+  std::string table = "x,y,z\n";
+  for (int i = 0; i < count; ++i) {
+    const Vec3 p = random.box(1);
+    table += fmt::format("{},{},{}\n", p.x, p.y, p.z);
+  }
+  auto set = curves::parse_points(table, "made.csv");
+  return set ? std::make_shared<const curves::PointSet>(std::move(*set)) : nullptr;
+}
+
 /// Examples by type, without name and type. Fields: see fields().
 inline std::map<std::string, std::vector<std::string>> examples() {
   return {
@@ -82,6 +93,7 @@ inline std::map<std::string, std::vector<std::string>> examples() {
       {"curves",
        {R"("curves": "fibres")", R"("curves": "fibres", "release": 0.3)", R"("curves": "fibres", "line": 7)",
         R"("curves": "fibres", "line": 120, "release": 0.2)", R"("curves": "two")"}},
+      {"points", {R"("points": "cloud")", R"("points": "cloud", "release": 0.3)", R"("points": "one")"}},
       {"viscosity",
        {R"("time": 0.05)", R"("time": 0)", R"("coefficient": 2)", R"("time": {"field": "gaussian", "map": [[0, 0], [1, 1]]})"}},
       {"gradient_force",
@@ -163,6 +175,8 @@ inline const Fields& fields() {
     catena::test::add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
     catena::test::add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
     made.meshes["book"] = catena::test::mesh_of(std::move(book));
+    made.points["cloud"] = point_cloud(2000);
+    made.points["one"] = point_cloud(1);
     made.curves["fibres"] = catena::test::curves_of(random_fibres(200, 60, 0.1));
     made.curves["two"] = catena::test::curves_of({{{-1, 0, 0}, {1, 0, 0}}, {{0, 1e-12, -1}, {0, 0, 1}}});
     return made;

@@ -88,12 +88,17 @@ std::vector<std::string> meshes_of(const scene::Scene& scene) {
   return out;
 }
 
-std::vector<std::string> curves_of(const scene::Scene& scene) {
+namespace {
+template <class T>
+std::vector<std::string> names_of(const scene::Scene& scene) {
   std::vector<std::string> out;
-  scene.world.each<scene::DrawnCurves>(
-      [&](scene::Entity entity, const scene::DrawnCurves&) { out.push_back(scene.world.get<scene::Name>(entity).value); });
+  scene.world.each<T>([&](scene::Entity entity, const T&) { out.push_back(scene.world.get<scene::Name>(entity).value); });
   return out;
 }
+}  // namespace
+
+std::vector<std::string> curves_of(const scene::Scene& scene) { return names_of<scene::DrawnCurves>(scene); }
+std::vector<std::string> points_of(const scene::Scene& scene) { return names_of<scene::DrawnPoints>(scene); }
 
 namespace {
 
@@ -134,8 +139,8 @@ std::string first_name(scene::Scene& scene, Role role) {
     const auto meshes = meshes_of(scene);
     return meshes.empty() ? "" : scene::text_of(meshes.front());
   }
-  if (role == Role::curves) {
-    const auto all = curves_of(scene);
+  if (role == Role::curves || role == Role::points) {
+    const auto all = role == Role::curves ? curves_of(scene) : points_of(scene);
     return all.empty() ? "" : scene::text_of(all.front());
   }
   const bool vectors = role == Role::vector_field;
@@ -149,7 +154,8 @@ std::string first_name(scene::Scene& scene, Role role) {
 
 std::string first_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length) {
   if (key.role == Role::level) return first_level(scene, link, probe);
-  if (key.role == Role::scalar_field || key.role == Role::vector_field || key.role == Role::mesh || key.role == Role::curves)
+  if (key.role == Role::scalar_field || key.role == Role::vector_field || key.role == Role::mesh || key.role == Role::curves ||
+      key.role == Role::points)
     return first_name(scene, key.role);
   switch (key.form) {
     case Form::number:
@@ -188,6 +194,7 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
                     : key.role == Role::scalar_field ? "scalar field"
                     : key.role == Role::mesh         ? "mesh"
                     : key.role == Role::curves       ? "set of curves"
+                    : key.role == Role::points       ? "set of points"
                                                      : key.name) +
                    ", which the scene does not have"};
     if (auto node = json::parse(value, "link")) link.members.emplace_back(key.name, std::move(*node));

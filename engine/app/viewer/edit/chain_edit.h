@@ -58,5 +58,6 @@ std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b)
 std::vector<std::string> fields_of(const scene::Scene& scene, bool vectors);
 std::vector<std::string> meshes_of(const scene::Scene& scene);
 std::vector<std::string> curves_of(const scene::Scene& scene);
+std::vector<std::string> points_of(const scene::Scene& scene);
 
 }  // namespace catena::app

@@ -192,7 +192,7 @@ Result<AddedFile> edits_to_add(const std::string& open_text, const std::string& 
   std::set<std::string> fields, things;
   if (const json::Node* there = open.find("fields"))
     for (const auto& [name, node] : there->members) fields.insert(name);
-  for (const char* part : {"meshes", "curves"})
+  for (const char* part : {"meshes", "curves", "points"})
     if (const json::Node* there = open.find(part))
       for (const json::Node& item : there->items)
         if (const json::Node* name = item.find("name")) things.insert(name->string);
@@ -209,7 +209,7 @@ Result<AddedFile> edits_to_add(const std::string& open_text, const std::string& 
     const auto found = std::ranges::find(result.names, name, &std::pair<std::string, std::string>::first);
     return found == result.names.end() ? name : found->second;
   };
-  for (const char* part : {"meshes", "curves", "volumes", "streamlines"}) {
+  for (const char* part : {"meshes", "curves", "points", "volumes", "streamlines"}) {
     json::Node* items = member_of(added, part);
     if (items == nullptr) continue;
     for (json::Node& item : items->items) {

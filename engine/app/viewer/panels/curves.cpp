@@ -1,4 +1,4 @@
-// Curves from files: one colour, those of the directions, or those of values; their plain keys.
+// Points from tables, and curves from files: one colour, those of the directions, or those of values; their plain keys.
 #include "engine/app/viewer/edit/scene_items.h"
 #include "engine/app/viewer/panels/look_parts.h"
 #include "engine/scene/hidden.h"
@@ -26,8 +26,23 @@ void draw_curves(PanelContext& context) {
   });
 }
 
+void draw_points(PanelContext& context) {
+  Edits& edits = context.edits;
+  const scene::Scene& scene = context.scene.scene();
+  scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints& points) {
+    if (!begin_item(edits, points.where, !is_hidden(scene.world, e), "points", name_of(scene, e))) return;
+    if (points.color_by)
+      edit_color_scale(edits, points.where, *points.color_by);
+    else
+      edit_color(edits, "colour", points.color, pointer_of(points.where) + "/color");
+    edit_plain_keys(edits, "points", points.where, {});
+    end_item();
+  });
+}
+
 }  // namespace
 
+Panel points_panel() { return {"Points", false, draw_points, has_any<scene::DrawnPoints>}; }
 Panel curves_panel() { return {"Curves", false, draw_curves, has_any<scene::DrawnCurves>}; }
 
 }  // namespace catena::app

@@ -9,6 +9,7 @@
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/curves/load.h"
+#include "engine/curves/points.h"
 #include "engine/field/formats.h"
 #include "engine/mesh/load.h"
 
@@ -33,6 +34,7 @@ const std::vector<std::string_view>& openable_endings() {
     for (const std::string_view ending : field::field_endings(true)) all.push_back(ending);
     for (const std::string_view ending : mesh::mesh_endings()) all.push_back(ending);
     for (const std::string_view ending : curves::curve_endings()) all.push_back(ending);
+    for (const std::string_view ending : curves::point_endings()) all.push_back(ending);
     return all;
   }();
   return endings;
