@@ -102,9 +102,9 @@ Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec
 
 /// The widget of that name.
 Entity find_widget(const Scene& scene, std::string_view name);
-/// The widget as the tick takes it: sizes that the scene does not state follow L, the longest edge of the domain boxes of the fields and
-/// meshes that the scene draws or the widget names (without any: of those that its links name; else 4). An isolevel's field is loaded and
-/// its value set. `along` is left to the maker of the program, which knows the links. Completed once.
+/// The widget as the tick takes it: sizes that the scene does not state follow L, the longest edge of the domain boxes of the fields,
+/// meshes, curves and points that the scene draws or the widget names (without any: of those that its links name; else 4). An isolevel's
+/// field is loaded and its value set. `along` is left to the maker of the program, which knows the links. Completed once.
 Result<widget::Spec> use_widget(Scene& scene, Entity widget);
 
 /// Checks that a level can be drawn and felt: it lies within the field's values.
