@@ -188,13 +188,13 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
     const auto known = std::ranges::find(given, key.name, &std::pair<std::string, std::string>::first);
     if (known == given.end() && !key.is_required && !key.is_stated) continue;
     const std::string value = known != given.end() ? known->second : first_value(scene, key, link, probe, length);
+    if (value.empty() && (key.role == Role::curves || key.role == Role::points))
+      return Error{key.name + " cannot be felt, for the scene has none"};
     if (value.empty())
       return Error{"a " + std::string(type) + " needs a " +
                    (key.role == Role::vector_field   ? "vector field"
                     : key.role == Role::scalar_field ? "scalar field"
                     : key.role == Role::mesh         ? "mesh"
-                    : key.role == Role::curves       ? "set of curves"
-                    : key.role == Role::points       ? "set of points"
                                                      : key.name) +
                    ", which the scene does not have"};
     if (auto node = json::parse(value, "link")) link.members.emplace_back(key.name, std::move(*node));
