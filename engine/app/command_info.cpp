@@ -94,6 +94,54 @@ Outcome describe_mesh(const std::string& path) {
   return Done{};
 }
 
+void print_curves(const curves::CurveSet& set, const char* indent) {
+  double longest = 0, all = 0;
+  for (std::size_t k = 0; k < set.lines(); ++k) {
+    double length = 0;
+    for (std::size_t i = set.first[k] + 1; i < set.first[k + 1]; ++i) length += norm(Vec3(set.points[i]) - Vec3(set.points[i - 1]));
+    longest = std::max(longest, length);
+    all += length;
+  }
+  const std::string unit = set.unit.empty() ? "" : " " + set.unit;
+  fmt::print("{}lines        {}{}\n", indent, set.lines(), set.note.empty() ? "" : " (" + set.note + ")");
+  fmt::print("{}points       {}\n", indent, set.points.size());
+  fmt::print("{}lengths      {:.6g}{} in the mean, the longest {:.6g}{}\n", indent, all / static_cast<double>(set.lines()), unit, longest,
+             unit);
+  fmt::print("{}world box    {} .. {}\n", indent, text(set.lowest), text(set.highest));
+  for (const curves::PointValues& one : set.values) {
+    const auto [lo, hi] = std::ranges::minmax(one.values);
+    fmt::print("{}values       {}, {:.6g}..{:.6g}\n", indent, in_quotes(one.name), lo, hi);
+  }
+  fmt::print("{}bytes        {} ({})\n", indent, set.bytes(), human_bytes(static_cast<double>(set.bytes())));
+}
+
+void print_points(const curves::PointSet& set, const char* indent) {
+  fmt::print("{}points       {}{}\n", indent, set.points.size(), set.note.empty() ? "" : " (" + set.note + ")");
+  fmt::print("{}spacing      {:.6g} in the median\n", indent, set.spacing);
+  fmt::print("{}world box    {} .. {}\n", indent, text(set.lowest), text(set.highest));
+  for (const curves::PointValues& one : set.values) {
+    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+    for (const float v : one.values)
+      if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
+    fmt::print("{}values       {}, {}\n", indent, in_quotes(one.name), lo <= hi ? fmt::format("{:.6g}..{:.6g}", lo, hi) : "none");
+  }
+  fmt::print("{}bytes        {} ({})\n", indent, set.bytes(), human_bytes(static_cast<double>(set.bytes())));
+}
+
+Outcome describe_points(const std::string& path) {
+  CATENA_TRY(const curves::PointSetPtr set, curves::load_points(path));
+  fmt::print("{}: table of points\n", printable(path));
+  print_points(*set, "  ");
+  return Done{};
+}
+
+Outcome describe_curves(const std::string& path) {
+  CATENA_TRY(const curves::CurveSetPtr set, curves::load_curves(path));
+  fmt::print("{}: curves\n", printable(path));
+  print_curves(*set, "  ");
+  return Done{};
+}
+
 /// Pose and sizes; what a ruler reads.
 Outcome describe_widgets(scene::Scene& scene) {
   std::vector<scene::Entity> widgets;
@@ -151,6 +199,20 @@ Outcome describe_scene(const std::string& path) {
     fmt::print("mesh {}: {}\n", printable(scene.world.get<scene::Name>(e).value), printable(scene.world.get<scene::MeshSource>(e).path));
     print_mesh(*mesh, "  ");
   }
+  std::vector<scene::Entity> all_curves;
+  scene.world.each<scene::DrawnCurves>([&](scene::Entity e, const scene::DrawnCurves&) { all_curves.push_back(e); });
+  for (const scene::Entity e : all_curves) {
+    CATENA_TRY(const curves::CurveSetPtr set, scene::use_curves(scene, e));
+    fmt::print("curves {}: {}\n", printable(scene.world.get<scene::Name>(e).value), printable(set->name));
+    print_curves(*set, "  ");
+  }
+  std::vector<scene::Entity> all_points;
+  scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints&) { all_points.push_back(e); });
+  for (const scene::Entity e : all_points) {
+    CATENA_TRY(const curves::PointSetPtr set, scene::use_points(scene, e));
+    fmt::print("points {}: {}\n", printable(scene.world.get<scene::Name>(e).value), printable(set->name));
+    print_points(*set, "  ");
+  }
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   if (scene.device) CATENA_CHECK(haptics::read_device_settings(*scene.device, scene.path));
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
@@ -166,8 +228,9 @@ Outcome describe_scene(const std::string& path) {
   else
     fmt::print(
         "workspace: not stated; replay takes 1 world unit for 1 m of the hand, view and feel fit the data into the device's reach\n");
-  fmt::print("drawn: {} volumes, {} isosurfaces, {} meshes, {} streamline sets\n", scene.world.count<scene::Volume>(),
-             scene.world.count<scene::Isosurface>(), scene.world.count<scene::SurfaceMesh>(), scene.world.count<scene::StreamlineSet>());
+  fmt::print("drawn: {} volumes, {} isosurfaces, {} meshes, {} streamline sets{}\n", scene.world.count<scene::Volume>(),
+             scene.world.count<scene::Isosurface>(), scene.world.count<scene::SurfaceMesh>(), scene.world.count<scene::StreamlineSet>(),
+             all_curves.empty() ? "" : fmt::format(", {} sets of curves", all_curves.size()));
   return Done{};
 }
 
@@ -192,7 +255,9 @@ void add_info(CLI::App& program, Work& chosen) {
   auto schema = std::make_shared<bool>(false), maps = std::make_shared<bool>(false), formats = std::make_shared<bool>(false);
   auto part = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
-  command->add_option("FILE", *path, "a data file, a folder of DICOM images, a triangle mesh, a scene (.json) or a recording (.catlog)");
+  command->add_option(
+      "FILE", *path,
+      "a data file, a folder of DICOM images, a triangle mesh, curves, a table of points, a scene (.json) or a recording (.catlog)");
   command->add_flag("--formats", *formats, "list the endings of the files that are read instead");
   command->add_flag("--schema", *schema, "print the JSON Schema of scenes instead, for an editor");
   command->add_option("--keys", *part, "list the keys of a part of a scene instead: volumes, chain, camera, ...");
@@ -215,6 +280,8 @@ void add_info(CLI::App& program, Work& chosen) {
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
       if (is_log_file(*path)) return describe_log(*path);
       if (scene::shows_mesh(*path)) return describe_mesh(*path);
+      if (curves::is_point_file(*path)) return describe_points(*path);
+      if (curves::is_curve_file(*path)) return describe_curves(*path);
       return is_scene_file(*path) ? describe_scene(*path) : describe_file(*path);
     };
   });

@@ -63,6 +63,12 @@ std::uint64_t field_bytes(const scene::Scene& scene) {
   scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
     if (source.loaded) bytes += source.loaded->bytes();
   });
+  scene.world.each<scene::DrawnPoints>([&](scene::Entity, const scene::DrawnPoints& source) {
+    if (source.loaded) bytes += source.loaded->bytes();
+  });
+  scene.world.each<scene::DrawnCurves>([&](scene::Entity, const scene::DrawnCurves& source) {
+    if (source.loaded) bytes += source.loaded->bytes();
+  });
   return bytes;
 }
 

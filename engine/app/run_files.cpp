@@ -14,6 +14,8 @@ std::vector<std::string> inputs_of(const scene::Scene& scene) {
     if (source.file) inputs.push_back(source.file->path);
   });
   scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) { inputs.push_back(source.path); });
+  scene.world.each<scene::DrawnCurves>([&](scene::Entity, const scene::DrawnCurves& source) { inputs.push_back(source.path); });
+  scene.world.each<scene::DrawnPoints>([&](scene::Entity, const scene::DrawnPoints& source) { inputs.push_back(source.path); });
   return inputs;
 }
 

@@ -1,6 +1,9 @@
 #include "engine/scene/bare_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "engine/base/json_edit.h"
@@ -55,6 +58,39 @@ std::string other_fields(const field::LoadRequest& shown, const std::string& fil
   return text;
 }
 
+std::string curves_note(const curves::CurveSet& set) {
+  return fmt::format("{} curve{} in the colours of their directions, red for x, green for y, blue for z{}{}", set.lines(),
+                     set.lines() == 1 ? "" : "s", set.note.empty() ? "" : "; ", set.note);
+}
+
+/// A running number says nothing of its points.
+bool counts_rows(const std::vector<float>& values) {
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] - values[i - 1] != 1) return false;
+  return true;
+}
+
+/// Balls, coloured by the first column of values that differ; a colour map alone needs such a column.
+Result<std::string> points_parts(const curves::PointSet& set, const std::string& file, const NamedColors& colors, std::string& note) {
+  const curves::PointValues* shown = nullptr;
+  for (const curves::PointValues& one : set.values) {
+    const auto differs = [&](float v) { return std::isfinite(v) && v != one.values.front(); };
+    if (shown == nullptr && one.name != "radius" && !counts_rows(one.values) && std::ranges::any_of(one.values, differs)) shown = &one;
+  }
+  if (shown == nullptr && (!colors.map.empty() || colors.range))
+    return Error{one_line(set.name + ": the table has no column of values to colour; a colour map goes with one")};
+  note = fmt::format("a table of points (it has columns x, y, z): {} of them as balls{}{}", set.points.size(),
+                     shown == nullptr ? std::string() : ", coloured by " + in_quotes(shown->name), set.note.empty() ? "" : "; " + set.note);
+  std::string text = "  \"points\": [{\"name\": \"points\", \"file\": " + file;
+  if (shown != nullptr) {
+    text += ", \"color_by\": {\"value\": " + json::string_text(shown->name);
+    if (!colors.map.empty()) text += ", \"color\": " + json::string_text(colors.map);
+    if (colors.range) text += ", \"range\": " + text_of(*colors.range);
+    text += "}";
+  }
+  return text + "}]" + (shown != nullptr ? ",\n  \"scalar_bars\": [{\"points\": 0}]" : "");
+}
+
 void forget_lines(json::Node& node) {
   node.line = 0;
   for (json::Node& item : node.items) forget_lines(item);
@@ -77,6 +113,20 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
       return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
     CATENA_TRY(bare.mesh, mesh::load_mesh(path));
     bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
+    return bare;
+  }
+  if (curves::is_curve_file(path)) {
+    if (!colors.map.empty() || colors.range)
+      return Error{one_line(path + ": curves are shown in the colours of their directions; a colour map goes with a data file")};
+    CATENA_TRY(bare.curves, curves::load_curves(path));
+    bare.note = curves_note(*bare.curves);
+    bare.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
+    return bare;
+  }
+  if (curves::is_point_file(path)) {
+    CATENA_TRY(bare.points, curves::load_points(path));
+    CATENA_TRY(const std::string parts, points_parts(*bare.points, file, colors, bare.note));
+    bare.text = "{\n" + parts + ",\n" + soft_background() + "\n}\n";
     return bare;
   }
   if (field::needs_layout(path))
@@ -126,6 +176,12 @@ void adopt_loaded(const BareFile& bare, Scene& scene) {
     if (bare.mesh && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5)) && source.placement == mesh::Placement{})
       source.loaded = bare.mesh;
   });
+  scene.world.each<DrawnPoints>([&](Entity, DrawnPoints& source) {
+    if (bare.points && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5))) source.loaded = bare.points;
+  });
+  scene.world.each<DrawnCurves>([&](Entity, DrawnCurves& source) {
+    if (bare.curves && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5))) source.loaded = bare.curves;
+  });
 }
 
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid, const NamedColors& colors) {
@@ -141,6 +197,8 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid, c
   forget_lines<Volume>(scene);
   forget_lines<Isosurface>(scene);
   forget_lines<StreamlineSet>(scene);
+  forget_lines<DrawnCurves>(scene);
+  forget_lines<DrawnPoints>(scene);
   if (bare.field.get() != nullptr)
     CATENA_CHECK(use_drawn_field(scene, find_field(scene, field_name(grid.empty() ? bare.field.get()->name() : grid)), {}));
   return scene;

@@ -13,6 +13,8 @@ struct BareFile {
   field::LoadRequest request;
   field::AnyField field;  ///< either this
   mesh::MeshPtr mesh;     ///< or this
+  curves::PointSetPtr points;
+  curves::CurveSetPtr curves;  ///< or this
 };
 
 Result<BareFile> describe_bare_file(const std::string& path, const std::string& grid, const NamedColors& colors);

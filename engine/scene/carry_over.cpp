@@ -51,6 +51,21 @@ void carry_meshes(Scene& old, Scene& fresh) {
   });
 }
 
+/// Curves or points.
+template <class T>
+bool same_table(const T& a, const T& b) {
+  return a.path == b.path || same_file(a.path, b.path);
+}
+
+template <class T>
+void carry_tables(Scene& old, Scene& fresh) {
+  fresh.world.each<T>([&](Entity, T& source) {
+    old.world.each<T>([&](Entity, const T& before) {
+      if (!source.loaded && before.loaded && same_table(before, source)) source.loaded = before.loaded;
+    });
+  });
+}
+
 // ---- automatic colours and opacities: functions of the drawn grid and of what is stated besides ----
 
 bool same_named(const NamedColors& a, const NamedColors& b) { return a.map == b.map && a.range == b.range; }
@@ -98,6 +113,14 @@ bool same_sources(const Scene& old, const Scene& fresh) {
   fresh.world.each<MeshSource>([&](Entity e, const MeshSource& source) {
     const Entity before = find_mesh(old, fresh.world.get<Name>(e).value);
     same = same && before && same_mesh(old.world.get<MeshSource>(before), source);
+  });
+  fresh.world.each<DrawnCurves>([&](Entity e, const DrawnCurves& source) {
+    const Entity before = find_curves(old, fresh.world.get<Name>(e).value);
+    same = same && before && same_table(old.world.get<DrawnCurves>(before), source);
+  });
+  fresh.world.each<DrawnPoints>([&](Entity e, const DrawnPoints& source) {
+    const Entity before = find_points(old, fresh.world.get<Name>(e).value);
+    same = same && before && same_table(old.world.get<DrawnPoints>(before), source);
   });
   return same;
 }
@@ -150,6 +173,8 @@ void carry_widgets(const Scene& old, Scene& fresh) {
 void carry_over(Scene& old, Scene& fresh) {
   carry_fields(old, fresh);
   carry_meshes(old, fresh);
+  carry_tables<DrawnCurves>(old, fresh);
+  carry_tables<DrawnPoints>(old, fresh);
   carry_transfers(old, fresh);
   // before the lines, which hold their curves
   for (auto& [key, curve] : old.curves)
@@ -158,6 +183,8 @@ void carry_over(Scene& old, Scene& fresh) {
     carry_made<StreamlineSet>(old, fresh);
     carry_made<GlyphSet>(old, fresh);
     carry_made<Slice>(old, fresh);
+    carry_made<DrawnCurves>(old, fresh);
+    carry_made<DrawnPoints>(old, fresh);
     carry_made<SurfaceMesh>(old, fresh);
     carry_made<Volume>(old, fresh);
     carry_made<Isosurface>(old, fresh);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/curves/load.h"
+#include "engine/curves/points.h"
 #include "engine/exchange/haptic_state.h"
 #include "engine/field/analytic.h"
 #include "engine/field/load.h"
@@ -69,8 +71,9 @@ struct TransferFunction {
 
 /// Colours that follow values. The one shape of "color_by", and what a slice shows of its own field.
 struct ColorBy {
-  enum class What { field, speed, arc_length };
-  What what = What::field;  ///< lines alone know the other two
+  enum class What { field, speed, arc_length, value };
+  What what = What::field;  ///< lines alone know speed and arc length, what comes from a file its values
+  std::string value{};      ///< the name that the file has for it
   Entity field;             ///< at the same place of the world: a scalar, or the magnitude of a vector
   json::Node where;
   std::vector<TransferFunction::ColorPoint> colors;  ///< values rising; empty: as `named` says
@@ -118,6 +121,29 @@ struct SurfaceMesh {
   bool smooth = false;  ///< "shading": the felt mesh is flat
   bool edges = false;
   std::optional<ColorBy> color_by;
+};
+
+/// Curves from a file: drawn as tubes, and felt by links that name them.
+struct DrawnCurves {
+  json::Node where;
+  std::string path;
+  curves::CurveSetPtr loaded;  ///< felt and drawn: one object; none before something asks for it
+  double radius = 0;           ///< of the tubes; 0: fitted
+  std::optional<Color> color;  ///< none, and no color_by: by the direction, (|x|, |y|, |z|)
+  std::optional<ColorBy> color_by;
+  bool clipped = true;  ///< the clip planes count
+};
+
+/// Points from a table: drawn as balls, and felt by links that name them.
+struct DrawnPoints {
+  json::Node where;
+  std::string path;
+  curves::PointSetPtr loaded;  ///< felt and drawn: one object; none before something asks for it
+  double radius = 0;           ///< of all balls; 0: by `radius_by`, or fitted
+  std::string radius_by;       ///< the column that says each ball's; empty: the column "radius", where the table has one
+  Color color{0.9f, 0.75f, 0.45f};
+  std::optional<ColorBy> color_by;
+  bool clipped = true;  ///< the clip planes count
 };
 
 /// A plane through a field, coloured by its values, with lines of constant value.

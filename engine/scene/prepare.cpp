@@ -72,6 +72,26 @@ Outcome load_glyphs(Scene& scene) {
   return Done{};
 }
 
+Outcome load_points(Scene& scene) {
+  for (const Entity e : visible<DrawnPoints>(scene.world)) {
+    CATENA_CHECK(use_points(scene, e));
+    const DrawnPoints& points = scene.world.get<DrawnPoints>(e);
+    if (points.color_by && points.color_by->what == ColorBy::What::field)
+      CATENA_CHECK(use_field(scene, points.color_by->field, points.color_by->where));
+  }
+  return Done{};
+}
+
+Outcome load_curves(Scene& scene) {
+  for (const Entity e : visible<DrawnCurves>(scene.world)) {
+    CATENA_CHECK(use_curves(scene, e));
+    const DrawnCurves& curves = scene.world.get<DrawnCurves>(e);
+    if (curves.color_by && curves.color_by->what == ColorBy::What::field)
+      CATENA_CHECK(use_field(scene, curves.color_by->field, curves.color_by->where));
+  }
+  return Done{};
+}
+
 }  // namespace
 
 Outcome prepare(Scene& scene) {
@@ -85,6 +105,8 @@ Outcome prepare(Scene& scene) {
   }
   CATENA_CHECK(trace_lines(scene));
   CATENA_CHECK(load_glyphs(scene));
+  CATENA_CHECK(load_curves(scene));
+  CATENA_CHECK(load_points(scene));
   if (scene.bounding_box && scene.bounding_box->field)
     CATENA_CHECK(use_drawn_field(scene, scene.bounding_box->field, scene.bounding_box->where));
   if (scene.axes && scene.axes->field) CATENA_CHECK(use_drawn_field(scene, scene.axes->field, scene.axes->where));
@@ -102,6 +124,13 @@ Bounds prepared_bounds(const Scene& scene) {
     bounds.add(source.loaded->lowest());
     bounds.add(source.loaded->highest());
   });
+  const auto add_box = [&](Entity, const auto& source) {
+    if (!source.loaded) return;
+    bounds.add(source.loaded->lowest);
+    bounds.add(source.loaded->highest);
+  };
+  scene.world.each<DrawnCurves>(add_box);
+  scene.world.each<DrawnPoints>(add_box);
   for (const Entity e : visible<StreamlineSet>(scene.world)) bounds.add(lines_bounds(scene, e));
   return bounds;
 }

@@ -11,7 +11,8 @@ constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
 /// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
   return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
-         (world.has<GlyphSet>(e) && world.get<GlyphSet>(e).color_by);
+         (world.has<GlyphSet>(e) && world.get<GlyphSet>(e).color_by) || (world.has<DrawnCurves>(e) && world.get<DrawnCurves>(e).color_by) ||
+         (world.has<DrawnPoints>(e) && world.get<DrawnPoints>(e).color_by);
 }
 
 /// The first thing with colours that shows a field.
@@ -28,17 +29,18 @@ Entity shown_field(const World& world, Entity field) {
   };
   world.each<StreamlineSet>(take_set);
   world.each<GlyphSet>(take_set);
+  world.each<DrawnCurves>([&](Entity e, const DrawnCurves& curves) { take(e, curves.color_by && curves.color_by->field == field); });
+  world.each<DrawnPoints>([&](Entity e, const DrawnPoints& points) { take(e, points.color_by && points.color_by->field == field); });
   return found;
 }
 
 Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   int given = 0;
-  for (const char* key : {"volume", "slice", "streamlines", "glyphs", "field"}) given += item.find(key) != nullptr;
+  for (const char* key : {"volume", "slice", "streamlines", "glyphs", "curves", "points", "field"}) given += item.find(key) != nullptr;
   if (given != 1)
-    return json::error_at(item,
-                          "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
-                              "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"glyphs\": INDEX, \"field\": NAME "
-                              "was expected");
+    return json::error_at(item, "a scalar bar names " + std::string(given == 0 ? "nothing" : "several things") +
+                                    "; one of \"volume\": INDEX, \"slice\": INDEX, \"streamlines\": INDEX, \"glyphs\": INDEX, "
+                                    "\"curves\": INDEX, \"points\": INDEX, \"field\": NAME was expected");
   const std::string whose = "a scalar bar";
   if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes", whose);
   if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices", whose);
@@ -53,6 +55,18 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
     if (!has_colors(scene.world, set))
       return json::error_at(*node, "these glyphs have one colour; a set with \"color_by\" was expected for a scalar bar");
     return set;
+  }
+  if (const json::Node* node = item.find("curves")) {
+    CATENA_TRY(const Entity curves, read_index<DrawnCurves>(scene, item, "curves", "curves", whose));
+    if (!has_colors(scene.world, curves))
+      return json::error_at(*node, "these curves show no values; curves with \"color_by\" were expected for a scalar bar");
+    return curves;
+  }
+  if (const json::Node* node = item.find("points")) {
+    CATENA_TRY(const Entity points, read_index<DrawnPoints>(scene, item, "points", "points", whose));
+    if (!has_colors(scene.world, points))
+      return json::error_at(*node, "these points show no values; points with \"color_by\" were expected for a scalar bar");
+    return points;
   }
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.world, field);
@@ -83,7 +97,8 @@ const Table<ScalarBar>& scalar_bar_table() {
       return schema::integer(key, "", std::string("Shows this item of `") + of + "`, counted from 0.", 0, 1000000).ranged("an index");
     };
     t.group({index("volume", "volumes"), index("slice", "slices"), index("streamlines", "streamlines"), index("glyphs", "glyphs"),
-             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the five.")},
+             index("curves", "curves"), index("points", "points"),
+             schema::named("field", Role::any_field, "Or the first thing that shows this field: one of the seven.")},
             [](Scene& scene, const json::Node& item, ScalarBar& bar) -> Outcome {
               CATENA_TRY(bar.shown, read_shown(scene, item));
               return Done{};
@@ -200,6 +215,8 @@ std::optional<ScalarBar> first_scalar_bar(const World& world) {
   world.each<Volume>([&](Entity e, const Volume&) { take(e); });
   world.each<Slice>([&](Entity e, const Slice&) { take(e); });
   world.each<StreamlineSet>([&](Entity e, const StreamlineSet&) { take(e); });
+  world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) { take(e); });
+  world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) { take(e); });
   return bar;
 }
 

@@ -9,16 +9,6 @@
 namespace catena::scene {
 namespace {
 
-/// Empty where `path` is a mesh file that is there.
-std::string mesh_fault(const std::string& path) {
-  std::error_code code;
-  const std::string wanted = "; a " + alternatives(mesh::mesh_endings()) + " file was expected";
-  if (!mesh::is_mesh_file(path)) return in_quotes(path) + " has an unknown kind" + wanted;
-  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist" + wanted;
-  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file" + wanted;
-  return {};
-}
-
 const Table<Volume>& volume_table() {
   static const auto table = [] {
     Table<Volume> t;
@@ -109,7 +99,7 @@ Outcome read_mesh_name(Scene& scene, const json::Node& item, MeshItem& mesh) {
 Outcome read_mesh_file(Scene& scene, const json::Node& item, MeshItem& mesh) {
   CATENA_TRY(const std::string file, json::require_string(item, "file"));
   mesh.source.path = resolved_path(scene.path, file);
-  if (const std::string fault = mesh_fault(mesh.source.path); !fault.empty())
+  if (const std::string fault = file_fault(mesh.source.path, mesh::is_mesh_file(mesh.source.path), mesh::mesh_endings()); !fault.empty())
     return json::error_at(*item.find("file"), "mesh " + in_quotes(mesh.name) + ": file " + fault);
   return Done{};
 }
@@ -209,6 +199,15 @@ Outcome read_cursor(Scene& scene, const json::Node& node) {
 }
 
 }  // namespace
+
+std::string file_fault(const std::string& path, bool known, const std::vector<std::string_view>& endings) {
+  std::error_code code;
+  const std::string wanted = "; a " + alternatives(endings) + " file was expected";
+  if (!known) return in_quotes(path) + " has an unknown kind" + wanted;
+  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist" + wanted;
+  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file" + wanted;
+  return {};
+}
 
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
   CATENA_TRY(const std::string name, json::require_string(object, key));

@@ -55,11 +55,23 @@ bool is_table(const json::Node& color) {
 
 Outcome read_object(const Scene& scene, const json::Node& node, ColorSubjects subjects, ColorBy& by) {
   CATENA_CHECK(json::only_keys(node, schema::names_of(*color_by_key(subjects).inner)));
-  const json::Node *field = node.find("field"), *quantity = node.find("quantity");
+  const json::Node *field = node.find("field"), *quantity = node.find("quantity"), *value = node.find("value");
   if (knows_quantities(subjects) && (field != nullptr) == (quantity != nullptr))
     return json::error_at(node, std::string("\"color_by\" names ") + (field != nullptr ? "both" : "neither") +
                                     " \"field\" and \"quantity\"; exactly one of them was expected");
-  if (quantity != nullptr) {
+  if (subjects == ColorSubjects::curves && (field != nullptr) + (quantity != nullptr) + (value != nullptr) != 1)
+    return json::error_at(node,
+                          "\"color_by\" names none or several of \"field\", \"value\" and \"quantity\"; exactly one of them was expected");
+  if (subjects == ColorSubjects::points && (field != nullptr) == (value != nullptr))
+    return json::error_at(node, std::string("\"color_by\" names ") + (field != nullptr ? "both" : "neither") +
+                                    " \"field\" and \"value\"; exactly one of them was expected");
+  if (value != nullptr) {
+    by.what = ColorBy::What::value;
+    CATENA_TRY(by.value, json::require_string(node, "value"));
+  } else if (quantity != nullptr && subjects == ColorSubjects::curves) {
+    CATENA_CHECK(json::get_choice(node, "quantity", 0, {kQuantities[1]}));
+    by.what = ColorBy::What::arc_length;
+  } else if (quantity != nullptr) {
     std::vector<std::string_view> known{kQuantities[0]};
     if (subjects == ColorSubjects::lines) known.push_back(kQuantities[1]);
     CATENA_TRY(const int index, json::get_choice(node, "quantity", 0, known));
@@ -107,7 +119,12 @@ Key color_by_key(ColorSubjects subjects) {
                                 "Or what the line itself knows: one of `field` and `quantity`."));
   else if (subjects == ColorSubjects::glyphs)
     keys.push_back(schema::word("quantity", {std::string(kQuantities[0])}, "Or their speed: one of `field` and `quantity`."));
-  else
+  else if (subjects == ColorSubjects::points)
+    keys.push_back(schema::text("value", "Or a column of the table, by its name: one of the two."));
+  else if (subjects == ColorSubjects::curves) {
+    keys.push_back(schema::text("value", "Or what the file says at each point, by its name there."));
+    keys.push_back(schema::word("quantity", {std::string(kQuantities[1])}, "Or the way along the line: one of the three."));
+  } else
     keys[0] = keys[0].required();
   return schema::object("color_by", schema::joined(keys, color_scale_keys()), "Colours by values.");
 }
@@ -123,8 +140,9 @@ Outcome read_color_by(Scene& scene, const json::Node& item, ColorSubjects subjec
 }
 
 std::string text_of(const Scene& scene, const ColorBy& by) {
-  std::string out = by.what == ColorBy::What::field ? "{\"field\": " + text_of(std::string_view(scene.world.get<Name>(by.field).value))
-                                                    : "{\"quantity\": " + text_of(kQuantities[by.what == ColorBy::What::speed ? 0 : 1]);
+  std::string out = by.what == ColorBy::What::field   ? "{\"field\": " + text_of(std::string_view(scene.world.get<Name>(by.field).value))
+                    : by.what == ColorBy::What::value ? "{\"value\": " + text_of(std::string_view(by.value))
+                                                      : "{\"quantity\": " + text_of(kQuantities[by.what == ColorBy::What::speed ? 0 : 1]);
   for (const auto& [key, value] : scale_members(by.colors, by.named)) out += ", \"" + key + "\": " + value;
   return out + "}";
 }

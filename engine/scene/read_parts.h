@@ -34,6 +34,8 @@ Part slices_part();
 Part meshes_part();
 Part streamlines_part();
 Part glyphs_part();
+Part curves_part();
+Part points_part();
 Part indicator_part();
 Part clip_part();
 Part camera_part();
@@ -73,6 +75,8 @@ Outcome check_name(const std::string& kind, const std::string& name, const json:
 
 /// A plane in one of three ways; `word` says what lies on it ("slice"). Of a widget, its pose as stated.
 Outcome read_plane(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget);
+/// Empty where `path` is a file that is there and of a known kind, one with these endings.
+std::string file_fault(const std::string& path, bool known, const std::vector<std::string_view>& endings);
 
 /// Relative paths start at the scene file's folder.
 std::string resolved_path(const std::string& scene_path, const std::string& file);
@@ -132,9 +136,10 @@ schema::Component list_of(const std::string& name, const std::string& help, cons
 
 /// "color_by": colours that follow values, one shape wherever it stands. Inside this room only.
 
-/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), lines (which know their speed and length, too), or
-/// glyphs (which know their speed, and are never a word).
-enum class ColorSubjects { rays, surfaces, lines, glyphs };
+/// What is coloured: what rays meet (fields only, never as a word), surfaces (fields), lines (which know their speed and length, too),
+/// glyphs (which know their speed, and are never a word), curves from a file (which know their length and the file's values), or points
+/// (the file's values).
+enum class ColorSubjects { rays, surfaces, lines, glyphs, curves, points };
 
 Key color_by_key(ColorSubjects subjects);
 /// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.

@@ -64,8 +64,8 @@ struct FieldOverride {
 Result<Scene> read_scene(const std::string& path, const std::vector<FieldOverride>& overrides = {});
 Result<Scene> parse_scene(std::string_view text, const std::string& path, const std::vector<FieldOverride>& overrides = {});
 /// A bare data file: its (first usable) scalar grid as the kind of its data is best shown (first_look.h), a vector grid as streamlines,
-/// a triangle mesh as it is; the camera is fitted to what can be seen. `colors` may name a colour map and a range: a scalar grid is then a
-/// volume whose opacity follows the range, lines show the speed by them.
+/// a triangle mesh as it is, curves in the colours of their directions, points as balls; the camera is fitted to what can be seen. `colors`
+/// may name a colour map and a range: a scalar grid is then a volume whose opacity follows the range, lines show the speed by them.
 Result<Scene> scene_for_file(const std::string& path, const std::string& grid = {}, const NamedColors& colors = {});
 
 /// What such a file looks like, and why, in one sentence, and what of it is not as it was; nothing of a mesh and of a file that cannot be
@@ -93,14 +93,22 @@ Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh);
 inline const field::AnyField& loaded_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).loaded; }
 inline const field::AnyField& drawn_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).drawn; }
 Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where);
+/// Curves from a file, by their name; loaded on first use.
+Entity find_curves(const Scene& scene, std::string_view name);
+Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity curves);
+Result<curves::CurveSetPtr> use_curves(Scene& scene, const std::string& name, const json::Node& where);
+/// The same of points from a table.
+Entity find_points(const Scene& scene, std::string_view name);
+Result<curves::PointSetPtr> use_points(Scene& scene, Entity points);
+Result<curves::PointSetPtr> use_points(Scene& scene, const std::string& name, const json::Node& where);
 /// The one curve of (field, flow, seed, length), while something holds it.
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);
 
 /// The widget of that name.
 Entity find_widget(const Scene& scene, std::string_view name);
-/// The widget as the tick takes it: sizes that the scene does not state follow L, the longest edge of the domain boxes of the fields and
-/// meshes that the scene draws or the widget names (without any: of those that its links name; else 4). An isolevel's field is loaded and
-/// its value set. `along` is left to the maker of the program, which knows the links. Completed once.
+/// The widget as the tick takes it: sizes that the scene does not state follow L, the longest edge of the domain boxes of the fields,
+/// meshes, curves and points that the scene draws or the widget names (without any: of those that its links name; else 4). An isolevel's
+/// field is loaded and its value set. `along` is left to the maker of the program, which knows the links. Completed once.
 Result<widget::Spec> use_widget(Scene& scene, Entity widget);
 
 /// Checks that a level can be drawn and felt: it lies within the field's values.

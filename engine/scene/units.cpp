@@ -30,6 +30,9 @@ std::string unit_length(const Scene& scene) {
   scene.world.each<FieldSource>([&](Entity, const FieldSource& source) {
     if (word.empty() && source.file) word = field::units_of(source.file->path, source.file->grid).length;
   });
+  scene.world.each<DrawnCurves>([&](Entity, const DrawnCurves& source) {
+    if (word.empty() && source.loaded) word = source.loaded->unit;
+  });
   return word;
 }
 

@@ -119,6 +119,60 @@ Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json
                                    (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
 }
 
+Entity find_curves(const Scene& scene, std::string_view name) {
+  Entity found;
+  scene.world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) {
+    if (scene.world.get<Name>(e).value == name) found = e;
+  });
+  return found;
+}
+
+Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity entity) {
+  DrawnCurves& source = scene.world.get<DrawnCurves>(entity);
+  if (source.loaded) return source.loaded;
+  auto loaded = curves::load_curves(source.path);
+  if (!loaded && source.where.line == 0) return loaded.error();
+  if (!loaded)
+    return json::error_at(source.where, "curves " + in_quotes(scene.world.get<Name>(entity).value) + ": " + loaded.error().message);
+  source.loaded = *loaded;
+  return source.loaded;
+}
+
+Result<curves::CurveSetPtr> use_curves(Scene& scene, const std::string& name, const json::Node& where) {
+  if (const Entity curves = find_curves(scene, name)) return use_curves(scene, curves);
+  std::vector<std::string_view> names;
+  scene.world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) { names.push_back(scene.world.get<Name>(e).value); });
+  return json::error_at(where, "unknown curves " + in_quotes(name) + "; one of the scene's \"curves\" was expected: " +
+                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+}
+
+Entity find_points(const Scene& scene, std::string_view name) {
+  Entity found;
+  scene.world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) {
+    if (scene.world.get<Name>(e).value == name) found = e;
+  });
+  return found;
+}
+
+Result<curves::PointSetPtr> use_points(Scene& scene, Entity entity) {
+  DrawnPoints& source = scene.world.get<DrawnPoints>(entity);
+  if (source.loaded) return source.loaded;
+  auto loaded = curves::load_points(source.path);
+  if (!loaded && source.where.line == 0) return loaded.error();
+  if (!loaded)
+    return json::error_at(source.where, "points " + in_quotes(scene.world.get<Name>(entity).value) + ": " + loaded.error().message);
+  source.loaded = *loaded;
+  return source.loaded;
+}
+
+Result<curves::PointSetPtr> use_points(Scene& scene, const std::string& name, const json::Node& where) {
+  if (const Entity points = find_points(scene, name)) return use_points(scene, points);
+  std::vector<std::string_view> names;
+  scene.world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) { names.push_back(scene.world.get<Name>(e).value); });
+  return json::error_at(where, "unknown points " + in_quotes(name) + "; one of the scene's \"points\" was expected: " +
+                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+}
+
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length) {
   CATENA_ASSERT(flow.field != nullptr);
   if (!is_finite(seed)) return json::error_at(where, "the seed is not finite; three finite numbers [x, y, z] were expected");

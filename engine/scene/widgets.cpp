@@ -15,7 +15,7 @@ using widget::Kind;
 constexpr double kPlaneRadius = 0.12, kHandleRadius = 0.012, kSnap = 0.02, kRelease = 0.05, kPlaneNear = 0.02, kHandleNear = 0.03,
                  kStep = 0.02;
 
-/// The longest domain among the fields and meshes; 0: none.
+/// The longest domain among the fields, meshes, curves and points; 0: none.
 class Longest {
  public:
   explicit Longest(Scene& scene) : scene_(scene) {}
@@ -23,6 +23,8 @@ class Longest {
     if (field) fields_.emplace_back(field, where);
   }
   void add_mesh(Entity mesh) { meshes_.push_back(mesh); }
+  void add_curves(Entity curves) { curves_.push_back(curves); }
+  void add_points(Entity points) { points_.push_back(points); }
   Result<double> length() const {
     double longest = 0;
     for (const auto& [field, where] : fields_) {
@@ -33,13 +35,21 @@ class Longest {
       CATENA_TRY(const mesh::MeshPtr loaded, use_mesh(scene_, mesh));
       longest = std::max(longest, loaded->length());
     }
+    for (const Entity curves : curves_) {
+      CATENA_TRY(const auto loaded, use_curves(scene_, curves));
+      longest = std::max(longest, max_abs(loaded->highest - loaded->lowest));
+    }
+    for (const Entity points : points_) {
+      CATENA_TRY(const auto loaded, use_points(scene_, points));
+      longest = std::max(longest, max_abs(loaded->highest - loaded->lowest));
+    }
     return longest;
   }
 
  private:
   Scene& scene_;
   std::vector<std::pair<Entity, json::Node>> fields_;
-  std::vector<Entity> meshes_;
+  std::vector<Entity> meshes_, curves_, points_;
 };
 
 Result<double> length_of(Scene& scene, const Widget& widget) {
@@ -51,6 +61,8 @@ Result<double> length_of(Scene& scene, const Widget& widget) {
   scene.world.each<StreamlineSet>([&](Entity, const StreamlineSet& set) { drawn.add_field(set.field, set.where); });
   scene.world.each<GlyphSet>([&](Entity, const GlyphSet& set) { drawn.add_field(set.field, set.where); });
   scene.world.each<SurfaceMesh>([&](Entity, const SurfaceMesh& surface) { drawn.add_mesh(surface.mesh); });
+  scene.world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) { drawn.add_curves(e); });
+  scene.world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) { drawn.add_points(e); });
   CATENA_TRY(const double longest, drawn.length());
   if (longest > 0) return longest;
   // nothing is drawn: what is felt

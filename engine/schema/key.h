@@ -35,7 +35,7 @@ enum class Form {
 };
 
 /// What of the scene a value names or stands for.
-enum class Role { none, scalar_field, vector_field, any_field, mesh, widget, level, file };
+enum class Role { none, scalar_field, vector_field, any_field, mesh, curves, points, widget, level, file };
 
 /// Bounds of a number, or of each number of a vector. An open bound does not belong to the range.
 struct Limits {
@@ -143,7 +143,7 @@ Key null();
 Key object(const std::string& name, Keys inner, const std::string& help);
 /// Several forms in one key; the first is the usual one.
 Key any_of(const std::string& name, Keys choices, const std::string& help);
-/// The name of a field, a mesh, a widget.
+/// The name of a field, a mesh, curves, points, a widget.
 Key named(const std::string& name, Role role, const std::string& help);
 Key file(const std::string& name, const std::string& help);
 /// "kind" of a vector field: vectors, or lines without a direction.

@@ -28,6 +28,8 @@ std::vector<ConstraintType>& list_of_types() {
       line_constraint(),                //
       segment_constraint(),             //
       polyline_constraint(),            //
+      curves_constraint(),              //
+      points_constraint(),              //
       plane_constraint(),               //
       sphere_constraint(),              //
       box_constraint(),                 //

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/curves/points.h"
 #include "engine/flow/curve.h"
 #include "engine/mesh/mesh.h"
 #include "engine/schema/key.h"
@@ -22,6 +23,10 @@ struct BuildContext {
       curve;
   /// The one mesh object of that name: the same that is drawn.
   std::function<Result<mesh::MeshPtr>(const json::Node& where, const std::string& name)> mesh;
+  /// The same of curves from a file.
+  std::function<Result<curves::CurveSetPtr>(const json::Node& where, const std::string& name)> curves;
+  /// The same of points from a table.
+  std::function<Result<curves::PointSetPtr>(const json::Node& where, const std::string& name)> points;
 };
 
 struct ConstraintType {

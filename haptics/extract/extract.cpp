@@ -77,6 +77,16 @@ Result<Link> make_link(const json::Node& from, const Coupling& coupling, const B
     recipe.add(mesh->version());
     return mesh;
   };
+  noting.curves = [&](const json::Node& where, const std::string& name) -> Result<curves::CurveSetPtr> {
+    CATENA_TRY(curves::CurveSetPtr set, context.curves(where, name));
+    recipe.add(set->version);
+    return set;
+  };
+  noting.points = [&](const json::Node& where, const std::string& name) -> Result<curves::PointSetPtr> {
+    CATENA_TRY(curves::PointSetPtr set, context.points(where, name));
+    recipe.add(set->version);
+    return set;
+  };
   link.name = from.find("name")->string;
   CATENA_TRY(link.stiffness_n_per_m, get_parameter(from, "stiffness", coupling.stiffness_n_per_m, json::Range::not_negative, noting));
   CATENA_TRY(link.on, read_switch(from));
@@ -164,6 +174,9 @@ Result<std::shared_ptr<const Program>> extract_program(scene::Scene& scene, cons
     return scene::use_curve(scene, flow, seed, where);
   };
   context.mesh = [&scene](const json::Node& where, const std::string& name) { return scene::use_mesh(scene, name, where); };
+
+  context.points = [&scene](const json::Node& where, const std::string& name) { return scene::use_points(scene, name, where); };
+  context.curves = [&scene](const json::Node& where, const std::string& name) { return scene::use_curves(scene, name, where); };
 
   auto program = std::make_shared<Program>();
   program->coupling.stiffness_n_per_m = scene.coupling.stiffness_n_per_m;

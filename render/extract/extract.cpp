@@ -86,6 +86,13 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
     scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
       if (const field::Field* field = source.loaded.get()) drawn.add(field->world_bounds());
     });
+    const auto add_box = [&](scene::Entity, const auto& source) {
+      if (!source.loaded) return;
+      drawn.add(source.loaded->lowest);
+      drawn.add(source.loaded->highest);
+    };
+    scene.world.each<scene::DrawnCurves>(add_box);
+    scene.world.each<scene::DrawnPoints>(add_box);
     scene.world.each<scene::MeshSource>([&](scene::Entity, const scene::MeshSource& source) {
       if (!source.loaded) return;
       drawn.add(source.loaded->lowest());
@@ -146,6 +153,8 @@ Bounds drawn_bounds(const FramePacket& packet) {
   Bounds bounds = data_bounds(packet);
   for (const TubeItem& tube : packet.tubes)
     for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
+  for (const BallsItem& item : packet.balls)
+    for (std::size_t i = 0; i < item.balls->places.size(); ++i) bounds.add(Vec3(item.balls->places[i]), double(item.balls->radii[i]));
   for (const ArrowItem& arrow : packet.arrows) {
     bounds.add(arrow.base, arrow.radius);
     bounds.add(arrow.tip);
@@ -184,6 +193,8 @@ Outcome prepare_frame(scene::Scene& scene) {
   CATENA_CHECK(prepare_slices(scene));
   CATENA_CHECK(prepare_streamlines(scene));
   CATENA_CHECK(prepare_glyphs(scene));
+  CATENA_CHECK(prepare_curves(scene));
+  CATENA_CHECK(prepare_points(scene));
   prepare_visible(scene);
   return prepare_widgets(scene);
 }
@@ -208,6 +219,8 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   CATENA_CHECK(extract_slices(scene, packet));
   extract_streamlines(scene, packet);
   extract_glyphs(scene, packet);
+  extract_curves(scene, packet);
+  extract_points(scene, packet);
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);

@@ -107,6 +107,20 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
     const SliceItem* slice = slice_item(world, e, packet);
     return slice ? Shown{slice->colors, named(world.get<scene::Slice>(e).shown.field)} : Shown{};
   }
+  if (world.has<scene::DrawnPoints>(e)) {
+    const auto* points = shown_point_colors(scene.made, e);
+    if (points == nullptr) return {};
+    const scene::ColorBy& by = *world.get<scene::DrawnPoints>(e).color_by;
+    return {rows_of(*points), by.what == scene::ColorBy::What::field ? named(by.field) : by.value};
+  }
+  if (world.has<scene::DrawnCurves>(e)) {
+    const auto* points = shown_curve_colors(scene.made, e);
+    if (points == nullptr) return {};
+    const scene::ColorBy& by = *world.get<scene::DrawnCurves>(e).color_by;
+    return {rows_of(*points), by.what == scene::ColorBy::What::field   ? named(by.field)
+                              : by.what == scene::ColorBy::What::value ? by.value
+                                                                       : with_unit("arc length", scene::unit_length(scene))};
+  }
   const bool glyphs = world.has<scene::GlyphSet>(e);
   const ColorTable* points = glyphs ? glyph_colors(scene.made, e) : shown_colors(scene.made, e);
   if (points == nullptr) return {};
@@ -119,6 +133,8 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
       return {colors, named(color_by->field)};
     case scene::ColorBy::What::speed:
       return {colors, with_unit("|" + name_of(scene, of) + "|", scene::unit_of(scene, of))};
+    case scene::ColorBy::What::value:
+      break;
     case scene::ColorBy::What::arc_length:
       return {colors, with_unit("arc length", scene::unit_length(scene))};
   }

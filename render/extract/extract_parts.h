@@ -57,6 +57,20 @@ Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 inline constexpr double kArrowRadius = 2.4, kArrowLength = 6;
 
 using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
+/// Curves from files as tubes, each line's points as they are, coloured by values, by one colour or by the line's direction. Above
+/// kMostCurvePoints points an even choice of the lines, and packet.left_out says so. Errors: values that the file does not have, more
+/// memory than is allowed.
+inline constexpr std::size_t kMostCurvePoints = 2'000'000;
+Outcome prepare_curves(scene::Scene& scene);
+void extract_curves(const scene::Scene& scene, FramePacket& packet);
+const std::vector<scene::TransferFunction::ColorPoint>* shown_curve_colors(const scene::World& made, scene::Entity curves);
+
+/// Points from tables as balls: coloured by a column, by a field's values or by one colour; grey for no number. Of more than kMostBalls an
+/// even choice, and packet.left_out says so. Errors: a column that the table does not have, more memory than is allowed.
+inline constexpr std::size_t kMostBalls = 4'000'000;
+Outcome prepare_points(scene::Scene& scene);
+void extract_points(const scene::Scene& scene, FramePacket& packet);
+const std::vector<scene::TransferFunction::ColorPoint>* shown_point_colors(const scene::World& made, scene::Entity points);
 
 /// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
 /// "color_by".

@@ -137,6 +137,8 @@ bool is_patient(const scene::Scene& scene) {
   scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
     if (source.file && source.drawn.get() != nullptr) patient = patient || field::units_of(source.file->path, source.file->grid).patient;
   });
+  scene.world.each<scene::DrawnCurves>(
+      [&](scene::Entity, const scene::DrawnCurves& source) { patient = patient || (source.loaded && source.loaded->patient); });
   return patient;
 }
 
@@ -239,6 +241,21 @@ void prepare_visible(scene::Scene& scene) {
   });
 }
 
+/// Of very many points an even choice, for a view is made often.
+static void add_tubes(const FramePacket& packet, std::vector<FitPlaces>& clouds) {
+  constexpr std::size_t kMost = 200000;
+  std::size_t all = 0;
+  for (const TubeItem& tube : packet.tubes) all += tube.points.size();
+  const std::size_t step = 1 + all / kMost;
+  std::size_t next = 0;  // counted from this tube's first point
+  for (const TubeItem& tube : packet.tubes) {
+    std::vector<Vec3> places;
+    for (; next < tube.points.size(); next += step) places.push_back(tube.points[next]);
+    next -= tube.points.size();
+    clouds.push_back({tube.clipped ? kept(std::move(places), packet) : std::move(places)});
+  }
+}
+
 View first_view(const scene::Scene& scene, const FramePacket& packet) {
   std::vector<FitPlaces> clouds;
   add_seen<scene::Volume>(scene, packet, clouds);
@@ -246,12 +263,17 @@ View first_view(const scene::Scene& scene, const FramePacket& packet) {
   for (const SliceItem& slice : packet.slices) clouds.push_back({slice.clipped ? kept(slice_places(slice), packet) : slice_places(slice)});
   for (const MeshItem& mesh : packet.meshes)
     clouds.push_back({mesh.clipped ? kept(mesh.geometry->vertices, packet) : mesh.geometry->vertices});
-  for (const TubeItem& tube : packet.tubes)
-    clouds.push_back({tube.clipped ? kept({tube.points.begin(), tube.points.end()}, packet)
-                                   : std::vector<Vec3>(tube.points.begin(), tube.points.end())});
+  add_tubes(packet, clouds);
   for (const GlyphItem& item : packet.glyphs) {
     std::vector<Vec3> places;
     for (const Glyph& glyph : item.glyphs) places.insert(places.end(), {glyph.tail, glyph.tip});
+    clouds.push_back({item.clipped ? kept(std::move(places), packet) : std::move(places)});
+  }
+  for (const BallsItem& item : packet.balls) {
+    constexpr std::size_t kMost = 200000;
+    std::vector<Vec3> places;
+    for (std::size_t i = 0; i < item.balls->places.size(); i += 1 + item.balls->places.size() / kMost)
+      places.push_back(Vec3(item.balls->places[i]));
     clouds.push_back({item.clipped ? kept(std::move(places), packet) : std::move(places)});
   }
   Bounds rest;

@@ -180,8 +180,8 @@ struct Glyph {
 /// Arrows of one shape: a cylinder and a cone, whose sizes follow each one's length.
 struct GlyphItem {
   SharedList<Glyph> glyphs;
-  double shaft = 0.06;       ///< its radius
-  double head = 0.36;         ///< the cone's length; 0: none, the cylinder goes to the tip
+  double shaft = 0.06;         ///< its radius
+  double head = 0.36;          ///< the cone's length; 0: none, the cylinder goes to the tip
   double head_radius = 0.144;  ///< of the cone's base
   std::uint32_t id = 0;
   bool clipped = true;
@@ -229,6 +229,20 @@ struct WidgetItems {
   bool operator==(const WidgetItems&) const = default;
 };
 
+/// Balls at points, made once a set, shared by frames.
+struct Balls {
+  std::vector<glm::vec3> places;
+  std::vector<float> radii;   ///< one a place
+  std::vector<Color> colors;  ///< one a place
+};
+
+struct BallsItem {
+  std::shared_ptr<const Balls> balls;
+  std::uint32_t id = 0;
+  bool clipped = true;
+  bool operator==(const BallsItem&) const = default;
+};
+
 struct FramePacket {
   View view;
   std::vector<View> eyes{};  ///< drawn one by one, each with the packet's size, and packed; empty: the view alone
@@ -242,6 +256,7 @@ struct FramePacket {
   std::vector<TubeItem> tubes;
   std::vector<ArrowItem> arrows;
   std::vector<GlyphItem> glyphs;
+  std::vector<BallsItem> balls;
   std::vector<CursorItem> cursors;
   std::vector<IndicatorItem> indicators;
   Overlay overlay;
@@ -252,6 +267,7 @@ struct FramePacket {
   WidgetItems widgets;
   std::optional<bool> jitter;  ///< of rays; overrides RenderSettings::jitter
   std::vector<ObjectName> objects;
+  std::string left_out;  ///< what of curves and points is not drawn, in words; empty: nothing
 
   /// The next id, from 1 on.
   std::uint32_t add_object(std::string kind, std::string name, std::string item = {}) {

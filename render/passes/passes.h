@@ -10,6 +10,7 @@ extern const PassEntry kWidgetPass;      ///< what the hand takes hold of
 extern const PassEntry kMeshPass;        ///< the opaque meshes
 extern const PassEntry kStreamlinePass;  ///< tubes and their arrowheads
 extern const PassEntry kGlyphPass;       ///< arrows of vectors
+extern const PassEntry kBallPass;        ///< balls of point sets (ball_pass.cpp)
 extern const PassEntry kCursorPass;      ///< probe, proxies, links, force; local indicators
 
 /// Opaque isosurfaces: the drawn surface is the level set of the trilinear field itself, found along each pixel's ray from the

@@ -177,6 +177,7 @@ class StreamlinePass final : public Pass {
 
   Outcome prepare(Frame& frame) override {
     const FramePacket& packet = frame.packet;
+    left_out_ = packet.left_out;
     if (packet.tubes != tubes_) {
       tubes_.clear();
       CATENA_CHECK(lines_.upload(frame.device, packet.tubes));
@@ -193,6 +194,7 @@ class StreamlinePass final : public Pass {
     arrows_ = packet.arrows;
     return Done{};
   }
+  std::string note() const override { return left_out_; }
   Bounds bounds() const override {
     Bounds all = lines_.bounds();
     all.add(heads_.bounds());
@@ -211,6 +213,7 @@ class StreamlinePass final : public Pass {
   Triangles heads_;
   std::vector<TubeItem> tubes_;
   std::vector<ArrowItem> arrows_;
+  std::string left_out_;
 };
 
 }  // namespace

@@ -45,7 +45,13 @@ std::string what_is_drawn(const render::FramePacket& packet) {
   add(packet.volumes.size(), "volume", "volumes");
   add(packet.isosurfaces.size(), "isosurface", "isosurfaces");
   add(packet.meshes.size(), "mesh", "meshes");
-  add(packet.tubes.size(), "streamline", "streamlines");
+  const auto curves = static_cast<std::size_t>(std::ranges::count_if(
+      packet.tubes, [&](const render::TubeItem& tube) { return tube.id > 0 && packet.objects[tube.id - 1].kind == "curves"; }));
+  add(packet.tubes.size() - curves, "streamline", "streamlines");
+  add(curves, "curve", "curves");
+  std::size_t balls = 0;
+  for (const render::BallsItem& item : packet.balls) balls += item.balls->places.size();
+  add(balls, "point", "points");
   add(packet.glyphs.size(), "set of glyphs", "sets of glyphs");
   add(packet.cursors.size(), "cursor", "cursors");
   return text.empty() ? "nothing" : text;

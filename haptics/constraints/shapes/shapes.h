@@ -29,6 +29,23 @@ ConstraintType segment_constraint();
 /// Lengths in world units; L = max(4, the longest edge of the box around it). Haptic thread: no allocation, lock, or throw.
 ConstraintType polyline_constraint();
 
+/// Keeps the proxy on the lines of curves from a file (engine/curves), as on polylines with open ends: on the line that it holds, until the
+/// link lets go. Where it takes hold is the closest place of all the lines, or of one: a tree of boxes over runs of at most eight
+/// consecutive pieces, put in order along a Morton curve (closest_search.h); within 512 boxes in the first tick and 256 in each later one,
+/// then BUDGET with the best so far, and on from there. A tick walks at most 1024 pieces, then BUDGET likewise. The tree is made off the
+/// tick, once for all links and programs that hold the same lines.
+/// Keys: `curves` (their name), `line` (one of them, counted from 0; without it all), `release` (lets go at that distance, takes hold again
+/// within a tenth of it). Its primitive is that of a polyline. Lengths in world units; L = max(4, the longest edge of the box around it).
+/// Haptic thread: no allocation, lock, or throw.
+ConstraintType curves_constraint();
+
+/// Keeps the proxy at a point of a table (engine/curves/points.h): where it takes hold, the closest of all, and there until the link lets
+/// go. A tree of boxes over eight points each, in the order of a Morton curve (closest_search.h): within 768 boxes in the first tick and
+/// 256 in each later one, then BUDGET with the best so far, and on from there. The tree is made off the tick, once for all links and
+/// programs. Keys: `points` (their name), `release` (lets go at that distance, takes hold again within a tenth of it). Its primitive is the
+/// point. Lengths in world units; L = max(4, the longest edge of the box around all). Haptic thread: no allocation, lock, or throw.
+ConstraintType points_constraint();
+
 /// Keeps the proxy on a plane: p = x - n (n . (x - point)), the orthogonal projection of the probe x.
 /// Keys: `point`, `normal` (normalised), `free` (above: the side that the normal points to), `release`: the same rules as the
 /// isosurface with the signed distance as the field's value. Closed form, no field fetch.

@@ -11,6 +11,7 @@
 #include "engine/app/viewer/shell/scene_host.h"
 #include "render/extract/extract.h"
 #include "tests/render/support/frames.h"
+#include "tests/support/curve_files.h"
 #include "tests/support/mesh_shapes.h"
 
 namespace catena::app {
@@ -196,6 +197,52 @@ TEST_F(FeelThis, AMeshIsItself) {
   }
 }
 
+TEST_F(FeelThis, CurvesFromAFileAreTheLineThatIsPointedAt) {
+  test::Polylines lines;
+  for (int k = 0; k < 12; ++k) {
+    lines.emplace_back();
+    for (int i = 0; i <= 60; ++i) {
+      const double t = 0.1 * i;
+      lines.back().push_back({0.9 * std::cos(t) + 0.02 * k, 0.15 * k - 0.9, 0.9 * std::sin(t)});
+    }
+  }
+  test::write_file(folder_ / "fibres.tck", test::tck_bytes(lines, "Float32BE"));
+  show(R"({"curves": [{"name": "fibres", "file": ")" + (folder_ / "fibres.tck") + R"(", "radius": 0.03}],
+           "workspace": {"metres_per_unit": 0.05}})");
+  std::set<int> held;
+  for (int k = 0; k < kPixels; ++k) {
+    const auto place = random_place("curves");
+    ASSERT_TRUE(place);
+    const Felt felt = feel_at(*place, 0.06);
+    EXPECT_EQ(felt.words, "curves fibres");
+    EXPECT_LE(norm(felt.touched - place->world), 0.03 + pixel_at(place->world)) << "the line within the tube";
+    EXPECT_LE(norm(felt.touched - drawn_at(pixel_[0], pixel_[1])), 0.03 + 1.5 * pixel_at(place->world));
+    // pressed: still on that line
+    EXPECT_NEAR(felt.pressed.y, felt.touched.y, 1e-9);
+    EXPECT_GT(felt.force_n, 0.05);
+    held.insert(static_cast<int>(std::lround((felt.pressed.y + 0.9) / 0.15)));
+  }
+  EXPECT_GE(held.size(), 4u) << "the picture shows many lines";
+}
+
+TEST_F(FeelThis, PointsOfATableAreThePointThatIsPointedAt) {
+  std::string table = "x,y,z\n";
+  std::uniform_real_distribution<double> place(-0.9, 0.9);
+  for (int k = 0; k < 60; ++k) table += fmt::format("{},{},{}\n", place(random_), place(random_), place(random_));
+  test::write_file(folder_ / "table.csv", table);
+  show(R"({"points": [{"name": "dots", "file": ")" + (folder_ / "table.csv") + R"(", "radius": 0.06}],
+           "workspace": {"metres_per_unit": 0.05}})");
+  for (int k = 0; k < kPixels; ++k) {
+    const auto at = random_place("points");
+    ASSERT_TRUE(at);
+    EXPECT_LE(norm(at->world - drawn_at(pixel_[0], pixel_[1])), 1.5 * pixel_at(at->world)) << "picked where it is drawn";
+    const Felt felt = feel_at(*at, 0.03);
+    EXPECT_EQ(felt.words, "points dots");
+    EXPECT_NEAR(norm(felt.pressed - at->world), 0.06, 1e-6) << "the middle of the ball";
+    EXPECT_GT(felt.force_n, 0.05);
+  }
+}
+
 TEST_F(FeelThis, TheFreeSideIsTheEyesAlsoOfAMeshWhoseFacesLookInwards) {
   mesh::Soup soup = test::sphere_soup(16, 0.8);
   test::write_file(folder_ / "out.stl", test::binary_stl(soup));
@@ -226,7 +273,8 @@ TEST_F(FeelThis, WhatIsFeltAlreadyIsSaidAndWhatCannotBeFeltSaysWhy) {
   EXPECT_NE(feel(host_->scene(), "volumes[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("point at it"), std::string::npos);
   EXPECT_NE(feel(host_->scene(), "slices[0]", std::nullopt, Vec3(9, 9, 9), 4).error().message.find("widget"), std::string::npos);
   EXPECT_FALSE(can_feel("lights"));
-  for (const char* part : {"isosurfaces", "streamlines", "slices", "meshes", "volumes"}) EXPECT_TRUE(can_feel(part)) << part;
+  for (const char* part : {"isosurfaces", "streamlines", "slices", "meshes", "curves", "points", "volumes"})
+    EXPECT_TRUE(can_feel(part)) << part;
 }
 
 }  // namespace feel_this_test

@@ -2,6 +2,7 @@
 /// A new type adds its row to examples().
 #pragma once
 #include <limits>
+#include "tests/support/curve_files.h"
 
 #include "tests/engine/flow/fields.h"
 #include "tests/haptics/constraints/rig.h"
@@ -21,6 +22,32 @@ inline std::string zigzag(int points) {
     text += corner;
   }
   return text + "]";
+}
+
+/// Lines that go astray through the box -1..1, each begun anywhere in it.
+inline catena::test::Polylines random_fibres(int lines, int points, double step) {
+  Random random(17);
+  catena::test::Polylines all(static_cast<std::size_t>(lines));
+  for (auto& line : all) {
+    line.push_back(random.box(1));
+    Vec3 way = direction(random.box(1));
+    for (int i = 1; i < points; ++i) {
+      way = direction(way + random.box(0.4) - line.back() * 0.1);
+      line.push_back(line.back() + way * step);
+    }
+  }
+  return all;
+}
+
+inline curves::PointSetPtr point_cloud(int count) {
+  Random random(23);
+  std::string table = "x,y,z\n";
+  for (int i = 0; i < count; ++i) {
+    const Vec3 p = random.box(1);
+    table += fmt::format("{},{},{}\n", p.x, p.y, p.z);
+  }
+  auto set = curves::parse_points(table, "made.csv");
+  return set ? std::make_shared<const curves::PointSet>(std::move(*set)) : nullptr;
 }
 
 /// Examples by type, without name and type. Fields: see fields().
@@ -63,6 +90,10 @@ inline std::map<std::string, std::vector<std::string>> examples() {
         R"("mesh": "sheet", "free": "above", "release": 0.3)", R"("mesh": "sheet", "release": 0.1)", R"("mesh": "book", "free": "above")",
         R"("mesh": "book")", R"("mesh": "sphere", "free": "above")", R"("mesh": "sphere")", R"("mesh": "plate", "free": "above")",
         R"("mesh": "plate", "free": "below")"}},
+      {"curves",
+       {R"("curves": "fibres")", R"("curves": "fibres", "release": 0.3)", R"("curves": "fibres", "line": 7)",
+        R"("curves": "fibres", "line": 120, "release": 0.2)", R"("curves": "two")"}},
+      {"points", {R"("points": "cloud")", R"("points": "cloud", "release": 0.3)", R"("points": "one")"}},
       {"viscosity",
        {R"("time": 0.05)", R"("time": 0)", R"("coefficient": 2)", R"("time": {"field": "gaussian", "map": [[0, 0], [1, 1]]})"}},
       {"gradient_force",
@@ -144,6 +175,10 @@ inline const Fields& fields() {
     catena::test::add_quad(book, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0.2}, {-1, -1, 0.2});
     catena::test::add_quad(book, {0, -1, 0}, {0, -1, 1}, {0, 1, 1}, {0, 1, 0});
     made.meshes["book"] = catena::test::mesh_of(std::move(book));
+    made.points["cloud"] = point_cloud(2000);
+    made.points["one"] = point_cloud(1);
+    made.curves["fibres"] = catena::test::curves_of(random_fibres(200, 60, 0.1));
+    made.curves["two"] = catena::test::curves_of({{{-1, 0, 0}, {1, 0, 0}}, {{0, 1e-12, -1}, {0, 0, 1}}});
     return made;
   }();
   return all;

@@ -40,6 +40,8 @@ std::shared_ptr<const field::ScalarGrid> grid_of(const field::Mapping& mapping, 
 struct Fields {
   std::map<std::string, field::AnyField> named;
   std::map<std::string, mesh::MeshPtr> meshes;
+  std::map<std::string, curves::CurveSetPtr> curves;
+  std::map<std::string, curves::PointSetPtr> points;
   BuildContext context() const {
     BuildContext c;
     c.field = [this](const json::Node& where, const std::string& name) -> Result<field::AnyField> {
@@ -50,6 +52,16 @@ struct Fields {
     c.mesh = [this](const json::Node& where, const std::string& name) -> Result<mesh::MeshPtr> {
       const auto it = meshes.find(name);
       if (it == meshes.end()) return json::error_at(where, "no mesh " + name);
+      return it->second;
+    };
+    c.points = [this](const json::Node& where, const std::string& name) -> Result<curves::PointSetPtr> {
+      const auto it = points.find(name);
+      if (it == points.end()) return json::error_at(where, "no points " + name);
+      return it->second;
+    };
+    c.curves = [this](const json::Node& where, const std::string& name) -> Result<curves::CurveSetPtr> {
+      const auto it = curves.find(name);
+      if (it == curves.end()) return json::error_at(where, "no curves " + name);
       return it->second;
     };
     c.curve = [](const json::Node&, const std::string&, const flow::Flow& flow, const Vec3& seed) { return flow::trace(flow, seed); };

@@ -89,6 +89,18 @@ std::vector<std::string> meshes_of(const scene::Scene& scene) {
 }
 
 namespace {
+template <class T>
+std::vector<std::string> names_of(const scene::Scene& scene) {
+  std::vector<std::string> out;
+  scene.world.each<T>([&](scene::Entity entity, const T&) { out.push_back(scene.world.get<scene::Name>(entity).value); });
+  return out;
+}
+}  // namespace
+
+std::vector<std::string> curves_of(const scene::Scene& scene) { return names_of<scene::DrawnCurves>(scene); }
+std::vector<std::string> points_of(const scene::Scene& scene) { return names_of<scene::DrawnPoints>(scene); }
+
+namespace {
 
 /// "0.1 L" as a number, or JSON text; empty: it is words.
 std::string length_or_json(const std::string& begin, double length) {
@@ -121,11 +133,15 @@ std::string first_vector(const schema::Key& key, const Vec3& probe, double lengt
   return text.empty() ? scene::text_of(probe) : text;
 }
 
-/// The name of a field or a mesh that fits, as JSON text.
+/// The name of a field, a mesh or curves that fit, as JSON text.
 std::string first_name(scene::Scene& scene, Role role) {
   if (role == Role::mesh) {
     const auto meshes = meshes_of(scene);
     return meshes.empty() ? "" : scene::text_of(meshes.front());
+  }
+  if (role == Role::curves || role == Role::points) {
+    const auto all = role == Role::curves ? curves_of(scene) : points_of(scene);
+    return all.empty() ? "" : scene::text_of(all.front());
   }
   const bool vectors = role == Role::vector_field;
   if (const std::string seen = drawn_field(scene); !vectors && use(scene, seen, false).get() != nullptr) return scene::text_of(seen);
@@ -138,7 +154,9 @@ std::string first_name(scene::Scene& scene, Role role) {
 
 std::string first_value(scene::Scene& scene, const schema::Key& key, const json::Node& link, const Vec3& probe, double length) {
   if (key.role == Role::level) return first_level(scene, link, probe);
-  if (key.role == Role::scalar_field || key.role == Role::vector_field || key.role == Role::mesh) return first_name(scene, key.role);
+  if (key.role == Role::scalar_field || key.role == Role::vector_field || key.role == Role::mesh || key.role == Role::curves ||
+      key.role == Role::points)
+    return first_name(scene, key.role);
   switch (key.form) {
     case Form::number:
       return first_number(scene, key, length);
@@ -170,6 +188,8 @@ Result<std::string> new_link(scene::Scene& scene, std::string_view type, const V
     const auto known = std::ranges::find(given, key.name, &std::pair<std::string, std::string>::first);
     if (known == given.end() && !key.is_required && !key.is_stated) continue;
     const std::string value = known != given.end() ? known->second : first_value(scene, key, link, probe, length);
+    if (value.empty() && (key.role == Role::curves || key.role == Role::points))
+      return Error{key.name + " cannot be felt, for the scene has none"};
     if (value.empty())
       return Error{"a " + std::string(type) + " needs a " +
                    (key.role == Role::vector_field   ? "vector field"

@@ -57,5 +57,7 @@ std::vector<scene::Document::Edit> swapped(const ChainRow& a, const ChainRow& b)
 /// Names of the scene's fields of a kind (those that are not loaded count as either), and of its meshes.
 std::vector<std::string> fields_of(const scene::Scene& scene, bool vectors);
 std::vector<std::string> meshes_of(const scene::Scene& scene);
+std::vector<std::string> curves_of(const scene::Scene& scene);
+std::vector<std::string> points_of(const scene::Scene& scene);
 
 }  // namespace catena::app

@@ -15,6 +15,7 @@ namespace catena::app {
 namespace {
 
 constexpr std::string_view kVolumes = "volumes";
+constexpr double kSnapShare = 0.02;  // of the diagonal of all lines or points
 
 const haptics::ConstraintType* type_that_feels(std::string_view part) {
   for (const haptics::ConstraintType& type : haptics::registry())
@@ -122,6 +123,21 @@ Result<Given> given_by(scene::Scene& scene, const scene::SurfaceMesh& surface, c
   return Given{{{"mesh", scene::text_of(name)}, {"free", scene::text_of(std::string(side_of_eye(*mesh, at, eye)))}}, "mesh " + name};
 }
 
+Result<Given> curves_given(scene::Scene& scene, scene::Entity entity) {
+  const std::string name = name_of(scene, entity);
+  CATENA_TRY(const curves::CurveSetPtr set, scene::use_curves(scene, entity));
+  const double snap = rounded_to(kSnapShare * norm(set->highest - set->lowest), 2);
+  return Given{{{"curves", scene::text_of(name)}, {"snap", scene::text_of(snap)}}, "curves " + name};
+}
+
+Result<Given> points_given(scene::Scene& scene, scene::Entity entity) {
+  const std::string name = name_of(scene, entity);
+  CATENA_TRY(const curves::PointSetPtr set, scene::use_points(scene, entity));
+  const double diagonal = norm(set->highest - set->lowest);
+  const double snap = rounded_to(std::max(kSnapShare * (diagonal > 0 ? diagonal : 1), 0.5 * set->spacing), 2);
+  return Given{{{"points", scene::text_of(name)}, {"snap", scene::text_of(snap)}}, "points " + name};
+}
+
 /// A copy of the component that was read from `item`: loading a field may move the others.
 template <class T>
 std::optional<T> item_of(const scene::Scene& scene, const std::string& item, scene::Entity* entity = nullptr) {
@@ -140,6 +156,8 @@ Result<Given> given_by(scene::Scene& scene, const std::string& item, const std::
   scene::Entity entity;
   if (const auto set = item_of<scene::StreamlineSet>(scene, item, &entity)) return given_by(scene, entity, *set, at);
   if (const auto slice = item_of<scene::Slice>(scene, item)) return given_by(scene, *slice);
+  if (item_of<scene::DrawnPoints>(scene, item, &entity)) return points_given(scene, entity);
+  if (item_of<scene::DrawnCurves>(scene, item, &entity)) return curves_given(scene, entity);
   if (const auto mesh = item_of<scene::SurfaceMesh>(scene, item)) return given_by(scene, *mesh, at, eye);
   return Error{item + " is not there any more"};
 }

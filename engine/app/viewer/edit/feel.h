@@ -2,6 +2,8 @@
 ///   isosurface    the same field and level (or the widget that states it); free on the eye's side
 ///   volume        the isosurface at the value of the place that was pointed at
 ///   streamlines   the line through the place nearest to the one that was pointed at: its own seed, or the widget that holds it
+///   curves        all its lines: the hand takes hold of the one that it comes near, and leaves it where it pulls away
+///   points        the same of the points
 ///   slice         its plane
 ///   mesh          the mesh; free outside
 /// Which type of link that is, its registry says (ConstraintType::feels). The link follows the thing: what changes the one in the window

@@ -201,12 +201,13 @@ Result<AddedFile> edits_to_add(const std::string& open_text, const std::string& 
   CATENA_TRY(const json::Node open, json::parse(open_text, open_path));
   CATENA_TRY(json::Node added, json::parse(added_text, added_path));
   AddedFile result;
-  std::set<std::string> fields, meshes;
+  std::set<std::string> fields, things;
   if (const json::Node* there = open.find("fields"))
     for (const auto& [name, node] : there->members) fields.insert(name);
-  if (const json::Node* there = open.find("meshes"))
-    for (const json::Node& mesh : there->items)
-      if (const json::Node* name = mesh.find("name")) meshes.insert(name->string);
+  for (const char* part : {"meshes", "curves", "points"})
+    if (const json::Node* there = open.find(part))
+      for (const json::Node& item : there->items)
+        if (const json::Node* name = item.find("name")) things.insert(name->string);
   const fs::path from = fs::path(added_path).parent_path(), to = fs::path(open_path).parent_path();
 
   if (json::Node* own = member_of(added, "fields"))
@@ -220,13 +221,13 @@ Result<AddedFile> edits_to_add(const std::string& open_text, const std::string& 
     const auto found = std::ranges::find(result.names, name, &std::pair<std::string, std::string>::first);
     return found == result.names.end() ? name : found->second;
   };
-  for (const char* part : {"meshes", "volumes", "streamlines"}) {
+  for (const char* part : {"meshes", "curves", "points", "volumes", "streamlines"}) {
     json::Node* items = member_of(added, part);
     if (items == nullptr) continue;
     for (json::Node& item : items->items) {
       if (json::Node* field = member_of(item, "field")) field->string = renamed(field->string);
       if (json::Node* file = member_of(item, "file")) file->string = named_from(from, to, file->string);
-      if (json::Node* name = member_of(item, "name")) name->string = free_among(meshes, name->string);
+      if (json::Node* name = member_of(item, "name")) name->string = free_among(things, name->string);
       result.edits.push_back({std::string("/") + part + "/-", json::node_text(item)});
     }
   }

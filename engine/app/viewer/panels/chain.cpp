@@ -110,6 +110,10 @@ void draw_stated(PanelContext& context, const ChainRow& row, const schema::Key& 
     draw_name_choice(context, row, key, fields_of(context.scene.scene(), key.role == Role::vector_field), value.string);
   } else if (key.role == Role::mesh && word) {
     draw_name_choice(context, row, key, meshes_of(context.scene.scene()), value.string);
+  } else if (key.role == Role::curves && word) {
+    draw_name_choice(context, row, key, curves_of(context.scene.scene()), value.string);
+  } else if (key.role == Role::points && word) {
+    draw_name_choice(context, row, key, points_of(context.scene.scene()), value.string);
   } else {
     ImGui::TextDisabled("%s: in the text", key.name.c_str());
   }

@@ -8,6 +8,8 @@
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/curves/load.h"
+#include "engine/curves/points.h"
 #include "engine/field/formats.h"
 #include "engine/mesh/load.h"
 
@@ -31,6 +33,8 @@ const std::vector<std::string_view>& openable_endings() {
     std::vector<std::string_view> all{".json"};
     for (const std::string_view ending : field::field_endings(true)) all.push_back(ending);
     for (const std::string_view ending : mesh::mesh_endings()) all.push_back(ending);
+    for (const std::string_view ending : curves::curve_endings()) all.push_back(ending);
+    for (const std::string_view ending : curves::point_endings()) all.push_back(ending);
     return all;
   }();
   return endings;

@@ -114,6 +114,22 @@ void meet(Nearest& nearest, const render::GlyphItem& item, const Span& span) {
   }
 }
 
+/// The ray's first place on each ball, or its second where the clip planes cut the first away.
+void meet(Nearest& nearest, const render::BallsItem& item, const Span& span) {
+  const Vec3 d = nearest.ray.direction;
+  const double dd = dot(d, d);
+  for (std::size_t i = 0; i < item.balls->places.size(); ++i) {
+    const Vec3 from = nearest.ray.origin - Vec3(item.balls->places[i]);
+    const double r = item.balls->radii[i], b = dot(d, from), root = b * b - dd * (dot(from, from) - r * r);
+    if (!(root >= 0)) continue;
+    for (const double t : {(-b - std::sqrt(root)) / dd, (-b + std::sqrt(root)) / dd}) {
+      if (!(t >= span.enter && t <= span.leave)) continue;
+      nearest.offer(t, item.id);
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 std::optional<PickedPlace> pick_solid(const render::FramePacket& packet, const render::Ray& ray, double farthest) {
@@ -124,6 +140,7 @@ std::optional<PickedPlace> pick_solid(const render::FramePacket& packet, const r
   for (const render::MeshItem& item : packet.meshes) meet(nearest, item, kept(packet, item.clipped, ray, {}));
   for (const render::TubeItem& item : packet.tubes) meet(nearest, item, kept(packet, item.clipped, ray, {}));
   for (const render::GlyphItem& item : packet.glyphs) meet(nearest, item, kept(packet, item.clipped, ray, {}));
+  for (const render::BallsItem& item : packet.balls) meet(nearest, item, kept(packet, item.clipped, ray, {}));
   if (nearest.id == 0) return std::nullopt;
   return PickedPlace{nearest.at(nearest.t), nearest.id, false};
 }

@@ -26,7 +26,7 @@ Result<LoadedScene> load_scene(SceneHost host, std::uint32_t width, std::uint32_
   CATENA_CHECK(HandHost::load(scene));
   CATENA_TRY(render::FramePacket packet, render::make_frame(scene, width, height));
   const Bounds bounds = scene::prepared_bounds(scene);
-  if (!scene.camera.given && packet.volumes.empty() && packet.isosurfaces.empty() && packet.tubes.empty())
+  if (!scene.camera.given && packet.volumes.empty() && packet.isosurfaces.empty() && packet.tubes.empty() && packet.balls.empty())
     packet.view = render::fit_view(bounds, static_cast<double>(width) / height);
   host.bounds = bounds;
   return LoadedScene{std::move(host), std::move(packet), bounds};

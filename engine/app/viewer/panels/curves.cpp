@@ -1,0 +1,48 @@
+// Points from tables, and curves from files: one colour, those of the directions, or those of values; their plain keys.
+#include "engine/app/viewer/edit/scene_items.h"
+#include "engine/app/viewer/panels/look_parts.h"
+#include "engine/scene/hidden.h"
+
+namespace catena::app {
+
+namespace {
+
+void draw_curves(PanelContext& context) {
+  Edits& edits = context.edits;
+  const scene::Scene& scene = context.scene.scene();
+  scene.world.each<scene::DrawnCurves>([&](scene::Entity e, const scene::DrawnCurves& curves) {
+    if (!begin_item(edits, curves.where, !is_hidden(scene.world, e), "curves", name_of(scene, e))) return;
+    const std::string pointer = pointer_of(curves.where) + "/color";
+    bool directions = !curves.color;
+    if (curves.color_by) {
+      edit_color_scale(edits, curves.where, *curves.color_by);
+    } else if (ImGui::Checkbox("by direction", &directions)) {
+      directions ? edits.remove(pointer, "colour") : edits.set(pointer, scene::text_of(Color{1.0f, 0.3f, 0.2f}), "colour");
+    } else if (curves.color) {
+      edit_color(edits, "colour", *curves.color, pointer);
+    }
+    edit_plain_keys(edits, "curves", curves.where, {});
+    end_item();
+  });
+}
+
+void draw_points(PanelContext& context) {
+  Edits& edits = context.edits;
+  const scene::Scene& scene = context.scene.scene();
+  scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints& points) {
+    if (!begin_item(edits, points.where, !is_hidden(scene.world, e), "points", name_of(scene, e))) return;
+    if (points.color_by)
+      edit_color_scale(edits, points.where, *points.color_by);
+    else
+      edit_color(edits, "colour", points.color, pointer_of(points.where) + "/color");
+    edit_plain_keys(edits, "points", points.where, {});
+    end_item();
+  });
+}
+
+}  // namespace
+
+Panel points_panel() { return {"Points", false, draw_points, has_any<scene::DrawnPoints>}; }
+Panel curves_panel() { return {"Curves", false, draw_curves, has_any<scene::DrawnCurves>}; }
+
+}  // namespace catena::app

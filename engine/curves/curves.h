@@ -1,0 +1,66 @@
+/// Curves from a file: polylines such as the fibres of a tractogram. What any reader gives is this plain struct, and what is drawn and
+/// felt is one object. Points are world units (of a patient's file: mm, +x to the right, +y to the front, +z to the head), in single
+/// precision, as such files have them. Immutable once made; reading is safe from every thread, without allocation.
+#pragma once
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/result.h"
+#include "engine/base/vec.h"
+
+namespace catena::curves {
+
+/// A number at every point, by the name that the file has for it.
+struct PointValues {
+  std::string name;
+  std::vector<float> values;
+};
+
+struct CurveSet {
+  std::string name;                   ///< of the file
+  std::vector<glm::vec3> points;      ///< line after line; neighbours on a line differ
+  std::vector<std::uint32_t> first;   ///< line k is the points first[k] to first[k + 1] - 1, two or more; one more than there are lines
+  std::vector<PointValues> values{};  ///< may be empty
+  std::string unit{};                 ///< of lengths; empty: the file does not say
+  bool patient = false;               ///< axes as above
+  std::string note{};                 ///< what was left out, in words; may be empty
+  Vec3 lowest{0.0}, highest{0.0};
+  std::uint64_t version = 0;  ///< unique in the process
+  HeldMemory held{};
+
+  std::size_t lines() const { return first.size() - 1; }
+  std::size_t bytes() const;
+  const PointValues* find(std::string_view name) const;  ///< nullptr: none is called so
+  /// The line that a point is on.
+  std::uint32_t line_of(std::uint32_t point) const;
+};
+using CurveSetPtr = std::shared_ptr<const CurveSet>;
+
+inline constexpr std::size_t kMaxPoints = 1'000'000'000;
+
+/// Private to this room: collects what a reader finds. A point that equals the one before it on its line is left out, and so is a line of
+/// fewer than two points.
+class Builder {
+ public:
+  /// Asks for the memory of as many points as the file can hold. `name` begins every message.
+  static Result<Builder> create(std::string name, std::size_t most_points, std::vector<std::string> value_names);
+
+  /// False: not finite, or beyond 1e15, where squares of distances lose their meaning. `values`: as many as there are names.
+  bool add(const Vec3& point, const float* values = nullptr);
+  void end_line();
+  std::size_t lines() const { return made_.first.size() - 1; }
+
+  /// A line that is still open ends here. The error: no line is left.
+  Result<CurveSet> finish();
+
+ private:
+  CurveSet made_;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace catena::curves

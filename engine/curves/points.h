@@ -1,0 +1,33 @@
+/// Points from a table of text: .csv, .tsv, .xyz. The first line names the columns; x, y and z must be there, in any order and case; cells
+/// are parted by commas, semicolons or tabs, else by blanks. A column of numbers is values by its name (an empty cell, or "nan": none), one
+/// of words is left out. Points are world units, in single precision. Refused, with one line "FILE:LINE: what; what was expected": places
+/// that are not finite or beyond 1e15, rows of another length, more than kMaxPoints, more than the memory that is allowed. Immutable once
+/// made; reading is safe from every thread.
+#pragma once
+#include "engine/curves/curves.h"
+
+namespace catena::curves {
+
+struct PointSet {
+  std::string name;  ///< of the file
+  std::vector<glm::vec3> points;
+  std::vector<PointValues> values{};
+  std::string note{};  ///< what was left out, in words; may be empty
+  Vec3 lowest{0.0}, highest{0.0};
+  double spacing = 0;         ///< the median distance of a point from the nearest other one, of a sample; 0: there is none
+  std::uint64_t version = 0;  ///< unique in the process
+  HeldMemory held{};
+
+  std::size_t bytes() const { return points.size() * (sizeof(glm::vec3) + values.size() * sizeof(float)); }
+  const PointValues* find(std::string_view name) const;  ///< nullptr: none is called so
+};
+using PointSetPtr = std::shared_ptr<const PointSet>;
+
+bool is_point_file(std::string_view path);  ///< by its ending, any case
+const std::vector<std::string_view>& point_endings();
+
+Result<PointSetPtr> load_points(const std::string& path);
+/// The contents of a file; `name` begins every message.
+Result<PointSet> parse_points(std::string_view text, const std::string& name);
+
+}  // namespace catena::curves

@@ -1,0 +1,105 @@
+/// The proxy on straight pieces that follow each other, at the local minimum of the distance to the probe that lies downhill from where
+/// the proxy is (shapes.h, polyline_constraint). Start, `seek` and taking hold again: the closest place anywhere (closest_search.h).
+///   Pieces   has(k): of 0 true; piece(k): a Straight; neighbour(k, way): the piece after (way 1) or before (-1) it, itself at an open end;
+///            search, is_sane, extent as of ClosestSearch; kFirstVisits, kVisits: nodes of the first tick's search and of a later one's;
+///            kVisitWork, walk_work(n), kMostPieces: what a visited node and the n-th piece walked count, and how many a tick walks
+/// Haptic thread: no allocation, lock, or throw. Lengths in world units.
+#pragma once
+#include "haptics/constraints/rules/closest_search.h"
+#include "haptics/constraints/shapes/closed_form.h"
+
+namespace catena::haptics {
+
+template <class Pieces>
+class AlongPieces final : public Surface {
+ public:
+  using Shape = Pieces;
+  struct Memory {
+    SearchState search;
+    std::uint32_t piece;
+    std::int32_t end;  // of the piece: -1, 1, or 0 between
+  };
+  AlongPieces(const Shape& shape, Memory& memory, const SideMemory&) : shape_(shape), memory_(memory) {}
+
+  static bool is_sane(const Shape& shape, const Memory& m) noexcept {
+    return shape.is_sane(m.search) && shape.has(m.search.best) && shape.has(m.piece) && m.end >= -1 && m.end <= 1;
+  }
+  SideValue side(const Vec3&) noexcept override { return {}; }
+
+  Hold place(const Vec3& probe) noexcept override {
+    SearchState& search = memory_.search;
+    shape_.search(probe, search.any ? Shape::kVisits : Shape::kFirstVisits, search);
+    work_ += Shape::kVisitWork * search.visits;
+    return hold(search.best, probe, search.open ? Status::budget : Status::ok);
+  }
+
+  Hold slide(const Vec3& probe) noexcept override {
+    if (memory_.search.open) return place(probe);
+    std::uint32_t k = memory_.piece;
+    int way = memory_.end == 0 ? 0 : leave_corner(k, probe);
+    for (int visited = 0; visited < Shape::kMostPieces; ++visited, work_ += Shape::walk_work(visited)) {
+      const int end = shape_.piece(k).end_of(shape_.piece(k).along(probe));
+      if (way == 0) way = end;
+      if (end == 0 || end != way) return hold(k, probe, Status::ok);
+      const std::uint32_t next = shape_.neighbour(k, way);
+      if (next == k) return hold(k, probe, Status::ok);
+      k = next;
+    }
+    return hold_end(k, -way);
+  }
+
+  Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
+
+  Hold near_by(const Vec3& probe, double limit) noexcept override {
+    const Hold found = place(probe);
+    if (!(norm(probe - found.proxy) <= limit)) return {};
+    memory_.search.open = false;
+    return {true, found.proxy, found.residual, Status::ok};
+  }
+
+  int work() const noexcept { return work_; }
+  Vec3 normal() const noexcept override { return Vec3(0.0); }
+  double domain_length() const noexcept override { return std::max(kSceneLength, shape_.extent()); }
+
+  bool primitive(const Vec3& at, Primitive& out) noexcept {
+    memory_.search.open = false;
+    const Hold held = slide(at);
+    if (memory_.end != 0)
+      out = {Primitive::Kind::point, held.proxy, Vec3(0.0)};
+    else
+      out = {Primitive::Kind::line, held.proxy, shape_.piece(memory_.piece).d};
+    return true;
+  }
+
+ private:
+  /// From a corner both ways may lead nearer: the steeper one; at a tie onwards. Sets k to the piece on that side.
+  int leave_corner(std::uint32_t& k, const Vec3& probe) const {
+    const std::uint32_t other = shape_.neighbour(k, memory_.end);
+    if (other == k) return 0;
+    const std::uint32_t before = memory_.end > 0 ? k : other, after = memory_.end > 0 ? other : k;
+    const Straight &down = shape_.piece(before), &up = shape_.piece(after);
+    const Vec3 e = probe - up.a;
+    k = dot(e, up.d) >= -dot(e, down.d) ? after : before;
+    return k == after ? 1 : -1;
+  }
+
+  Hold hold(std::uint32_t k, const Vec3& probe, Status status) noexcept {
+    const Straight& piece = shape_.piece(k);
+    const double s = piece.along(probe);
+    memory_.piece = k;
+    memory_.end = piece.end_of(s);
+    const Vec3 proxy = piece.at(s);
+    return {true, proxy, memory_.end != 0 ? 0 : piece.off_axis(proxy), status};
+  }
+  Hold hold_end(std::uint32_t k, int end) noexcept {
+    memory_.piece = k;
+    memory_.end = end;
+    return {true, end < 0 ? shape_.piece(k).a : shape_.piece(k).b, 0, Status::budget};
+  }
+
+  const Shape& shape_;
+  Memory& memory_;
+  int work_ = 0;
+};
+
+}  // namespace catena::haptics

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include "haptics/constraints/rules/closest_search.h"
+#include "haptics/constraints/rules/morton.h"
+#include "haptics/constraints/rules/shared_tree.h"
+#include "haptics/constraints/shapes/closed_form.h"
+#include "haptics/constraints/shapes/shapes.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr std::size_t kPointsOfLeaf = 8;
+
+/// Points in the order of a Morton curve, eight of them a leaf.
+struct PointTree {
+  using Tree = ClosestSearch<glm::vec3>;
+  std::vector<glm::vec3> points;
+  Tree tree;
+
+  explicit PointTree(const curves::PointSet& set) {
+    const double edge = std::max(max_abs(set.highest - set.lowest), 1e-300);
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+    order.reserve(set.points.size());
+    for (std::size_t i = 0; i < set.points.size(); ++i)
+      order.emplace_back(morton_code(Vec3(set.points[i]), set.lowest, edge), static_cast<std::uint32_t>(i));
+    std::sort(order.begin(), order.end());
+    points.reserve(order.size());
+    for (const auto& [code, i] : order) points.push_back(set.points[i]);
+    std::vector<Tree::Box> boxes((points.size() + kPointsOfLeaf - 1) / kPointsOfLeaf);
+    for (std::size_t i = 0; i < points.size(); ++i) boxes[i / kPointsOfLeaf].add(points[i], points[i]);
+    tree = Tree(boxes);
+  }
+  /// Memory that it takes, from above.
+  static double bytes_for(const curves::PointSet& set) {
+    return static_cast<double>(set.points.size()) * (sizeof(glm::vec3) + 16 + 5.0 * sizeof(Tree::Box) / kPointsOfLeaf);
+  }
+};
+
+class NearestPoint final : public Surface {
+ public:
+  using Shape = std::shared_ptr<const PointTree>;
+  struct Memory {
+    SearchState search;
+    std::uint32_t held;
+  };
+  static constexpr int kFirstVisits = 768, kVisits = 256, kVisitWork = 3;
+  NearestPoint(const Shape& shape, Memory& memory, const SideMemory&) : shape_(*shape), memory_(memory) {}
+
+  static bool is_sane(const Shape& shape, const Memory& m) noexcept {
+    return shape->tree.is_sane(m.search) && m.search.best < shape->points.size() && m.held < shape->points.size();
+  }
+  SideValue side(const Vec3&) noexcept override { return {}; }
+
+  Hold place(const Vec3& probe) noexcept override {
+    SearchState& search = memory_.search;
+    shape_.tree.search(
+        probe, search.any ? kVisits : kFirstVisits, search, [&](std::uint32_t k) { return Vec3(shape_.points[k]); },
+        [&](std::size_t leaf, const auto& see) {
+          const std::size_t last = std::min((leaf + 1) * kPointsOfLeaf, shape_.points.size());
+          for (std::size_t k = leaf * kPointsOfLeaf; k < last; ++k) see(static_cast<std::uint32_t>(k));
+        });
+    work_ += kVisitWork * search.visits;
+    memory_.held = search.best;
+    return hold(search.open ? Status::budget : Status::ok);
+  }
+  Hold slide(const Vec3& probe) noexcept override { return memory_.search.open ? place(probe) : hold(Status::ok); }
+  Hold cross(const Vec3&, const Vec3&) noexcept override { return {}; }
+  Hold near_by(const Vec3& probe, double limit) noexcept override {
+    const Hold found = place(probe);
+    if (!(norm(probe - found.proxy) <= limit)) return {};
+    memory_.search.open = false;
+    return {true, found.proxy, 0, Status::ok};
+  }
+
+  int work() const noexcept { return work_; }
+  Vec3 normal() const noexcept override { return Vec3(0.0); }
+  double domain_length() const noexcept override { return std::max(kSceneLength, shape_.tree.extent()); }
+  bool primitive(const Vec3&, Primitive& out) noexcept {
+    out = {Primitive::Kind::point, Vec3(shape_.points[memory_.held]), Vec3(0.0)};
+    return true;
+  }
+
+ private:
+  Hold hold(Status status) const noexcept { return {true, Vec3(shape_.points[memory_.held]), 0, status}; }
+
+  const PointTree& shape_;
+  Memory& memory_;
+  int work_ = 0;
+};
+
+Result<std::shared_ptr<const Constraint>> build_points(const json::Node& link, const BuildContext& context) {
+  CATENA_TRY(const std::string name, json::require_string(link, "points"));
+  CATENA_TRY(const curves::PointSetPtr set, context.points(*link.find("points"), name));
+  CATENA_TRY(const SideSpec rules, read_side_rules(link, false, context));
+  if (const auto enough = ask_for_memory(fmt::format("feeling points \"{}\"", name), PointTree::bytes_for(*set)); !enough)
+    return json::error_at(*link.find("points"), enough.error().message);
+  return make_closed_form<NearestPoint>(shared_tree<PointTree>(set->version, 0, [&] { return std::make_shared<const PointTree>(*set); }),
+                                        rules);
+}
+
+}  // namespace
+
+ConstraintType points_constraint() {
+  return {"points",     "Holds the proxy at a point of a table.",
+          "section 3",  {schema::named("points", schema::Role::points, "Some of the scene's `points`.").required()},
+          build_points, true,
+          false,        "points"};
+}
+
+}  // namespace catena::haptics

@@ -1,0 +1,188 @@
+/// Curves from files as tubes.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/result.h"
+#include "engine/base/text.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
+#include "render/extract/extract_parts.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kShareOfAll = 0.003;                         // fitted radius by the diagonal of all
+constexpr double kManyCurves = 300, kNarrowest = 0.25;        // from so many on they get thinner, down to that share
+constexpr std::size_t kBytesAPoint = 160, kBytesALine = 400;  // drawn: place, colour, its ring here and on the device; the item
+
+using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
+
+/// What this room keeps beside curves: the tubes that are drawn, made once.
+struct FlatCurves {
+  curves::CurveSetPtr of;
+  std::vector<TubeItem> tubes;
+  ColorTable colors;  ///< of "color_by"
+  std::string left_out;
+};
+
+/// The lines that are drawn: all, or an even choice of as many as the budget of points allows.
+std::vector<std::size_t> drawn_lines(const curves::CurveSet& set) {
+  const double share = std::min(1.0, static_cast<double>(kMostCurvePoints) / static_cast<double>(set.points.size()));
+  std::vector<std::size_t> lines;
+  for (std::size_t k = 0; k < set.lines(); ++k)
+    if (share == 1 || std::floor(share * static_cast<double>(k + 1)) > std::floor(share * static_cast<double>(k))) lines.push_back(k);
+  if (lines.empty()) lines.push_back(0);
+  return lines;
+}
+
+/// The colours of a line's points by the direction of the line there: that of its chord from the point before to the one after.
+std::vector<Color> direction_colors(const std::vector<Vec3>& points) {
+  std::vector<Color> colors;
+  colors.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 along = direction(points[std::min(i + 1, points.size() - 1)] - points[i == 0 ? 0 : i - 1]);
+    colors.push_back(
+        {static_cast<float>(std::fabs(along.x)), static_cast<float>(std::fabs(along.y)), static_cast<float>(std::fabs(along.z))});
+  }
+  return colors;
+}
+
+/// What "color_by" shows at each of a set's points.
+class CurveValue {
+ public:
+  CurveValue(const scene::ColorBy& by, field::AnyField shown, const curves::PointValues* values)
+      : by_(&by), shown_(std::move(shown)), values_(values) {}
+  std::vector<double> of_line(const std::vector<Vec3>& points, std::size_t first) {
+    std::vector<double> out;
+    out.reserve(points.size());
+    double way = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (i > 0) way += norm(points[i] - points[i - 1]);
+      out.push_back(by_->what == scene::ColorBy::What::value        ? static_cast<double>(values_->values[first + i])
+                    : by_->what == scene::ColorBy::What::arc_length ? way
+                                                                    : at(points[i]));
+    }
+    return out;
+  }
+
+ private:
+  double at(const Vec3& p) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (shown_.vector) {
+      const field::VectorSample sample = shown_.vector->sample(p, cursor_);
+      return sample.inside ? norm(sample.value) : none;
+    }
+    const field::ScalarSample sample = shown_.scalar->sample(p, cursor_);
+    return sample.inside ? sample.value : none;
+  }
+  const scene::ColorBy* by_;
+  field::AnyField shown_;
+  const curves::PointValues* values_;
+  field::Cursor cursor_;
+};
+
+Result<CurveValue> curve_value(scene::Scene& scene, const scene::ColorBy& by, const curves::CurveSet& set) {
+  field::AnyField shown;
+  if (by.what == scene::ColorBy::What::field) {
+    CATENA_TRY(shown, scene::use_field(scene, by.field, by.where));
+  }
+  const curves::PointValues* values = by.what == scene::ColorBy::What::value ? set.find(by.value) : nullptr;
+  if (by.what == scene::ColorBy::What::value && values == nullptr) {
+    std::vector<std::string_view> names;
+    for (const curves::PointValues& one : set.values) names.push_back(one.name);
+    return json::error_at(json::member_or(by.where, "value"), "the file has no values called " + in_quotes(by.value) +
+                                                                  "; known: " + (names.empty() ? "none" : joined(names)) +
+                                                                  ", one of them was expected" + suggestion(by.value, names));
+  }
+  return CurveValue(by, std::move(shown), values);
+}
+
+double fitted_radius(const curves::CurveSet& set) {
+  const double many = std::sqrt(std::sqrt(kManyCurves / static_cast<double>(set.lines())));
+  return kShareOfAll * norm(set.highest - set.lowest) * std::clamp(many, kNarrowest, 1.0);
+}
+
+Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& drawn, const std::string& name) {
+  const curves::CurveSet& set = *drawn.loaded;
+  FlatCurves flat;
+  flat.of = drawn.loaded;
+  const std::vector<std::size_t> lines = drawn_lines(set);
+  std::size_t points = 0;
+  for (const std::size_t k : lines) points += set.first[k + 1] - set.first[k];
+  CATENA_CHECK(ask_for_memory("drawing " + std::to_string(lines.size()) + " lines of curves " + in_quotes(name),
+                              static_cast<double>(points * kBytesAPoint + lines.size() * kBytesALine)));
+  if (lines.size() < set.lines())
+    flat.left_out = "curves " + in_quotes(name) + ": " + std::to_string(lines.size()) + " of " + std::to_string(set.lines()) +
+                    " lines are drawn, evenly chosen, so that they have about " + std::to_string(kMostCurvePoints) +
+                    " points; all are felt";
+
+  std::optional<CurveValue> value;
+  if (drawn.color_by) {
+    CATENA_TRY(value, curve_value(scene, *drawn.color_by, set));
+  }
+  const double radius = drawn.radius > 0 ? drawn.radius : fitted_radius(set);
+  std::vector<std::vector<double>> values;
+  double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+  flat.tubes.reserve(lines.size());
+  for (const std::size_t k : lines) {
+    std::vector<Vec3> places(set.points.begin() + set.first[k], set.points.begin() + set.first[k + 1]);
+    TubeItem tube{{}, radius, drawn.color.value_or(Color{}), {}};
+    if (value) {
+      values.push_back(value->of_line(places, set.first[k]));
+      for (const double v : values.back())
+        if (std::isfinite(v)) lo = std::min(lo, v), hi = std::max(hi, v);
+    } else if (!drawn.color) {
+      tube.colors = direction_colors(places);
+    }
+    tube.points = std::move(places);
+    flat.tubes.push_back(std::move(tube));
+  }
+  if (value) {
+    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, lo, hi);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::vector<Color> colors;
+      colors.reserve(values[i].size());
+      for (const double v : values[i]) colors.push_back(table_color(flat.colors, v));
+      flat.tubes[i].colors = std::move(colors);
+    }
+  }
+  return flat;
+}
+
+}  // namespace
+
+const ColorTable* shown_curve_colors(const scene::World& made, scene::Entity curves) {
+  if (!made.has<FlatCurves>(curves) || made.get<FlatCurves>(curves).colors.empty()) return nullptr;
+  return &made.get<FlatCurves>(curves).colors;
+}
+
+Outcome prepare_curves(scene::Scene& scene) {
+  for (const scene::Entity e : owners_of<scene::DrawnCurves>(scene.world)) {
+    if (is_hidden(scene.world, e)) continue;
+    if (!scene.made.has<FlatCurves>(e)) scene.made.emplace<FlatCurves>(e);
+    if (scene.made.get<FlatCurves>(e).of == scene.world.get<scene::DrawnCurves>(e).loaded) continue;
+    const scene::DrawnCurves drawn = scene.world.get<scene::DrawnCurves>(e);
+    CATENA_TRY(FlatCurves made, flat_curves(scene, drawn, name_of(scene, e)));
+    scene.made.get<FlatCurves>(e) = std::move(made);
+  }
+  return Done{};
+}
+
+void extract_curves(const scene::Scene& scene, FramePacket& packet) {
+  scene.world.each<scene::DrawnCurves>([&](scene::Entity e, const scene::DrawnCurves& drawn) {
+    if (is_hidden(scene.world, e)) return;
+    const FlatCurves& flat = scene.made.get<FlatCurves>(e);
+    const std::uint32_t id = packet.add_object("curves", name_of(scene, e), drawn.where.label);
+    if (!flat.left_out.empty()) packet.left_out += (packet.left_out.empty() ? "" : "; ") + flat.left_out;
+    for (TubeItem tube : flat.tubes) {
+      tube.id = id;
+      tube.clipped = drawn.clipped;
+      packet.tubes.push_back(std::move(tube));
+    }
+  });
+}
+
+}  // namespace catena::render

@@ -1,0 +1,144 @@
+/// Points from tables as balls.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/result.h"
+#include "engine/base/text.h"
+#include "engine/scene/color_maps.h"
+#include "engine/scene/hidden.h"
+#include "render/extract/extract_parts.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr double kShareOfSpacing = 0.35;                 // fitted radius by the distance of neighbours
+constexpr double kLeastBall = 0.0012, kMostBall = 0.02;  // by the diagonal of all
+constexpr double kBytesABall = 80;                       // place, radius, colour and value here, and on the device
+
+using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
+
+/// What this room keeps beside points: the balls that are drawn, made once.
+struct FlatPoints {
+  curves::PointSetPtr of;
+  std::shared_ptr<const Balls> balls;
+  ColorTable colors;  ///< of "color_by"
+  std::string left_out;
+};
+
+/// The column of that name; an error at the key that names it.
+Result<const std::vector<float>*> column_of(const curves::PointSet& set, const json::Node& where, const char* key,
+                                            const std::string& name) {
+  if (const curves::PointValues* found = set.find(name)) return &found->values;
+  std::vector<std::string_view> names;
+  for (const curves::PointValues& one : set.values) names.push_back(one.name);
+  return json::error_at(json::member_or(where, key), "the table has no column of numbers called " + in_quotes(name) +
+                                                         "; known: " + (names.empty() ? "none" : joined(names)) +
+                                                         ", one of them was expected" + suggestion(name, names));
+}
+
+double fitted_ball(const curves::PointSet& set) {
+  const double diagonal = norm(set.highest - set.lowest);
+  if (!(diagonal > 0)) return 1;
+  return std::clamp(kShareOfSpacing * set.spacing, kLeastBall * diagonal, kMostBall * diagonal);
+}
+
+/// Values of a field at all points; not a number outside of it.
+std::vector<float> field_values(const field::AnyField& shown, const std::vector<glm::vec3>& points) {
+  field::Cursor cursor;
+  std::vector<float> values;
+  values.reserve(points.size());
+  for (const glm::vec3& p : points) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (shown.vector) {
+      if (const auto sample = shown.vector->sample(Vec3(p), cursor); sample.inside) value = norm(sample.value);
+    } else if (const auto sample = shown.scalar->sample(Vec3(p), cursor); sample.inside) {
+      value = sample.value;
+    }
+    values.push_back(static_cast<float>(value));
+  }
+  return values;
+}
+
+Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& drawn, const std::string& name) {
+  const curves::PointSet& set = *drawn.loaded;
+  FlatPoints flat;
+  flat.of = drawn.loaded;
+  const std::size_t count = std::min(set.points.size(), kMostBalls);
+  CATENA_CHECK(
+      ask_for_memory("drawing " + std::to_string(count) + " points of " + in_quotes(name), kBytesABall * static_cast<double>(count)));
+  if (count < set.points.size())
+    flat.left_out = "points " + in_quotes(name) + ": " + std::to_string(count) + " of " + std::to_string(set.points.size()) +
+                    " are drawn, evenly chosen; all are felt";
+
+  const std::vector<float>* radii = nullptr;
+  if (!drawn.radius_by.empty()) {
+    CATENA_TRY(radii, column_of(set, drawn.where, "radius_by", drawn.radius_by));
+  } else if (!(drawn.radius > 0) && set.find("radius") != nullptr) {
+    radii = &set.find("radius")->values;
+  }
+  std::vector<float> sampled;
+  const std::vector<float>* values = nullptr;
+  if (drawn.color_by && drawn.color_by->what == scene::ColorBy::What::value) {
+    CATENA_TRY(values, column_of(set, drawn.color_by->where, "value", drawn.color_by->value));
+  } else if (drawn.color_by) {
+    CATENA_TRY(const field::AnyField shown, scene::use_field(scene, drawn.color_by->field, drawn.color_by->where));
+    sampled = field_values(shown, set.points);
+    values = &sampled;
+  }
+  if (values != nullptr) {
+    double lo = std::numeric_limits<double>::infinity(), hi = -lo;
+    for (const float v : *values)
+      if (std::isfinite(v)) lo = std::min(lo, double(v)), hi = std::max(hi, double(v));
+    flat.colors = scene::color_table(drawn.color_by->colors, drawn.color_by->named, lo, hi);
+  }
+
+  // a ball without a radius is not drawn
+  const auto fitted = static_cast<float>(drawn.radius > 0 ? drawn.radius : fitted_ball(set));
+  auto balls = std::make_shared<Balls>();
+  balls->places.reserve(count);
+  balls->radii.reserve(count);
+  balls->colors.reserve(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = k * set.points.size() / count;
+    const float radius = radii != nullptr ? (*radii)[i] : fitted;
+    if (!(radius > 0)) continue;
+    balls->places.push_back(set.points[i]);
+    balls->radii.push_back(radius);
+    balls->colors.push_back(values != nullptr ? table_color(flat.colors, double((*values)[i])) : drawn.color);
+  }
+  flat.balls = std::move(balls);
+  return flat;
+}
+
+}  // namespace
+
+const ColorTable* shown_point_colors(const scene::World& made, scene::Entity points) {
+  if (!made.has<FlatPoints>(points) || made.get<FlatPoints>(points).colors.empty()) return nullptr;
+  return &made.get<FlatPoints>(points).colors;
+}
+
+Outcome prepare_points(scene::Scene& scene) {
+  for (const scene::Entity e : owners_of<scene::DrawnPoints>(scene.world)) {
+    if (is_hidden(scene.world, e)) continue;
+    if (!scene.made.has<FlatPoints>(e)) scene.made.emplace<FlatPoints>(e);
+    if (scene.made.get<FlatPoints>(e).of == scene.world.get<scene::DrawnPoints>(e).loaded) continue;
+    const scene::DrawnPoints drawn = scene.world.get<scene::DrawnPoints>(e);
+    CATENA_TRY(FlatPoints made, flat_points(scene, drawn, name_of(scene, e)));
+    scene.made.get<FlatPoints>(e) = std::move(made);
+  }
+  return Done{};
+}
+
+void extract_points(const scene::Scene& scene, FramePacket& packet) {
+  scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints& drawn) {
+    if (is_hidden(scene.world, e)) return;
+    const FlatPoints& flat = scene.made.get<FlatPoints>(e);
+    if (!flat.left_out.empty()) packet.left_out += (packet.left_out.empty() ? "" : "; ") + flat.left_out;
+    packet.balls.push_back({flat.balls, packet.add_object("points", name_of(scene, e), drawn.where.label), drawn.clipped});
+  });
+}
+
+}  // namespace catena::render

@@ -1,0 +1,243 @@
+// Curves from files: their colours in the picture, what `info` says, what is wrong with a scene that names them.
+#include <gtest/gtest.h>
+
+#include "engine/scene/scene.h"
+#include "render/extract/extract.h"
+#include "tests/render/support/frames.h"
+#include "tests/support/curve_files.h"
+#include "tests/support/program.h"
+
+namespace catena::app {
+namespace curves_test {
+
+using test::Polylines;
+
+class CurvePictures : public test::PictureTest {
+ protected:
+  /// Three crossing lines along the axes, seen from where all three can be told apart.
+  std::string scene_of(const std::string& keys, const std::string& more = "") {
+    test::TrkFile file;
+    file.voxel = Vec3(1.0);
+    file.order = "RAS";
+    file.scalars = {"fa"};
+    for (int axis = 0; axis < 3; ++axis) {
+      file.lines.emplace_back();
+      for (int i = 0; i <= 20; ++i) {
+        Vec3 p(0.5);  // the middle of the first voxel is the world's origin
+        p[(axis + 1) % 3] += 0.4;
+        p[axis] += -1 + 0.1 * i;
+        file.lines.back().push_back(p);
+      }
+    }
+    test::write_file(folder_ / "axes.trk", file.bytes());
+    return R"({"curves": [{"name": "axes", "file": "axes.trk", "radius": 0.05)" + keys + R"(}],
+               "camera": {"position": [4, 3, 2.5], "target": [0, 0, 0], "fovy_deg": 35})" +
+           more + "}";
+  }
+  Result<render::FramePacket> packet_of(const std::string& text) {
+    auto scene = scene::parse_scene(text, folder_ / "scene.json");
+    if (!scene) return scene.error();
+    return render::make_frame(*scene, 256, 192);
+  }
+  /// The colour of the picture where a world place is, without the light: its brightest component is 1.
+  Color hue_at(const render::FramePacket& packet, const render::Picture& picture, const Vec3& place) {
+    const auto camera = render::make_camera(packet.view, packet.width, packet.height, Bounds());
+    const auto at = render::project(camera, place);
+    const std::size_t pixel = 4 * (static_cast<std::size_t>(at->y) * packet.width + static_cast<std::size_t>(at->x));
+    const auto part = [&](std::size_t i) { return static_cast<float>(picture.rgba[pixel + i]) / 255.0f; };
+    const float most = std::max({part(0), part(1), part(2), 1e-3f});
+    return {part(0) / most, part(1) / most, part(2) / most};
+  }
+  test::TemporaryFolder folder_;
+};
+
+const Vec3 kOn[] = {{0.7, 0.4, 0}, {0, 0.7, 0.4}, {0.4, 0, 0.7}};
+
+TEST_F(CurvePictures, ColoursOfTheDirections) {
+  const auto packet = packet_of(scene_of(""));
+  ASSERT_TRUE(packet) << packet.error().message;
+  const auto picture = draw(*packet, {}, "directions");
+  for (int axis = 0; axis < 3; ++axis) {
+    const Color seen = hue_at(*packet, picture, kOn[axis]);
+    const float expected[] = {axis == 0 ? 1.0f : 0.0f, axis == 1 ? 1.0f : 0.0f, axis == 2 ? 1.0f : 0.0f};
+    EXPECT_NEAR(seen.r, expected[0], 0.02) << axis;
+    EXPECT_NEAR(seen.g, expected[1], 0.02) << axis;
+    EXPECT_NEAR(seen.b, expected[2], 0.02) << axis;
+  }
+  // a line that runs askew
+  test::write_file(folder_ / "askew.tck", test::tck_bytes({{{-1, -1, 0}, {1, 1, 0}}}, "Float32LE"));
+  const auto askew = packet_of(R"({"curves": [{"name": "a", "file": "askew.tck"}]})");
+  ASSERT_TRUE(askew);
+  EXPECT_NEAR(askew->tubes[0].colors[0].r, std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(askew->tubes[0].colors[0].g, std::sqrt(0.5), 1e-6);
+  EXPECT_EQ(askew->tubes[0].colors[0].b, 0);
+}
+
+TEST_F(CurvePictures, OneColourValuesAndLengths) {
+  const auto one = packet_of(scene_of(R"(, "color": [0, 1, 1])"));
+  ASSERT_TRUE(one);
+  EXPECT_NEAR(hue_at(*one, draw(*one), kOn[0]).r, 0, 0.02);
+
+  // scalars of the file: 100 n + i on line n
+  const std::string table = R"("color": [[0, 1, 0, 0], [99, 1, 0, 0], [100, 0, 1, 0], [199, 0, 1, 0], [200, 0, 0, 1]])";
+  const auto values = packet_of(scene_of(R"(, "color_by": {"value": "fa", )" + table + "}", R"(, "scalar_bars": [{"curves": 0}])"));
+  ASSERT_TRUE(values) << values.error().message;
+  const auto picture = draw(*values, {}, "values");
+  EXPECT_NEAR(hue_at(*values, picture, kOn[1]).g, 1, 0.02);
+  EXPECT_NEAR(hue_at(*values, picture, kOn[1]).r, 0, 0.02);
+  ASSERT_EQ(values->overlay.scalar_bars.size(), 1u);
+  EXPECT_EQ(values->overlay.scalar_bars[0].title, "fa");
+  EXPECT_EQ(values->overlay.scalar_bars[0].colors.back()[0], 200);
+
+  const auto lengths = packet_of(scene_of(R"(, "color_by": {"quantity": "arc_length", "color": [[0, 0, 0, 0], [2, 1, 0, 0]]})"));
+  ASSERT_TRUE(lengths);
+  EXPECT_NEAR(lengths->tubes[0].colors[5].r, 0.25, 1e-5);
+
+  const auto field = packet_of(
+      scene_of(R"(, "color_by": {"field": "x", "color": [[-1, 0, 0, 0], [1, 1, 0, 0]]})", R"(, "fields": {"x": {"analytic": "linear"}})"));
+  ASSERT_TRUE(field) << field.error().message;
+  EXPECT_NEAR(field->tubes[0].colors[13].r, 0.5 + 0.5 * (0.3 + 0.4), 1e-5) << "x + y + z";
+}
+
+TEST_F(CurvePictures, ClipPlanesAndTheFitOfTheRadius) {
+  const auto clipped = packet_of(scene_of("", R"(, "clip": [{"plane": {"point": [0, 0, 0], "normal": [-1, 0, 0]}}])"));
+  ASSERT_TRUE(clipped);
+  const auto picture = draw(*clipped);
+  EXPECT_NEAR(hue_at(*clipped, picture, {0.7, 0.4, 0}).r, 0, 0.02) << "cut away";
+  const Color left = hue_at(*clipped, picture, {0, 0.7, 0.4});
+  EXPECT_NEAR(left.g, 1, 0.02);
+  test::write_file(folder_ / "one.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}}, "Float32LE"));
+  const auto fitted = packet_of(R"({"curves": [{"name": "a", "file": "one.tck"}]})");
+  ASSERT_TRUE(fitted);
+  EXPECT_NEAR(fitted->tubes[0].radius, 0.003 * 5, 1e-9);
+}
+
+TEST_F(CurvePictures, VeryManyAreDrawnInPartAndSaySo) {
+  // 2.2 million points: 11 lines of 200 000
+  std::vector<Vec3> line;
+  for (int i = 0; i < 200000; ++i) line.push_back({1e-5 * i, 0, 0});
+  Polylines lines(11, line);
+  test::write_file(folder_ / "many.tck", test::tck_bytes(lines, "Float32LE"));
+  const auto packet = packet_of(R"({"curves": [{"name": "many", "file": "many.tck"}]})");
+  ASSERT_TRUE(packet);
+  EXPECT_EQ(packet->tubes.size(), 10u);
+  EXPECT_EQ(packet->left_out,
+            "curves \"many\": 10 of 11 lines are drawn, evenly chosen, so that they have about 2000000 points; all are felt");
+}
+
+TEST_F(CurvePictures, BallsAreRoundLitAndWhereTheyAre) {
+  test::write_file(folder_ / "p.csv", "x,y,z,v,size\n0,0,0,0,0.5\n1.5,0,0,1,0.25\n0,5,0,2,nan\n");
+  for (const bool flat : {false, true}) {
+    const std::string camera = flat ? R"("projection": "orthographic", "height": 3)" : R"("fovy_deg": 30)";
+    const auto packet = packet_of(R"({"points": [{"name": "p", "file": "p.csv", "radius_by": "size",
+                                       "color_by": {"value": "v", "color": [[0, 1, 0, 0], [1, 0, 1, 0], [2, 0, 0, 1]]}}],
+                                      "scalar_bars": [{"points": 0}],
+                                      "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], )" +
+                                  camera + "}}");
+    ASSERT_TRUE(packet) << packet.error().message;
+    ASSERT_EQ(packet->balls.size(), 1u);
+    EXPECT_EQ(packet->balls[0].balls->places.size(), 2u) << "one has no radius";
+    EXPECT_EQ(packet->overlay.scalar_bars.size(), 1u);
+    const auto picture = draw(*packet, {}, flat ? "flat" : "perspective");
+    EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).r, 1, 0.02);
+    EXPECT_NEAR(hue_at(*packet, picture, {1.5, 0, 0}).g, 1, 0.02);
+    // every pixel: the ball's nearest depth by its formula, or nothing
+    const auto camera_now = render::make_camera(packet->view, packet->width, packet->height, Bounds());
+    const auto depth = renderer_->read_depth();
+    ASSERT_TRUE(depth);
+    int on = 0, wrong = 0;
+    for (std::uint32_t y = 0; y < packet->height; ++y)
+      for (std::uint32_t x = 0; x < packet->width; ++x) {
+        const Vec3 a = render::unproject(camera_now, x + 0.5, y + 0.5, 1), b = render::unproject(camera_now, x + 0.5, y + 0.5, 9);
+        const Vec3 ray = direction(b - a);
+        double expected = std::numeric_limits<double>::infinity();
+        for (const auto& [centre, radius] : {std::pair{Vec3(0.0), 0.5}, {Vec3(1.5, 0, 0), 0.25}}) {
+          const Vec3 off = a - centre;
+          const double root = radius * radius - dot(off, off) + dot(off, ray) * dot(off, ray);
+          if (root > 0) expected = std::min(expected, 6 - (a + ray * (-dot(off, ray) - std::sqrt(root))).z);
+        }
+        const double seen = depth->depth[y * packet->width + x];
+        on += std::isfinite(expected);
+        wrong += std::isfinite(seen) != std::isfinite(expected) || (std::isfinite(seen) && std::fabs(seen - expected) > 0.01);
+      }
+    EXPECT_GT(on, 1000);
+    EXPECT_LE(wrong, on / 100) << "of " << on;
+  }
+}
+
+TEST_F(CurvePictures, AClippedBallShowsItsInside) {
+  test::write_file(folder_ / "p.csv", "x,y,z\n0,0,0\n");
+  const auto packet = packet_of(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "color": [0, 1, 0]}],
+                                    "clip": [{"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}}],
+                                    "camera": {"position": [0, 0, 6], "target": [0, 0, 0], "up": [0, 1, 0], "fovy_deg": 30}})");
+  ASSERT_TRUE(packet) << packet.error().message;
+  const auto picture = draw(*packet);
+  EXPECT_NEAR(hue_at(*packet, picture, {0, 0, 0}).g, 1, 0.02);
+  const auto depth = renderer_->read_depth();
+  ASSERT_TRUE(depth);
+  EXPECT_NEAR(depth->depth[96 * 256 + 128], 7, 0.01) << "the far half";
+}
+
+TEST(CurveScenes, PointTablesByTheirHeader) {
+  test::TemporaryFolder folder;
+  test::write_file(folder / "table.csv", "id,x,y,z,mass\n1,0,0,0,7\n2,3,4,0,9\n");
+  auto scene = scene::scene_for_file(folder / "table.csv");
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->notes.size(), 1u);
+  EXPECT_NE(scene->notes[0].find("a table of points (it has columns x, y, z): 2 of them as balls, coloured by \"mass\""), std::string::npos)
+      << scene->notes[0];
+  ASSERT_TRUE(render::make_frame(*scene, 64, 48));
+  test::write_file(folder / "other.csv", "t,force\n1,0\n");
+  const auto other = test::run_catena({"render", folder / "other.csv", "-o", folder / "a.png"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("no column is called x"), std::string::npos) << other.err;
+  const auto info = test::run_catena({"info", folder / "table.csv"});
+  EXPECT_NE(info.out.find("spacing      5 in the median"), std::string::npos) << info.out;
+}
+
+TEST(CurveScenes, BareFilesAndInfo) {
+  test::TemporaryFolder folder;
+  test::write_file(folder / "a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}, {{0, 0, 0}, {0, 0, 1}}}, "Float32LE"));
+  auto scene = scene::scene_for_file(folder / "a.tck");
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_EQ(scene->notes.size(), 1u);
+  EXPECT_NE(scene->notes[0].find("2 curves in the colours of their directions, red for x, green for y, blue for z"), std::string::npos);
+  const auto packet = render::make_frame(*scene, 64, 48);
+  ASSERT_TRUE(packet);
+  EXPECT_EQ(packet->tubes.size(), 2u);
+  EXPECT_GT(packet->view.position.y, packet->view.target.y) << "a patient is seen from the front";
+  const auto info = test::run_catena({"info", folder / "a.tck"});
+  EXPECT_EQ(info.exit_code, 0);
+  EXPECT_NE(info.out.find("lengths      3 mm in the mean, the longest 5 mm"), std::string::npos) << info.out;
+}
+
+TEST(CurveScenes, MessagesNameThePlace) {
+  test::TemporaryFolder folder;
+  test::write_file(folder / "a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}}, "Float32LE"));
+  const auto message = [&](const std::string& text) {
+    auto scene = scene::parse_scene(text, folder / "s.json");
+    if (!scene) return scene.error().message;
+    const auto packet = render::make_frame(*scene, 64, 48);
+    return packet ? std::string() : packet.error().message;
+  };
+  const auto expect = [&](const std::string& text, const std::string& words) {
+    EXPECT_NE(message(text).find(words), std::string::npos) << message(text);
+    EXPECT_NE(message(text).find("s.json:1"), std::string::npos) << message(text);
+  };
+  expect(R"({"curves": [{"name": "a", "file": "b.tck"}]})", "does not exist; a .tck or .trk file was expected");
+  expect(R"({"curves": [{"name": "a", "file": "a.tck"}, {"name": "a", "file": "a.tck"}]})", "a name of their own was expected");
+  expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {"value": "fa"}}]})",
+         "the file has no values called \"fa\"; known: none");
+  expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {}}]})", "exactly one of them was expected");
+  expect(R"({"curves": [{"name": "a", "file": "a.tck"}], "scalar_bars": [{"curves": 0}]})", "show no values");
+  test::write_file(folder / "p.csv", "x,y,z,v\n1,2,3,4\n");
+  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius_by": "w"}]})", "no column of numbers called \"w\"; known: v");
+  expect(R"({"points": [{"name": "p", "file": "p.csv", "color_by": {"value": "w"}}]})", "no column of numbers called \"w\"; known: v");
+  expect(R"({"points": [{"name": "p", "file": "p.csv", "radius": 1, "radius_by": "v"}]})", "stands beside \"radius\"");
+  expect(R"({"points": [{"name": "p", "file": "p.csv"}], "scalar_bars": [{"points": 0}]})", "show no values");
+  test::write_file(folder / "a.tck", "mrtrix tracks\n");
+  expect(R"({"curves": [{"name": "a", "file": "a.tck"}]})", "a line END was expected");
+}
+
+}  // namespace curves_test
+}  // namespace catena::app

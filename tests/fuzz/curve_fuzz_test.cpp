@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include "engine/curves/load.h"
+#include "tests/fuzz/mutate.h"
+#include "tests/fuzz/mutate_bytes.h"
+#include "tests/support/curve_files.h"
+
+namespace catena {
+namespace curve_fuzz_test {
+
+const test::Polylines kLines{{{1, 2, 3}, {1.5, 2.25, -3}, {8, 0, 0}}, {{-1, 0, 0.125}, {-1, 4, 0.125}}, {{0, 0, 0}, {1, 0, 0}}};
+
+std::string trk() {
+  test::TrkFile file;
+  file.lines = kLines;
+  file.scalars = {"FA", "MD"};
+  file.properties = 1;
+  file.voxel = {2, 3, 4};
+  return file.bytes();
+}
+
+bool check(const Result<curves::CurveSet>& set) {
+  if (!set) {
+    const std::string& message = set.error().message;
+    EXPECT_TRUE(message.starts_with("file.curves:")) << message;
+    EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message;
+    EXPECT_NE(message.find("expected"), std::string::npos) << message;
+    EXPECT_LT(message.size(), 500u) << message;
+    return false;
+  }
+  EXPECT_GT(set->lines(), 0u);
+  EXPECT_EQ(set->first.front(), 0u);
+  EXPECT_EQ(set->first.back(), set->points.size());
+  for (std::size_t k = 0; k < set->lines(); ++k) {
+    EXPECT_GE(set->first[k + 1], set->first[k] + 2);
+    for (std::uint32_t i = set->first[k] + 1; i < set->first[k + 1]; ++i) EXPECT_NE(set->points[i - 1], set->points[i]);
+  }
+  for (const glm::vec3& p : set->points) EXPECT_TRUE(is_finite(Vec3(p)));
+  for (const curves::PointValues& one : set->values) EXPECT_EQ(one.values.size(), set->points.size());
+  return true;
+}
+
+bool tck(const std::string& bytes) { return check(curves::parse_tck(bytes, "file.curves")); }
+bool trk(const std::string& bytes) { return check(curves::parse_trk(bytes, "file.curves")); }
+
+TEST(CurveFuzz, EveryTruncationAndEveryByteTurned) {
+  const std::string a = test::tck_bytes(kLines, "Float32LE"), b = trk();
+  EXPECT_TRUE(tck(a) && trk(b));
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    EXPECT_FALSE(tck(a.substr(0, n))) << n;
+    std::string turned = a;
+    turned[n] = static_cast<char>(turned[n] ^ 0x81);
+    tck(turned);
+  }
+  for (std::size_t n = 0; n < b.size(); ++n) {
+    if (n < 1000) {
+      EXPECT_FALSE(trk(b.substr(0, n))) << n;
+    } else {
+      trk(b.substr(0, n));
+    }
+    std::string turned = b;
+    turned[n] = static_cast<char>(turned[n] ^ 0x81);
+    trk(turned);
+  }
+}
+
+TEST(CurveFuzz, Mutations) {
+  const std::string files[] = {test::tck_bytes(kLines, "Float32LE"), test::tck_bytes(kLines, "Float64BE"), trk()};
+  test::Inputs inputs(6000, 5);
+  test::Random& random = inputs.random;
+  std::uint64_t read = 0;
+  while (inputs.next() && !HasFailure()) {
+    read += tck(test::mutate_bytes(files[0], random)) ? 1 : 0;
+    read += tck(test::mutate_bytes(files[1], random, 3, 0, 80)) ? 1 : 0;
+    read += tck(test::mutate(files[0], random)) ? 1 : 0;
+    read += trk(test::mutate_bytes(files[2], random)) ? 1 : 0;
+    // the header's numbers, and those of the first line
+    read += trk(test::mutate_bytes(files[2], random, 2, inputs.count() % 2 == 0 ? 0 : 990, 1030)) ? 1 : 0;
+  }
+  EXPECT_GT(read, inputs.count() / 2);
+  EXPECT_LT(read, 5 * inputs.count());
+}
+
+}  // namespace curve_fuzz_test
+}  // namespace catena

@@ -1,0 +1,141 @@
+#include "tests/haptics/constraints/examples.h"
+
+namespace catena::haptics::tests {
+namespace curves_test {
+
+using catena::test::curves_of;
+using catena::test::Polylines;
+
+/// The closest point of a line's pieces as the file has them.
+double distance_to(const curves::CurveSet& set, std::size_t line, const Vec3& x) {
+  double least = 1e300;
+  for (std::uint32_t k = set.first[line]; k + 1 < set.first[line + 1]; ++k) {
+    const Vec3 a(set.points[k]), d = Vec3(set.points[k + 1]) - a;
+    least = std::min(least, norm(x - a - d * std::clamp(dot(x - a, d) / dot(d, d), 0.0, 1.0)));
+  }
+  return least;
+}
+double distance_to(const curves::CurveSet& set, const Vec3& x) {
+  double least = 1e300;
+  for (std::size_t k = 0; k < set.lines(); ++k) least = std::min(least, distance_to(set, k, x));
+  return least;
+}
+
+Fields fields_with(const Polylines& lines) {
+  Fields made;
+  made.curves["fibres"] = curves_of(lines);
+  return made;
+}
+
+TEST(CurvesLink, StartsAtTheClosestPlaceOfAllLines) {
+  Random random(1);
+  for (const int lines : {1, 2, 9, 300}) {
+    const Fields fields = fields_with(random_fibres(lines, 1 + lines % 7 * 5 + 3, 0.05));
+    const curves::CurveSet& set = *fields.curves.at("fibres");
+    const auto made = build(R"({"name": "a", "type": "curves", "curves": "fibres"})", fields);
+    for (int i = 0; i < 60; ++i) {
+      Rig rig(made);
+      const Vec3 probe = random.box(1.5);
+      rig.tick(probe);
+      ASSERT_EQ(rig.state.status, Status::ok);
+      ASSERT_NEAR(norm(probe - rig.state.proxy), distance_to(set, probe), 1e-14) << lines;
+    }
+  }
+}
+
+TEST(CurvesLink, OneLineAlone) {
+  Random random(2);
+  const Fields fields = fields_with(random_fibres(40, 30, 0.05));
+  const curves::CurveSet& set = *fields.curves.at("fibres");
+  for (const std::size_t line : {std::size_t{0}, std::size_t{17}, std::size_t{39}}) {
+    const auto made = build(R"({"name": "a", "type": "curves", "curves": "fibres", "line": )" + std::to_string(line) + "}", fields);
+    Rig rig(made);
+    const Vec3 probe = random.box(1.5);
+    rig.tick(probe);
+    EXPECT_NEAR(norm(probe - rig.state.proxy), distance_to(set, line, probe), 1e-14);
+  }
+}
+
+// two lines that cross in projection: the hand that follows the first stays on it, though the other is nearer for a while
+TEST(CurvesLink, FollowsTheLineThatItHolds) {
+  std::vector<Vec3> along, across;
+  for (int i = 0; i <= 100; ++i) {
+    along.push_back({-1 + 0.02 * i, 0, 0});
+    across.push_back({0, -1 + 0.02 * i, 0.05});
+  }
+  const Fields fields = fields_with({along, across});
+  Rig rig(build(R"({"name": "a", "type": "curves", "curves": "fibres", "snap": 0.1, "release": 0.3})", fields));
+  int held = 0;
+  for (int k = 0; k <= 1000; ++k) {
+    const Vec3 probe(-0.9 + 0.0018 * k, 0.01, 0.04);
+    rig.tick(probe);
+    if (rig.state.released) continue;
+    ++held;
+    EXPECT_EQ(rig.state.proxy.y, 0) << k;
+    EXPECT_NEAR(rig.state.proxy.x, probe.x, 1e-6) << k;
+  }
+  EXPECT_GE(held, 1000);
+  // pulled away it lets go, and takes hold of the other where that is near
+  rig.tick({0.5, 0.6, 0.4});
+  EXPECT_TRUE(rig.state.released);
+  rig.tick({0.03, 0.6, 0.06});
+  EXPECT_FALSE(rig.state.released);
+  EXPECT_EQ(rig.state.proxy.x, 0);
+}
+
+// what one tick may take, and the closest place after a few, in a tractogram of 10^5 fibres
+TEST(CurvesLink, AHundredThousandFibresWithinTheWorkOfATick) {
+  const Fields fields = fields_with(random_fibres(100000, 20, 0.01));
+  const curves::CurveSet& set = *fields.curves.at("fibres");
+  const auto made = build(R"({"name": "a", "type": "curves", "curves": "fibres", "snap": 0.05, "release": 0.06})", fields);
+  Random random(3);
+  Rig rig(made);
+  int held = 0, waited = 0, most = 0;
+  for (int hop = 0; hop < 40; ++hop) {
+    const Vec3 from = random.box(0.9), way = random.box(0.2);
+    for (int k = 0; k < 100; ++k) {
+      rig.tick(from + way * (0.01 * k));
+      most = std::max(most, rig.state.work());
+      held += rig.state.released ? 0 : 1;
+      waited += rig.state.status == Status::budget ? 1 : 0;
+    }
+  }
+  EXPECT_LE(most, kWorkCap);
+  EXPECT_GT(held, 2000);
+  EXPECT_LT(waited, 400) << "a search is mostly through in its first ticks";
+  for (int i = 0; i < 20; ++i) {
+    Rig fresh(build(R"({"name": "a", "type": "curves", "curves": "fibres"})", fields));
+    const Vec3 probe = random.box(1);
+    int ticks = 0;
+    do fresh.tick(probe);
+    while (fresh.state.status == Status::budget && ++ticks < 50);
+    EXPECT_LT(ticks, 8);
+    EXPECT_NEAR(norm(probe - fresh.state.proxy), distance_to(set, probe), 1e-14);
+  }
+}
+
+TEST(CurvesLink, TwoLinksShareOneTree) {
+  const Fields fields = fields_with(random_fibres(100, 20, 0.01));
+  const std::string text = R"({"name": "a", "type": "curves", "curves": "fibres"})";
+  const auto one = build(text, fields);
+  const long held = fields.curves.at("fibres").use_count();
+  const auto other = build(text, fields);
+  EXPECT_EQ(fields.curves.at("fibres").use_count(), held) << "a second tree would hold the curves, too";
+}
+
+TEST(CurvesLink, RefusesWithPlaceAndExpectation) {
+  const Fields fields = fields_with(random_fibres(3, 20, 0.01));
+  const auto message = [&](const std::string& keys) {
+    const auto made = try_build(R"({"name": "a", "type": "curves")" + keys + "}", fields);
+    return made ? std::string() : made.error().message;
+  };
+  EXPECT_NE(message("").find("\"curves\" is missing"), std::string::npos) << message("");
+  EXPECT_NE(message(R"(, "curves": "fibre")").find("no curves fibre"), std::string::npos);
+  const std::string line = message(R"(, "curves": "fibres", "line": 3)");
+  EXPECT_NE(line.find("scene.json:1"), std::string::npos) << line;
+  EXPECT_NE(line.find("expected"), std::string::npos) << line;
+  EXPECT_EQ(message(R"(, "curves": "fibres", "line": 2)"), "");
+}
+
+}  // namespace curves_test
+}  // namespace catena::haptics::tests

@@ -1,0 +1,80 @@
+#include "tests/haptics/constraints/examples.h"
+
+namespace catena::haptics::tests {
+namespace points_test {
+
+curves::PointSetPtr cloud(int count, unsigned seed) {
+  Random random(seed);
+  auto set = std::make_shared<curves::PointSet>();
+  for (int i = 0; i < count; ++i) set->points.emplace_back(random.box(1));
+  set->lowest = Vec3(-1.0);
+  set->highest = Vec3(1.0);
+  set->version = 1000000 + seed;
+  return set;
+}
+
+double distance_to(const curves::PointSet& set, const Vec3& x) {
+  double least = 1e300;
+  for (const glm::vec3& p : set.points) least = std::min(least, norm(x - Vec3(p)));
+  return least;
+}
+
+TEST(PointsLink, TakesHoldOfTheClosestOfAll) {
+  Random random(1);
+  for (const int count : {1, 2, 9, 3000, 100000}) {
+    Fields fields;
+    fields.points["cloud"] = cloud(count, static_cast<unsigned>(count));
+    const auto made = build(R"({"name": "a", "type": "points", "points": "cloud"})", fields);
+    for (int i = 0; i < 20; ++i) {
+      Rig rig(made);
+      const Vec3 probe = random.box(1.5);
+      int ticks = 0;
+      do rig.tick(probe);
+      while (rig.state.status == Status::budget && ++ticks < 20);
+      ASSERT_EQ(norm(probe - rig.state.proxy), distance_to(*fields.points["cloud"], probe)) << count;
+      ASSERT_LE(rig.state.work(), kWorkCap);
+    }
+  }
+}
+
+TEST(PointsLink, StaysUntilItLetsGoAndSnapsToTheNext) {
+  Fields fields;
+  auto set = std::make_shared<curves::PointSet>();
+  set->points = {{0, 0, 0}, {1, 0, 0}};
+  set->highest = Vec3(1, 0, 0);
+  set->version = 999;
+  fields.points["two"] = set;
+  Rig rig(build(R"({"name": "a", "type": "points", "points": "two", "snap": 0.2, "release": 0.75})", fields));
+  rig.tick({0.3, 0, 0});
+  EXPECT_TRUE(rig.state.released);
+  for (const double x : {0.15, 0.6, 0.74}) {
+    rig.tick({x, 0, 0});
+    EXPECT_EQ(rig.state.proxy, Vec3(0.0)) << x;
+  }
+  rig.tick({0.77, 0, 0});
+  EXPECT_TRUE(rig.state.released);
+  rig.tick({0.85, 0, 0});
+  EXPECT_FALSE(rig.state.released);
+  EXPECT_EQ(rig.state.proxy, Vec3(1, 0, 0));
+}
+
+TEST(PointsLink, AMillionPointsWithinTheWorkOfATick) {
+  Fields fields;
+  fields.points["cloud"] = cloud(1000000, 77);
+  Rig rig(build(R"({"name": "a", "type": "points", "points": "cloud", "snap": 0.05, "release": 0.06})", fields));
+  Random random(3);
+  int held = 0, most = 0;
+  for (int hop = 0; hop < 20; ++hop) {
+    const Vec3 from = random.box(0.9), way = random.box(0.3);
+    for (int k = 0; k < 200; ++k) {
+      rig.tick(from + way * (0.005 * k));
+      most = std::max(most, rig.state.work());
+      held += rig.state.released ? 0 : 1;
+    }
+  }
+  EXPECT_LE(most, kWorkCap);
+  EXPECT_GT(held, 3500);
+}
+
+}  // namespace points_test
+}  // namespace catena::haptics::tests
