@@ -22,10 +22,11 @@ struct RawLayout {
 
 struct LoadRequest {
   std::string path;
-  std::string grid;                                 ///< empty: the only usable grid of the file, or an error that lists them
-  std::optional<std::string> valid_grid = "valid";  ///< nullopt: no mask ("valid": null); a missing default mask is fine
-  bool valid_required = false;                      ///< the user named the mask: it must exist
-  std::optional<RawLayout> raw;                     ///< for .raw
+  std::string grid;                                     ///< empty: the only usable grid of the file, or an error that lists them
+  std::optional<std::string> valid_grid = "valid";      ///< nullopt: no mask ("valid": null); a missing default mask is fine
+  bool valid_required = false;                          ///< the user named the mask: it must exist
+  std::optional<RawLayout> raw;                         ///< for .raw
+  Interpolation interpolation = Interpolation::linear;  ///< of a scalar grid; a vector grid knows only this one
   bool operator==(const LoadRequest&) const = default;
 };
 

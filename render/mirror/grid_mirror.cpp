@@ -174,6 +174,7 @@ class MirrorBuilder {
     size_ = {hi_.x - lo_.x + 1, hi_.y - lo_.y + 1, hi_.z - lo_.z + 1};
     if (size_.x < 2 || size_.y < 2 || size_.z < 2 || grid_.stats().active_voxels == 0) return false;
     mirror_.drawable = true;
+    mirror_.nearest = grid_.interpolation() == field::Interpolation::nearest;
     mirror_.masked = grid_.has_mask() || grid_.stats().nan_count > 0 || !std::isfinite(grid_.background());
     if (options_.layout != MirrorLayout::dense) plan_atlas();
     mirror_.atlas = options_.layout == MirrorLayout::atlas || (options_.layout == MirrorLayout::automatic && atlas_pays());

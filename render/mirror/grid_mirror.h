@@ -39,6 +39,7 @@ struct GridMirror {
   bool drawable = false;  ///< false: thinner than a cell along some axis, nothing below is set
   bool atlas = false;
   bool masked = false;                   ///< there is a mask image
+  bool nearest = false;                  ///< the value of the nearest voxel centre counts (field::Interpolation)
   field::Index3 origin;                  ///< index = origin + local
   Vec3 box_lo{0.0}, box_hi{0.0};         ///< the domain, local
   std::array<std::int32_t, 3> bricks{};  ///< an axis
