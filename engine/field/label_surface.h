@@ -22,7 +22,7 @@
 namespace catena::field {
 
 /// Voxels along each axis by which a surface is smoothed unless something else is said.
-inline constexpr double kUsualSmooth = 0.8;
+inline constexpr double kUsualSmooth = 1.2;
 inline constexpr double kMostSmooth = 4;
 inline constexpr double kLabelLevel = 0.5;
 

@@ -30,14 +30,14 @@ Cells words_of_line(std::string_view line) {
   return words;
 }
 
-/// Separated by one character; quotes around a cell are taken off.
+/// Separated by one character, which does not count within quotes at a cell's ends.
 Cells cells_of_line(std::string_view line, char separator) {
   Cells cells;
   while (true) {
-    const std::size_t end = line.find(separator);
-    std::string_view cell = trim(line.substr(0, end));
-    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
-    cells.push_back(cell);
+    const std::size_t begin = line.find_first_not_of(" \r");
+    const std::size_t quote = begin != std::string_view::npos && line[begin] == '"' ? line.find('"', begin + 1) : std::string_view::npos;
+    const std::size_t end = line.find(separator, quote == std::string_view::npos ? 0 : quote);
+    cells.push_back(quote == std::string_view::npos ? trim(line.substr(0, end)) : line.substr(begin + 1, quote - begin - 1));
     if (end == std::string_view::npos) return cells;
     line.remove_prefix(end + 1);
   }
@@ -206,7 +206,8 @@ void add_lut(const std::string& path, LabelTable& table) {
     if (label.value < 0 || label.value > 255) continue;
     const auto at = static_cast<std::size_t>(label.value);
     const auto part = [&](std::size_t i) { return float(static_cast<unsigned char>((*bytes)[i * 256 + at])) / 255; };
-    label.color = Color{part(0), part(1), part(2)};
+    const Color color{part(0), part(1), part(2)};
+    if (!(color == Color{})) label.color = color;  // black is what was left out
   }
 }
 

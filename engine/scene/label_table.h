@@ -6,7 +6,7 @@
 ///   separated
 ///                  by commas, tabs or semicolons; colours from 0 to 1 where none is greater, else to 255
 /// Lines that begin with # and empty ones say nothing; CRLF and a byte order mark are fine. Of two rows for one number the first counts.
-/// Where a file of 768 bytes with the ending .lut stands beside a table without colours, it holds them (red, green, blue of 0 to 255).
+/// Where a file of 768 bytes with the ending .lut stands beside a table without colours, it holds them (red, green, blue of 0 to 255; black is none).
 /// Frame thread.
 #pragma once
 #include <cstdint>

@@ -130,6 +130,9 @@ class MirrorBuilder {
     mirror_.offset = encoder_.offset;
     mirror_.scale = encoder_.scale;
     CATENA_CHECK(mirror_.atlas ? build_atlas() : build_dense());
+    if (mirror_.nearest) {
+      CATENA_TRY(mirror_.one, vk::Sampler::create(device_, vk::Filter::nearest));
+    }
     for (BrickRange& range : mirror_.ranges) range = encoder_.stored(range);
     return std::move(mirror_);
   }

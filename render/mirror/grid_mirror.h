@@ -45,6 +45,7 @@ struct GridMirror {
   std::array<std::int32_t, 3> bricks{};  ///< an axis
   float offset = 0, scale = 1;
   vk::Image values;
+  vk::Sampler one;                   ///< with `nearest`: reads one texel, never a mix
   vk::Image mask;                    ///< R8_UINT a cell: dense like `values`; atlas in 8^3 bricks at the same slots
   std::vector<BrickRange> ranges;    ///< x fastest
   std::vector<std::uint32_t> slots;  ///< atlas: x | y << 8 | z << 16, in bricks

@@ -26,7 +26,8 @@ void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const Bound
                        const vk::Sampler& linear) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const BoundGrid& g = grids[i < grids.size() ? i : 0];
-    bindings.push_back({kValues + i, vk::Resource::sampled, nullptr, &g.mirror->values, &linear});
+    const vk::Sampler& sampler = g.mirror->nearest ? g.mirror->one : linear;
+    bindings.push_back({kValues + i, vk::Resource::sampled, nullptr, &g.mirror->values, &sampler});
     bindings.push_back({kMaps + i, vk::Resource::texture, nullptr, &g.map->image, nullptr});
     // without a mask the binding is never read; the map has the right type
     bindings.push_back({kMasks + i, vk::Resource::texture, nullptr, g.mirror->masked ? &g.mirror->mask : &g.map->image, nullptr});

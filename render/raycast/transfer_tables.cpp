@@ -25,7 +25,7 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   double lo = range.least, hi = range.greatest, first = HUGE_VAL, last = -HUGE_VAL;
   for (const auto& p : table.colors) first = std::min(first, p[0]), last = std::max(last, p[0]);
   for (const auto& p : table.extinctions) first = std::min(first, p[0]), last = std::max(last, p[0]);
-  if (first <= last) {
+  if (first <= last && !table.labels) {
     lo = std::clamp(lo, first, last);
     hi = std::clamp(hi, first, last);
   }

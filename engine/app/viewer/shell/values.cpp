@@ -22,7 +22,12 @@ std::vector<FieldValue> values_at(const scene::Scene& scene, const Vec3& world) 
       const field::ScalarSample sample = any.scalar->sample(world, cursor);
       value.inside = sample.inside && std::isfinite(sample.value);
       value.value = sample.value;
-      if (const scene::LabelMap* map = scene::labels_of(scene, e)) value.label = scene::label_words(*map, sample.value);
+      if (const scene::LabelMap* map = scene::labels_of(scene, e)) {
+        value.label = scene::label_words(*map, sample.value);
+        // a surface of labels runs between them and what is none
+        if (const double near = field::label_at(*any.scalar->grid(), world); sample.value == 0 && near != 0)
+          value.label = "beside " + scene::label_words(*map, near);
+      }
     } else {
       const field::VectorSample sample = any.vector->sample(world, cursor);
       value.inside = sample.inside && is_finite(sample.value);
