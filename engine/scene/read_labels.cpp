@@ -15,7 +15,8 @@ Keys labels_keys() {
   return {schema::file("file", "The table: of FreeSurfer, ITK-SNAP, comma-separated with column names, or rows of a number and a name."),
           schema::numbers("values", "", "Or the numbers themselves: with `names`.").items(1, kMostNames),
           schema::texts("names", "Of `values`, one each.").items(1, kMostNames),
-          schema::table("colors", 3, "", "Of `values`, one each: red, green and blue from 0 to 1.")};
+          schema::places("colors", "", "Of `values`, one each: red, green and blue from 0 to 1."),
+          schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
 }
 
 /// Whole numbers that floats tell apart.
@@ -71,7 +72,10 @@ Outcome read_labels_table(const std::string& scene_path, const json::Node& node,
   CATENA_TRY(const std::string name, json::require_string(node, "file"));
   source.labels_file = resolved_path(scene_path, name);
   auto table = read_label_table(source.labels_file);
-  if (!table) return json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message);
+  CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
+  if (!table)
+    return json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message +
+                                     (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
   source.labels_table = std::move(*table);
   return Done{};
 }

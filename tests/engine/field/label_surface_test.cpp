@@ -104,6 +104,33 @@ TEST(LabelSurface, LiesHalfwayBetweenTheVoxelCentresOfTwoLabels) {
   }
 }
 
+/// A plane of the world in two grids that are turned against each other: where the one's label ends the other's distance is 0.
+TEST(LabelSurface, LiesAtTheSamePlaceOfTheWorldAsAnotherGridSaysIt) {
+  const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 0; });
+  const Mapping& mapping = map->mapping();
+  const Vec3 on = mapping.world_from_index({5.5, 4, 4}), normal = direction(mapping.world_from_index_linear[0]);
+  const Mat3 turn = Mat3(Vec3(0.6, 0, 0.8), Vec3(0, 1, 0), Vec3(-0.8, 0, 0.6));
+  const Mapping other = Mapping::from_linear(turn * Mat3(0.75), on - turn * Vec3(9.3, 8.1, 8.6));
+  std::vector<float> distances;
+  for (int z = 0; z < 24; ++z)
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) distances.push_back(static_cast<float>(dot(normal, other.world_from_index(Vec3(x, y, z)) - on)));
+  const auto distance = make_scalar_grid("distance", other, {24, 24, 24}, distances);
+  const auto surface = label_surface(*map, *label_counts(*map), {17}, 0, "s");
+  ASSERT_TRUE(surface);
+  Cursor cursor, cursor2;
+  for (const double y : {2.0, 4.7, 6.1}) {
+    Vec3 lo = mapping.world_from_index({4.6, y, 4.4}), hi = mapping.world_from_index({6.4, y, 4.4});
+    for (int step = 0; step < 60; ++step) {
+      const Vec3 middle = 0.5 * (lo + hi);
+      ((*surface)->sample(middle, cursor).value > kLabelLevel ? lo : hi) = middle;
+    }
+    const ScalarSample there = distance->sample(lo, cursor2);
+    ASSERT_TRUE(there.inside);
+    EXPECT_NEAR(there.value, 0, 1e-6);
+  }
+}
+
 TEST(LabelSurface, OfSeveralLabelsHasNoWallBetweenThemAndIsClosedWhereTheMapEnds) {
   const auto map = map_of({12, 10, 10}, [](int x, int, int) { return x <= 5 ? 17 : 18; });
   const auto both = label_surface(*map, *label_counts(*map), {17, 18}, 0, "both");
