@@ -12,7 +12,7 @@ namespace catena::field {
 namespace {
 
 constexpr std::size_t kMostLabelValues = 65536;
-constexpr double kMostLabelBlocks = 1 << 24;
+constexpr double kMostLabelBlocks = 1 << 21;
 constexpr float kHeldInside = 0.52f, kHeldOutside = 0.48f;
 
 Index3 lowest(const ScalarGrid& grid) {

@@ -32,7 +32,8 @@ struct LabelCount {
   Index3 lo, hi;  ///< its box, index space, both ends included
 };
 
-/// All values of the grid's box, rising. None where a voxel holds no whole number, or there are more than 65536 different ones.
+/// All values of the grid's box, rising. None where a voxel holds no whole number, there are more than 65536 different ones, or the box has
+/// more than 2^30 voxels.
 std::optional<std::vector<LabelCount>> label_counts(const ScalarGrid& map);
 
 /// `labels`: values, each of which must be among `counts`, those of the map. An error is one phrase on memory.

@@ -64,7 +64,7 @@ BarScale bar_scale(double lo, double hi, int count, const std::string& format) {
 
 namespace {
 
-constexpr std::size_t kMostEntries = 20, kLongestName = 32;  // of a legend; bytes
+constexpr std::size_t kMostEntries = 20, kLongestName = 24;  // of a legend; bytes
 constexpr double kTitleSizePt = 17, kTitleTopPt = 12;
 
 std::optional<Color> optional_color(const std::optional<Color>& c) {
