@@ -2,12 +2,11 @@
 ///   FreeSurfer     `17 Left-Hippocampus 220 216 20 0`: number, name, red, green, blue and transparency from 0 to 255
 ///   ITK-SNAP       `17 220 216 20 1 1 1 "Left Hippocampus"`: number, red, green, blue (0 to 255), opacity, visible, in 3-D, name
 ///   names          `1 Precentral_L 2001`: number and name, perhaps a number of another nomenclature; a tab lets a name have blanks
-///   table          a row of column names (index, id, label or value; name or label_name; r, g, b or red, green, blue), then rows,
-///   separated
-///                  by commas, tabs or semicolons; colours from 0 to 1 where none is greater, else to 255
+///   table          a row of column names (index, id, label or value; name or label_name; r, g, b or red, green, blue), then
+///                  rows, separated by commas, tabs or semicolons; colours from 0 to 1 where none is greater, else to 255
 /// Lines that begin with # and empty ones say nothing; CRLF and a byte order mark are fine. Of two rows for one number the first counts.
-/// Where a file of 768 bytes with the ending .lut stands beside a table without colours, it holds them (red, green, blue of 0 to 255; black is none).
-/// Frame thread.
+/// Where a file of 768 bytes with the ending .lut stands beside a table without colours, it holds them (red, green, blue of 0 to 255; black
+/// is none). Frame thread.
 #pragma once
 #include <cstdint>
 #include <optional>

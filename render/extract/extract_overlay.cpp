@@ -64,7 +64,7 @@ BarScale bar_scale(double lo, double hi, int count, const std::string& format) {
 
 namespace {
 
-constexpr std::size_t kMostEntries = 20, kLongestName = 24;  // of a legend; bytes
+constexpr std::size_t kMostEntries = 20, kLongestName = 24, kNameEnd = 8;  // of a legend; bytes
 constexpr double kTitleSizePt = 17, kTitleTopPt = 12;
 
 std::optional<Color> optional_color(const std::optional<Color>& c) {
@@ -156,7 +156,9 @@ void set_legend(const scene::LabelMap& map, ScalarBarItem& item) {
     const Color& c = labels[i].color;
     for (const double end : {at, at + 1}) item.colors.push_back({end, c.r, c.g, c.b});
     std::string text = labels[i].name.empty() ? to_text(labels[i].value) : labels[i].name;
-    if (text.size() > kLongestName) text = printable(text.substr(0, kLongestName)) + "…";
+    // the middle goes: names end with their side
+    if (text.size() > kLongestName)
+      text = printable(text.substr(0, kLongestName - kNameEnd)) + "…" + printable(text.substr(text.size() - kNameEnd));
     item.ticks.push_back({at + 0.5, std::move(text)});
   }
   item.steps = static_cast<int>(count);
