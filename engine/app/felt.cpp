@@ -47,7 +47,9 @@ std::string Felt::sentence(const Touch& touch, const haptics::Link& link, const 
   if (touch.holds == 0) return "not touched";
   const std::string length = hand_length(program.metres_per_unit * touch.max_gap);
   const double share_n = std::min({touch.max_force_n, program.coupling.max_force_n, program.limits.max_force_n});
-  std::string text = link.one_sided ? fmt::format("pressed {} deep", length) : fmt::format("pulled up to {} off", length);
+  const std::string lies_on = printable(link.lies_on);
+  std::string text = link.one_sided ? fmt::format("pressed {} {}", length, lies_on.empty() ? "deep" : "into " + lies_on)
+                                    : fmt::format("pulled up to {} off{}", length, lies_on.empty() ? "" : " " + lies_on);
   text += fmt::format("{}; held {:.2f} of {:.2f} s",
                       program.links.size() == 1 && max_force_n_ > 0 ? fmt::format(", at most {:.2g} N", max_force_n_)
                                                                     : fmt::format(", own share at most {:.2g} N", share_n),

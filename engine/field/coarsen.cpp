@@ -110,6 +110,10 @@ class Leaf {
 
   float average(int x, int y, int z) const {
     const Window &wx = windows_[0][x], &wy = windows_[1][y], &wz = windows_[2][z];
+    if (grid_.interpolation() == Interpolation::nearest) {
+      const std::size_t row = row_of(wy.at[wy.count / 2] - lo_[1], wz.at[wz.count / 2] - lo_[2]);
+      return values_[row + std::size_t(wx.at[wx.count / 2] - lo_[0])];
+    }
     double odd = 0, plain = 0, weight = 0;
     bool all = true;
     for (int k = 0; k < wz.count; ++k)
@@ -237,6 +241,7 @@ Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
       Mapping::from_linear(fine.world_from_index_linear * double(factor), fine.world_from_index(Vec3(0.5 * (factor - 1))));
   CoarseGrid coarse;
   CATENA_TRY(coarse.grid, grid_from_buffers<ScalarGrid>(grid.name(), mapping, std::move(buffers)));
+  if (grid.interpolation() != coarse.grid->interpolation()) coarse.grid = coarse.grid->interpolated(grid.interpolation());
   coarse.domain = {{axes[0].domain_lo, axes[1].domain_lo, axes[2].domain_lo}, {axes[0].domain_hi, axes[1].domain_hi, axes[2].domain_hi}};
   return coarse;
 }

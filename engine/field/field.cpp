@@ -21,6 +21,12 @@ void Field::set_domain(std::string name, const Mapping& mapping, const Box& inde
   }
 }
 
+std::string why_no_surface(const ScalarField& field, const std::string& name) {
+  if (field.interpolation() == Interpolation::linear) return {};
+  return "field \"" + name + "\" is read by its nearest voxels: it has no surface of its own; a field {\"label\": NUMBER, \"of\": \"" +
+         name + "\"} at level 0.5, or \"interpolation\": \"linear\", was expected";
+}
+
 Reason Field::why_outside(const Vec3& world, Cursor&) const noexcept { return is_finite(world) ? Reason::mask : Reason::not_finite; }
 
 LineSample VectorField::sample_line(const Vec3& world, Cursor& cursor) const noexcept {

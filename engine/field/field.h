@@ -39,6 +39,12 @@ struct LineSample : LineAxis {
   bool inside = false;
 };
 
+/// How a grid says what lies between its voxel centres.
+///   linear    trilinear in the cell of eight centres
+///   nearest   the value of the nearest centre (of two as near, the one of the greater index), never a mix; its gradient is 0
+/// The domain is the box of voxel centres either way.
+enum class Interpolation { linear, nearest };
+
 class Field {
  public:
   virtual ~Field() = default;
@@ -80,6 +86,7 @@ class ScalarField : public Field {
   virtual double min_value() const noexcept = 0;
   virtual double max_value() const noexcept = 0;
   virtual const ScalarGrid* grid() const noexcept { return nullptr; }
+  virtual Interpolation interpolation() const noexcept { return Interpolation::linear; }
 };
 
 class VectorField : public Field {
@@ -89,6 +96,9 @@ class VectorField : public Field {
   virtual LineSample sample_line(const Vec3& world, Cursor& cursor) const noexcept;
   virtual const VectorGrid* grid() const noexcept { return nullptr; }
 };
+
+/// What to do where a field that is read by its nearest voxels cannot have a surface: empty for other fields.
+std::string why_no_surface(const ScalarField& field, const std::string& name);
 
 using ScalarFieldPtr = std::shared_ptr<const ScalarField>;
 using VectorFieldPtr = std::shared_ptr<const VectorField>;

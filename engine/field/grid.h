@@ -21,7 +21,8 @@ struct GridStats {
 class ScalarGrid final : public ScalarField {
  public:
   struct Storage;  ///< the NanoVDB buffers
-  ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage, const GridStats& stats);
+  ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage, const GridStats& stats,
+             Interpolation interpolation = Interpolation::linear);
   ~ScalarGrid() override;
 
   ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
@@ -30,7 +31,10 @@ class ScalarGrid final : public ScalarField {
   double max_value() const noexcept override { return stats_.max; }
   const ScalarGrid* grid() const noexcept override { return this; }
   bool is_grid() const noexcept override { return true; }
+  Interpolation interpolation() const noexcept override { return interpolation_; }
   std::size_t bytes() const noexcept override;
+  /// The same voxels read in another way: they are shared, the version is its own.
+  std::shared_ptr<const ScalarGrid> interpolated(Interpolation interpolation) const;
 
   /// The cell whose base is the nearest legal one to `base` (clamped so that base and base + 1 lie in the index box).
   ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept;
@@ -47,8 +51,9 @@ class ScalarGrid final : public ScalarField {
   const Storage& storage() const { return *storage_; }  ///< opaque outside this room
 
  private:
-  std::unique_ptr<Storage> storage_;
+  std::shared_ptr<const Storage> storage_;
   GridStats stats_;
+  Interpolation interpolation_;
 };
 
 class VectorGrid final : public VectorField {

@@ -99,23 +99,32 @@ ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, 
 
 }  // namespace
 
-ScalarGrid::ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage,
-                       const GridStats& stats)
-    : storage_(std::move(storage)), stats_(stats) {
+ScalarGrid::ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage,
+                       const GridStats& stats, Interpolation interpolation)
+    : storage_(std::move(storage)), stats_(stats), interpolation_(interpolation) {
   CATENA_ASSERT(storage_ && storage_->values);
   set_domain(std::move(name), mapping, index_box);
 }
 
 ScalarGrid::~ScalarGrid() = default;
 
+std::shared_ptr<const ScalarGrid> ScalarGrid::interpolated(Interpolation interpolation) const {
+  return std::make_shared<ScalarGrid>(name(), mapping(), index_box(), storage_, stats_, interpolation);
+}
+
 ScalarSample ScalarGrid::sample(const Vec3& world, Cursor& cursor) const noexcept {
   ScalarSample s;
   const Vec3 index = mapping().index_from_world(world);
   if (!is_finite(index)) return s;
   const ScalarWalk& walk = walk_to(*this, *storage_, storage_->base_of(index), cursor);
-  Vec3 g;
-  trilinear(walk.corner, place_in_cell(index, walk.base), s.value, g);
-  s.gradient = mapping().world_gradient(g);
+  const Vec3 place = place_in_cell(index, walk.base);
+  if (interpolation_ == Interpolation::linear) [[likely]] {
+    Vec3 g;
+    trilinear(walk.corner, place, s.value, g);
+    s.gradient = mapping().world_gradient(g);
+  } else {
+    s.value = walk.corner[(place.x >= 0.5 ? 1u : 0u) + (place.y >= 0.5 ? 2u : 0u) + (place.z >= 0.5 ? 4u : 0u)];
+  }
   s.inside = walk.valid && index_box().contains(index, domain_slack);
   return s;
 }

@@ -105,6 +105,11 @@ Result<AnyField> load(const LoadRequest& request) {
     }
     if (field && !has_finite_box(*field->get()))
       return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
+    if (!field || request.interpolation == Interpolation::linear) return field;
+    if (field->vector)
+      return Error{fmt::format("{}: the grid \"{}\" holds vectors, expected numbers for the interpolation \"nearest\"", request.path,
+                               field->get()->name())};
+    if (const ScalarGrid* grid = field->scalar->grid()) field->scalar = grid->interpolated(request.interpolation);
     return field;
   });
 }

@@ -22,13 +22,14 @@ struct RawLayout {
 
 struct LoadRequest {
   std::string path;
-  std::string grid;                                 ///< empty: the only usable grid of the file, or an error that lists them
-  std::optional<std::string> valid_grid = "valid";  ///< nullopt: no mask ("valid": null); a missing default mask is fine
-  bool valid_required = false;                      ///< the user named the mask: it must exist
-  std::int32_t step = 0;                            ///< which of the file's steps in time, from 0
-  bool axes_xyz = false;                            ///< .npy, .npz: the first index is x, not z
-  Vec3 spacing{1.0}, origin{0.0};                   ///< .npy, .npz
-  std::optional<RawLayout> raw;                     ///< for .raw
+  std::string grid;                                     ///< empty: the only usable grid of the file, or an error that lists them
+  std::optional<std::string> valid_grid = "valid";      ///< nullopt: no mask ("valid": null); a missing default mask is fine
+  bool valid_required = false;                          ///< the user named the mask: it must exist
+  std::int32_t step = 0;                                ///< which of the file's steps in time, from 0
+  bool axes_xyz = false;                                ///< .npy, .npz: the first index is x, not z
+  Vec3 spacing{1.0}, origin{0.0};                       ///< .npy, .npz
+  std::optional<RawLayout> raw;                         ///< for .raw
+  Interpolation interpolation = Interpolation::linear;  ///< of a scalar grid; a vector grid knows only this one
   bool operator==(const LoadRequest&) const = default;
 };
 

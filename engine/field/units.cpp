@@ -25,6 +25,7 @@ Units nifti_units(const std::string& path, const std::string&) {
   const int code = XYZT_TO_SPACE(header->xyzt_units);
   units.length = code == NIFTI_UNITS_METER ? "m" : code == NIFTI_UNITS_MM ? "mm" : code == NIFTI_UNITS_MICRON ? "µm" : "";
   units.patient = header->sform_code > 0 || header->qform_code > 0;
+  units.labels = header->intent_code == NIFTI_INTENT_LABEL;
   return units;
 }
 

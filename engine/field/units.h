@@ -5,6 +5,7 @@
 ///   a part between commas that is a length is taken for lengths, a single word for the values of a file's only field
 ///   patient     NIfTI with a qform or an sform: +x is to the right of a patient, an animal or a template, +y to the front, +z to the head;
 ///               VDB in HU or mm is taken for the same
+///   labels      NIfTI with the intent NIFTI_INTENT_LABEL (1002): whole numbers that are names
 ///   level set   VDB: the grid's class is "level set", values are distances from a surface at 0
 #pragma once
 #include <string>
@@ -13,7 +14,7 @@ namespace catena::field {
 
 struct Units {
   std::string value{}, length{};  ///< empty: the file does not say
-  bool patient = false, level_set = false;
+  bool patient = false, level_set = false, labels = false;
 };
 
 /// A word that a unit can be: one line of at most 24 bytes without control characters; "none", "unknown" and the like are no unit.

@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/scene/first_look.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/read_parts.h"
 
 namespace catena::scene {
@@ -140,12 +141,22 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   bare.note = name + " " + look.note;
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
+  if (look.labels) {
+    bare.request.interpolation = field::Interpolation::nearest;
+    bare.field.scalar = bare.field.scalar->grid()->interpolated(bare.request.interpolation);
+    bare.text += ", \"interpolation\": \"nearest\"";
+    if (const std::string table = label_table_beside(path); !table.empty()) {
+      const std::string table_name = std::filesystem::path(table).filename().string();
+      bare.text += ", \"labels\": {\"file\": " + json::string_text(table_name) + "}";
+      bare.note += "; names from " + printable(table_name);
+    }
+  }
   if (look.whole) {
     bare.text += ", \"valid\": null";
     bare.request.valid_grid.reset();
     CATENA_TRY(bare.field, field::load(bare.request));
   }
-  bare.text += "}";
+  bare.text += "}" + look.fields;
   if (grid.empty()) bare.text += other_fields(bare.request, file, name);
   bare.text += "},\n" + look.parts + "\n}\n";
   return bare;
@@ -171,6 +182,7 @@ void adopt_loaded(const BareFile& bare, Scene& scene) {
     if (bare.field.get() != nullptr && source.file && same_file(source.file->path, bare.request.path) &&
         source.file->grid == bare.request.grid)
       source.loaded = source.drawn = bare.field;
+    find_labels(source);
   });
   scene.world.each<MeshSource>([&](Entity, MeshSource& source) {
     if (bare.mesh && same_file(source.path, bare.scene_path.substr(0, bare.scene_path.size() - 5)) && source.placement == mesh::Placement{})

@@ -2,6 +2,7 @@
 
 #include "engine/base/output_file.h"
 #include "engine/scene/document.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/transfer.h"
 
@@ -17,9 +18,18 @@ bool same_request(const field::LoadRequest& a, const field::LoadRequest& b) {
 }
 
 bool same_source(const FieldSource& a, const FieldSource& b) {
-  if (a.file.has_value() != b.file.has_value()) return false;
+  if (a.file.has_value() != b.file.has_value() || a.label != b.label) return false;
   if (a.file) return a.grid_is_a_wish == b.grid_is_a_wish && same_request(*a.file, *b.file);
   return a.analytic == b.analytic && a.parameters == b.parameters;
+}
+
+/// A surface of labels is what it was while its label map is.
+bool same_map(const Scene& old, const FieldSource& before, const Scene& fresh, const FieldSource& source) {
+  if (!source.label) return true;
+  const Entity was = find_field(old, source.label->of), is = find_field(fresh, source.label->of);
+  if (!was || !is) return false;
+  const FieldSource &map_was = old.world.get<FieldSource>(was), &map_is = fresh.world.get<FieldSource>(is);
+  return before.label == source.label && same_source(map_was, map_is) && map_was.labels_table == map_is.labels_table;
 }
 
 bool same_drawing(const FieldSource& a, const FieldSource& b) { return a.file || (a.resolution == b.resolution && a.box == b.box); }
@@ -31,8 +41,10 @@ bool same_mesh(const MeshSource& a, const MeshSource& b) {
 void carry_fields(Scene& old, Scene& fresh) {
   fresh.world.each<FieldSource>([&](Entity e, FieldSource& source) {
     old.world.each<FieldSource>([&](Entity f, const FieldSource& before) {
-      if (before.loaded.get() == nullptr || !same_source(before, source)) return;
+      if (before.loaded.get() == nullptr || !same_source(before, source) || !same_map(old, before, fresh, source)) return;
       if (source.loaded.get() == nullptr) source.loaded = before.loaded;
+      if (source.loaded.get() == before.loaded.get() && source.labels_table == before.labels_table) source.labels = before.labels;
+      find_labels(source);
       if (source.drawn.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
         source.drawn = before.drawn;
       // of whose values someone asked before
@@ -82,6 +94,7 @@ void carry_transfers(const Scene& old, Scene& fresh) {
     TransferFunction& transfer = volume.transfer;
     old.world.each<Volume>([&](Entity, const Volume& before) {
       const TransferFunction& made = before.transfer;
+      if (fresh.world.get<FieldSource>(volume.field).labels != old.world.get<FieldSource>(before.field).labels) return;
       if (grid == nullptr || old.world.get<FieldSource>(before.field).drawn.get() != grid || !made.file.empty() || !transfer.file.empty())
         return;
       if (transfer.colors.empty() && !states_colors(before.where) && same_named(made.named, transfer.named)) transfer.colors = made.colors;
@@ -108,7 +121,8 @@ bool same_sources(const Scene& old, const Scene& fresh) {
   fresh.world.each<FieldSource>([&](Entity e, const FieldSource& source) {
     const Entity before = find_field(old, fresh.world.get<Name>(e).value);
     same = same && before && same_source(old.world.get<FieldSource>(before), source) &&
-           same_drawing(old.world.get<FieldSource>(before), source);
+           same_drawing(old.world.get<FieldSource>(before), source) &&
+           old.world.get<FieldSource>(before).labels_table == source.labels_table;
   });
   fresh.world.each<MeshSource>([&](Entity e, const MeshSource& source) {
     const Entity before = find_mesh(old, fresh.world.get<Name>(e).value);

@@ -14,6 +14,7 @@
 #include "engine/geometry/color.h"
 #include "engine/geometry/plane.h"
 #include "engine/mesh/load.h"
+#include "engine/scene/label_table.h"
 #include "engine/scene/world.h"
 #include "engine/widget/widget.h"
 
@@ -21,6 +22,18 @@ namespace catena::scene {
 
 struct Name {
   std::string value;
+};
+
+struct LabelMap;  ///< labels.h
+
+/// The surface of labels of another field (engine/field/label_surface.h), as a field of its own.
+struct LabelSource {
+  std::string of;  ///< the label map's name
+  std::vector<double> values;
+  std::vector<std::string> names;  ///< of the map's table
+  bool any = false;                ///< every label but 0
+  double smooth = 0;               ///< voxels
+  bool operator==(const LabelSource&) const = default;
 };
 
 /// A field of the scene: where it comes from, and the field itself once something has asked for it.
@@ -32,8 +45,12 @@ struct FieldSource {
   field::AnalyticParameters parameters;
   int resolution = 128;  ///< analytic fields are drawn from a sampled grid: nodes an axis
   std::array<double, 2> box{-2, 2};
-  field::AnyField loaded;  ///< exact (the hand's)
-  field::AnyField drawn;   ///< a grid (the eye's); the same object for files
+  std::optional<LabelSource> label;  ///< or this
+  std::string labels_file;           ///< the table that a label map's names and colours come from; empty: the scene's own
+  LabelTable labels_table;
+  std::shared_ptr<const LabelMap> labels;  ///< with `loaded`: what the voxels of a field that is read by the nearest of them stand for
+  field::AnyField loaded;                  ///< exact (the hand's)
+  field::AnyField drawn;                   ///< a grid (the eye's); the same object for files
 };
 
 /// A colour map by its name, laid over a range once the values are known (color_maps.h).

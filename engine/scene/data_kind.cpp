@@ -144,6 +144,7 @@ DataFacts data_facts(const field::ScalarGrid& grid, const field::Units& units) {
   facts.level_set = units.level_set;
   facts.hounsfield = units.value == "HU";
   facts.patient = units.patient;
+  facts.labels = units.labels;
   facts.masked = grid.has_mask();
 
   // blocks spread over the box, each whole: an edge that the box cuts off is left out
@@ -179,6 +180,7 @@ DataFacts data_facts(const field::ScalarGrid& grid, const field::Units& units) {
 DataKind kind_of(const DataFacts& f) {
   const bool rough = f.roughness >= kRough;
   const bool both_signs = f.lo < 0 && f.hi > 0;
+  if (f.labels && f.whole_numbers && f.distinct > 1) return DataKind::label_map;
   if (f.level_set || (both_signs && f.distance_share >= kUnitSlopes)) return DataKind::level_set;
   if (f.hounsfield) return DataKind::ct;
   if (f.least >= kLeastHounsfield && f.air_share >= kTissueShare && f.soft_share >= kTissueShare) return DataKind::ct;
@@ -206,6 +208,7 @@ std::string why(DataKind kind, const DataFacts& f) {
       return f.hounsfield ? "its unit is HU"
                           : percent(f.air_share) + " of the values are air near -1000, " + percent(f.soft_share) + " soft tissue near 0";
     case DataKind::label_map:
+      if (f.labels) return "the file says so";
       return fmt::format("{} different whole numbers, and {} of all neighbours are equal", f.distinct, percent(f.equal_share));
     case DataKind::solid:
       return f.plateau_share >= kPlateaus ? percent(f.plateau_share) + " of the values are at either end of the range"

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
+#include "engine/field/label_surface.h"
 #include "engine/flow/seeds.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/data_kind.h"
@@ -21,7 +21,6 @@ namespace {
 constexpr Color kBackdrop{0.13f, 0.15f, 0.18f};
 constexpr Color kBone{0.94f, 0.89f, 0.79f}, kSkin{0.87f, 0.67f, 0.56f}, kTissue{0.86f, 0.76f, 0.69f}, kSolid{0.72f, 0.77f, 0.84f};
 constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25;
-constexpr double kLabelSkin = 0.18;                                   // opacity: what makes the shape of flat colours seen
 constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;  // optical depths of a ray across the domain
 constexpr double kMostlyEmpty = 0.5;                                  // of the values: the background
 constexpr std::size_t kMostVectors = 1u << 18;
@@ -103,33 +102,15 @@ std::string computed_tomography(const std::string& field, const field::ScalarGri
   return items.empty() ? quantity(field, grid, facts) : surfaces(items);
 }
 
-/// The n-th of colours that differ from each other: hues a golden section apart, at three lightnesses.
-Color label_color(int n) {
-  const double hue = std::fmod(0.61803398875 * n, 1.0) * 6;
-  constexpr double kSaturation[] = {0.55, 0.75, 0.45}, kValue[] = {0.95, 0.75, 0.85};
-  const double s = kSaturation[n % 3], v = kValue[n / 3 % 3];
-  const auto component = [&](double shift) {
-    const double k = std::fmod(shift + hue, 6.0);
-    return static_cast<float>(v - v * s * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
-  };
-  return {component(5), component(3), component(1)};
-}
-
-std::string labels(const std::string& field, const field::ScalarGrid& grid) {
-  std::set<float> found;
-  for (const float v : sample_values(grid, 1u << 20)) found.insert(v);
-  std::string colors;
-  int n = 0;
-  for (const float v : found) {
-    if (v == 0) continue;
-    const Color color = label_color(n++);
-    const auto row = [&](double value) { return "[" + text_of(value) + ", " + text_of(color).substr(1); };
-    colors += (colors.empty() ? "" : ",\n                         ") + row(v - 0.45) + ", " + row(v + 0.45);
-  }
-  const double edge = grid.mapping().smallest_edge();
-  return "  \"volumes\": [{\"field\": " + field + ",\n               \"color\": [" + colors +
-         "],\n               \"opacity\": [[0.4, 0], [0.6, 0.9]], \"gradient_opacity\": [[0, 1], [" + text_of(0.05 / edge) + ", 0]]}],\n" +
-         surfaces({surface(field, 0.5, {1, 1, 1}, kLabelSkin)});
+/// All labels in one surface: what lies between two of them is hidden, and a surface for each would be many times the work.
+void show_labels(const std::string& field, FirstLook& look) {
+  const std::string name = field.substr(1, field.size() - 2) + "_labels";
+  const std::string surface = json::string_text(name);
+  look.labels = true;
+  look.fields = ",\n             " + surface + ": {\"label\": \"*\", \"of\": " + field + "}";
+  look.parts =
+      surfaces({"{\"field\": " + surface + ", \"level\": " + text_of(field::kLabelLevel) + ", \"color_by\": {\"field\": " + field + "}}"}) +
+      bar_of("\"field\": " + field, field, false);
 }
 
 std::string angiogram(const std::string& field, const DataFacts& facts) {
@@ -201,7 +182,9 @@ std::string soft_background() { return "  \"background\": " + text_of(kBackdrop)
 
 FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, const field::Units& units, NamedColors colors) {
   const DataFacts facts = data_facts(grid, units);
-  const DataKind kind = kind_of(facts);
+  DataKind kind = kind_of(facts);
+  // by a part of the voxels it may look like one
+  if (kind == DataKind::label_map && !field::label_counts(grid)) kind = DataKind::solid;
   FirstLook look;
   look.whole = facts.masked && (kind == DataKind::ct || kind == DataKind::mr || kind == DataKind::solid);
   look.note = "looks like " + std::string(kind_word(kind)) + ": " + why(kind, facts);
@@ -220,7 +203,7 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
         look.parts = surfaces({surface(field, level(0.5 * (facts.background + facts.threshold)), kTissue)});
         break;
       case DataKind::label_map:
-        look.parts = labels(field, grid);
+        show_labels(field, look);
         break;
       case DataKind::solid:
         look.parts = surfaces({surface(field, level(facts.threshold), kSolid)});

@@ -2,7 +2,7 @@
 /// only. Levels and ranges are values of the field.
 ///   CT           the skin (-300 HU, translucent) over the bone (250 HU), where the values reach them
 ///   MR           the surface of what is not background: halfway from the background to Otsu's threshold, which dark tissue lies below
-///   label map    a volume with a colour a label; cells between two labels are left out, for a value between them is no label
+///   label map    the surface of all labels together, each in its colour, with a legend; the field is read by its nearest voxels
 ///   solid        the surface at Otsu's threshold; a level set's at 0
 ///   angiogram    the brightest value along each ray, grey
 ///   cloud        a shaded volume, grey to white
@@ -20,9 +20,11 @@
 namespace catena::scene {
 
 struct FirstLook {
-  std::string parts;   ///< members of a scene's object, without a comma at either end
-  bool whole = false;  ///< the mask only cuts away what is empty: without it surfaces are closed, with it they end in torn cells
-  std::string note;    ///< one sentence: what the data look like, and why
+  std::string parts;     ///< members of a scene's object, without a comma at either end
+  std::string fields{};  ///< more fields, ", NAME: {...}"
+  bool labels = false;   ///< a label map: its nearest voxels count, and its table belongs to it
+  bool whole = false;    ///< the mask only cuts away what is empty: without it surfaces are closed, with it they end in torn cells
+  std::string note;      ///< one sentence: what the data look like, and why
 };
 
 /// `field`: its name in the scene, as JSON.

@@ -75,6 +75,7 @@ Result<std::vector<Vec3>> places_of(Scene& scene, const SeedPattern& pattern) {
   if (!any.scalar)
     return json::error_at(json::member_or(pattern.where, "field"), in_quotes(scene.world.get<Name>(pattern.field).value) +
                                                                        " is a vector field; a scalar field was expected for an isosurface");
+  CATENA_CHECK(check_surface(scene, pattern.field, json::member_or(pattern.where, "field")));
   CATENA_CHECK(check_level(*any.scalar, pattern.level, json::member_or(pattern.where, "level")));
   std::vector<Vec3> places = flow::seeds_on_isosurface(*any.scalar, pattern.level, pattern.count);
   if (places.empty())

@@ -10,7 +10,8 @@ constexpr double kMaxPoints = 576;  // the picture's shorter side has as many
 
 /// What has colours that a bar can show; drawn or hidden.
 bool has_colors(const World& world, Entity e) {
-  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
+  return world.has<Volume>(e) || world.has<Slice>(e) || (world.has<Isosurface>(e) && world.get<Isosurface>(e).color_by) ||
+         (world.has<StreamlineSet>(e) && world.get<StreamlineSet>(e).color_by) ||
          (world.has<GlyphSet>(e) && world.get<GlyphSet>(e).color_by) || (world.has<DrawnCurves>(e) && world.get<DrawnCurves>(e).color_by) ||
          (world.has<DrawnPoints>(e) && world.get<DrawnPoints>(e).color_by);
 }
@@ -23,6 +24,7 @@ Entity shown_field(const World& world, Entity field) {
   };
   world.each<Volume>([&](Entity e, const Volume& volume) { take(e, volume.field == field); });
   world.each<Slice>([&](Entity e, const Slice& slice) { take(e, slice.shown.field == field); });
+  world.each<Isosurface>([&](Entity e, const Isosurface& surface) { take(e, surface.color_by && surface.color_by->field == field); });
   const auto take_set = [&](Entity e, const auto& set) {
     const bool other = set.color_by && set.color_by->what == ColorBy::What::field;
     take(e, (other ? set.color_by->field : set.field) == field);
@@ -71,7 +73,7 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.world, field);
   if (!shown)
-    return json::error_at(*item.find("field"), "no volume, slice, coloured streamlines or glyphs show " +
+    return json::error_at(*item.find("field"), "no volume, slice, coloured isosurface, coloured streamlines or glyphs show " +
                                                    in_quotes(scene.world.get<Name>(field).value) + "; a field with colours was expected");
   return shown;
 }

@@ -42,18 +42,19 @@ Key file_key(bool with_layout) {
 }
 
 Keys grid_keys() {
-  return {file_key(false),
-          schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
-          schema::any_of("valid", {schema::text("", ""), schema::null()},
-                         "The BoolGrid that masks the field; null for none. The default one may be missing.")
-              .by_default("\"valid\""),
-          schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).by_default("0"),
-          schema::word("axes", {"zyx", "xyz"}, "`.npy`, `.npz`: which way an array's indices go; `zyx`: the last one is x.")
-              .by_default("`zyx`"),
-          schema::vec3("spacing", "world", "`.npy`, `.npz`: edges of a voxel.").positive().by_default("`[1, 1, 1]`"),
-          schema::vec3("origin", "world", "`.npy`, `.npz`: place of the first voxel's centre.").by_default("`[0, 0, 0]`"),
-          unit_key(),
-          schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
+  Keys keys{file_key(false),
+            schema::text("grid", "The grid in the file.").by_default("the first that can be used"),
+            schema::any_of("valid", {schema::text("", ""), schema::null()},
+                           "The BoolGrid that masks the field; null for none. The default one may be missing.")
+                .by_default("\"valid\""),
+            schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).by_default("0"),
+            schema::word("axes", {"zyx", "xyz"}, "`.npy`, `.npz`: which way an array's indices go; `zyx`: the last one is x.")
+                .by_default("`zyx`"),
+            schema::vec3("spacing", "world", "`.npy`, `.npz`: edges of a voxel.").positive().by_default("`[1, 1, 1]`"),
+            schema::vec3("origin", "world", "`.npy`, `.npz`: place of the first voxel's centre.").by_default("`[0, 0, 0]`"),
+            unit_key(),
+            schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
+  return schema::joined(std::move(keys), map_keys());
 }
 
 /// What a file without a header says of itself in the scene.
@@ -88,6 +89,7 @@ const LayoutTable& layout_table() {
              return Done{};
            });
     t.beside(unit_key());
+    for (const Key& key : map_keys()) t.beside(key);
     t.check([](const std::string&, const json::Node& node, field::RawLayout& layout) -> Outcome {
       if (layout.spacing.x > 0 && layout.spacing.y > 0 && layout.spacing.z > 0) return Done{};
       return json::error_at(*node.find("spacing"), "\"spacing\" is not positive; three finite numbers > 0 were expected");
@@ -144,7 +146,7 @@ Outcome read_file_source(const std::string& scene_path, const json::Node& node, 
     return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + fault +
                                                   (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
   source.file = std::move(request);
-  return Done{};
+  return read_map(scene_path, node, source);
 }
 
 // ---- fields by formula ----
@@ -215,10 +217,11 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
 Outcome read_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_CHECK(json::expect_object(node, node.label));
   source.where = node;
-  const bool file = node.find("file") != nullptr, analytic = node.find("analytic") != nullptr;
-  if (file == analytic)
-    return json::error_at(node, "field " + in_quotes(node.label) + " has " + (file ? "both" : "neither") +
-                                    " \"file\" and \"analytic\"; exactly one of them was expected");
+  const bool file = node.find("file") != nullptr, analytic = node.find("analytic") != nullptr, label = node.find("label") != nullptr;
+  if (label && !file && !analytic) return read_label_source(node, source);
+  if (file == analytic || label)
+    return json::error_at(node, "field " + in_quotes(node.label) + " has " + (file || analytic ? "several" : "none") +
+                                    " of \"file\", \"analytic\" and \"label\"; exactly one of them was expected");
   return file ? read_file_source(scene_path, node, replaced, source) : read_analytic_source(node, source);
 }
 
@@ -247,6 +250,7 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
   if (!with.grid.empty()) request.grid = with.grid;
   source.file = request;
   source.analytic.clear();
+  source.label.reset();
   source.where = json::Node{};
   return Done{};
 }
@@ -284,16 +288,19 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
     }
   }
   for (const FieldOverride& with : overrides) CATENA_CHECK(apply_override(scene, with));
-  return Done{};
+  return check_label_sources(scene);
 }
 
 Part fields_part() {
-  schema::Component component{
-      "fields", "What there is: grids from files, and formulas. Names and their fields; a field has either `file` or `analytic`.",
-      schema::Component::Shape::map};
-  component.variants = {{"file", "A file that says itself what it holds.", grid_keys()},
-                        {"raw", "A file of bare numbers, little-endian, x fastest.", layout_table().keys()},
-                        {"analytic", "A formula. The hand feels it exactly; the picture draws it from a grid.", formula_keys()}};
+  schema::Component component{"fields",
+                              "What there is: grids from files, formulas, surfaces of labels. Names and their fields; a field has one of "
+                              "`file`, `analytic`, `label`.",
+                              schema::Component::Shape::map};
+  component.variants = {
+      {"file", "A file that says itself what it holds.", grid_keys()},
+      {"raw", "A file of bare numbers, little-endian, x fastest.", layout_table().keys()},
+      {"analytic", "A formula. The hand feels it exactly; the picture draws it from a grid.", formula_keys()},
+      {"label", "The surface of labels of a label map, seen and felt: 1 within them, 0 outside, the surface at level 0.5.", label_keys()}};
   return {component, nullptr};
 }
 

@@ -15,6 +15,10 @@
 
 namespace catena::scene {
 
+using schema::Key;
+using schema::Keys;
+using schema::Role;
+
 struct Part {
   schema::Component description;  ///< of "chain", "modes" and "device" the keys are told by the rooms that read them
   Outcome (*read)(Scene&, const json::Node&);
@@ -82,6 +86,14 @@ std::string file_fault(const std::string& path, bool known, const std::vector<st
 std::string resolved_path(const std::string& scene_path, const std::string& file);
 
 Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<FieldOverride>& overrides);
+/// Of a grid's source, beside its own keys: "interpolation" and "labels"; the source has its file already.
+Keys map_keys();
+Outcome read_map(const std::string& scene_path, const json::Node& node, FieldSource& source);
+/// The surface of labels as a source: "label", "of", "smooth".
+Keys label_keys();
+Outcome read_label_source(const json::Node& node, FieldSource& source);
+/// Once all fields are read: what they are of are fields from files.
+Outcome check_label_sources(const Scene& scene);
 /// The entity of the field that member `key` of `object` names; an error lists the known ones.
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key = "field");
 
@@ -94,9 +106,6 @@ Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, st
 
 /// Keys that several components of a scene have, and how the types of this room are read and written. Inside this room only.
 
-using schema::Key;
-using schema::Keys;
-using schema::Role;
 template <class T>
 using Table = schema::Table<T, Scene>;
 

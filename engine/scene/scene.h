@@ -111,6 +111,8 @@ Entity find_widget(const Scene& scene, std::string_view name);
 /// field is loaded and its value set. `along` is left to the maker of the program, which knows the links. Completed once.
 Result<widget::Spec> use_widget(Scene& scene, Entity widget);
 
+/// Checks that a field that is loaded can have a surface: it is not read by its nearest voxels.
+Outcome check_surface(const Scene& scene, Entity field, const json::Node& where);
 /// Checks that a level can be drawn and felt: it lies within the field's values.
 Outcome check_level(const field::ScalarField& field, double level, const json::Node& where);
 

@@ -2,6 +2,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_parts.h"
 #include "engine/scene/transfer.h"
@@ -49,6 +50,11 @@ Entity find_field(const Scene& scene, std::string_view name) {
 Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where) {
   FieldSource& source = scene.world.get<FieldSource>(field);
   if (source.loaded.get() != nullptr) return source.loaded;
+  if (source.label) {
+    CATENA_TRY(field::AnyField surface, use_label_surface(scene, field));
+    scene.world.get<FieldSource>(field).loaded = surface;
+    return surface;
+  }
   auto loaded = load_source(source);
   if (!loaded) {
     const json::Node& place = source.where.line > 0 ? source.where : where;
@@ -58,6 +64,7 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
   }
   source.loaded = *loaded;
   for (const std::string& note : loaded->notes) scene.notes.push_back((source.file ? source.file->path + ": " : std::string()) + note);
+  find_labels(source);
   return source.loaded;
 }
 
@@ -85,6 +92,11 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
     scene.world.each<Volume>([&](Entity, Volume& volume) {
       if (volume.field != field || is_complete(volume.transfer)) return;
       const field::ScalarGrid& grid = *source.drawn.scalar->grid();
+      if (shows_labels(scene, field, volume.transfer.colors, volume.transfer.named)) {
+        volume.transfer.colors = label_colors(*source.labels);
+        if (volume.transfer.extinctions.empty() && volume.transfer.opacities.empty()) volume.transfer.opacities = {{0.4, 0}, {0.6, 0.9}};
+        return;
+      }
       if (!scene.made.has<ValueSample>(field)) scene.made.emplace<ValueSample>(field);
       ValueSample& sample = scene.made.get<ValueSample>(field);
       if (sample.grid != source.drawn.get()) sample = {source.drawn.get(), sorted_values(grid)};
@@ -185,6 +197,12 @@ Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec
   if (scene.curves.size() >= kManyCurves) drop_unused_curves(scene);
   scene.curves.emplace(key, *curve);
   return *curve;
+}
+
+Outcome check_surface(const Scene& scene, Entity field, const json::Node& where) {
+  const field::AnyField& any = loaded_field(scene, field);
+  const std::string why = any.scalar ? field::why_no_surface(*any.scalar, scene.world.get<Name>(field).value) : std::string();
+  return why.empty() ? Outcome(Done{}) : json::error_at(where, why);
 }
 
 Outcome check_level(const field::ScalarField& field, double level, const json::Node& where) {

@@ -55,6 +55,7 @@ struct Link {
   Align align;
   double release = 0;        ///< baselines only: lets go where |probe - proxy| >= release, world units; 0: never
   bool one_sided = false;    ///< it has a free side; it is told here for the baselines and for what a person reads
+  std::string lies_on;       ///< the name of what it lies on, for a person: "Precentral_L"; empty: the link's own says it
   std::uint64_t recipe = 0;  ///< what it was built from: links of the same name and recipe keep their state; 0: of the same object
 };
 

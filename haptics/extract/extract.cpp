@@ -6,6 +6,7 @@
 
 #include "engine/base/hash.h"
 #include "engine/base/numbers.h"
+#include "engine/scene/labels.h"
 #include "haptics/constraints/presets/modes.h"
 #include "haptics/constraints/rules/link_keys.h"
 
@@ -126,6 +127,8 @@ Outcome add_links(scene::Scene& scene, const scene::Link& from, const BuildConte
       return json::error_at(from.node,
                             "the chain is too long; at most " + std::to_string(exchange::kMaxSceneLinks) + " links were expected");
     CATENA_TRY(Link link, make_link(node, program.coupling, context));
+    if (const json::Node* field = node.find("field"); field != nullptr && field->kind == json::Kind::string)
+      link.lies_on = scene::label_name(scene, field->string);
     for (const Link& other : program.links)
       if (other.name == link.name)
         return json::error_at(from.node, "duplicate link name \"" + link.name + "\" (a ready-made mode names its links " +

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/base/result.h"
-#include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/prepare.h"
 #include "render/extract/extract_parts.h"
 #include "render/extract/first_view.h"
@@ -28,12 +28,17 @@ Result<std::shared_ptr<const field::ScalarGrid>> drawn_grid(const scene::Scene& 
   return std::shared_ptr<const field::ScalarGrid>(any.scalar, any.scalar->grid());
 }
 
-Result<std::optional<ColorSource>> color_source(const scene::Scene& scene, const std::optional<scene::ColorBy>& by) {
+/// `of`: the field that is coloured.
+Result<std::optional<ColorSource>> color_source(const scene::Scene& scene, const std::optional<scene::ColorBy>& by, scene::Entity of) {
   if (!by) return std::optional<ColorSource>();
   ColorSource source;
   CATENA_TRY(source.grid, drawn_grid(scene, by->field, by->where, "\"color_by\""));
-  for (const auto& c : scene::color_table(by->colors, by->named, source.grid->min_value(), source.grid->max_value()))
+  for (const auto& c : scene::shown_table(scene, by->field, by->colors, by->named, source.grid->min_value(), source.grid->max_value()))
     source.colors.push_back({c.value, c.color.r, c.color.g, c.color.b});
+  // a surface of labels runs between them and what is none
+  const auto& label = scene.world.get<scene::FieldSource>(of).label;
+  source.labels = scene::labels_of(scene, by->field) != nullptr;
+  source.spread = source.labels && label && label->of == name_of(scene, by->field);
   return std::optional<ColorSource>(std::move(source));
 }
 
@@ -51,7 +56,8 @@ Outcome extract_volumes(const scene::Scene& scene, FramePacket& packet) {
     if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, volume.field, volume.where, "a volume"));
     TransferTable transfer = transfer_table(volume.transfer, *grid);
-    CATENA_TRY(auto color_by, color_source(scene, volume.color_by));
+    transfer.labels = scene::labels_of(scene, volume.field) != nullptr;
+    CATENA_TRY(auto color_by, color_source(scene, volume.color_by, volume.field));
     const std::uint32_t id = packet.add_object("volume", name_of(scene, volume.field), volume.where.label);
     packet.volumes.push_back(
         {std::move(grid), std::move(transfer), volume.shade, id, volume.clipped, projection_of(volume.projection), std::move(color_by)});
@@ -64,8 +70,9 @@ Outcome extract_isosurfaces(const scene::Scene& scene, FramePacket& packet) {
     const scene::Isosurface& surface = scene.world.get<scene::Isosurface>(e);
     if (is_hidden(scene.world, e)) continue;
     CATENA_TRY(auto grid, drawn_grid(scene, surface.field, surface.where, "an isosurface"));
+    CATENA_CHECK(scene::check_surface(scene, surface.field, json::member_or(surface.where, "field")));
     CATENA_CHECK(scene::check_level(*grid, surface.level, json::member_or(surface.where, "level")));
-    CATENA_TRY(auto color_by, color_source(scene, surface.color_by));
+    CATENA_TRY(auto color_by, color_source(scene, surface.color_by, surface.field));
     const std::uint32_t id = packet.add_object("isosurface", name_of(scene, surface.field), surface.where.label);
     packet.isosurfaces.push_back(
         {std::move(grid), surface.level, surface.color, static_cast<float>(surface.opacity), id, surface.clipped, std::move(color_by)});

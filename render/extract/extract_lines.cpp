@@ -9,6 +9,7 @@
 #include "engine/base/result.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
 #include "render/extract/flatten.h"
 
@@ -139,7 +140,9 @@ Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& se
 
   // colours
   if (value) {
-    const ColorTable& table = flat.colors = scene::color_table(set.color_by->colors, set.color_by->named, lo, hi);
+    const ColorTable& table = flat.colors =
+        shown.get() == nullptr ? scene::color_table(set.color_by->colors, set.color_by->named, lo, hi)
+                               : scene::shown_table(scene, set.color_by->field, set.color_by->colors, set.color_by->named, lo, hi);
     for (std::size_t i = 0; i < curves.size(); ++i) {
       std::vector<Color> colors;
       colors.reserve(values[i].size());

@@ -4,7 +4,9 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
+#include "engine/base/text.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/units.h"
 #include "render/extract/extract_parts.h"
 
@@ -62,6 +64,7 @@ BarScale bar_scale(double lo, double hi, int count, const std::string& format) {
 
 namespace {
 
+constexpr std::size_t kMostEntries = 20, kLongestName = 24, kNameEnd = 8;  // of a legend; bytes
 constexpr double kTitleSizePt = 17, kTitleTopPt = 12;
 
 std::optional<Color> optional_color(const std::optional<Color>& c) {
@@ -73,6 +76,7 @@ std::optional<Color> optional_color(const std::optional<Color>& c) {
 struct Shown {
   std::vector<std::array<double, 4>> colors;
   std::string name;
+  const scene::LabelMap* labels = nullptr;  ///< whose colours they are
 };
 
 std::vector<std::array<double, 4>> rows_of(const std::vector<scene::TransferFunction::ColorPoint>& points) {
@@ -99,13 +103,25 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
   const scene::World& world = scene.world;
   if (is_hidden(world, e)) return {};
   const auto named = [&](scene::Entity field) { return with_unit(name_of(scene, field), scene::unit_of(scene, field)); };
+  const auto labels = [&](const scene::ColorBy& by) {
+    return shows_labels(scene, by.field, by.colors, by.named) ? labels_of(scene, by.field) : nullptr;
+  };
   if (world.has<scene::Volume>(e)) {
     const scene::Volume& volume = world.get<scene::Volume>(e);
-    return {rows_of(volume.transfer.colors), named(volume.field)};
+    const bool states = volume.where.find("color") != nullptr || volume.where.find("transfer") != nullptr;
+    return {rows_of(volume.transfer.colors), named(volume.field), states ? nullptr : labels_of(scene, volume.field)};
+  }
+  if (world.has<scene::Isosurface>(e)) {
+    const scene::ColorBy& by = *world.get<scene::Isosurface>(e).color_by;
+    const field::AnyField& any = drawn_field(scene, by.field);
+    if (!any.scalar) return {};
+    return {rows_of(shown_table(scene, by.field, by.colors, by.named, any.scalar->min_value(), any.scalar->max_value())), named(by.field),
+            labels(by)};
   }
   if (world.has<scene::Slice>(e)) {
     const SliceItem* slice = slice_item(world, e, packet);
-    return slice ? Shown{slice->colors, named(world.get<scene::Slice>(e).shown.field)} : Shown{};
+    const scene::ColorBy& by = world.get<scene::Slice>(e).shown;
+    return slice ? Shown{slice->colors, named(by.field), labels(by)} : Shown{};
   }
   if (world.has<scene::DrawnPoints>(e)) {
     const auto* points = shown_point_colors(scene.made, e);
@@ -130,7 +146,7 @@ Shown shown_by(const scene::Scene& scene, scene::Entity e, const FramePacket& pa
   CATENA_ASSERT(color_by);
   switch (color_by->what) {
     case scene::ColorBy::What::field:
-      return {colors, named(color_by->field)};
+      return {colors, named(color_by->field), labels(*color_by)};
     case scene::ColorBy::What::speed:
       return {colors, with_unit("|" + name_of(scene, of) + "|", scene::unit_of(scene, of))};
     case scene::ColorBy::What::value:
@@ -146,17 +162,43 @@ Anchor anchor_of(scene::PictureCorner corner) {
   return anchors[static_cast<int>(corner)];
 }
 
+/// The labels of the most voxels, by their numbers from above.
+void set_legend(const scene::LabelMap& map, ScalarBarItem& item) {
+  std::vector<scene::MapLabel> labels = map.labels;
+  const std::size_t count = std::min<std::size_t>(labels.size(), kMostEntries), more = labels.size() - count;
+  std::stable_sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.voxels > b.voxels; });
+  labels.resize(count);
+  std::sort(labels.begin(), labels.end(), [](const auto& a, const auto& b) { return a.value > b.value; });
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<double>(i);
+    const Color& c = labels[i].color;
+    for (const double end : {at, at + 1}) item.colors.push_back({end, c.r, c.g, c.b});
+    std::string text = labels[i].name.empty() ? to_text(labels[i].value) : labels[i].name;
+    // the middle goes: names end with their side
+    if (text.size() > kLongestName)
+      text = printable(text.substr(0, kLongestName - kNameEnd)) + "…" + printable(text.substr(text.size() - kNameEnd));
+    item.ticks.push_back({at + 0.5, std::move(text)});
+  }
+  item.steps = static_cast<int>(count);
+  item.side = item.side == Side::left ? Side::left : Side::right;
+  if (more > 0) item.more = "and " + std::to_string(more) + " more";
+}
+
 void extract_scalar_bars(const scene::Scene& scene, const FramePacket& packet, Overlay& overlay) {
   for (const scene::ScalarBar& bar : scene.annotations.scalar_bars) {
     Shown shown = shown_by(scene, bar.shown, packet);
     if (shown.colors.empty()) continue;
     ScalarBarItem item;
-    item.colors = std::move(shown.colors);
-    BarScale scale = bar_scale(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format);
-    item.ticks = std::move(scale.ticks);
-    item.factor = std::move(scale.factor);
     item.title = bar.title ? *bar.title : shown.name;
     item.side = static_cast<Side>(bar.side);
+    if (shown.labels != nullptr) {
+      set_legend(*shown.labels, item);
+    } else {
+      item.colors = std::move(shown.colors);
+      BarScale scale = bar_scale(item.colors.front()[0], item.colors.back()[0], bar.ticks, bar.format);
+      item.ticks = std::move(scale.ticks);
+      item.factor = std::move(scale.factor);
+    }
     overlay.scalar_bars.push_back(std::move(item));
   }
 }

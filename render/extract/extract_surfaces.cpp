@@ -6,8 +6,8 @@
 #include "engine/base/result.h"
 #include "engine/base/text.h"
 #include "engine/field/magnitude.h"
-#include "engine/scene/color_maps.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/labels.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_parts.h"
 
@@ -47,7 +47,9 @@ Outcome ask_for_copy(const mesh::TriangleMesh& mesh, const scene::SurfaceMesh& s
   return Done{};
 }
 
-std::vector<Color> vertex_colors(const mesh::TriangleMesh& mesh, const field::AnyField& shown, const scene::ColorBy& by) {
+std::vector<Color> vertex_colors(const scene::Scene& scene, const mesh::TriangleMesh& mesh, const field::AnyField& shown,
+                                 const scene::SurfaceMesh& surface) {
+  const scene::ColorBy& by = *surface.color_by;
   std::vector<double> values;
   values.reserve(mesh.vertices().size());
   double lo = HUGE_VAL, hi = -HUGE_VAL;
@@ -67,10 +69,11 @@ std::vector<Color> vertex_colors(const mesh::TriangleMesh& mesh, const field::An
     hi = std::max(hi, value);
   }
   if (!(lo <= hi)) lo = hi = 0;
-  const auto table = scene::color_table(by.colors, by.named, lo, hi);
+  const auto table = scene::shown_table(scene, by.field, by.colors, by.named, lo, hi);
+  const bool labels = scene::labels_of(scene, by.field) != nullptr;
   std::vector<Color> colors;
   colors.reserve(values.size());
-  for (const double value : values) colors.push_back(table_color(table, value));
+  for (const double value : values) colors.push_back(labels && value == 0 ? surface.color : table_color(table, value));
   return colors;
 }
 
@@ -107,6 +110,14 @@ std::shared_ptr<const field::ScalarGrid> sliced_grid(const scene::Scene& scene, 
   return scene.made.get<PlainMagnitude>(e).grid;
 }
 
+/// The same but for rounding.
+bool is_same_plane(const SliceItem& a, const SliceItem& b) {
+  const Vec3 n = direction(a.normal), m = direction(b.normal);
+  constexpr double kRounding = 1e-6;
+  const double reach = a.grid->mapping().smallest_edge();
+  return norm(cross(n, m)) < kRounding && std::fabs(dot(n, b.point - a.point)) < kRounding * reach;
+}
+
 /// Whether the plane meets the domain.
 bool cuts(const scene::Slice& slice, const field::ScalarGrid& grid) {
   const Vec3 normal = direction(slice.normal);
@@ -141,7 +152,7 @@ Outcome prepare_meshes(scene::Scene& scene) {
     geometry->triangles.reserve(3 * mesh->triangles().size());
     for (const mesh::Triangle& t : mesh->triangles()) geometry->triangles.insert(geometry->triangles.end(), t.begin(), t.end());
     for (std::uint32_t v = 0; surface.smooth && v < geometry->vertices.size(); ++v) geometry->normals.push_back(mesh->vertex_normal(v));
-    if (shown.get()) geometry->colors = vertex_colors(*mesh, shown, *surface.color_by);
+    if (shown.get()) geometry->colors = vertex_colors(scene, *mesh, shown, surface);
     plain = {std::move(geometry), mesh->version(), field_version};
   }
   return Done{};
@@ -192,8 +203,12 @@ Outcome extract_slices(const scene::Scene& scene, FramePacket& packet) {
     item.grid = grid;
     item.point = slice.point;
     item.normal = slice.normal;
-    for (const auto& row : scene::color_table(slice.shown.colors, slice.shown.named, grid->min_value(), grid->max_value()))
+    for (const auto& row :
+         scene::shown_table(scene, slice.shown.field, slice.shown.colors, slice.shown.named, grid->min_value(), grid->max_value()))
       item.colors.push_back({row.value, row.color.r, row.color.g, row.color.b});
+    if (scene::labels_of(scene, slice.shown.field) != nullptr) item.hidden = 0;
+    item.over = static_cast<int>(
+        std::count_if(packet.slices.begin(), packet.slices.end(), [&](const SliceItem& before) { return is_same_plane(before, item); }));
     item.opacity = static_cast<float>(slice.opacity);
     item.lit = slice.lit;
     if (slice.contours) {

@@ -16,7 +16,8 @@ constexpr double kMostPlaces = 1 << 18;
 constexpr double kLeastOpacity = 0.02, kThickness = 1.0 / 25;  // of a volume that can be seen
 constexpr double kSpecks = 0.002;                              // of the rows: may lie outside
 constexpr double kHeight = 0.8, kWidth = 0.9;                  // of the picture
-constexpr double kPicturePt = 576, kBarPt = 92, kLyingBarPt = 52, kTitlePt = 30, kAxesShare = 0.84;
+constexpr double kPicturePt = 576, kBarPt = 92, kLyingBarPt = 52, kTitlePt = 30, kAxesShare = 0.84, kLetterPt = 6, kMostLegendPt = 60;
+constexpr std::size_t kNumberBytes = 6;
 constexpr double kFlat = 0.4;  // of the middle edge
 
 /// What was seen of a thing, and of what it was made.
@@ -156,13 +157,20 @@ Vec3 first_direction(const scene::Scene& scene, const std::vector<FitPlaces>& cl
   return size.y == edges[0] ? Vec3(0.35, -1.0, 0.3) : Vec3(1.0, -0.35, 0.3);
 }
 
+/// What the names of a legend need beyond a bar's numbers, about; the data are not made small for long ones.
+double legend_pt(const ScalarBarItem& bar) {
+  std::size_t longest = 0;
+  for (const BarTick& tick : bar.ticks) longest = std::max(longest, tick.text.size());
+  return bar.steps > 0 && longest > kNumberBytes ? std::min(kMostLegendPt, kLetterPt * double(longest - kNumberBytes)) : 0;
+}
+
 /// The shares of the picture that are left beside bars, titles and the numbers of axes; the middle stays the middle.
 Vec2 room(const scene::Scene& scene, const FramePacket& packet) {
   const double points = kPicturePt / std::min(packet.width, packet.height);
   const double width_pt = packet.width * points, height_pt = packet.height * points;
   double sides[4] = {0, 0, 0, 0};
   for (const ScalarBarItem& bar : packet.overlay.scalar_bars)
-    sides[int(bar.side)] += bar.side == Side::left || bar.side == Side::right ? kBarPt : kLyingBarPt;
+    sides[int(bar.side)] += bar.side == Side::left || bar.side == Side::right ? kBarPt + legend_pt(bar) : kLyingBarPt;
   if (!packet.overlay.texts.empty()) sides[int(Side::top)] += kTitlePt;
   const double beside = std::max(sides[int(Side::left)], sides[int(Side::right)]);
   const double above = std::max(sides[int(Side::top)], sides[int(Side::bottom)]);

@@ -76,6 +76,7 @@ struct TransferTable {
   /// gradient (field units per world unit), factor 0..1 that multiplies sigma; empty: 1
   std::vector<std::array<double, 2>> gradient_factors;
   double opacity_unit = 0;  ///< the length whose opacity a projection takes, world units; 0: the smallest voxel edge
+  bool labels = false;      ///< values are whole numbers, each with a look of its own
 };
 
 /// How a ray makes one colour of its values.
@@ -88,6 +89,8 @@ enum class Projection { composite, maximum, minimum, average };
 struct ColorSource {
   std::shared_ptr<const field::ScalarGrid> grid;
   std::vector<std::array<double, 4>> colors;  ///< value, r, g, b
+  bool labels = false;                        ///< values are whole numbers, each with a colour of its own; 0 is no label and has none
+  bool spread = false;                        ///< where the nearest voxel is no label: the colour of the nearest one that is, of the cell
 };
 
 struct VolumeItem {
@@ -147,6 +150,8 @@ struct SliceItem {
   float line_width = 1;  ///< pixels
   std::uint32_t id = 0;
   bool clipped = true;
+  int over = 0;                    ///< so many slices before it lie in the same plane: it lies over them
+  std::optional<double> hidden{};  ///< nothing is drawn within a half of this value
 };
 
 /// A tube around a polyline, already flattened from the curve finely enough for its radius.

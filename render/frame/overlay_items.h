@@ -62,6 +62,8 @@ struct ScalarBarItem {
   std::string title;
   std::string factor;  ///< beside the values, for instance "x 10^-5"
   Side side = Side::right;
+  int steps = 0;     ///< of a legend of labels, upright: so many bands of one colour; values count them from below. 0: a bar
+  std::string more;  ///< below a legend: "and 96 more"
 };
 
 /// The world's axes as the camera sees them: arrows in red, green and blue with their letters.

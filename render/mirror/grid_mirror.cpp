@@ -130,6 +130,9 @@ class MirrorBuilder {
     mirror_.offset = encoder_.offset;
     mirror_.scale = encoder_.scale;
     CATENA_CHECK(mirror_.atlas ? build_atlas() : build_dense());
+    if (mirror_.nearest) {
+      CATENA_TRY(mirror_.one, vk::Sampler::create(device_, vk::Filter::nearest));
+    }
     for (BrickRange& range : mirror_.ranges) range = encoder_.stored(range);
     return std::move(mirror_);
   }
@@ -174,6 +177,7 @@ class MirrorBuilder {
     size_ = {hi_.x - lo_.x + 1, hi_.y - lo_.y + 1, hi_.z - lo_.z + 1};
     if (size_.x < 2 || size_.y < 2 || size_.z < 2 || grid_.stats().active_voxels == 0) return false;
     mirror_.drawable = true;
+    mirror_.nearest = grid_.interpolation() == field::Interpolation::nearest;
     mirror_.masked = grid_.has_mask() || grid_.stats().nan_count > 0 || !std::isfinite(grid_.background());
     if (options_.layout != MirrorLayout::dense) plan_atlas();
     mirror_.atlas = options_.layout == MirrorLayout::atlas || (options_.layout == MirrorLayout::automatic && atlas_pays());

@@ -39,11 +39,13 @@ struct GridMirror {
   bool drawable = false;  ///< false: thinner than a cell along some axis, nothing below is set
   bool atlas = false;
   bool masked = false;                   ///< there is a mask image
+  bool nearest = false;                  ///< the value of the nearest voxel centre counts (field::Interpolation)
   field::Index3 origin;                  ///< index = origin + local
   Vec3 box_lo{0.0}, box_hi{0.0};         ///< the domain, local
   std::array<std::int32_t, 3> bricks{};  ///< an axis
   float offset = 0, scale = 1;
   vk::Image values;
+  vk::Sampler one;                   ///< with `nearest`: reads one texel, never a mix
   vk::Image mask;                    ///< R8_UINT a cell: dense like `values`; atlas in 8^3 bricks at the same slots
   std::vector<BrickRange> ranges;    ///< x fastest
   std::vector<std::uint32_t> slots;  ///< atlas: x | y << 8 | z << 16, in bricks

@@ -1,6 +1,7 @@
 #include "render/passes/slice.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/passes/passes.h"
 #include "render/raycast/camera_rays.h"
@@ -16,6 +17,7 @@ constexpr std::uint32_t kSliceFragmentShader[] = {
 #include "spirv/slice.frag.inc"
 };
 constexpr std::uint32_t kSlice = 1, kColors = 2, kLevels = 4;
+constexpr double kNearer = 4e-6;     ///< of the distance: what a buffer of floats tells apart
 constexpr double kClipSlack = 1e-3;  ///< of a voxel's smallest edge
 
 bool is_opaque(const SliceItem& item) { return item.opacity >= 1; }
@@ -95,6 +97,8 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
   data.level_count = std::uint32_t(item.levels.size());
   data.line_color = {item.line_color.r, item.line_color.g, item.line_color.b};
   data.half_width = 0.5f * item.line_width;
+  data.nearer = float(kNearer * item.over);
+  data.hidden = item.hidden ? float(*item.hidden) : NAN;
   CATENA_CHECK(vk::write_uniform(*device_, slice.slice_data_, data));
   CATENA_CHECK(vk::write_uniform(*device_, slice.layer_data_, layer_data(rays, item.opacity)));
 

@@ -90,8 +90,7 @@ Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
     data.grids[0] = frame.rays.grid(*surface.mirror, grid->mapping());
     data.grids[0].id = surface.item.id;
     data.grids[0].color = {own.r, own.g, own.b};
-    data.grids[1] = frame.rays.grid(*surface.colors.mirror, surface.item.color_by->grid->mapping());
-    set_table(data.grids[1], surface.colors.lut, 0);
+    data.grids[1] = color_data(frame.rays, surface.colors, 0);
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.bound()};
     CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound[0].flags() | bound[1].flags() << 4));

@@ -1,6 +1,7 @@
 #include "render/raycast/bound_grids.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace catena::render {
 namespace {
@@ -25,7 +26,8 @@ void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const Bound
                        const vk::Sampler& linear) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const BoundGrid& g = grids[i < grids.size() ? i : 0];
-    bindings.push_back({kValues + i, vk::Resource::sampled, nullptr, &g.mirror->values, &linear});
+    const vk::Sampler& sampler = g.mirror->nearest ? g.mirror->one : linear;
+    bindings.push_back({kValues + i, vk::Resource::sampled, nullptr, &g.mirror->values, &sampler});
     bindings.push_back({kMaps + i, vk::Resource::texture, nullptr, &g.map->image, nullptr});
     // without a mask the binding is never read; the map has the right type
     bindings.push_back({kMasks + i, vk::Resource::texture, nullptr, g.mirror->masked ? &g.mirror->mask : &g.map->image, nullptr});
@@ -69,14 +71,23 @@ void set_table(shared::GridData& data, const TransferLut& lut, std::uint32_t sta
 
 Result<bool> ColorGrid::update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, const ColorSource& next) {
   const bool same_grid = mirror == next_mirror && map.image;
-  if (same_grid && source.colors == next.colors) return false;
+  if (same_grid && source.colors == next.colors && source.labels == next.labels) return false;
   mirror = std::move(next_mirror);
   source = next;
-  lut = make_transfer_lut({next.colors, {}, {}, 0}, range_of(*mirror));
+  lut = make_transfer_lut({next.colors, {}, {}, 0, next.labels}, range_of(*mirror));
+  for (std::size_t i = 0; i < lut.entries.size(); ++i)
+    lut.entries[i].a = next.labels && std::lround(lut.lo + (lut.per_value > 0 ? float(i) / lut.per_value : 0)) == 0 ? 0 : 1;
   if (!same_grid) {
     CATENA_TRY(map, make_word_map(device, *mirror, std::vector<std::uint8_t>(mirror->ranges.size())));
   }
   return true;
+}
+
+shared::GridData color_data(const CameraRays& rays, const ColorGrid& colors, std::uint32_t start) {
+  shared::GridData data = rays.grid(*colors.mirror, colors.source.grid->mapping());
+  set_table(data, colors.lut, start);
+  data.spread = colors.source.spread ? 0.5f : 0;
+  return data;
 }
 
 }  // namespace catena::render

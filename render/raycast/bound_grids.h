@@ -49,6 +49,8 @@ struct ColorGrid {
   Result<bool> update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, const ColorSource& next);
   BoundGrid bound() const { return {mirror, &map, false, false}; }
 };
+/// The ray's numbers and the table, which begins at `start`.
+shared::GridData color_data(const CameraRays& rays, const ColorGrid& colors, std::uint32_t start);
 
 /// The least and the greatest value of a mirrored grid.
 BrickRange range_of(const GridMirror& mirror);

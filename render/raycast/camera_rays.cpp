@@ -99,6 +99,7 @@ shared::GridData CameraRays::grid(const GridMirror& mirror, const field::Mapping
   g.world_gradient = glm::mat3(glm::transpose(inverse));
   g.value_offset = mirror.offset;
   g.value_scale = mirror.scale;
+  g.nearest = mirror.nearest ? 1 : 0;
   return g;
 }
 

@@ -11,6 +11,8 @@ namespace catena::render {
 namespace {
 
 constexpr std::uint32_t kEntries = 4096;
+/// Of labels, with extinctions (whose looks are numbered) and without.
+constexpr double kMostLooks = 7000, kMostLabelColors = 1 << 18;
 
 }  // namespace
 
@@ -23,17 +25,24 @@ TransferLut make_transfer_lut(const TransferTable& table, const BrickRange& rang
   double lo = range.least, hi = range.greatest, first = HUGE_VAL, last = -HUGE_VAL;
   for (const auto& p : table.colors) first = std::min(first, p[0]), last = std::max(last, p[0]);
   for (const auto& p : table.extinctions) first = std::min(first, p[0]), last = std::max(last, p[0]);
-  if (first <= last) {
+  if (first <= last && !table.labels) {
     lo = std::clamp(lo, first, last);
     hi = std::clamp(hi, first, last);
   }
+  std::uint32_t count = kEntries;
+  const double first_label = std::floor(lo + 0.5), labels = std::ceil(hi - 0.5) - first_label + 1;
+  if (table.labels && labels >= 2 && labels <= (table.extinctions.empty() ? kMostLabelColors : kMostLooks)) {
+    count = std::uint32_t(labels);
+    lo = first_label;
+    hi = first_label + labels - 1;
+  }
   TransferLut lut;
   lut.lo = float(lo);
-  lut.per_value = hi > lo ? float((kEntries - 1) / (hi - lo)) : 0;
+  lut.per_value = hi > lo ? float((count - 1) / (hi - lo)) : 0;
   if (!std::isfinite(lut.per_value)) lut.per_value = 0;
-  lut.entries.resize(lut.per_value > 0 ? kEntries : 2);
+  lut.entries.resize(lut.per_value > 0 ? count : 2);
   for (std::uint32_t i = 0; i < lut.entries.size(); ++i) {
-    const double value = lut.per_value > 0 ? lo + (hi - lo) * i / (kEntries - 1) : lo;
+    const double value = lut.per_value > 0 ? lo + (hi - lo) * i / (count - 1) : lo;
     for (int c = 0; c < 4; ++c) lut.entries[i][c] = float(table_value(table, value, c));
   }
   lut.visible_before.resize(lut.entries.size() + 1);
@@ -57,8 +66,8 @@ std::uint16_t TransferLut::look(const BrickRange& range) const {
   if (run[from] == run[to]) return std::uint16_t(2 + run[from]);
   // one value between two different entries
   constexpr float parts = 8;
-  static_assert(2 + kEntries + parts * kEntries < 65536);
-  return range.least == range.greatest ? std::uint16_t(2 + kEntries + std::lround(parts * least)) : 0;
+  static_assert(2 + kMostLooks + parts * kMostLooks < 65536 && kEntries < kMostLooks);
+  return range.least == range.greatest ? std::uint16_t(2 + entries.size() + std::size_t(std::lround(parts * least))) : 0;
 }
 
 FactorLut make_factor_lut(const std::vector<std::array<double, 2>>& factors) {

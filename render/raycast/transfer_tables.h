@@ -11,8 +11,9 @@
 
 namespace catena::render {
 
-/// A transfer function as the shader reads it: 4096 samples (r, g, b, sigma) over the values that it and the grid share, read
-/// with linear interpolation; beyond its ends the end values hold. Points of the table are kept to a sample's width.
+/// A transfer function as the shader reads it: of labels one entry for each whole number, where they are not too many; else 4096 samples
+/// (r, g, b, sigma) over the values that it and the grid share, read with linear interpolation; beyond its ends the end values hold. Points
+/// of the table are kept to a sample's width.
 struct TransferLut {
   std::vector<glm::vec4> entries;
   float lo = 0, per_value = 0;                ///< index = (value - lo) * per_value, clamped to 0..last

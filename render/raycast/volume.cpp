@@ -29,7 +29,7 @@ constexpr std::uint32_t kLayers = 27;  // bindings of their colours; those of th
 constexpr double kSkipBelow = 0.95;
 
 bool same(const TransferTable& a, const TransferTable& b) {
-  return a.colors == b.colors && a.extinctions == b.extinctions && a.gradient_factors == b.gradient_factors;
+  return a.colors == b.colors && a.extinctions == b.extinctions && a.gradient_factors == b.gradient_factors && a.labels == b.labels;
 }
 
 /// The colour and sigma of a volume follow from its value alone.
@@ -196,9 +196,7 @@ Outcome VolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, co
   for (const Colors& colors : colors_) {
     kind.modes |= 2u << (2 * colors.owner);
     kind.color_grids |= std::uint32_t(bound.size()) << (4 * colors.owner);
-    shared::GridData& grid = data.grids[bound.size()];
-    grid = rays.grid(*colors.grid.mirror, colors.grid.source.grid->mapping());
-    set_table(grid, colors.grid.lut, colors.table_start);
+    data.grids[bound.size()] = color_data(rays, colors.grid, colors.table_start);
     bound.push_back(colors.grid.bound());
   }
   data.step_world = float(settings.step_voxels * edge);

@@ -1,11 +1,41 @@
 // Colours by another grid at the same world place. Grid j holds a table of colours; `p` is the place in its own index space.
+
+// Alpha: 0 where the value has no colour, as what is no label; else 1.
+vec4 table_color(int j, float value) {
+  float x = table_place(j, value);
+  x = mix(x, floor(x + 0.5), frame.grids[j].nearest);
+  const uint cell = min(uint(x), frame.grids[j].table_last - 1u);
+  const uint at = frame.grids[j].table_start + cell;
+  return mix(table[at], table[at + 1u], x - float(cell));
+}
+
+// The colour of the nearest corner of the cell that has one.
+vec3 nearest_label_color(int j, vec3 p, vec3 otherwise) {
+  const ivec3 cell = cell_of(j, p);
+  vec4 lo, hi;
+  cell_corners(j, cell, lo, hi);
+  const float values[8] = float[8](lo.x, lo.y, lo.z, lo.w, hi.x, hi.y, hi.z, hi.w);
+  float best = NO_DEPTH;
+  vec3 result = otherwise;
+  for (int n = 0; n < 8; ++n) {
+    const vec3 way = p - vec3(cell + ivec3(n & 1, n >> 1 & 1, n >> 2));
+    const float distance2 = dot(way, way);
+    const vec4 color = table_color(j, values[n]);
+    if (color.a > 0.5 && distance2 < best) {
+      best = distance2;
+      result = color.rgb;
+    }
+  }
+  return result;
+}
+
 vec3 color_at(int j, vec3 p, vec3 otherwise) {
   if (any(lessThan(p, frame.grids[j].domain_lo)) || any(greaterThan(p, frame.grids[j].domain_hi))) return otherwise;
   bool valid = true;
   if (grid_is_masked(j)) valid = cell_is_valid(j, cell_of(j, p));
   if (!valid) return otherwise;
-  const float x = table_place(j, sample_value(j, p));
-  const uint cell = min(uint(x), frame.grids[j].table_last - 1u);
-  const uint at = frame.grids[j].table_start + cell;
-  return mix(table[at].rgb, table[at + 1u].rgb, x - float(cell));
+  const vec4 color = table_color(j, sample_value(j, p));
+  vec3 result = color.a > 0.5 ? color.rgb : otherwise;
+  if (color.a < frame.grids[j].spread) result = nearest_label_color(j, p, otherwise);
+  return result;
 }

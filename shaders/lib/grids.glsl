@@ -97,9 +97,10 @@ bool is_plain(uint word) { return word >> 31 != 0u; }
 // The cell that holds a local position of the domain.
 ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }
 
-// The texel value at a local position of the domain, trilinear.
+// The texel value at a local position of the domain: trilinear, or of the nearest voxel centre.
 float sample_texel(int i, vec3 p) {
   float t;
+  p = mix(p, floor(p + 0.5), frame.grids[i].nearest);
   if (grid_is_atlas(i)) {
     const ivec3 brick = cell_of(i, p) >> 3;
     const ivec3 slot = slot_of(brick_word(i, brick));
@@ -128,6 +129,9 @@ void cell_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
   hi = frame.grids[i].value_offset + frame.grids[i].value_scale * hi;
 }
 
+// The weights of a cell's corners along its axes at a place in it.
+vec3 corner_weights(int i, vec3 f) { return mix(f, step(0.5, f), frame.grids[i].nearest); }
+
 // Central difference of texels along one axis: both ends clamped to the domain; an end in an invalid cell gives the centre instead.
 // What rounding alone can make is zero, or constant regions would be lit at random.
 float central_difference(int i, vec3 p, vec3 step) {
@@ -141,8 +145,9 @@ float central_difference(int i, vec3 p, vec3 step) {
   return abs(high - low) > 1e-6 * (abs(low) + abs(high)) ? (high - low) / moved : 0.0;
 }
 
-// The gradient by central differences of one voxel, in world axes, up to the texels' scale (which is positive).
+// The gradient by central differences of one voxel, in world axes, up to the texels' scale (which is positive); 0 where the nearest voxel
+// counts.
 vec3 world_gradient(int i, vec3 p) {
-  return frame.grids[i].world_gradient * vec3(central_difference(i, p, vec3(1.0, 0.0, 0.0)), central_difference(i, p, vec3(0.0, 1.0, 0.0)),
+  return (1.0 - frame.grids[i].nearest) * frame.grids[i].world_gradient * vec3(central_difference(i, p, vec3(1.0, 0.0, 0.0)), central_difference(i, p, vec3(0.0, 1.0, 0.0)),
                                               central_difference(i, p, vec3(0.0, 0.0, 1.0)));
 }

@@ -1,9 +1,11 @@
+// Where the nearest voxel counts the weights of the corners are whole, and what stands at the four places is compared.
 // In a trilinear cell the value along a ray is a cubic: its greatest value lies at an end of the segment or at a root of the derivative.
 // Bricks of which no value can be better than the best so far are passed over: bits 24..31 of a brick's word are 0 where it has no
 // valid cell, else 1 + n, and no value in it is better than factor_lo + n factor_per_gradient. A minimum is the maximum of -value.
 float signed_value(float v) { return KIND == 2u ? -v : v; }
 
-float in_cell(vec4 lo, vec4 hi, vec3 f) {
+float in_cell(vec4 lo, vec4 hi, vec3 place) {
+  const vec3 f = corner_weights(0, place);
   const vec4 z = mix(lo, hi, f.z);
   const vec2 y = mix(z.xy, z.zw, f.y);
   return mix(y.x, y.y, f.x);

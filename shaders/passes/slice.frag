@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_samplerless_texture_functions : require
-// A plane through a grid: where the pixel's ray meets it, the trilinear value, coloured, with lines of constant value.
+// A plane through a grid: where the pixel's ray meets it, the value, coloured, with lines of constant value.
 #include "shaders/shared/layers.h"
 #define GRID_COUNT 1
 #include "shaders/lib/grids.glsl"
@@ -34,7 +34,7 @@ vec3 table_color(float value) {
   return mix(colors[a].yzw, colors[b].yzw, (value - colors[a].x) / max(colors[b].x - colors[a].x, 1e-37));
 }
 
-// The trilinear value and its gradient, local; false in a cell that is not drawn.
+// The value and its gradient, local (0 where the nearest voxel counts); false in a cell or of a value that is not drawn.
 bool value_at(vec3 p, out float value, out vec3 gradient) {
   value = 0.0;
   gradient = vec3(0.0);
@@ -43,13 +43,13 @@ bool value_at(vec3 p, out float value, out vec3 gradient) {
   if (grid_is_masked(0) && !cell_is_valid(0, cell)) return false;
   vec4 lo, hi;
   cell_corners(0, cell, lo, hi);
-  const vec3 f = clamp(p - vec3(cell), 0.0, 1.0);
+  const vec3 f = corner_weights(0, clamp(p - vec3(cell), 0.0, 1.0));
   const vec4 z = mix(lo, hi, f.z), along_z = hi - lo;
   const vec2 y = mix(z.xy, z.zw, f.y), along_y = z.zw - z.xy;
   const vec2 zy = mix(along_z.xy, along_z.zw, f.y);
   value = mix(y.x, y.y, f.x);
-  gradient = vec3(y.y - y.x, mix(along_y.x, along_y.y, f.x), mix(zy.x, zy.y, f.x));
-  return true;
+  gradient = (1.0 - frame.grids[0].nearest) * vec3(y.y - y.x, mix(along_y.x, along_y.y, f.x), mix(zy.x, zy.y, f.x));
+  return !(abs(value - slice.hidden) < 0.5);
 }
 
 bool is_clipped(vec2 q, float t) {
@@ -140,5 +140,6 @@ void main() {
     color = mix(layer.opacity * fogged(surface, hit.t), fogged(slice.line_color, hit.t), line);
     alpha = mix(layer.opacity, 1.0, line);
   }
-  write_fragment(hit.seen && alpha > 0.0, color, alpha, hit.t, frame.grids[0].id);
+  const float t = hit.t - slice.nearer * (hit.t + layer.reference_depth);
+  write_fragment(hit.seen && alpha > 0.0, color, alpha, t, frame.grids[0].id);
 }

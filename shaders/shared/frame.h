@@ -37,6 +37,8 @@ struct GridData {
   vec3 color;
   uint clipped;  // the clip planes count for it
   uint id;       // of the object
+  float nearest;  // 1: the value of the nearest voxel centre; 0: trilinear
+  float spread;   // colours by labels, 0.5: what lies nearest to a voxel without a label takes the nearest label of its cell; else 0
 };
 
 // A light from far away; the direction points to it, and is unit: in world axes, in the view's for triangles.

@@ -27,6 +27,8 @@ struct SliceData {
   uint level_count;
   vec3 line_color;
   float half_width;  // of the lines, pixels
+  float nearer;      // of slices in one plane the later lies over the earlier: this share of its distance nearer to the eye
+  float hidden;      // within a half of this value nothing is drawn; NaN: everywhere
 };
 
 CATENA_SHARED_END

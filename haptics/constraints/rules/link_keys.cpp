@@ -33,6 +33,8 @@ Result<field::VectorFieldPtr> require_vector_field(const json::Node& link, std::
 }
 
 Result<double> require_level(const json::Node& link, std::string_view key, const field::ScalarField& field) {
+  if (const std::string why = field::why_no_surface(field, link.find(key)->string); !why.empty())
+    return json::error_at(*link.find(key), why);
   CATENA_TRY(const double level, json::require_number(link, "level"));
   const double least = field.min_value(), most = field.max_value();
   if (!(level >= least && level <= most))

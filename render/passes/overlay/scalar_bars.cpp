@@ -10,6 +10,7 @@ namespace {
 constexpr double kUprightShare = 0.6, kLyingShare = 0.5;  // of the picture: a bar's length
 constexpr double kThicknessPt = 14, kTickPt = 4, kGapPt = 3, kTitleGapPt = 7, kBetweenPt = 22;
 constexpr double kBorderAlpha = 0.85;
+constexpr double kStepPt = 17;  // most: of a legend's band
 
 const TextLook kValueLook{10.5, false, false, {}};
 const TextLook kTitleLook{12, false, false, {}};
@@ -67,7 +68,8 @@ std::vector<BarPlace> place_scalar_bars(const Canvas& canvas, const Overlay& ove
     place.upright = bar.side == Side::right || bar.side == Side::left;
     const TextExtent values = values_extent(canvas, bar);
     const double title = title_thickness(canvas, bar, place.upright);
-    const double length = std::round(place.upright ? kUprightShare * size.y : kLyingShare * size.x);
+    double length = std::round(place.upright ? kUprightShare * size.y : kLyingShare * size.x);
+    if (bar.steps > 0) length = std::min(length, std::round(canvas.px(kStepPt)) * bar.steps);
     const double middle = std::round(0.5 * ((place.upright ? size.y : size.x) - length));
     const double mark = tick + (place.upright ? values.width : values.height + values.descent);
     switch (bar.side) {
@@ -137,6 +139,7 @@ void draw_scalar_bars(Canvas& canvas, const Overlay& overlay) {
         canvas.text(tick.text, {at, r.y + r.height + canvas.px(kTickPt + kGapPt)}, Anchor::top, kValueLook);
       }
     }
+    if (!bar.more.empty()) canvas.text(bar.more, {r.x, r.y + r.height + canvas.px(2 * kGapPt)}, Anchor::top_left, kValueLook);
     if (!bar.factor.empty()) {
       if (place.upright)
         canvas.text(bar.factor, {r.x, r.y - canvas.px(2 * kGapPt)}, Anchor::bottom_left, kValueLook);

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/support/support.h"
+
 namespace catena::app {
 namespace values_test {
 
@@ -26,6 +28,24 @@ TEST(Values, EveryLoadedFieldHasItsValueAndUnitAtAPlace) {
   EXPECT_EQ(line_words({at, "streamlines v", values}, "mm"), "0.6, -0.8, 0.5 mm   v 1 m/s   d 1.118   streamlines v");
   EXPECT_EQ(value_words(values[0], true), "1 (0.8, 0.6, 0)");
   EXPECT_EQ(line_words({}, "mm"), "");
+}
+
+TEST(Values, ALabelIsShownByItsName) {
+  const test::TemporaryFolder folder;
+  std::string bytes;
+  for (int n = 0; n < 8 * 8 * 8; ++n) bytes += static_cast<char>(n % 8 < 3 ? 1 : n % 8 < 6 ? 0 : 9);
+  test::write_file(folder / "m.raw", bytes);
+  auto scene = scene::parse_scene(R"({"fields": {"m": {"file": "m.raw", "shape": [8, 8, 8], "type": "uint8",
+    "labels": {"values": [1], "names": ["Precentral_L"]}}}})",
+                                  folder / "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  ASSERT_TRUE(scene::use_field(*scene, "m", {}));
+  const auto words = [&](double x) { return value_words(values_at(*scene, {x, 2.2, 3.4}).at(0)); };
+  EXPECT_EQ(words(1.3), "Precentral_L (1)");
+  EXPECT_EQ(words(2.7), "beside Precentral_L (1)") << "a surface lies halfway";
+  EXPECT_EQ(words(4.2), "no label");
+  EXPECT_EQ(words(6.8), "9");
+  EXPECT_EQ(words(9), "outside");
 }
 
 TEST(Values, OutsideOfADomainThereIsNone) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/field/load.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/prepare.h"
 #include "engine/scene/scene.h"
 #include "tests/support/support.h"
@@ -60,21 +61,26 @@ TEST(FirstLook, ALevelSetAtZeroAndASolidBetweenItsPlateaus) {
   EXPECT_NEAR(solid[0], 3, 0.6);
 }
 
-TEST(FirstLook, EveryLabelHasItsOwnColorOverItsWholeValue) {
+TEST(FirstLook, ALabelMapIsOneSurfaceWithAColourALabelAndALegend) {
   const test::TemporaryFolder folder;
+  test::write_file(folder / "a.txt", "1 one\n2 two\n");
   const Scene scene =
       scene_of(folder / "a.vdb", [](const Vec3& p) { return norm(p) > 0.9 ? 0 : 1 + int(2 * (p.x + 1)) + 7 * int(2 * (p.y + 1)); });
-  ASSERT_EQ(scene.world.count<Volume>(), 1u);
-  scene.world.each<Volume>([](Entity, const Volume& volume) {
-    const auto& colors = volume.transfer.colors;
-    ASSERT_EQ(colors.size(), 2 * 16u);
-    for (std::size_t i = 0; i < colors.size(); i += 2) {
-      EXPECT_EQ(colors[i].color, colors[i + 1].color);
-      EXPECT_NEAR(colors[i + 1].value - colors[i].value, 0.9, 1e-9);
-      for (std::size_t j = 0; j < i; j += 2) EXPECT_NE(colors[i].color, colors[j].color) << i << " " << j;
-    }
-    EXPECT_EQ(volume.transfer.gradient_factors.back().factor, 0) << "what lies between two labels is none";
+  ASSERT_EQ(levels(scene), std::vector<double>{0.5});
+  const Entity map = find_field(scene, "g");
+  scene.world.each<Isosurface>([&](Entity, const Isosurface& surface) {
+    EXPECT_TRUE(scene.world.get<FieldSource>(surface.field).label->any);
+    ASSERT_TRUE(surface.color_by);
+    EXPECT_EQ(surface.color_by->field, map);
   });
+  EXPECT_EQ(scene.annotations.scalar_bars.size(), 1u);
+  const LabelMap* labels = labels_of(scene, map);
+  ASSERT_NE(labels, nullptr);
+  ASSERT_EQ(labels->labels.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(labels->labels[i].color, labels->labels[j].color) << i << " " << j;
+  EXPECT_EQ(labels->labels[1].name, "two");
+  EXPECT_NE(scene.notes[0].find("names from a.txt"), std::string::npos) << scene.notes[0];
 }
 
 TEST(FirstLook, AQuantityHasAMapWithItsBarAndItsLowValuesAreSeen) {

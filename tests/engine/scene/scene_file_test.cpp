@@ -88,8 +88,8 @@ TEST(SceneFile, UnknownAndDuplicateKeys) {
 
 TEST(SceneFile, FieldSources) {
   const auto field = [](const std::string& body) { return "{\"fields\": {\n\"a\": " + body + "}}"; };
-  expect_error(field("{}"), 2, {"neither", "exactly one", "expected"});
-  expect_error(field("{\"file\": \"x.vdb\", \"analytic\": \"circle\"}"), 2, {"both", "exactly one", "expected"});
+  expect_error(field("{}"), 2, {"none of", "exactly one", "expected"});
+  expect_error(field("{\"file\": \"x.vdb\", \"analytic\": \"circle\"}"), 2, {"several of", "exactly one", "expected"});
   expect_error(field("{\"file\":\n\"missing.vdb\"}"), 3, {"missing.vdb", "does not exist", "expected"});
   expect_error(field("{\"file\": \"missing.txt\"}"), 2, {"missing.txt", "unknown kind", "a data file (.vdb, .nii"});
   expect_error(field("{\"analytic\": \"cirle\"}"), 2, {"unknown analytic field \"cirle\"", "saddle", "did you mean \"circle\"?"});

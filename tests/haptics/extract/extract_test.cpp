@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/load.h"
+#include "haptics/chain/tick.h"
 #include "tests/support/support.h"
 
 namespace catena::haptics {
@@ -35,6 +36,46 @@ TEST(ExtractProgram, AnEmptyChainIsAProgram) {
   ASSERT_TRUE(program);
   EXPECT_TRUE((*program)->links.empty());
   EXPECT_EQ((*program)->metres_per_unit, 1);
+}
+
+/// 12^3 voxels in a raw file: 7 below x = 5, else 0.
+std::string label_map(const test::TemporaryFolder& folder) {
+  std::string bytes;
+  for (int n = 0; n < 12 * 12 * 12; ++n) bytes += static_cast<char>(n % 12 < 5 ? 7 : 0);
+  test::write_file(folder / "m.raw", bytes);
+  return R"({"fields": {"m": {"file": "m.raw", "shape": [12, 12, 12], "type": "uint8", "labels": {"values": [7], "names": ["Cuneus"]}},
+    "a": {"label": 7, "of": "m", "smooth": 0}}, "chain": [)";
+}
+
+TEST(ExtractProgram, ALabelIsFeltOnTheGridThatIsDrawnAndByItsName) {
+  const test::TemporaryFolder folder;
+  scene::Scene scene = scene_of(label_map(folder) + R"({"name": "l", "type": "isosurface", "field": "a", "level": 0.5, "free": "below"}]})",
+                                folder / "s.json");
+  const auto program = extract_program(scene);
+  ASSERT_TRUE(program) << program.error().message;
+  EXPECT_EQ((*program)->links[0].lies_on, "Cuneus");
+  const auto drawn = scene::use_drawn_field(scene, scene::find_field(scene, "a"), {});
+  ASSERT_TRUE(drawn);
+  EXPECT_EQ(drawn->get(), scene::loaded_field(scene, scene::find_field(scene, "a")).get());
+  // the proxy of a probe within the label lies halfway between the voxel centres
+  ChainState state;
+  ChainScratch scratch;
+  exchange::HapticState report;
+  for (int k = 0; k < 50; ++k) tick(**program, {0.001 * k, Vec3(k < 25 ? 8 - 0.2 * k : 3, 6.2, 5.7), 0}, state, scratch, report);
+  EXPECT_NEAR(report.links[0].proxy.x, 4.5, 1e-9);
+}
+
+TEST(ExtractProgram, ALabelMapItselfHasNoSurface) {
+  const test::TemporaryFolder folder;
+  for (const char* link : {R"({"name": "l", "type": "isosurface", "field": "m", "level": 3})",
+                           R"({"name": "l", "type": "drag", "surface": "m", "level": 3, "threshold": 1})"}) {
+    scene::Scene scene = scene_of(label_map(folder) + link + "]}", folder / "s.json");
+    const auto program = extract_program(scene);
+    ASSERT_FALSE(program);
+    EXPECT_NE(program.error().message.find("a field {\"label\": NUMBER, \"of\": \"m\"} at level 0.5"), std::string::npos)
+        << program.error().message;
+    EXPECT_EQ(program.error().message.find('\n'), std::string::npos);
+  }
 }
 
 TEST(ExtractProgram, ABaselineTakesReleaseFromTheConstraint) {

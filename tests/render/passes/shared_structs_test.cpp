@@ -54,6 +54,8 @@ TEST(SharedStructs, FrameAndGridData) {
       EXPECT_OFFSET(GridData, color);
       EXPECT_OFFSET(GridData, clipped);
       EXPECT_OFFSET(GridData, id);
+      EXPECT_OFFSET(GridData, nearest);
+      EXPECT_OFFSET(GridData, spread);
       EXPECT_EQ(found.at("[]"), sizeof(GridData));
       EXPECT_EQ(found.size(), compared + 1);
     }
@@ -169,6 +171,8 @@ TEST(SharedStructs, SliceData) {
   EXPECT_OFFSET(SliceData, level_count);
   EXPECT_OFFSET(SliceData, line_color);
   EXPECT_OFFSET(SliceData, half_width);
+  EXPECT_OFFSET(SliceData, nearer);
+  EXPECT_OFFSET(SliceData, hidden);
   EXPECT_EQ(found.size(), compared);
 }
 

@@ -7,6 +7,7 @@
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/write_values.h"
 
@@ -42,12 +43,50 @@ const char* side_of_eye(const field::ScalarField& field, double level, const std
 struct Given {
   std::vector<std::pair<std::string, std::string>> keys;
   std::string words;
+  std::optional<std::pair<std::string, std::string>> field{};
 };
+
+/// [a-z][a-z0-9_]* of a label's name.
+std::string field_name_of(const std::string& label) {
+  std::string name;
+  for (const char c : label)
+    name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? c : '_';
+  return !name.empty() && name[0] >= 'a' && name[0] <= 'z' ? name : "label_" + name;
+}
+
+/// The surface of the label at a place of a label map; none where there is none. `smooth`: of the surface; none: the usual.
+std::optional<Given> given_by_label(const scene::Scene& scene, const std::string& map_name, const Vec3& at, std::optional<double> smooth) {
+  const scene::Entity entity = scene::find_field(scene, map_name);
+  const scene::LabelMap* map = entity ? scene::labels_of(scene, entity) : nullptr;
+  if (map == nullptr) return std::nullopt;
+  const double value = field::label_at(*scene::loaded_field(scene, entity).scalar->grid(), at);
+  const scene::MapLabel* label = map->find(value);
+  if (label == nullptr) return std::nullopt;
+  scene::LabelSource wanted{map_name, {value}, {}, false, smooth.value_or(field::kUsualSmooth)};
+  std::string name;
+  scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource& source) {
+    if (source.label == wanted) name = name_of(scene, e);
+  });
+  Given given;
+  if (name.empty()) {
+    name = free_name(field_name_of(label->name.empty() ? to_text(value) : label->name),
+                     [&](const std::string& taken) { return bool(scene::find_field(scene, taken)); });
+    given.field = {"/fields/" + name, "{\"label\": " + scene::text_of(value) + ", \"of\": " + scene::text_of(map_name) +
+                                          (smooth && *smooth != field::kUsualSmooth ? ", \"smooth\": " + scene::text_of(*smooth) : "") +
+                                          "}"};
+  }
+  given.words = "label " + scene::label_words(*map, value);
+  given.keys = {{"field", scene::text_of(name)}, {"level", scene::text_of(field::kLabelLevel)}, {"free", "\"below\""}};
+  return given;
+}
 
 Result<Given> given_by(scene::Scene& scene, const scene::Isosurface& surface, const std::optional<Vec3>& at, const Vec3& eye) {
   const std::string name = name_of(scene, surface.field);
   CATENA_TRY(const field::AnyField field, scene::use_field(scene, surface.field, surface.where));
   if (!field.scalar) return Error{in_quotes(name) + " is no scalar field: it has no surface to feel"};
+  const auto& label = scene.world.get<scene::FieldSource>(surface.field).label;
+  if (at && label && (label->any || label->values.size() + label->names.size() > 1))
+    if (auto given = given_by_label(scene, label->of, *at, label->smooth)) return *std::move(given);
   const std::string level =
       surface.level_from ? "{\"widget\": " + scene::text_of(name_of(scene, surface.level_from)) + "}" : scene::text_of(surface.level);
   return Given{{{"field", scene::text_of(name)},
@@ -61,6 +100,10 @@ Result<Given> given_by(scene::Scene& scene, const scene::Volume& volume, const s
   if (!at) return Error{"no place of volume " + name + " is pointed at: point at it in the picture and press H"};
   CATENA_TRY(const field::AnyField field, scene::use_field(scene, volume.field, volume.where));
   if (!field.scalar) return Error{in_quotes(name) + " is no scalar field: it has no surface to feel"};
+  if (scene::labels_of(scene, volume.field) != nullptr) {
+    if (auto given = given_by_label(scene, name, *at, {})) return *std::move(given);
+    return Error{"volume " + name + " has no label at the place that is pointed at"};
+  }
   field::Cursor cursor;
   const field::ScalarSample here = field.scalar->sample(*at, cursor);
   if (!here.inside || !std::isfinite(here.value)) return Error{"volume " + name + " has no value at the place that is pointed at"};
@@ -172,7 +215,7 @@ Result<FeltThing> feel(scene::Scene& scene, const std::string& item, const std::
   if (type == nullptr) return Error{part + " cannot be felt"};
   CATENA_TRY(const Given given, given_by(scene, item, at, eye));
   CATENA_TRY(const std::string link, new_link(scene, type->type, at.value_or(eye), length, given.keys));
-  return FeltThing{link, given.words};
+  return FeltThing{link, given.words, given.field};
 }
 
 std::string felt_by(const scene::Scene& scene, const FeltThing& thing) {

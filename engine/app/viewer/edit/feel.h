@@ -1,6 +1,7 @@
 /// "Feel": the link of the chain that lies on a thing that is drawn, so that what is felt is what is seen.
 ///   isosurface    the same field and level (or the widget that states it); free on the eye's side
-///   volume        the isosurface at the value of the place that was pointed at
+///                 of several labels (engine/scene/labels.h), the one that was pointed at: its surface, as a field that is added
+///   volume        of a label map, the same of its label; else the isosurface at the value of the place that was pointed at
 ///   streamlines   the line through the place nearest to the one that was pointed at: its own seed, or the widget that holds it
 ///   curves        all its lines: the hand takes hold of the one that it comes near, and leaves it where it pulls away
 ///   points        the same of the points
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "engine/app/viewer/edit/scene_items.h"
 
@@ -23,6 +25,8 @@ bool can_feel(std::string_view part);
 struct FeltThing {
   std::string link;   ///< JSON text, for "/chain/-"
   std::string words;  ///< "isosurface brain at 45"
+  /// A field that the link names and the scene does not have yet: pointer and JSON text.
+  std::optional<std::pair<std::string, std::string>> field{};
 };
 
 /// `item`: where it stands in the scene, "isosurfaces[0]" (json::Node::label). `at`: the place of it that was pointed at, where one was;

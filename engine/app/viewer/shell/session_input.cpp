@@ -140,7 +140,10 @@ void Session::feel(const std::string& item, std::optional<Vec3> at) {
   if (!thing) return state.say(thing.error().message, true);
   if (const std::string by = felt_by(scene.scene(), *thing); !by.empty())
     return state.say(thing->words + " is felt already, by the link " + by);
-  const Outcome done = scene.apply({{"/chain/-", thing->link}}, "feel " + thing->words, {});
+  TextEdits edits;
+  if (thing->field) edits.push_back({thing->field->first, thing->field->second});
+  edits.push_back({"/chain/-", thing->link});
+  const Outcome done = scene.apply(edits, "feel " + thing->words, {});
   if (!done) return state.say(done.error().message, true);
   // a mouse's hand begins on the thing, not somewhere within it
   Controls& controls = shared_.controls;

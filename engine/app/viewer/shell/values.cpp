@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "engine/scene/labels.h"
 #include "engine/scene/units.h"
 
 namespace catena::app {
@@ -21,6 +22,12 @@ std::vector<FieldValue> values_at(const scene::Scene& scene, const Vec3& world) 
       const field::ScalarSample sample = any.scalar->sample(world, cursor);
       value.inside = sample.inside && std::isfinite(sample.value);
       value.value = sample.value;
+      if (const scene::LabelMap* map = scene::labels_of(scene, e)) {
+        value.label = scene::label_words(*map, sample.value);
+        // a surface of labels runs between them and what is none
+        if (const double near = field::label_at(*any.scalar->grid(), world); sample.value == 0 && near != 0)
+          value.label = "beside " + scene::label_words(*map, near);
+      }
     } else {
       const field::VectorSample sample = any.vector->sample(world, cursor);
       value.inside = sample.inside && is_finite(sample.value);
@@ -34,6 +41,7 @@ std::vector<FieldValue> values_at(const scene::Scene& scene, const Vec3& world) 
 
 std::string value_words(const FieldValue& value, bool components) {
   if (!value.inside) return "outside";
+  if (!value.label.empty()) return value.label;
   std::string words = fmt::format("{:.4g}", value.value);
   if (components && value.vector) words += fmt::format(" ({:.4g}, {:.4g}, {:.4g})", value.vector->x, value.vector->y, value.vector->z);
   return words;

@@ -13,6 +13,7 @@ struct FieldValue {
   bool inside = false;  ///< within the domain and the mask; outside there is no value
   double value = 0;     ///< of a vector: its length
   std::optional<Vec3> vector{};
+  std::string label{};  ///< of a label map: what the value stands for, "Precentral_L (1)"
 };
 
 /// A place of the table: where, of which thing, and what is there.
@@ -25,7 +26,7 @@ struct PlaceValues {
 /// In the order of the scene.
 std::vector<FieldValue> values_at(const scene::Scene& scene, const Vec3& world);
 
-/// "0.43", "outside"; a vector's length with its components in brackets where `components`.
+/// "0.43", "Precentral_L (1)", "outside"; a vector's length with its components in brackets where `components`.
 std::string value_words(const FieldValue& value, bool components = false);
 /// "1.2, 3.4, 5.6 mm"
 std::string place_words(const Vec3& world, const std::string& unit_length);

@@ -1,0 +1,242 @@
+#include "engine/scene/label_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+
+namespace catena::scene {
+namespace {
+
+using Cells = std::vector<std::string_view>;
+
+constexpr std::uint64_t kMaxTableBytes = std::uint64_t{16} << 20;
+constexpr std::size_t kMostNameBytes = 200;
+constexpr std::size_t kLutBytes = 768;
+
+/// Separated by runs of blanks.
+Cells words_of_line(std::string_view line) {
+  Cells words;
+  for (std::size_t at = 0; (at = line.find_first_not_of(" \t", at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = end;
+  }
+  return words;
+}
+
+/// Separated by one character, which does not count within quotes at a cell's ends.
+Cells cells_of_line(std::string_view line, char separator) {
+  Cells cells;
+  while (true) {
+    const std::size_t begin = line.find_first_not_of(" \r");
+    const std::size_t quote = begin != std::string_view::npos && line[begin] == '"' ? line.find('"', begin + 1) : std::string_view::npos;
+    const std::size_t end = line.find(separator, quote == std::string_view::npos ? 0 : quote);
+    cells.push_back(quote == std::string_view::npos ? trim(line.substr(0, end)) : line.substr(begin + 1, quote - begin - 1));
+    if (end == std::string_view::npos) return cells;
+    line.remove_prefix(end + 1);
+  }
+}
+
+std::optional<double> number_of(std::string_view word) {
+  const auto number = parse_double(word);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+/// What a row says, before it is checked.
+struct Row {
+  std::string_view value, name;
+  Cells color{};
+};
+
+/// The columns of a table with a row of names.
+struct Columns {
+  char separator = ',';
+  std::optional<std::size_t> value, name, red, green, blue;
+};
+
+std::optional<std::size_t> column_of(const Cells& cells, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names)
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      std::string lower(cells[i]);
+      std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+      if (lower == name) return i;
+    }
+  return std::nullopt;
+}
+
+std::optional<Columns> columns_of(std::string_view line) {
+  for (const char separator : {',', '\t', ';'}) {
+    if (line.find(separator) == std::string_view::npos) continue;
+    const Cells cells = cells_of_line(line, separator);
+    if (number_of(cells[0])) continue;
+    Columns columns{separator,
+                    column_of(cells, {"index", "id", "value", "no", "number", "label"}),
+                    column_of(cells, {"name", "label_name", "labelname", "structure", "region", "label"}),
+                    column_of(cells, {"r", "red"}),
+                    column_of(cells, {"g", "green"}),
+                    column_of(cells, {"b", "blue"})};
+    if (columns.value && columns.name && *columns.value != *columns.name) return columns;
+  }
+  return std::nullopt;
+}
+
+bool all_numbers(const Cells& words, std::size_t from, std::size_t to) {
+  return std::all_of(words.begin() + static_cast<std::ptrdiff_t>(from), words.begin() + static_cast<std::ptrdiff_t>(to),
+                     [](std::string_view word) { return number_of(word).has_value(); });
+}
+
+Row row_of_columns(std::string_view line, const Columns& columns) {
+  const Cells cells = cells_of_line(line, columns.separator);
+  const auto cell = [&](std::optional<std::size_t> i) { return i && *i < cells.size() ? cells[*i] : std::string_view(); };
+  Row row{cell(columns.value), cell(columns.name)};
+  if (columns.red && columns.green && columns.blue && !cell(columns.blue).empty())
+    row.color = {cell(columns.red), cell(columns.green), cell(columns.blue)};
+  return row;
+}
+
+/// Of a line without column names.
+Row row_of_words(std::string_view line) {
+  const Cells words = words_of_line(line);
+  Row row{words[0], {}};
+  if (words.size() == 1) return row;
+  // ITK-SNAP: seven numbers and a name in quotes
+  const std::size_t quote = line.find('"');
+  if (quote != std::string_view::npos && words.size() >= 8 && all_numbers(words, 0, 7)) {
+    row.name = line.substr(quote + 1, line.rfind('"') > quote ? line.rfind('"') - quote - 1 : std::string_view::npos);
+    row.color = {words[1], words[2], words[3]};
+    return row;
+  }
+  // FreeSurfer: the colour and the transparency stand last
+  if (words.size() >= 6 && all_numbers(words, words.size() - 4, words.size())) {
+    const std::size_t last = words.size() - 4;
+    row.name = line.substr(static_cast<std::size_t>(words[1].data() - line.data()),
+                           static_cast<std::size_t>(words[last - 1].data() + words[last - 1].size() - words[1].data()));
+    row.color = {words[last], words[last + 1], words[last + 2]};
+    return row;
+  }
+  // a name
+  if (line.find('\t') != std::string_view::npos) {
+    const Cells cells = cells_of_line(line, '\t');
+    row.value = cells[0];
+    row.name = cells[1];
+    if (number_of(row.value) && !row.name.empty()) return row;
+    row.value = words[0];
+  }
+  const std::size_t last = words.size() > 2 && number_of(words.back()) ? words.size() - 2 : words.size() - 1;
+  row.name = line.substr(static_cast<std::size_t>(words[1].data() - line.data()),
+                         static_cast<std::size_t>(words[last].data() + words[last].size() - words[1].data()));
+  return row;
+}
+
+/// A name within its bytes, whole characters of UTF-8.
+std::string name_within(std::string_view name) {
+  name = trim(name);
+  if (name.size() > kMostNameBytes) {
+    std::size_t end = kMostNameBytes;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
+    name = name.substr(0, end);
+  }
+  return printable(name);
+}
+
+Result<LabelTable> parse_lines(std::string_view text, const std::string& file) {
+  LabelTable table;
+  std::vector<std::array<double, 4>> colors;  // row, red, green, blue
+  std::set<double> known;
+  std::optional<Columns> columns;
+  double brightest = 0;
+  bool first = true;
+  int number = 0;
+  text = without_bom(text);
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view whole = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    ++number;
+    const std::string_view line = trim(whole);
+    if (line.empty() || line.front() == '#') continue;
+    const auto wrong = [&](const std::string& what) { return Error{one_line(file + ":" + std::to_string(number) + ": " + what)}; };
+    if (std::exchange(first, false)) {
+      columns = columns_of(line);
+      if (columns) continue;
+    }
+    const Row row = columns ? row_of_columns(line, *columns) : row_of_words(line);
+    const auto value = number_of(row.value);
+    if (!value || *value != std::nearbyint(*value) || std::fabs(*value) > kGreatestLabel)
+      return wrong("a row begins with " + in_quotes(row.value) + "; the whole number of a label, at most 16777216 in size, was expected");
+    const std::string name = name_within(row.name);
+    if (name.empty()) return wrong("label " + to_text(*value) + " has no name; a name after the number was expected");
+    if (!known.insert(*value).second) continue;
+    if (table.size() >= kMostLabelRows)
+      return wrong("there are more than " + std::to_string(kMostLabelRows) + " labels; at most as many were expected");
+    if (!row.color.empty()) {
+      std::array<double, 4> color{double(table.size())};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto part = number_of(row.color[i]);
+        if (!part || *part < 0 || *part > 255)
+          return wrong("label " + to_text(*value) + " has the colour component " + in_quotes(row.color[i]) +
+                       "; a number from 0 to 255 was expected");
+        color[i + 1] = *part;
+        brightest = std::max(brightest, *part);
+      }
+      colors.push_back(color);
+    }
+    table.push_back({*value, name});
+  }
+  if (table.empty()) return Error{one_line(file + ": the table has no label; rows of a number and a name were expected")};
+  const double scale = columns && brightest <= 1 ? 1 : 255;
+  for (const auto& c : colors)
+    table[static_cast<std::size_t>(c[0])].color = Color{float(c[1] / scale), float(c[2] / scale), float(c[3] / scale)};
+  std::sort(table.begin(), table.end(), [](const LabelName& a, const LabelName& b) { return a.value < b.value; });
+  return table;
+}
+
+/// The colours of a .lut beside the table, where it has none.
+void add_lut(const std::string& path, LabelTable& table) {
+  if (std::any_of(table.begin(), table.end(), [](const LabelName& label) { return label.color.has_value(); })) return;
+  const auto bytes = read_text(std::filesystem::path(path).replace_extension(".lut").string(), "a table of colours", kLutBytes);
+  if (!bytes || bytes->size() != kLutBytes) return;
+  for (LabelName& label : table) {
+    if (label.value < 0 || label.value > 255) continue;
+    const auto at = static_cast<std::size_t>(label.value);
+    const auto part = [&](std::size_t i) { return float(static_cast<unsigned char>((*bytes)[i * 256 + at])) / 255; };
+    const Color color{part(0), part(1), part(2)};
+    if (!(color == Color{})) label.color = color;  // black is what was left out
+  }
+}
+
+}  // namespace
+
+Result<LabelTable> parse_label_table(std::string_view text, const std::string& file) { return parse_lines(text, file); }
+
+Result<LabelTable> read_label_table(const std::string& path) {
+  CATENA_TRY(const std::string text, read_text(path, "a table of labels", kMaxTableBytes));
+  CATENA_TRY(LabelTable table, parse_lines(text, path));
+  add_lut(path, table);
+  return table;
+}
+
+std::string label_table_beside(const std::string& path) {
+  std::string stem = path;
+  std::vector<std::string> stems{path};
+  for (const char* ending : {".gz", ".nii", ".vdb"})
+    if (has_ending(stem, ending)) {
+      stem = stem.substr(0, stem.size() - std::string_view(ending).size());
+      stems.push_back(stem);
+    }
+  for (const std::string& name : stems)
+    for (const char* ending : {".txt", ".ctbl", ".label", ".csv", ".tsv", ".lut"}) {
+      std::error_code code;
+      const std::string candidate = name + ending;
+      if (std::filesystem::is_regular_file(candidate, code) && read_label_table(candidate)) return candidate;
+    }
+  return {};
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,159 @@
+/// Of "fields": how a grid is read between its voxels, the names and colours of a label map, and the surface of labels as a field.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/numbers.h"
+#include "engine/field/label_surface.h"
+#include "engine/scene/read_parts.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr int kMostNames = 65536;
+
+Keys labels_keys() {
+  return {schema::file("file", "The table: of FreeSurfer, ITK-SNAP, comma-separated with column names, or rows of a number and a name."),
+          schema::numbers("values", "", "Or the numbers themselves: with `names`.").items(1, kMostNames),
+          schema::texts("names", "Of `values`, one each.").items(1, kMostNames),
+          schema::places("colors", "", "Of `values`, one each: red, green and blue from 0 to 1."),
+          schema::text("package", "The Debian package that brings the file: it is named where the file is missing.")};
+}
+
+/// Whole numbers that floats tell apart.
+Outcome check_label(const json::Node& node) {
+  const double value = node.number;
+  if (node.kind == json::Kind::number && value == std::nearbyint(value) && std::fabs(value) <= kGreatestLabel) return Done{};
+  return json::error_at(node, "a label is no whole number; one of at most 16777216 in size was expected");
+}
+
+Result<LabelTable> read_rows(const json::Node& node) {
+  const json::Node *values = node.find("values"), *names = node.find("names"), *colors = node.find("colors");
+  if (values == nullptr || values->kind != json::Kind::array)
+    return json::error_at(node, "\"labels\" has no list of \"values\"; \"file\", or \"values\" with \"names\", was expected");
+  const std::size_t count = values->items.size();
+  if (names == nullptr || names->kind != json::Kind::array || names->items.size() != count)
+    return json::error_at(names == nullptr ? node : *names,
+                          "\"names\" and \"values\" differ in number; a name for each value was expected");
+  std::vector<std::vector<double>> rows;
+  if (colors != nullptr) {
+    CATENA_TRY(rows, json::as_rows(*colors, "colors", 3));
+    if (rows.size() != count)
+      return json::error_at(*colors, "\"colors\" and \"values\" differ in number; a colour for each value was expected");
+  }
+  LabelTable table;
+  for (std::size_t i = 0; i < count; ++i) {
+    CATENA_CHECK(check_label(values->items[i]));
+    LabelName label{values->items[i].number, {}, {}};
+    CATENA_TRY(label.name, json::as_string(names->items[i], "names"));
+    if (colors != nullptr) {
+      CATENA_TRY(const Color color, schema::as_color(Vec3(rows[i][0], rows[i][1], rows[i][2]), colors->items[i], "colors"));
+      label.color = color;
+    }
+    table.push_back(std::move(label));
+  }
+  std::sort(table.begin(), table.end(), [](const LabelName& a, const LabelName& b) { return a.value < b.value; });
+  for (std::size_t i = 1; i < table.size(); ++i)
+    if (table[i].value == table[i - 1].value)
+      return json::error_at(*values, "\"values\" holds " + to_text(table[i].value) + " twice; different labels were expected");
+  return table;
+}
+
+Outcome read_labels_table(const std::string& scene_path, const json::Node& node, FieldSource& source) {
+  CATENA_CHECK(json::expect_object(node, "labels"));
+  CATENA_CHECK(json::only_keys(node, schema::names_of(labels_keys())));
+  const json::Node* file = node.find("file");
+  if (file == nullptr) {
+    CATENA_TRY(source.labels_table, read_rows(node));
+    return Done{};
+  }
+  for (const char* key : {"values", "names", "colors"})
+    if (const json::Node* other = node.find(key))
+      return json::error_at(*other, in_quotes(key) + " is given beside \"file\", which holds the labels; one of them was expected");
+  CATENA_TRY(const std::string name, json::require_string(node, "file"));
+  source.labels_file = resolved_path(scene_path, name);
+  auto table = read_label_table(source.labels_file);
+  CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
+  if (!table)
+    return json::error_at(*file, "field " + in_quotes(source.where.label) + ": " + table.error().message +
+                                     (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
+  source.labels_table = std::move(*table);
+  return Done{};
+}
+
+}  // namespace
+
+Keys map_keys() {
+  return {schema::word("interpolation", {"linear", "nearest"},
+                       "What lies between voxel centres: a mix of the eight nearest, or the value of the nearest, as of a label map.")
+              .by_default("`linear`; with `labels` `nearest`"),
+          schema::object("labels", labels_keys(), "Of a label map: names and colours of the numbers in its voxels.").by_default("none")};
+}
+
+Outcome read_map(const std::string& scene_path, const json::Node& node, FieldSource& source) {
+  const json::Node* labels = node.find("labels");
+  if (labels != nullptr) CATENA_CHECK(read_labels_table(scene_path, *labels, source));
+  const Keys keys = map_keys();
+  field::Interpolation interpolation = labels != nullptr ? field::Interpolation::nearest : field::Interpolation::linear;
+  CATENA_CHECK(schema::read_value(*schema::find(keys, "interpolation"), node, interpolation));
+  source.file->interpolation = interpolation;
+  return Done{};
+}
+
+Keys label_keys() {
+  return {schema::any_of("label",
+                         {schema::integer("", "", "", -int(kGreatestLabel), int(kGreatestLabel)), schema::text("", ""),
+                          schema::numbers("", "", ""), schema::texts("", "")},
+                         "The label, by its number or its name; a list: several together; `\"*\"`: every label but 0.")
+              .required(),
+          schema::named("of", Role::scalar_field, "The field from a file whose labels they are.").required(),
+          schema::number("smooth", "voxels", "Of the surface: a Gaussian that leaves every voxel centre on its side.")
+              .within(0, field::kMostSmooth)
+              .by_default(to_text(field::kUsualSmooth))};
+}
+
+Outcome read_label_source(const json::Node& node, FieldSource& source) {
+  CATENA_CHECK(json::only_keys(node, schema::names_of(label_keys())));
+  LabelSource& label = source.label.emplace();
+  CATENA_TRY(label.of, json::require_string(node, "of"));
+  const json::Node& wanted = *node.find("label");
+  const auto add = [&](const json::Node& item) -> Outcome {
+    if (item.kind == json::Kind::string && !item.string.empty()) {
+      label.names.push_back(item.string);
+      return Done{};
+    }
+    CATENA_CHECK(check_label(item));
+    label.values.push_back(item.number);
+    return Done{};
+  };
+  if (wanted.kind == json::Kind::string && wanted.string == "*") {
+    label.any = true;
+  } else if (wanted.kind == json::Kind::array) {
+    if (wanted.items.empty()) return json::error_at(wanted, "\"label\" is an empty list; at least one label was expected");
+    for (const json::Node& item : wanted.items) CATENA_CHECK(add(item));
+  } else {
+    CATENA_CHECK(add(wanted));
+  }
+  CATENA_TRY(label.smooth, json::get_number(node, "smooth", field::kUsualSmooth, json::Range::not_negative));
+  if (label.smooth > field::kMostSmooth)
+    return json::error_at(*node.find("smooth"), "\"smooth\" is " + to_text(label.smooth) + "; a number from 0 to 4 was expected");
+  return Done{};
+}
+
+Outcome check_label_sources(const Scene& scene) {
+  Outcome outcome = Done{};
+  scene.world.each<FieldSource>([&](Entity, const FieldSource& source) {
+    if (!outcome || !source.label) return;
+    const json::Node& where = json::member_or(source.where, "of");
+    const Entity of = find_field(scene, source.label->of);
+    if (of && scene.world.get<FieldSource>(of).file) return;
+    std::vector<std::string_view> names;
+    scene.world.each<FieldSource>([&](Entity e, const FieldSource& other) {
+      if (other.file) names.push_back(scene.world.get<Name>(e).value);
+    });
+    outcome = json::error_at(where, in_quotes(source.label->of) + " is no field from a file, whose labels could be meant; one of " +
+                                        (names.empty() ? "them" : joined(names)) + " was expected" + suggestion(source.label->of, names));
+  });
+  return outcome;
+}
+
+}  // namespace catena::scene

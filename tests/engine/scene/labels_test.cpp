@@ -1,0 +1,148 @@
+#include "engine/scene/labels.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "engine/scene/document.h"
+#include "engine/scene/named_files.h"
+#include "engine/scene/prepare.h"
+#include "tests/support/support.h"
+
+namespace catena::scene {
+namespace labels_test {
+
+/// 16^3 voxels in a raw file: x below 5 is label 3, y below 5 beyond that label 70, the rest 0.
+class LabelScene : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string bytes;
+    for (int z = 0; z < 16; ++z)
+      for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) bytes += static_cast<char>(x < 5 ? 3 : y < 5 ? 70 : 0);
+    test::write_file(folder_ / "m.raw", bytes);
+    test::write_file(folder_ / "m.txt", "3 left\n70 right 255 0 0 0\n");
+  }
+  Result<Scene> read(const std::string& field, const std::string& more = "") {
+    return parse_scene("{\"fields\": {\"m\": {\"file\": \"m.raw\", \"shape\": [16, 16, 16], \"type\": \"uint8\"" + field + "}" + more,
+                       folder_ / "s.json");
+  }
+  std::string refused(const std::string& field, const std::string& more) {
+    auto scene = read(field, more);
+    const Outcome done = scene ? prepare(*scene) : Outcome(scene.error());
+    EXPECT_FALSE(done);
+    if (done) return {};
+    EXPECT_EQ(done.error().message.find('\n'), std::string::npos);
+    return done.error().message;
+  }
+  test::TemporaryFolder folder_;
+};
+
+const std::string kTable = ", \"labels\": {\"file\": \"m.txt\"}";
+
+TEST_F(LabelScene, AFieldIsLinearUnlessItSaysOtherwiseOrHasLabels) {
+  for (const auto& [field, wanted] :
+       {std::pair{"", field::Interpolation::linear},
+        {", \"interpolation\": \"nearest\"", field::Interpolation::nearest},
+        {kTable.c_str(), field::Interpolation::nearest},
+        {", \"interpolation\": \"linear\", \"labels\": {\"values\": [3], \"names\": [\"a\"]}", field::Interpolation::linear}}) {
+    auto scene = read(field, "}}");
+    ASSERT_TRUE(scene) << scene.error().message;
+    const auto loaded = use_field(*scene, "m", {});
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    EXPECT_EQ(loaded->scalar->interpolation(), wanted) << field;
+  }
+}
+
+TEST_F(LabelScene, NamesAndColoursComeFromTheTable) {
+  auto scene = read(kTable, "}}");
+  ASSERT_TRUE(scene);
+  ASSERT_TRUE(use_field(*scene, "m", {}));
+  const LabelMap* map = labels_of(*scene, find_field(*scene, "m"));
+  ASSERT_NE(map, nullptr);
+  ASSERT_EQ(map->labels.size(), 2u);
+  EXPECT_EQ(label_words(*map, 3), "left (3)");
+  EXPECT_EQ(label_words(*map, 0), "no label");
+  EXPECT_EQ(label_words(*map, 5), "5");
+  EXPECT_EQ(map->labels[1].color, (Color{1, 0, 0}));
+  EXPECT_EQ(map->labels[0].voxels, 5 * 256u);
+  EXPECT_EQ(scene->files.size(), 2u) << "the table is a file that the scene names";
+}
+
+TEST_F(LabelScene, ALabelIsAFieldByNumberNameOrTogether) {
+  auto scene = read(
+      kTable, R"(, "a": {"label": 3, "of": "m", "smooth": 0}, "b": {"label": "right", "of": "m"}, "c": {"label": [3, "right"], "of": "m"},
+      "d": {"label": "*", "of": "m", "smooth": 0}},
+      "isosurfaces": [{"field": "a", "level": 0.5}, {"field": "b", "level": 0.5}, {"field": "c", "level": 0.5}, {"field": "d", "level": 0.5}]})");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto prepared = prepare(*scene);
+  ASSERT_TRUE(prepared) << prepared.error().message;
+  field::Cursor cursor;
+  const auto at = [&](const char* name, const Vec3& p) {
+    return drawn_field(*scene, find_field(*scene, name)).scalar->sample(p, cursor).value;
+  };
+  EXPECT_NEAR(at("a", {4.5, 8, 8}), 0.5, 1e-12);
+  EXPECT_NEAR(at("d", {4.5, 8, 8}), 0.5, 1e-12);
+  EXPECT_EQ(at("d", {4.5, 2, 8}), 1) << "no wall between two labels";
+  EXPECT_GT(at("b", {10, 2, 8}), 0.9);
+  EXPECT_LT(at("b", {2, 2, 8}), 0.1);
+  EXPECT_GT(at("c", {4.5, 2, 8}), 0.9);
+  EXPECT_EQ(label_name(*scene, "a"), "left");
+  EXPECT_EQ(label_name(*scene, "b"), "right");
+  EXPECT_EQ(label_name(*scene, "c"), "");
+  for (const char* name : {"a", "b", "c", "d"}) {
+    const FieldSource& source = scene->world.get<FieldSource>(find_field(*scene, name));
+    EXPECT_EQ(source.loaded.get(), source.drawn.get()) << "what is felt is what is drawn";
+  }
+}
+
+TEST_F(LabelScene, WhatCannotBeIsSaidInOneLine) {
+  const std::string surface = ", \"a\": {\"label\": 5, \"of\": \"m\"}}, \"isosurfaces\": [{\"field\": \"a\", \"level\": 0.5}]}";
+  EXPECT_NE(refused(kTable, surface).find("no voxel of \"m\" holds label 5; one of its 2 labels was expected"), std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": \"rihgt\", \"of\": \"m\"}}, \"isosurfaces\": [{\"field\": \"a\", \"level\": 0.5}]}")
+                .find("did you mean \"right\""),
+            std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 3, \"of\": \"x\"}}}").find("\"x\" is no field from a file"), std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 3, \"of\": \"a\"}}}").find("\"a\" is no field from a file"), std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": 1.5, \"of\": \"m\"}}}").find("a label is no whole number"), std::string::npos);
+  EXPECT_NE(refused(kTable, ", \"a\": {\"label\": [], \"of\": \"m\"}}}").find("empty list"), std::string::npos);
+  EXPECT_NE(refused(", \"labels\": {\"values\": [1, 1], \"names\": [\"a\", \"b\"]}", "}}").find("holds 1 twice"), std::string::npos);
+  EXPECT_NE(refused(", \"labels\": {\"values\": [1]}", "}}").find("a name for each value"), std::string::npos);
+  EXPECT_NE(refused(", \"labels\": {\"file\": \"none.txt\"}", "}}").find("none.txt"), std::string::npos);
+  EXPECT_NE(refused(", \"interpolation\": \"near\"", "}}").find("nearest"), std::string::npos);
+}
+
+TEST_F(LabelScene, AnEditKeepsWhatWasMadeWhileTheLabelsStay) {
+  const std::string more =
+      ", \"a\": {\"label\": 3, \"of\": \"m\"}}, \"isosurfaces\": [{\"field\": \"a\", \"level\": 0.5, \"color\": [1, 0, 0]}]}";
+  auto old = read(kTable, more), fresh = read(kTable, more);
+  ASSERT_TRUE(old && fresh);
+  ASSERT_TRUE(prepare(*old));
+  carry_over(*old, *fresh);
+  const auto grid = [](Scene& scene) { return scene.world.get<FieldSource>(find_field(scene, "a")).loaded.get(); };
+  EXPECT_EQ(grid(*old), grid(*fresh));
+  auto other = read(kTable, ", \"a\": {\"label\": 70, \"of\": \"m\"}}}");
+  ASSERT_TRUE(other);
+  carry_over(*fresh, *other);
+  EXPECT_EQ(grid(*other), nullptr);
+  EXPECT_NE(other->world.get<FieldSource>(find_field(*other, "m")).labels, nullptr);
+}
+
+TEST_F(LabelScene, MovedElsewhereTheTableIsStillFound) {
+  std::filesystem::create_directory(folder_ / "sub");
+  const auto moved = moved_text("{\"fields\": {\"m\": {\"file\": \"m.raw\", \"labels\": {\"file\": \"m.txt\"}}}}", folder_ / "s.json",
+                                folder_ / "sub/s.json", {});
+  ASSERT_TRUE(moved);
+  EXPECT_NE(moved->find("../m.txt"), std::string::npos) << *moved;
+}
+
+TEST(LabelColors, NeighboursDiffer) {
+  for (int n = 1; n < 300; ++n) {
+    const Color a = label_color(n), b = label_color(n + 1);
+    EXPECT_GT(std::fabs(a.r - b.r) + std::fabs(a.g - b.g) + std::fabs(a.b - b.b), 0.1) << n;
+  }
+}
+
+}  // namespace labels_test
+}  // namespace catena::scene

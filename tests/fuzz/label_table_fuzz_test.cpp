@@ -1,0 +1,65 @@
+/// Tables of labels out of hostile hands: labels that can be shown, or one line with the file's name.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/scene/label_table.h"
+#include "tests/fuzz/mutate.h"
+
+namespace catena {
+namespace label_table_fuzz_test {
+
+const std::string kFormats[] = {
+    "#No. Label Name:  R   G   B   A\n\n0   Unknown  0 0 0 0\n17  Left-Hippocampus  220 216 20  0\n18 Left-Amygdala 103 255 255 0\n",
+    "# ITK-SnAP Label Description File\n    0     0    0    0        0  0  0    \"Clear Label\"\n    5   255    0  255  1  1  1  \"Left "
+    "Ventricle\"\n",
+    "1 Precentral_L 2001\r\n2 Precentral_R 2002\r\n7\tGenu of corpus callosum\r\n",
+    "index,name,r,g,b\n1,\"left, front\",0.5,1,0\n2,right,0,0,1\n", "id\tlabel\tred\tgreen\tblue\n4\tx y\t255\t0\t51\n5\tz\t0\t1\t2\n"};
+
+bool check(const std::string& text) {
+  const auto read = scene::parse_label_table(text, "t.txt");
+  if (!read) {
+    const std::string& message = read.error().message;
+    EXPECT_TRUE(message.starts_with("t.txt:")) << message << "\nfor\n" << text;
+    EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message << "\nfor\n" << text;
+    EXPECT_LT(message.size(), 1000u) << message;
+    return false;
+  }
+  EXPECT_FALSE(read->empty());
+  for (std::size_t i = 0; i < read->size(); ++i) {
+    const scene::LabelName& label = (*read)[i];
+    EXPECT_EQ(label.value, std::nearbyint(label.value)) << text;
+    EXPECT_TRUE(i == 0 || (*read)[i - 1].value < label.value) << text;
+    EXPECT_FALSE(label.name.empty()) << text;
+    EXPECT_LE(label.name.size(), 200u);
+    for (const unsigned char c : label.name) EXPECT_GE(c, 0x20) << text;
+    const Color color = label.color.value_or(Color{});
+    for (const float c : {color.r, color.g, color.b}) EXPECT_TRUE(c >= 0 && c <= 1) << c << "\n" << text;
+  }
+  return true;
+}
+
+TEST(LabelTableFuzz, TheSeedsAreValid) {
+  for (const std::string& seed : kFormats) EXPECT_TRUE(check(seed)) << seed;
+}
+
+TEST(LabelTableFuzz, EveryTruncationAndByteTurned) {
+  for (const std::string& seed : kFormats)
+    for (std::size_t n = 0; n < seed.size(); ++n) {
+      check(seed.substr(0, n));
+      std::string text = seed;
+      text[n] = static_cast<char>(text[n] ^ 0x81);
+      check(text);
+    }
+}
+
+TEST(LabelTableFuzz, Mutations) {
+  test::Inputs inputs(1000 * std::size(kFormats), 11);
+  std::uint64_t read = 0;
+  while (inputs.next() && !HasFailure()) read += check(test::mutate(kFormats[inputs.count() % std::size(kFormats)], inputs.random)) ? 1 : 0;
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, inputs.count());
+}
+
+}  // namespace label_table_fuzz_test
+}  // namespace catena

@@ -1,0 +1,212 @@
+/// Label maps in pictures: a colour that is no label's is nowhere, each by its own transform, slices in one plane in their order.
+#include <algorithm>
+#include <cmath>
+
+#include "render/frame/camera.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace labels_test {
+
+using namespace catena::render;
+
+class LabelPicture : public PictureTest {};
+
+using Rgb = std::array<int, 3>;
+
+/// Far apart in value and in no order of colour: a mix of two would be another one.
+constexpr double kLabels[] = {0, 3, 40, 41, 2035, 14175};
+constexpr Rgb kRgb[] = {{0, 0, 0}, {255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}, {0, 255, 255}};
+
+std::vector<std::array<double, 4>> label_rows() {
+  std::vector<std::array<double, 4>> rows;
+  for (std::size_t i = 1; i < std::size(kLabels); ++i)
+    for (const double end : {-0.5, 0.5}) rows.push_back({kLabels[i] + end, kRgb[i][0] / 255.0, kRgb[i][1] / 255.0, kRgb[i][2] / 255.0});
+  return rows;
+}
+
+std::size_t label_index(const Vec3& p) { return std::size_t(7 * int(p.x) + 5 * int(p.y) + 3 * int(p.z) + int(p.x) * int(p.y)) % 6; }
+
+GridPtr label_grid(const field::Mapping& mapping = {}, const field::Index3& n = {14, 12, 13}) {
+  return make_grid(
+             n, [](const Vec3& p) { return kLabels[label_index(p)]; }, mapping)
+      ->interpolated(field::Interpolation::nearest);
+}
+
+field::Mapping turned() {
+  const Mat3 turn = Mat3(Vec3(0.8, 0.6, 0.0), Vec3(-0.6, 0.8, 0.0), Vec3(0.0, 0.0, 1.0));
+  return field::Mapping::from_linear(turn * Mat3(Vec3(1.1, 0, 0), Vec3(0, 0.9, 0), Vec3(0, 0, 1.3)), {5, -3, 2});
+}
+
+Vec3 middle(const field::ScalarGrid& grid) {
+  return grid.mapping().world_from_index(0.5 * grid.index_box().lo + 0.5 * grid.index_box().hi);
+}
+
+Rgb rgb(const Picture& picture, std::uint32_t x, std::uint32_t y) {
+  const std::uint8_t* p = picture.pixel(x, y);
+  return {p[0], p[1], p[2]};
+}
+
+SliceItem slice_of(const GridPtr& grid, const Vec3& normal) {
+  SliceItem item;
+  item.grid = grid;
+  item.point = middle(*grid) + Vec3(0.07, 0.03, 0.11);
+  item.normal = normal;
+  item.colors = label_rows();
+  item.hidden = 0;
+  return item;
+}
+
+TEST_F(LabelPicture, ASliceHasTheColourOfTheNearestVoxelInEveryPixelAndNoOther) {
+  const auto grid = label_grid(turned());
+  FramePacket packet = packet_of(middle(*grid) + Vec3(12, -25, 20), middle(*grid));
+  packet.slices = {slice_of(grid, {0.3, -0.5, 0.8})};
+  const Picture picture = draw(packet, {}, "slice");
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
+  int seen = 0, empty = 0;
+  for (std::uint32_t y = 0; y < packet.height; ++y)
+    for (std::uint32_t x = 0; x < packet.width; ++x) {
+      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+      const SliceItem& item = packet.slices[0];
+      const Vec3 world = ray.origin + dot(item.normal, item.point - ray.origin) / dot(item.normal, ray.direction) * ray.direction;
+      const Vec3 index = grid->mapping().index_from_world(world);
+      const Rgb got = rgb(picture, x, y);
+      const bool drawn = picture.pixel(x, y)[3] > 0;
+      ASSERT_TRUE(!drawn || std::count(std::begin(kRgb), std::end(kRgb), got) == 1) << "a colour of no label";
+      // rounding of floats decides within a thousandth of a face
+      bool sure = true, inside = true;
+      for (int a = 0; a < 3; ++a) {
+        sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-3;
+        inside = inside && index[a] > grid->index_box().lo[a] && index[a] < grid->index_box().hi[a];
+        sure = sure && std::fabs(index[a] - grid->index_box().lo[a]) > 1e-2 && std::fabs(index[a] - grid->index_box().hi[a]) > 1e-2;
+      }
+      if (!sure) continue;
+      const std::size_t label = inside ? label_index({std::round(index.x), std::round(index.y), std::round(index.z)}) : 0;
+      ASSERT_EQ(drawn, label != 0) << x << " " << y;
+      label != 0 ? ++seen : ++empty;
+      ASSERT_TRUE(!drawn || got == kRgb[label]) << x << " " << y;
+    }
+  EXPECT_GT(seen, 2000);
+  EXPECT_GT(empty, 2000);
+}
+
+TEST_F(LabelPicture, AVolumeHasNoColourBetweenTwoLabels) {
+  const auto grid = make_grid({14, 12, 13}, [](const Vec3& p) {
+                      return std::min(kLabels[label_index(p)], 6000.0);
+                    })->interpolated(field::Interpolation::nearest);
+  FramePacket packet = packet_of(middle(*grid) + Vec3(12, -25, 20), middle(*grid));
+  VolumeItem item;
+  item.grid = grid;
+  item.transfer.labels = true;
+  item.transfer.extinctions = {{0.4, 0}, {0.6, 1e4}};
+  // what is no label is green
+  for (const double label : {3.0, 40.0, 41.0, 2035.0, 6000.0}) {
+    const double red = label == 40 ? 0 : 1;
+    item.transfer.colors.insert(
+        item.transfer.colors.end(),
+        {{label - 0.5, 0, 1, 0}, {label - 0.5, red, 0, 1 - red}, {label + 0.5, red, 0, 1 - red}, {label + 0.5, 0, 1, 0}});
+  }
+  packet.volumes = {item};
+  const Picture picture = draw(packet, {}, "volume");
+  int seen = 0, red = 0, blue = 0, green = 0;
+  for (std::uint32_t y = 0; y < packet.height; ++y)
+    for (std::uint32_t x = 0; x < packet.width; ++x) {
+      const Rgb got = rgb(picture, x, y);
+      seen += picture.pixel(x, y)[3] == 255;
+      red += got[0] > 200;
+      blue += got[2] > 200;
+      green = std::max(green, got[1]);
+    }
+  EXPECT_GT(seen, 2000);
+  EXPECT_GT(red, 1000);
+  EXPECT_GT(blue, 300);
+  EXPECT_EQ(green, 0);
+}
+
+/// A ball in one grid, coloured by labels in another that is turned: which half of the world a pixel lies in is its colour.
+TEST_F(LabelPicture, ASurfaceIsColouredByAGridOfItsOwnTransform) {
+  const auto ball = make_grid(
+      {40, 40, 40}, [](const Vec3& p) { return norm(p - Vec3(19.5)); }, field::Mapping::from_linear(Mat3(0.5), {-9.75, -9.75, -9.75}));
+  const field::Mapping mapping = turned();
+  const field::Index3 n{40, 40, 40};
+  const Vec3 centre = mapping.world_from_index(Vec3(19.5));
+  const field::Mapping shifted = field::Mapping::from_linear(mapping.world_from_index_linear, mapping.origin - centre);
+  const auto halves =
+      make_grid(
+          n, [&](const Vec3& p) { return shifted.world_from_index(p).x > 0   ? 41
+                                         : shifted.world_from_index(p).z > 2 ? 0
+                                                                             : 40; }, shifted)
+          ->interpolated(field::Interpolation::nearest);
+  FramePacket packet = packet_of({0, -40, 0}, {0, 0, 0});
+  IsosurfaceItem item;
+  item.grid = ball;
+  item.level = 14;
+  item.color = {1, 0, 0};
+  item.id = 1;
+  item.color_by = ColorSource{halves, label_rows(), true, false};
+  packet.isosurfaces = {item};
+  const Picture picture = draw(packet, {}, "turned");
+  const auto depth = renderer_->read_depth();
+  ASSERT_TRUE(depth);
+  const Camera camera = make_camera(packet.view, packet.width, packet.height, {});
+  int counts[3] = {0, 0, 0}, wrong = 0;
+  for (std::uint32_t y = 0; y < packet.height; ++y)
+    for (std::uint32_t x = 0; x < packet.width; ++x) {
+      const double t = depth->depth[y * packet.width + x];
+      if (!std::isfinite(t)) continue;
+      const Ray ray = ray_through(camera, x + 0.5, y + 0.5);
+      const Vec3 world = ray.origin + t / dot(ray.direction, -camera.back) * ray.direction;
+      field::Cursor cursor;
+      const Vec3 index = shifted.index_from_world(world);
+      bool sure = true;
+      for (int a = 0; a < 3; ++a) sure = sure && std::fabs(index[a] - std::floor(index[a]) - 0.5) > 1e-2;
+      if (!sure) continue;
+      const double label = halves->sample(world, cursor).value;
+      const Rgb got = rgb(picture, x, y);
+      const int channel = label == 41 ? 2 : label == 40 ? 1 : 0;
+      ++counts[channel];
+      wrong += got[std::size_t(channel)] < 40 || got[std::size_t(channel)] != *std::max_element(got.begin(), got.end());
+    }
+  for (const int count : counts) EXPECT_GT(count, 300);
+  EXPECT_EQ(wrong, 0);
+}
+
+/// In one plane the later slice lies over the earlier one, whatever is opaque and from either side.
+TEST_F(LabelPicture, SlicesInOnePlaneLieInTheirOrder) {
+  const auto one = make_grid({9, 9, 9}, [](const Vec3&) { return 1; });
+  const auto two = make_grid(
+      {17, 17, 17}, [](const Vec3&) { return 1; }, field::Mapping::from_linear(Mat3(0.5), Vec3(0.0)));
+  for (const double side : {-1.0, 1.0})
+    for (const bool first_opaque : {true, false}) {
+      FramePacket packet = packet_of(Vec3(4.0) + Vec3(7, 9, 20 * side), Vec3(4.0));
+      packet.background = {0, 0, 0, 1};
+      SliceItem below, over;
+      below.grid = one;
+      below.point = {0, 0, 4.3};
+      below.colors = {{0, 1, 0, 0}};
+      below.opacity = first_opaque ? 1.f : 0.5f;
+      below.id = 1;
+      over = below;
+      over.grid = two;
+      over.point = {3, 2, 4.3};
+      over.colors = {{0, 0, 0, 1}};
+      over.opacity = 0.5f;
+      over.over = 1;
+      over.id = 2;
+      packet.slices = {below, over};
+      const Picture picture = draw(packet, {}, std::string(side > 0 ? "above" : "below") + (first_opaque ? "1" : "2"));
+      int both = 0;
+      for (std::uint32_t y = 0; y < packet.height; ++y)
+        for (std::uint32_t x = 0; x < packet.width; ++x) {
+          const Rgb got = rgb(picture, x, y);
+          if (got[0] == 0 || got[2] == 0) continue;
+          ++both;
+          ASSERT_NEAR(got[2], 128, 1) << x << " " << y;
+          ASSERT_NEAR(got[0], first_opaque ? 128 : 64, 1) << x << " " << y;
+        }
+      EXPECT_GT(both, 1500);
+    }
+}
+
+}  // namespace labels_test
+}  // namespace catena::test
