@@ -107,6 +107,7 @@ using VectorFieldPtr = std::shared_ptr<const VectorField>;
 struct AnyField {
   ScalarFieldPtr scalar;
   VectorFieldPtr vector;
+  std::vector<double> times{};       ///< of the file's steps in time; empty: it has one
   std::vector<std::string> notes{};  ///< what is not as it was in the file: sentences without an end
   const Field* get() const { return scalar ? static_cast<const Field*>(scalar.get()) : vector.get(); }
 };

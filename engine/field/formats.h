@@ -37,8 +37,10 @@ struct DenseFile {
   std::string type;    ///< as `info` prints it
   std::string prefix;  ///< of a phrase about its values: "x.raw: the data "
   Mapping mapping;
-  int components = 1;  ///< 1 or 3
-  DenseSource source;  ///< keeps the file open
+  int components = 1;           ///< 1 or 3
+  DenseSource source;           ///< keeps the file open
+  std::vector<double> times{};  ///< as those of AnyField
+  std::vector<std::string> notes{};
 };
 Result<AnyField> load_dense(const DenseFile& file);
 /// Of a format that holds one grid: what there is once it is loaded.

@@ -49,6 +49,8 @@ Result<AnyField> load_dense(const DenseFile& file) {
   } else {
     CATENA_TRY(field.scalar, make_dense<ScalarGrid>(file.name, file.mapping, file.source, file.prefix));
   }
+  field.times = file.times;
+  field.notes = file.notes;
   count_file();
   count_grid();
   return field;

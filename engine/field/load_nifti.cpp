@@ -52,10 +52,10 @@ Mapping mapping_of(const nifti_image& image) {
   return Mapping::from_linear(j, Vec3(m.m[0][3], m.m[1][3], m.m[2][3]));
 }
 
-/// The voxels of the first volume, in order. The library's stream is inflated no further than the header promises.
+/// The voxels of one volume, in order. The library's stream is inflated no further than the header promises.
 class NiftiLayers {
  public:
-  NiftiLayers(const std::string& path, const nifti_image& image, const NumberType& type, bool swapped, std::uint64_t file_size)
+  NiftiLayers(const std::string& path, const nifti_image& image, const NumberType& type, bool swapped, std::uint64_t file_size, int volume)
       : path_(path), type_(type), swapped_(swapped) {
     if (image.scl_slope != 0 && std::isfinite(image.scl_slope) && std::isfinite(image.scl_inter)) {
       slope_ = image.scl_slope;
@@ -64,6 +64,7 @@ class NiftiLayers {
     compressed_ = nifti_is_gzfile(image.iname) != 0;
     offset_ = static_cast<std::uint64_t>(image.iname_offset);
     bytes_ = static_cast<std::uint64_t>(image.nx) * image.ny * image.nz * type.bytes;
+    offset_ += static_cast<std::uint64_t>(volume) * bytes_;
     whole_ = image.nvox * static_cast<std::size_t>(image.nbyper) == bytes_;
     file_size_ = file_size;
   }
@@ -117,6 +118,18 @@ class NiftiLayers {
   std::vector<std::byte> raw_;
 };
 
+/// Seconds; empty: the fourth axis is none of time.
+std::vector<double> times_of(const nifti_image& image) {
+  const double unit = image.time_units == NIFTI_UNITS_SEC    ? 1
+                      : image.time_units == NIFTI_UNITS_MSEC ? 1e-3
+                      : image.time_units == NIFTI_UNITS_USEC ? 1e-6
+                                                             : 0;
+  std::vector<double> times;
+  for (int i = 0; i < image.nt && image.nt > 1 && unit > 0; ++i)
+    times.push_back(unit * (static_cast<double>(image.toffset) + i * static_cast<double>(image.dt)));
+  return times;
+}
+
 struct Header {
   Image image;
   bool swapped = false;
@@ -167,11 +180,18 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
   if (!is_finite(mapping.origin) || !is_finite(mapping.index_from_world(Vec3(1.0))) || !(mapping.smallest_edge() > 0))
     return Error{fmt::format("{}: the transform of the header cannot be inverted", path)};
   // the voxels of the first volume: dimensions are 16-bit numbers
-  const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size);
+  const int volumes = std::max(image.nt, 1), volume = std::min(request.step, volumes - 1);
+  const auto layers = std::make_shared<NiftiLayers>(path, image, *type, header.swapped, file_size, volume);
   CATENA_CHECK(layers->open(image.iname));
   DenseFile file{
-      name, image.nt > 1 ? fmt::format("{}, first of {} volumes", word, image.nt) : std::string(word), path + ": the volume ", mapping, 1,
+      name, volumes > 1 ? fmt::format("{}, first of {} volumes", word, volumes) : std::string(word), path + ": the volume ", mapping, 1,
       {}};
+  file.times = times_of(image);
+  if (volumes > 1 && file.times.empty())
+    file.notes.push_back(
+        fmt::format("volume {} of {}, counted from 0: the header does not say that they are steps in time; \"step\" of the "
+                    "field chooses another",
+                    volume, volumes));
   file.source.size = {image.nx, image.ny, image.nz};
   CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, image.nx, image.ny, image.nz), file.source.size, 1,
                              /*masked=*/false));

@@ -36,6 +36,8 @@ Result<AnyField> load_answered(const LoadRequest& request) {
     return damaged_answer(path, "there are not as many values as voxels");
   CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, n.x, n.y, n.z), n, components, !valid.empty()));
   DenseFile file{reply.name, dense.type, path + ": " + reply.name + " ", mapping, components, {}};
+  file.times = reply.times;
+  file.notes = reply.notes;
   file.source.size = n;
   file.source.masked = !valid.empty();
   file.source.read = [kept, values, valid, n, components](int z, int layers, std::span<float> to, std::span<std::uint8_t> good) -> Outcome {
@@ -46,9 +48,7 @@ Result<AnyField> load_answered(const LoadRequest& request) {
     for (std::size_t i = 0; i < good.size(); ++i) good[i] = valid[first + i] != 0 ? 1 : 0;
     return Done{};
   };
-  CATENA_TRY(AnyField field, load_dense(file));
-  field.notes = reply.notes;
-  return field;
+  return load_dense(file);
 }
 
 Result<std::vector<GridInfo>> describe_answered(const std::string& path) {

@@ -13,6 +13,7 @@
 #include "engine/scene/first_look.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/steps.h"
 
 namespace catena::scene {
 namespace {
@@ -133,11 +134,17 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   if (field::needs_layout(path))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
   bare.request.path = path;
+  if (is_pattern(path)) {
+    const std::vector<std::string> files = files_of_pattern(path);
+    if (files.empty()) return Error{one_line(path + ": no file is called like this")};
+    bare.request.path = files.front();
+  }
   bare.request.grid = grid;
   CATENA_TRY(bare.field, load_best(bare.request));
   const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
-  const FirstLook look = bare.field.scalar ? first_look(name, *bare.field.scalar->grid(), field::units_of(path, bare.request.grid), colors)
-                                           : first_look(name, *bare.field.vector->grid(), colors);
+  const FirstLook look = bare.field.scalar
+                             ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
+                             : first_look(name, *bare.field.vector->grid(), colors);
   bare.note = name + " " + look.note;
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
@@ -158,7 +165,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   }
   bare.text += "}" + look.fields;
   if (grid.empty()) bare.text += other_fields(bare.request, file, name);
-  bare.text += "},\n" + look.parts + "\n}\n";
+  bare.text += "},\n" + (bare.field.times.size() > 1 ? std::string("  \"time\": {\"step\": 0},\n") : std::string()) + look.parts + "\n}\n";
   return bare;
 }
 
@@ -170,7 +177,10 @@ std::vector<std::string> look_of_file(const std::string& path) {
   return lines;
 }
 
-bool shows_mesh(const std::string& path) {
+bool shows_mesh(const std::string& name) {
+  const std::vector<std::string> files = is_pattern(name) ? files_of_pattern(name) : std::vector<std::string>{name};
+  if (files.empty()) return false;
+  const std::string& path = files.front();
   if (!mesh::is_mesh_file(path)) return false;
   if (!field::is_field_file(path)) return true;
   const auto grids = field::describe(path);

@@ -4,6 +4,7 @@
 #include "engine/scene/document.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
+#include "engine/scene/steps.h"
 #include "engine/scene/transfer.h"
 
 namespace catena::scene {
@@ -43,6 +44,7 @@ void carry_fields(Scene& old, Scene& fresh) {
     old.world.each<FieldSource>([&](Entity f, const FieldSource& before) {
       if (before.loaded.get() == nullptr || !same_source(before, source) || !same_map(old, before, fresh, source)) return;
       if (source.loaded.get() == nullptr) source.loaded = before.loaded;
+      source.stepped = source.stepped || before.stepped;
       if (source.loaded.get() == before.loaded.get() && source.labels_table == before.labels_table) source.labels = before.labels;
       find_labels(source);
       if (source.drawn.get() == nullptr && source.loaded.get() == before.loaded.get() && same_drawing(before, source))
@@ -185,6 +187,7 @@ void carry_widgets(const Scene& old, Scene& fresh) {
 }  // namespace
 
 void carry_over(Scene& old, Scene& fresh) {
+  set_step(fresh, old.time.step);
   carry_fields(old, fresh);
   carry_meshes(old, fresh);
   carry_tables<DrawnCurves>(old, fresh);

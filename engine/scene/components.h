@@ -41,6 +41,9 @@ struct FieldSource {
   json::Node where;                        ///< its place in the scene file, for messages
   std::optional<field::LoadRequest> file;  ///< either this
   bool grid_is_a_wish = false;             ///< a replaced file may lack the grid that the first one had
+  std::vector<std::string> series{};       ///< the files of a pattern, in order; `file` has the one of the scene's step
+  bool stepped = false;                    ///< it has gone from one step to another
+  bool own_step = false;                   ///< it states its step, and does not follow the scene's
   std::string analytic;                    ///< or this
   field::AnalyticParameters parameters;
   int resolution = 128;  ///< analytic fields are drawn from a sampled grid: nodes an axis
@@ -375,6 +378,12 @@ struct Light {
   Color color{1, 1, 1};
   double intensity = 1;
   bool with_camera = false;
+};
+
+/// Steps in time (steps.h).
+struct TimeLine {
+  int step = 0;
+  double per_second = 5;
 };
 
 struct Background {

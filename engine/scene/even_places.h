@@ -3,7 +3,8 @@
 ///   plane     a triangular lattice, its neighbours one spacing apart, a point of it below the domain's centre and a row of it along the
 ///             world's axis that the plane is most nearly parallel to (of equal ones the first)
 ///   box       a cubic lattice along the domain's edges, in its middle
-///   surfaces  of places that lie closer than a quarter of the spacing those that are no nearer than it to one chosen before, in an order by
+///   surfaces  of places that lie closer than a quarter of the spacing those that are no nearer than it to one chosen before, in an order
+///   by
 ///             a hash of where they are: those of a level stay while it moves a little. No two are nearer than the spacing, a neighbour is
 ///             within 1.5, and no place of the surface is further from one than 1.1 spacings, as measured
 #pragma once

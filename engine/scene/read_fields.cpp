@@ -6,6 +6,7 @@
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/steps.h"
 #include "engine/scene/units.h"
 
 namespace catena::scene {
@@ -47,7 +48,7 @@ Keys grid_keys() {
             schema::any_of("valid", {schema::text("", ""), schema::null()},
                            "The BoolGrid that masks the field; null for none. The default one may be missing.")
                 .by_default("\"valid\""),
-            schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).by_default("0"),
+            schema::integer("step", "", "Which of the file's steps in time.", 0, 1'000'000).by_default("the scene's, see `time`"),
             schema::word("axes", {"zyx", "xyz"}, "`.npy`, `.npz`: which way an array's indices go; `zyx`: the last one is x.")
                 .by_default("`zyx`"),
             schema::vec3("spacing", "world", "`.npy`, `.npz`: edges of a voxel.").positive().by_default("`[1, 1, 1]`"),
@@ -99,9 +100,8 @@ const LayoutTable& layout_table() {
   return table;
 }
 
-/// What an array of NumPy does not say of itself, and the step of a series.
+/// What an array of NumPy does not say of itself.
 Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
-  CATENA_TRY(request.step, json::get_integer(node, "step", 0, 0, 1'000'000));
   CATENA_TRY(const std::string axes, json::get_string(node, "axes", "zyx"));
   if (axes != "zyx" && axes != "xyz")
     return json::error_at(*node.find("axes"), "\"axes\" is " + in_quotes(axes) + "; \"zyx\" or \"xyz\" was expected");
@@ -120,10 +120,26 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
   return Done{};
 }
 
-Outcome read_file_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
+/// Which of the steps, and of a pattern's files.
+Outcome read_series(const json::Node& node, int scene_step, LoadRequest& request, FieldSource& source) {
+  source.own_step = node.find("step") != nullptr;
+  CATENA_TRY(const int step, json::get_integer(node, "step", scene_step, 0, 1'000'000));
+  if (!is_pattern(request.path)) {
+    request.step = step;
+    return Done{};
+  }
+  source.series = files_of_pattern(request.path);
+  if (source.series.empty())
+    return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": no file is called like " + in_quotes(request.path));
+  request.path = source.series[static_cast<std::size_t>(std::min(step, static_cast<int>(source.series.size()) - 1))];
+  return Done{};
+}
+
+Outcome read_file_source(const std::string& scene_path, int scene_step, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_TRY(const std::string file, json::require_string(node, "file"));
   LoadRequest request;
   request.path = resolved_path(scene_path, file);
+  if (!field::needs_layout(file)) CATENA_CHECK(read_series(node, scene_step, request, source));
   if (field::needs_layout(file)) {
     CATENA_CHECK(layout_table().read(scene_path, node, request.raw.emplace()));
   } else {
@@ -214,7 +230,7 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
   return Done{};
 }
 
-Outcome read_source(const std::string& scene_path, const json::Node& node, bool replaced, FieldSource& source) {
+Outcome read_source(const std::string& scene_path, int scene_step, const json::Node& node, bool replaced, FieldSource& source) {
   CATENA_CHECK(json::expect_object(node, node.label));
   source.where = node;
   const bool file = node.find("file") != nullptr, analytic = node.find("analytic") != nullptr, label = node.find("label") != nullptr;
@@ -222,7 +238,7 @@ Outcome read_source(const std::string& scene_path, const json::Node& node, bool 
   if (file == analytic || label)
     return json::error_at(node, "field " + in_quotes(node.label) + " has " + (file || analytic ? "several" : "none") +
                                     " of \"file\", \"analytic\" and \"label\"; exactly one of them was expected");
-  return file ? read_file_source(scene_path, node, replaced, source) : read_analytic_source(node, source);
+  return file ? read_file_source(scene_path, scene_step, node, replaced, source) : read_analytic_source(node, source);
 }
 
 // ---- --field NAME=FILE[:GRID] ----
@@ -280,7 +296,7 @@ Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<Fi
       const auto has_name = [&name = name](const FieldOverride& o) { return o.name == name; };
       const bool replaced = std::any_of(overrides.begin(), overrides.end(), has_name);
       FieldSource source;
-      CATENA_CHECK(read_source(scene.path, node, replaced, source));
+      CATENA_CHECK(read_source(scene.path, scene.time.step, node, replaced, source));
       const Entity entity = scene.world.create();
       scene.world.emplace<Name>(entity, {name});
       scene.world.emplace<FieldSource>(entity, std::move(source));

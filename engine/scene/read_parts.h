@@ -25,6 +25,7 @@ struct Part {
 };
 
 // in the order of docs/scene.md
+Part time_part();
 Part fields_part();
 Part chain_part();
 Part modes_part();

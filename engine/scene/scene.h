@@ -30,6 +30,7 @@ struct Scene {
   Camera camera;
   Stereo stereo;
   Background background;
+  TimeLine time;
   Annotations annotations;
   std::vector<ClipPlane> clip;
   std::optional<bool> jitter;  ///< of rays; not stated: by the quality

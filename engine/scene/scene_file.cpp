@@ -9,21 +9,27 @@
 namespace catena::scene {
 namespace {
 
-/// All parts, in the order in which they are read: fields first, which the others name; widgets name links;
-/// what follows a widget names it; scalar bars name what is drawn.
+/// All parts, in the order in which they are read: fields first, which the others name; widgets name
+/// links; what follows a widget names it; scalar bars name what is drawn.
 const std::vector<Part>& parts() {
-  static const std::vector<Part> all{fields_part(),    chain_part(),      widgets_part(),
-                                     modes_part(),     coupling_part(),   workspace_part(),
-                                     device_part(),    volumes_part(),    isosurfaces_part(),
-                                     meshes_part(),    slices_part(),     streamlines_part(),
-                                     glyphs_part(),    curves_part(),     points_part(),
-                                     indicator_part(), cursor_part(),     scalar_bars_part(),
-                                     labels_part(),    title_part(),      orientation_marker_part(),
-                                     status_part(),    overlay_part(),    camera_part(),
-                                     stereo_part(),    background_part(), quality_part(),
-                                     clip_part(),      jitter_part(),     bounding_box_part(),
-                                     axes_part(),      ground_part(),     fog_part(),
-                                     lights_part(),    unit_length_part()};
+  static const std::vector<Part> all{time_part(),         fields_part(),
+                                     chain_part(),        widgets_part(),
+                                     modes_part(),        coupling_part(),
+                                     workspace_part(),    device_part(),
+                                     volumes_part(),      isosurfaces_part(),
+                                     meshes_part(),       slices_part(),
+                                     streamlines_part(),  glyphs_part(),
+                                     curves_part(),       points_part(),
+                                     indicator_part(),    cursor_part(),
+                                     scalar_bars_part(),  labels_part(),
+                                     title_part(),        orientation_marker_part(),
+                                     status_part(),       overlay_part(),
+                                     camera_part(),       stereo_part(),
+                                     background_part(),   quality_part(),
+                                     clip_part(),         jitter_part(),
+                                     bounding_box_part(), axes_part(),
+                                     ground_part(),       fog_part(),
+                                     lights_part(),       unit_length_part()};
   return all;
 }
 
@@ -36,6 +42,8 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
     CATENA_CHECK(json::require_string(root, "$schema"));
   }
   CATENA_CHECK(json::only_keys(root, keys));
+  // which fields follow
+  if (const json::Node* time = root.find("time")) CATENA_CHECK(time_part().read(scene, *time));
   CATENA_CHECK(read_fields(scene, root.find("fields"), overrides));
   for (const Part& part : parts())
     if (const json::Node* node = root.find(part.description.name); node != nullptr && part.read != nullptr)

@@ -2,6 +2,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/kept.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
 #include "engine/scene/read_parts.h"
@@ -26,7 +27,7 @@ Outcome check_grid(const field::AnyField& any) {
 
 Result<field::AnyField> load_source(const FieldSource& source) {
   if (!source.file) return field::make_analytic(source.analytic, source.parameters);
-  auto loaded = field::load(*source.file);
+  auto loaded = source.stepped || !source.series.empty() ? field::load_kept(*source.file) : field::load(*source.file);
   if (!loaded && source.grid_is_a_wish && !source.file->grid.empty()) {
     field::LoadRequest any_grid = *source.file;
     any_grid.grid.clear();
@@ -63,7 +64,8 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
     return error;
   }
   source.loaded = *loaded;
-  for (const std::string& note : loaded->notes) scene.notes.push_back((source.file ? source.file->path + ": " : std::string()) + note);
+  for (const std::string& note : source.stepped ? std::vector<std::string>() : loaded->notes)
+    scene.notes.push_back((source.file ? source.file->path + ": " : std::string()) + note);
   find_labels(source);
   return source.loaded;
 }

@@ -168,17 +168,17 @@ Result<Opened> open_with_itk(const Source& source) {
     const auto shape = shape_of(*io);
     if (!shape) return failed(shape.error().message);
     Opened opened;
-    for (int i = 0; shape->volumes > 1 && i < shape->volumes; ++i) opened.times.push_back(i);
-    if (source.step >= shape->volumes) return failed(fmt::format("step {} is asked for, the file has {}", source.step, shape->volumes));
+    // a fourth axis is one of time only where the header says so, and these do not
     vtkSmartPointer<vtkDataArray> values = read_whole(*io, shape->voxels() * static_cast<std::size_t>(shape->volumes));
     if (shape->volumes > 1) {
+      const int volume = std::min(source.step, shape->volumes - 1);
       const auto one = vtkSmartPointer<vtkDataArray>::Take(values->NewInstance());
       one->SetNumberOfComponents(values->GetNumberOfComponents());
       const auto voxels = static_cast<vtkIdType>(shape->voxels());
       one->SetNumberOfTuples(voxels);
-      one->InsertTuples(0, voxels, source.step * voxels, values);
+      one->InsertTuples(0, voxels, volume * voxels, values);
       values = one;
-      opened.notes.push_back(fmt::format("volume {} of {}", source.step, shape->volumes));
+      opened.notes.push_back(fmt::format("volume {} of {}, counted from 0: \"step\" of the field chooses another", volume, shape->volumes));
     }
     opened.patient = is_patient(io, source.path);
     const Mapping mapping = mapping_of(*io);

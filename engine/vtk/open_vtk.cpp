@@ -148,14 +148,12 @@ Result<Opened> open_with_vtk(const Source& source) {
     const double* times = about->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
     opened.times.assign(times, times + about->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()));
   }
-  if (source.step > 0 && source.step >= static_cast<int>(opened.times.size()))
-    return failed(fmt::format("step {} is asked for, the file has {}", source.step, std::max<std::size_t>(opened.times.size(), 1)));
   choose_dimensions(reader, opened);
   // the data
   if (opened.times.empty())
     reader->Update();
   else
-    reader->UpdateTimeStep(opened.times[static_cast<std::size_t>(source.step)]);
+    reader->UpdateTimeStep(opened.times[std::min(static_cast<std::size_t>(source.step), opened.times.size() - 1)]);
   vtkDataObject* object = reader->GetOutputDataObject(0);
   if (const std::string complaint = take_complaint(); !complaint.empty()) return failed("cannot be read (" + complaint + ")");
   if (auto* composite = vtkCompositeDataSet::SafeDownCast(object)) {

@@ -104,7 +104,7 @@ TEST_F(Newcomer, AreReadFeltAndLoaded) {
 
   const auto wrong = scene::parse_scene(R"({"fields": {"a": {"file": "a.corner"}}})", folder / "s.json");
   ASSERT_FALSE(wrong);
-  EXPECT_NE(wrong.error().message.find(".corners file was expected"), std::string::npos) << wrong.error().message;
+  EXPECT_NE(wrong.error().message.find("a data file (.vdb"), std::string::npos) << wrong.error().message;
   auto unknown = scene::parse_scene(R"({"fields": {"ball": {"analytic": "sphere"}},
  "chain": [{"name": "skin", "type": "shell", "field": "ball", "level": 1, "glo": 2}]})",
                                     "s.json");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "engine/base/numbers.h"
 #include "render/frame/camera.h"
@@ -45,6 +46,26 @@ render::View CameraMotion::at(const render::View& base, const Bounds& bounds, do
   view.window = base.window;
   view = render::zoomed(view, zoom_);
   return render::turned(view, orbit_deg_ * frame / frames_, elevation_deg_);
+}
+
+Result<std::vector<int>> parse_steps(const std::string& words) {
+  std::vector<int> steps;
+  if (words.empty()) return steps;
+  std::vector<double> numbers;
+  std::stringstream parts(words);
+  for (std::string part; std::getline(parts, part, ':');) {
+    const auto number = parse_double(part);
+    constexpr double kMost = 1e6;
+    if (!number || *number != std::floor(*number) || std::fabs(*number) > kMost) numbers.clear();
+    if (!number) break;
+    numbers.push_back(*number);
+  }
+  const double stride = numbers.size() == 3 ? numbers[2] : 1;
+  if (numbers.size() < 2 || numbers.size() > 3 || numbers[0] < 0 || numbers[1] < numbers[0] || stride < 1 ||
+      (numbers[1] - numbers[0]) / stride >= kMaxFrames)
+    return Error{"--steps " + words + ": expected FIRST:LAST or FIRST:LAST:STRIDE, whole numbers from 0 on"};
+  for (double step = numbers[0]; step <= numbers[1]; step += stride) steps.push_back(static_cast<int>(step));
+  return steps;
 }
 
 Result<Quality> parse_quality(const std::string& words) {

@@ -25,6 +25,8 @@ struct RenderOptions {
   // frames
   int frames = 0;  ///< 0: not given
   double fps = 25, phase = 0;
+  int step = -1;          ///< in time; -1: the scene's
+  std::string steps;      ///< A:B or A:B:STRIDE, a frame each
   bool play = false;  ///< the hand goes along the probe path over the frames
   // the camera
   std::string camera, view;
@@ -59,6 +61,9 @@ class CameraMotion {
   double orbit_deg_ = 0, elevation_deg_ = 0, zoom_ = 1;
   int frames_ = 1;
 };
+
+/// "--steps FIRST:LAST[:STRIDE]": the steps, in order; empty where nothing is said.
+Result<std::vector<int>> parse_steps(const std::string& words);
 
 /// "--quality Q" and the scene's "quality": draft, balanced, reference, time=MS, error=E or step=VOXELS.
 /// Settings, or a goal that they have yet to be measured for.

@@ -15,6 +15,8 @@
 #include "engine/base/output_file.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
+#include "engine/field/kept.h"
+#include "engine/scene/steps.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
 #include "render/extract/extract_parts.h"
@@ -42,15 +44,20 @@ void say(std::FILE* to, const std::string& line) {
 /// Draws frames of one scene and hands their bands on.
 class Frames {
  public:
-  Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, FeltPath& hand, Size size)
-      : scene_(scene), options_(options), motion_(motion), hand_(hand), size_(size) {}
+  Frames(scene::Scene& scene, const RenderOptions& options, const CameraMotion& motion, FeltPath& hand, Size size, std::vector<int> steps)
+      : scene_(scene), options_(options), motion_(motion), hand_(hand), size_(size), steps_(std::move(steps)) {}
 
   Result<render::FramePacket> packet(int frame) {
+    if (!steps_.empty()) {
+      scene::set_step(scene_, steps_[static_cast<std::size_t>(frame) % steps_.size()]);
+    }
     scene_.phase = options_.phase + static_cast<double>(frame) / motion_.frames();
     hand_.show(scene_, options_.play && motion_.frames() > 1 ? static_cast<double>(frame) / (motion_.frames() - 1) : 1);
     CATENA_TRY(render::FramePacket packet, render::make_frame(scene_, size_.width, size_.height));
-    // the eye stays where it is while the hand moves
-    if (!base_view_ || !options_.play) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
+    if (!steps_.empty() && frame + 1 < motion_.frames())
+      field::load_ahead(scene::requests_at(scene_, steps_[static_cast<std::size_t>(frame + 1) % steps_.size()]));
+    // the eye stays where it is while the hand moves, or time goes by
+    if (!base_view_ || (!options_.play && steps_.empty())) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
     const render::View view = motion_.at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
     render::set_view(scene_, view, packet);
     return packet;
@@ -96,6 +103,7 @@ class Frames {
   const CameraMotion& motion_;
   FeltPath& hand_;
   Size size_;
+  std::vector<int> steps_;  ///< in time, by frame; empty: they stay
   std::optional<render::View> base_view_;
   Bounds base_bounds_;
   std::optional<Interrupt> interrupt_;  // while it draws
@@ -128,7 +136,11 @@ Result<Size> picture_size(const RenderOptions& o, const scene::Stereo& stereo, c
 
 }  // namespace
 
-Outcome render_pictures(const RenderOptions& o) {
+Outcome render_pictures(const RenderOptions& given) {
+  RenderOptions o = given;
+  CATENA_TRY(const std::vector<int> steps, parse_steps(o.steps));
+  if (!steps.empty() && o.step >= 0) return Error{"--step: goes without --steps"};
+  if (!steps.empty() && o.frames == 0) o.frames = static_cast<int>(steps.size());
   CATENA_TRY(const Size size, parse_size(o.size, kMaxTiledPixels));
   if (!std::isfinite(o.phase)) return Error{"--phase: expected a finite number"};
   if (o.play && o.probe.empty()) return Error{"--play: there is no path to go along; --probe PATH.csv was expected"};
@@ -140,6 +152,7 @@ Outcome render_pictures(const RenderOptions& o) {
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
+  if (o.step >= 0 || !steps.empty()) scene::set_step(scene, steps.empty() ? o.step : steps.front());
   CATENA_CHECK(annotate(scene, o.annotate));
   CATENA_CHECK(o.stereo.apply(scene.stereo));
   CATENA_TRY(const Size picture, picture_size(o, scene.stereo, size));
@@ -160,7 +173,7 @@ Outcome render_pictures(const RenderOptions& o) {
     CATENA_TRY(path, read_hand_path(o.probe));
   }
   FeltPath hand(program, std::move(path));
-  Frames frames(scene, o, motion, hand, size);
+  Frames frames(scene, o, motion, hand, size, steps);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};

@@ -149,6 +149,32 @@ TEST(LoadNifti, TheFirstVolumeOfATimeSeries) {
   EXPECT_EQ(describe(path).value()[0].type, "float32, first of 3 volumes");
 }
 
+TEST(LoadNifti, TheFourthAxisIsTimeOnlyWhereTheHeaderSaysSo) {
+  TemporaryFolder folder;
+  Nifti n(4, 3, 2, 16, 32);
+  n.put<std::int16_t>(40, 4);
+  n.put<std::int16_t>(48, 3);
+  n.put(92, 500.f);  // of time
+  for (int i = 0; i < 72; ++i) n.append(static_cast<float>(i));
+  LoadRequest request;
+  request.path = n.save(folder / "directions.nii");
+  request.step = 1;
+  const auto directions = load(request);
+  ASSERT_TRUE(directions) << directions.error().message;
+  EXPECT_TRUE(directions->times.empty());
+  ASSERT_EQ(directions->notes.size(), 1u);
+  EXPECT_NE(directions->notes[0].find("volume 1 of 3"), std::string::npos) << directions->notes[0];
+  EXPECT_EQ(directions->scalar->min_value(), 24);
+  n.put<std::uint8_t>(123, 2 | 16);  // millimetres, milliseconds
+  request.path = n.save(folder / "time.nii");
+  const auto series = load(request);
+  ASSERT_TRUE(series) << series.error().message;
+  EXPECT_EQ(series->times, (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(series->scalar->min_value(), 24);
+  request.step = 99;
+  EXPECT_EQ(load(request).value().scalar->max_value(), 71);
+}
+
 TEST(LoadNifti, BadFilesHaveTheirSentence) {
   TemporaryFolder folder;
   const auto message = [&](const std::string& path) {

@@ -79,6 +79,8 @@ struct ViewState {
   std::string loading;              ///< the path that is being opened; empty: none
   std::vector<std::string> recent;  ///< paths, the newest first
 
+  bool plays_steps = false;  ///< steps in time go by
+
   // the picture and the pointer
   Area area;                            ///< of the picture, window coordinates
   double pointer_x = 0, pointer_y = 0;  ///< window coordinates

@@ -77,6 +77,9 @@ constexpr CommandRow kCommandRows[] = {
     {Action::save_as, "Save as...", with_control(GLFW_KEY_S, Held::yes), kNoStroke, nullptr, "save as"},
     {Action::undo, "Undo", with_control(GLFW_KEY_Z, Held::no), kNoStroke, kScene, "undo"},
     {Action::redo, "Redo", with_control(GLFW_KEY_Y), with_control(GLFW_KEY_Z, Held::yes, false), nullptr, "redo"},
+    {Action::play_steps, nullptr, {GLFW_KEY_K}, kNoStroke, kScene, "play the steps in time, or stop"},
+    {Action::step_before, nullptr, {GLFW_KEY_COMMA}, kNoStroke, kScene, "the step before"},
+    {Action::next_step, nullptr, {GLFW_KEY_PERIOD}, kNoStroke, nullptr, "and after"},
     {Action::pulses, nullptr, {GLFW_KEY_P}, kNoStroke, kScene, "the pulses along streamlines stand or run"},
 
     {Action::panels, "Panels", {GLFW_KEY_TAB, Held::any}, kNoStroke, kWindow, "panels"},

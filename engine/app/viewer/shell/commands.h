@@ -43,6 +43,9 @@ enum class Action : std::uint8_t {
   fly,
   next_stereo,
   pulses,
+  play_steps,
+  next_step,
+  step_before,
   // the hand
   hand_mode,
   forces,
@@ -91,12 +94,16 @@ struct Feel {
 struct ChooseDevice {
   std::string name;
 };
+/// In time.
+struct ShowStep {
+  int step;
+};
 struct Record {
   std::string path;  ///< .catlog of every tick from now on; empty: no more
 };
 
 using Command = std::variant<Action, Edit, OpenFile, DropFile, AnswerToDropped, SaveAs, GiveUpSaving, AnswerToUnsaved, AnswerToLeft,
-                             ChooseStereo, ChooseQuality, EstimateError, Feel, ChooseDevice, Record>;
+                             ChooseStereo, ChooseQuality, EstimateError, Feel, ChooseDevice, ShowStep, Record>;
 using Commands = std::vector<Command>;
 
 /// What a stroke asks of the program when it is no text for the interface. `fly`: letters and arrows fly, and ask for nothing.

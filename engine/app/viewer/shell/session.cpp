@@ -9,7 +9,9 @@
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/field/kept.h"
 #include "engine/scene/hidden.h"
+#include "engine/scene/steps.h"
 
 namespace catena::app {
 
@@ -97,6 +99,41 @@ bool Session::run_pulses() {
   return phase.has_value();
 }
 
+/// What cannot be loaded is said, and the step stays.
+void Session::show_step(int step) {
+  scene::Scene& scene = shared_.scene.scene();
+  const int count = scene::step_count(scene), wanted = (step % count + count) % count;
+  if (count < 2 || wanted == scene.time.step) return;
+  for (const field::LoadRequest& request : scene::requests_at(scene, wanted))
+    if (const auto loaded = field::load_kept(request); !loaded) {
+      shared_.state.plays_steps = false;
+      return shared_.state.say(loaded.error().message, true);
+    }
+  last_step_ns_ = now_ns();
+  if (scene::set_step(scene, wanted)) shared_.scene.touch();
+}
+
+/// A step that is not loaded when its time has come is waited for, without holding up the window.
+void Session::run_steps() {
+  const scene::Scene& scene = std::as_const(shared_.scene).scene();
+  const int count = shared_.state.plays_steps ? scene::step_count(scene) : 1;
+  if (count < 2) return;
+  const int next = (scene.time.step + 1) % count;
+  std::vector<field::LoadRequest> ahead = scene::requests_at(scene, next);
+  const bool ready = std::all_of(ahead.begin(), ahead.end(), field::is_kept);
+  constexpr double kLongestWaitS = 30;  // then it is loaded here, which says what is wrong
+  const double since_s = s_since(last_step_ns_), period_s = 1 / scene.time.per_second;
+  if (since_s >= period_s && (ready || since_s >= period_s + kLongestWaitS)) return show_step(next);
+  if (steps_ahead_ == next) return;
+  steps_ahead_ = next;
+  constexpr int kAhead = 3;
+  for (int k = 2; k <= kAhead; ++k) {
+    const auto more = scene::requests_at(scene, (scene.time.step + k) % count);
+    ahead.insert(ahead.end(), more.begin(), more.end());
+  }
+  field::load_ahead(std::move(ahead));
+}
+
 void Session::update_title() {
   const double since_s = s_since(last_title_ns_);
   if (last_title_ns_ != 0 && since_s < kTitleS) return;
@@ -148,6 +185,7 @@ std::optional<Failure> Session::run() {
   while (goes_on()) {
     const Changed by_input = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
     // what has changed since the last picture
+    run_steps();
     const bool opened = files_.take_loaded(), edited = take_edits(), news = shared_.hand.take(scene.scene());
     live = live || news || files_.is_loading() || shared_.hand.recording().running();
     if (news) keep_widgets();

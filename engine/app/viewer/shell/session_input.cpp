@@ -40,14 +40,14 @@ void Session::carry_out(const Command& command) {
     changed_ = true;
   };
   std::visit(
-      Overloaded{[&](Action action) { act(action); },
-                 [&](const Edit& edit) { state.say_if_wrong(scene.apply(edit.edits, edit.what, edit.drag)); },
-                 [&](const OpenFile& file) { files_.open(file.path); }, [&](const DropFile& file) { files_.drop(file.path); },
-                 [&](const SaveAs& file) { files_.save_as(file.path); }, [&](GiveUpSaving) { files_.give_up_saving(); },
-                 [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
-                 [&](AnswerToLeft answer) { files_.answer(answer); },
-                 [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); }, [&](EstimateError) { wants_error_ = true; },
-                 [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); }, choose_stereo, choose_device, record},
+      Overloaded{
+          [&](Action action) { act(action); }, [&](const Edit& edit) { state.say_if_wrong(scene.apply(edit.edits, edit.what, edit.drag)); },
+          [&](const OpenFile& file) { files_.open(file.path); }, [&](const DropFile& file) { files_.drop(file.path); },
+          [&](const SaveAs& file) { files_.save_as(file.path); }, [&](GiveUpSaving) { files_.give_up_saving(); },
+          [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
+          [&](AnswerToLeft answer) { files_.answer(answer); }, [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); },
+          [&](EstimateError) { wants_error_ = true; }, [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); },
+          choose_stereo, choose_device, [&](ShowStep asked) { show_step(asked.step); }, record},
       command);
 }
 
@@ -87,6 +87,12 @@ void Session::act(Action action) {
     }
     case Action::pulses:
       return toggle(pulses_run_);
+    case Action::play_steps:
+      return toggle(state.plays_steps);
+    case Action::next_step:
+      return show_step(scene.scene().time.step + 1);
+    case Action::step_before:
+      return show_step(scene.scene().time.step - 1);
     case Action::hand_mode:
       return shared_.controls.hand_mode ? end_hand() : begin_hand();
     case Action::forces:

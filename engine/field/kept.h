@@ -1,0 +1,18 @@
+/// Fields of a series in time, kept while there is room, and loaded before they are asked for. Room: a quarter of the memory that is
+/// allowed (engine/base/memory_limit.h), counted when a field is added; the one that was not asked for longest goes first. Any thread.
+#pragma once
+#include <vector>
+
+#include "engine/field/load.h"
+
+namespace catena::field {
+
+/// As load(), from what is kept where it is there. A field that is being loaded ahead is waited for.
+Result<AnyField> load_kept(const LoadRequest& request);
+/// Loads these, in order, on a thread of its own; what was to be loaded before and has not begun is forgotten. Errors are left to who asks.
+void load_ahead(std::vector<LoadRequest> requests);
+bool is_kept(const LoadRequest& request);
+/// Nothing is kept any more; waits for what is being loaded. For tests, and at the end of the program.
+void forget_kept();
+
+}  // namespace catena::field
