@@ -279,10 +279,18 @@ void add_info(CLI::App& program, Work& chosen) {
       if (!part->empty()) return print_keys(*part);
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
       if (is_log_file(*path)) return describe_log(*path);
-      if (scene::shows_mesh(*path)) return describe_mesh(*path);
-      if (curves::is_point_file(*path)) return describe_points(*path);
-      if (curves::is_curve_file(*path)) return describe_curves(*path);
-      return is_scene_file(*path) ? describe_scene(*path) : describe_file(*path);
+      if (is_scene_file(*path)) return describe_scene(*path);
+      switch (scene::kind_of_file(*path)) {
+        case scene::FileKind::mesh:
+          return describe_mesh(*path);
+        case scene::FileKind::curves:
+          return describe_curves(*path);
+        case scene::FileKind::points:
+          return describe_points(*path);
+        case scene::FileKind::field:
+          return describe_file(*path);
+      }
+      return Done{};
     };
   });
 }

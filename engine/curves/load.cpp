@@ -12,7 +12,7 @@ struct Format {
   std::string_view ending;
   Result<CurveSet> (*parse)(std::string_view bytes, const std::string& name);
 };
-constexpr Format kFormats[] = {{".tck", parse_tck}, {".trk", parse_trk}};
+constexpr Format kFormats[] = {{".tck", parse_tck}, {".trk", parse_trk}, {".vtp", nullptr}, {".vtk", nullptr}, {".vtu", nullptr}};
 
 const Format* format_of(std::string_view path) {
   for (const Format& format : kFormats)
@@ -37,6 +37,10 @@ Result<CurveSetPtr> load_curves(const std::string& path) {
   const Format* format = format_of(path);
   const std::string wanted = "a file of curves (" + alternatives(curve_endings()) + ")";
   if (format == nullptr) return Error{one_line(path + ": has an unknown kind; " + wanted + " was expected")};
+  if (format->parse == nullptr) {
+    CATENA_TRY(CurveSet set, read_line_shape(path));
+    return CurveSetPtr(std::make_shared<CurveSet>(std::move(set)));
+  }
   CATENA_TRY(const std::string bytes, read_text(path, wanted, kMaxBytes));
   CATENA_TRY(CurveSet set, format->parse(bytes, path));
   return CurveSetPtr(std::make_shared<CurveSet>(std::move(set)));

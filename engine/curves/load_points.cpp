@@ -181,7 +181,7 @@ const PointValues* PointSet::find(std::string_view wanted) const {
 }
 
 const std::vector<std::string_view>& point_endings() {
-  static const std::vector<std::string_view> endings{".csv", ".tsv", ".xyz"};
+  static const std::vector<std::string_view> endings{".csv", ".tsv", ".xyz", ".vtp", ".vtk", ".ply"};
   return endings;
 }
 
@@ -189,8 +189,9 @@ bool is_point_file(std::string_view path) {
   return std::ranges::any_of(point_endings(), [&](std::string_view ending) { return has_ending(path, ending); });
 }
 
-Result<PointSet> parse_points(std::string_view text, const std::string& name) {
-  CATENA_TRY(PointSet set, TableReader(text, name).read());
+namespace {
+
+Result<PointSet> completed(PointSet set, const std::string& name) {
   set.name = name;
   set.lowest = set.highest = Vec3(set.points.front());
   for (const glm::vec3& p : set.points)
@@ -204,9 +205,23 @@ Result<PointSet> parse_points(std::string_view text, const std::string& name) {
   return set;
 }
 
+bool is_text(std::string_view path) { return has_ending(path, ".csv") || has_ending(path, ".tsv") || has_ending(path, ".xyz"); }
+
+}  // namespace
+
+Result<PointSet> parse_points(std::string_view text, const std::string& name) {
+  CATENA_TRY(PointSet set, TableReader(text, name).read());
+  return completed(std::move(set), name);
+}
+
 Result<PointSetPtr> load_points(const std::string& path) {
   const std::string wanted = "a table of points (" + alternatives(point_endings()) + ")";
   if (!is_point_file(path)) return Error{one_line(path + ": has an unknown kind; " + wanted + " was expected")};
+  if (!is_text(path)) {
+    CATENA_TRY(PointSet shape, read_point_shape(path));
+    CATENA_TRY(PointSet made, completed(std::move(shape), path));
+    return PointSetPtr(std::make_shared<PointSet>(std::move(made)));
+  }
   CATENA_TRY(const std::string text, read_text(path, wanted));
   CATENA_TRY(PointSet set, parse_points(text, path));
   return PointSetPtr(std::make_shared<PointSet>(std::move(set)));

@@ -29,5 +29,8 @@ const std::vector<std::string_view>& point_endings();
 Result<PointSetPtr> load_points(const std::string& path);
 /// The contents of a file; `name` begins every message.
 Result<PointSet> parse_points(std::string_view text, const std::string& name);
+/// All points in a file of the program catena-read-vtk (.vtp, .vtk, .ply), with the number at each that most would colour by; not yet
+/// measured.
+Result<PointSet> read_point_shape(const std::string& path);
 
 }  // namespace catena::curves

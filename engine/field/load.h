@@ -58,6 +58,12 @@ struct GridInfo {
 /// Describes every grid of a file.
 Result<std::vector<GridInfo>> describe(const std::string& path);
 
+/// What of a file of the program catena-read-vtk is drawn as it lies.
+struct Shapes {
+  bool triangles = false, lines = false, points = false;
+};
+Result<Shapes> shapes_in(const std::string& path);
+
 /// Writes grids to a .vdb through a temporary file beside it, renamed when complete: nothing half-written stays behind.
 struct WriteItem {
   AnyField field;  ///< grids only

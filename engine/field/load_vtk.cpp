@@ -75,6 +75,14 @@ Units units_answered(const std::string& path, const std::string& grid) {
 
 }  // namespace
 
+Result<Shapes> shapes_in(const std::string& path) {
+  LoadRequest request;
+  request.path = path;
+  CATENA_TRY(const ReaderAnswer answer, ask_reader(ReadMode::shape, request));
+  const ShapeReply& shape = answer.reply.shape;
+  return Shapes{shape.triangles.bytes > 0, shape.lines.bytes > 0, shape.points.bytes > 0};
+}
+
 /// .npy: a single array, described by loading it.
 FileFormat npy_format() { return {.endings = {".npy"}, .load = load_answered, .describe = describe_loaded}; }
 

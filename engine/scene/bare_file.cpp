@@ -110,14 +110,15 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   BareFile bare;
   bare.scene_path = path + ".json";
   const std::string file = json::string_text(std::filesystem::path(path).filename().string());
-  if (shows_mesh(path)) {
+  const FileKind kind = kind_of_file(path);
+  if (kind == FileKind::mesh) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
     CATENA_TRY(bare.mesh, mesh::load_mesh(path));
     bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
-  if (curves::is_curve_file(path)) {
+  if (kind == FileKind::curves) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": curves are shown in the colours of their directions; a colour map goes with a data file")};
     CATENA_TRY(bare.curves, curves::load_curves(path));
@@ -125,7 +126,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
     bare.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
-  if (curves::is_point_file(path)) {
+  if (kind == FileKind::points) {
     CATENA_TRY(bare.points, curves::load_points(path));
     CATENA_TRY(const std::string parts, points_parts(*bare.points, file, colors, bare.note));
     bare.text = "{\n" + parts + ",\n" + soft_background() + "\n}\n";
@@ -177,14 +178,24 @@ std::vector<std::string> look_of_file(const std::string& path) {
   return lines;
 }
 
-bool shows_mesh(const std::string& name) {
+FileKind kind_of_file(const std::string& name) {
   const std::vector<std::string> files = is_pattern(name) ? files_of_pattern(name) : std::vector<std::string>{name};
-  if (files.empty()) return false;
-  const std::string& path = files.front();
-  if (!mesh::is_mesh_file(path)) return false;
-  if (!field::is_field_file(path)) return true;
-  const auto grids = field::describe(path);
-  return !grids || std::none_of(grids->begin(), grids->end(), [](const field::GridInfo& grid) { return grid.usable; });
+  const std::string path = files.empty() ? name : files.front();
+  const bool field = field::is_field_file(path), mesh = mesh::is_mesh_file(path), curves = curves::is_curve_file(path),
+             points = curves::is_point_file(path);
+  if (field && !mesh && !curves && !points) return FileKind::field;
+  if (field) {
+    const auto grids = field::describe(path);
+    if (!grids || std::any_of(grids->begin(), grids->end(), [](const field::GridInfo& grid) { return grid.usable; }))
+      return FileKind::field;
+  }
+  if (mesh + curves + points > 1) {
+    const auto shapes = field::shapes_in(path);
+    if (mesh && (!shapes || shapes->triangles)) return FileKind::mesh;
+    if (curves && (!shapes || shapes->lines)) return FileKind::curves;
+    return points ? FileKind::points : FileKind::mesh;
+  }
+  return mesh ? FileKind::mesh : curves ? FileKind::curves : points ? FileKind::points : FileKind::field;
 }
 
 void adopt_loaded(const BareFile& bare, Scene& scene) {

@@ -73,8 +73,10 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid = 
 /// shown.
 std::vector<std::string> look_of_file(const std::string& path);
 
-/// Whether a file is shown as a mesh: by its ending, and where that leaves it open because it holds no fields.
-bool shows_mesh(const std::string& path);
+/// What a data file is shown as: by its ending, and where that leaves it open by what it holds: fields before surfaces, lines and points. Of
+/// a pattern: its first file.
+enum class FileKind { field, mesh, curves, points };
+FileKind kind_of_file(const std::string& path);
 
 /// What a scene file may say, part by part (engine/schema): docs/scene.md, the JSON Schema and the reader are made of it. The links of
 /// "chain" and the keys of "device" are described by the rooms that read them.

@@ -215,4 +215,16 @@ inline std::string vtp() {
          array("offsets", "3 6 9 12", 1, "Int64") + "</Polys></Piece></PolyData></VTKFile>\n";
 }
 
+/// Two polylines of 3 and 2 points, "s" at each point.
+inline std::string vtp_lines() {
+  return "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"5\" "
+         "NumberOfLines=\"2\"><PointData Scalars=\"s\">" +
+         array("s", "0 1 2 3 4") + "</PointData><Points>" + array("Points", "0 0 0 1 0 0 1 1 0 5 5 5 5 5 6", 3) + "</Points><Lines>" +
+         array("connectivity", "0 1 2 3 4", 1, "Int64") + array("offsets", "3 5", 1, "Int64") + "</Lines></Piece></PolyData></VTKFile>\n";
+}
+inline std::string ply_points() {
+  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n1 0 0\n0 2 "
+         "3\n";
+}
+
 }  // namespace catena::test::vtk_files

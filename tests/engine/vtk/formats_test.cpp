@@ -6,9 +6,12 @@
 #include <cstring>
 #include <numbers>
 
+#include "engine/curves/load.h"
+#include "engine/curves/points.h"
 #include "engine/field/load.h"
 #include "engine/field/units.h"
 #include "engine/mesh/load.h"
+#include "engine/scene/scene.h"
 #include "tests/engine/vtk/files.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/support/support.h"
@@ -205,6 +208,27 @@ TEST_F(Formats, SurfacesOfPlyGiftiAndVtk) {
     EXPECT_EQ((*mesh)->open_edges(), 0u) << name;
     EXPECT_EQ((*mesh)->highest(), Vec3(1, 2, 3)) << name;
   }
+}
+
+TEST_F(Formats, LinesAndPointsOfVtkAndPly) {
+  const auto lines = curves::load_curves(file("a.vtp", files::vtp_lines()));
+  ASSERT_TRUE(lines) << lines.error().message;
+  EXPECT_EQ((*lines)->first, (std::vector<std::uint32_t>{0, 3, 5}));
+  EXPECT_EQ((*lines)->points[4], glm::vec3(5, 5, 6));
+  ASSERT_NE((*lines)->find("s"), nullptr);
+  EXPECT_EQ((*lines)->find("s")->values[3], 3);
+  const auto points = curves::load_points(file("a.ply", files::ply_points()));
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_EQ((*points)->points.size(), 3u);
+  EXPECT_EQ((*points)->highest, Vec3(1, 2, 3));
+  // what a file shows is what it holds
+  using scene::FileKind;
+  EXPECT_EQ(scene::kind_of_file(folder_ / "a.vtp"), FileKind::curves);
+  EXPECT_EQ(scene::kind_of_file(folder_ / "a.ply"), FileKind::points);
+  EXPECT_EQ(scene::kind_of_file(file("b.vtp", files::vtp())), FileKind::mesh);
+  EXPECT_EQ(scene::kind_of_file(file("b.ply", files::ply())), FileKind::mesh);
+  EXPECT_EQ(scene::kind_of_file(file("b.vtk", files::legacy_vectors())), FileKind::field);
+  EXPECT_EQ(scene::kind_of_file(file("b.vtu", files::vtu_mixed(linear))), FileKind::field);
 }
 
 TEST_F(Formats, WhatIsWrongIsSaidInOneLine) {
