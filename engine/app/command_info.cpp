@@ -17,6 +17,7 @@
 #include "engine/scene/color_maps.h"
 #include "engine/scene/ruler.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/steps.h"
 #include "engine/scene/units.h"
 #include "engine/scene/widgets.h"
 #include "engine/schema/documents.h"
@@ -228,9 +229,13 @@ Outcome describe_scene(const std::string& path) {
   else
     fmt::print(
         "workspace: not stated; replay takes 1 world unit for 1 m of the hand, view and feel fit the data into the device's reach\n");
-  fmt::print("drawn: {} volumes, {} isosurfaces, {} meshes, {} streamline sets{}\n", scene.world.count<scene::Volume>(),
-             scene.world.count<scene::Isosurface>(), scene.world.count<scene::SurfaceMesh>(), scene.world.count<scene::StreamlineSet>(),
-             all_curves.empty() ? "" : fmt::format(", {} sets of curves", all_curves.size()));
+  fmt::print(
+      "drawn: {} volumes, {} isosurfaces, {} slices, {} meshes, {} streamline sets, {} sets of glyphs, {} sets of curves, {} sets of "
+      "points\n",
+      scene.world.count<scene::Volume>(), scene.world.count<scene::Isosurface>(), scene.world.count<scene::Slice>(),
+      scene.world.count<scene::SurfaceMesh>(), scene.world.count<scene::StreamlineSet>(), scene.world.count<scene::GlyphSet>(),
+      scene.world.count<scene::DrawnCurves>(), scene.world.count<scene::DrawnPoints>());
+  if (const int steps = scene::step_count(scene); steps > 1) fmt::print("time: {} steps\n", steps);
   return Done{};
 }
 

@@ -56,10 +56,10 @@ Result<TckHeader> read_tck_header(std::string_view bytes, const std::string& nam
         return failed(line, "the datatype is " + in_quotes(value) + "; one of Float32LE, Float32BE, Float64LE, Float64BE was expected");
     } else if (key == "file") {
       const std::size_t blank = value.find(' ');
-      const auto number = blank == std::string_view::npos ? std::nullopt : parse_integer(trim(value.substr(blank)));
-      if (!value.starts_with(". ") || !number || *number < 0)
+      const long long number = blank == std::string_view::npos ? -1 : parse_integer(trim(value.substr(blank))).value_or(-1);
+      if (!value.starts_with(". ") || number < 0)
         return failed(line, "the triples are in " + in_quotes(value) + "; \". OFFSET\", this very file, was expected");
-      offset = static_cast<std::size_t>(*number);
+      offset = static_cast<std::size_t>(number);
     }
   }
 }
