@@ -6,18 +6,6 @@
 
 namespace catena::app {
 
-namespace {
-
-/// A column's name as a cell of CSV.
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-}  // namespace
-
 Result<FieldSamples> FieldSamples::of(scene::Scene& scene) {
   FieldSamples samples;
   std::vector<scene::Entity> fields;
@@ -49,9 +37,9 @@ bool FieldSamples::Named::sample(const Vec3& world, double (&numbers)[3]) {
 std::string FieldSamples::header() const {
   std::string line;
   for (const Named& field : fields_) {
-    if (field.field.scalar) line += "," + csv_cell(field.name);
+    if (field.field.scalar) line += "," + field.name;
     for (const char* axis : {"_x", "_y", "_z"})
-      if (field.field.vector) line += "," + csv_cell(field.name + axis);
+      if (field.field.vector) line += "," + field.name + axis;
   }
   return line;
 }
