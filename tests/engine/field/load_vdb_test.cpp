@@ -331,7 +331,7 @@ TEST(LoadVdb, BadFilesNeverPassAndNeverCrash) {
   catena::test::write_file(folder / "text.vdb", std::string(500, 'x'));
   EXPECT_TRUE(has(error_of(request(folder / "text.vdb")), "not a .vdb"));
   catena::test::write_file(folder / "a.txt", "hello");
-  EXPECT_TRUE(has(error_of(request(folder / "a.txt")), "expected .vdb"));
+  EXPECT_TRUE(has(error_of(request(folder / "a.txt")), "expected a data file (.vdb"));
   // cut at every length that matters
   auto noise = openvdb::FloatGrid::create();
   noise->setName("noise");
