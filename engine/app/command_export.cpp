@@ -1,4 +1,5 @@
 /// catena export FILE.catlog -o TICKS.csv [--details FILE.csv]: a recording as tables. Needs none of the scene's files.
+/// catena export SCENE --isosurface I|--slice I|--streamlines I|--mesh M|--field F|--probe PATH.csv -o OUT: a part of a scene.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -6,12 +7,16 @@
 #include <optional>
 
 #include "engine/app/command.h"
+#include "engine/app/export_scene.h"
+#include "engine/app/options.h"
 #include "engine/app/replay_log.h"
 #include "engine/app/run_files.h"
+#include "engine/app/surface_file.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
+#include "engine/field/write.h"
 #include "haptics/servo/log/reader.h"
 
 namespace catena::app {
@@ -22,6 +27,7 @@ namespace log = haptics::log;
 
 struct ExportOptions {
   std::string log, output, details;
+  SceneExport part;
 };
 
 void append_quat(std::string& line, const Quat& q) {
@@ -110,15 +116,46 @@ Outcome export_log(const ExportOptions& options) {
   return Done{};
 }
 
+constexpr const char* kParts = "--isosurface, --slice, --streamlines, --mesh, --field or --probe";
+
+Outcome export_any(const ExportOptions& options) {
+  const SceneExport& part = options.part;
+  const int parts = int(part.isosurface.has_value()) + int(part.slice.has_value()) + int(part.streamlines.has_value()) +
+                    int(!part.mesh.empty()) + int(!part.field.empty()) + int(!part.probe.empty());
+  if (is_log_file(options.log)) {
+    if (parts > 0) return Error{options.log + ": a recording has no parts; " + kParts + " go with a scene"};
+    return export_log(options);
+  }
+  if (!options.details.empty()) return Error{options.log + ": --details goes with a recording (.catlog)"};
+  if (parts != 1) return Error{options.log + ": expected one of " + kParts + ", which says what of the scene to write"};
+  SceneExport request = part;
+  request.source = options.log;
+  request.output = options.output;
+  return export_scene(request);
+}
+
 }  // namespace
 
 void add_export(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = program.add_subcommand("export", "a recording (.catlog) as CSV");
-  command->add_option("FILE", options->log, "a recording (.catlog)")->required();
-  command->add_option("-o,--output", options->output, "ticks, CSV: the columns of replay")->required();
-  command->add_option("--details", options->details, "all else that was recorded, CSV");
-  command->callback([&chosen, options] { chosen = [options] { return export_log(*options); }; });
+  SceneExport& part = options->part;
+  CLI::App* command = program.add_subcommand("export", "a recording (.catlog) as CSV; a part of a scene for other programs");
+  command->add_option("FILE", options->log, "a recording (.catlog), a scene (.json) or a data file")->required();
+  command->add_option("-o,--output", options->output, "of a recording: CSV, the columns of replay; of a scene: by its ending")->required();
+  command->add_option("--details", options->details, "of a recording: all else that was recorded, CSV");
+  const auto number = CLI::Range(0, 1'000'000);
+  command->add_option("--isosurface", part.isosurface, "number in the scene's list, from 0: " + surface_endings())->check(number);
+  command->add_option("--slice", part.slice, "number in the scene's list: .csv or .vtp, with the values of all fields")->check(number);
+  command->add_option("--streamlines", part.streamlines, "number in the scene's list: .vtp or .csv")->check(number);
+  command->add_option("--mesh", part.mesh, "name of a mesh: " + surface_endings());
+  command->add_option("--field", part.field, "name of a field: " + field::written_endings());
+  command->add_option("--probe", part.probe, "a path of the hand: .csv, with the values of all fields");
+  command->add_option("--spacing", part.spacing, "of a slice's samples, world units (default: the smallest voxel edge)")
+      ->check(number_above_zero());
+  command->add_option("--outside", part.outside, "of an isosurface, to which its normals point: auto is higher for a level set, else lower")
+      ->check(CLI::IsMember({"auto", "lower", "higher"}))
+      ->capture_default_str();
+  command->callback([&chosen, options] { chosen = [options] { return export_any(*options); }; });
 }
 
 }  // namespace catena::app

@@ -1,4 +1,4 @@
-/// catena import IN -o OUT.vdb: any file that Catena reads, as a VDB.
+/// catena import IN -o OUT: any file that Catena reads, as one of those that it writes (engine/field/write.h).
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/load.h"
+#include "engine/field/write.h"
 
 namespace catena::app {
 
@@ -26,7 +27,8 @@ Outcome import_file(const ImportOptions& o) {
   files.reads(o.input);
   files.writes("-o", o.output);
   CATENA_CHECK(files.check());
-  if (!o.output.ends_with(".vdb") && !o.output.starts_with("/dev/")) return Error{o.output + ": expected an output that ends in .vdb"};
+  if (!field::is_written(o.output) && !o.output.starts_with("/dev/"))
+    return Error{o.output + ": expected an output that ends in " + field::written_endings()};
   const bool raw_file = field::needs_layout(o.input);
   if (!raw_file && !o.shape.empty()) return Error{o.input + ": --shape belongs to .raw files"};
   field::LoadRequest request;
@@ -41,7 +43,7 @@ Outcome import_file(const ImportOptions& o) {
     raw.type = o.type;
     request.raw = raw;
   }
-  CATENA_TRY(const std::string name, field::import_as_vdb(request, o.output, o.name));
+  CATENA_TRY(const std::string name, field::convert(request, o.output, o.name));
   fmt::print("{}: {}\n", printable(o.output), printable(name));
   return Done{};
 }
@@ -50,9 +52,9 @@ Outcome import_file(const ImportOptions& o) {
 
 void add_import(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = program.add_subcommand("import", "convert a data file to .vdb");
+  CLI::App* command = program.add_subcommand("import", "convert a data file");
   command->add_option("IN", options->input, field::field_file_words())->required();
-  command->add_option("-o,--output", options->output, "the grid, .vdb")->required();
+  command->add_option("-o,--output", options->output, "the grid: " + field::written_endings())->required();
   command->add_option("--grid", options->grid, "which grid of a .vdb");
   command->add_option("--name", options->name, "the grid's name in the output");
   command->add_option("--shape", options->shape, ".raw: voxels along x y z")->expected(3);

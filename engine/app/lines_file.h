@@ -12,7 +12,6 @@
 namespace catena::app {
 
 void write_lines_csv(OutputFile& out, const std::vector<flow::CurvePtr>& curves);
-/// Little-endian machines only (a check at compile time).
 void write_lines_vtp(OutputFile& out, const std::vector<flow::CurvePtr>& curves, const field::VectorField& field);
 
 }  // namespace catena::app

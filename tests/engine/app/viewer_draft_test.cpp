@@ -8,7 +8,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include "render/image/picture.h"
 #include "tests/support/support.h"
@@ -32,9 +34,53 @@ std::vector<std::string> drafts_in(const std::string& folder) {
   return found;
 }
 
+/// XDG_STATE_HOME for as long as it lives.
+class StateHome {
+ public:
+  explicit StateHome(const std::string& path) {
+    if (const char* before = std::getenv("XDG_STATE_HOME")) before_ = before;
+    ::setenv("XDG_STATE_HOME", path.c_str(), 1);
+  }
+  ~StateHome() {
+    if (before_)
+      ::setenv("XDG_STATE_HOME", before_->c_str(), 1);
+    else
+      ::unsetenv("XDG_STATE_HOME");
+  }
+
+ private:
+  std::optional<std::string> before_;
+};
+
+TEST(Draft, OfADataFileLiesInTheUsersFolderUntilItsSceneIsSaved) {
+  const test::TemporaryFolder data, other, home;
+  const StateHome state(home / "state");
+  const std::string scene = data / "head.nii.json", unsaved = home / "state/catena/unsaved";
+  test::write_file(data / "head.nii", "data");
+  {
+    Draft draft;
+    ASSERT_TRUE(draft.keep(scene, "one"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(data.path()), fs::directory_iterator()), 1) << "the data alone";
+    ASSERT_EQ(drafts_in(unsaved).size(), 1u);
+  }
+  EXPECT_FALSE(find_left_draft(other / "head.nii.json")) << "a file of that name elsewhere";
+  const auto left = find_left_draft(scene);
+  ASSERT_TRUE(left);
+  EXPECT_EQ(left->text, "one");
+  remove_left_draft(*left);
+  EXPECT_TRUE(drafts_in(unsaved).empty());
+  // once the person has put a scene there
+  test::write_file(scene, "{}");
+  Draft draft;
+  ASSERT_TRUE(draft.keep(scene, "two"));
+  EXPECT_EQ(drafts_in(data.path()).size(), 1u);
+  draft.remove();
+}
+
 TEST(Draft, IsWrittenWholeAndFoundOnceItsProgramHasEnded) {
   const test::TemporaryFolder folder;
   const std::string scene = folder / "a.json";
+  test::write_file(scene, kScene);
   {
     Draft draft;
     ASSERT_TRUE(draft.keep(scene, "one"));
@@ -65,6 +111,7 @@ TEST(Draft, IsWrittenWholeAndFoundOnceItsProgramHasEnded) {
 TEST(Draft, OfAProgramThatIsKilledTheLastTextIsLeft) {
   const test::TemporaryFolder folder;
   const std::string scene = folder / "a.json";
+  test::write_file(scene, kScene);
   const pid_t child = ::fork();
   if (child == 0) {
     Draft draft;
@@ -79,6 +126,9 @@ TEST(Draft, OfAProgramThatIsKilledTheLastTextIsLeft) {
 
 TEST(Draft, AnotherSceneTakesItsPlaceAndWhatCannotBeWrittenIsSaid) {
   const test::TemporaryFolder folder;
+  test::write_file(folder / "a.json", kScene);
+  test::write_file(folder / "b.json", kScene);
+  const StateHome state(folder / "a.json/no_folder");
   Draft draft;
   ASSERT_TRUE(draft.keep(folder / "a.json", "a"));
   ASSERT_TRUE(draft.keep(folder / "b.json", "b"));

@@ -13,7 +13,10 @@
 #include <random>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "engine/app/viewer/shell/file_list.h"
+#include "engine/base/hash.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 
@@ -24,11 +27,29 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kDigits = 12, kLongestName = 180;
 
-/// "scene.json.unsaved-": the beginning of all its drafts' names.
-std::string draft_prefix(const std::string& scene_path) {
+/// Where drafts lie, and how their names begin.
+struct DraftPlace {
+  fs::path folder;
+  std::string prefix;
+};
+
+/// Beside the scene: "scene.json.unsaved-".
+DraftPlace beside_scene(const std::string& scene_path) {
   std::string name = fs::path(scene_path).filename().string();
   name.resize(std::min(name.size(), kLongestName));
-  return name + ".unsaved-";
+  fs::path folder = fs::path(scene_path).parent_path();
+  return {folder.empty() ? fs::path(".") : folder, name + ".unsaved-"};
+}
+
+/// In the user's own folder, the same with a hash of the scene's place before it; none where there is no home.
+std::optional<DraftPlace> in_state_folder(const std::string& scene_path) {
+  const std::string state = state_folder();
+  if (state.empty()) return std::nullopt;
+  std::error_code code;
+  const std::string place = fs::weakly_canonical(fs::absolute(scene_path, code), code).string();
+  char digits[17];
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash_of(place.data(), place.size())));
+  return DraftPlace{fs::path(state) / "unsaved", std::string(digits) + "-" + beside_scene(scene_path).prefix};
 }
 
 std::string random_digits() {
@@ -73,8 +94,17 @@ Draft::~Draft() {
 Outcome Draft::keep(const std::string& scene_path, const std::string& text) {
   if (!path_.empty() && scene_path == scene_path_ && text == text_) return Done{};
   if (scene_path != scene_path_) remove();
-  const fs::path folder = fs::path(scene_path).parent_path();
-  const std::string path = path_.empty() ? (folder / (draft_prefix(scene_path) + random_digits())).string() : path_;
+  std::string path = path_;
+  if (path.empty()) {
+    std::error_code code;
+    DraftPlace place = beside_scene(scene_path);
+    // a data file's folder is not chosen for scenes before one is saved there
+    if (const auto own = in_state_folder(scene_path); own && !fs::exists(scene_path, code)) {
+      place = *own;
+      fs::create_directories(place.folder, code);
+    }
+    path = (place.folder / (place.prefix + random_digits())).string();
+  }
   CATENA_TRY(PartFile part, PartFile::create(path, true));
   CATENA_CHECK(write_all(part.descriptor(), text, path));
   CATENA_CHECK(part.commit());
@@ -95,15 +125,16 @@ void Draft::remove() {
 }
 
 std::optional<LeftDraft> find_left_draft(const std::string& scene_path) {
-  const std::string prefix = draft_prefix(scene_path);
-  fs::path folder = fs::path(scene_path).parent_path();
-  if (folder.empty()) folder = ".";
+  std::vector<DraftPlace> places{beside_scene(scene_path)};
+  if (auto own = in_state_folder(scene_path)) places.push_back(std::move(*own));
   std::optional<LeftDraft> newest;
-  std::error_code code;
-  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
-    if (!is_draft_name(it->path().filename().string(), prefix)) continue;
-    const auto at = time_of_left(it->path().string());
-    if (at && (!newest || *at > newest->at_s)) newest = LeftDraft{it->path().string(), {}, *at};
+  for (const DraftPlace& place : places) {
+    std::error_code code;
+    for (fs::directory_iterator it(place.folder, code), end; !code && it != end; it.increment(code)) {
+      if (!is_draft_name(it->path().filename().string(), place.prefix)) continue;
+      const auto at = time_of_left(it->path().string());
+      if (at && (!newest || *at > newest->at_s)) newest = LeftDraft{it->path().string(), {}, *at};
+    }
   }
   if (!newest) return std::nullopt;
   auto text = read_text(newest->path, "unsaved work (JSON)", kMaxJsonBytes);

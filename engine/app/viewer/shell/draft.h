@@ -1,6 +1,8 @@
-/// Draft keeps unsaved work: the scene's text as it is now, in a file beside the scene while it has changes that are not saved, so that it
-/// outlives a program that is killed. SCENE.json.unsaved-<12 hex digits> is written whole or not at all, is its owner's alone, and is
-/// locked (flock) while its program runs: what is found unlocked was left by one that has ended. Frame thread.
+/// Draft keeps unsaved work: the scene's text as it is now, in a file while it has changes that are not saved, so that it outlives a
+/// program that is killed. SCENE.json.unsaved-<12 hex digits> lies beside the scene; of a data file whose scene was never saved it lies in
+/// the user's own folder (state_folder() in file_list.h, unsaved/<hash of the place>-SCENE.json.unsaved-...), so that nothing is written
+/// beside data unasked. It is written whole or not at all, is its owner's alone, and is locked (flock) while its program runs: what is
+/// found unlocked was left by one that has ended. Frame thread.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -35,7 +35,11 @@ const std::vector<std::string_view>& openable_endings() {
     for (const std::string_view ending : mesh::mesh_endings()) all.push_back(ending);
     for (const std::string_view ending : curves::curve_endings()) all.push_back(ending);
     for (const std::string_view ending : curves::point_endings()) all.push_back(ending);
-    return all;
+    // several kinds of things lie in files of one ending
+    std::vector<std::string_view> once;
+    for (const std::string_view ending : all)
+      if (std::ranges::find(once, ending) == once.end()) once.push_back(ending);
+    return once;
   }();
   return endings;
 }
@@ -121,17 +125,22 @@ std::string stem_of_path(const std::string& path) {
   return name.empty() ? "catena" : name;
 }
 
+/// XDG base directories: a relative one counts as not given.
+std::string state_folder() {
+  const char *state = std::getenv("XDG_STATE_HOME"), *home = std::getenv("HOME");
+  if (state != nullptr && std::filesystem::path(state).is_absolute()) return (std::filesystem::path(state) / "catena").string();
+  if (home != nullptr && std::filesystem::path(home).is_absolute()) return (std::filesystem::path(home) / ".local/state/catena").string();
+  return {};
+}
+
 namespace {
 
 namespace fs = std::filesystem;
 constexpr std::uintmax_t kLargestList = 1u << 20;
 
-/// XDG base directories: a relative one counts as not given.
 std::string users_path() {
-  const char *state = std::getenv("XDG_STATE_HOME"), *home = std::getenv("HOME");
-  if (state != nullptr && fs::path(state).is_absolute()) return (fs::path(state) / "catena/recent.json").string();
-  if (home != nullptr && fs::path(home).is_absolute()) return (fs::path(home) / ".local/state/catena/recent.json").string();
-  return {};
+  const std::string folder = state_folder();
+  return folder.empty() ? "" : folder + "/recent.json";
 }
 
 std::vector<std::string> read_list(const std::string& path) {

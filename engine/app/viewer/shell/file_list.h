@@ -35,6 +35,9 @@ std::string free_name(const std::string& folder, const std::string& stem, const 
 /// The name without folder and extension ("carotid" of "a/carotid.vdb", "brain" of "brain.nii.gz"); "catena" of an empty path.
 std::string stem_of_path(const std::string& path);
 
+/// Where this user's programs keep what is of a session: $XDG_STATE_HOME/catena, else ~/.local/state/catena; empty where there is no home.
+std::string state_folder();
+
 /// RecentFiles has the scenes and data files that were opened last, kept from run to run in $XDG_STATE_HOME/catena/recent.json (else
 /// ~/.local/state/catena/recent.json): {"files": [PATH, ...]}, the newest first. It never fails the program: where there is no home,
 /// nothing can be written or the file is none of ours, the list is empty or stays as it was. Frame thread.

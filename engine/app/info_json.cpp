@@ -1,0 +1,221 @@
+#include "engine/app/info_json.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "engine/app/command.h"
+#include "engine/app/replay_log.h"
+#include "engine/base/json_text.h"
+#include "engine/base/numbers.h"
+#include "engine/curves/load.h"
+#include "engine/curves/points.h"
+#include "engine/field/formats.h"
+#include "engine/field/units.h"
+#include "engine/scene/units.h"
+#include "engine/scene/widgets.h"
+#include "haptics/device/settings.h"
+#include "haptics/extract/extract.h"
+#include "haptics/servo/log/reader.h"
+
+namespace catena::app {
+
+namespace {
+
+namespace log = haptics::log;
+
+std::string json_of(const std::string& text) { return json_string(printable(text)); }
+std::string json_of(const char* text) { return json_of(std::string(text)); }
+std::string json_of(bool value) { return value ? "true" : "false"; }
+std::string json_of(double value) { return std::isfinite(value) ? to_text(value) : "null"; }
+std::string json_of(std::int64_t value) { return std::to_string(value); }
+std::string json_of(std::uint64_t value) { return std::to_string(value); }
+std::string json_of(const Vec3& v) { return fmt::format("[{},{},{}]", json_of(v.x), json_of(v.y), json_of(v.z)); }
+std::string json_of(const Bounds& box) { return fmt::format("[{},{}]", json_of(box.lo), json_of(box.hi)); }
+
+std::string json_list(const std::vector<std::string>& items) {
+  std::string out = "[";
+  for (const std::string& item : items) out += (out.size() > 1 ? "," : "") + item;
+  return out + "]";
+}
+
+/// An object, member by member.
+class JsonObject {
+ public:
+  template <class T>
+  JsonObject& add(const std::string& key, const T& value) {
+    return raw(key, json_of(value));
+  }
+  JsonObject& raw(const std::string& key, const std::string& json) {
+    text_ += (text_.size() > 1 ? "," : "") + json_string(key) + ":" + json;
+    return *this;
+  }
+  /// Nothing where the text is empty.
+  JsonObject& add_word(const std::string& key, const std::string& word) { return word.empty() ? *this : add(key, word); }
+  std::string text() const { return text_ + "}"; }
+
+ private:
+  std::string text_ = "{";
+};
+
+std::string json_of_grid(const std::string& path, const field::GridInfo& g) {
+  const Mat3& j = g.mapping.world_from_index_linear;
+  const Vec3 lowest(g.lowest.x, g.lowest.y, g.lowest.z);
+  const Vec3 size(static_cast<double>(g.size.x), static_cast<double>(g.size.y), static_cast<double>(g.size.z));
+  const field::Units units = field::units_of(path, g.name);
+  JsonObject out;
+  out.add("name", g.name).add("type", g.type).add("usable", g.usable).add("vector", g.is_vector);
+  out.add("size", size).add("lowest", lowest).raw("axes", json_list({json_of(j[0]), json_of(j[1]), json_of(j[2])}));
+  out.add("origin", g.mapping.origin).add_word("unit", units.value).add_word("length_unit", units.length).add("patient", units.patient);
+  out.add("world_box", field::world_bounds(g.mapping, {lowest, lowest + size - Vec3(1.0)})).add("active_voxels", g.stats.active_voxels);
+  if (g.usable) {
+    out.raw("range", json_list({json_of(g.stats.min), json_of(g.stats.max)}));
+    if (g.is_vector) out.raw("component_range", json_list({json_of(g.stats.component_min), json_of(g.stats.component_max)}));
+    out.add("not_finite", g.stats.nan_count);
+  }
+  return out.add("bytes", std::uint64_t{g.bytes}).text();
+}
+
+Result<std::string> json_of_file(const std::string& path) {
+  CATENA_TRY(const std::vector<field::GridInfo> grids, field::describe(path));
+  std::vector<std::string> described, notes;
+  for (const field::GridInfo& g : grids) described.push_back(json_of_grid(path, g));
+  if (!field::needs_layout(path))
+    for (const std::string& line : scene::look_of_file(path)) notes.push_back(json_of(line));
+  return JsonObject().add("kind", "data").add("file", path).raw("grids", json_list(described)).raw("notes", json_list(notes)).text();
+}
+
+void add_mesh(JsonObject& out, const mesh::TriangleMesh& mesh) {
+  const auto count = [&](const char* key, std::size_t n) { out.add(key, std::uint64_t{n}); };
+  count("triangles", mesh.triangles().size());
+  count("dropped", mesh.dropped());
+  count("vertices", mesh.vertices().size());
+  out.raw("world_box", json_list({json_of(mesh.lowest()), json_of(mesh.highest())})).add("length", mesh.length());
+  count("open_edges", mesh.open_edges());
+  count("non_manifold_edges", mesh.non_manifold_edges());
+  count("misoriented_edges", mesh.misoriented_edges());
+  count("bytes", mesh.bytes());
+}
+
+Result<std::string> json_of_mesh(const std::string& path) {
+  CATENA_TRY(const mesh::MeshPtr mesh, mesh::load_mesh(path));
+  JsonObject out;
+  out.add("kind", "mesh").add("file", path);
+  add_mesh(out, *mesh);
+  return out.text();
+}
+
+template <class T>
+std::vector<scene::Entity> all_of(const scene::Scene& scene) {
+  std::vector<scene::Entity> items;
+  scene.world.each<T>([&](scene::Entity e, const T&) { items.push_back(e); });
+  return items;
+}
+
+Result<std::string> json_of_scene(const std::string& path) {
+  CATENA_TRY(scene::Scene scene, open_scene(path));
+  const auto name_of = [&](scene::Entity e) { return scene.world.get<scene::Name>(e).value; };
+  std::vector<std::string> fields, meshes, links, widgets;
+  for (const scene::Entity e : all_of<scene::FieldSource>(scene)) {
+    CATENA_TRY(const field::AnyField any, scene::use_field(scene, e, scene.world.get<scene::FieldSource>(e).where));
+    const scene::FieldSource& source = scene.world.get<scene::FieldSource>(e);
+    JsonObject field;
+    field.add("name", name_of(e)).add("source", source.file ? source.file->path : source.analytic);
+    if (source.file) field.add_word("grid", source.file->grid);
+    field.add("vector", any.vector != nullptr).add("length", any.get()->length());
+    if (any.scalar) field.raw("range", json_list({json_of(any.scalar->min_value()), json_of(any.scalar->max_value())}));
+    field.add_word("unit", scene::unit_of(scene, e)).add("bytes", std::uint64_t{any.get()->bytes()});
+    fields.push_back(field.text());
+  }
+  for (const scene::Entity e : all_of<scene::MeshSource>(scene)) {
+    CATENA_TRY(const mesh::MeshPtr mesh, scene::use_mesh(scene, e));
+    JsonObject out;
+    out.add("name", name_of(e)).add("source", scene.world.get<scene::MeshSource>(e).path);
+    add_mesh(out, *mesh);
+    meshes.push_back(out.text());
+  }
+  // what info checks, too: the chain can be made, the device's keys are right
+  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  if (scene.device) CATENA_CHECK(haptics::read_device_settings(*scene.device, scene.path));
+  scene.world.each<scene::Link>(
+      [&](scene::Entity, const scene::Link& link) { links.push_back(JsonObject().add("name", link.name).add("type", link.type).text()); });
+  for (const scene::Entity e : all_of<scene::Widget>(scene)) {
+    CATENA_TRY(const widget::Spec spec, scene::use_widget(scene, e));
+    widgets.push_back(
+        JsonObject().add("name", name_of(e)).add("type", std::string(scene::kind_word(spec.kind))).add("at", spec.pose.points[0]).text());
+  }
+  const auto count = [](std::size_t n) { return std::uint64_t{n}; };
+  JsonObject coupling, drawn, out;
+  coupling.add("stiffness_n_per_m", program->coupling.stiffness_n_per_m).add("damping_ns_per_m", program->coupling.damping_ns_per_m);
+  coupling.add("max_force_n", program->coupling.max_force_n);
+  drawn.add("volumes", count(scene.world.count<scene::Volume>())).add("isosurfaces", count(scene.world.count<scene::Isosurface>()));
+  drawn.add("slices", count(scene.world.count<scene::Slice>())).add("meshes", count(scene.world.count<scene::SurfaceMesh>()));
+  drawn.add("streamlines", count(scene.world.count<scene::StreamlineSet>())).add("glyphs", count(scene.world.count<scene::GlyphSet>()));
+  drawn.add("curves", count(scene.world.count<scene::DrawnCurves>())).add("points", count(scene.world.count<scene::DrawnPoints>()));
+  out.add("kind", "scene").add("file", path).raw("fields", json_list(fields)).add_word("length_unit", scene::unit_length(scene));
+  out.raw("meshes", json_list(meshes)).raw("links", json_list(links)).raw("widgets", json_list(widgets)).raw("coupling", coupling.text());
+  out.raw("metres_per_unit", scene.workspace.given ? json_of(scene.workspace.metres_per_unit) : "null");
+  return out.raw("drawn", drawn.text()).text();
+}
+
+Result<std::string> json_of_log(const std::string& path) {
+  CATENA_TRY(log::LogReader reader, log::LogReader::open(path));
+  const log::LogHeader& header = reader.header();
+  std::vector<std::string> fields, gaps;
+  for (const std::string& field : header.fields) fields.push_back(json_of(field));
+  std::uint64_t ticks = 0;
+  double first_s = 0, last_s = 0;
+  for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
+    if (event == log::LogEvent::gap) gaps.push_back(json_of(reader.gap().text()));
+    if (event != log::LogEvent::tick) continue;
+    // a device that is not there has no time of its own
+    const double t_s = reader.tick().input.t_s;
+    if (ticks++ == 0) first_s = t_s;
+    if (std::isfinite(t_s)) last_s = t_s;
+  }
+  JsonObject out;
+  out.add("kind", "recording").add("file", path).add("scene", header.scene_path).raw("fields", json_list(fields));
+  out.add("version", header.catena_version).add("started_unix_s", static_cast<std::int64_t>(header.started_unix_ns / 1'000'000'000));
+  out.add("device", header.device).add("rate_hz", header.rate_hz).add("ticks", ticks).add("seconds", last_s - first_s);
+  return out.raw("gaps", json_list(gaps)).add("ending", std::string(reader.ending())).text();
+}
+
+/// Curves and points: what both know.
+template <class Set>
+JsonObject json_of_set(const std::string& kind, const std::string& path, const Set& set) {
+  std::vector<std::string> values;
+  for (const curves::PointValues& one : set.values) values.push_back(json_of(one.name));
+  JsonObject out;
+  out.add("kind", kind).add("file", path).add("points", std::uint64_t{set.points.size()});
+  return out.raw("world_box", json_list({json_of(set.lowest), json_of(set.highest)})).raw("values", json_list(values));
+}
+
+Result<std::string> json_of_data(const std::string& path) {
+  switch (scene::kind_of_file(path)) {
+    case scene::FileKind::mesh:
+      return json_of_mesh(path);
+    case scene::FileKind::curves: {
+      CATENA_TRY(const curves::CurveSetPtr set, curves::load_curves(path));
+      return json_of_set("curves", path, *set).add("lines", std::uint64_t{set->lines()}).text();
+    }
+    case scene::FileKind::points: {
+      CATENA_TRY(const curves::PointSetPtr set, curves::load_points(path));
+      return json_of_set("points", path, *set).add("spacing", set->spacing).text();
+    }
+    case scene::FileKind::field:
+      break;
+  }
+  return json_of_file(path);
+}
+
+}  // namespace
+
+Outcome print_json_info(const std::string& path) {
+  CATENA_TRY(const std::string text, is_log_file(path)     ? json_of_log(path)
+                                     : is_scene_file(path) ? json_of_scene(path)
+                                                           : json_of_data(path));
+  fmt::print("{}\n", text);
+  return Done{};
+}
+
+}  // namespace catena::app

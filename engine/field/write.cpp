@@ -1,0 +1,116 @@
+#include "engine/field/write.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+
+#include "engine/base/memory_limit.h"
+#include "engine/base/text.h"
+#include "engine/field/formats.h"
+#include "engine/field/grid_storage.h"
+#include "engine/field/nano_nodes.h"
+#include "engine/field/write_box.h"
+
+namespace catena::field {
+namespace {
+
+struct Writer {
+  std::string_view ending;
+  Outcome (*write)(const std::string& path, const VoxelBox& box);  ///< nullptr: .vdb, which holds more than a box
+};
+constexpr std::array kWriters{Writer{".vdb", nullptr}, Writer{".vti", write_vti}, Writer{".nrrd", write_nrrd}, Writer{".nii", write_nifti},
+                              Writer{".nii.gz", write_nifti}};
+
+const Writer* writer_of(std::string_view path) {
+  for (const Writer& writer : kWriters)
+    if (has_ending(path, writer.ending)) return &writer;
+  return nullptr;
+}
+
+const NanoMask* mask_of(const AnyField& field) {
+  return field.scalar ? field.scalar->grid()->storage().valid_voxels : field.vector->grid()->storage().valid_voxels;
+}
+
+}  // namespace
+
+Result<VoxelBox> VoxelBox::of(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
+  CATENA_ASSERT(field.get()->is_grid());
+  const Box& whole = field.get()->index_box();
+  VoxelBox box;
+  box.name = name;
+  box.units = units;
+  box.components = field.vector ? 3 : 1;
+  box.masked = mask_of(field) != nullptr;
+  box.field_ = field;
+  const Vec3 count = whole.hi - whole.lo + Vec3(1.0);
+  CATENA_CHECK(
+      ask_for_memory(fmt::format("{}: the whole box of the grid, {:.0f} x {:.0f} x {:.0f} voxels,", path, count.x, count.y, count.z),
+                     count.x * count.y * count.z * (box.components * static_cast<double>(sizeof(float)) + (box.masked ? 1 : 0))));
+  const auto index = [](const Vec3& v) {
+    return Index3{static_cast<std::int32_t>(v.x), static_cast<std::int32_t>(v.y), static_cast<std::int32_t>(v.z)};
+  };
+  box.lowest_ = index(whole.lo);
+  box.size = index(count);
+  box.mapping = field.get()->mapping();
+  box.mapping.origin = box.mapping.world_from_index(whole.lo);
+  return box;
+}
+
+void VoxelBox::read_values(std::int32_t z, std::span<float> out) const {
+  const Index3 origin{lowest_.x, lowest_.y, lowest_.z + z}, layer{size.x, size.y, 1};
+  if (field_.scalar)
+    field_.scalar->grid()->read_block(origin, layer, out);
+  else
+    field_.vector->grid()->read_block(origin, layer, out);
+}
+
+void VoxelBox::read_valid(std::int32_t z, std::span<std::uint8_t> out) const {
+  const NanoMask* mask = mask_of(field_);
+  if (mask == nullptr) {
+    std::fill(out.begin(), out.end(), std::uint8_t{1});
+    return;
+  }
+  const auto accessor = mask->getAccessor();
+  std::size_t n = 0;
+  for (std::int32_t y = 0; y < size.y; ++y)
+    for (std::int32_t x = 0; x < size.x; ++x) out[n++] = accessor.getValue({lowest_.x + x, lowest_.y + y, lowest_.z + z}) ? 1 : 0;
+}
+
+void VoxelBox::read_with_holes(std::int32_t z, std::span<float> out) const {
+  read_values(z, out);
+  if (!masked) return;
+  std::vector<std::uint8_t> valid(layer_voxels());
+  read_valid(z, valid);
+  const auto n = static_cast<std::size_t>(components);
+  for (std::size_t i = 0; i < valid.size(); ++i)
+    if (valid[i] == 0) std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(i * n), n, std::numeric_limits<float>::quiet_NaN());
+}
+
+bool is_written(std::string_view path) { return writer_of(path) != nullptr; }
+
+std::string written_endings() {
+  std::vector<std::string_view> endings;
+  for (const Writer& writer : kWriters) endings.push_back(writer.ending);
+  return alternatives(endings);
+}
+
+Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
+  const Writer* writer = writer_of(path);
+  if (writer == nullptr) return Error{path + ": expected an output that ends in " + written_endings()};
+  if (writer->write == nullptr) return write_vdb(path, {{field, name}});
+  CATENA_TRY(const VoxelBox box, VoxelBox::of(path, field, name, units));
+  return writer->write(path, box);
+}
+
+Result<std::string> convert(const LoadRequest& request, const std::string& path, const std::string& name) {
+  const Writer* writer = writer_of(path);
+  if (writer == nullptr || writer->write == nullptr) return import_as_vdb(request, path, name);
+  CATENA_TRY(const AnyField field, load(request));
+  const std::string own = field.get()->name();
+  const std::string chosen = !name.empty() ? name : !own.empty() ? own : stem_of(request.path);
+  CATENA_CHECK(write_field(path, field, chosen, units_of(request.path, request.grid)));
+  return chosen;
+}
+
+}  // namespace catena::field

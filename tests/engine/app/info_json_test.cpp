@@ -1,0 +1,89 @@
+/// `catena info --json`: what info tells, for programs.
+#include <gtest/gtest.h>
+
+#include "engine/base/json.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace info_json_test {
+
+class InfoJson : public ::testing::Test {
+ protected:
+  json::Node info(const std::string& path) {
+    const test::ProgramResult run = test::run_catena({"info", "--json", path});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out.find('\n') + 1, run.out.size()) << "one line";
+    auto node = json::parse(run.out, "out");
+    EXPECT_TRUE(node) << (node ? "" : node.error().message) << run.out;
+    return node ? *node : json::Node{};
+  }
+  static double number(const json::Node& node, const char* key) {
+    const json::Node* found = node.find(key);
+    EXPECT_TRUE(found != nullptr && found->kind == json::Kind::number) << key;
+    return found == nullptr ? -1 : found->number;
+  }
+  static std::string word(const json::Node& node, const char* key) {
+    const json::Node* found = node.find(key);
+    EXPECT_TRUE(found != nullptr && found->kind == json::Kind::string) << key;
+    return found == nullptr ? "" : found->string;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(InfoJson, OfADataFileHasItsGrids) {
+  ASSERT_EQ(test::run_catena({"generate", "linear", "-o", folder_ / "a.vdb", "--resolution", "5", "--box", "-1", "3"}).exit_code, 0);
+  const json::Node info_of = info(folder_ / "a.vdb");
+  EXPECT_EQ(word(info_of, "kind"), "data");
+  const json::Node* grids = info_of.find("grids");
+  ASSERT_TRUE(grids != nullptr && grids->items.size() == 1);
+  const json::Node& grid = grids->items[0];
+  EXPECT_EQ(word(grid, "name"), "linear");
+  EXPECT_EQ(number(grid, "active_voxels"), 125);
+  EXPECT_EQ(grid.find("size")->items[2].number, 5);
+  EXPECT_EQ(grid.find("axes")->items[1].items[1].number, 1);
+  EXPECT_EQ(grid.find("origin")->items[0].number, -1);
+  EXPECT_EQ(grid.find("world_box")->items[1].items[2].number, 3);
+  EXPECT_TRUE(grid.find("usable")->boolean);
+}
+
+TEST_F(InfoJson, OfAMeshAndOfASceneHasTheirParts) {
+  test::write_file(folder_ / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  test::write_file(folder_ / "s.json", R"({"fields": {"r": {"analytic": "sphere"}}, "meshes": [{"name": "t", "file": "t.obj"}],
+    "isosurfaces": [{"field": "r", "level": 1}], "chain": [{"name": "skin", "type": "isosurface", "field": "r", "level": 1}],
+    "widgets": [{"name": "cut", "type": "cutting_plane", "center": [1, 2, 3], "normal": [0, 0, 1]}]})");
+  const json::Node mesh = info(folder_ / "t.obj");
+  EXPECT_EQ(word(mesh, "kind"), "mesh");
+  EXPECT_EQ(number(mesh, "triangles"), 4);
+  EXPECT_EQ(number(mesh, "open_edges"), 0);
+  const json::Node scene = info(folder_ / "s.json");
+  EXPECT_EQ(word(scene, "kind"), "scene");
+  EXPECT_EQ(word(scene.find("fields")->items.at(0), "source"), "sphere");
+  EXPECT_EQ(scene.find("fields")->items.at(0).find("range")->items.at(1).kind, json::Kind::null) << "of a formula without an end";
+  EXPECT_EQ(number(scene.find("meshes")->items.at(0), "vertices"), 4);
+  EXPECT_EQ(word(scene.find("links")->items.at(0), "type"), "isosurface");
+  EXPECT_EQ(scene.find("widgets")->items.at(0).find("at")->items.at(2).number, 3);
+  EXPECT_EQ(number(*scene.find("drawn"), "isosurfaces"), 1);
+  EXPECT_EQ(number(*scene.find("coupling"), "stiffness_n_per_m"), 500);
+}
+
+TEST_F(InfoJson, OfARecordingHasItsTicks) {
+  test::write_file(folder_ / "s.json", "{}");
+  ASSERT_EQ(
+      test::run_catena({"feel", folder_ / "s.json", "--seconds", "0.02", "--realtime", "off", "--record", folder_ / "l.catlog"}).exit_code,
+      0);
+  const json::Node recording = info(folder_ / "l.catlog");
+  EXPECT_EQ(word(recording, "kind"), "recording");
+  EXPECT_GT(number(recording, "ticks"), 0);
+  EXPECT_EQ(number(recording, "rate_hz"), 1000);
+}
+
+TEST_F(InfoJson, SaysWhatIsWrongAsInfoDoes) {
+  const test::ProgramResult run = test::run_catena({"info", "--json", folder_ / "none.vdb"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(run.out.empty());
+  EXPECT_NE(run.err.find("none.vdb"), std::string::npos);
+}
+
+}  // namespace info_json_test
+}  // namespace catena
