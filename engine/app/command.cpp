@@ -43,16 +43,18 @@ void tell_notes(const std::vector<std::string>& notes) {
 
 }  // namespace
 
-Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors) {
+Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors,
+                                const std::string& grid) {
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, field_overrides(field_options));
   if (is_scene_file(path)) {
+    if (!grid.empty()) return Error{path + ": --grid goes with a data file; a scene names its grids"};
     if (!colors.map.empty() || colors.range) return Error{path + ": --colormap and --range go with a data file; a scene says its colours"};
     auto scene = scene::read_scene(path, overrides);
     if (scene) tell_notes(scene->notes);
     return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};
-  return scene::scene_for_file(path, {}, colors);
+  return scene::scene_for_file(path, grid, colors);
 }
 
 std::string human_bytes(double bytes) {

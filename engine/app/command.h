@@ -40,7 +40,7 @@ struct MachineFailure {
 bool is_scene_file(const std::string& path);
 /// `colors` is for a bare data file.
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {},
-                                const scene::NamedColors& colors = {});
+                                const scene::NamedColors& colors = {}, const std::string& grid = {});
 /// NAME=FILE[:GRID], as the command line gives them.
 Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std::string>& field_options);
 

@@ -6,6 +6,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/run_files.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/load.h"
@@ -43,7 +44,9 @@ Outcome import_file(const ImportOptions& o) {
     raw.type = o.type;
     request.raw = raw;
   }
-  CATENA_TRY(const std::string name, field::convert(request, o.output, o.name));
+  std::vector<std::string> notes;
+  CATENA_TRY(const std::string name, field::convert(request, o.output, o.name, &notes));
+  for (const std::string& note : notes) tell_from_catena("note: " + o.input + ": " + note);
   fmt::print("{}: {}\n", printable(o.output), printable(name));
   return Done{};
 }

@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdlib>
+#include <fstream>
 #include <vector>
 
+#include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/number_type.h"
 
@@ -139,7 +142,15 @@ struct Header {
 /// that is no number for one. Extensions, which may be of any size, are not read.
 Result<Header> read_header(const std::string& path) {
   nifti_set_debug_level(0);
-  const auto unknown = [&] { return Error{fmt::format("{}: this is not a NIfTI-1 file, or its header is damaged", path)}; };
+  const auto unknown = [&] {
+    std::array<unsigned char, 4> first{};
+    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(first.data()), first.size());
+    const bool second = (first[0] == 28 && first[1] == 2) || (first[2] == 2 && first[3] == 28);  // 540, the size of its header
+    if (second) return Error{fmt::format("{}: this is a NIfTI-2 file, expected NIfTI-1", path)};
+    if (first[0] == 0x1f && first[1] == 0x8b && !has_ending(path, ".gz"))
+      return Error{fmt::format("{}: the file is compressed, expected a name that ends in .nii.gz", path)};
+    return Error{fmt::format("{}: this is not a NIfTI-1 file, or its header is damaged", path)};
+  };
   int swapped = 0;
   const std::unique_ptr<nifti_1_header, decltype(&std::free)> header(nifti_read_header(path.c_str(), &swapped, 0), &std::free);
   if (!header || nifti_hdr_looks_good(header.get()) == 0) return unknown();

@@ -103,13 +103,21 @@ Outcome write_field(const std::string& path, const AnyField& field, const std::s
   return writer->write(path, box);
 }
 
-Result<std::string> convert(const LoadRequest& request, const std::string& path, const std::string& name) {
+Result<std::string> convert(const LoadRequest& request, const std::string& path, const std::string& name, std::vector<std::string>* notes) {
   const Writer* writer = writer_of(path);
-  if (writer == nullptr || writer->write == nullptr) return import_as_vdb(request, path, name);
+  const bool as_vdb = writer == nullptr || writer->write == nullptr;
+  // layer by layer where the file comes so
+  if (const FileFormat* format = format_of(request.path); as_vdb && (format == nullptr || format->open != nullptr))
+    return import_as_vdb(request, path, name);
   CATENA_TRY(const AnyField field, load(request));
+  if (notes != nullptr) *notes = field.notes;
   const std::string own = field.get()->name();
   const std::string chosen = !name.empty() ? name : !own.empty() ? own : stem_of(request.path);
-  CATENA_CHECK(write_field(path, field, chosen, units_of(request.path, request.grid)));
+  if (as_vdb) {
+    CATENA_CHECK(write_vdb(path, {{field, chosen}}));
+  } else {
+    CATENA_CHECK(write_field(path, field, chosen, units_of(request.path, request.grid)));
+  }
   return chosen;
 }
 

@@ -22,7 +22,9 @@ std::string written_endings();           ///< ".vdb, .vti, .nrrd, .nii or .nii.g
 /// `field`: a grid. What `units` says of lengths and of a patient's axes goes with it where the format has a place.
 Outcome write_field(const std::string& path, const AnyField& field, const std::string& name, const Units& units);
 
-/// Reads one grid of any file and writes it. Returns its name in the output: `name`, else its own, else the file's.
-Result<std::string> convert(const LoadRequest& request, const std::string& path, const std::string& name);
+/// Reads one grid of any file and writes it. Returns its name in the output: `name`, else its own, else the file's. `notes`: those of
+/// AnyField.
+Result<std::string> convert(const LoadRequest& request, const std::string& path, const std::string& name,
+                            std::vector<std::string>* notes = nullptr);
 
 }  // namespace catena::field

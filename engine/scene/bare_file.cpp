@@ -165,7 +165,11 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
     CATENA_TRY(bare.field, field::load(bare.request));
   }
   bare.text += "}" + look.fields;
-  if (grid.empty()) bare.text += other_fields(bare.request, file, name);
+  if (grid.empty()) {
+    const std::string others = other_fields(bare.request, file, name);
+    bare.text += others;
+    if (!others.empty()) bare.note += "; the file holds other fields, too: --grid NAME shows one (catena info FILE)";
+  }
   bare.text += "},\n" + (bare.field.times.size() > 1 ? std::string("  \"time\": {\"step\": 0},\n") : std::string()) + look.parts + "\n}\n";
   return bare;
 }

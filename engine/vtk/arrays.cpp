@@ -1,5 +1,6 @@
 #include "engine/vtk/arrays.h"
 
+#include <vtkAppendFilter.h>
 #include <vtkCellData.h>
 #include <vtkCellDataToPointData.h>
 #include <vtkImageData.h>
@@ -7,6 +8,7 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
 #include <cmath>
@@ -221,8 +223,28 @@ Written write_image(const Opened& opened, const Column& column, const ImageGrid&
   return written;
 }
 
+namespace {
+
+/// Pieces of one mesh as one, so that cells on both sides of a cut share its points.
+vtkSmartPointer<vtkDataSet> joined_pieces(const Opened& opened, const Column& column) {
+  vtkNew<vtkAppendFilter> join;
+  join->MergePointsOn();
+  for (const std::size_t b : column.blocks) join->AddInputData(opened.blocks[b].data);
+  join->Update();
+  return join->GetOutput();
+}
+
+}  // namespace
+
 std::vector<CellValues> cells_of(const Opened& opened, const Column& column, std::vector<vtkSmartPointer<vtkDataSet>>& keep) {
   std::vector<CellValues> cells;
+  if (column.of_cells && column.blocks.size() > 1) {
+    Opened whole;
+    whole.blocks.push_back({joined_pieces(opened, column), {}});
+    Column one = column;
+    one.blocks = {0};
+    return cells_of(whole, one, keep);
+  }
   for (const std::size_t b : column.blocks) {
     const Block& block = opened.blocks[b];
     vtkDataArray* values = column.in(block);

@@ -83,19 +83,74 @@ Mapping turned_round(const Mapping& m) {
   return Mapping::from_linear(linear, origin);
 }
 
-/// Whether the axes of the world are a patient's.
-bool is_patient(const Io& io, const std::string& path) {
-  if (dynamic_cast<itk::GDCMImageIO*>(io.GetPointer()) != nullptr) return true;
-  if (dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr) {
-    const std::string space = text_at(io->GetMetaDataDictionary(), "NRRD_space");
-    return space.find("-anterior-") != std::string::npos || space.find("-posterior-") != std::string::npos;
-  }
-  // MetaImage: the header, which is text, names an orientation or "???"
+/// The start of a file, where formats with a header of text have it.
+std::string header_of(const std::string& path) {
   constexpr std::size_t kHeader = 8192;
   std::string header(kHeader, ' ');
   std::ifstream in(path, std::ios::binary);
   in.read(header.data(), static_cast<std::streamsize>(kHeader));
   header.resize(static_cast<std::size_t>(in.gcount()));
+  return header;
+}
+
+/// A patient's space of an NRRD, as "las" or "left-anterior-superior"; empty: it is in none. The header says it: ITK has turned some spaces
+/// by the time it tells, and calls all of them left, back, head.
+std::string patient_space(const std::string& path) {
+  const std::string header = header_of(path);
+  const std::size_t at = header.find("\nspace: ");
+  if (at == std::string::npos) return {};
+  std::string word = header.substr(at + 8, header.find_first_of("\r\n", at + 8) - at - 8);
+  for (char& c : word) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  for (const char* known : {"ras", "las", "lps", "right-anterior-superior", "left-anterior-superior", "left-posterior-superior"})
+    if (word.starts_with(known)) return word;
+  return {};
+}
+bool is_left(const std::string& space) { return space.starts_with('l'); }
+bool is_posterior(const std::string& space) { return space.starts_with("lp") || space.starts_with("left-posterior"); }
+
+/// How ITK's world lies to Catena's. ITK says left, back, head of a patient; but of an NRRD in left, front, head it turns x alone, and what
+/// it gives is right, front, head already.
+Mapping world_of(const std::string& path, const Mapping& mapping) {
+  const std::string space = patient_space(path);
+  return is_left(space) && !is_posterior(space) ? mapping : turned_round(mapping);
+}
+
+/// Vectors in the file's own axes, to those of the world: by an NRRD's measurement frame, and what of x and y points the other way.
+vtkSmartPointer<vtkDataArray> turned_vectors(const Io& io, const std::string& path, const vtkSmartPointer<vtkDataArray>& values,
+                                             bool patient) {
+  if (values->GetNumberOfComponents() != 3) return values;
+  const itk::MetaDataDictionary& words = io->GetMetaDataDictionary();
+  const std::string space = patient_space(path);
+  const bool nrrd = dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr;
+  double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // columns
+  std::vector<std::vector<double>> stated;
+  if (itk::ExposeMetaData(words, "NRRD_measurement frame", stated) && stated.size() >= 3)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t c = 0; c < 3 && c < stated[k].size(); ++c) frame[k][c] = stated[k][c];
+  // a frame that is stated has been turned by ITK together with the space
+  const bool left = !nrrd || is_left(space), posterior = !nrrd || is_posterior(space), framed = !stated.empty();
+  const bool turn_x = framed ? posterior || !left : left, turn_y = framed ? posterior || !left : posterior;
+  const double sign[2] = {patient && turn_x ? -1.0 : 1.0, patient && turn_y ? -1.0 : 1.0};
+  const auto turned = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(VTK_FLOAT));
+  turned->SetNumberOfComponents(3);
+  turned->SetNumberOfTuples(values->GetNumberOfTuples());
+  for (vtkIdType i = 0; i < values->GetNumberOfTuples(); ++i) {
+    double v[3], world[3] = {0, 0, 0};
+    values->GetTuple(i, v);
+    for (int k = 0; k < 3; ++k)
+      for (int c = 0; c < 3; ++c) world[c] += frame[k][c] * v[k];
+    for (int c = 0; c < 2; ++c) world[c] *= sign[c];
+    turned->SetTuple(i, world);
+  }
+  return turned;
+}
+
+/// Whether the axes of the world are a patient's.
+bool is_patient(const Io& io, const std::string& path) {
+  if (dynamic_cast<itk::GDCMImageIO*>(io.GetPointer()) != nullptr) return true;
+  if (dynamic_cast<itk::NrrdImageIO*>(io.GetPointer()) != nullptr) return !patient_space(path).empty();
+  // MetaImage: the header names an orientation or "???"
+  const std::string header = header_of(path);
   const std::size_t at = header.find("AnatomicalOrientation");
   return at != std::string::npos && header.substr(at, header.find('\n', at) - at).find('?') == std::string::npos;
 }
@@ -182,7 +237,8 @@ Result<Opened> open_with_itk(const Source& source) {
     }
     opened.patient = is_patient(io, source.path);
     const Mapping mapping = mapping_of(*io);
-    opened.blocks.push_back({image_of(shape->size, values, stem(source.shown)), opened.patient ? turned_round(mapping) : mapping});
+    values = turned_vectors(io, source.path, values, opened.patient);
+    opened.blocks.push_back({image_of(shape->size, values, stem(source.shown)), opened.patient ? world_of(source.path, mapping) : mapping});
     if (opened.patient) opened.unit_length = "mm";
     const itk::MetaDataDictionary& words = io->GetMetaDataDictionary();
     for (const char* key : {"NRRD_space units[0]", "NRRD_space units[1]"})

@@ -81,9 +81,11 @@ class Answer {
   }
 
   double most_voxels(const Column& column) const {
-    constexpr double kMost = 96e6, kShare = 0.25;
+    constexpr double kMost = 96e6, kLeast = 8e6, kPerCell = 200, kShare = 0.25;
+    double cells = 0;
+    for (const std::size_t b : column.blocks) cells += static_cast<double>(opened_.blocks[b].data->GetNumberOfCells());
     const double bytes_a_voxel = column.components > 1 ? 40 : 20;  // here, and in the grid that is made of it
-    return std::min(kMost, kShare * static_cast<double>(request_.memory_bytes) / bytes_a_voxel);
+    return std::min(std::clamp(kPerCell * cells, kLeast, kMost), kShare * static_cast<double>(request_.memory_bytes) / bytes_a_voxel);
   }
 
   Result<const Column*> choose() const {
@@ -153,7 +155,9 @@ class Answer {
         "{} cells resampled to {} x {} x {} voxels: at random places inside the cells it differs by {:.2g} % of the {} (99 % of them; at "
         "most {:.2g} %)",
         count, n.x, n.y, n.z, made->error.p99, reply.is_vector ? "largest length" : "range", made->error.most);
-    if (made->error.p99 > kWantedError)
+    if (made->error.p99 > kWantedError && made->jumps)
+      note += "; finer voxels do not help: the values jump, or bend, within less than a cell";
+    else if (made->error.p99 > kWantedError)
       note += fmt::format("; less than {:g} % would take about {:.2g} million voxels, more than there is room for", kWantedError,
                           1e-6 * std::max(made->wanted_voxels, 1.1 * static_cast<double>(made->lattice.voxels())));
     reply.notes.push_back(note);

@@ -22,6 +22,8 @@ namespace {
 constexpr int kSamples = 20'000;
 constexpr int kMostPoints = 216;  // of a cell: a hexahedron of order 5
 constexpr double kInside = 1e-9;
+constexpr double kGive = 0.25;    // of a cell's range: how far its polynomial may go beyond it
+constexpr double kWorthIt = 0.8;  // of the error: what a finer grid must leave at most, else it does not help
 
 struct Range {
   double lo = 1e300, hi = -1e300;
@@ -79,7 +81,7 @@ class CellWork {
     for (std::size_t c = 0; c < components_; ++c) {
       double v = 0;
       for (std::size_t i = 0; i < n; ++i) v += weights_[i] * values_[i * components_ + c];
-      out[c] = was_inside || !std::isfinite(give) ? v : std::clamp(v, range_.lo - give, range_.hi + give);
+      out[c] = was_inside || !std::isfinite(give) ? v : std::clamp(v, range_.lo - kGive * give, range_.hi + kGive * give);
     }
   }
 
@@ -303,6 +305,8 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
   Foresight foresight(blocks);
   if (foresight.empty()) return Error{"has no finite values inside its cells"};
   ResamplePlan plan;
+  double before = 1e300;
+  int idle = 0;
   for (;;) {
     plan.lattice = lattice_of(lo, hi, edges, factor);
     plan.p99 = foresight.p99(plan.lattice);
@@ -310,15 +314,21 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
     if (plan.fine) return plan;
     // an error of second order, at worst of first
     constexpr double kLeastStep = 1.2, kMostStep = 2;
+    // values that jump from cell to cell do not get better with voxels
+    idle = plan.p99 > kWorthIt * before ? idle + 1 : 0;
+    before = plan.p99;
+    constexpr int kIdle = 2;
+    if (idle >= kIdle) break;
     const double finer = factor / std::clamp(std::sqrt(plan.p99 / (0.8 * kWantedError)), kLeastStep, kMostStep);
     plan.wanted_voxels = voxels(factor) * std::pow(plan.p99 / kWantedError, 1.5);
     if (voxels(finer) > most_voxels) break;
     factor = finer;
   }
-  // as fine as fits
-  while (voxels(factor / 1.1) <= most_voxels) factor /= 1.1;
-  plan.lattice = lattice_of(lo, hi, edges, factor);
-  plan.p99 = foresight.p99(plan.lattice);
+  if (idle == 0) {  // as fine as fits
+    while (voxels(factor / 1.1) <= most_voxels) factor /= 1.1;
+    plan.lattice = lattice_of(lo, hi, edges, factor);
+    plan.p99 = foresight.p99(plan.lattice);
+  }
   plan.fine = plan.p99 <= kWantedError;
   return plan;
 }
@@ -359,6 +369,75 @@ void put(CellWork& work, bool inside, float* values, std::size_t components) {
   for (std::size_t c = 0; c < components; ++c) values[c] = static_cast<float>(value[c]);
 }
 
+constexpr std::uint8_t kNear = 2;  ///< of `valid`, meanwhile: next to a voxel inside
+
+/// Voxels that touch one inside: straight on from those behind it, 2 v(1) - v(2), on average over the directions in which both are inside.
+void continue_lattice(const Lattice& lattice, std::size_t components, float* values, std::uint8_t* valid) {
+  const int n[3] = {lattice.size.x, lattice.size.y, lattice.size.z};
+  const auto at = [&](int i, int j, int k) {
+    return (static_cast<std::size_t>(k) * static_cast<std::size_t>(n[1]) + static_cast<std::size_t>(j)) * static_cast<std::size_t>(n[0]) +
+           static_cast<std::size_t>(i);
+  };
+  const auto inside = [&](int i, int j, int k) {
+    return i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2] && valid[at(i, j, k)] == 1;
+  };
+  for (int k = 0; k < n[2]; ++k)
+    for (int j = 0; j < n[1]; ++j)
+      for (int i = 0; i < n[0]; ++i) {
+        const std::size_t here = at(i, j, k);
+        if (valid[here] != 0) continue;
+        double straight[3] = {0, 0, 0}, beside[3] = {0, 0, 0};
+        int lines = 0, neighbours = 0;
+        for (int d = 0; d < 27; ++d) {
+          const int x = d % 3 - 1, y = d / 3 % 3 - 1, z = d / 9 - 1;
+          if (!inside(i + x, j + y, k + z)) continue;
+          const std::size_t first = at(i + x, j + y, k + z);
+          const bool far = inside(i + 2 * x, j + 2 * y, k + 2 * z);
+          const std::size_t second = far ? at(i + 2 * x, j + 2 * y, k + 2 * z) : first;
+          ++neighbours;
+          lines += far ? 1 : 0;
+          for (std::size_t c = 0; c < components; ++c) {
+            const double v = static_cast<double>(values[first * components + c]);
+            beside[c] += v;
+            if (far) straight[c] += 2 * v - static_cast<double>(values[second * components + c]);
+          }
+        }
+        if (neighbours == 0) continue;
+        for (std::size_t c = 0; c < components; ++c)
+          values[here * components + c] = static_cast<float>(lines > 0 ? straight[c] / lines : beside[c] / neighbours);
+        valid[here] = kNear;
+      }
+}
+
+/// Where cells are thinner than voxels no voxel may lie inside: those within a voxel's diagonal of a cell get the nearest one's polynomial.
+void continue_cells(const std::vector<CellValues>& blocks, const Lattice& lattice, std::size_t components, float* values,
+                    std::uint8_t* valid) {
+  constexpr std::uint8_t kThin = 3;
+  std::vector<float> nearest;
+  const double near2 = dot(lattice.spacing, lattice.spacing);  // no corner around a place inside is farther from it
+  for (const CellValues& block : blocks) {
+    CellWork work(block);
+    for (vtkIdType id = 0; id < block.data->GetNumberOfCells(); ++id) {
+      double b[6];
+      block.data->GetCellBounds(id, b);
+      const Span3 span = span_of(lattice, b, 1);
+      bool some = false;
+      each_voxel(lattice, span, [&](std::size_t at, const Vec3&) { some = some || valid[at] == 0 || valid[at] == kThin; });
+      if (!some || !work.at(id)) continue;
+      if (nearest.empty()) nearest.assign(lattice.voxels(), std::numeric_limits<float>::infinity());
+      each_voxel(lattice, span, [&](std::size_t at, const Vec3& p) {
+        if (valid[at] != 0 && valid[at] != kThin) return;
+        double distance2 = 0;
+        const bool inside = work.inside(p, distance2);
+        if (!(static_cast<float>(distance2) < nearest[at]) || (!inside && distance2 > near2)) return;
+        nearest[at] = static_cast<float>(distance2);
+        put(work, inside, values + at * components, components);
+        valid[at] = kThin;
+      });
+    }
+  }
+}
+
 void fill(const std::vector<CellValues>& blocks, const Lattice& lattice, float* values, std::uint8_t* valid) {
   const std::size_t components = components_of(blocks);
   for (const CellValues& block : blocks) {
@@ -373,32 +452,8 @@ void fill(const std::vector<CellValues>& blocks, const Lattice& lattice, float* 
       });
     }
   }
-  // around them: distances, 0 where a value is
-  std::vector<float> nearest;
-  constexpr std::uint8_t kNear = 2;
-  nearest.assign(lattice.voxels(), std::numeric_limits<float>::infinity());
-  const double near2 = dot(lattice.spacing, lattice.spacing);  // no corner around a place inside is farther from it
-  for (const CellValues& block : blocks) {
-    CellWork work(block);
-    for (vtkIdType id = 0; id < block.data->GetNumberOfCells(); ++id) {
-      double b[6];
-      block.data->GetCellBounds(id, b);
-      const Span3 span = span_of(lattice, b, 1);
-      bool some = false;
-      each_voxel(lattice, span, [&](std::size_t at, const Vec3&) { some = some || valid[at] != 1; });
-      if (!some || !work.at(id)) continue;
-      each_voxel(lattice, span, [&](std::size_t at, const Vec3& p) {
-        if (valid[at] == 1) return;
-        double distance2 = 0;
-        const bool inside = work.inside(p, distance2);
-        const auto distance = static_cast<float>(inside ? 0 : distance2);
-        if (!(distance < nearest[at]) || (!inside && distance2 > near2)) return;
-        nearest[at] = distance;
-        put(work, inside, values + at * components, components);
-        valid[at] = kNear;
-      });
-    }
-  }
+  continue_lattice(lattice, components, values, valid);
+  continue_cells(blocks, lattice, components, values, valid);
   for (std::size_t i = 0; i < lattice.voxels(); ++i) valid[i] = valid[i] != 0 ? 1 : 0;
 }
 
@@ -430,12 +485,16 @@ Result<Resampled> resample(const std::vector<CellValues>& blocks, double most_vo
   Resampled made;
   made.lattice = plan.lattice;
   constexpr int kMostTimes = 6;
+  double before = 1e300;
   for (int time = 0; time < kMostTimes; ++time) {
     made.values.assign(made.lattice.voxels() * components_of(blocks), 0.f);
     made.valid.assign(made.lattice.voxels(), 0);
     fill(blocks, made.lattice, made.values.data(), made.valid.data());
     made.error = measure(blocks, made.lattice, made.values.data(), made.valid.data());
     if (made.error.p99 <= kWantedError) return made;
+    made.jumps = made.error.p99 > kWorthIt * before || !plan.fine;
+    if (made.jumps && time > 0) return made;
+    before = made.error.p99;
     constexpr double kLeastStep = 1.15, kMostStep = 1.6;
     const double finer = std::clamp(std::sqrt(made.error.p99 / (0.8 * kWantedError)), kLeastStep, kMostStep);
     made.wanted_voxels = static_cast<double>(made.lattice.voxels()) * std::pow(made.error.p99 / kWantedError, 1.5);

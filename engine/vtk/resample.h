@@ -1,11 +1,9 @@
 /// Values on cells of any shape and order become a regular grid with a mask.
-///   h       edges of the voxels along x, y, z: the median extents of the cells, made finer by one factor until the error is small enough
-///   or
-///           the grid as large as it may be
-///   value   at each voxel centre inside a cell: VTK's interpolation in that cell. Voxels within a voxel's diagonal of a cell, outside of
-///   all:
-///           the nearest cell's own polynomial, continued, held within twice its range; so that every place inside a cell lies in a valid
-///           cell of the grid
+///   h       edges of the voxels along x, y, z: the median extents of the cells, made finer by one factor until the error is small
+///           enough, the grid as large as it may be, or finer voxels do not help
+///   value   at each voxel centre inside a cell: VTK's interpolation in that cell. Voxels that touch such a one: straight on from those
+///           behind it, 2 v(1) - v(2), on average over the directions. Where cells are thinner than voxels: the nearest cell's
+///           polynomial, a quarter of its range beyond it at most. So every place inside a cell lies in a valid cell of the grid
 ///   error   |grid - VTK's interpolation| at random places inside random cells (each as likely, places evenly within it), fixed seed:
 ///           99th percentile and maximum, in % of the range of the values (vectors: of the largest length). Foreseen at other places than
 ///           it is measured at; where the measure says more, the grid is made again, finer
@@ -59,6 +57,7 @@ struct Resampled {
   std::vector<std::uint8_t> valid;  ///< a byte a voxel
   ResampleError error;
   double wanted_voxels = 0;  ///< where the error is too large: about so many would do
+  bool jumps = false;        ///< it is, and finer voxels did not make it smaller
 };
 /// As planned, and finer where what comes of it says so.
 Result<Resampled> resample(const std::vector<CellValues>& blocks, double most_voxels);

@@ -151,7 +151,7 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_TRY(const CameraMotion motion, CameraMotion::make(o, o.play ? path.back().t_s - path.front().t_s : 0));
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
-  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors));
+  CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors, o.grid));
   if (o.step >= 0 || !steps.empty()) scene::set_step(scene, steps.empty() ? o.step : steps.front());
   CATENA_CHECK(annotate(scene, o.annotate));
   CATENA_CHECK(o.stereo.apply(scene.stereo));

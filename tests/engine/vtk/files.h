@@ -2,6 +2,7 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -82,6 +83,15 @@ inline std::string vts_ring(int nr, int na, int nz, const Scalar& f) {
       extent, array("v", values), array("Points", points, 3));
 }
 
+inline std::string vtu_of(int count, const std::string& points, const std::string& values, const std::string& ids, const std::string& ends,
+                          const std::string& types) {
+  return fmt::format(
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"{}\" "
+      "NumberOfCells=\"{}\"><PointData>{}</PointData><Points>{}</Points><Cells>{}{}{}</Cells></Piece></UnstructuredGrid></VTKFile>\n",
+      count, 1 + std::count(ends.begin(), ends.end(), ' '), array("v", values), array("Points", points, 3),
+      array("connectivity", ids, 1, "Int64"), array("offsets", ends, 1, "Int64"), array("types", types, 1, "UInt8"));
+}
+
 /// A unit cube as a hexahedron, and a tetrahedron on its face x = 1. "v" at points, "c" in cells.
 inline std::string vtu_mixed(const Scalar& f) {
   const std::vector<Vec3> p{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {2, 0, 0}};
@@ -92,6 +102,20 @@ inline std::string vtu_mixed(const Scalar& f) {
          array("v", values) + "</PointData><CellData>" + array("c", "1 2") + "</CellData><Points>" + array("Points", points, 3) +
          "</Points><Cells>" + array("connectivity", "0 1 2 3 4 5 6 7 1 8 2 5", 1, "Int64") + array("offsets", "8 12", 1, "Int64") +
          array("types", "12 10", 1, "UInt8") + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+/// A unit cube as one hexahedron of second order (20 points).
+inline std::string vtu_quadratic(const Scalar& f) {
+  const std::vector<Vec3> p{{0, 0, 0},  {1, 0, 0},  {1, 1, 0},  {0, 1, 0},  {0, 0, 1},  {1, 0, 1},  {1, 1, 1},
+                            {0, 1, 1},  {.5, 0, 0}, {1, .5, 0}, {.5, 1, 0}, {0, .5, 0}, {.5, 0, 1}, {1, .5, 1},
+                            {.5, 1, 1}, {0, .5, 1}, {0, 0, .5}, {1, 0, .5}, {1, 1, .5}, {0, 1, .5}};
+  std::string points, values, ids;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    points += fmt::format("{} {} {} ", p[i].x, p[i].y, p[i].z);
+    values += fmt::format("{} ", f(p[i]));
+    ids += fmt::format("{} ", i);
+  }
+  return vtu_of(20, points, values, ids, "20", "25");
 }
 
 /// Of `shape` [z, y, x].
@@ -143,6 +167,16 @@ inline std::string nrrd(const std::string& space) {
          "\nsizes: 2 2 2\nspace directions: (2,0,0) (0,3,0) (0,0,4)\nkinds: domain domain domain\nencoding: raw\nspace origin: "
          "(10,20,30)\n\n" +
          bytes_0_to(8);
+}
+/// Vectors (1, 2, 3) of floats.
+inline std::string nrrd_vectors(const std::string& space, const std::string& more = {}) {
+  std::string numbers;
+  for (int i = 0; i < 8; ++i)
+    for (const float v : {1.f, 2.f, 3.f}) numbers.append(reinterpret_cast<const char*>(&v), sizeof v);
+  return "NRRD0004\ntype: float\ndimension: 4\nspace: " + space +
+         "\nsizes: 3 2 2 2\nspace directions: none (2,0,0) (0,3,0) (0,0,4)\nkinds: vector domain domain domain\nendian: little\nencoding: "
+         "raw\nspace origin: (10,20,30)\n" +
+         more + "\n" + numbers;
 }
 inline std::string mha(const std::string& orientation) {
   return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = False\nTransformMatrix = 1 0 "

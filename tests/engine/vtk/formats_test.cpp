@@ -136,6 +136,48 @@ TEST_F(Formats, UnstructuredCellsRepeatALinearField) {
   EXPECT_TRUE(has_note(cells, "averaged at the points"));
 }
 
+TEST_F(Formats, EveryPlaceOfACellOfSecondOrderHasItsValue) {
+  const auto square = [](const Vec3& p) { return p.x * p.x + 0.5 * p.y * p.y - p.z; };
+  const AnyField field = read(file("q.vtu", files::vtu_quadratic(square)));
+  test::Random random{3};
+  const auto unit = [&] { return static_cast<double>(random.next() >> 11) * 0x1p-53; };
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(unit(), unit(), unit());
+    EXPECT_NEAR(value_at(field, p), square(p), 0.02 * 2.5) << p.x << " " << p.y << " " << p.z;
+  }
+}
+
+TEST_F(Formats, ValuesThatJumpBetweenCellsDoNotTakeAllVoxels) {
+  // two hexahedra that share a face, but not its points: 0 in the one, 1 in the other
+  std::string points, values;
+  for (int cell = 0; cell < 2; ++cell)
+    for (const Vec3& p :
+         {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(1, 1, 1), Vec3(0, 1, 1)}) {
+      points += fmt::format("{} {} {} ", p.x + cell, p.y, p.z);
+      values += fmt::format("{} ", cell);
+    }
+  const AnyField field =
+      read(file("jump.vtu", files::vtu_of(16, points, values, "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15", "8 16", "12 12")));
+  EXPECT_TRUE(has_note(field, "finer voxels do not help")) << field.notes.front();
+  EXPECT_LT(field.scalar->grid()->stats().active_voxels, 2'000'000u);
+}
+
+TEST_F(Formats, VectorsTurnWithTheirAxes) {
+  Cursor cursor;
+  const auto vector = [&](const std::string& name, const std::string& bytes) {
+    const AnyField field = read(file(name, bytes));
+    return field.vector->sample(field.get()->mapping().world_from_index(Vec3(0.5)), cursor).value;
+  };
+  EXPECT_EQ(vector("lps.nrrd", files::nrrd_vectors("left-posterior-superior")), Vec3(-1, -2, 3));
+  EXPECT_EQ(vector("ras.nrrd", files::nrrd_vectors("right-anterior-superior")), Vec3(1, 2, 3));
+  EXPECT_EQ(vector("las.nrrd", files::nrrd_vectors("left-anterior-superior")), Vec3(-1, 2, 3));
+  // columns of the frame: what x, y and z of the numbers mean
+  EXPECT_EQ(vector("frame.nrrd", files::nrrd_vectors("right-anterior-superior", "measurement frame: (0,1,0) (0,0,1) (1,0,0)\n")),
+            Vec3(3, 1, 2));
+  const AnyField las = read(folder_ / "las.nrrd");
+  EXPECT_NEAR(norm(las.get()->mapping().world_from_index(Vec3(1, 1, 1)) - Vec3(-12, 23, 34)), 0, 1e-12);
+}
+
 TEST_F(Formats, NumPyArraysAreIndexedZyx) {
   // a[k, j, i] = 100 k + 10 j + i
   for (const bool fortran : {false, true})
