@@ -129,6 +129,8 @@ device button 1      takes hold of widgets, selects; what the scene's "on" says
 Ctrl+O               open; a file can be dropped on the window as well
 Ctrl+S, Ctrl+Shift+S save (with the view, if it was moved), save as
 Ctrl+Z, Ctrl+Y       undo, redo
+K                    play the steps in time, or stop
+,, .                 the step before, and after
 P                    the pulses along streamlines stand or run
 Tab                  panels
 F2                   the next stereo mode

@@ -224,7 +224,7 @@ TEST(CurveScenes, MessagesNameThePlace) {
     EXPECT_NE(message(text).find(words), std::string::npos) << message(text);
     EXPECT_NE(message(text).find("s.json:1"), std::string::npos) << message(text);
   };
-  expect(R"({"curves": [{"name": "a", "file": "b.tck"}]})", "does not exist; a .tck or .trk file was expected");
+  expect(R"({"curves": [{"name": "a", "file": "b.tck"}]})", "does not exist; a .tck, .trk, .vtp, .vtk or .vtu file was expected");
   expect(R"({"curves": [{"name": "a", "file": "a.tck"}, {"name": "a", "file": "a.tck"}]})", "a name of their own was expected");
   expect(R"({"curves": [{"name": "a", "file": "a.tck", "color_by": {"value": "fa"}}]})",
          "the file has no values called \"fa\"; known: none");
