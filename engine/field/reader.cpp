@@ -175,7 +175,9 @@ std::uint64_t reading_time_s(std::uint64_t file_bytes) {
 
 Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
   std::uint64_t size = 0;
-  if (!is_folder(what.path)) {
+  // OpenFOAM's case is the folder: the file in it is only its name, and empty as a rule
+  const bool names_folder = has_ending(what.path, ".foam") && std::filesystem::is_regular_file(what.path);
+  if (!is_folder(what.path) && !names_folder) {
     CATENA_TRY(size, readable_file(what.path));
   }
   CATENA_TRY(const std::string program, program_for(what.path));
