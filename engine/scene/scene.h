@@ -73,8 +73,8 @@ Result<Scene> scene_for_file(const std::string& path, const std::string& grid = 
 /// shown.
 std::vector<std::string> look_of_file(const std::string& path);
 
-/// What a data file is shown as: by its ending, and where that leaves it open by what it holds: fields before surfaces, lines and points. Of
-/// a pattern: its first file.
+/// What a data file is shown as: by its ending, and where that leaves it open by what it holds: fields before surfaces, lines and points.
+/// Of a pattern: its first file.
 enum class FileKind { field, mesh, curves, points };
 FileKind kind_of_file(const std::string& path);
 

@@ -25,8 +25,8 @@ struct RenderOptions {
   // frames
   int frames = 0;  ///< 0: not given
   double fps = 25, phase = 0;
-  int step = -1;          ///< in time; -1: the scene's
-  std::string steps;      ///< A:B or A:B:STRIDE, a frame each
+  int step = -1;      ///< in time; -1: the scene's
+  std::string steps;  ///< A:B or A:B:STRIDE, a frame each
   bool play = false;  ///< the hand goes along the probe path over the frames
   // the camera
   std::string camera, view;

@@ -193,7 +193,8 @@ TEST(CurveFiles, ByTheirEnding) {
   EXPECT_TRUE(is_curve_file("x.trk"));
   EXPECT_FALSE(is_curve_file("x.obj"));
   const auto none = load_curves(folder / "none.trk");
-  EXPECT_NE(none.error().message.find("a file of curves (.tck, .trk, .vtp, .vtk or .vtu) was expected"), std::string::npos) << none.error().message;
+  EXPECT_NE(none.error().message.find("a file of curves (.tck, .trk, .vtp, .vtk or .vtu) was expected"), std::string::npos)
+      << none.error().message;
 }
 
 }  // namespace load_test
