@@ -32,21 +32,30 @@ struct Lattice {
   std::size_t voxels() const {
     return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
   }
+  /// Where voxel (i, j, k) stands in a list, x fastest.
+  std::size_t number(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * static_cast<std::size_t>(size.y) + static_cast<std::size_t>(j)) *
+               static_cast<std::size_t>(size.x) +
+           static_cast<std::size_t>(i);
+  }
 };
+
+/// From lo to hi, both included, with edges of about so much times `factor`.
+Lattice lattice_of(const Vec3& lo, const Vec3& hi, const Vec3& edges, double factor);
 
 struct ResampleError {
   double p99 = 0, most = 0;  ///< % of the range
-  double lost = 0;           ///< share of the places that lie in no valid cell of the grid
 };
 
 struct ResamplePlan {
   Lattice lattice;
-  double p99 = 0;            ///< as foreseen
-  bool fine = true;          ///< it is at most what was wanted
-  double wanted_voxels = 0;  ///< where it is not: about so many would do
+  double p99 = 0;      ///< as foreseen
+  bool fine = true;    ///< it is at most what was wanted
+  bool jumps = false;  ///< it is not, and finer voxels did not make it smaller
 };
 
 inline constexpr double kWantedError = 1;  ///< %
+inline constexpr double kWorthIt = 0.8;    ///< of the error: what a finer grid must leave at most, else it does not help
 
 /// An error is a phrase: no cells with a volume, or values that are not finite.
 Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double most_voxels);

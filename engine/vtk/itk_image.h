@@ -1,0 +1,43 @@
+/// Private to this room: what the readers of medical images have in common (open_itk.cpp, open_dicom.cpp).
+#pragma once
+#include <itkImageIOBase.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkSmartPointer.h>
+
+#include <string>
+
+#include "engine/base/result.h"
+#include "engine/field/mapping.h"
+
+namespace catena::vtk {
+
+/// A text of the header by its key, without blanks at its end; empty: there is none.
+std::string text_at(const itk::MetaDataDictionary& words, const std::string& key);
+
+/// VTK's number for the type of the voxels; 0: it has none.
+int vtk_type(itk::IOComponentEnum type);
+
+/// Columns: the steps of the image's first three axes; an image of fewer has steps of 1 across.
+field::Mapping mapping_of(const itk::ImageIOBase& io);
+/// From ITK's world, left, back, head of a patient, to Catena's, right, front, head.
+field::Mapping turned_round(const field::Mapping& mapping);
+
+/// Voxels an axis; further axes of an image are volumes, one behind the other.
+struct Shape {
+  int size[3] = {1, 1, 1};
+  int volumes = 1;
+  std::size_t voxels() const {
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
+  }
+};
+/// An error is a phrase.
+Result<Shape> shape_of(const itk::ImageIOBase& io);
+
+/// All voxels, of all volumes, as they lie. ITK throws.
+vtkSmartPointer<vtkDataArray> read_whole(itk::ImageIOBase& io, std::size_t all_voxels);
+
+/// An image of these voxels, x fastest. Its axes go beside it.
+vtkSmartPointer<vtkImageData> image_of(const int (&size)[3], const vtkSmartPointer<vtkDataArray>& values, const std::string& name);
+
+}  // namespace catena::vtk

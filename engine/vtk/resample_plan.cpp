@@ -1,0 +1,140 @@
+#include <vtkSmartPointer.h>
+#include <vtkStaticCellLocator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/vtk/cell_places.h"
+
+namespace catena::vtk {
+namespace {
+
+/// What a grid would give that was never made: its corners are asked for one by one, of the blocks themselves.
+class Foresight {
+ public:
+  explicit Foresight(const std::vector<CellValues>& blocks) : blocks_(blocks), places_(blocks, 1) {
+    for (const CellValues& block : blocks) {
+      locators_.push_back(vtkSmartPointer<vtkStaticCellLocator>::New());
+      locators_.back()->SetDataSet(block.data);
+      locators_.back()->BuildLocator();
+    }
+  }
+  bool empty() const { return places_.places().empty(); }
+
+  double p99(const Lattice& lattice) {
+    std::size_t last_block = blocks_.size();
+    std::optional<CellWork> own, other;
+    vtkIdType own_cell = -1;
+    const auto corner = [&](const CellPlaces::Place& place, const int(&base)[3], int k, double* value) {
+      if (place.block != last_block) {
+        own.emplace(blocks_[place.block]);
+        other.emplace(blocks_[place.block]);
+        last_block = place.block;
+        own_cell = -1;
+      }
+      if (place.cell != own_cell && !own->at(place.cell)) return false;
+      own_cell = place.cell;
+      Vec3 p;
+      for (int a = 0; a < 3; ++a) p[a] = lattice.origin[a] + lattice.spacing[a] * (base[a] + (k >> a & 1));
+      double distance2 = 0, x[3] = {p.x, p.y, p.z};
+      const vtkIdType cell = locators_[place.block]->FindCell(x);
+      if (cell >= 0 && other->at(cell) && other->inside(p, distance2))
+        other->value(true, value);
+      else
+        own->value(own->inside(p, distance2), value);
+      return true;
+    };
+    return places_.error_on(lattice, kEvery, corner).p99;
+  }
+
+ private:
+  static constexpr std::size_t kEvery = 4;
+  const std::vector<CellValues>& blocks_;
+  CellPlaces places_;
+  std::vector<vtkSmartPointer<vtkStaticCellLocator>> locators_;
+};
+
+double middle(std::vector<double>& values) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+Lattice lattice_of(const Vec3& lo, const Vec3& hi, const Vec3& edges, double factor) {
+  Lattice lattice;
+  int n[3];
+  for (int a = 0; a < 3; ++a) {
+    constexpr double kMostAxis = 1 << 14;
+    const double steps = std::clamp(std::ceil((hi[a] - lo[a]) / (edges[a] * factor) - 1e-9), 1.0, kMostAxis);
+    n[a] = static_cast<int>(steps) + 1;
+    lattice.spacing[a] = hi[a] > lo[a] ? (hi[a] - lo[a]) / steps : edges[a];
+  }
+  lattice.size = {n[0], n[1], n[2]};
+  lattice.origin = lo;
+  return lattice;
+}
+
+Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, double most_voxels) {
+  Vec3 lo(1e300), hi(-1e300);
+  std::vector<double> extents[3];
+  for (const CellValues& block : blocks) {
+    CellWork work(block);
+    const vtkIdType cells = block.data->GetNumberOfCells();
+    const vtkIdType every = std::max<vtkIdType>(1, cells / CellPlaces::kSamples);
+    for (vtkIdType i = 0; i < cells; ++i) {
+      double b[6];
+      block.data->GetCellBounds(i, b);
+      if (is_hidden(block.data, i)) continue;
+      for (int a = 0; a < 3; ++a) {
+        lo[a] = std::min(lo[a], b[2 * a]);
+        hi[a] = std::max(hi[a], b[2 * a + 1]);
+      }
+      if (i % every != 0 || !work.at(i)) continue;
+      for (int a = 0; a < 3; ++a) extents[a].push_back(b[2 * a + 1] - b[2 * a]);
+    }
+  }
+  if (!is_finite(lo) || !is_finite(hi)) return Error{"has points that are not finite"};
+  if (extents[0].empty()) return Error{"has no cells with a volume"};
+  Vec3 edges;
+  for (int a = 0; a < 3; ++a) edges[a] = middle(extents[a]);
+  const double largest = max_abs(hi - lo);
+  for (int a = 0; a < 3; ++a) edges[a] = std::clamp(edges[a], 1e-4 * largest, std::max(largest, 1e-300));
+  // as coarse as fits
+  double factor = 1;
+  const auto voxels = [&](double f) { return static_cast<double>(lattice_of(lo, hi, edges, f).voxels()); };
+  while (voxels(factor) > most_voxels) factor *= 1.1;
+  Foresight foresight(blocks);
+  if (foresight.empty()) return Error{"has no finite values inside its cells"};
+  ResamplePlan plan;
+  double before = 1e300;
+  int idle = 0;
+  for (;;) {
+    plan.lattice = lattice_of(lo, hi, edges, factor);
+    plan.p99 = foresight.p99(plan.lattice);
+    plan.fine = plan.p99 <= kWantedError * 0.9;  // the final measure has other places
+    if (plan.fine) return plan;
+    // an error of second order, at worst of first
+    constexpr double kLeastStep = 1.2, kMostStep = 2;
+    // values that jump from cell to cell do not get better with voxels
+    idle = plan.p99 > kWorthIt * before ? idle + 1 : 0;
+    before = plan.p99;
+    constexpr int kIdle = 2;
+    if (idle >= kIdle) break;
+    const double finer = factor / std::clamp(std::sqrt(plan.p99 / (0.8 * kWantedError)), kLeastStep, kMostStep);
+    if (voxels(finer) > most_voxels) break;
+    factor = finer;
+  }
+  if (idle == 0) {  // as fine as fits
+    while (voxels(factor / 1.1) <= most_voxels) factor /= 1.1;
+    plan.lattice = lattice_of(lo, hi, edges, factor);
+    plan.p99 = foresight.p99(plan.lattice);
+  }
+  plan.fine = plan.p99 <= kWantedError;
+  plan.jumps = !plan.fine && idle > 0;
+  return plan;
+}
+
+}  // namespace catena::vtk
