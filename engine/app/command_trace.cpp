@@ -147,7 +147,12 @@ Result<Curves> trace_pattern(const TraceOptions& options, const json::Node& node
     if (!shown) shown.emplace("trace", static_cast<double>(of));
     shown->at(static_cast<double>(done));
   };
-  return scene::make_lines(scene, seeds, {flow, options.length, options.tolerance, options.step, scene::allowed_knots(), progress}, node);
+  scene::LineRequest request{flow, options.length, options.tolerance, options.step, scene::allowed_knots(), progress};
+  // a table of lines goes as far as they do, but those that fill the space need its end
+  const scene::Entity field = scene::find_field(scene, options.field);
+  if (field && seeds.pattern && seeds.pattern->kind == scene::SeedPattern::Kind::evenly_spaced)
+    request.box = scene.world.get<scene::FieldSource>(field).box;
+  return scene::make_lines(scene, seeds, request, node);
 }
 
 Outcome trace_lines(const TraceOptions& options) {

@@ -33,7 +33,8 @@ constexpr double kEmpty = 0.6;
 /// What is summed over the neighbours in blocks.
 struct Neighbours {
   double first = 0, second = 0;
-  std::size_t pairs = 0, equal = 0, slopes = 0, unit_slopes = 0;
+  std::array<std::size_t, 3> pairs{}, equal{};  // along each axis
+  std::size_t slopes = 0, unit_slopes = 0;
 };
 
 double share(std::size_t part, std::size_t all) { return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all); }
@@ -122,9 +123,18 @@ void measure_neighbours(const std::vector<float>& block, const field::Mapping& m
         if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c) || !is_foreground(b)) continue;
         sums.first += 0.5 * (std::fabs(b - a) + std::fabs(c - b));
         sums.second += std::fabs(a - 2 * b + c);
-        if (!is_foreground(a)) continue;
-        ++sums.pairs;
-        sums.equal += a == b;
+      }
+  const auto compare = [&](int axis, double a, double b) {
+    if (!std::isfinite(a) || !std::isfinite(b) || !is_foreground(a) || !is_foreground(b)) return;
+    ++sums.pairs[axis];
+    sums.equal[axis] += a == b;
+  };
+  for (int k = 0; k < kEdge; ++k)
+    for (int j = 0; j < kEdge; ++j)
+      for (int i = 0; i + 1 < kEdge; ++i) {
+        compare(0, at(i, j, k), at(i + 1, j, k));
+        compare(1, at(j, i, k), at(j, i + 1, k));
+        compare(2, at(j, k, i), at(j, k, i + 1));
       }
   for (int z = 1; z + 1 < kEdge; z += 2)
     for (int y = 1; y + 1 < kEdge; y += 2)
@@ -171,7 +181,8 @@ DataFacts data_facts(const field::ScalarGrid& grid, const field::Units& units) {
     std::copy_n(blocks.begin() + static_cast<std::ptrdiff_t>(i), block.size(), block.begin());
     measure_neighbours(block, grid.mapping(), facts, sums);
   }
-  facts.equal_share = share(sums.equal, sums.pairs);
+  facts.equal_share = 1;
+  for (int axis = 0; axis < 3; ++axis) facts.equal_share = std::min(facts.equal_share, share(sums.equal[axis], sums.pairs[axis]));
   facts.roughness = sums.first > 0 ? sums.second / sums.first : 0;
   facts.distance_share = share(sums.unit_slopes, sums.slopes);
   return facts;

@@ -9,7 +9,7 @@
 ///   level set    the file says so; or values of both signs, and in 90 % of the places the gradient is 0.95 to 1.05 long (world units)
 ///   CT           the unit is HU; or no value is below -5000, and 5 % of the values lie from -1100 to -850 (air) and 5 % from -150 to 200
 ///                (soft tissue), in Hounsfield units
-///   label map    whole numbers, 2 to 2048 different ones, and 60 % of all neighbours in the foreground are equal
+///   label map    whole numbers, 2 to 2048 different ones, and 60 % of all neighbours in the foreground are equal, along every axis
 ///   solid        90 % of the values are in the lowest or the highest tenth of the range, 2 % at least in either; or 60 % of all
 ///                neighbours in the foreground are equal
 ///   cloud        of no patient (engine/field/units.h), without a mask and without values below 0; 60 % are exactly the lowest value
@@ -45,7 +45,7 @@ struct DataFacts {
   double bright_share = 0;               ///< of the values: in the upper seven tenths
   double least = 0;                      ///< the lowest value of all samples
   // neighbours
-  double equal_share = 0;     ///< of neighbours in the foreground
+  double equal_share = 0;     ///< of neighbours in the foreground, along the axis where it is least
   double roughness = 0;       ///< of the foreground: mean |second difference| by mean |first difference|; white noise: 1.7
   double distance_share = 0;  ///< of the places that are not flat: those whose gradient is about 1 long
 };

@@ -12,6 +12,7 @@
 #include "engine/flow/seeds.h"
 #include "engine/scene/color_maps.h"
 #include "engine/scene/data_kind.h"
+#include "engine/scene/flow_kind.h"
 #include "engine/scene/transfer.h"
 #include "engine/scene/write_values.h"
 
@@ -21,14 +22,9 @@ namespace {
 constexpr Color kBackdrop{0.13f, 0.15f, 0.18f};
 constexpr Color kBone{0.94f, 0.89f, 0.79f}, kSkin{0.87f, 0.67f, 0.56f}, kTissue{0.86f, 0.76f, 0.69f}, kSolid{0.72f, 0.77f, 0.84f};
 constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25;
-constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;  // optical depths of a ray across the domain
-constexpr double kMostlyEmpty = 0.5;                                  // of the values: the background
-constexpr std::size_t kMostVectors = 1u << 18;
-constexpr std::size_t kParts = 3;                                                            // an axis: each gives a start
-constexpr double kOpposite = -0.5, kOppositeShare = 0.001;                                   // of neighbours: the cosine, and how many
-constexpr double kUnitSpread = 0.02;                                                         // of unit vectors' lengths
+constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;                         // optical depths of a ray across the domain
+constexpr double kMostlyEmpty = 0.5;                                                         // of the values: the background
 constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // of lines: by the domain's diagonal
-constexpr double kStill = 0.05;  // of the fastest: where half of the field is slower, no line is drawn there
 constexpr Color kFibre{0.90f, 0.62f, 0.42f};
 constexpr const char* kQuantityMap = "viridis";
 
@@ -117,63 +113,6 @@ std::string angiogram(const std::string& field, const DataFacts& facts) {
   const double lo = rounded(facts.background, facts), hi = rounded(facts.hi, facts);
   return "  \"volumes\": [{\"field\": " + field + ", \"color\": \"grey\", \"range\": " + text_of(std::array<double, 2>{lo, hi}) +
          ", \"opacity\": [[" + text_of(lo) + ", 0], [" + text_of(hi) + ", 0.95]], \"projection\": \"maximum\"}]";
-}
-
-/// Lines or fibres: unit vectors have no speed to show, and where neighbours point to opposite sides v and -v mean the same.
-struct FlowFacts {
-  double slow = 0, fast = 0;  ///< the 2 and the 99 percentile of the magnitudes
-  double middle = 0;          ///< their median
-  double moving = 0;          ///< share of the values: not still
-  bool unit = false, axes = false;
-  std::vector<Vec3> fastest;  ///< world: the fastest place of each of 3^3 parts of the box
-};
-
-double share_above(const std::vector<float>& values, double least) {
-  const auto many = std::count_if(values.begin(), values.end(), [&](float v) { return v >= least; });
-  return values.empty() ? 0 : static_cast<double>(many) / static_cast<double>(values.size());
-}
-
-FlowFacts flow_facts(const field::VectorGrid& grid) {
-  FlowFacts facts;
-  std::vector<float> speeds, block;
-  std::size_t pairs = 0, opposite = 0;
-  std::array<std::pair<double, Vec3>, kParts * kParts * kParts> fastest{};
-  const field::Box& box = grid.index_box();
-  field::Cursor cursor;
-  each_block(grid.index_box(), kMostVectors, [&](const field::Index3& origin, const field::Index3& extent, std::size_t count) {
-    block.resize(3 * count);
-    grid.read_block(origin, extent, block);
-    const auto vector = [&](std::size_t i) { return Vec3(block[3 * i], block[3 * i + 1], block[3 * i + 2]); };
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 v = vector(i);
-      const double speed = norm(v);
-      if (!std::isfinite(speed)) continue;
-      const field::Index3 at{origin.x + static_cast<int>(i) % extent.x, origin.y + static_cast<int>(i) / extent.x % extent.y,
-                             origin.z + static_cast<int>(i) / (extent.x * extent.y)};
-      if (grid.has_mask() && !grid.cell(at, cursor).valid) continue;
-      speeds.push_back(static_cast<float>(speed));
-      const Vec3 place(at.x, at.y, at.z);
-      std::size_t part = 0;
-      for (int a = 2; a >= 0; --a)
-        part = kParts * part + static_cast<std::size_t>(kParts * (place[a] - box.lo[a]) / (box.hi[a] - box.lo[a] + 1));
-      if (speed > fastest[part].first) fastest[part] = {speed, place};
-      if (static_cast<int>(i) % extent.x + 1 == extent.x) continue;
-      const Vec3 next = vector(i + 1);
-      if (!(speed > 0) || !(norm(next) > 0)) continue;
-      ++pairs;
-      opposite += dot(v, next) < kOpposite * speed * norm(next);
-    }
-  });
-  for (const auto& [speed, place] : fastest)
-    if (speed > 0) facts.fastest.push_back(grid.mapping().world_from_index(place));
-  facts.slow = quantile(speeds, 0.02);
-  facts.middle = quantile(speeds, 0.5);
-  facts.fast = quantile(speeds, 0.99);
-  if (!(facts.fast > 0)) facts.fast = quantile(speeds, 1);
-  facts.moving = share_above(speeds, kStill * facts.fast);
-  facts.unit = facts.fast > 0 && facts.fast - facts.slow < kUnitSpread * facts.fast;
-  facts.axes = facts.unit && double(opposite) > kOppositeShare * double(pairs);
-  return facts;
 }
 
 }  // namespace

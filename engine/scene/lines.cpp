@@ -1,19 +1,24 @@
 #include "engine/scene/lines.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <optional>
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/bounded.h"
 #include "engine/flow/seeds.h"
+#include "engine/scene/flow_kind.h"
 
 namespace catena::scene {
 namespace {
 
 constexpr double kExact = 1e-9;  ///< tolerances up to it: the exact tracer
 constexpr double kPatternTolerance = 1e-7;
+constexpr int kFineLattice = 24;  ///< places an axis, where a formula is not found to flow at fewer
 constexpr std::uint64_t kMaxKnots = 40'000'000;
 
 using Curves = std::vector<flow::CurvePtr>;
@@ -58,6 +63,22 @@ Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& 
   return curves;
 }
 
+/// The curves that leave the box once more, to its end; those that stay in it are what a link feels, the same objects.
+void end_at_box(Curves& curves, const flow::Flow& bounded) {
+  std::vector<Vec3> seeds;
+  std::vector<std::size_t> at;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::vector<flow::Knot>& knots = curves[i]->knots();
+    const auto outside = [&](const flow::Knot& knot) { return !bounded.field->index_box().contains(knot.p); };
+    if (std::none_of(knots.begin(), knots.end(), outside)) continue;
+    at.push_back(i);
+    seeds.push_back(std::find_if(knots.begin(), knots.end(), [](const flow::Knot& knot) { return knot.s == 0; })->p);
+  }
+  const auto traced = flow::trace_each(bounded, seeds, {});
+  for (std::size_t n = 0; n < at.size(); ++n)
+    if (traced[n]) curves[at[n]] = *traced[n];
+}
+
 Result<std::vector<Vec3>> places_of(Scene& scene, const SeedPattern& pattern) {
   switch (pattern.kind) {
     case SeedPattern::Kind::line:
@@ -84,16 +105,38 @@ Result<std::vector<Vec3>> places_of(Scene& scene, const SeedPattern& pattern) {
   return places;
 }
 
-/// Where an evenly spaced set begins if the scene does not say it: the middle of the domain, and a lattice about it.
-std::vector<Vec3> default_start(const field::Field& field) {
-  const field::Box& box = field.index_box();
+/// Where an evenly spaced set begins if the scene does not say it: the middle of the domain, and a lattice about it; where none of these is
+/// within the flow, as in a hollow domain, the fastest places.
+std::vector<Vec3> default_start(const flow::Flow& flow) {
+  const field::Mapping& mapping = flow.field->mapping();
+  const field::Box& box = flow.field->index_box();
   std::vector<Vec3> start;
-  const auto add = [&](const Vec3& share) { start.push_back(field.mapping().world_from_index(box.lo + share * (box.hi - box.lo))); };
-  add(Vec3(0.5));
-  for (int k = 0; k < 3; ++k)
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 3; ++i) add((Vec3(i, j, k) + 0.5) / 3.0);
+  const auto lattice = [&](int n) {
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+          start.push_back(mapping.world_from_index(box.lo + (Vec3(i, j, k) + 0.5) / double(n) * (box.hi - box.lo)));
+  };
+  lattice(1);
+  lattice(3);
+  field::Cursor cursor;
+  const auto flows = [&](const Vec3& p) {
+    Vec3 u;
+    return flow::seed_direction(flow, p, cursor, u) == flow::Stop::none;
+  };
+  if (std::any_of(start.begin(), start.end(), flows)) return start;
+  start.clear();
+  if (flow.field->grid() != nullptr) return flow_facts(*flow.field->grid()).fastest;
+  lattice(kFineLattice);
+  std::erase_if(start, [&](const Vec3& p) { return !flows(p); });
   return start;
+}
+
+constexpr std::array<double, 2> kFormulaBox{-2, 2};
+
+field::Box formula_box(const LineRequest& request) {
+  const std::array<double, 2> box = request.box.value_or(kFormulaBox);
+  return {Vec3(box[0]), Vec3(box[1])};
 }
 
 constexpr std::size_t kFirstBlock = 64, kLargestBlock = 8192;
@@ -114,10 +157,37 @@ std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most
          " MB of memory); fewer seeds, a shorter length or a greater tolerance was expected";
 }
 
-Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& request, const json::Node& where) {
+namespace {
+
+/// A formula has no end of its own: evenly spaced lines end at the box of its picture, and so do those of other seeds that all lie within
+/// it, if no length was asked for.
+bool ends_at_box(const Seeds& seeds, std::span<const Vec3> places, const LineRequest& request) {
+  if (request.flow.field->is_grid()) return false;
+  if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) return true;
+  const auto within = [&](const Vec3& p) { return formula_box(request).contains(p); };
+  return request.box && !(request.length > 0) && std::all_of(places.begin(), places.end(), within);
+}
+
+}  // namespace
+
+Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& asked, const json::Node& where) {
+  std::vector<Vec3> places = seeds.points;
+  if (seeds.pattern) {
+    CATENA_TRY(places, places_of(scene, *seeds.pattern));
+  }
+  LineRequest request = asked;
+  std::optional<field::BoundedVector> bounded;
+  if (ends_at_box(seeds, places, request)) {
+    bounded.emplace(*asked.flow.field, formula_box(request));
+    request.flow.field = &*bounded;
+  }
   const bool many = seeds.pattern || (seeds.widget && scene.world.get<Widget>(seeds.widget).spec.kind == widget::Kind::rake);
   const double tolerance = request.tolerance > 0 ? request.tolerance : many ? kPatternTolerance : 0;
-  if (!many && tolerance <= kExact) return exact_lines(scene, seeds, request, where);
+  if (!many && tolerance <= kExact) {
+    CATENA_TRY(Curves curves, exact_lines(scene, seeds, asked, where));
+    if (bounded) end_at_box(curves, request.flow);
+    return curves;
+  }
   flow::BatchOptions batch;
   batch.length = request.length;
   batch.tolerance = std::max(tolerance, kExact);
@@ -130,16 +200,12 @@ Result<Curves> make_lines(Scene& scene, const Seeds& seeds, const LineRequest& r
       return json::error_at(json::member_or(place, "distance"), "\"distance\" is " + to_text(spacing.distance) +
                                                                     "; at least a thousandth of the domain's length, " +
                                                                     to_text(1e-3 * request.flow.field->length()) + ", was expected");
-    if (spacing.start.empty()) spacing.start = default_start(*request.flow.field);
+    if (spacing.start.empty()) spacing.start = default_start(request.flow);
     Curves curves = flow::evenly_spaced(request.flow, spacing, batch);
     if (curves.empty())
       return json::error_at(place, "no line as long as the distance starts at any of the " + std::to_string(spacing.start.size()) +
                                        " places; a \"start\" within the flow was expected");
     return curves;
-  }
-  std::vector<Vec3> places = seeds.points;
-  if (seeds.pattern) {
-    CATENA_TRY(places, places_of(scene, *seeds.pattern));
   }
   flow::TraceOptions exact;
   exact.length = request.length;
@@ -180,7 +246,8 @@ Result<Curves> use_lines(Scene& scene, Entity entity) {
   if (!scene.made.has<MadeLines>(entity)) scene.made.emplace<MadeLines>(entity);
   MadeLines& made = scene.made.get<MadeLines>(entity);
   if (!made.released && made.field_version == any.vector->version() && made.points == set.seeds.points) return made.curves;
-  const LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
+  LineRequest request{{any.vector.get(), set.line, set.min_speed}, set.length, set.tolerance};
+  request.box = scene.world.get<FieldSource>(set.field).box;
   CATENA_TRY(Curves curves, make_lines(scene, set.seeds, request, json::member_or(set.where, "seeds")));
   static std::atomic<std::uint64_t> versions{0};
   Bounds bounds;
@@ -231,7 +298,9 @@ bool same_seeds(const Scene& a_scene, const Seeds& a, const Scene& b_scene, cons
 
 bool same_lines(const Scene& a_scene, const StreamlineSet& a, const Scene& b_scene, const StreamlineSet& b) {
   return a.line == b.line && a.min_speed == b.min_speed && a.length == b.length && a.tolerance == b.tolerance &&
-         loaded_version(a_scene, a.field) == loaded_version(b_scene, b.field) && same_seeds(a_scene, a.seeds, b_scene, b.seeds);
+         loaded_version(a_scene, a.field) == loaded_version(b_scene, b.field) &&
+         a_scene.world.get<FieldSource>(a.field).box == b_scene.world.get<FieldSource>(b.field).box &&
+         same_seeds(a_scene, a.seeds, b_scene, b.seeds);
 }
 
 }  // namespace

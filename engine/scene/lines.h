@@ -2,10 +2,13 @@
 ///   points     the exact tracer, through the scene's own curves: a line that a link of the chain feels is the same object
 ///   widget     a seed as a point, a rake as a pattern
 ///   patterns   the batch tracer (engine/flow/batch.h); places of a pattern that start nothing are left out
+///   formulas   their lines end at the box of the field's picture where no length is given and the seeds lie in it; evenly spaced always
 ///   tolerance  of one step, times L, chooses otherwise: up to 1e-9 the exact tracer, above it the batch tracer
 /// Frame thread.
 #pragma once
+#include <array>
 #include <functional>
+#include <optional>
 
 #include "engine/geometry/bounds.h"
 #include "engine/scene/scene.h"
@@ -21,11 +24,12 @@ std::size_t allowed_knots();
 
 struct LineRequest {
   flow::Flow flow;
-  double length = 0;     ///< 0: 10 L each direction
+  double length = 0;     ///< 0: 10 L each direction, and of a formula no farther than `box`
   double tolerance = 0;  ///< 0: by the seeds' kind
   double step = 0;       ///< the batch tracer's longest, voxels; 0: its default
   std::size_t most_knots = allowed_knots();
   std::function<void(std::size_t seeds, std::size_t of)> progress{};  ///< told now and then how many seeds of a pattern are done
+  std::optional<std::array<double, 2>> box{};                         ///< of a formula: the cube that its picture shows, world
 };
 
 /// The sentence that says that the lines of so many seeds have more knots together, and what was expected.

@@ -47,7 +47,9 @@ const Table<StreamlineSet>& streamlines_table() {
              [](const Scene& scene, const StreamlineSet& set) { return set.color_by ? text_of(scene, *set.color_by) : std::string(); });
     t.bind(schema::line_kind_key(), &StreamlineSet::line);
     t.bind(schema::number("min_speed", "value", "Speeds up to this end a line.").not_negative(), &StreamlineSet::min_speed);
-    t.bind(schema::number("length", "world", "Longest arc length in each direction.").positive().by_default("10 L"),
+    t.bind(schema::number("length", "world", "Longest arc length in each direction. Without it lines of a formula end at its `box`.")
+               .positive()
+               .by_default("10 L"),
            &StreamlineSet::length);
     t.bind(schema::number("tolerance", "L", "Embedded error of a step.")
                .limited({0.0, 0.01, true})

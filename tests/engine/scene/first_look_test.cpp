@@ -132,6 +132,41 @@ TEST(FirstLook, FibresHaveOneColorAndNoSpeedBar) {
   }
 }
 
+TEST(FirstLook, ARampIsAQuantityAlongAnyAxis) {
+  const test::TemporaryFolder folder;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Scene scene = scene_of(folder / "a.vdb", [&](const Vec3& p) { return 0.37 * p[axis]; });
+    EXPECT_EQ(scene.world.count<Volume>(), 1u) << axis << scene.notes[0];
+    EXPECT_EQ(scene.world.count<Isosurface>(), 0u) << axis;
+  }
+}
+
+TEST(FirstLook, RandomSignsAreAxesAndAFlowIsNot) {
+  constexpr int kSize = 24;
+  std::vector<float> signs, flow;
+  std::uint32_t state = 7;
+  for (int z = 0; z < kSize; ++z)
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        state = 1664525 * state + 1013904223;
+        const Vec3 v = (1 + 0.05 * x) * Vec3(std::cos(0.1 * y), std::sin(0.1 * y), 0.3);  // of different lengths, as with FA
+        const double sign = (state >> 31) != 0 ? -1 : 1;
+        for (int a = 0; a < 3; ++a) {
+          signs.push_back(static_cast<float>(sign * v[a]));
+          flow.push_back(static_cast<float>(v[a]));
+        }
+      }
+  const test::TemporaryFolder folder;
+  for (const auto& [name, xyz, line] : {std::tuple{"a.vdb", signs, true}, {"b.vdb", flow, false}}) {
+    ASSERT_TRUE(
+        field::write_vdb(folder / name, {{{nullptr, field::make_vector_grid("v", field::Mapping{}, {kSize, kSize, kSize}, xyz)}, "v"}}));
+    auto scene = scene_for_file(folder / name);
+    ASSERT_TRUE(scene) << scene.error().message;
+    ASSERT_EQ(scene->world.count<StreamlineSet>(), 1u);
+    scene->world.each<StreamlineSet>([&, line = line](Entity, const StreamlineSet& set) { EXPECT_EQ(set.line, line); });
+  }
+}
+
 TEST(FirstLook, AFieldWithoutLinesIsStillAPicture) {
   const test::TemporaryFolder folder;
   // a single voxel that moves: its line is shorter than lines are apart

@@ -50,6 +50,47 @@ void no_lines(const std::string& set, int line, const std::vector<std::string>& 
   for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
+/// Of `analytic` (without an end of its own), in the box -1..1.
+std::vector<flow::CurvePtr> lines_of_formula(const std::string& analytic, const std::string& set) {
+  auto scene = parse_scene(
+      "{\"fields\": {\"v\": {\"analytic\": \"" + analytic + "\", \"box\": [-1, 1]}}, \"streamlines\": [{\"field\": \"v\", " + set + "}]}",
+      "s.json");
+  EXPECT_TRUE(scene) << (scene ? "" : scene.error().message);
+  if (!scene) return {};
+  auto lines = use_lines(*scene, set_of(*scene));
+  EXPECT_TRUE(lines) << (lines ? "" : lines.error().message);
+  return lines ? *lines : std::vector<flow::CurvePtr>{};
+}
+
+TEST(SeedPatterns, LinesOfAFormulaEndAtItsBox) {
+  for (const char* seeds : {R"("seeds": {"evenly_spaced": {"distance": 0.4}})", R"("seeds": [[0.3, 0.2, 0.1], [-0.4, 0.5, 0.9]])",
+                            R"("seeds": {"line": {"from": [0, -0.9, 0], "to": [0, 0.9, 0], "count": 5}})"}) {
+    const auto lines = lines_of_formula("abc", seeds);
+    EXPECT_GE(lines.size(), 2u) << seeds;
+    for (const flow::CurvePtr& line : lines)
+      for (const auto& [end, knot] : {std::pair{line->first_end(), line->knots().front()}, {line->last_end(), line->knots().back()}}) {
+        // an evenly spaced line may end earlier, at another one
+        EXPECT_LE(max_abs(knot.p), 1 + 1e-8) << seeds;
+        if (end == flow::End::boundary) {
+          EXPECT_NEAR(max_abs(knot.p), 1, 1e-8) << seeds;
+        }
+      }
+  }
+  // a stated length, or a seed elsewhere, is what was asked for
+  EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 0, 0]], "length": 7)")[0]->knots().back().s, 7, 1e-12);
+  EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 3, 0]])")[0]->knots().back().s, 40, 1e-9);
+}
+
+TEST(SeedPatterns, EvenlySpacedLinesOfAHollowDomainBeginInItsWall) {
+  auto scene = parse_scene(R"({"fields": {"f": {"analytic": "left-ventricle", "part": "fibre", "box": [-3, 3]}},
+                               "streamlines": [{"field": "f", "kind": "line", "seeds": {"evenly_spaced": {"distance": 0.3}}}]})",
+                           "s.json");
+  ASSERT_TRUE(scene) << scene.error().message;
+  const auto lines = use_lines(*scene, set_of(*scene));
+  ASSERT_TRUE(lines) << lines.error().message;
+  EXPECT_GT(lines->size(), 10u);
+}
+
 TEST(SeedPatterns, EveryPatternGivesLines) {
   EXPECT_EQ(lines_of(R"("seeds": {"line": {"from": [0.2, 0, 0], "to": [1.2, 0, 0], "count": 6}})").size(), 6u);
   EXPECT_EQ(lines_of(R"("seeds": {"plane": {"origin": [0.2, 0, -1], "u": [1, 0, 0], "v": [0, 0, 2], "count": [3, 4]}})").size(), 12u);
