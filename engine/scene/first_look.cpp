@@ -87,7 +87,7 @@ std::string quantity(const std::string& field, const field::ScalarGrid& grid, co
   for (const auto& [share, depth] : {std::pair{0.0, empty ? 0.0 : kLowDepth}, {0.1, kLowDepth}, {1.0, most}})
     rows += (share > 0 ? ", [" : "[") + text_of(rounded(lo + share * (hi - lo), facts)) + ", " + text_of(three_digits(depth * clear)) + "]";
   text += rows + "]}]";
-  return text + bar_of("\"volume\": 0", field, !empty && !facts.masked);
+  return text + bar_of("\"volume\": 0", field, !empty);
 }
 
 std::string computed_tomography(const std::string& field, const field::ScalarGrid& grid, const DataFacts& facts) {

@@ -55,6 +55,9 @@ class Foresight {
   std::vector<vtkSmartPointer<vtkStaticCellLocator>> locators_;
 };
 
+constexpr double kLeastSteps = 72;  ///< along the longest axis
+constexpr double kFewVoxels = 4e5;  ///< that may be spent on it
+
 double middle(std::vector<double>& values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), at, values.end());
@@ -106,6 +109,12 @@ Result<ResamplePlan> plan_resampling(const std::vector<CellValues>& blocks, doub
   double factor = 1;
   const auto voxels = [&](double f) { return static_cast<double>(lattice_of(lo, hi, edges, f).voxels()); };
   while (voxels(factor) > most_voxels) factor *= 1.1;
+  // few cells may be exact in few voxels, but their mask would end in large steps
+  const auto steps = [&](double f) {
+    const field::Index3 size = lattice_of(lo, hi, edges, f).size;
+    return std::max({size.x, size.y, size.z}) - 1;
+  };
+  while (steps(factor) < kLeastSteps && voxels(factor / 1.1) <= std::min(most_voxels, kFewVoxels)) factor /= 1.1;
   Foresight foresight(blocks);
   if (foresight.empty()) return Error{"has no finite values inside its cells"};
   ResamplePlan plan;
