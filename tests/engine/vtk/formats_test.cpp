@@ -148,16 +148,20 @@ TEST_F(Formats, EveryPlaceOfACellOfSecondOrderHasItsValue) {
 }
 
 TEST_F(Formats, ValuesThatJumpBetweenCellsDoNotTakeAllVoxels) {
-  // two hexahedra that share a face, but not its points: 0 in the one, 1 in the other
-  std::string points, values;
-  for (int cell = 0; cell < 2; ++cell)
+  // hexahedra in a row that share faces, but not their points: 0 and 1 in turn
+  constexpr int kCells = 12;
+  std::string points, values, corners, offsets, types;
+  for (int cell = 0; cell < kCells; ++cell) {
     for (const Vec3& p :
          {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(1, 1, 1), Vec3(0, 1, 1)}) {
       points += fmt::format("{} {} {} ", p.x + cell, p.y, p.z);
-      values += fmt::format("{} ", cell);
+      values += fmt::format("{} ", cell % 2);
     }
-  const AnyField field =
-      read(file("jump.vtu", files::vtu_of(16, points, values, "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15", "8 16", "12 12")));
+    for (int i = 0; i < 8; ++i) corners += fmt::format("{} ", 8 * cell + i);
+    offsets += fmt::format("{}{}", cell > 0 ? " " : "", 8 * (cell + 1));
+    types += "12 ";
+  }
+  const AnyField field = read(file("jump.vtu", files::vtu_of(8 * kCells, points, values, corners, offsets, types)));
   EXPECT_TRUE(has_note(field, "finer voxels do not help")) << field.notes.front();
   EXPECT_LT(field.scalar->grid()->stats().active_voxels, 2'000'000u);
 }
