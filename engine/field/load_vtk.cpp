@@ -63,7 +63,7 @@ Result<std::vector<GridInfo>> describe_answered(const std::string& path) {
 }
 
 Units units_answered(const std::string& path, const std::string& grid) {
-  const std::optional<ReadReply> file = unit_words_of(path);
+  const std::optional<ReadReply> file = words_of(path);
   if (!file) return {};
   Units units;
   units.patient = file->patient;
@@ -75,12 +75,9 @@ Units units_answered(const std::string& path, const std::string& grid) {
 
 }  // namespace
 
-Result<Shapes> shapes_in(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  CATENA_TRY(const ReaderAnswer answer, ask_reader(ReadMode::shape, request));
-  const ShapeReply& shape = answer.reply.shape;
-  return Shapes{shape.triangles.bytes > 0, shape.lines.bytes > 0, shape.points.bytes > 0};
+std::optional<Shapes> shapes_in(const std::string& path) {
+  const std::optional<ReadReply> file = words_of(path);
+  return file ? std::optional(file->shapes) : std::nullopt;
 }
 
 /// .npy: a single array, described by loading it.

@@ -44,7 +44,8 @@ ReaderSettings& reader_settings();
 /// The processor time that reading a .vdb file of so many bytes may take.
 std::uint64_t reading_time_s(std::uint64_t file_bytes);
 
-/// The words on units of a file, from the last answer about it or from a new one; nothing where it cannot be read.
-std::optional<ReadReply> unit_words_of(const std::string& path);
+/// What every answer about a file has, its words on units and what of it is drawn, from the last one or from a new one; nothing where it
+/// cannot be read.
+std::optional<ReadReply> words_of(const std::string& path);
 
 }  // namespace catena::field
