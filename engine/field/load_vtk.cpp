@@ -51,17 +51,6 @@ Result<AnyField> load_answered(const LoadRequest& request) {
   return load_dense(file);
 }
 
-Result<std::vector<GridInfo>> describe_answered(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
-  for (const GridInfo& grid : answer.reply.grids) {
-    if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
-    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
-  }
-  return std::move(answer.reply.grids);
-}
-
 Units units_answered(const std::string& path, const std::string& grid) {
   const std::optional<ReadReply> file = words_of(path);
   if (!file) return {};

@@ -204,6 +204,17 @@ Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
   return answer;
 }
 
+Result<std::vector<GridInfo>> describe_answered(const std::string& path) {
+  LoadRequest request;
+  request.path = path;
+  CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
+  for (const GridInfo& grid : answer.reply.grids) {
+    if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
+    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
+  }
+  return std::move(answer.reply.grids);
+}
+
 std::optional<ReadReply> words_of(const std::string& path) {
   Known now;
   if (!look_at(path, now)) return std::nullopt;

@@ -30,6 +30,9 @@ struct ReaderAnswer {
 /// Errors are whole sentences: those of the reader, or what became of it. Blocks until the reader has ended.
 Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& request);
 
+/// What the reader says of each grid, checked.
+Result<std::vector<GridInfo>> describe_answered(const std::string& path);
+
 /// The sentence on an answer that cannot be: "FILE: the file is damaged (of what its reader made of it, WHAT), expected a sound .vdb file".
 Error damaged_answer(const std::string& path, std::string_view what);
 
