@@ -4,7 +4,6 @@
 
 #include <cstring>
 
-#include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/reader.h"
 
@@ -23,7 +22,7 @@ Result<AnyField> load_answered(const LoadRequest& request) {
   const Index3 n{static_cast<int>(dense.size.x), static_cast<int>(dense.size.y), static_cast<int>(dense.size.z)};
   const int components = reply.is_vector ? 3 : 1;
   Mapping mapping = reply.mapping;
-  if (has_ending(path, ".npy") || has_ending(path, ".npz")) {
+  if (is_numpy_file(path)) {
     Mat3 linear(0.0);
     for (int a = 0; a < 3; ++a) linear[a][a] = request.spacing[a];
     mapping = Mapping::from_linear(linear, request.origin);

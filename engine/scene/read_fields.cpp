@@ -99,7 +99,7 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
     return json::error_at(*node.find("axes"), "\"axes\" is " + in_quotes(axes) + "; \"zyx\" or \"xyz\" was expected");
   request.axes_xyz = axes == "xyz";
   for (const char* key : {"axes", "spacing", "origin"})
-    if (node.find(key) != nullptr && !has_ending(request.path, ".npy") && !has_ending(request.path, ".npz"))
+    if (node.find(key) != nullptr && !field::is_numpy_file(request.path))
       return json::error_at(*node.find(key), in_quotes(key) + " belongs to arrays of NumPy (.npy, .npz); this file says it itself");
   if (const json::Node* spacing = node.find("spacing")) {
     CATENA_TRY(request.spacing, json::as_vec3(*spacing, "spacing"));
