@@ -20,8 +20,8 @@ using schema::Keys;
 using schema::Role;
 
 struct Part {
-  schema::Component description;  ///< of "chain", "modes" and "device" the keys are told by the rooms that read them
-  Outcome (*read)(Scene&, const json::Node&);
+  schema::Component description;               ///< of "chain", "modes" and "device" the keys are told by the rooms that read them
+  Outcome (*read)(Scene&, const json::Node&);  ///< nullptr: read_root reads it before the others
 };
 
 // in the order of docs/scene.md
@@ -86,6 +86,7 @@ std::string file_fault(const std::string& path, bool known, const std::string& w
 /// Relative paths start at the scene file's folder.
 std::string resolved_path(const std::string& scene_path, const std::string& file);
 
+Outcome read_time(Scene& scene, const json::Node& node);
 Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<FieldOverride>& overrides);
 /// Of a grid's source, beside its own keys: "interpolation" and "labels"; the source has its file already.
 Keys map_keys();
