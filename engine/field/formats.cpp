@@ -46,6 +46,8 @@ bool needs_layout(std::string_view path) {
   return format != nullptr && format->needs_layout;
 }
 
+bool is_numpy_file(std::string_view path) { return has_ending(path, ".npy") || has_ending(path, ".npz"); }
+
 std::vector<std::string_view> field_endings(bool bare) {
   std::vector<std::string_view> out;
   for (const FileFormat& format : registry())

@@ -17,6 +17,8 @@ namespace catena::field {
 bool is_field_file(std::string_view path);
 /// Whether it is of a format that does not say its own layout (.raw): a scene or an option has to.
 bool needs_layout(std::string_view path);
+/// An array of NumPy's (.npy, .npz), which does not say where it lies.
+bool is_numpy_file(std::string_view path);
 /// ".vdb", ".nii", ..; `bare`: of those that say their layout, which can be opened without a scene.
 std::vector<std::string_view> field_endings(bool bare = false);
 /// "a data file (.vdb, .nii, ..)", for a sentence.

@@ -58,11 +58,12 @@ struct GridInfo {
 /// Describes every grid of a file.
 Result<std::vector<GridInfo>> describe(const std::string& path);
 
-/// What of a file of the program catena-read-vtk is drawn as it lies.
+/// What of a file of the program catena-read-vtk is drawn as it lies, beside points.
 struct Shapes {
-  bool triangles = false, lines = false, points = false;
+  bool triangles = false, lines = false;
 };
-Result<Shapes> shapes_in(const std::string& path);
+/// Empty where the file cannot be read.
+std::optional<Shapes> shapes_in(const std::string& path);
 
 /// Writes grids to a .vdb through a temporary file beside it, renamed when complete: nothing half-written stays behind.
 struct WriteItem {

@@ -56,17 +56,6 @@ static Result<AnyField> load_vdb(const LoadRequest& request) {
   return field;
 }
 
-static Result<std::vector<GridInfo>> describe_vdb(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
-  for (GridInfo& grid : answer.reply.grids) {
-    if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
-    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
-  }
-  return std::move(answer.reply.grids);
-}
-
-FileFormat vdb_format() { return {.endings = {".vdb"}, .load = load_vdb, .describe = describe_vdb, .units = vdb_units}; }
+FileFormat vdb_format() { return {.endings = {".vdb"}, .load = load_vdb, .describe = describe_answered, .units = vdb_units}; }
 
 }  // namespace catena::field

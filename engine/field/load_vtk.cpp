@@ -4,7 +4,6 @@
 
 #include <cstring>
 
-#include "engine/base/text.h"
 #include "engine/field/formats.h"
 #include "engine/field/reader.h"
 
@@ -23,7 +22,7 @@ Result<AnyField> load_answered(const LoadRequest& request) {
   const Index3 n{static_cast<int>(dense.size.x), static_cast<int>(dense.size.y), static_cast<int>(dense.size.z)};
   const int components = reply.is_vector ? 3 : 1;
   Mapping mapping = reply.mapping;
-  if (has_ending(path, ".npy") || has_ending(path, ".npz")) {
+  if (is_numpy_file(path)) {
     Mat3 linear(0.0);
     for (int a = 0; a < 3; ++a) linear[a][a] = request.spacing[a];
     mapping = Mapping::from_linear(linear, request.origin);
@@ -51,19 +50,8 @@ Result<AnyField> load_answered(const LoadRequest& request) {
   return load_dense(file);
 }
 
-Result<std::vector<GridInfo>> describe_answered(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
-  for (const GridInfo& grid : answer.reply.grids) {
-    if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
-    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
-  }
-  return std::move(answer.reply.grids);
-}
-
 Units units_answered(const std::string& path, const std::string& grid) {
-  const std::optional<ReadReply> file = unit_words_of(path);
+  const std::optional<ReadReply> file = words_of(path);
   if (!file) return {};
   Units units;
   units.patient = file->patient;
@@ -75,12 +63,9 @@ Units units_answered(const std::string& path, const std::string& grid) {
 
 }  // namespace
 
-Result<Shapes> shapes_in(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  CATENA_TRY(const ReaderAnswer answer, ask_reader(ReadMode::shape, request));
-  const ShapeReply& shape = answer.reply.shape;
-  return Shapes{shape.triangles.bytes > 0, shape.lines.bytes > 0, shape.points.bytes > 0};
+std::optional<Shapes> shapes_in(const std::string& path) {
+  const std::optional<ReadReply> file = words_of(path);
+  return file ? std::optional(file->shapes) : std::nullopt;
 }
 
 /// .npy: a single array, described by loading it.

@@ -128,7 +128,7 @@ Result<ReaderAnswer> take_answer(const std::string& path, const Descriptor& file
   return answer;
 }
 
-// ---- the words on units, kept for as long as the file stays as it is ----
+// ---- what every answer has, kept for as long as the file stays as it is ----
 
 struct Known {
   std::filesystem::file_time_type at;
@@ -151,6 +151,7 @@ void keep_words(const std::string& path, const Known& before, const ReadReply& r
   entry.words.unit_length = reply.unit_length;
   entry.words.patient = reply.patient;
   entry.words.words = reply.words;
+  entry.words.shapes = reply.shapes;
   const std::scoped_lock lock(known_mutex);
   constexpr std::size_t kMost = 256;
   if (known_words.size() >= kMost) known_words.clear();
@@ -203,7 +204,18 @@ Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& what) {
   return answer;
 }
 
-std::optional<ReadReply> unit_words_of(const std::string& path) {
+Result<std::vector<GridInfo>> describe_answered(const std::string& path) {
+  LoadRequest request;
+  request.path = path;
+  CATENA_TRY(ReaderAnswer answer, ask_reader(ReadMode::describe, request));
+  for (const GridInfo& grid : answer.reply.grids) {
+    if (!grid.mapping.is_sound()) return damaged_answer(path, "a transform cannot be inverted");
+    if (grid.size.x < 0 || grid.size.y < 0 || grid.size.z < 0) return damaged_answer(path, "a size is negative");
+  }
+  return std::move(answer.reply.grids);
+}
+
+std::optional<ReadReply> words_of(const std::string& path) {
   Known now;
   if (!look_at(path, now)) return std::nullopt;
   {
@@ -213,7 +225,7 @@ std::optional<ReadReply> unit_words_of(const std::string& path) {
   }
   LoadRequest request;
   request.path = path;
-  auto answer = ask_reader(ReadMode::units, request);
+  auto answer = ask_reader(ReadMode::words, request);
   if (!answer) return std::nullopt;
   return std::move(answer->reply);
 }

@@ -30,6 +30,9 @@ struct ReaderAnswer {
 /// Errors are whole sentences: those of the reader, or what became of it. Blocks until the reader has ended.
 Result<ReaderAnswer> ask_reader(ReadMode mode, const LoadRequest& request);
 
+/// What the reader says of each grid, checked.
+Result<std::vector<GridInfo>> describe_answered(const std::string& path);
+
 /// The sentence on an answer that cannot be: "FILE: the file is damaged (of what its reader made of it, WHAT), expected a sound .vdb file".
 Error damaged_answer(const std::string& path, std::string_view what);
 
@@ -44,7 +47,8 @@ ReaderSettings& reader_settings();
 /// The processor time that reading a .vdb file of so many bytes may take.
 std::uint64_t reading_time_s(std::uint64_t file_bytes);
 
-/// The words on units of a file, from the last answer about it or from a new one; nothing where it cannot be read.
-std::optional<ReadReply> unit_words_of(const std::string& path);
+/// What every answer about a file has, its words on units and what of it is drawn, from the last one or from a new one; nothing where it
+/// cannot be read.
+std::optional<ReadReply> words_of(const std::string& path);
 
 }  // namespace catena::field

@@ -195,6 +195,8 @@ std::string encode(const ReadReply& r) {
     e.words(w.unit_length);
     e.flag(w.level_set);
   }
+  e.flag(r.shapes.triangles);
+  e.flag(r.shapes.lines);
   e.number(r.confinement.landlock_version);
   e.flag(r.confinement.seccomp);
   return e.take();
@@ -231,6 +233,8 @@ Result<ReadReply> decode_reply(std::span<const std::byte> bytes) {
     w.level_set = d.flag();
     r.words.push_back(std::move(w));
   }
+  r.shapes.triangles = d.flag();
+  r.shapes.lines = d.flag();
   r.confinement.landlock_version = d.number<std::uint32_t>();
   r.confinement.seccomp = d.flag();
   if (!d.finished()) return Error{"its reply is incomplete"};

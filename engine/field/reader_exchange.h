@@ -26,8 +26,9 @@ struct ExchangeHead {
   std::uint64_t offset = 0, bytes = 0;
 };
 
-/// load: one grid. describe: what there is. units: words on units alone. shape: what is drawn as it lies, triangles, lines and points.
-enum class ReadMode : std::uint8_t { load, describe, units, shape };
+/// load: one grid. describe: what there is. words: what every reply has, nothing else. shape: what is drawn as it lies, triangles, lines
+/// and points.
+enum class ReadMode : std::uint8_t { load, describe, words, shape };
 
 struct ReadRequest {
   ReadMode mode = ReadMode::load;
@@ -90,6 +91,7 @@ struct ReadReply {
   std::string units, unit_length;  ///< of the file
   bool patient = false;            ///< the world is a patient's (engine/field/units.h)
   std::vector<GridWords> words;
+  Shapes shapes;  ///< that it has, handed over or not
   Confinement confinement;
 };
 

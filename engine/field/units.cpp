@@ -30,7 +30,7 @@ Units nifti_units(const std::string& path, const std::string&) {
 }
 
 Units vdb_units(const std::string& path, const std::string& grid) {
-  const std::optional<ReadReply> file = unit_words_of(path);
+  const std::optional<ReadReply> file = words_of(path);
   if (!file) return {};
   Units units;
   std::vector<const GridWords*> fields;

@@ -18,11 +18,40 @@
 namespace catena::scene {
 namespace {
 
+/// A file that is looked into; its grids are described once, when somebody asks for them.
+struct LookedInto {
+  std::string path;   ///< of a pattern: its first file
+  bool found = true;  ///< false: no file is called like the pattern
+  FileKind kind = FileKind::field;
+  std::optional<Result<std::vector<field::GridInfo>>> described{};
+
+  const Result<std::vector<field::GridInfo>>& grids() {
+    if (!described) described = field::describe(path);
+    return *described;
+  }
+};
+
+LookedInto look_into(const std::string& name) {
+  const std::vector<std::string> files = is_pattern(name) ? files_of_pattern(name) : std::vector<std::string>{name};
+  LookedInto file{files.empty() ? name : files.front(), !files.empty()};
+  const std::string& path = file.path;
+  const bool field = field::is_field_file(path), mesh = mesh::is_mesh_file(path), curves = curves::is_curve_file(path),
+             points = curves::is_point_file(path);
+  if (!mesh && !curves && !points) return file;
+  if (field && (!file.grids() || std::ranges::any_of(*file.grids(), &field::GridInfo::usable))) return file;
+  file.kind = mesh ? FileKind::mesh : curves ? FileKind::curves : FileKind::points;
+  if (mesh + curves + points == 1) return file;
+  const auto shapes = field::shapes_in(path);
+  if (!shapes || (mesh && shapes->triangles)) return file;
+  file.kind = curves && shapes->lines ? FileKind::curves : points ? FileKind::points : FileKind::mesh;
+  return file;
+}
+
 /// The grid asked for; else the only one; else the first scalar one, else the first vector one.
-Result<field::AnyField> load_best(field::LoadRequest& request) {
+Result<field::AnyField> load_best(LookedInto& file, field::LoadRequest& request) {
   auto loaded = field::load(request);
   if (loaded || !request.grid.empty()) return loaded;
-  const auto grids = field::describe(request.path);
+  const auto& grids = file.grids();
   if (!grids) return loaded.error();
   const field::GridInfo* best = nullptr;
   for (const field::GridInfo& grid : *grids)
@@ -45,14 +74,13 @@ std::string field_name(std::string_view grid) {
 }
 
 /// The file's other grids, to be shown when somebody asks for them; nothing loads them before.
-std::string other_fields(const field::LoadRequest& shown, const std::string& file, const std::string& taken) {
-  const auto grids = field::describe(shown.path);
-  if (!grids || shown.grid.empty()) return {};
+std::string other_fields(LookedInto& looked, const std::string& shown, const std::string& file, const std::string& taken) {
+  if (shown.empty() || !looked.grids()) return {};
   std::vector<std::string> names{taken};
   std::string text;
-  for (const field::GridInfo& grid : *grids) {
+  for (const field::GridInfo& grid : *looked.grids()) {
     const std::string name = json::string_text(field_name(grid.name));
-    if (!grid.usable || grid.stats.active_voxels == 0 || grid.name.empty() || grid.name == shown.grid) continue;
+    if (!grid.usable || grid.stats.active_voxels == 0 || grid.name.empty() || grid.name == shown) continue;
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     names.push_back(name);
     text += ",\n             " + name + ": {\"file\": " + file + ", \"grid\": " + json::string_text(grid.name) + "}";
@@ -110,15 +138,15 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   BareFile bare;
   bare.scene_path = path + ".json";
   const std::string file = json::string_text(std::filesystem::path(path).filename().string());
-  const FileKind kind = kind_of_file(path);
-  if (kind == FileKind::mesh) {
+  LookedInto looked = look_into(path);
+  if (looked.kind == FileKind::mesh) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": a mesh has no values to colour; a colour map goes with a data file")};
     CATENA_TRY(bare.mesh, mesh::load_mesh(path));
     bare.text = "{\n  \"meshes\": [{\"name\": \"mesh\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
-  if (kind == FileKind::curves) {
+  if (looked.kind == FileKind::curves) {
     if (!colors.map.empty() || colors.range)
       return Error{one_line(path + ": curves are shown in the colours of their directions; a colour map goes with a data file")};
     CATENA_TRY(bare.curves, curves::load_curves(path));
@@ -126,7 +154,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
     bare.text = "{\n  \"curves\": [{\"name\": \"curves\", \"file\": " + file + "}],\n" + soft_background() + "\n}\n";
     return bare;
   }
-  if (kind == FileKind::points) {
+  if (looked.kind == FileKind::points) {
     CATENA_TRY(bare.points, curves::load_points(path));
     CATENA_TRY(const std::string parts, points_parts(*bare.points, file, colors, bare.note));
     bare.text = "{\n" + parts + ",\n" + soft_background() + "\n}\n";
@@ -134,14 +162,10 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   }
   if (field::needs_layout(path))
     return Error{one_line(path + ": a .raw file does not say its shape; a scene file that states it was expected")};
-  bare.request.path = path;
-  if (is_pattern(path)) {
-    const std::vector<std::string> files = files_of_pattern(path);
-    if (files.empty()) return Error{one_line(path + ": no file is called like this")};
-    bare.request.path = files.front();
-  }
+  if (!looked.found) return Error{one_line(path + ": no file is called like this")};
+  bare.request.path = looked.path;
   bare.request.grid = grid;
-  CATENA_TRY(bare.field, load_best(bare.request));
+  CATENA_TRY(bare.field, load_best(looked, bare.request));
   const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
   const FirstLook look = bare.field.scalar
                              ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
@@ -166,7 +190,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   }
   bare.text += "}" + look.fields;
   if (grid.empty()) {
-    const std::string others = other_fields(bare.request, file, name);
+    const std::string others = other_fields(looked, bare.request.grid, file, name);
     bare.text += others;
     if (!others.empty()) bare.note += "; the file holds other fields, too: --grid NAME shows one (catena info FILE)";
   }
@@ -182,25 +206,7 @@ std::vector<std::string> look_of_file(const std::string& path) {
   return lines;
 }
 
-FileKind kind_of_file(const std::string& name) {
-  const std::vector<std::string> files = is_pattern(name) ? files_of_pattern(name) : std::vector<std::string>{name};
-  const std::string path = files.empty() ? name : files.front();
-  const bool field = field::is_field_file(path), mesh = mesh::is_mesh_file(path), curves = curves::is_curve_file(path),
-             points = curves::is_point_file(path);
-  if (field && !mesh && !curves && !points) return FileKind::field;
-  if (field) {
-    const auto grids = field::describe(path);
-    if (!grids || std::any_of(grids->begin(), grids->end(), [](const field::GridInfo& grid) { return grid.usable; }))
-      return FileKind::field;
-  }
-  if (mesh + curves + points > 1) {
-    const auto shapes = field::shapes_in(path);
-    if (mesh && (!shapes || shapes->triangles)) return FileKind::mesh;
-    if (curves && (!shapes || shapes->lines)) return FileKind::curves;
-    return points ? FileKind::points : FileKind::mesh;
-  }
-  return mesh ? FileKind::mesh : curves ? FileKind::curves : points ? FileKind::points : FileKind::field;
-}
+FileKind kind_of_file(const std::string& path) { return look_into(path).kind; }
 
 void adopt_loaded(const BareFile& bare, Scene& scene) {
   scene.world.each<FieldSource>([&](Entity, FieldSource& source) {

@@ -117,28 +117,24 @@ bool names_a_file(const json::Node& node) {
   return false;
 }
 
-/// Every field and mesh of the fresh scene is that of the same name before: a description that is the same means the same.
-bool same_sources(const Scene& old, const Scene& fresh) {
+/// Every T of the fresh scene is that of the same name before.
+template <class T, class Same>
+bool all_same(const Scene& old, const Scene& fresh, const Same& is_same) {
   bool same = true;
-  fresh.world.each<FieldSource>([&](Entity e, const FieldSource& source) {
-    const Entity before = find_field(old, fresh.world.get<Name>(e).value);
-    same = same && before && same_source(old.world.get<FieldSource>(before), source) &&
-           same_drawing(old.world.get<FieldSource>(before), source) &&
-           old.world.get<FieldSource>(before).labels_table == source.labels_table;
-  });
-  fresh.world.each<MeshSource>([&](Entity e, const MeshSource& source) {
-    const Entity before = find_mesh(old, fresh.world.get<Name>(e).value);
-    same = same && before && same_mesh(old.world.get<MeshSource>(before), source);
-  });
-  fresh.world.each<DrawnCurves>([&](Entity e, const DrawnCurves& source) {
-    const Entity before = find_curves(old, fresh.world.get<Name>(e).value);
-    same = same && before && same_table(old.world.get<DrawnCurves>(before), source);
-  });
-  fresh.world.each<DrawnPoints>([&](Entity e, const DrawnPoints& source) {
-    const Entity before = find_points(old, fresh.world.get<Name>(e).value);
-    same = same && before && same_table(old.world.get<DrawnPoints>(before), source);
+  fresh.world.each<T>([&](Entity e, const T& source) {
+    const Entity before = find_named<T>(old, fresh.world.get<Name>(e).value);
+    same = same && before && is_same(old.world.get<T>(before), source);
   });
   return same;
+}
+
+/// A description that is the same means the same.
+bool same_sources(const Scene& old, const Scene& fresh) {
+  const auto same_field = [](const FieldSource& a, const FieldSource& b) {
+    return same_source(a, b) && same_drawing(a, b) && a.labels_table == b.labels_table;
+  };
+  return all_same<FieldSource>(old, fresh, same_field) && all_same<MeshSource>(old, fresh, same_mesh) &&
+         all_same<DrawnCurves>(old, fresh, same_table<DrawnCurves>) && all_same<DrawnPoints>(old, fresh, same_table<DrawnPoints>);
 }
 
 template <class T>

@@ -72,22 +72,13 @@ Outcome load_glyphs(Scene& scene) {
   return Done{};
 }
 
-Outcome load_points(Scene& scene) {
-  for (const Entity e : visible<DrawnPoints>(scene.world)) {
-    CATENA_CHECK(use_points(scene, e));
-    const DrawnPoints& points = scene.world.get<DrawnPoints>(e);
-    if (points.color_by && points.color_by->what == ColorBy::What::field)
-      CATENA_CHECK(use_field(scene, points.color_by->field, points.color_by->where));
-  }
-  return Done{};
-}
-
-Outcome load_curves(Scene& scene) {
-  for (const Entity e : visible<DrawnCurves>(scene.world)) {
-    CATENA_CHECK(use_curves(scene, e));
-    const DrawnCurves& curves = scene.world.get<DrawnCurves>(e);
-    if (curves.color_by && curves.color_by->what == ColorBy::What::field)
-      CATENA_CHECK(use_field(scene, curves.color_by->field, curves.color_by->where));
+/// Of curves and points: what `use` loads of them, and the field that colours it.
+template <class T, class Use>
+Outcome load_files(Scene& scene, const Use& use) {
+  for (const Entity e : visible<T>(scene.world)) {
+    CATENA_CHECK(use(e));
+    const std::optional<ColorBy>& by = scene.world.get<T>(e).color_by;
+    if (by && by->what == ColorBy::What::field) CATENA_CHECK(use_field(scene, by->field, by->where));
   }
   return Done{};
 }
@@ -105,8 +96,8 @@ Outcome prepare(Scene& scene) {
   }
   CATENA_CHECK(trace_lines(scene));
   CATENA_CHECK(load_glyphs(scene));
-  CATENA_CHECK(load_curves(scene));
-  CATENA_CHECK(load_points(scene));
+  CATENA_CHECK(load_files<DrawnCurves>(scene, [&](Entity e) { return use_curves(scene, e); }));
+  CATENA_CHECK(load_files<DrawnPoints>(scene, [&](Entity e) { return use_points(scene, e); }));
   if (scene.bounding_box && scene.bounding_box->field)
     CATENA_CHECK(use_drawn_field(scene, scene.bounding_box->field, scene.bounding_box->where));
   if (scene.axes && scene.axes->field) CATENA_CHECK(use_drawn_field(scene, scene.axes->field, scene.axes->where));

@@ -36,6 +36,17 @@ Entity shown_field(const World& world, Entity field) {
   return found;
 }
 
+/// What has colours only with "color_by". `set`: an item is a set of them.
+template <class T>
+Result<Entity> read_coloured(const Scene& scene, const json::Node& item, const std::string& key, bool set) {
+  CATENA_TRY(const Entity shown, read_index<T>(scene, item, key, key, "a scalar bar"));
+  if (has_colors(scene.world, shown)) return shown;
+  return json::error_at(
+      *item.find(key), "these " + key +
+                           (set ? " have one colour; a set with \"color_by\" was" : " show no values; " + key + " with \"color_by\" were") +
+                           " expected for a scalar bar");
+}
+
 Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   int given = 0;
   for (const char* key : {"volume", "slice", "streamlines", "glyphs", "curves", "points", "field"}) given += item.find(key) != nullptr;
@@ -46,30 +57,10 @@ Result<Entity> read_shown(const Scene& scene, const json::Node& item) {
   const std::string whose = "a scalar bar";
   if (item.find("volume")) return read_index<Volume>(scene, item, "volume", "volumes", whose);
   if (item.find("slice")) return read_index<Slice>(scene, item, "slice", "slices", whose);
-  if (const json::Node* node = item.find("streamlines")) {
-    CATENA_TRY(const Entity set, read_index<StreamlineSet>(scene, item, "streamlines", "streamlines", whose));
-    if (!has_colors(scene.world, set))
-      return json::error_at(*node, "these streamlines have one colour; a set with \"color_by\" was expected for a scalar bar");
-    return set;
-  }
-  if (const json::Node* node = item.find("glyphs")) {
-    CATENA_TRY(const Entity set, read_index<GlyphSet>(scene, item, "glyphs", "glyphs", whose));
-    if (!has_colors(scene.world, set))
-      return json::error_at(*node, "these glyphs have one colour; a set with \"color_by\" was expected for a scalar bar");
-    return set;
-  }
-  if (const json::Node* node = item.find("curves")) {
-    CATENA_TRY(const Entity curves, read_index<DrawnCurves>(scene, item, "curves", "curves", whose));
-    if (!has_colors(scene.world, curves))
-      return json::error_at(*node, "these curves show no values; curves with \"color_by\" were expected for a scalar bar");
-    return curves;
-  }
-  if (const json::Node* node = item.find("points")) {
-    CATENA_TRY(const Entity points, read_index<DrawnPoints>(scene, item, "points", "points", whose));
-    if (!has_colors(scene.world, points))
-      return json::error_at(*node, "these points show no values; points with \"color_by\" were expected for a scalar bar");
-    return points;
-  }
+  if (item.find("streamlines")) return read_coloured<StreamlineSet>(scene, item, "streamlines", true);
+  if (item.find("glyphs")) return read_coloured<GlyphSet>(scene, item, "glyphs", true);
+  if (item.find("curves")) return read_coloured<DrawnCurves>(scene, item, "curves", false);
+  if (item.find("points")) return read_coloured<DrawnPoints>(scene, item, "points", false);
   CATENA_TRY(const Entity field, read_field_name(scene, item));
   const Entity shown = shown_field(scene.world, field);
   if (!shown)

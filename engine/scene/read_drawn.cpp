@@ -3,8 +3,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/hidden.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/read_named.h"
 
 namespace catena::scene {
 namespace {
@@ -25,10 +24,7 @@ const Table<Volume>& volume_table() {
     t.beside(visible_key());
     t.bind(schema::word("projection", {"composite", "maximum", "minimum", "average"}, "What a ray makes of its values."),
            &Volume::projection);
-    t.hand(
-        color_by_key(ColorSubjects::rays),
-        [](Scene& scene, const json::Node& item, Volume& v) { return read_color_by(scene, item, ColorSubjects::rays, v.color_by); },
-        [](const Scene& scene, const Volume& v) { return v.color_by ? text_of(scene, *v.color_by) : std::string(); });
+    bind_color_by(t, ColorSubjects::rays, &Volume::color_by);
     t.check([](Scene&, const json::Node& item, Volume& volume) -> Outcome {
       if (volume.projection == Volume::Projection::composite) return Done{};
       const std::string beside =
@@ -70,10 +66,7 @@ const Table<Isosurface>& isosurface_table() {
     t.bind(opacity_key("Of one side."), &Isosurface::opacity);
     t.bind(clip_key(), &Isosurface::clipped);
     t.beside(visible_key());
-    t.hand(
-        color_by_key(ColorSubjects::rays),
-        [](Scene& scene, const json::Node& item, Isosurface& s) { return read_color_by(scene, item, ColorSubjects::rays, s.color_by); },
-        [](const Scene& scene, const Isosurface& s) { return s.color_by ? text_of(scene, *s.color_by) : std::string(); });
+    bind_color_by(t, ColorSubjects::rays, &Isosurface::color_by);
     return t;
   }();
   return table;
@@ -86,23 +79,6 @@ struct MeshItem {
   SurfaceMesh surface;
   bool drawn = true;
 };
-
-Outcome read_mesh_name(Scene& scene, const json::Node& item, MeshItem& mesh) {
-  CATENA_TRY(mesh.name, json::require_string(item, "name"));
-  const json::Node& node = *item.find("name");
-  CATENA_CHECK(check_name("mesh", mesh.name, node));
-  if (find_mesh(scene, mesh.name))
-    return json::error_at(node, "a second mesh is called " + in_quotes(mesh.name) + "; a name of its own was expected");
-  return Done{};
-}
-
-Outcome read_mesh_file(Scene& scene, const json::Node& item, MeshItem& mesh) {
-  CATENA_TRY(const std::string file, json::require_string(item, "file"));
-  mesh.source.path = resolved_path(scene.path, file);
-  if (const std::string fault = file_fault(mesh.source.path, mesh::is_mesh_file(mesh.source.path), mesh::mesh_endings()); !fault.empty())
-    return json::error_at(*item.find("file"), "mesh " + in_quotes(mesh.name) + ": file " + fault);
-  return Done{};
-}
 
 /// "color", or "color_by".
 Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
@@ -120,8 +96,16 @@ Outcome read_mesh_color(Scene& scene, const json::Node& item, MeshItem& mesh) {
 const Table<MeshItem>& mesh_table() {
   static const auto table = [] {
     Table<MeshItem> t;
-    t.hand(schema::identifier("name", "By which a link names it.").required(), read_mesh_name);
-    t.hand(schema::file("file", "The file: " + alternatives(mesh::mesh_endings()) + ".").required(), read_mesh_file);
+    t.hand(schema::identifier("name", "By which a link names it.").required(),
+           [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
+             CATENA_TRY(mesh.name, read_new_name<MeshSource>(scene, item, "mesh"));
+             return Done{};
+           });
+    t.hand(schema::file("file", "The file: " + alternatives(mesh::mesh_endings()) + ".").required(),
+           [](Scene& scene, const json::Node& item, MeshItem& mesh) -> Outcome {
+             CATENA_TRY(mesh.source.path, read_path(scene, item, "mesh", mesh.name, mesh::mesh_endings()));
+             return Done{};
+           });
     t.bind(
         schema::number("scale", "", "World units per unit of the file.").positive(),
         [](auto& m) -> auto& { return m.source.placement.scale; });
@@ -200,22 +184,18 @@ Outcome read_cursor(Scene& scene, const json::Node& node) {
 
 }  // namespace
 
-std::string file_fault(const std::string& path, bool known, const std::vector<std::string_view>& endings) {
+std::string file_fault(const std::string& path, bool known, const std::string& wanted, bool folders) {
+  namespace fs = std::filesystem;
   std::error_code code;
-  const std::string wanted = "; a " + alternatives(endings) + " file was expected";
-  if (!known) return in_quotes(path) + " has an unknown kind" + wanted;
-  if (!std::filesystem::exists(path, code)) return in_quotes(path) + " does not exist" + wanted;
-  if (!std::filesystem::is_regular_file(path, code)) return in_quotes(path) + " is not a file" + wanted;
+  const auto fault = [&](const char* what) { return in_quotes(path) + what + "; " + wanted + " was expected"; };
+  if (!known) return fault(" has an unknown kind");
+  if (!fs::exists(path, code)) return fault(" does not exist");
+  if (!fs::is_regular_file(path, code) && !(folders && fs::is_directory(path, code))) return fault(" is not a file");
   return {};
 }
 
 Result<Entity> read_field_name(const Scene& scene, const json::Node& object, std::string_view key) {
-  CATENA_TRY(const std::string name, json::require_string(object, key));
-  if (const Entity field = find_field(scene, name)) return field;
-  std::vector<std::string_view> names;
-  scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(*object.find(key), "unknown field " + in_quotes(name) + "; known: " + (names.empty() ? "none" : joined(names)) +
-                                               ", one of \"fields\" was expected" + suggestion(name, names));
+  return read_named<FieldSource>(scene, object, key, "field", "fields");
 }
 
 std::string text_of(const Scene& scene, const Volume& volume) { return volume_table().write(scene, volume); }

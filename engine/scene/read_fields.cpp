@@ -17,15 +17,7 @@ using field::LoadRequest;
 
 constexpr int kMaxNodes = 1024;  // an axis, of a sampled analytic field
 
-/// Empty where `path` is a file that can be loaded, else what is wrong and what was expected.
-std::string file_fault(const std::string& path) {
-  std::error_code code;
-  const std::string wanted = "; " + field::field_file_words() + " was expected";
-  if (!field::is_field_file(path)) return in_quotes(path) + " has an unknown kind" + wanted;
-  if (!fs::exists(path, code)) return in_quotes(path) + " does not exist" + wanted;
-  if (!fs::is_regular_file(path, code) && !fs::is_directory(path, code)) return in_quotes(path) + " is not a file" + wanted;
-  return {};
-}
+std::string field_fault(const std::string& path) { return file_fault(path, field::is_field_file(path), field::field_file_words(), true); }
 
 // ---- fields from files ----
 
@@ -107,7 +99,7 @@ Outcome read_array_keys(const json::Node& node, LoadRequest& request) {
     return json::error_at(*node.find("axes"), "\"axes\" is " + in_quotes(axes) + "; \"zyx\" or \"xyz\" was expected");
   request.axes_xyz = axes == "xyz";
   for (const char* key : {"axes", "spacing", "origin"})
-    if (node.find(key) != nullptr && !has_ending(request.path, ".npy") && !has_ending(request.path, ".npz"))
+    if (node.find(key) != nullptr && !field::is_numpy_file(request.path))
       return json::error_at(*node.find(key), in_quotes(key) + " belongs to arrays of NumPy (.npy, .npz); this file says it itself");
   if (const json::Node* spacing = node.find("spacing")) {
     CATENA_TRY(request.spacing, json::as_vec3(*spacing, "spacing"));
@@ -158,7 +150,7 @@ Outcome read_file_source(const std::string& scene_path, int scene_step, const js
     CATENA_CHECK(read_array_keys(node, request));
   }
   CATENA_TRY(const std::string package, json::get_string(node, "package", {}));
-  if (const std::string fault = file_fault(request.path); !replaced && !fault.empty())
+  if (const std::string fault = field_fault(request.path); !replaced && !fault.empty())
     return json::error_at(*node.find("file"), "field " + in_quotes(node.label) + ": file " + fault +
                                                   (package.empty() ? "" : "; the Debian package " + in_quotes(package) + " brings it"));
   source.file = std::move(request);
@@ -247,7 +239,7 @@ Outcome apply_override(Scene& scene, const FieldOverride& with) {
   const std::string text = "--field " + with.name + "=" + with.file + (with.grid.empty() ? "" : ":" + with.grid);
   const auto failed = [&](const std::string& what) { return Error{one_line(text + ": " + what)}; };
   if (!is_name(with.name)) return failed(in_quotes(with.name) + " is no name; a name like [a-z][a-z0-9_]* was expected");
-  if (const std::string fault = file_fault(with.file); !fault.empty()) return failed("file " + fault);
+  if (const std::string fault = field_fault(with.file); !fault.empty()) return failed("file " + fault);
 
   Entity entity = find_field(scene, with.name);
   if (!entity) {

@@ -1,7 +1,7 @@
 /// "glyphs": arrows of a vector field on a slice, a plane, an isosurface or a mesh, or in a box.
 #include "engine/base/text.h"
 #include "engine/scene/hidden.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/read_named.h"
 
 namespace catena::scene {
 namespace {
@@ -39,16 +39,6 @@ Key on_key() {
       .by_default("in the field's domain");
 }
 
-Outcome read_mesh_base(const Scene& scene, const json::Node& on, GlyphSet& set) {
-  CATENA_TRY(const std::string name, json::require_string(on, kOn[4]));
-  set.base = find_mesh(scene, name);
-  if (set.base) return Done{};
-  std::vector<std::string_view> names;
-  scene.world.each<MeshSource>([&](Entity e, const MeshSource&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(*on.find(kOn[4]), "unknown mesh " + in_quotes(name) + "; known: " + (names.empty() ? "none" : joined(names)) +
-                                              ", one of \"meshes\" was expected" + suggestion(name, names));
-}
-
 Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
   const json::Node* on = item.find("on");
   if (on == nullptr) return Done{};
@@ -76,8 +66,10 @@ Outcome read_on(Scene& scene, const json::Node& item, GlyphSet& set) {
       CATENA_TRY(set.base, read_index<Isosurface>(scene, *on, key, "isosurfaces", whose));
       return Done{};
     }
-    case On::mesh:
-      return read_mesh_base(scene, *on, set);
+    case On::mesh: {
+      CATENA_TRY(set.base, read_named<MeshSource>(scene, *on, key, "mesh", "meshes"));
+      return Done{};
+    }
   }
   return Done{};
 }
@@ -129,10 +121,7 @@ const Table<GlyphSet>& glyphs_table() {
     t.bind(schema::word("at", {"center", "tail", "head"}, "What of it lies at its place."), &GlyphSet::at);
     t.bind(schema::line_kind_key(), &GlyphSet::line);
     t.bind(schema::color("color", "Of all, without `color_by`."), &GlyphSet::color);
-    t.hand(
-        color_by_key(ColorSubjects::glyphs),
-        [](Scene& scene, const json::Node& item, GlyphSet& set) { return read_color_by(scene, item, ColorSubjects::glyphs, set.color_by); },
-        [](const Scene& scene, const GlyphSet& set) { return set.color_by ? text_of(scene, *set.color_by) : std::string(); });
+    bind_color_by(t, ColorSubjects::glyphs, &GlyphSet::color_by);
     t.bind(clip_key(), &GlyphSet::clipped);
     t.beside(visible_key());
     t.check([](Scene&, const json::Node& item, GlyphSet& set) -> Outcome {

@@ -1,5 +1,5 @@
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/read_named.h"
 #include "engine/scene/write_values.h"
 
 namespace catena::scene {
@@ -93,7 +93,7 @@ Outcome read_word(Scene& scene, const json::Node& item, ColorSubjects subjects, 
     by.what = ColorBy::What::arc_length;
   else if (!by.field && subjects == ColorSubjects::lines) {
     std::vector<std::string_view> names{kQuantities[0], kQuantities[1]};
-    scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
+    for (const std::string_view field : all_names<FieldSource>(scene)) names.push_back(field);
     return json::error_at(node, "unknown \"color_by\" " + in_quotes(name) + "; known: " + joined(names) + suggestion(name, names));
   } else if (!by.field) {
     CATENA_TRY(by.field, read_field_name(scene, item, "color_by"));

@@ -20,8 +20,8 @@ using schema::Keys;
 using schema::Role;
 
 struct Part {
-  schema::Component description;  ///< of "chain", "modes" and "device" the keys are told by the rooms that read them
-  Outcome (*read)(Scene&, const json::Node&);
+  schema::Component description;               ///< of "chain", "modes" and "device" the keys are told by the rooms that read them
+  Outcome (*read)(Scene&, const json::Node&);  ///< nullptr: read_root reads it before the others
 };
 
 // in the order of docs/scene.md
@@ -80,12 +80,13 @@ Outcome check_name(const std::string& kind, const std::string& name, const json:
 
 /// A plane in one of three ways; `word` says what lies on it ("slice"). Of a widget, its pose as stated.
 Outcome read_plane(const Scene& scene, const json::Node& item, const std::string& word, Vec3& point, Vec3& normal, Entity& widget);
-/// Empty where `path` is a file that is there and of a known kind, one with these endings.
-std::string file_fault(const std::string& path, bool known, const std::vector<std::string_view>& endings);
+/// Empty where `path` is a file, or folder, that is there and of a known kind; else what is wrong, and that `wanted` was expected.
+std::string file_fault(const std::string& path, bool known, const std::string& wanted, bool folders = false);
 
 /// Relative paths start at the scene file's folder.
 std::string resolved_path(const std::string& scene_path, const std::string& file);
 
+Outcome read_time(Scene& scene, const json::Node& node);
 Outcome read_fields(Scene& scene, const json::Node* fields, const std::vector<FieldOverride>& overrides);
 /// Of a grid's source, beside its own keys: "interpolation" and "labels"; the source has its file already.
 Keys map_keys();
@@ -154,6 +155,16 @@ enum class ColorSubjects { rays, surfaces, lines, glyphs, curves, points };
 Key color_by_key(ColorSubjects subjects);
 /// Empty where the item says nothing. A word with the colours' keys beside it, as scenes were written once, is read with a note.
 Outcome read_color_by(Scene& scene, const json::Node& item, ColorSubjects subjects, std::optional<ColorBy>& out);
+template <class T, class Access>
+void bind_color_by(Table<T>& table, ColorSubjects subjects, Access access) {
+  table.hand(
+      color_by_key(subjects),
+      [=](Scene& scene, const json::Node& item, T& out) { return read_color_by(scene, item, subjects, std::invoke(access, out)); },
+      [=](const Scene& scene, const T& in) {
+        const std::optional<ColorBy>& by = std::invoke(access, in);
+        return by ? text_of(scene, *by) : std::string();
+      });
+}
 /// "color" and "range" as members.
 schema::Members scale_members(const std::vector<TransferFunction::ColorPoint>& colors, const NamedColors& named);
 

@@ -18,12 +18,13 @@ const Table<TimeLine>& time_table() {
 
 }  // namespace
 
+Outcome read_time(Scene& scene, const json::Node& node) {
+  CATENA_CHECK(json::expect_object(node, "time"));
+  return time_table().read(scene, node, scene.time);
+}
+
 Part time_part() {
-  return {{"time", "Steps in time, of fields that have them.", schema::Component::Shape::object, time_table().keys()},
-          [](Scene& scene, const json::Node& node) -> Outcome {
-            CATENA_CHECK(json::expect_object(node, "time"));
-            return time_table().read(scene, node, scene.time);
-          }};
+  return {{"time", "Steps in time, of fields that have them.", schema::Component::Shape::object, time_table().keys()}, nullptr};
 }
 
 }  // namespace catena::scene

@@ -1,7 +1,7 @@
 /// "widgets": what the hand takes hold of and moves, by type.
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/read_named.h"
 #include "engine/scene/widgets.h"
 #include "engine/scene/write_values.h"
 
@@ -216,10 +216,7 @@ const Table<Widget>& common_table() {
 }
 
 Outcome read_widget(Scene& scene, const json::Node& item) {
-  CATENA_TRY(const std::string name, json::require_string(item, "name"));
-  CATENA_CHECK(check_name("widget", name, *item.find("name")));
-  if (find_widget(scene, name))
-    return json::error_at(*item.find("name"), "a second widget is called " + in_quotes(name) + "; a name of its own was expected");
+  CATENA_TRY(const std::string name, read_new_name<Widget>(scene, item, "widget"));
   CATENA_CHECK(json::require_string(item, "type"));
   CATENA_TRY(const int index, json::get_choice(item, "type", 0, {std::begin(kWords), std::end(kWords)}));
   const WidgetType& type = types()[static_cast<std::size_t>(index)];
@@ -269,17 +266,12 @@ Part widgets_part() {
 Result<Entity> read_widget_name(const Scene& scene, const json::Node& object, std::initializer_list<Kind> kinds, std::string_view wanted) {
   CATENA_TRY(const std::string name, json::require_string(object, "widget"));
   const json::Node& node = *object.find("widget");
-  if (const Entity found = find_widget(scene, name)) {
-    const Kind kind = scene.world.get<Widget>(found).spec.kind;
-    for (const Kind k : kinds)
-      if (k == kind) return found;
-    return json::error_at(
-        node, "widget " + in_quotes(name) + " is of type " + in_quotes(kind_word(kind)) + "; " + std::string(wanted) + " was expected");
-  }
-  std::vector<std::string_view> names;
-  scene.world.each<Widget>([&](Entity e, const Widget&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(node, "unknown widget " + in_quotes(name) + "; one of the scene's \"widgets\" was expected: " +
-                                  (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+  CATENA_TRY(const Entity found, named<Widget>(scene, name, node, "widget", "\"widgets\""));
+  const Kind kind = scene.world.get<Widget>(found).spec.kind;
+  for (const Kind k : kinds)
+    if (k == kind) return found;
+  return json::error_at(
+      node, "widget " + in_quotes(name) + " is of type " + in_quotes(kind_word(kind)) + "; " + std::string(wanted) + " was expected");
 }
 
 }  // namespace catena::scene

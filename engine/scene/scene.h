@@ -82,33 +82,40 @@ FileKind kind_of_file(const std::string& path);
 /// "chain" and the keys of "device" are described by the rooms that read them.
 const std::vector<schema::Component>& scene_components();
 
-Entity find_field(const Scene& scene, std::string_view name);
+/// The entity of that name among those that have a T.
+template <class T>
+Entity find_named(const Scene& scene, std::string_view name) {
+  Entity found;
+  scene.world.each<T>([&](Entity e, const T&) {
+    if (scene.world.get<Name>(e).value == name) found = e;
+  });
+  return found;
+}
+inline Entity find_field(const Scene& scene, std::string_view name) { return find_named<FieldSource>(scene, name); }
+inline Entity find_mesh(const Scene& scene, std::string_view name) { return find_named<MeshSource>(scene, name); }
+inline Entity find_widget(const Scene& scene, std::string_view name) { return find_named<Widget>(scene, name); }
+
 /// Loads on first use. `where` is the place that names the field, for messages.
 Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where);
 Result<field::AnyField> use_field(Scene& scene, const std::string& name, const json::Node& where);
 /// The same as a grid that can be drawn (analytic fields are sampled once). Volumes over the field that state no colours or
 /// no opacity get theirs from its histogram.
 Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where);
-Entity find_mesh(const Scene& scene, std::string_view name);
 /// Loads on first use: the hand's and the eye's mesh are one object.
 Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh);
 /// What has been loaded; empty where nothing has asked for it yet.
 inline const field::AnyField& loaded_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).loaded; }
 inline const field::AnyField& drawn_field(const Scene& scene, Entity field) { return scene.world.get<FieldSource>(field).drawn; }
 Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where);
-/// Curves from a file, by their name; loaded on first use.
-Entity find_curves(const Scene& scene, std::string_view name);
+/// Curves from a file; loaded on first use.
 Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity curves);
 Result<curves::CurveSetPtr> use_curves(Scene& scene, const std::string& name, const json::Node& where);
 /// The same of points from a table.
-Entity find_points(const Scene& scene, std::string_view name);
 Result<curves::PointSetPtr> use_points(Scene& scene, Entity points);
 Result<curves::PointSetPtr> use_points(Scene& scene, const std::string& name, const json::Node& where);
 /// The one curve of (field, flow, seed, length), while something holds it.
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length = 0);
 
-/// The widget of that name.
-Entity find_widget(const Scene& scene, std::string_view name);
 /// The widget as the tick takes it: sizes that the scene does not state follow L, the longest edge of the domain boxes of the fields,
 /// meshes, curves and points that the scene draws or the widget names (without any: of those that its links name; else 4). An isolevel's
 /// field is loaded and its value set. `along` is left to the maker of the program, which knows the links. Completed once.

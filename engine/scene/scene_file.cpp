@@ -43,7 +43,7 @@ Outcome read_root(Scene& scene, const json::Node& root, const std::vector<FieldO
   }
   CATENA_CHECK(json::only_keys(root, keys));
   // which fields follow
-  if (const json::Node* time = root.find("time")) CATENA_CHECK(time_part().read(scene, *time));
+  if (const json::Node* time = root.find("time")) CATENA_CHECK(read_time(scene, *time));
   CATENA_CHECK(read_fields(scene, root.find("fields"), overrides));
   for (const Part& part : parts())
     if (const json::Node* node = root.find(part.description.name); node != nullptr && part.read != nullptr)

@@ -5,7 +5,7 @@
 #include "engine/field/kept.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/lines.h"
-#include "engine/scene/read_parts.h"
+#include "engine/scene/read_named.h"
 #include "engine/scene/transfer.h"
 
 namespace catena::scene {
@@ -38,15 +38,20 @@ Result<field::AnyField> load_source(const FieldSource& source) {
   return *loaded;
 }
 
-}  // namespace
-
-Entity find_field(const Scene& scene, std::string_view name) {
-  Entity found;
-  scene.world.each<FieldSource>([&](Entity e, const FieldSource&) {
-    if (scene.world.get<Name>(e).value == name) found = e;
-  });
-  return found;
+/// What lies in a source's file; the error stands at the source's place in the scene file, where it has one.
+template <class Source, class Load>
+auto load_once(Scene& scene, Entity entity, const std::string& kind, const Load& load) -> Result<decltype(Source::loaded)> {
+  Source& source = scene.world.get<Source>(entity);
+  if (source.loaded) return source.loaded;
+  auto loaded = load(source);
+  if (!loaded && source.where.line == 0) return loaded.error();
+  if (!loaded)
+    return json::error_at(source.where, kind + " " + in_quotes(scene.world.get<Name>(entity).value) + ": " + loaded.error().message);
+  source.loaded = *loaded;
+  return source.loaded;
 }
+
+}  // namespace
 
 Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& where) {
   FieldSource& source = scene.world.get<FieldSource>(field);
@@ -71,11 +76,8 @@ Result<field::AnyField> use_field(Scene& scene, Entity field, const json::Node& 
 }
 
 Result<field::AnyField> use_field(Scene& scene, const std::string& name, const json::Node& where) {
-  if (const Entity field = find_field(scene, name)) return use_field(scene, field, where);
-  std::vector<std::string_view> names;
-  scene.world.each<FieldSource>([&](Entity e, const FieldSource&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(where, "unknown field " + in_quotes(name) + "; one of the scene's fields was expected: " +
-                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+  CATENA_TRY(const Entity field, named<FieldSource>(scene, name, where, "field", "fields"));
+  return use_field(scene, field, where);
 }
 
 Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where) {
@@ -107,84 +109,32 @@ Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::
   return source.drawn;
 }
 
-Entity find_mesh(const Scene& scene, std::string_view name) {
-  Entity found;
-  scene.world.each<MeshSource>([&](Entity e, const MeshSource&) {
-    if (scene.world.get<Name>(e).value == name) found = e;
-  });
-  return found;
-}
-
 Result<mesh::MeshPtr> use_mesh(Scene& scene, Entity mesh) {
-  MeshSource& source = scene.world.get<MeshSource>(mesh);
-  if (source.loaded) return source.loaded;
-  auto loaded = mesh::load_mesh(source.path, source.placement);
-  if (!loaded && source.where.line == 0) return loaded.error();
-  if (!loaded) return json::error_at(source.where, "mesh " + in_quotes(scene.world.get<Name>(mesh).value) + ": " + loaded.error().message);
-  source.loaded = *loaded;
-  return source.loaded;
+  return load_once<MeshSource>(scene, mesh, "mesh",
+                               [](const MeshSource& source) { return mesh::load_mesh(source.path, source.placement); });
 }
 
 Result<mesh::MeshPtr> use_mesh(Scene& scene, const std::string& name, const json::Node& where) {
-  if (const Entity mesh = find_mesh(scene, name)) return use_mesh(scene, mesh);
-  std::vector<std::string_view> names;
-  scene.world.each<MeshSource>([&](Entity e, const MeshSource&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(where, "unknown mesh " + in_quotes(name) + "; one of the scene's \"meshes\" was expected: " +
-                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+  CATENA_TRY(const Entity mesh, named<MeshSource>(scene, name, where, "mesh", "\"meshes\""));
+  return use_mesh(scene, mesh);
 }
 
-Entity find_curves(const Scene& scene, std::string_view name) {
-  Entity found;
-  scene.world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) {
-    if (scene.world.get<Name>(e).value == name) found = e;
-  });
-  return found;
-}
-
-Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity entity) {
-  DrawnCurves& source = scene.world.get<DrawnCurves>(entity);
-  if (source.loaded) return source.loaded;
-  auto loaded = curves::load_curves(source.path);
-  if (!loaded && source.where.line == 0) return loaded.error();
-  if (!loaded)
-    return json::error_at(source.where, "curves " + in_quotes(scene.world.get<Name>(entity).value) + ": " + loaded.error().message);
-  source.loaded = *loaded;
-  return source.loaded;
+Result<curves::CurveSetPtr> use_curves(Scene& scene, Entity curves) {
+  return load_once<DrawnCurves>(scene, curves, "curves", [](const DrawnCurves& source) { return curves::load_curves(source.path); });
 }
 
 Result<curves::CurveSetPtr> use_curves(Scene& scene, const std::string& name, const json::Node& where) {
-  if (const Entity curves = find_curves(scene, name)) return use_curves(scene, curves);
-  std::vector<std::string_view> names;
-  scene.world.each<DrawnCurves>([&](Entity e, const DrawnCurves&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(where, "unknown curves " + in_quotes(name) + "; one of the scene's \"curves\" was expected: " +
-                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+  CATENA_TRY(const Entity curves, named<DrawnCurves>(scene, name, where, "curves", "\"curves\""));
+  return use_curves(scene, curves);
 }
 
-Entity find_points(const Scene& scene, std::string_view name) {
-  Entity found;
-  scene.world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) {
-    if (scene.world.get<Name>(e).value == name) found = e;
-  });
-  return found;
-}
-
-Result<curves::PointSetPtr> use_points(Scene& scene, Entity entity) {
-  DrawnPoints& source = scene.world.get<DrawnPoints>(entity);
-  if (source.loaded) return source.loaded;
-  auto loaded = curves::load_points(source.path);
-  if (!loaded && source.where.line == 0) return loaded.error();
-  if (!loaded)
-    return json::error_at(source.where, "points " + in_quotes(scene.world.get<Name>(entity).value) + ": " + loaded.error().message);
-  source.loaded = *loaded;
-  return source.loaded;
+Result<curves::PointSetPtr> use_points(Scene& scene, Entity points) {
+  return load_once<DrawnPoints>(scene, points, "points", [](const DrawnPoints& source) { return curves::load_points(source.path); });
 }
 
 Result<curves::PointSetPtr> use_points(Scene& scene, const std::string& name, const json::Node& where) {
-  if (const Entity points = find_points(scene, name)) return use_points(scene, points);
-  std::vector<std::string_view> names;
-  scene.world.each<DrawnPoints>([&](Entity e, const DrawnPoints&) { names.push_back(scene.world.get<Name>(e).value); });
-  return json::error_at(where, "unknown points " + in_quotes(name) + "; one of the scene's \"points\" was expected: " +
-                                   (names.empty() ? "it has none" : joined(names)) + suggestion(name, names));
+  CATENA_TRY(const Entity points, named<DrawnPoints>(scene, name, where, "points", "\"points\""));
+  return use_points(scene, points);
 }
 
 Result<flow::CurvePtr> use_curve(Scene& scene, const flow::Flow& flow, const Vec3& seed, const json::Node& where, double length) {

@@ -120,14 +120,6 @@ Quat unit_orientation(const Quat& q) {
   return std::fabs(square - 1) <= 8 * std::numeric_limits<double>::epsilon() ? q : normalised(q);
 }
 
-Entity find_widget(const Scene& scene, std::string_view name) {
-  Entity found;
-  scene.world.each<Widget>([&](Entity e, const Widget&) {
-    if (scene.world.get<Name>(e).value == name) found = e;
-  });
-  return found;
-}
-
 Result<widget::Spec> use_widget(Scene& scene, Entity entity) {
   if (!scene.world.get<Widget>(entity).complete) {
     CATENA_TRY(const double length, length_of(scene, scene.world.get<Widget>(entity)));

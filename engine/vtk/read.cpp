@@ -179,6 +179,7 @@ void add_words(const Opened& opened, ReadReply& reply) {
   reply.unit_length = opened.unit_length;
   reply.patient = opened.patient;
   reply.times = opened.times;
+  reply.shapes = shapes_of(opened);
   for (const Column& column : columns_of(opened)) {
     const auto unit = opened.units.find(column.array);
     reply.words.push_back({column.name, unit != opened.units.end() ? unit->second : "", opened.unit_length, false});

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>
+#include <vtkCellTypes.h>
 #include <vtkDataSetSurfaceFilter.h>
+#include <vtkGenericCell.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -99,26 +101,26 @@ std::string value_of(const Opened& opened) {
 
 }  // namespace
 
-ShapeKinds kinds_of(const Opened& opened) {
-  ShapeKinds kinds;
+field::Shapes shapes_of(const Opened& opened) {
+  field::Shapes shapes;
   for (const Block& block : opened.blocks) {
     if (auto* poly = vtkPolyData::SafeDownCast(block.data)) {
-      kinds.surfaces = kinds.surfaces || poly->GetNumberOfPolys() + poly->GetNumberOfStrips() > 0;
-      kinds.lines = kinds.lines || poly->GetNumberOfLines() > 0;
-      kinds.points = kinds.points || poly->GetNumberOfPoints() > 0;
+      shapes.triangles = shapes.triangles || poly->GetNumberOfPolys() + poly->GetNumberOfStrips() > 0;
+      shapes.lines = shapes.lines || poly->GetNumberOfLines() > 0;
     } else if (auto* cells = vtkUnstructuredGrid::SafeDownCast(block.data)) {
-      for (vtkIdType i = 0; i < cells->GetNumberOfCells() && !(kinds.volumes && kinds.surfaces); ++i) {
-        vtkCell* cell = cells->GetCell(i);
-        kinds.volumes = kinds.volumes || cell->GetCellDimension() == 3;
-        kinds.surfaces = kinds.surfaces || cell->GetCellDimension() == 2;
-        kinds.lines = kinds.lines || cell->GetCellDimension() == 1;
+      vtkNew<vtkCellTypes> types;
+      vtkNew<vtkGenericCell> cell;
+      cells->GetCellTypes(types);
+      for (vtkIdType i = 0; i < types->GetNumberOfTypes(); ++i) {
+        cell->SetCellType(types->GetCellType(i));
+        shapes.triangles = shapes.triangles || cell->GetCellDimension() >= 2;
+        shapes.lines = shapes.lines || cell->GetCellDimension() == 1;
       }
-      kinds.points = true;
     } else {
-      kinds.volumes = true;
+      shapes.triangles = true;
     }
   }
-  return kinds;
+  return shapes;
 }
 
 Outcome answer_shape(const Opened& opened, std::uint64_t memory_bytes, reader::AnswerFile& out, field::ReadReply& reply) {

@@ -6,11 +6,8 @@
 
 namespace catena::vtk {
 
-/// Which kinds a file has.
-struct ShapeKinds {
-  bool volumes = false, surfaces = false, lines = false, points = false;
-};
-ShapeKinds kinds_of(const Opened& opened);
+/// Which of them there are.
+field::Shapes shapes_of(const Opened& opened);
 
 /// Fills the reply's shape. An error is a phrase.
 Outcome answer_shape(const Opened& opened, std::uint64_t memory_bytes, reader::AnswerFile& out, field::ReadReply& reply);

@@ -18,8 +18,6 @@ constexpr double kShareOfAll = 0.003;                         // fitted radius b
 constexpr double kManyCurves = 300, kNarrowest = 0.25;        // from so many on they get thinner, down to that share
 constexpr std::size_t kBytesAPoint = 160, kBytesALine = 400;  // drawn: place, colour, its ring here and on the device; the item
 
-using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
-
 /// What this room keeps beside curves: the tubes that are drawn, made once.
 struct FlatCurves {
   curves::CurveSetPtr of;
@@ -154,22 +152,9 @@ Result<FlatCurves> flat_curves(scene::Scene& scene, const scene::DrawnCurves& dr
 
 }  // namespace
 
-const ColorTable* shown_curve_colors(const scene::World& made, scene::Entity curves) {
-  if (!made.has<FlatCurves>(curves) || made.get<FlatCurves>(curves).colors.empty()) return nullptr;
-  return &made.get<FlatCurves>(curves).colors;
-}
+const ColorTable* shown_curve_colors(const scene::World& made, scene::Entity curves) { return kept_colors<FlatCurves>(made, curves); }
 
-Outcome prepare_curves(scene::Scene& scene) {
-  for (const scene::Entity e : owners_of<scene::DrawnCurves>(scene.world)) {
-    if (is_hidden(scene.world, e)) continue;
-    if (!scene.made.has<FlatCurves>(e)) scene.made.emplace<FlatCurves>(e);
-    if (scene.made.get<FlatCurves>(e).of == scene.world.get<scene::DrawnCurves>(e).loaded) continue;
-    const scene::DrawnCurves drawn = scene.world.get<scene::DrawnCurves>(e);
-    CATENA_TRY(FlatCurves made, flat_curves(scene, drawn, name_of(scene, e)));
-    scene.made.get<FlatCurves>(e) = std::move(made);
-  }
-  return Done{};
-}
+Outcome prepare_curves(scene::Scene& scene) { return prepare_loaded<FlatCurves, scene::DrawnCurves>(scene, flat_curves); }
 
 void extract_curves(const scene::Scene& scene, FramePacket& packet) {
   scene.world.each<scene::DrawnCurves>([&](scene::Entity e, const scene::DrawnCurves& drawn) {

@@ -217,10 +217,7 @@ Result<MadeGlyphs> make_glyphs(const scene::Scene& scene, const scene::GlyphSet&
 
 }  // namespace
 
-const ColorTable* glyph_colors(const scene::World& made, scene::Entity set) {
-  if (!made.has<MadeGlyphs>(set) || made.get<MadeGlyphs>(set).colors.empty()) return nullptr;
-  return &made.get<MadeGlyphs>(set).colors;
-}
+const ColorTable* glyph_colors(const scene::World& made, scene::Entity set) { return kept_colors<MadeGlyphs>(made, set); }
 
 Outcome prepare_glyphs(scene::Scene& scene) {
   for (const scene::Entity e : owners_of<scene::GlyphSet>(scene.world)) {

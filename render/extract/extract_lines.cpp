@@ -182,10 +182,7 @@ Color table_color(const ColorTable& table, double value) {
   return {a.color.r + t * (b.color.r - a.color.r), a.color.g + t * (b.color.g - a.color.g), a.color.b + t * (b.color.b - a.color.b)};
 }
 
-const ColorTable* shown_colors(const scene::World& made, scene::Entity set) {
-  if (!made.has<FlatLines>(set) || made.get<FlatLines>(set).colors.empty()) return nullptr;
-  return &made.get<FlatLines>(set).colors;
-}
+const ColorTable* shown_colors(const scene::World& made, scene::Entity set) { return kept_colors<FlatLines>(made, set); }
 
 Outcome prepare_streamlines(scene::Scene& scene) {
   for (const scene::Entity e : owners_of<scene::StreamlineSet>(scene.world)) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/scene/hidden.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/stereo.h"
 #include "render/frame/camera.h"
@@ -23,6 +24,28 @@ std::vector<scene::Entity> owners_of(const scene::World& world) {
   std::vector<scene::Entity> owners;
   world.each<T>([&](scene::Entity e, const T&) { owners.push_back(e); });
   return owners;
+}
+
+using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
+
+/// Of scene.made: the table `colors` of what this room keeps beside an entity; none where that is empty.
+template <class Kept>
+const ColorTable* kept_colors(const scene::World& made, scene::Entity e) {
+  return made.has<Kept>(e) && !made.get<Kept>(e).colors.empty() ? &made.get<Kept>(e).colors : nullptr;
+}
+
+/// Makes what this room keeps beside visible curves or points, where it was not made of what is loaded now (`of`).
+template <class Kept, class Drawn, class Make>
+Outcome prepare_loaded(scene::Scene& scene, const Make& make) {
+  for (const scene::Entity e : owners_of<Drawn>(scene.world)) {
+    if (is_hidden(scene.world, e)) continue;
+    if (!scene.made.has<Kept>(e)) scene.made.emplace<Kept>(e);
+    if (scene.made.get<Kept>(e).of == scene.world.get<Drawn>(e).loaded) continue;
+    const Drawn drawn = scene.world.get<Drawn>(e);
+    CATENA_TRY(Kept made, make(scene, drawn, name_of(scene, e)));
+    scene.made.get<Kept>(e) = std::move(made);
+  }
+  return Done{};
 }
 
 /// Private to this room: bounding box, axes, ground, fog and lights into the packet. Frame thread.
@@ -56,21 +79,20 @@ Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet);
 /// An arrowhead, by the radius of what it sits on.
 inline constexpr double kArrowRadius = 2.4, kArrowLength = 6;
 
-using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
 /// Curves from files as tubes, each line's points as they are, coloured by values, by one colour or by the line's direction. Above
 /// kMostCurvePoints points an even choice of the lines, and packet.left_out says so. Errors: values that the file does not have, more
 /// memory than is allowed.
 inline constexpr std::size_t kMostCurvePoints = 2'000'000;
 Outcome prepare_curves(scene::Scene& scene);
 void extract_curves(const scene::Scene& scene, FramePacket& packet);
-const std::vector<scene::TransferFunction::ColorPoint>* shown_curve_colors(const scene::World& made, scene::Entity curves);
+const ColorTable* shown_curve_colors(const scene::World& made, scene::Entity curves);
 
 /// Points from tables as balls: coloured by a column, by a field's values or by one colour; grey for no number. Of more than kMostBalls an
 /// even choice, and packet.left_out says so. Errors: a column that the table does not have, more memory than is allowed.
 inline constexpr std::size_t kMostBalls = 4'000'000;
 Outcome prepare_points(scene::Scene& scene);
 void extract_points(const scene::Scene& scene, FramePacket& packet);
-const std::vector<scene::TransferFunction::ColorPoint>* shown_point_colors(const scene::World& made, scene::Entity points);
+const ColorTable* shown_point_colors(const scene::World& made, scene::Entity points);
 
 /// Of scene.made: what a prepared set's "color_by" has come to: its own table, or the one over the values that are drawn. None without
 /// "color_by".

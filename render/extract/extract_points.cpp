@@ -18,8 +18,6 @@ constexpr double kShareOfSpacing = 0.35;                 // fitted radius by the
 constexpr double kLeastBall = 0.0012, kMostBall = 0.02;  // by the diagonal of all
 constexpr double kBytesABall = 80;                       // place, radius, colour and value here, and on the device
 
-using ColorTable = std::vector<scene::TransferFunction::ColorPoint>;
-
 /// What this room keeps beside points: the balls that are drawn, made once.
 struct FlatPoints {
   curves::PointSetPtr of;
@@ -115,22 +113,9 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& dr
 
 }  // namespace
 
-const ColorTable* shown_point_colors(const scene::World& made, scene::Entity points) {
-  if (!made.has<FlatPoints>(points) || made.get<FlatPoints>(points).colors.empty()) return nullptr;
-  return &made.get<FlatPoints>(points).colors;
-}
+const ColorTable* shown_point_colors(const scene::World& made, scene::Entity points) { return kept_colors<FlatPoints>(made, points); }
 
-Outcome prepare_points(scene::Scene& scene) {
-  for (const scene::Entity e : owners_of<scene::DrawnPoints>(scene.world)) {
-    if (is_hidden(scene.world, e)) continue;
-    if (!scene.made.has<FlatPoints>(e)) scene.made.emplace<FlatPoints>(e);
-    if (scene.made.get<FlatPoints>(e).of == scene.world.get<scene::DrawnPoints>(e).loaded) continue;
-    const scene::DrawnPoints drawn = scene.world.get<scene::DrawnPoints>(e);
-    CATENA_TRY(FlatPoints made, flat_points(scene, drawn, name_of(scene, e)));
-    scene.made.get<FlatPoints>(e) = std::move(made);
-  }
-  return Done{};
-}
+Outcome prepare_points(scene::Scene& scene) { return prepare_loaded<FlatPoints, scene::DrawnPoints>(scene, flat_points); }
 
 void extract_points(const scene::Scene& scene, FramePacket& packet) {
   scene.world.each<scene::DrawnPoints>([&](scene::Entity e, const scene::DrawnPoints& drawn) {

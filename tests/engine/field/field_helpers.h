@@ -1,9 +1,11 @@
-/// Helpers of the field tests: repeatable random numbers, mappings of every kind, an independent trilinear formula.
+/// Helpers of the field tests: repeatable random numbers, mappings of every kind, an independent trilinear formula, reading.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <vector>
 
-#include "engine/field/grid.h"
+#include "engine/field/load.h"
 
 namespace catena::field::test {
 
@@ -50,6 +52,15 @@ inline Block random_block(const Index3& size, std::uint64_t seed) {
   b.values.resize(static_cast<std::size_t>(size.x) * size.y * size.z);
   for (float& v : b.values) v = static_cast<float>(random.between(-3, 5));
   return b;
+}
+
+/// The one grid of a file; where it cannot be loaded the test fails.
+inline AnyField read(const std::string& path) {
+  LoadRequest request;
+  request.path = path;
+  auto field = load(request);
+  EXPECT_TRUE(field) << (field ? "" : field.error().message);
+  return field ? std::move(*field) : AnyField{};
 }
 
 }  // namespace catena::field::test

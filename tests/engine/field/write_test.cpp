@@ -10,7 +10,6 @@
 #include <fstream>
 
 #include "engine/base/memory_limit.h"
-#include "engine/field/load.h"
 #include "tests/engine/field/field_helpers.h"
 #include "tests/support/support.h"
 
@@ -20,14 +19,7 @@ namespace write_test {
 using catena::test::exists;
 using catena::test::read_file;
 using catena::test::TemporaryFolder;
-
-AnyField read(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  auto field = load(request);
-  EXPECT_TRUE(field) << (field ? "" : field.error().message);
-  return field ? std::move(*field) : AnyField{};
-}
+using test::read;
 
 TEST(Write, NiftiKeepsNumbersFramesAndHoles) {
   const TemporaryFolder folder;

@@ -275,6 +275,13 @@ TEST_F(Formats, LinesAndPointsOfVtkAndPly) {
   EXPECT_EQ(scene::kind_of_file(file("b.ply", files::ply())), FileKind::mesh);
   EXPECT_EQ(scene::kind_of_file(file("b.vtk", files::legacy_vectors())), FileKind::field);
   EXPECT_EQ(scene::kind_of_file(file("b.vtu", files::vtu_mixed(linear))), FileKind::field);
+  // of cells without values: by their dimension
+  const std::string cell =
+      "# vtk DataFile Version 3.0\nc\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 ";
+  EXPECT_EQ(scene::kind_of_file(file("vertex.vtk", cell + "2\n1 0\nCELL_TYPES 1\n1\n")), FileKind::points);
+  EXPECT_EQ(scene::kind_of_file(file("line.vtk", cell + "3\n2 0 1\nCELL_TYPES 1\n3\n")), FileKind::curves);
+  EXPECT_EQ(scene::kind_of_file(file("triangle.vtk", cell + "4\n3 0 1 2\nCELL_TYPES 1\n5\n")), FileKind::mesh);
+  EXPECT_EQ(scene::kind_of_file(file("tetrahedron.vtk", cell + "5\n4 0 1 2 3\nCELL_TYPES 1\n10\n")), FileKind::mesh);
 }
 
 TEST_F(Formats, WhatIsWrongIsSaidInOneLine) {

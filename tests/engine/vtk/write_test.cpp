@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "engine/field/load.h"
 #include "engine/field/write.h"
 #include "tests/engine/field/field_helpers.h"
 #include "tests/support/support.h"
@@ -15,14 +14,7 @@ using catena::test::TemporaryFolder;
 using test::Block;
 using test::Random;
 using test::random_block;
-
-AnyField read(const std::string& path) {
-  LoadRequest request;
-  request.path = path;
-  auto field = load(request);
-  EXPECT_TRUE(field) << (field ? "" : field.error().message);
-  return field ? std::move(*field) : AnyField{};
-}
+using test::read;
 
 void expect_same_frame(const Field& a, const Field& b) {
   for (int i = 0; i < 8; ++i)

@@ -31,15 +31,11 @@ bool is_scene_name(const std::string& path) { return has_ending(path, ".json"); 
 const std::vector<std::string_view>& openable_endings() {
   static const std::vector<std::string_view> endings = [] {
     std::vector<std::string_view> all{".json"};
-    for (const std::string_view ending : field::field_endings(true)) all.push_back(ending);
-    for (const std::string_view ending : mesh::mesh_endings()) all.push_back(ending);
-    for (const std::string_view ending : curves::curve_endings()) all.push_back(ending);
-    for (const std::string_view ending : curves::point_endings()) all.push_back(ending);
     // several kinds of things lie in files of one ending
-    std::vector<std::string_view> once;
-    for (const std::string_view ending : all)
-      if (std::ranges::find(once, ending) == once.end()) once.push_back(ending);
-    return once;
+    for (const auto& kind : {field::field_endings(true), mesh::mesh_endings(), curves::curve_endings(), curves::point_endings()})
+      for (const std::string_view ending : kind)
+        if (std::ranges::find(all, ending) == all.end()) all.push_back(ending);
+    return all;
   }();
   return endings;
 }
