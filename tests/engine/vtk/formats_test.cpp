@@ -250,6 +250,11 @@ TEST_F(Formats, ADicomFolderIsOneVolumeInHounsfieldUnits) {
   const Units units = units_of(series, "Chest 1.2.3");
   EXPECT_EQ(units.value, "HU");
   EXPECT_TRUE(units.patient);
+  // one of its files says so; one without a series beside it does not
+  std::filesystem::copy_file(series + "/a", folder_ / "alone.dcm");
+  EXPECT_FALSE(has_note(read(folder_ / "alone.dcm"), "the folder opens"));
+  std::filesystem::rename(series + "/a", series + "/a.dcm");
+  EXPECT_TRUE(has_note(read(series + "/a.dcm"), "the folder opens as a volume (catena render " + series + ")"));
   // a second series beside it
   test::write_file(series + "/d", files::dicom(1, {0, 0, 0}, {1, 2, 3, 4, 5, 6}, "1.2.7"));
   test::write_file(series + "/e", files::dicom(2, {0, 0, 1}, {1, 2, 3, 4, 5, 6}, "1.2.7"));
