@@ -279,9 +279,10 @@ View first_view(const scene::Scene& scene, const FramePacket& packet) {
   }
   for (const BallsItem& item : packet.balls) {
     constexpr std::size_t kMost = 200000;
+    const Bounds& core = item.balls->core;
     std::vector<Vec3> places;
     for (std::size_t i = 0; i < item.balls->places.size(); i += 1 + item.balls->places.size() / kMost)
-      places.push_back(Vec3(item.balls->places[i]));
+      if (const Vec3 p(item.balls->places[i]); core.empty() || core.has(p)) places.push_back(p);
     clouds.push_back({item.clipped ? kept(std::move(places), packet) : std::move(places)});
   }
   Bounds rest;

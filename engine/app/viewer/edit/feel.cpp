@@ -172,7 +172,7 @@ Result<Given> curves_given(scene::Scene& scene, scene::Entity entity) {
 Result<Given> points_given(scene::Scene& scene, scene::Entity entity) {
   const std::string name = name_of(scene, entity);
   CATENA_TRY(const curves::PointSetPtr set, scene::use_points(scene, entity));
-  const double diagonal = norm(set->highest - set->lowest);
+  const double diagonal = set->core.box.diagonal();
   const double snap = rounded_to(std::max(kSnapShare * (diagonal > 0 ? diagonal : 1), 0.5 * set->spacing), 2);
   return Given{{{"points", scene::text_of(name)}, {"snap", scene::text_of(snap)}}, "points " + name};
 }
