@@ -91,6 +91,24 @@ std::string other_fields(LookedInto& looked, const std::string& shown, const std
   return text;
 }
 
+/// Fibres that lie in a body are what its file is looked at for: in a translucent shell.
+void show_fibres(LookedInto& file, const field::LoadRequest& shown, FirstLook& look) {
+  const auto& grids = file.grids();
+  if (look.shell.empty() || shown.grid.empty() || !grids) return;
+  for (const field::GridInfo& grid : *grids) {
+    if (!grid.usable || !grid.is_vector || grid.stats.active_voxels == 0 || grid.name.empty()) continue;
+    field::LoadRequest request = shown;
+    request.grid = grid.name;
+    const auto loaded = field::load(request);
+    if (!loaded || !loaded->vector) continue;
+    const FirstLook fibres = first_look(json::string_text(field_name(grid.name)), *loaded->vector->grid(), {});
+    if (!fibres.fibres) continue;
+    look.parts = look.shell + ",\n" + fibres.parts;
+    look.note += "; " + in_quotes(grid.name) + " " + fibres.note;
+    return;
+  }
+}
+
 std::string curves_note(const curves::CurveSet& set) {
   return fmt::format("{} curve{} in the colours of their directions, red for x, green for y, blue for z{}{}", set.lines(),
                      set.lines() == 1 ? "" : "s", set.note.empty() ? "" : "; ", set.note);
@@ -197,9 +215,10 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   bare.request.grid = grid;
   CATENA_TRY(bare.field, load_best(looked, bare.request));
   const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
-  const FirstLook look = bare.field.scalar
-                             ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
-                             : first_look(name, *bare.field.vector->grid(), colors);
+  FirstLook look = bare.field.scalar
+                       ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
+                       : first_look(name, *bare.field.vector->grid(), colors);
+  if (grid.empty() && colors.map.empty() && !colors.range) show_fibres(looked, bare.request, look);
   bare.note = name + " " + look.note;
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
