@@ -65,7 +65,7 @@ Outcome describe_file(const std::string& path) {
     const Vec3 edges(static_cast<double>(g.size.x - 1), static_cast<double>(g.size.y - 1), static_cast<double>(g.size.z - 1));
     const Bounds box = field::world_bounds(g.mapping, {lowest, lowest + edges});
     fmt::print("  world box    {} .. {}\n", text(box.lo), text(box.hi));
-    fmt::print("  active       {} voxels\n", g.stats.active_voxels);
+    fmt::print("  active       {} {}\n", g.stats.active_voxels, field::counted_word(g.counted));
     if (g.usable) {
       fmt::print("  {}        {} .. {}\n", g.is_vector ? "speed" : "range", to_text(g.stats.min), to_text(g.stats.max));
       if (g.is_vector) fmt::print("  components   {} .. {}\n", text(g.stats.component_min), text(g.stats.component_max));

@@ -94,6 +94,7 @@ Outcome replay_scene(const ReplayOptions& options) {
     files.push_back(&*json);
   }
   CATENA_CHECK(commit_all(files));
+  if (!scene.workspace.given) fmt::print("{}", scale_sentence({program->metres_per_unit}, false));
   fmt::print("{}", felt.text(*program, stats));
   fmt::print("{}", use.text(*program));
   return Done{};

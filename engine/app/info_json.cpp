@@ -67,7 +67,8 @@ std::string json_of_grid(const std::string& path, const field::GridInfo& g) {
   out.add("name", g.name).add("type", g.type).add("usable", g.usable).add("vector", g.is_vector);
   out.add("size", size).add("lowest", lowest).raw("axes", json_list({json_of(j[0]), json_of(j[1]), json_of(j[2])}));
   out.add("origin", g.mapping.origin).add_word("unit", units.value).add_word("length_unit", units.length).add("patient", units.patient);
-  out.add("world_box", field::world_bounds(g.mapping, {lowest, lowest + size - Vec3(1.0)})).add("active_voxels", g.stats.active_voxels);
+  out.add("world_box", field::world_bounds(g.mapping, {lowest, lowest + size - Vec3(1.0)}))
+      .add("active_" + std::string(field::counted_word(g.counted)), g.stats.active_voxels);
   if (g.usable) {
     out.raw("range", json_list({json_of(g.stats.min), json_of(g.stats.max)}));
     if (g.is_vector) out.raw("component_range", json_list({json_of(g.stats.component_min), json_of(g.stats.component_max)}));

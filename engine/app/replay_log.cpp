@@ -37,6 +37,12 @@ std::string replay_stats_json(const haptics::ReplayStats& s, const std::string& 
       more.empty() ? more : ",\n  " + more);
 }
 
+std::string scale_sentence(const std::vector<double>& metres_per_unit, bool recorded) {
+  std::string scales;
+  for (const double scale : metres_per_unit) scales += (scales.empty() ? "" : ", then ") + to_text(scale);
+  return fmt::format("the scene states no workspace: 1 world unit is {} m of the hand{}\n", scales, recorded ? ", as recorded" : "");
+}
+
 namespace {
 
 // "12 ticks, all equal to the bit", or where they are not.
@@ -79,6 +85,7 @@ Outcome replay_log_file(const ReplayOptions& options) {
   std::string line;
   std::shared_ptr<const haptics::Program> running;
   WidgetUse use;
+  std::vector<double> scales;
   hooks.build = [&](const log::LogProgram& program) -> Result<std::shared_ptr<const haptics::Program>> {
     columns.bind(program.link_names());
     CATENA_TRY(std::shared_ptr<const haptics::Program> built, scene.build(program));
@@ -88,6 +95,7 @@ Outcome replay_log_file(const ReplayOptions& options) {
       return Error{options.widgets + ": the recording goes on with other widgets; expected one set of columns"};
     }
     running = built;
+    if (!scene.states_workspace() && (scales.empty() || scales.back() != built->metres_per_unit)) scales.push_back(built->metres_per_unit);
     return built;
   };
   hooks.on_tick = [&](const log::LogProgram& program, const exchange::HapticState& state) {
@@ -111,6 +119,7 @@ Outcome replay_log_file(const ReplayOptions& options) {
   for (auto* file : {&ticks, &details, &widgets, &json})
     if (*file) files.push_back(&**file);
   CATENA_CHECK(commit_all(files));
+  if (!scales.empty()) fmt::print("{}", scale_sentence(scales, true));
   return verdict(options, reader, result);
 }
 

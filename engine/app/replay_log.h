@@ -27,6 +27,9 @@ RunFiles replay_files(const ReplayOptions& options);
 /// `more`: members behind the others ("\"widgets\": {..}"), or none.
 std::string replay_stats_json(const haptics::ReplayStats& stats, const std::string& more = {});
 
+/// Of a scene that states no workspace: which scales were taken, one after the other; one sentence. `recorded`: they are the recording's.
+std::string scale_sentence(const std::vector<double>& metres_per_unit, bool recorded);
+
 /// Between a scene and its recording: the header of a log that begins, and the programs of one that runs again.
 
 /// What a recording of this scene begins with: its text as the file is now. For `feel --record`.
@@ -45,6 +48,8 @@ class LogScene {
   Result<std::shared_ptr<const haptics::Program>> build(const haptics::log::LogProgram& program);
   /// The files that the header's scene names.
   Result<std::vector<std::string>> inputs();
+  /// Of the scene that was read last.
+  bool states_workspace() const { return scene_ && scene_->workspace.given; }
 
  private:
   Outcome read(const std::optional<std::string>& own_text);

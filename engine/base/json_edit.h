@@ -16,8 +16,7 @@ namespace catena::json {
 Result<std::string> set_value(std::string_view text, const std::string& file, std::string_view pointer, std::string_view value);
 /// Puts a new item before the one of the array at that index.
 Result<std::string> insert_item(std::string_view text, const std::string& file, std::string_view pointer, std::string_view value);
-/// Takes out a member or an item with its comma. Comments about it stay, except those within it and all those of an array that it
-/// leaves empty (the library does not read them there).
+/// Takes out a member or an item with its comma. Comments about it stay, except those within it.
 Result<std::string> remove_value(std::string_view text, const std::string& file, std::string_view pointer);
 
 /// The value at the pointer; nullptr where there is none.

@@ -177,7 +177,7 @@ std::string without_item(std::string_view text, const Node& container, std::size
   if (items.size() == 1) {
     const std::size_t first = container.begin + 1, close = container.end - 1;
     const bool comments = !space(first, item.begin) || !space(item.end, close);
-    cut(comments && container.kind == Kind::object ? tidy(text, {item.begin, item.end}) : Cut{first, close});
+    cut(comments ? tidy(text, {item.begin, item.end}) : Cut{first, close});
   } else if (item.comma == kNone) {
     const std::size_t comma = items[index - 1].comma;
     if (space(comma + 1, item.begin)) {

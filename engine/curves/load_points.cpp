@@ -199,6 +199,7 @@ Result<PointSet> completed(PointSet set, const std::string& name) {
       set.lowest[i] = std::min(set.lowest[i], static_cast<double>(p[i]));
       set.highest[i] = std::max(set.highest[i], static_cast<double>(p[i]));
     }
+  set.core = core_of(set.points);
   set.spacing = spacing_of(set.points);
   set.version = next_point_version.fetch_add(1);
   set.held = HeldMemory(set.bytes());

@@ -4,6 +4,7 @@
 /// that are not finite or beyond 1e15, rows of another length, more than kMaxPoints, more than the memory that is allowed. Immutable once
 /// made; reading is safe from every thread.
 #pragma once
+#include "engine/curves/core.h"
 #include "engine/curves/curves.h"
 
 namespace catena::curves {
@@ -14,6 +15,7 @@ struct PointSet {
   std::vector<PointValues> values{};
   std::string note{};  ///< what was left out, in words; may be empty
   Vec3 lowest{0.0}, highest{0.0};
+  Core core;                  ///< all but strays
   double spacing = 0;         ///< the median distance of a point from the nearest other one, of a sample; 0: there is none
   std::uint64_t version = 0;  ///< unique in the process
   HeldMemory held{};

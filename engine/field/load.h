@@ -3,8 +3,10 @@
 /// their own, catena-read and catena-write (engine/vdb): a damaged file ends the reader, not the program that asked for it. Nothing is
 /// allocated on the word of a header beyond what engine/base/memory_limit.h allows.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -45,12 +47,17 @@ struct Size3 {
   bool operator==(const Size3&) const = default;
 };
 
+/// What values belong to: a grid's voxels, or the points or cells of a mesh that a grid is resampled from.
+enum class Counted : std::uint8_t { voxels, points, cells };
+std::string_view counted_word(Counted counted);
+
 struct GridInfo {
   std::string name, type;  ///< type as the file says: float, half, vec3s, bool, ...
   Size3 size;
   Index3 lowest{0, 0, 0};
   Mapping mapping;
-  GridStats stats;
+  GridStats stats;  ///< active_voxels: how many of what is counted
+  Counted counted = Counted::voxels;
   std::size_t bytes = 0;  ///< in memory, as NanoVDB
   bool usable = false;    ///< Catena can load it as a field
   bool is_vector = false;

@@ -107,6 +107,7 @@ void put(Encoder& e, const GridInfo& g) {
   e.number<std::uint64_t>(g.bytes);
   e.flag(g.usable);
   e.flag(g.is_vector);
+  e.number(static_cast<std::uint8_t>(g.counted));
 }
 
 GridInfo get_info(Decoder& d) {
@@ -125,10 +126,17 @@ GridInfo get_info(Decoder& d) {
   g.bytes = d.number<std::uint64_t>();
   g.usable = d.flag();
   g.is_vector = d.flag();
+  const auto counted = d.number<std::uint8_t>();
+  g.counted = counted > static_cast<std::uint8_t>(Counted::cells) ? Counted::voxels : static_cast<Counted>(counted);
   return g;
 }
 
 }  // namespace
+
+std::string_view counted_word(Counted counted) {
+  constexpr std::string_view words[] = {"voxels", "points", "cells"};
+  return words[static_cast<std::size_t>(counted)];
+}
 
 std::string encode(const ReadRequest& r) {
   Encoder e;

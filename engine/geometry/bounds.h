@@ -16,6 +16,7 @@ struct Bounds {
   double longest_edge() const { return empty() ? 0 : max_abs(hi - lo); }
   /// Corner i + 2 j + 4 k.
   Vec3 corner(int i) const { return {(i & 1) ? hi.x : lo.x, (i & 2) ? hi.y : lo.y, (i & 4) ? hi.z : lo.z}; }
+  bool has(const Vec3& p) const { return p.x >= lo.x && p.y >= lo.y && p.z >= lo.z && p.x <= hi.x && p.y <= hi.y && p.z <= hi.z; }
   void add(const Vec3& p, double radius = 0);  ///< what is not finite is left out
   void add(const Bounds& other);
 };

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <optional>
 
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
+#include "engine/scene/color_maps.h"
 #include "engine/scene/first_look.h"
 #include "engine/scene/labels.h"
 #include "engine/scene/read_parts.h"
@@ -88,6 +91,24 @@ std::string other_fields(LookedInto& looked, const std::string& shown, const std
   return text;
 }
 
+/// Fibres that lie in a body are what its file is looked at for: in a translucent shell.
+void show_fibres(LookedInto& file, const field::LoadRequest& shown, FirstLook& look) {
+  const auto& grids = file.grids();
+  if (look.shell.empty() || shown.grid.empty() || !grids) return;
+  for (const field::GridInfo& grid : *grids) {
+    if (!grid.usable || !grid.is_vector || grid.stats.active_voxels == 0 || grid.name.empty()) continue;
+    field::LoadRequest request = shown;
+    request.grid = grid.name;
+    const auto loaded = field::load(request);
+    if (!loaded || !loaded->vector) continue;
+    const FirstLook fibres = first_look(json::string_text(field_name(grid.name)), *loaded->vector->grid(), {});
+    if (!fibres.fibres) continue;
+    look.parts = look.shell + ",\n" + fibres.parts;
+    look.note += "; " + in_quotes(grid.name) + " " + fibres.note;
+    return;
+  }
+}
+
 std::string curves_note(const curves::CurveSet& set) {
   return fmt::format("{} curve{} in the colours of their directions, red for x, green for y, blue for z{}{}", set.lines(),
                      set.lines() == 1 ? "" : "s", set.note.empty() ? "" : "; ", set.note);
@@ -100,6 +121,24 @@ bool counts_rows(const std::vector<float>& values) {
   return true;
 }
 
+/// From the 1 to the 99 percentile, where the rest would take a tenth of the colours or more (of few values half of them, for their ends
+/// are far apart by chance); else none: all.
+std::optional<std::array<double, 2>> range_without_tails(const std::vector<float>& values) {
+  constexpr double kTail = 0.01;
+  constexpr std::size_t kMany = 100;
+  std::vector<float> sorted;
+  std::ranges::copy_if(values, std::back_inserter(sorted), [](float v) { return std::isfinite(v); });
+  std::ranges::sort(sorted);
+  const double last = static_cast<double>(sorted.size()) - 1;
+  if (!(last > 1)) return std::nullopt;
+  const double lo = sorted[static_cast<std::size_t>(std::ceil(kTail * last))], hi = sorted[static_cast<std::size_t>((1 - kTail) * last)];
+  const double whole = static_cast<double>(sorted.back()) - sorted.front(), most = sorted.size() < kMany ? 0.5 : 0.9;
+  if (!is_color_range(lo, hi) || hi - lo > most * whole) return std::nullopt;
+  const double digits = 2 - std::floor(std::log10(hi - lo)), factor = std::pow(10, std::fabs(digits));
+  const auto rounded = [&](double v) { return digits > 0 ? std::round(v * factor) / factor : std::round(v / factor) * factor; };
+  return std::array{rounded(lo), rounded(hi)};
+}
+
 /// Balls, coloured by the first column of values that differ; a colour map alone needs such a column.
 Result<std::string> points_parts(const curves::PointSet& set, const std::string& file, const NamedColors& colors, std::string& note) {
   const curves::PointValues* shown = nullptr;
@@ -109,16 +148,25 @@ Result<std::string> points_parts(const curves::PointSet& set, const std::string&
   }
   if (shown == nullptr && (!colors.map.empty() || colors.range))
     return Error{one_line(set.name + ": the table has no column of values to colour; a colour map goes with one")};
-  note = fmt::format("a table of points (it has columns x, y, z): {} of them as balls{}{}", set.points.size(),
-                     shown == nullptr ? std::string() : ", coloured by " + in_quotes(shown->name), set.note.empty() ? "" : "; " + set.note);
+  const auto range = shown == nullptr || colors.range ? colors.range : range_without_tails(shown->values);
+  const bool cut = range && !colors.range;
+  std::string coloured;
+  if (shown != nullptr) coloured = ", coloured by " + in_quotes(shown->name);
+  if (cut) coloured += fmt::format(" from {} to {}, its 1 to 99 percentile", text_of((*range)[0]), text_of((*range)[1]));
+  if (set.core.strays > 0) coloured += fmt::format("; {} far from the others outside of the first view", set.core.strays);
+  note = fmt::format("a table of points (it has columns x, y, z): {} of them as balls{}{}", set.points.size(), coloured,
+                     set.note.empty() ? "" : "; " + set.note);
   std::string text = "  \"points\": [{\"name\": \"points\", \"file\": " + file;
   if (shown != nullptr) {
     text += ", \"color_by\": {\"value\": " + json::string_text(shown->name);
     if (!colors.map.empty()) text += ", \"color\": " + json::string_text(colors.map);
-    if (colors.range) text += ", \"range\": " + text_of(*colors.range);
+    if (range) text += ", \"range\": " + text_of(*range);
     text += "}";
   }
-  return text + "}]" + (shown != nullptr ? ",\n  \"scalar_bars\": [{\"points\": 0}]" : "");
+  return text + "}]" +
+         (shown != nullptr ? ",\n  \"scalar_bars\": [{\"points\": 0" +
+                                 (cut ? ", \"title\": " + json::string_text(shown->name + ", 1 to 99 percentile") : "") + "}]"
+                           : "");
 }
 
 void forget_lines(json::Node& node) {
@@ -167,9 +215,10 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   bare.request.grid = grid;
   CATENA_TRY(bare.field, load_best(looked, bare.request));
   const std::string name = json::string_text(field_name(grid.empty() ? bare.field.get()->name() : grid));
-  const FirstLook look = bare.field.scalar
-                             ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
-                             : first_look(name, *bare.field.vector->grid(), colors);
+  FirstLook look = bare.field.scalar
+                       ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
+                       : first_look(name, *bare.field.vector->grid(), colors);
+  if (grid.empty() && colors.map.empty() && !colors.range) show_fibres(looked, bare.request, look);
   bare.note = name + " " + look.note;
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);

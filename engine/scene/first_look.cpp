@@ -21,7 +21,7 @@ namespace {
 
 constexpr Color kBackdrop{0.13f, 0.15f, 0.18f};
 constexpr Color kBone{0.94f, 0.89f, 0.79f}, kSkin{0.87f, 0.67f, 0.56f}, kTissue{0.86f, 0.76f, 0.69f}, kSolid{0.72f, 0.77f, 0.84f};
-constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25;
+constexpr double kSkinLevel = -300, kBoneLevel = 250, kSkinOpacity = 0.25, kShellOpacity = 0.2;
 constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;                         // optical depths of a ray across the domain
 constexpr double kMostlyEmpty = 0.5;                                                         // of the values: the background
 constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // of lines: by the domain's diagonal
@@ -130,6 +130,10 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
   const auto level = [&](double value) {
     return has_level(grid, rounded(value, facts)) ? rounded(value, facts) : 0.5 * (grid.min_value() + grid.max_value());
   };
+  const auto body = [&](double at) {
+    look.shell = surfaces({surface(field, at, kSolid, kShellOpacity)});
+    return surfaces({surface(field, at, kSolid)});
+  };
   const bool one_value = !(grid.min_value() < grid.max_value());
   if (!colors.map.empty() || colors.range || one_value) {
     look.parts = colored_volume(field, grid, colors);
@@ -145,10 +149,10 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
         show_labels(field, look);
         break;
       case DataKind::solid:
-        look.parts = surfaces({surface(field, level(facts.threshold), kSolid)});
+        look.parts = body(level(facts.threshold));
         break;
       case DataKind::level_set:
-        look.parts = surfaces({surface(field, level(0), kSolid)});
+        look.parts = body(level(0));
         break;
       case DataKind::angiogram:
         look.parts = angiogram(field, facts);
@@ -174,6 +178,7 @@ FirstLook first_look(const std::string& field, const field::VectorGrid& grid, co
   const double distance = three_digits(kApart * size * diagonal), radius = three_digits(kLineWidth * std::sqrt(size) * diagonal);
   const bool named = !colors.map.empty() || colors.range, plain = facts.unit && !named;
   FirstLook look;
+  look.fibres = facts.unit;
   look.note = facts.unit ? "looks like fibres: all vectors are as long" : "looks like a flow";
   NamedColors shown = colors;
   if (!named) shown.map = kQuantityMap;

@@ -24,6 +24,8 @@ struct FirstLook {
   std::string fields{};  ///< more fields, ", NAME: {...}"
   bool labels = false;   ///< a label map: its nearest voxels count, and its table belongs to it
   bool whole = false;    ///< the mask only cuts away what is empty: without it surfaces are closed, with it they end in torn cells
+  std::string shell{};   ///< of a body without a quantity: its surface once more, translucent, for what lies in it
+  bool fibres = false;   ///< vectors of one length
   std::string note;      ///< one sentence: what the data look like, and why
 };
 

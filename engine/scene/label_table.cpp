@@ -9,6 +9,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
+#include "engine/field/formats.h"
 
 namespace catena::scene {
 namespace {
@@ -225,11 +226,15 @@ Result<LabelTable> read_label_table(const std::string& path) {
 std::string label_table_beside(const std::string& path) {
   std::string stem = path;
   std::vector<std::string> stems{path};
-  for (const char* ending : {".gz", ".nii", ".vdb"})
-    if (has_ending(stem, ending)) {
-      stem = stem.substr(0, stem.size() - std::string_view(ending).size());
-      stems.push_back(stem);
-    }
+  const auto shorten = [&](std::string_view ending) {
+    if (!has_ending(stem, ending)) return false;
+    stem.resize(stem.size() - ending.size());
+    stems.push_back(stem);
+    return true;
+  };
+  shorten(".gz");
+  const std::vector<std::string_view> endings = field::field_endings();
+  (void)std::ranges::any_of(endings, shorten);
   for (const std::string& name : stems)
     for (const char* ending : {".txt", ".ctbl", ".label", ".csv", ".tsv", ".lut"}) {
       std::error_code code;

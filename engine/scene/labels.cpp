@@ -6,6 +6,7 @@
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/scene/color_maps.h"
+#include "engine/scene/label_palette.h"
 
 namespace catena::scene {
 
@@ -14,31 +15,22 @@ const MapLabel* LabelMap::find(double value) const {
   return it != labels.end() && it->value == value ? &*it : nullptr;
 }
 
-Color label_color(double value) {
-  const double hue = std::fmod(0.61803398875 * std::fabs(value), 1.0) * 6;
-  const auto n = static_cast<long long>(std::fabs(value));
-  constexpr double kSaturation[] = {0.55, 0.75, 0.45}, kValue[] = {0.95, 0.75, 0.85};
-  const double s = kSaturation[n % 3], v = kValue[n / 3 % 3];
-  const auto component = [&](double shift) {
-    const double k = std::fmod(shift + hue, 6.0);
-    return static_cast<float>(v - v * s * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
-  };
-  return {component(5), component(3), component(1)};
-}
-
 std::shared_ptr<const LabelMap> make_label_map(const field::ScalarGrid& grid, const LabelTable& table) {
   auto counts = field::label_counts(grid);
   if (!counts) return nullptr;
   auto map = std::make_shared<LabelMap>();
   map->counts = std::move(*counts);
+  std::size_t beyond = table.size();  // the table's rows have the first colours, whichever of them this map holds
   for (const field::LabelCount& count : map->counts) {
     if (count.value == 0) continue;
-    MapLabel label{count.value, {}, label_color(count.value), count.voxels};
+    MapLabel label{count.value, {}, {}, count.voxels};
     const auto said = std::lower_bound(table.begin(), table.end(), count.value, [](const LabelName& l, double v) { return l.value < v; });
-    if (said != table.end() && said->value == count.value) {
-      label.name = said->name;
-      if (said->color) label.color = *said->color;
-    }
+    const bool known = said != table.end() && said->value == count.value;
+    if (known) label.name = said->name;
+    if (known && said->color)
+      label.color = *said->color;
+    else
+      label.color = palette_color(known ? static_cast<std::size_t>(said - table.begin()) : beyond++);
     map->labels.push_back(std::move(label));
   }
   return map;

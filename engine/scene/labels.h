@@ -14,7 +14,7 @@ namespace catena::scene {
 struct MapLabel {
   double value = 0;
   std::string name;  ///< empty: the table does not say
-  Color color;       ///< the table's, else label_color
+  Color color;  ///< the table's; else of the palette (label_palette.h): by its row of the table, then by its place among the map's others
   std::uint64_t voxels = 0;
 };
 
@@ -23,9 +23,6 @@ struct LabelMap {
   std::vector<MapLabel> labels;           ///< values rising, without 0
   const MapLabel* find(double value) const;
 };
-
-/// A colour by a label's number: neighbours differ much. Hues a golden section apart, at three lightnesses.
-Color label_color(double value);
 
 /// None where a voxel holds no whole number.
 std::shared_ptr<const LabelMap> make_label_map(const field::ScalarGrid& grid, const LabelTable& table);

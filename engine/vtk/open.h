@@ -40,6 +40,8 @@ struct Source {
 Result<Opened> open_with_vtk(const Source& source);
 Result<Opened> open_with_itk(const Source& source);
 Result<Opened> open_dicom_folder(const Source& source);
+/// Where more images of a DICOM file's series lie beside it: that the folder opens as a volume, a sentence without an end; else empty.
+std::string series_beside(const Source& source);
 Result<Opened> open_npz(const Source& source);
 Result<Opened> open_gifti(const Source& source);
 

@@ -1,4 +1,5 @@
-// A folder of DICOM images: its series, each of them a volume. Slices are ordered by their places along the normal.
+// A folder of DICOM images: its series, each of them a volume. Slices are ordered by their places along the normal. And whether a file
+// belongs to such a series.
 #include <fmt/format.h>
 #include <itkGDCMImageIO.h>
 #include <itkGDCMSeriesFileNames.h>
@@ -133,6 +134,39 @@ Result<Opened> open_series(const Series& series, const std::string& shown) {
 }
 
 }  // namespace
+
+std::string series_beside(const Source& source) {
+  namespace fs = std::filesystem;
+  const fs::path file(source.path);
+  const auto series_of_file = [](const fs::path& path) -> std::string {
+    try {
+      const auto io = itk::GDCMImageIO::New();
+      if (!io->CanReadFile(path.c_str())) return {};
+      io->SetFileName(path.string());
+      io->ReadImageInformation();
+      return text_at(io->GetMetaDataDictionary(), "0020|000e");
+    } catch (const itk::ExceptionObject&) {
+      return {};
+    }
+  };
+  const std::string series = series_of_file(file);
+  if (series.empty()) return {};
+  std::error_code code;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator at(file.parent_path(), code), end; !code && at != end; at.increment(code))
+    if (std::error_code ignored; at->is_regular_file(ignored)) files.push_back(at->path());
+  std::ranges::sort(files);
+  // a series has names in a row: a few on either side tell
+  constexpr std::ptrdiff_t kLooks = 4;
+  const auto self = std::ranges::find(files, file) - files.begin();
+  for (std::ptrdiff_t k = std::max(self - kLooks, std::ptrdiff_t{0}); k <= std::min(self + kLooks, std::ssize(files) - 1); ++k) {
+    if (k == self || series_of_file(files[static_cast<std::size_t>(k)]) != series) continue;
+    const fs::path shown = fs::path(source.shown).parent_path();
+    const std::string folder = shown.empty() ? "." : shown.string();
+    return "more images of its series lie beside it: the folder opens as a volume (catena render " + folder + ")";
+  }
+  return {};
+}
 
 Result<Opened> open_dicom_folder(const Source& source) {
   try {

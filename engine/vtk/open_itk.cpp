@@ -137,6 +137,8 @@ Result<Opened> open_with_itk(const Source& source) {
     const itk::MetaDataDictionary& words = io->GetMetaDataDictionary();
     for (const char* key : {"NRRD_space units[0]", "NRRD_space units[1]"})
       if (const std::string unit = text_at(words, key); field::is_unit(unit)) opened.unit_length = unit;
+    if (dynamic_cast<itk::GDCMImageIO*>(io.GetPointer()) != nullptr)
+      if (const std::string beside = series_beside(source); !beside.empty()) opened.notes.push_back(beside);
     if (text_at(words, "0008|0060") == "CT") opened.units[stem(source.shown)] = "HU";
     return opened;
   } catch (const itk::ExceptionObject& e) {

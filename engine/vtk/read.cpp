@@ -61,6 +61,7 @@ class Answer {
         std::vector<vtkSmartPointer<vtkDataSet>> keep;
         const auto plan = plan_resampling(cells_of(opened_, column, keep), most_voxels(column));
         info.usable = info.usable && plan;
+        info.counted = column.of_cells ? field::Counted::cells : field::Counted::points;
         if (plan) {
           info.type += ", resampled";
           info.size = plan->lattice.size;

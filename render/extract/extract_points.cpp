@@ -15,7 +15,7 @@ namespace catena::render {
 namespace {
 
 constexpr double kShareOfSpacing = 0.35;                 // fitted radius by the distance of neighbours
-constexpr double kLeastBall = 0.0012, kMostBall = 0.02;  // by the diagonal of all
+constexpr double kLeastBall = 0.0012, kMostBall = 0.02;  // by the diagonal of all but strays
 constexpr double kBytesABall = 80;                       // place, radius, colour and value here, and on the device
 
 /// What this room keeps beside points: the balls that are drawn, made once.
@@ -38,7 +38,7 @@ Result<const std::vector<float>*> column_of(const curves::PointSet& set, const j
 }
 
 double fitted_ball(const curves::PointSet& set) {
-  const double diagonal = norm(set.highest - set.lowest);
+  const double diagonal = set.core.box.diagonal();
   if (!(diagonal > 0)) return 1;
   return std::clamp(kShareOfSpacing * set.spacing, kLeastBall * diagonal, kMostBall * diagonal);
 }
@@ -99,6 +99,7 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& dr
   balls->places.reserve(count);
   balls->radii.reserve(count);
   balls->colors.reserve(count);
+  if (set.core.strays > 0) balls->core = set.core.box;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = k * set.points.size() / count;
     const float radius = radii != nullptr ? (*radii)[i] : fitted;

@@ -16,9 +16,10 @@ constexpr double kMostPlaces = 1 << 18;
 constexpr double kLeastOpacity = 0.02, kThickness = 1.0 / 25;  // of a volume that can be seen
 constexpr double kSpecks = 0.002;                              // of the rows: may lie outside
 constexpr double kHeight = 0.8, kWidth = 0.9;                  // of the picture
-constexpr double kPicturePt = 576, kBarPt = 92, kLyingBarPt = 52, kTitlePt = 30, kAxesShare = 0.84, kLetterPt = 6, kMostLegendPt = 60;
-constexpr std::size_t kNumberBytes = 6;
-constexpr double kFlat = 0.4;  // of the middle edge
+constexpr double kPicturePt = 576, kBarPt = 92, kLyingBarPt = 52, kTitlePt = 30, kAxesShare = 0.84, kLetterPt = 6.7;
+constexpr std::size_t kNumberLetters = 6;
+constexpr double kLeastShare = 0.3;  // of the picture, whatever stands beside the data
+constexpr double kFlat = 0.4;        // of the middle edge
 
 /// What was seen of a thing, and of what it was made.
 template <class T>
@@ -157,28 +158,41 @@ Vec3 first_direction(const scene::Scene& scene, const std::vector<FitPlaces>& cl
   return size.y == edges[0] ? Vec3(0.35, -1.0, 0.3) : Vec3(1.0, -0.35, 0.3);
 }
 
-/// What the names of a legend need beyond a bar's numbers, about; the data are not made small for long ones.
+/// What the names of a legend need beyond a bar's numbers, about.
 double legend_pt(const ScalarBarItem& bar) {
   std::size_t longest = 0;
-  for (const BarTick& tick : bar.ticks) longest = std::max(longest, tick.text.size());
-  return bar.steps > 0 && longest > kNumberBytes ? std::min(kMostLegendPt, kLetterPt * double(longest - kNumberBytes)) : 0;
+  const auto begins_letter = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
+  for (const BarTick& tick : bar.ticks)
+    longest = std::max(longest, static_cast<std::size_t>(std::ranges::count_if(tick.text, begins_letter)));
+  return bar.steps > 0 && longest > kNumberLetters ? kLetterPt * double(longest - kNumberLetters) : 0;
 }
 
-/// The shares of the picture that are left beside bars, titles and the numbers of axes; the middle stays the middle.
-Vec2 room(const scene::Scene& scene, const FramePacket& packet) {
+/// What of the picture is left for the data.
+struct Room {
+  Vec2 share;        ///< of its width and height
+  double aside = 0;  ///< how far its middle lies to the left, by the picture's height
+};
+
+/// Beside bars, titles and the numbers of axes the middle stays the middle; the names of a legend move it.
+Room room(const scene::Scene& scene, const FramePacket& packet) {
   const double points = kPicturePt / std::min(packet.width, packet.height);
   const double width_pt = packet.width * points, height_pt = packet.height * points;
-  double sides[4] = {0, 0, 0, 0};
-  for (const ScalarBarItem& bar : packet.overlay.scalar_bars)
-    sides[int(bar.side)] += bar.side == Side::left || bar.side == Side::right ? kBarPt + legend_pt(bar) : kLyingBarPt;
+  double sides[4] = {0, 0, 0, 0}, names[4] = {0, 0, 0, 0};
+  for (const ScalarBarItem& bar : packet.overlay.scalar_bars) {
+    sides[int(bar.side)] += bar.side == Side::left || bar.side == Side::right ? kBarPt : kLyingBarPt;
+    names[int(bar.side)] += legend_pt(bar);
+  }
   if (!packet.overlay.texts.empty()) sides[int(Side::top)] += kTitlePt;
   const double beside = std::max(sides[int(Side::left)], sides[int(Side::right)]);
   const double above = std::max(sides[int(Side::top)], sides[int(Side::bottom)]);
   const auto left_of = [&](double most, double taken_pt, double whole_pt) {
-    return std::clamp(1 - 2 * packet.overlay.scale * taken_pt / whole_pt, 0.3, most);
+    return std::clamp(1 - packet.overlay.scale * taken_pt / whole_pt, kLeastShare, most);
   };
-  const Vec2 left(left_of(kWidth, beside, width_pt), left_of(kHeight, above, height_pt));
-  return scene.axes ? kAxesShare * left : left;
+  const double left = names[int(Side::left)], right = names[int(Side::right)];
+  Room room{{left_of(kWidth, 2 * beside + left + right, width_pt), left_of(kHeight, 2 * above, height_pt)}};
+  room.aside = 0.5 * packet.overlay.scale * (right - left) / height_pt;
+  if (scene.axes) room.share = kAxesShare * room.share;
+  return room;
 }
 
 }  // namespace
@@ -279,9 +293,10 @@ View first_view(const scene::Scene& scene, const FramePacket& packet) {
   }
   for (const BallsItem& item : packet.balls) {
     constexpr std::size_t kMost = 200000;
+    const Bounds& core = item.balls->core;
     std::vector<Vec3> places;
     for (std::size_t i = 0; i < item.balls->places.size(); i += 1 + item.balls->places.size() / kMost)
-      places.push_back(Vec3(item.balls->places[i]));
+      if (const Vec3 p(item.balls->places[i]); core.empty() || core.has(p)) places.push_back(p);
     clouds.push_back({item.clipped ? kept(std::move(places), packet) : std::move(places)});
   }
   Bounds rest;
@@ -299,8 +314,14 @@ View first_view(const scene::Scene& scene, const FramePacket& packet) {
   const Vec3 direction = first_direction(scene, clouds);
   // an aid that goes about all that is drawn is part of the picture
   if (scene.bounding_box || scene.axes) clouds.push_back({corners_of(packet_bounds(packet))});
-  const Vec2 share = room(scene, packet);
-  return fit_view(clouds, static_cast<double>(packet.width) / packet.height, share.x, share.y, direction);
+  const Room left = room(scene, packet);
+  View view = fit_view(clouds, static_cast<double>(packet.width) / packet.height, left.share.x, left.share.y, direction);
+  if (left.aside != 0) {
+    const Vec3 aside = left.aside * view.height * make_camera(view, packet.width, packet.height, {}).right;
+    view.position += aside;
+    view.target += aside;
+  }
+  return view;
 }
 
 }  // namespace catena::render

@@ -4,7 +4,8 @@
 /// On a lattice of at most about 2^18 voxels, in rows along x; of each row its first and its last place, of a surface along every axis.
 /// Kept in scene.made beside the thing.
 ///
-/// The view: from the front, 80 % of the picture's height or 90 % of its width filled, less where a scalar bar, a title or axes take room.
+/// The view: from the front, 80 % of the picture's height or 90 % of its width filled, less where a scalar bar, a title or axes take room;
+/// beside the names of a legend a little from the middle.
 ///   patient   (engine/field/units.h) from +y, a little from the side and above
 ///   flat      one edge of all that is drawn is under 0.4 of the middle one: from where that edge points
 ///   others    default_direction()

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "engine/geometry/bounds.h"
 #include "engine/geometry/color.h"
 #include "engine/geometry/plane.h"
 #include "render/frame/overlay_items.h"
@@ -239,6 +240,7 @@ struct Balls {
   std::vector<glm::vec3> places;
   std::vector<float> radii;   ///< one a place
   std::vector<Color> colors;  ///< one a place
+  Bounds core{};              ///< what a first view shows of them; empty: all
 };
 
 struct BallsItem {

@@ -195,6 +195,28 @@ TEST(CurveScenes, PointTablesByTheirHeader) {
   EXPECT_NE(info.out.find("spacing      5 in the median"), std::string::npos) << info.out;
 }
 
+TEST(CurveScenes, StraysAndTailsOfATableDoNotHideTheOthers) {
+  test::TemporaryFolder folder;
+  std::string table = "x,y,z,mass\n";
+  for (int k = 0; k < 200; ++k) table += fmt::format("{},{},{},{}\n", k % 6, k / 6 % 6, k / 36, k * k % 199);
+  test::write_file(folder / "plain.csv", table);
+  test::write_file(folder / "stray.csv", table + "9000,0,0,100000\n");
+  auto plain = scene::scene_for_file(folder / "plain.csv"), stray = scene::scene_for_file(folder / "stray.csv");
+  ASSERT_TRUE(plain && stray);
+  EXPECT_FALSE(plain->annotations.scalar_bars.at(0).title);
+  EXPECT_EQ(stray->annotations.scalar_bars.at(0).title, "mass, 1 to 99 percentile");
+  EXPECT_NE(stray->notes.at(0).find("coloured by \"mass\" from 1 to 196, its 1 to 99 percentile; 1 far from the others"), std::string::npos)
+      << stray->notes[0];
+  for (scene::Scene* one : {&*plain, &*stray}) {
+    const auto packet = render::make_frame(*one, 320, 240);
+    ASSERT_TRUE(packet) << packet.error().message;
+    const auto camera = render::make_camera(packet->view, 320, 240, {});
+    const auto low = render::project(camera, {0, 0, 0}), high = render::project(camera, {5, 5, 5});
+    ASSERT_TRUE(low && high);
+    EXPECT_GT(std::fabs(low->y - high->y), 80) << "pixels";
+  }
+}
+
 TEST(CurveScenes, BareFilesAndInfo) {
   test::TemporaryFolder folder;
   test::write_file(folder / "a.tck", test::tck_bytes({{{0, 0, 0}, {3, 4, 0}}, {{0, 0, 0}, {0, 0, 1}}}, "Float32LE"));

@@ -35,6 +35,23 @@ TEST_F(FileList, FoldersComeFirstThenWhatCatenaOpens) {
   EXPECT_NE(none.error().message.find("nowhere"), std::string::npos);
 }
 
+TEST_F(FileList, ADroppedFolderIsWhatLiesInIt) {
+  const std::string data = folder_ / "data";
+  EXPECT_EQ(opened_for_folder(data), data) << "who reads it says what is wrong";
+  test::write_file(data + "/notes.txt", "");
+  test::write_file(data + "/flow_8.vti", "");
+  EXPECT_EQ(opened_for_folder(data), data + "/flow_8.vti");
+  test::write_file(data + "/flow_08.vti", "");
+  test::write_file(data + "/flow_10.vti", "");
+  test::write_file(data + "/view.json", "");
+  EXPECT_EQ(opened_for_folder(data), data + "/flow_*.vti");
+  test::write_file(data + "/other_10.vti", "");
+  EXPECT_EQ(opened_for_folder(data), data) << "two rows";
+  std::filesystem::remove(data + "/other_10.vti");
+  test::write_file(data + "/I001.dcm", "");
+  EXPECT_EQ(opened_for_folder(data), data);
+}
+
 TEST_F(FileList, TypedPathsAreCompletedAsFarAsTheyAgree) {
   EXPECT_EQ(completed(folder_.path(), "bra"), "brain");
   EXPECT_EQ(completed(folder_.path(), "brain."), "brain.nii.gz");

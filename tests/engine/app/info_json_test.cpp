@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
+#include "tests/engine/vtk/files.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
@@ -45,6 +46,18 @@ TEST_F(InfoJson, OfADataFileHasItsGrids) {
   EXPECT_EQ(grid.find("origin")->items[0].number, -1);
   EXPECT_EQ(grid.find("world_box")->items[1].items[2].number, 3);
   EXPECT_TRUE(grid.find("usable")->boolean);
+}
+
+TEST_F(InfoJson, OfAMeshOfCellsCountsItsPoints) {
+  test::write_file(folder_ / "m.vtu", test::vtk_files::vtu_mixed([](const Vec3& p) { return p.x; }));
+  const json::Node meshed = info(folder_ / "m.vtu");
+  const json::Node& points = meshed.find("grids")->items.at(0);
+  const json::Node& cells = meshed.find("grids")->items.at(1);
+  EXPECT_EQ(number(cells, "active_cells"), 2) << "a hexahedron and a tetrahedron";
+  EXPECT_EQ(points.find("active_voxels"), nullptr);
+  const std::string text = test::run_catena({"info", folder_ / "m.vtu"}).out;
+  EXPECT_NE(text.find(fmt::format("active       {} points\n", number(points, "active_points"))), std::string::npos) << text;
+  EXPECT_NE(text.find("active       2 cells\n"), std::string::npos) << text;
 }
 
 TEST_F(InfoJson, OfAMeshAndOfASceneHasTheirParts) {

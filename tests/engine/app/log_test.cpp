@@ -168,6 +168,21 @@ TEST_F(Recording, IsReplayedFromAnotherPlaceIfTheSceneIsGiven) {
   EXPECT_EQ(test::Table::read(folder_ / "e.csv").rows(), 1200u);
 }
 
+TEST_F(Recording, WithoutAWorkspaceTheScaleThatWasTakenIsSaid) {
+  const std::string sentence = "the scene states no workspace: 1 world unit is ";
+  const auto own = catena_program({"replay", "--log", log_});
+  EXPECT_NE(own.out.find(sentence + "0.07 m of the hand, as recorded\n"), std::string::npos) << own.out;
+  test::write_file(folder_ / "p.csv", "t,x,y,z\n0,0,0,0\n");
+  const auto path = catena_program({"replay", folder_ / "a/s.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
+  EXPECT_NE(path.out.find(sentence + "1 m of the hand\n"), std::string::npos) << path.out;
+  std::string text = kFelt[1].scene;
+  text.insert(1, R"("workspace": {"metres_per_unit": 0.07}, )");
+  test::write_file(folder_ / "a/stated.json", text);
+  const auto stated = catena_program({"replay", folder_ / "a/stated.json", "--probe", folder_ / "p.csv", "-o", folder_ / "t.csv"});
+  EXPECT_EQ(stated.exit_code, 0) << stated.err;
+  EXPECT_EQ(stated.out.find(sentence), std::string::npos) << stated.out;
+}
+
 TEST_F(Recording, AnotherSceneDiffersAndSaysWhere) {
   std::string text = kFelt[1].scene;
   text.replace(text.find("0.02, 0.03]"), 4, "0.03");

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "engine/base/json.h"
+#include "tests/engine/vtk/files.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
@@ -91,6 +92,21 @@ TEST_F(ViewerWidget, AFileThatIsDroppedIsOpened) {
             0)
       << log();
   EXPECT_NE(log().find("taken"), std::string::npos) << log();
+  EXPECT_NE(log().find("opened"), std::string::npos) << log();
+}
+
+TEST_F(ViewerWidget, AFolderThatIsDroppedIsOpenedAsItsSeries) {
+  if (!has("/usr/bin/python3 -c 'import Xlib'")) GTEST_SKIP() << "no python3-xlib here";
+  std::filesystem::create_directory(folder_ / "slices");
+  for (int k = 0; k < 3; ++k)
+    test::write_file(folder_ / ("slices/" + std::to_string(k) + ".dcm"), test::vtk_files::dicom(k, {0, 0, 1.0 * k}, {1, 2, 3, 4, 5, 6}));
+  ASSERT_EQ(drive("--size 640x480 --no-panels --quality draft",
+                  "/usr/bin/python3 " + test::source_dir() + "/tests/support/drop_file.py $(xdotool search --name '^catena' | head -1) " +
+                      (folder_ / "slices") +
+                      " && echo taken\ntitled 'slices'\nxdotool search --name slices > /dev/null && echo opened\n"
+                      "xdotool mousemove 320 240; sleep 0.3; xdotool key ctrl+q"),
+            0)
+      << log();
   EXPECT_NE(log().find("opened"), std::string::npos) << log();
 }
 

@@ -40,6 +40,17 @@ TEST(Json, ReadsEveryKindWithItsLine) {
   EXPECT_EQ(root.find("nothing"), nullptr);
 }
 
+TEST(Json, CommentsStandWhereverBlanksMay) {
+  const Node root =
+      object_of("{\"chain\": [ // \"none\": [1]\n ], \"o\": { /* ] */ }, \"a\" /* : 0, */ : [1 /* , 2 */], \"s\": \"// /* no\"}");
+  EXPECT_TRUE(root.find("chain")->items.empty());
+  EXPECT_EQ(root.find("a")->items.size(), 1u);
+  EXPECT_EQ(root.find("a")->line, 2);
+  EXPECT_EQ(root.find("s")->string, "// /* no");
+  EXPECT_FALSE(parse("[1 /* without an end ]", "f"));
+  EXPECT_FALSE(parse("[1 / 2]", "f"));
+}
+
 TEST(Json, NumbersReadExactly) {
   const Node root = object_of("[0.1, -0, 1e-320, 12345678901234567890, -9007199254740993, 1.7976931348623157e308]");
   EXPECT_EQ(root.items[0].number, 0.1);

@@ -167,6 +167,21 @@ TEST(FirstLook, RandomSignsAreAxesAndAFlowIsNot) {
   }
 }
 
+TEST(FirstLook, FibresAreShownInTheirBody) {
+  const test::TemporaryFolder folder;
+  const auto body = *field::make_analytic("left-ventricle"), fibre = *field::make_analytic("left-ventricle", {1, {}, "fibre"});
+  const auto shape = field::sample_on_grid(*body.scalar, 48, -3, 3);
+  ASSERT_TRUE(field::write_vdb(folder / "heart.vdb",
+                               {{{shape, nullptr}, "density"}, {{nullptr, field::sample_on_grid(*fibre.vector, 48, -3, 3)}, "fibre"}}));
+  auto scene = scene_for_file(folder / "heart.vdb");
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(scene->world.count<StreamlineSet>(), 1u) << scene->notes[0];
+  EXPECT_EQ(scene->world.count<Isosurface>(), 1u);
+  scene->world.each<Isosurface>([](Entity, const Isosurface& surface) { EXPECT_LT(surface.opacity, 0.5); });
+  const auto prepared = prepare(*scene);
+  EXPECT_TRUE(prepared) << prepared.error().message;
+}
+
 TEST(FirstLook, AFieldWithoutLinesIsStillAPicture) {
   const test::TemporaryFolder folder;
   // a single voxel that moves: its line is shorter than lines are apart

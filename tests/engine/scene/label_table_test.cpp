@@ -89,7 +89,7 @@ TEST(LabelTables, TheOneBesideAMapIsFoundAndItsColorsToo) {
   EXPECT_EQ((*table)[0].color, (Color{1, 0, 0}));
   EXPECT_FALSE((*table)[1].color) << "black is none";
   test::write_file(folder / "b.csv", "index,name\n1,x\n");
-  EXPECT_EQ(label_table_beside(folder / "b.vdb"), folder / "b.csv");
+  for (const char* map : {"b.vdb", "b.nrrd", "b.MHA", "b.nii"}) EXPECT_EQ(label_table_beside(folder / map), folder / "b.csv") << map;
 }
 
 TEST(LabelTables, OfADebianPackage) {

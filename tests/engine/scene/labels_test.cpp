@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "engine/scene/document.h"
+#include "engine/scene/label_palette.h"
 #include "engine/scene/named_files.h"
 #include "engine/scene/prepare.h"
 #include "tests/support/support.h"
@@ -137,11 +138,45 @@ TEST_F(LabelScene, MovedElsewhereTheTableIsStillFound) {
   EXPECT_NE(moved->find("../m.txt"), std::string::npos) << *moved;
 }
 
-TEST(LabelColors, NeighboursDiffer) {
-  for (int n = 1; n < 300; ++n) {
-    const Color a = label_color(n), b = label_color(n + 1);
-    EXPECT_GT(std::fabs(a.r - b.r) + std::fabs(a.g - b.g) + std::fabs(a.b - b.b), 0.1) << n;
-  }
+/// CIE 1976 L*, a*, b* under D65.
+Vec3 cielab(const Color& c) {
+  const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+  const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
+  const double r = linear(c.r), g = linear(c.g), b = linear(c.b);
+  const double x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.95047), y = f(0.2126 * r + 0.7152 * g + 0.0722 * b),
+               z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.08883);
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+double least_distance(int count) {
+  double least = 1e9;
+  for (int n = 1; n < count; ++n)
+    for (int m = 0; m < n; ++m)
+      least =
+          std::min(least, norm(cielab(palette_color(static_cast<std::size_t>(n))) - cielab(palette_color(static_cast<std::size_t>(m)))));
+  return least;
+}
+
+TEST(LabelColors, OfTwentyLabelsNoTwoAreNearEachOther) {
+  EXPECT_NEAR(cielab({1, 0, 0}).x, 53.24, 0.02);
+  EXPECT_NEAR(cielab({1, 0, 0}).y, 80.09, 0.05);
+  EXPECT_NEAR(cielab({1, 0, 0}).z, 67.20, 0.05);
+  EXPECT_GT(least_distance(10), 40);
+  EXPECT_GT(least_distance(20), 25);
+  EXPECT_GT(least_distance(static_cast<int>(kPaletteColors)), 8) << "none twice";
+}
+
+TEST_F(LabelScene, AColourFollowsTheTableAndNotWhatElseTheMapHolds) {
+  const std::string names = R"(, "labels": {"values": [1, 3, 50, 70], "names": ["a", "b", "c", "d"]})";
+  auto scene = read(names, "}}"), bare = read(", \"interpolation\": \"nearest\"", "}}");
+  ASSERT_TRUE(scene && bare);
+  for (Scene* one : {&*scene, &*bare}) ASSERT_TRUE(use_field(*one, "m", {}));
+  const LabelMap* map = labels_of(*scene, find_field(*scene, "m"));
+  EXPECT_EQ(map->find(3)->color, palette_color(1));
+  EXPECT_EQ(map->find(70)->color, palette_color(3));
+  map = labels_of(*bare, find_field(*bare, "m"));
+  EXPECT_EQ(map->find(3)->color, palette_color(0));
+  EXPECT_EQ(map->find(70)->color, palette_color(1));
 }
 
 }  // namespace labels_test

@@ -136,6 +136,20 @@ TEST_F(Formats, UnstructuredCellsRepeatALinearField) {
   EXPECT_TRUE(has_note(cells, "averaged at the points"));
 }
 
+TEST_F(Formats, OfAMeshPointsAndCellsAreCountedAndOfAnImageVoxels) {
+  const auto mixed = describe(file("mixed.vtu", files::vtu_mixed(linear)));
+  ASSERT_TRUE(mixed) << mixed.error().message;
+  ASSERT_EQ(mixed->size(), 2u);
+  EXPECT_EQ(mixed->at(0).name, "v");
+  EXPECT_EQ(mixed->at(0).counted, Counted::points);
+  EXPECT_EQ(mixed->at(1).name, "c");
+  EXPECT_EQ(mixed->at(1).counted, Counted::cells);
+  EXPECT_EQ(mixed->at(1).stats.active_voxels, 2u) << "a hexahedron and a tetrahedron";
+  const auto image = describe(file("a.vti", files::vti("1 0 0 0 1 0 0 0 1", linear)));
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_EQ(image->at(0).counted, Counted::voxels);
+}
+
 TEST_F(Formats, EveryPlaceOfACellOfSecondOrderHasItsValue) {
   const auto square = [](const Vec3& p) { return p.x * p.x + 0.5 * p.y * p.y - p.z; };
   const AnyField field = read(file("q.vtu", files::vtu_quadratic(square)));
@@ -240,6 +254,11 @@ TEST_F(Formats, ADicomFolderIsOneVolumeInHounsfieldUnits) {
   const Units units = units_of(series, "Chest 1.2.3");
   EXPECT_EQ(units.value, "HU");
   EXPECT_TRUE(units.patient);
+  // one of its files says so; one without a series beside it does not
+  std::filesystem::copy_file(series + "/a", folder_ / "alone.dcm");
+  EXPECT_FALSE(has_note(read(folder_ / "alone.dcm"), "the folder opens"));
+  std::filesystem::rename(series + "/a", series + "/a.dcm");
+  EXPECT_TRUE(has_note(read(series + "/a.dcm"), "the folder opens as a volume (catena render " + series + ")"));
   // a second series beside it
   test::write_file(series + "/d", files::dicom(1, {0, 0, 0}, {1, 2, 3, 4, 5, 6}, "1.2.7"));
   test::write_file(series + "/e", files::dicom(2, {0, 0, 1}, {1, 2, 3, 4, 5, 6}, "1.2.7"));

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "render/extract/extract.h"
+#include "render/passes/overlay/canvas.h"
 #include "tests/support/support.h"
 
 namespace catena::render {
@@ -72,6 +73,50 @@ TEST(FirstView, ABarTakesRoomAndTheMiddleStays) {
   const FramePacket bar = packet_of("{" + kBall + slice + R"(, "scalar_bars": [{"slice": 0}]})", 300, 300);
   EXPECT_GT(distance(bar), 1.05 * distance(plain));
   EXPECT_NEAR(norm(bar.view.target - plain.view.target), 0, 0.5);
+}
+
+TEST(FirstView, ALegendOfLongNamesLiesBesideTheData) {
+  const test::TemporaryFolder folder;
+  std::string bytes, values, names;
+  for (int z = 0; z < 24; ++z)
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) bytes += static_cast<char>(std::hypot(x - 11.5, y - 11.5, z - 11.5) > 10 ? 0 : 1 + x % 20);
+  for (int n = 1; n <= 20; ++n) {
+    values += (n > 1 ? ", " : "") + std::to_string(n);
+    names += std::string(n > 1 ? ", " : "") + "\"Cerebellum_Posterior_" + std::to_string(n) + "_L\"";
+  }
+  test::write_file(folder / "m.raw", bytes);
+  for (const auto& [width, height] : {std::pair{1024u, 768u}, {600u, 600u}, {1600u, 900u}}) {
+    const FramePacket packet = packet_of(R"({"fields": {"m": {"file": "m.raw", "shape": [24, 24, 24], "type": "uint8",
+        "labels": {"values": [)" + values + R"(], "names": [)" +
+                                             names + R"(]}}, "all": {"label": "*", "of": "m"}},
+      "isosurfaces": [{"field": "all", "level": 0.5, "color_by": {"field": "m"}}], "scalar_bars": [{"field": "m", "title": "m"}]})",
+                                         width, height, folder / "s.json");
+    Typesetter typesetter;
+    const Canvas canvas(packet, typesetter);
+    const auto places = place_scalar_bars(canvas, packet.overlay);
+    ASSERT_EQ(places.size(), 1u);
+    const Taken taken = taken_by(packet, 10.5, Vec3(11.5));
+    EXPECT_LT((taken.x + 0.5 * taken.width) * width, places[0].ramp.x) << width;
+    EXPECT_GT((taken.x - 0.5 * taken.width) * width, 0.03 * width);
+    EXPECT_GT(taken.width * width, 0.35 * height) << "and is seen";
+  }
+}
+
+TEST(FirstView, AStrayPointDoesNotMakeTheOthersSmall) {
+  const test::TemporaryFolder folder;
+  std::string table = "x,y,z\n";
+  for (int k = 0; k < 1000; ++k) table += std::to_string(k % 10) + "," + std::to_string(k / 10 % 10) + "," + std::to_string(k / 100) + "\n";
+  test::write_file(folder / "plain.csv", table);
+  test::write_file(folder / "stray.csv", table + "5000,-3000,100\n");
+  const auto shown = [&](const std::string& name) {
+    return packet_of(R"({"points": [{"name": "p", "file": ")" + name + R"("}]})", 400, 300, folder / "s.json");
+  };
+  const FramePacket plain = shown("plain.csv"), stray = shown("stray.csv");
+  EXPECT_EQ(stray.balls[0].balls->places.size(), 1001u) << "it is drawn";
+  EXPECT_EQ(stray.balls[0].balls->radii[0], plain.balls[0].balls->radii[0]);
+  EXPECT_NEAR(norm(stray.view.position - plain.view.position), 0, 1e-9);
+  EXPECT_NEAR(norm(stray.view.target - plain.view.target), 0, 1e-9);
 }
 
 TEST(FirstView, ABoundingBoxIsInThePicture) {

@@ -3,7 +3,7 @@
 /// that is not possible is said in one line and changes nothing. Pointers are RFC 6901, values JSON text (engine/scene/write_values.h).
 ///   context.edits.set("/isosurfaces/0/opacity", scene::text_of(0.4), "opacity");   // a step of undo of its own
 ///   context.edits.drag("/isosurfaces/0/level", scene::text_of(0.4), "isolevel");   // one step until the pointer is pressed again
-///   context.edits.remove("/isosurfaces/0", "remove isosurface");
+///   context.edits.remove("/isosurfaces/0/opacity", "opacity");
 /// Frame thread.
 #pragma once
 #include <string>
@@ -39,6 +39,9 @@ class Edits {
 
   /// A link that lies on that item (feel.h).
   void feel(const std::string& item) { commands_.push_back(Feel{item}); }
+
+  /// An item of a list, with what hangs on it (removal.h).
+  void remove_item(const std::string& item, const std::string& what) { commands_.push_back(RemoveItem{item, what}); }
 
   EditState& state() { return state_; }
 

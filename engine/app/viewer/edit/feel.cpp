@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/app/viewer/edit/chain_edit.h"
+#include "engine/app/viewer/edit/removal.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
@@ -15,14 +16,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr std::string_view kVolumes = "volumes";
 constexpr double kSnapShare = 0.02;  // of the diagonal of all lines or points
-
-const haptics::ConstraintType* type_that_feels(std::string_view part) {
-  for (const haptics::ConstraintType& type : haptics::registry())
-    if (type.feels == part) return &type;
-  return nullptr;
-}
 
 /// "isosurfaces" of "isosurfaces[2]".
 std::string part_of(const std::string& item) { return item.substr(0, item.find('[')); }
@@ -44,6 +38,7 @@ struct Given {
   std::vector<std::pair<std::string, std::string>> keys;
   std::string words;
   std::optional<std::pair<std::string, std::string>> field{};
+  bool is_label = false;
 };
 
 /// [a-z][a-z0-9_]* of a label's name.
@@ -75,6 +70,7 @@ std::optional<Given> given_by_label(const scene::Scene& scene, const std::string
                                           (smooth && *smooth != field::kUsualSmooth ? ", \"smooth\": " + scene::text_of(*smooth) : "") +
                                           "}"};
   }
+  given.is_label = true;
   given.words = "label " + scene::label_words(*map, value);
   given.keys = {{"field", scene::text_of(name)}, {"level", scene::text_of(field::kLabelLevel)}, {"free", "\"below\""}};
   return given;
@@ -176,21 +172,9 @@ Result<Given> curves_given(scene::Scene& scene, scene::Entity entity) {
 Result<Given> points_given(scene::Scene& scene, scene::Entity entity) {
   const std::string name = name_of(scene, entity);
   CATENA_TRY(const curves::PointSetPtr set, scene::use_points(scene, entity));
-  const double diagonal = norm(set->highest - set->lowest);
+  const double diagonal = set->core.box.diagonal();
   const double snap = rounded_to(std::max(kSnapShare * (diagonal > 0 ? diagonal : 1), 0.5 * set->spacing), 2);
   return Given{{{"points", scene::text_of(name)}, {"snap", scene::text_of(snap)}}, "points " + name};
-}
-
-/// A copy of the component that was read from `item`: loading a field may move the others.
-template <class T>
-std::optional<T> item_of(const scene::Scene& scene, const std::string& item, scene::Entity* entity = nullptr) {
-  std::optional<T> found;
-  scene.world.each<T>([&](scene::Entity e, const T& part) {
-    if (found || part.where.label != item) return;
-    found = part;
-    if (entity != nullptr) *entity = e;
-  });
-  return found;
 }
 
 Result<Given> given_by(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye) {
@@ -207,15 +191,22 @@ Result<Given> given_by(scene::Scene& scene, const std::string& item, const std::
 
 }  // namespace
 
-bool can_feel(std::string_view part) { return part == kVolumes || type_that_feels(part) != nullptr; }
+const haptics::ConstraintType* type_that_feels(std::string_view part) {
+  if (part == "volumes") part = "isosurfaces";
+  for (const haptics::ConstraintType& type : haptics::registry())
+    if (type.feels == part) return &type;
+  return nullptr;
+}
+
+bool can_feel(std::string_view part) { return type_that_feels(part) != nullptr; }
 
 Result<FeltThing> feel(scene::Scene& scene, const std::string& item, const std::optional<Vec3>& at, const Vec3& eye, double length) {
   const std::string part = part_of(item);
-  const haptics::ConstraintType* type = type_that_feels(part == kVolumes ? "isosurfaces" : part);
+  const haptics::ConstraintType* type = type_that_feels(part);
   if (type == nullptr) return Error{part + " cannot be felt"};
   CATENA_TRY(const Given given, given_by(scene, item, at, eye));
   CATENA_TRY(const std::string link, new_link(scene, type->type, at.value_or(eye), length, given.keys));
-  return FeltThing{link, given.words, given.field};
+  return FeltThing{link, given.words, given.field, given.is_label};
 }
 
 std::string felt_by(const scene::Scene& scene, const FeltThing& thing) {
@@ -224,13 +215,28 @@ std::string felt_by(const scene::Scene& scene, const FeltThing& thing) {
   scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
     if (!name.empty() || !wanted) return;
     for (const auto& [key, value] : wanted->members) {
-      if (key == "name" || key == "free" || key == "release") continue;
+      if (key == "name" || key == "free" || key == "release" || key == "snap") continue;
       const json::Node* stated = link.node.find(key);
       if (stated == nullptr || json::node_text(*stated) != json::node_text(value)) return;
     }
     name = link.name;
   });
   return name;
+}
+
+TextEdits edits_to_feel(scene::Scene& scene, const std::string& item, const FeltThing& thing) {
+  TextEdits edits;
+  if (thing.field) edits.push_back({thing.field->first, thing.field->second});
+  // another label of a map is another thing
+  const std::vector<std::string> before = thing.is_label ? std::vector<std::string>() : links_on(scene, item);
+  const auto link = json::parse(thing.link, "link");
+  if (before.empty() || !link) {
+    edits.push_back({"/chain/-", thing.link});
+    return edits;
+  }
+  for (const auto& [key, value] : link->members)
+    if (key != "name") edits.push_back({before.back() + "/" + json::pointer_step(key), json::node_text(value)});
+  return edits;
 }
 
 std::vector<std::string> felt_planes(const scene::Scene& scene, const Vec3& point, const Vec3& normal) {

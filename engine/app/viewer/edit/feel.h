@@ -16,10 +16,12 @@
 #include <utility>
 
 #include "engine/app/viewer/edit/scene_items.h"
+#include "haptics/constraints/registry.h"
 
 namespace catena::app {
 
-/// Whether items of this part of the scene ("isosurfaces") can be felt.
+/// The type of link that lies on items of this part of the scene ("isosurfaces"); nullptr: they cannot be felt.
+const haptics::ConstraintType* type_that_feels(std::string_view part);
 bool can_feel(std::string_view part);
 
 struct FeltThing {
@@ -27,6 +29,7 @@ struct FeltThing {
   std::string words;  ///< "isosurface brain at 45"
   /// A field that the link names and the scene does not have yet: pointer and JSON text.
   std::optional<std::pair<std::string, std::string>> field{};
+  bool is_label = false;  ///< one label of a map: another thing than the others
 };
 
 /// `item`: where it stands in the scene, "isosurfaces[0]" (json::Node::label). `at`: the place of it that was pointed at, where one was;
@@ -35,6 +38,10 @@ Result<FeltThing> feel(scene::Scene& scene, const std::string& item, const std::
 
 /// The name of a link that lies on that very thing already; empty: none does.
 std::string felt_by(const scene::Scene& scene, const FeltThing& thing);
+
+/// The edits that make the link. One that lies on the same item already (removal.h), at another level or on another line of it, is taken
+/// over: it keeps its name and what it has beside.
+TextEdits edits_to_feel(scene::Scene& scene, const std::string& item, const FeltThing& thing);
 
 /// Pointers to the places and normals of all links that lie on the slice's plane, to be changed along with it: (pointer to the link).
 std::vector<std::string> felt_planes(const scene::Scene& scene, const Vec3& point, const Vec3& normal);

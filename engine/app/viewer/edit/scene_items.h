@@ -1,6 +1,7 @@
 /// These functions say where things stand in the scene's text (RFC 6901), and what their text is. Pure, any thread.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,18 @@ std::string pointer_of(const json::Node& item);
 /// Items of the scene by their components, for panels: where they stand in the text, what belongs together. Pure, frame thread.
 std::string name_of(const scene::Scene& scene, scene::Entity entity);
 std::vector<std::string> field_names(const scene::Scene& scene);
+
+/// A copy of the component that was read from `item` ("slices[1]"): loading a field may move the others.
+template <class T>
+std::optional<T> item_of(const scene::Scene& scene, const std::string& item, scene::Entity* entity = nullptr) {
+  std::optional<T> found;
+  scene.world.each<T>([&](scene::Entity e, const T& part) {
+    if (found || part.where.label != item) return;
+    found = part;
+    if (entity != nullptr) *entity = e;
+  });
+  return found;
+}
 
 /// Pointers to the levels of all links of the chain that lie on the surface `field` = `level`, of whatever type (isosurface, friction,
 /// texture): the same field, the same number.

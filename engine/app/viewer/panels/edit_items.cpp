@@ -59,7 +59,7 @@ bool begin_item(Edits& edits, const json::Node& where, bool visible, const std::
       short_tip("the hand feels this: a link of the chain that lies on it, and goes along with it");
     }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
-    if (ImGui::Button("x", {button, 0})) edits.remove(pointer, "remove " + word);
+    if (ImGui::Button("x", {button, 0})) edits.remove_item(where.label, "remove " + word);
     short_tip("remove");
   }
   if (!open) ImGui::PopID();

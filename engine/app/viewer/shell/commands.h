@@ -90,6 +90,10 @@ struct EstimateError {};
 struct Feel {
   std::string item;
 };
+/// That item goes, with what hangs on it (edit/removal.h); `what`: for the menu of undo.
+struct RemoveItem {
+  std::string item, what;
+};
 /// Another device that holds the probe.
 struct ChooseDevice {
   std::string name;
@@ -103,7 +107,7 @@ struct Record {
 };
 
 using Command = std::variant<Action, Edit, OpenFile, DropFile, AnswerToDropped, SaveAs, GiveUpSaving, AnswerToUnsaved, AnswerToLeft,
-                             ChooseStereo, ChooseQuality, EstimateError, Feel, ChooseDevice, ShowStep, Record>;
+                             ChooseStereo, ChooseQuality, EstimateError, Feel, RemoveItem, ChooseDevice, ShowStep, Record>;
 using Commands = std::vector<Command>;
 
 /// What a stroke asks of the program when it is no text for the interface. `fly`: letters and arrows fly, and ask for nothing.

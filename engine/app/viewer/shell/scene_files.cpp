@@ -112,8 +112,11 @@ bool SceneFiles::write(const std::string& path) {
 
 // ---- opening ----
 
-void SceneFiles::drop(const std::string& path) {
-  if (is_scene_name(path) || shared_.state.untitled || !is_openable(path)) return open(path);
+void SceneFiles::drop(const std::string& dropped) {
+  std::error_code code;
+  const bool folder = std::filesystem::is_directory(dropped, code);
+  const std::string path = folder ? opened_for_folder(dropped) : dropped;
+  if (is_scene_name(path) || shared_.state.untitled || (!folder && !is_openable(path))) return open(path);
   shared_.state.ask.dropped = path;
 }
 

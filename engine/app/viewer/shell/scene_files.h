@@ -29,7 +29,7 @@ class SceneFiles {
 
   // commands
   void open(const std::string& path) { leave_or_ask({path}); }
-  void drop(const std::string& path);
+  void drop(const std::string& dropped);
   void save();
   void save_as(const std::string& path);
   void give_up_saving() { after_save_.reset(); }

@@ -54,6 +54,7 @@ class Session {
   void begin_hand();
   void end_hand();
   void feel(const std::string& item, std::optional<Vec3> at);
+  void remove(const std::string& item, const std::string& what);
   void close();
 
   Gui gui_;

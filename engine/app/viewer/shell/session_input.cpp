@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "engine/app/viewer/edit/feel.h"
+#include "engine/app/viewer/edit/removal.h"
 #include "engine/app/viewer/shell/session.h"
 
 namespace catena::app {
@@ -47,7 +48,8 @@ void Session::carry_out(const Command& command) {
           [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
           [&](AnswerToLeft answer) { files_.answer(answer); }, [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); },
           [&](EstimateError) { wants_error_ = true; }, [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); },
-          choose_stereo, choose_device, [&](ShowStep asked) { show_step(asked.step); }, record},
+          [&](const RemoveItem& asked) { remove(asked.item, asked.what); }, choose_stereo, choose_device,
+          [&](ShowStep asked) { show_step(asked.step); }, record},
       command);
 }
 
@@ -146,10 +148,7 @@ void Session::feel(const std::string& item, std::optional<Vec3> at) {
   if (!thing) return state.say(thing.error().message, true);
   if (const std::string by = felt_by(scene.scene(), *thing); !by.empty())
     return state.say(thing->words + " is felt already, by the link " + by);
-  TextEdits edits;
-  if (thing->field) edits.push_back({thing->field->first, thing->field->second});
-  edits.push_back({"/chain/-", thing->link});
-  const Outcome done = scene.apply(edits, "feel " + thing->words, {});
+  const Outcome done = scene.apply(edits_to_feel(scene.scene(), item, *thing), "feel " + thing->words, {});
   if (!done) return state.say(done.error().message, true);
   // a mouse's hand begins on the thing, not somewhere within it
   Controls& controls = shared_.controls;
@@ -162,6 +161,14 @@ void Session::feel(const std::string& item, std::optional<Vec3> at) {
                     : controls.hand_mode     ? ". The wheel pushes; Esc ends it"
                                              : ". Point at it and press H: the pointer is the hand, the wheel pushes";
   state.say("felt: " + thing->words + how);
+}
+
+/// With the links that feel it, unless something else needs them.
+void Session::remove(const std::string& item, const std::string& what) {
+  SceneHost& scene = shared_.scene;
+  const TextEdits felt = edits_to_remove_felt(scene.scene(), scene.document().text(), item);
+  if (scene.apply(felt, what)) return;
+  shared_.state.say_if_wrong(scene.apply(edits_to_remove(scene.document().text(), item), what));
 }
 
 /// What is open above all goes first; the program stays.

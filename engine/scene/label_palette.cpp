@@ -1,0 +1,69 @@
+#include "engine/scene/label_palette.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/base/vec.h"
+
+namespace catena::scene {
+namespace {
+
+constexpr int kLevels = 14;                                                      // of each component
+constexpr double kDarkest = 45, kLightest = 88, kGreyest = 20, kBrightest = 90;  // lightness, chroma
+constexpr double kLightness = 0.5;                                               // how much it counts
+constexpr Color kFirst{0.88f, 0.38f, 0.30f};
+
+double linear(double display) { return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4); }
+
+/// L*, a*, b*
+Vec3 cielab(const Color& c) {
+  const double r = linear(c.r), g = linear(c.g), b = linear(c.b);
+  const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
+  const double x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505), y = f(0.2126 * r + 0.7152 * g + 0.0722 * b),
+               z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+struct Candidate {
+  Color color;
+  Vec3 place;                                             ///< CIELAB, lightness weighted
+  double away = std::numeric_limits<double>::infinity();  ///< squared, from all that are chosen
+};
+
+std::vector<Color> choose() {
+  std::vector<Candidate> all;
+  const auto add = [&](const Color& color) {
+    const Vec3 lab = cielab(color);
+    const double chroma = std::hypot(lab.y, lab.z);
+    if (lab.x >= kDarkest && lab.x <= kLightest && chroma >= kGreyest && chroma <= kBrightest)
+      all.push_back({color, {kLightness * lab.x, lab.y, lab.z}});
+  };
+  add(kFirst);
+  const auto level = [](int k) { return static_cast<float>(k) / (kLevels - 1); };
+  for (int r = 0; r < kLevels; ++r)
+    for (int g = 0; g < kLevels; ++g)
+      for (int b = 0; b < kLevels; ++b) add({level(r), level(g), level(b)});
+  std::vector<Color> chosen;
+  std::size_t next = 0;
+  while (chosen.size() < kPaletteColors) {
+    const Candidate best = all[next];
+    chosen.push_back(best.color);
+    for (Candidate& one : all) {
+      const Vec3 d = one.place - best.place;
+      one.away = std::min(one.away, dot(d, d));
+    }
+    next = static_cast<std::size_t>(std::ranges::max_element(all, {}, &Candidate::away) - all.begin());
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Color palette_color(std::size_t index) {
+  static const std::vector<Color> palette = choose();
+  return palette[index % palette.size()];
+}
+
+}  // namespace catena::scene
