@@ -1,4 +1,4 @@
-/// Monotonic wall time in nanoseconds, and the time since the process started (for `first_frame_ms`).
+/// Monotonic wall time and processor time in nanoseconds, and the time since the process started (for `first_frame_ms`).
 #pragma once
 #include <cstdint>
 
@@ -6,6 +6,8 @@ namespace catena {
 
 std::int64_t now_ns();
 double ms_since(std::int64_t start_ns);
+/// Processor time of all threads of this process: what it did, whatever else the machine does.
+std::int64_t processor_ns();
 /// Since the kernel started this process (reads its start time once; falls back to the first call).
 double ms_since_process_start();
 

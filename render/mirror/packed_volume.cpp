@@ -187,7 +187,7 @@ struct Values {
   }
 };
 
-double root_mean_square(const Values& values) {
+double root_mean_square(const Values& values, const ValueInterval& active) {
   double sum = 0;
   std::size_t count = 0;
   std::mutex lock;
@@ -197,6 +197,8 @@ double root_mean_square(const Values& values) {
     for (std::size_t z = begin; z < end; z += 2)
       for (int y = 0; y < values.n.y; y += 2)
         for (int x = 0; x < values.n.x; x += 2) {
+          const float v = values.v[z * std::size_t(values.n.x) * values.n.y + std::size_t(y) * values.n.x + x];
+          if (!(v >= float(active.least) && v <= float(active.greatest))) continue;
           const double l = values.gradient(x, y, int(z)).length();
           part += l * l;
           some += l > 0;
@@ -210,7 +212,7 @@ double root_mean_square(const Values& values) {
 
 }  // namespace
 
-Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::ScalarGrid& grid) {
+Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::ScalarGrid& grid, const ValueInterval& active) {
   CATENA_ASSERT(can_be_packed(device, grid));
   const field::Box& box = grid.index_box();
   const auto whole = [](double a) { return std::int32_t(std::lround(a)); };
@@ -224,7 +226,7 @@ Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::Sca
     grid.read_block({lo.x, lo.y, lo.z + std::int32_t(begin)}, {n.x, n.y, std::int32_t(end - begin)},
                     std::span(values.v).subspan(begin * plane, (end - begin) * plane));
   });
-  const auto longest = float(3 * root_mean_square(values));
+  const auto longest = float(3 * root_mean_square(values, active));
   GradientVolume volume;
   volume.unit = longest / 127;
 

@@ -70,8 +70,8 @@ Result<PackedVolume> make_packed_volume(vk::Device& device, const field::ScalarG
 ValueInterval range_to_encode(const field::Index3& size, const std::vector<float>& values, const ValueInterval& active);
 
 /// Gradients for shading in the fast raycast: directions of central differences of one voxel at every voxel, R8G8B8A8_UNORM, read with
-/// linear interpolation: 128 + 127 g / (3 rms |g|). Longer ones are shortened, which the fourth component says (1): the light needs
-/// directions more than lengths.
+/// linear interpolation: 128 + 127 g / (3 rms |g|), the mean over the voxels whose values are in `active`, for what is not seen needs no
+/// light. Longer ones are shortened, which the fourth component says (1): the light needs directions more than lengths.
 /// The shading of `reference`, for 4 bytes a voxel more; without it the gradient of the cell serves. Made when first asked for.
 struct GradientVolume {
   vk::Image image;
@@ -79,6 +79,6 @@ struct GradientVolume {
 };
 
 /// `grid` can_be_packed.
-Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::ScalarGrid& grid);
+Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::ScalarGrid& grid, const ValueInterval& active);
 
 }  // namespace catena::render

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "render/passes/passes.h"
+#include "render/passes/renderer.h"
 #include "render/raycast/fast_volume.h"
 #include "render/raycast/projection.h"
 #include "render/raycast/volume.h"
@@ -228,12 +229,11 @@ bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
          item.grid->interpolation() == field::Interpolation::linear && can_be_packed(device, *packet.volumes.front().grid);
 }
 
-const PassEntry kRaycastPass{"raycast",
-                             [](const Frame& frame) {
-                               const auto& surfaces = frame.packet.isosurfaces;
-                               return !frame.packet.volumes.empty() || !frame.layers.empty() ||
-                                      std::any_of(surfaces.begin(), surfaces.end(), is_translucent);
-                             },
+bool draws_rays(const FramePacket& packet) {
+  return !packet.volumes.empty() || has_layers(packet) || std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent);
+}
+
+const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return draws_rays(frame.packet) || !frame.layers.empty(); },
                              RaycastPass::create, target::volume};
 
 }  // namespace catena::render

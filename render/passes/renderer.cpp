@@ -251,10 +251,10 @@ Outcome Renderer::draw(const FramePacket& packet, const RenderSettings& settings
   return parts_->within_budget(packet, [&] { return draw_once(packet, settings); });
 }
 
-Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings) {
+Result<Picture> Renderer::probe(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
   parts_->drawn = 0;
   CATENA_CHECK(check(packet, settings, parts_->device->info()));
-  return parts_->within_budget(packet, [&] { return probe_once(packet, settings); });
+  return parts_->within_budget(packet, [&] { return probe_once(packet, settings, spacing); });
 }
 
 Outcome Renderer::draw_once(const FramePacket& packet, const RenderSettings& settings) {
@@ -294,13 +294,12 @@ bool Renderer::draws_fast(const FramePacket& packet) const {
   return can_be_drawn_fast(*parts_->device, packet);
 }
 
-Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSettings& settings) {
+Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing) {
   Parts& p = *parts_;
   Frame frame{*p.device, *p.mirrors, p.targets, packet, settings, {}};
   CATENA_CHECK(p.prepare(frame));
 
   // all before the rays, whole; then the rays, into an image of their own
-  const std::uint32_t spacing = probe_spacing(packet.width, packet.height);
   Picture picture;
   picture.width = (packet.width + spacing - 1) / spacing;
   picture.height = (packet.height + spacing - 1) / spacing;
@@ -333,16 +332,17 @@ Result<Picture> Renderer::probe_once(const FramePacket& packet, const RenderSett
     CATENA_TRY(opaque, bytes_of<std::uint16_t>(*p.device, p.targets.opaque_color, 4 * std::size_t(packet.width) * packet.height));
   }
 
-  // volume over opaque over background over black
-  picture.rgba.assign(4 * count, 255);
+  // volume over opaque over background
+  picture.rgba.assign(4 * count, 0);
+  const auto to_byte = [](float x) { return std::uint8_t(std::lround(255 * std::clamp(x, 0.0f, 1.0f))); };
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel = spacing * (i / picture.width * packet.width + i % picture.width);
+    const float behind = opaque.empty() ? 1 : 1 - float_from_half(opaque[4 * pixel + 3]), through = 1 - volume[4 * i + 3];
     for (std::size_t c = 0; c < 3; ++c) {
-      float sum = packet.background[c] * packet.background[3];
-      if (!opaque.empty()) sum = float_from_half(opaque[4 * pixel + c]) + (1 - float_from_half(opaque[4 * pixel + 3])) * sum;
-      sum = volume[4 * i + c] + (1 - volume[4 * i + 3]) * sum;
-      picture.rgba[4 * i + c] = std::uint8_t(std::lround(255 * std::clamp(sum, 0.0f, 1.0f)));
+      const float sum = behind * packet.background[c] + (opaque.empty() ? 0 : float_from_half(opaque[4 * pixel + c]));
+      picture.rgba[4 * i + c] = to_byte(volume[4 * i + c] + through * sum);
     }
+    picture.rgba[4 * i + 3] = to_byte(1 - through * behind);
   }
   return picture;
 }

@@ -44,14 +44,8 @@ struct RenderStats {
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };
 
-/// Pixels between the rays of Renderer::probe; prime to every lattice's spacing. Errors gather at edges, in few pixels: a small picture
-/// needs a denser lattice for as good a mean.
-constexpr std::uint32_t probe_spacing(std::uint32_t width, std::uint32_t height) {
-  constexpr std::uint64_t kRays = 4000;
-  for (const std::uint32_t spacing : {13u, 7u, 5u, 3u})
-    if (std::uint64_t(width / spacing) * (height / spacing) >= kRays) return spacing;
-  return 1;
-}
+/// Whether anything of the packet is drawn by rays, so that it matters how finely they are marched.
+bool draws_rays(const FramePacket& packet);
 
 /// The nearest opaque object of every pixel, 0: none.
 struct IdPicture {
@@ -88,9 +82,10 @@ class Renderer {
   std::uint32_t longest_side() const;
   /// Whether `RenderSettings::fast` holds for what the packet draws. What it turns out to have no memory for, it holds no longer for.
   bool draws_fast(const FramePacket& packet) const;
-  /// The rays of every probe_spacing-th pixel each way alone, as a small picture over black: what `settings` make of them before anything
-  /// is interpolated. What quality.h measures errors with.
-  Result<Picture> probe(const FramePacket& packet, const RenderSettings& settings);
+  /// The rays of every `spacing`-th pixel each way alone, as a small picture: what `settings` make of them before anything is interpolated.
+  /// What quality.h measures errors with. Red, green and blue over the packet's background (its alpha does not count), alpha that of
+  /// what is drawn.
+  Result<Picture> probe(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing);
   /// The opaque depth of the last picture.
   Result<DepthPicture> read_depth();
   /// The ids of the last picture.
@@ -121,7 +116,7 @@ class Renderer {
  private:
   Renderer();
   Outcome draw_once(const FramePacket& packet, const RenderSettings& settings);
-  Result<Picture> probe_once(const FramePacket& packet, const RenderSettings& settings);
+  Result<Picture> probe_once(const FramePacket& packet, const RenderSettings& settings, std::uint32_t spacing);
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

@@ -4,16 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
+#include <limits>
+#include <thread>
 
 #include "engine/base/clock.h"
+#include "engine/base/numbers.h"
+#include "render/image/measure.h"
 #include "render/quality/refinement.h"
 
 namespace catena::render {
 namespace {
 
-constexpr double kStepShare = 0.93;  // of the error that ray steps may take
-constexpr double kMargin = 0.95;     // for the lattice's statistical error
+constexpr double kStepShare = 0.93;                             // of the error that ray steps may take
+constexpr double kDeviations = 2;                               // of the lattice's mean, that an estimate lies above it
+constexpr double kFarthest = 8;                                 // the 99.9 percentile, in errors
+constexpr double kUneven = 1.1;                                 // of the ideal time: threads wait for each other
+constexpr double kSamples = 6000;                               // covered pixels on the lattice
+constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
+constexpr double kRoughGoal = 1.5;                              // 1/255: from it on the error of step 0.25 does not count
 constexpr int kMaxPictures = 16;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
@@ -23,11 +33,10 @@ struct Plan {
   double refine_half, refine_full;
   double overhead, rays;
 };
-constexpr Plan kPlan[] = {{4, -1, -1, 0.02, 0.1},   {4, 2, -1, 0.03, 0.16},  {4, 1.3, -1, 0.03, 0.19},
-                          {4, 0.8, -1, 0.03, 0.24}, {2, 0, -1, 0.02, 0.3},   {4, 1, 3, 0.05, 0.28},
-                          {2, 0, 2, 0.06, 0.45},    {2, 0, 0.8, 0.06, 0.65}, {1, 0, -1, 0.03, 1}};
+constexpr Plan kPlan[] = {{4, -1, -1, 0.03, 0.09}, {4, 1.3, -1, 0.05, 0.2}, {2, 0, -1, 0.04, 0.28}, {4, 1, 3, 0.12, 0.28},
+                          {2, 0, 2, 0.1, 0.4},     {2, 0, 0.8, 0.12, 0.6},  {1, 0, -1, 0.03, 1}};
 constexpr int kPlans = int(std::size(kPlan));
-constexpr double kFastSteps[] = {8, 6, 5, 4, 3, 2, 1.5, 1, 0.5};
+constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
 constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25};
 
 RenderSettings exact(double step_voxels) {
@@ -43,81 +52,111 @@ RenderSettings fast(double step_voxels, std::uint32_t spacing, double refine_hal
   return s;
 }
 
-/// As `reference`, but for the texels.
-RenderSettings converged() {
-  RenderSettings s = exact(0.1);
-  s.termination = 1e-4;
-  return s;
+/// Of a driver that draws with the processor: a thread a core, or as many as it is told.
+double drawing_threads() {
+  const double cores = std::max(1u, std::thread::hardware_concurrency());
+  const char* told = std::getenv("LP_NUM_THREADS");
+  const double threads = told != nullptr ? std::atof(told) : cores;
+  return threads >= 1 ? std::min(threads, cores) : cores;
 }
 
-double rmse(const Picture& a, const Picture& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i)
-    if (i % 4 != 3) sum += (double(a.rgba[i]) - b.rgba[i]) * (double(a.rgba[i]) - b.rgba[i]);
-  return std::sqrt(sum / (0.75 * double(a.rgba.size())));
+/// Errors on the lattice.
+struct Measured {
+  double rmse = 0;   ///< over the covered pixels
+  double above = 0;  ///< the true one is at most so, but in one of forty pictures
+  double p999 = 0;   ///< of the largest of a pixel's differences
+  bool good_for(double e) const { return above <= e && p999 <= kFarthest * e; }
+};
+
+Measured compare(const Picture& a, const Picture& b) {
+  double sum = 0, squares = 0, count = 0;
+  std::vector<double> largest;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    if (a.rgba[i + 3] == 0 && b.rgba[i + 3] == 0) continue;
+    double here = 0, most = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double d = std::fabs(double(a.rgba[i + c]) - b.rgba[i + c]);
+      here += d * d / 3;
+      most = std::max(most, d);
+    }
+    largest.push_back(most);
+    sum += here;
+    squares += here * here;
+    ++count;
+  }
+  if (count == 0) return {};
+  const double mean = sum / count, variance = std::max(0.0, squares / count - mean * mean);
+  return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(largest, 0.999)};
 }
 
-/// The lattice's pixels of a finished picture, over black.
-Picture on_lattice(const Picture& picture) {
-  const std::uint32_t spacing = probe_spacing(picture.width, picture.height);
+/// The lattice's pixels of a finished picture.
+Picture on_lattice(const Picture& picture, std::uint32_t spacing) {
   Picture out;
   out.width = (picture.width + spacing - 1) / spacing;
   out.height = (picture.height + spacing - 1) / spacing;
   for (std::uint32_t y = 0; y < picture.height; y += spacing)
-    for (std::uint32_t x = 0; x < picture.width; x += spacing) {
-      const std::uint8_t* p = picture.pixel(x, y);
-      for (int c = 0; c < 3; ++c) out.rgba.push_back(std::uint8_t(std::lround(p[c] * (p[3] / 255.0))));
-      out.rgba.push_back(255);
-    }
+    for (std::uint32_t x = 0; x < picture.width; x += spacing)
+      out.rgba.insert(out.rgba.end(), picture.pixel(x, y), picture.pixel(x, y) + 4);
   return out;
 }
 
 class Search {
  public:
-  Search(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) {}
+  /// The picture is drawn without a background, so that it says what it covers.
+  Search(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) { packet_.background[3] = 0; }
 
-  Outcome begin() {
-    CATENA_TRY(truth_, renderer_.probe(packet_, converged()));
-    if (!renderer_.draws_fast(packet_)) return Done{};
-    // it may have no memory for the grid
-    CATENA_TRY(const double rays, of_rays(fast(8, 1, 0, -1)));
-    (void)rays;
+  /// `goal`: the least error that matters, 1/255.
+  Outcome begin(double goal) {
     fast_ = renderer_.draws_fast(packet_);
-    return Done{};
+    CATENA_TRY(const Picture seen, renderer_.probe(packet_, fast_ ? fast(1, 1, 0, -1) : exact(1), kSpacings[0]));
+    // it may have no memory for the grid
+    fast_ = renderer_.draws_fast(packet_);
+    double covered = 0;
+    for (std::size_t i = 3; i < seen.rgba.size(); i += 4) covered += seen.rgba[i] > 0;
+    covered *= double(packet_.width) * packet_.height / (double(seen.rgba.size()) / 4);
+    for (const std::uint32_t spacing : kSpacings) {
+      spacing_ = spacing;
+      if (covered / (spacing * spacing) >= kSamples) break;
+    }
+    return find_truth(fast_ ? goal : 0);
   }
 
   /// Of the rays alone.
-  Result<double> of_rays(const RenderSettings& settings) {
-    CATENA_TRY(const Picture rays, renderer_.probe(packet_, settings));
-    return rmse(rays, truth_);
+  Result<Measured> of_rays(const RenderSettings& settings) {
+    CATENA_TRY(const Picture rays, renderer_.probe(packet_, settings, spacing_));
+    return compare(rays, truth_);
   }
 
   /// Of the finished picture.
-  Result<double> of_picture(const RenderSettings& settings) {
+  Result<Measured> of_picture(const RenderSettings& settings) {
     CATENA_CHECK(renderer_.draw(packet_, settings));
     ++pictures_;
     CATENA_TRY(const Picture picture, renderer_.read_back());
-    return rmse(on_lattice(picture), truth_);
+    const std::array<float, 4>& b = packet_.background;
+    return compare(over(on_lattice(picture, spacing_), {b[0], b[1], b[2]}), truth_);
   }
 
   Result<QualityChoice> for_error(double e) {
     if (fast_) {
       CATENA_TRY(auto candidates, fast_candidates(e));
-      std::optional<Tried> failed[kPlans][2];  // the latest of a plan and shading
+      std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
       for (int drawn = 0; drawn < kMaxPictures && !candidates.empty(); candidates.erase(candidates.begin())) {
         // what interpolation cost at another step says whether this one is worth a picture
         const Candidate& next = candidates.front();
-        std::optional<Tried>& before = failed[next.plan][next.smooth];
-        if (before && std::hypot(next.rays, before->interpolation) > e) continue;
-        CATENA_TRY(const double picture, of_picture(next.settings));
+        std::optional<double>& before = failed[next.plan];
+        if (before && std::hypot(next.rays, *before) > e) continue;
+        CATENA_TRY(const Measured picture, of_picture(next.settings));
         ++drawn;
-        if (picture <= kMargin * e) return choice(next.settings, picture, true);
-        before = Tried{std::sqrt(std::max(0.0, picture * picture - next.rays * next.rays))};
+        if (picture.good_for(e)) return choice(next.settings, picture.above, true);
+        // where a few pixels are far off, a shorter step will not mend it
+        before = picture.above <= e ? e : std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
       }
     }
+    // exact rays want a truth that is finer than they are
+    if (fast_ && e >= kRoughGoal) CATENA_CHECK(find_truth(0));
     for (const double step : kExactSteps) {
-      CATENA_TRY(const double rays, of_rays(exact(step)));
-      if (rays <= kMargin * e) return choice(exact(step), rays, true);
+      CATENA_TRY(const Measured rays, of_rays(exact(step)));
+      if (rays.good_for(e)) return choice(exact(step), rays.above, true);
     }
     return choice(reference_settings(), 0, true);
   }
@@ -128,10 +167,10 @@ class Search {
     std::vector<TimedPicture> tried;
     for (const RenderSettings& next : quality_ladder({fast_, shaded})) {
       // the first picture pays for pipelines and mirrors
-      CATENA_TRY(const double error, of_picture(next));
-      CATENA_TRY(const double took, timer ? timer(next) : slower_of_two(next));
+      CATENA_TRY(const Measured error, of_picture(next));
+      CATENA_TRY(const double took, timer ? timer(next) : quicker_of_two(next));
       settings.push_back(next);
-      tried.push_back({took, error});
+      tried.push_back({took, error.above});
       if (took > ms) break;
     }
     const std::size_t best = best_within(tried, ms);
@@ -141,47 +180,50 @@ class Search {
   }
 
  private:
+  Outcome find_truth(double goal) {
+    RenderSettings converged = exact(goal < kRoughGoal ? 0.1 : 0.25);
+    converged.termination = 1e-4;
+    CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
+    return Done{};
+  }
+
   struct Candidate {
     RenderSettings settings;
     double rays, cost;
     int plan;
-    bool smooth;
-  };
-  struct Tried {
-    double interpolation;
   };
 
   /// Every step whose rays alone are good enough with every plan of interpolation, the cheapest first.
   Result<std::vector<Candidate>> fast_candidates(double e) {
     std::vector<Candidate> all;
-    const bool shade = packet_.volumes.front().shade;
-    for (const bool smooth : {false, true}) {
-      if (smooth && !shade) continue;
-      for (const double step : kFastSteps) {
-        RenderSettings settings = fast(step, 1, 0, -1);
-        settings.fast->smooth_gradients = smooth;
-        CATENA_TRY(const double rays, of_rays(settings));
-        if (rays > kStepShare * e) continue;
-        for (int plan = 0; plan < kPlans; ++plan) {
-          const Plan& p = kPlan[plan];
-          RenderSettings planned = fast(step, p.spacing, p.refine_half * e, p.refine_full * e);
-          planned.fast->smooth_gradients = smooth;
-          all.push_back({planned, rays, p.overhead + p.rays * (smooth ? 1.8 : 1.0) / step, plan, smooth});
-        }
+    const bool smooth = packet_.volumes.front().shade;
+    for (const double step : kFastSteps) {
+      RenderSettings settings = fast(step, 1, 0, -1);
+      settings.fast->smooth_gradients = smooth;
+      CATENA_TRY(const Measured rays, of_rays(settings));
+      if (rays.rmse > kStepShare * e) continue;
+      for (int plan = 0; plan < kPlans; ++plan) {
+        const Plan& p = kPlan[plan];
+        RenderSettings planned = fast(step, p.spacing, p.refine_half * e, p.refine_full * e);
+        planned.fast->smooth_gradients = smooth;
+        all.push_back({planned, rays.rmse, p.overhead + p.rays * (kStepless + (1 - kStepless) / step), plan});
       }
     }
     std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
     return all;
   }
 
-  Result<double> slower_of_two(const RenderSettings& settings) {
-    double slower = 0;
+  /// The quicker of two. On a processor the time is what its cores had to do, so that other programs on the machine do not count.
+  Result<double> quicker_of_two(const RenderSettings& settings) {
+    const bool is_cpu = renderer_.device().info().is_cpu();
+    double quicker = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 2; ++k) {
-      const std::int64_t start = now_ns();
+      const std::int64_t start = is_cpu ? processor_ns() : now_ns();
       CATENA_CHECK(renderer_.draw(packet_, settings));
-      slower = std::max(slower, ms_since(start));
+      const double ms = 1e-6 * double((is_cpu ? processor_ns() : now_ns()) - start);
+      quicker = std::min(quicker, is_cpu ? kUneven * ms / drawing_threads() : ms);
     }
-    return slower;
+    return quicker;
   }
 
   QualityChoice choice(const RenderSettings& settings, double error, bool reached) const {
@@ -189,8 +231,9 @@ class Search {
   }
 
   Renderer& renderer_;
-  const FramePacket& packet_;
+  FramePacket packet_;
   Picture truth_;
+  std::uint32_t spacing_ = 1;
   bool fast_ = false;
   int pictures_ = 0;
 };
@@ -223,16 +266,19 @@ Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& pack
     const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
     return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, timer);
   }
+  if (!draws_rays(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
   Search search(renderer, packet);
-  CATENA_CHECK(search.begin());
+  CATENA_CHECK(search.begin(goal.kind == QualityGoal::Kind::error ? goal.value : 0));
   return goal.kind == QualityGoal::Kind::error ? search.for_error(goal.value) : search.for_time(goal.value, timer);
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
   if (!packet.eyes.empty()) return estimate_rmse(renderer, first_eye(packet), settings);
+  if (!draws_rays(packet)) return 0.0;
   Search search(renderer, packet);
-  CATENA_CHECK(search.begin());
-  return search.of_picture(settings);
+  CATENA_CHECK(search.begin(0));
+  CATENA_TRY(const Measured error, search.of_picture(settings));
+  return error.above;
 }
 
 std::string describe(const RenderSettings& settings) {

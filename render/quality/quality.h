@@ -1,6 +1,7 @@
 /// Settings for a stated error or time, from measured residuals. The error of a setting is measured on this very picture: the pixels
-/// of a sparse lattice (every 13th each way, more of small pictures: probe_spacing) against converged rays through them.
-///   RMSE: 8-bit RGB over the background on black, all pixels, in 1/255; its statistical error is a few per cent
+/// of a sparse lattice (every 13th each way, or more, until about 6000 of them are covered) against converged rays through them.
+///   RMSE: 8-bit RGB over the background, in 1/255, of the covered pixels: where the picture's or the converged one's alpha, without a
+///   background, is at least 1/255 (measure.h). The estimate is two standard deviations of the lattice's mean above it.
 /// error=E: every ray step whose rays alone stay below E (tried on the lattice: cheap) with every plan of interpolation, in the order
 /// of their expected cost; the first whose finished picture stays below E. time=MS: the ladder of refinement.h from the cheapest on, until
 /// a picture takes longer than MS; the least error among those that did not. More time therefore never makes the error worse.
@@ -22,7 +23,7 @@ struct QualityGoal {
 struct QualityChoice {
   RenderSettings settings;
   double estimated_rmse = 0;  ///< 1/255
-  double expected_ms = 0;     ///< time=MS: what the picture took, the slower of two
+  double expected_ms = 0;     ///< time=MS: what the picture takes: the quicker of two, by what the processor's cores do where they draw
   bool reached = true;        ///< false: nothing was good (or quick) enough; the nearest was taken
   int pictures = 0;           ///< drawn on the way
 };

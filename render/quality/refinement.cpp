@@ -43,23 +43,32 @@ double relative_cost(const RenderSettings& settings, bool shaded) {
   if (!settings.fast) return (shaded ? 3.5 : 1.1) / settings.step_voxels + 0.05;
   const FastSettings& f = *settings.fast;
   const Share share = share_of(f);
-  const double a_ray = shaded ? (f.smooth_gradients ? 1.9 : 1.1) : 1.0;
-  return share.overhead + share.rays * a_ray / f.step_voxels;
+  const double a_ray = shaded ? (f.smooth_gradients ? 1.3 : 1.1) : 1.0;
+  return share.overhead + share.rays * a_ray * (kStepless + (1 - kStepless) / f.step_voxels);
 }
 
+// Measured on a head, vessels, and noise, plain and shaded: what lies on the front of error against time of most of them.
 std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
   std::vector<RenderSettings> all;
   if (kind.fast) {
     const bool smooth = kind.shaded;
-    all = {fast_rung(8, 4, -1, -1),         fast_rung(6, 4, -1, -1),   fast_rung(5, 4, -1, -1),  fast_rung(4, 4, -1, -1),
-           fast_rung(4, 4, 1, -1),          fast_rung(3, 4, 0.7, -1),  fast_rung(2, 4, 0.5, -1), fast_rung(2, 2, 0, -1),
-           fast_rung(2, 2, 0, 0.7),         fast_rung(1.5, 2, 0, 0.4), fast_rung(1.5, 1, 0, -1), fast_rung(1, 1, 0, -1, smooth),
-           fast_rung(0.5, 1, 0, -1, smooth)};
-    if (smooth) all.push_back(fast_rung(2, 2, 0, -1, true));
+    for (const double step : {8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0}) all.push_back(fast_rung(step, 4, -1, -1, smooth));
+    all.push_back(fast_rung(1, 4, 1, -1, smooth));
+    all.push_back(fast_rung(1, 2, 0, -1, smooth));
+    if (kind.shaded) {
+      // light wants short steps more than it wants every pixel
+      for (const double step : {0.7, 0.5}) all.push_back(fast_rung(step, 2, 0, -1, smooth));
+      for (const double full : {3.0, 1.0, 0.5}) all.push_back(fast_rung(0.5, 2, 0, full, smooth));
+    } else {
+      for (const double full : {3.0, 1.0}) all.push_back(fast_rung(1, 2, 0, full));
+      all.push_back(fast_rung(0.7, 2, 0, 0.7));
+      all.push_back(fast_rung(1, 1, 0, -1));
+    }
+    for (const double step : {0.7, 0.5, 0.35, 0.25}) all.push_back(fast_rung(step, 1, 0, -1, smooth));
   } else {
-    for (const double step : {4.0, 2.0, 1.0}) all.push_back(exact_rung(step));
+    for (const double step : {4.0, 3.0, 2.0, 1.5, 1.0, 0.7, 0.5, 0.35}) all.push_back(exact_rung(step));
   }
-  for (const double step : {0.5, 0.25}) all.push_back(exact_rung(step));
+  all.push_back(exact_rung(0.25));
   std::stable_sort(all.begin(), all.end(), [&](const RenderSettings& a, const RenderSettings& b) {
     return relative_cost(a, kind.shaded) < relative_cost(b, kind.shaded);
   });
@@ -83,16 +92,21 @@ void TimeModel::measured(std::size_t rung, double ms) {
 Refinement::Refinement(double budget_ms, const LadderKind& kind) : budget_ms_(budget_ms), times_({}, 0) {
   std::vector<double> costs;
   for (const RenderSettings& settings : quality_ladder(kind)) {
-    // exact rays finer than a voxel are for files: a window's picture ends before
-    if (kind.fast ? !settings.fast || settings.fast->step_voxels < 1 : settings.step_voxels < 0.5) continue;
+    // finer rays are for files: a window's picture ends before
+    if (kind.fast ? !settings.fast || settings.fast->step_voxels < 0.5 : settings.step_voxels < 0.5) continue;
     rungs_.push_back(settings);
     costs.push_back(relative_cost(settings, kind.shaded));
   }
   times_ = TimeModel(std::move(costs), kFirstGuessMs);
-  // the last rung of every spacing; without the fast raycast, every rung
-  const auto spacing = [&](std::size_t i) { return rungs_[i].fast ? rungs_[i].fast->spacing : 0; };
-  for (std::size_t i = 0; i < rungs_.size(); ++i)
-    if (i + 1 == rungs_.size() || spacing(i) == 0 || spacing(i) > spacing(i + 1)) stops_.push_back(i);
+  // the last rung of every spacing; without the fast raycast, where the step is half of that of the stop before
+  double step = 1e9;
+  for (std::size_t i = 0; i < rungs_.size(); ++i) {
+    const bool last = i + 1 == rungs_.size();
+    const bool stop = rungs_[i].fast ? !last && rungs_[i].fast->spacing > rungs_[i + 1].fast->spacing : rungs_[i].step_voxels <= 0.5 * step;
+    if (!last && !stop) continue;
+    stops_.push_back(i);
+    step = rungs_[i].step_voxels;
+  }
 }
 
 std::size_t Refinement::best_within_budget() const {

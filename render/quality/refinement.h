@@ -16,6 +16,9 @@ struct LadderKind {
   bool shaded = false;
 };
 
+/// Of what a ray costs at step 1: its way to what is seen, whatever the step.
+inline constexpr double kStepless = 0.3;
+
 /// Of drawing, in units of marching every pixel at step 1 unshaded by the fast raycast, as a CPU driver has it: good for an order and for
 /// first guesses.
 double relative_cost(const RenderSettings& settings, bool shaded);

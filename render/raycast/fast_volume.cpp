@@ -149,17 +149,17 @@ Outcome FastVolumeRaycast::prepare(const VolumeItem& item, const FastSettings& s
   const bool other_grid = !packed_.words || version_ != item.grid->version();
   const bool other_look = other_grid || !same_look(item_, item);
   item_ = item;
-  if (other_grid) gradients_ = {};
-  if (item.shade && settings.smooth_gradients && !gradients_.image) {
-    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item.grid));
-    build_ms_ += ms_since(start);
-  }
-  if (!other_look) return Done{};
-
+  const auto wants_gradients = [&] { return item.shade && settings.smooth_gradients && !gradients_.image; };
+  if (!other_look && !wants_gradients()) return Done{};
   const double background = item.grid->background();
   const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
   const ValueInterval active = active_interval(item.transfer, values, item.shade);
-  if (other_grid || !(active == active_)) {
+  const bool other_range = other_grid || !(active == active_);
+  if (other_range) gradients_ = {};
+  if (wants_gradients()) {
+    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item.grid, active));
+  }
+  if (other_range) {
     packed_ = {};
     CATENA_TRY(packed_, make_packed_volume(*device_, *item.grid, active));
     version_ = item.grid->version();

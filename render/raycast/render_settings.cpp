@@ -6,13 +6,15 @@ RenderSettings draft_settings() {
   RenderSettings s;
   s.step_voxels = 2;
   s.jitter = true;
-  s.fast = FastSettings{4, 4, -1, -1};
+  s.fast = FastSettings{2, 4, -1, -1};
+  s.fast->smooth_gradients = true;
   return s;
 }
 
 RenderSettings balanced_settings() {
   RenderSettings s;
-  s.fast = FastSettings{2.5, 4, 0.7, 1.5};
+  s.fast = FastSettings{1, 2, 0, 3};
+  s.fast->smooth_gradients = true;
   return s;
 }
 

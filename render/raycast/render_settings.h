@@ -41,8 +41,8 @@ struct RenderSettings {
   /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
   std::optional<FastSettings> fast;
 };
-RenderSettings draft_settings();      ///< every 4th pixel at step 4; where the fast raycast cannot: step 2, jittered
-RenderSettings balanced_settings();   ///< every 4th pixel at step 2.5, refined where the picture asks for it; where it cannot: step 1
+RenderSettings draft_settings();      ///< every 4th pixel at step 2; where the fast raycast cannot: step 2, jittered
+RenderSettings balanced_settings();   ///< every 2nd pixel at step 1, every one where the picture asks for it; where it cannot: step 1
 RenderSettings reference_settings();  ///< step 0.1, R32F, termination 1e-4
 
 /// What rays are told and what they meet beside grids.

@@ -42,66 +42,104 @@ vec2 light_between(float a, float b, float across2) {
   return length2 > 0.0 ? light_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : vec2(0.2, 0.0);
 }
 
+// A sample of the ray at depth t, and what leads on from it.
+struct Station {
+  float t;
+  vec3 p;
+  PackedSample s;
+  float slope;  // codes a depth, along the ray
+};
+
+// What a march needs all along.
+struct March {
+  LocalRay ray;
+  vec3 inverse, ahead;
+  float h, end;  // of a segment, and where the last one ends
+};
+
+Station station_at(March m, float t) {
+  Station at;
+  at.t = t;
+  at.p = clamp(m.ray.origin + t * m.ray.direction, vec3(0.0), frame.grids[0].hi);
+  at.s = sample_packed(at.p);
+  at.slope = dot(at.s.gradient, m.ray.direction);
+  return at;
+}
+
+// The end of the segment that begins at `from`. `curved`: 0 where it leaps over plain bricks, whose values are as good as linear.
+Station next_station(March m, Station from, out float curved) {
+  float next = from.t + m.h;
+  curved = 1.0;
+  if (SKIPS != 0u) {
+    const vec3 brick = min(floor(from.p * (1.0 / SMALL_BRICK)), ceil(frame.grids[0].hi * (1.0 / SMALL_BRICK)) - 1.0);
+    const float d = float(texelFetch(plain_map, ivec3(brick), 0).r);
+    const vec3 way = (mix(brick + 1.0 - d, brick + d, m.ahead) * SMALL_BRICK - from.p) * m.inverse;
+    const float leave = min(min(way.x, way.y), way.z);
+    if (d > 0.0 && leave > m.h) {
+      next = from.t + leave;
+      curved = 0.0;
+    }
+  }
+  if (next > m.end - 1e-3 * m.h) next = m.end;
+  return station_at(m, next);
+}
+
+float middle_code(Station a, Station b, float curved) {
+  return clamp(0.5 * (a.s.code + b.s.code) + curved * 0.125 * (b.t - a.t) * (a.slope - b.slope), 0.0, 255.0);
+}
+
 // The premultiplied colour of the ray of pixel place q, up to depth `end`.
 vec4 march_packed(vec2 q, float end) {
   const vec3 world = world_direction(q);
   const float world_per_depth = length(world);
-  const LocalRay ray = local_ray(0, q);
-  vec2 interval = visible_interval(0, ray, q);
-  interval.y = min(interval.y, end);
-  if (!(interval.x < interval.y)) return vec4(0.0);
-
-  const float h = frame.step_world / world_per_depth;
-  const vec3 inverse = safe_inverse(ray.direction);
-  const vec3 ahead = mix(vec3(0.0), vec3(1.0), forward_of(ray.direction));
+  March m;
+  m.ray = local_ray(0, q);
+  vec2 interval = visible_interval(0, m.ray, q);
+  m.end = min(interval.y, end);
+  if (!(interval.x < m.end)) return vec4(0.0);
+  m.h = frame.step_world / world_per_depth;
+  m.inverse = safe_inverse(m.ray.direction);
+  m.ahead = mix(vec3(0.0), vec3(1.0), forward_of(m.ray.direction));
   const vec3 along_ray = world / world_per_depth;
-  const vec3 hi = frame.grids[0].hi;
-  float t = interval.x;
   float through = 1.0;
   vec3 sum = vec3(0.0);
-  vec3 p = clamp(ray.origin + t * ray.direction, vec3(0.0), hi);
-  PackedSample s = sample_packed(p);
-  float slope = dot(s.gradient, ray.direction);
+  Station s = station_at(m, interval.x);
   // shading: the gradient, its share along the ray and the square of the rest
   vec4 normal = vec4(0.0);
   float along = 0.0, across2 = 0.0;
   if (SHADED != 0u) {
-    normal = normal_at(p, s.gradient);
+    // to what is seen first, without light
+    for (bool seen = false; s.t < m.end && !seen;) {
+      float curved;
+      const Station e = next_station(m, s, curved);
+      const float middle = middle_code(s, e, curved);
+      seen = between(s.s.code, middle).x + between(middle, e.s.code).x > 0.0;
+      if (!seen) s = e;
+    }
+    normal = normal_at(s.p, s.s.gradient);
     along = dot(normal.xyz, along_ray);
     across2 = dot(normal.xyz, normal.xyz) - along * along;
   }
-  while (t < interval.y && through > frame.termination) {
-    // the segment's length
-    float next = t + h;
-    float curved = 1.0;
-    if (SKIPS != 0u) {
-      const vec3 brick = min(floor(p * (1.0 / SMALL_BRICK)), ceil(hi * (1.0 / SMALL_BRICK)) - 1.0);
-      const float d = float(texelFetch(plain_map, ivec3(brick), 0).r);
-      const vec3 way = (mix(brick + 1.0 - d, brick + d, ahead) * SMALL_BRICK - p) * inverse;
-      const float leave = min(min(way.x, way.y), way.z);
-      if (d > 0.0 && leave > h) {
-        next = t + leave;
-        curved = 0.0;
-      }
-    }
-    if (next > interval.y - 1e-3 * h) next = interval.y;
-    const float extent = next - t;
-    p = clamp(ray.origin + next * ray.direction, vec3(0.0), hi);
-    const PackedSample e = sample_packed(p);
-    const float slope_end = dot(e.gradient, ray.direction);
+  // central differences reach as far as a segment of two voxels: the rise over longer ones knows their slope better, over shorter ones
+  // it has the kinks of the cells
+  const float by_rise = clamp(0.5 * (m.h * length(m.ray.direction) - 1.0), 0.0, 1.0);
+  while (s.t < m.end && through > frame.termination) {
+    float curved;
+    const Station e = next_station(m, s, curved);
+    const float extent = e.t - s.t;
 
     // its two halves
-    const float middle = clamp(0.5 * (s.code + e.code) + curved * 0.125 * extent * (slope - slope_end), 0.0, 255.0);
-    const vec4 first = between(s.code, middle), second = between(middle, e.code);
+    const float middle = middle_code(s, e, curved);
+    const vec4 first = between(s.s.code, middle), second = between(middle, e.s.code);
     const float half_length = -0.5 * 1.44269504 * extent * world_per_depth;
     const float half_way = through * exp2(first.x * half_length);
     const float after = half_way * exp2(second.x * half_length);
     if (SHADED != 0u) {
-      const vec4 normal_end = normal_at(p, e.gradient);
+      const vec4 normal_end = normal_at(e.p, e.s.gradient);
       const float along_end = dot(normal_end.xyz, along_ray), across2_end = dot(normal_end.xyz, normal_end.xyz) - along_end * along_end;
       const float both = dot(normal.xyz, normal_end.xyz) - along * along_end, ends = along + along_end;
-      const float rise = (e.code - s.code) / (extent * world_per_depth);
-      float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * ends : 0.75 * rise + 0.125 * ends;
+      const float rise = (e.s.code - s.s.code) / (extent * world_per_depth);
+      float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * ends : mix(0.5 * ends, 0.75 * rise + 0.125 * ends, by_rise);
       along_middle = mix(along_middle, 0.5 * ends, max(normal.w, normal_end.w));
       const vec2 l0 = light_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));
       const vec2 l1 = light_between(along_middle, along_end, max(0.0, 0.0625 * across2 + 0.375 * both + 0.5625 * across2_end));
@@ -114,8 +152,6 @@ vec4 march_packed(vec2 q, float end) {
     }
     through = after;
     s = e;
-    slope = slope_end;
-    t = next;
   }
   return vec4(sum, 1.0 - through);
 }

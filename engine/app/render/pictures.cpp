@@ -111,6 +111,8 @@ class Frames {
   std::function<Outcome(const render::Band&)> nothing_;
 };
 
+constexpr double kBalancedError = 2;  // 1/255: hardly seen beside the converged picture
+
 /// Settings for the goal, measured on the picture, or on its middle tile.
 render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
   const render::TilePlan& plan = frames.plan;
@@ -157,7 +159,7 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_CHECK(o.stereo.apply(scene.stereo));
   CATENA_TRY(const Size picture, picture_size(o, scene.stereo, size));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
-  CATENA_TRY(const Quality wanted, parse_quality(quality));
+  CATENA_TRY(Quality wanted, parse_quality(quality));
   RunFiles files(scene);
   files.reads(o.probe);
   files.reads(o.camera);
@@ -177,6 +179,7 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
+  if (quality == "balanced" && render::draws_rays(packet)) wanted.goal = {render::QualityGoal::Kind::error, kBalancedError};
   FrameStats stats;
   stats.load_ms = ms_since(load_start);
   stats.cpu_bytes = field_bytes(scene);

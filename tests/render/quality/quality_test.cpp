@@ -1,9 +1,11 @@
 /// The estimate against the truth, and goals that are reached.
 #include "render/quality/quality.h"
 
+#include "render/image/measure.h"
 #include "render/quality/refinement.h"
 
 #include <cmath>
+#include <random>
 
 #include "tests/render/support/frames.h"
 
@@ -25,39 +27,48 @@ class Quality : public PictureTest {
     packet.volumes = {item};
     return packet;
   }
-  static double true_rmse(const Picture& a, const Picture& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i)
-      if (i % 4 != 3) sum += (double(a.rgba[i]) - b.rgba[i]) * (double(a.rgba[i]) - b.rgba[i]);
-    return std::sqrt(sum / (0.75 * double(a.rgba.size())));
+  /// Over what is covered: both are drawn without a background.
+  double true_rmse(FramePacket packet, const RenderSettings& settings) {
+    const std::array<float, 4> b = packet.background;
+    packet.background[3] = 0;
+    const Picture converged = draw(packet, reference_settings());
+    return measure_error(draw(packet, settings), converged, {b[0], b[1], b[2]}).rmse;
   }
 };
 
-TEST_F(Quality, TheEstimateIsNearTheTruth) {
-  const FramePacket packet = scene();
-  const Picture converged = draw(packet, reference_settings());
-  for (const std::uint32_t spacing : {1u, 4u}) {
-    RenderSettings settings;
-    settings.fast = FastSettings{4, spacing, -1, -1};
-    const auto estimated = estimate_rmse(*renderer_, packet, settings);
-    ASSERT_TRUE(estimated);
-    const double truth = true_rmse(draw(packet, settings), converged);
-    // few pixels at this size
-    EXPECT_GT(*estimated, 0.6 * truth) << spacing;
-    EXPECT_LT(*estimated, 1.5 * truth) << spacing;
-  }
+/// At or above the truth, and not by much, in views that nobody looked at: coarse and fine, plain and shaded, of much and of little.
+TEST_F(Quality, TheEstimateIsAtOrAboveTheTruth) {
+  int below = 0, views = 0;
+  std::mt19937 random(11);
+  const auto in = [&](double lo, double hi) { return lo + (hi - lo) * (double(random()) / 4294967296.0); };
+  for (const bool shade : {false, true})
+    for (int k = 0; k < 10; ++k) {
+      FramePacket packet = scene(shade);
+      const double turn = in(0, 6.28), height = in(-90, 90), distance = in(110, 400);
+      packet.view.position = packet.view.target + Vec3(distance * std::cos(turn), distance * std::sin(turn), height);
+      RenderSettings settings;
+      settings.fast = FastSettings{in(1, 5), k % 2 == 0 ? 2u : 4u, -1, -1};
+      settings.fast->smooth_gradients = shade;
+      const auto estimated = estimate_rmse(*renderer_, packet, settings);
+      ASSERT_TRUE(estimated);
+      const double truth = true_rmse(packet, settings);
+      below += *estimated < truth;
+      ++views;
+      EXPECT_LT(truth, 1.5 * *estimated) << k << describe(settings);
+      EXPECT_LT(*estimated, 1.6 * truth + 0.1) << k << describe(settings);
+    }
+  EXPECT_LE(below, views / 20);
 }
 
 TEST_F(Quality, AnErrorIsReachedAndLooserIsCoarser) {
   const FramePacket packet = scene();
-  const Picture converged = draw(packet, reference_settings());
   double last_step = 0;
-  for (const double e : {0.3, 0.8, 3.0}) {
+  for (const double e : {0.7, 1.5, 5.0}) {
     const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e});
     ASSERT_TRUE(choice);
     EXPECT_TRUE(choice->reached);
     EXPECT_LE(choice->estimated_rmse, e);
-    EXPECT_LT(true_rmse(draw(packet, choice->settings), converged), 1.3 * e) << describe(choice->settings);
+    EXPECT_LT(true_rmse(packet, choice->settings), 1.05 * e) << describe(choice->settings);
     ASSERT_TRUE(choice->settings.fast);
     EXPECT_GE(choice->settings.fast->step_voxels, last_step);
     last_step = choice->settings.fast->step_voxels;
@@ -72,15 +83,13 @@ TEST_F(Quality, SmallPicturesOfThinThingsAreMeasuredToo) {
   packet.height = 48;
   packet.background = {0.9f, 0.5f, 0.2f, 1};
   packet.volumes[0].transfer.extinctions = {{0.60, 0}, {0.65, 0.4}, {0.70, 0}};
-  const Picture converged = draw(packet, reference_settings());
   for (const double e : {0.5, 1.0}) {
     const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, e});
     ASSERT_TRUE(choice);
-    const double truth = true_rmse(draw(packet, choice->settings), converged);
+    const double truth = true_rmse(packet, choice->settings);
     EXPECT_LT(truth, e) << describe(choice->settings);
-    EXPECT_NEAR(choice->estimated_rmse, truth, 0.1 * e) << describe(choice->settings);
+    EXPECT_NEAR(choice->estimated_rmse, truth, 0.3 * e) << describe(choice->settings);
   }
-  EXPECT_EQ(probe_spacing(1024, 768), 13u);
 }
 
 TEST_F(Quality, ATinyErrorFallsBackToExactRays) {
@@ -98,7 +107,7 @@ TEST_F(Quality, TimeTakesTheBestOfWhatIsQuickEnough) {
   EXPECT_TRUE(plenty->reached);
   EXPECT_FALSE(none->reached);
   EXPECT_EQ(none->pictures, 1);
-  EXPECT_LT(plenty->estimated_rmse, 0.3);
+  EXPECT_LT(plenty->estimated_rmse, 0.6);
   EXPECT_LT(plenty->estimated_rmse, none->estimated_rmse);
 }
 
@@ -108,7 +117,7 @@ TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
     const FramePacket packet = scene(shade);
     const DrawTimer timer = [&](const RenderSettings& s) -> Result<double> { return 100 * relative_cost(s, shade); };
     double last = 1e9;
-    for (const double ms : {4.0, 8.0, 30.0, 400.0}) {
+    for (const double ms : {8.0, 14.0, 30.0, 400.0}) {
       const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::time, ms}, timer);
       ASSERT_TRUE(choice);
       EXPECT_TRUE(choice->reached) << ms;
@@ -117,7 +126,7 @@ TEST_F(Quality, MoreTimeIsNeverWorseAndNeverLonger) {
       EXPECT_LE(choice->estimated_rmse, last) << ms;
       last = choice->estimated_rmse;
     }
-    EXPECT_LT(last, 0.6);
+    EXPECT_LT(last, 0.8);
   }
 }
 

@@ -65,7 +65,7 @@ TEST(TimeModel, FollowsTheMachineAndForgetsPipelines) {
 
 TEST(Refinement, AMovingCameraStaysWithinItsBudget) {
   double last_cost = 0;
-  for (const double budget : {25.0, 40.0, 66.0, 200.0}) {
+  for (const double budget : {40.0, 55.0, 80.0, 200.0}) {
     Refinement refinement(budget, {true, false});
     const RefinementStep step = settle(refinement, 600);
     EXPECT_LE(time_of(step.settings, 600), budget) << budget;

@@ -1,0 +1,136 @@
+#include "render/image/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/numbers.h"
+#include "engine/base/result.h"
+
+namespace catena::render {
+namespace {
+
+constexpr int kRadius = 3;          // of the opening, pixels
+constexpr float kThin = 8;          // 1/255
+constexpr std::size_t kLeast = 20;  // pixels of a part
+
+bool is_covered(const Picture& a, const Picture& b, std::size_t i) { return a.rgba[4 * i + 3] > 0 || b.rgba[4 * i + 3] > 0; }
+
+/// The least (or the greatest) of a disc about every pixel; what lies beyond the picture is left out.
+template <class Better>
+std::vector<float> of_disc(const std::vector<float>& from, int width, int height, Better&& better) {
+  std::vector<float> to(from.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      float best = from[std::size_t(y) * width + x];
+      for (int dy = -kRadius; dy <= kRadius; ++dy)
+        for (int dx = -kRadius; dx <= kRadius; ++dx) {
+          if (dx * dx + dy * dy > kRadius * kRadius || x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
+          best = better(best, from[std::size_t(y + dy) * width + x + dx]);
+        }
+      to[std::size_t(y) * width + x] = best;
+    }
+  return to;
+}
+
+std::vector<float> top_hat(const Picture& picture) {
+  const int width = int(picture.width), height = int(picture.height);
+  std::vector<float> bright(picture.rgba.size() / 4);
+  for (std::size_t i = 0; i < bright.size(); ++i)
+    bright[i] = float(picture.rgba[4 * i] + picture.rgba[4 * i + 1] + picture.rgba[4 * i + 2]) / 3;
+  const auto least = of_disc(bright, width, height, [](float a, float b) { return std::min(a, b); });
+  const auto opened = of_disc(least, width, height, [](float a, float b) { return std::max(a, b); });
+  for (std::size_t i = 0; i < bright.size(); ++i) bright[i] -= opened[i];
+  return bright;
+}
+
+void measure_thin_parts(const Picture& picture, const Picture& converged, PictureError& error) {
+  const int width = int(converged.width), height = int(converged.height);
+  const std::vector<float> truth = top_hat(converged), have = top_hat(picture);
+  std::vector<bool> seen(truth.size());
+  std::vector<std::size_t> part;
+  double all = 0, all_kept = 0;
+  for (std::size_t first = 0; first < truth.size(); ++first) {
+    if (seen[first] || !(truth[first] > kThin)) continue;
+    part.assign(1, first);
+    seen[first] = true;
+    double sum = 0, kept = 0;
+    for (std::size_t n = 0; n < part.size(); ++n) {
+      const std::size_t i = part[n];
+      sum += double(truth[i]);
+      kept += double(std::min(truth[i], have[i]));
+      const int x = int(i % std::size_t(width)), y = int(i / std::size_t(width));
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+          if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
+          const std::size_t j = std::size_t(y + dy) * width + std::size_t(x + dx);
+          if (seen[j] || !(truth[j] > kThin)) continue;
+          seen[j] = true;
+          part.push_back(j);
+        }
+    }
+    if (part.size() < kLeast) continue;
+    ++error.thin_parts;
+    error.least_kept = std::min(error.least_kept, kept / sum);
+    all += sum;
+    all_kept += kept;
+  }
+  if (all > 0) error.kept = all_kept / all;
+}
+
+}  // namespace
+
+Picture over(const Picture& picture, const std::array<float, 3>& background) {
+  Picture out = picture;
+  for (std::size_t i = 0; i < out.rgba.size(); i += 4) {
+    const float alpha = float(out.rgba[i + 3]) / 255;
+    for (std::size_t c = 0; c < 3; ++c)
+      out.rgba[i + c] = std::uint8_t(std::lround(float(out.rgba[i + c]) * alpha + 255 * background[c] * (1 - alpha)));
+  }
+  return out;
+}
+
+PictureError measure_error(const Picture& given, const Picture& given_converged, const std::array<float, 3>& background) {
+  CATENA_ASSERT(given.width == given_converged.width && given.height == given_converged.height);
+  const Picture picture = over(given, background), converged = over(given_converged, background);
+  PictureError error;
+  double sum = 0;
+  std::vector<float> largest;
+  const std::size_t pixels = picture.rgba.size() / 4;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    if (!is_covered(picture, converged, i)) continue;
+    float most = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double d = double(picture.rgba[4 * i + c]) - converged.rgba[4 * i + c];
+      sum += d * d;
+      most = std::max(most, float(std::fabs(d)));
+    }
+    largest.push_back(most);
+  }
+  if (largest.empty()) return error;
+  error.rmse = std::sqrt(sum / (3 * double(largest.size())));
+  error.covered = double(largest.size()) / double(pixels);
+  error.p999 = double(quantile(largest, 0.999));
+  measure_thin_parts(picture, converged, error);
+  return error;
+}
+
+double measure_flicker(const std::vector<Picture>& frames, const std::vector<Picture>& converged, const std::array<float, 3>& background) {
+  CATENA_ASSERT(frames.size() == converged.size() && frames.size() >= 2);
+  double sum = 0, count = 0;
+  std::array<Picture, 2> last;
+  for (std::size_t n = 0; n < frames.size(); ++n) {
+    std::array<Picture, 2> now{over(frames[n], background), over(converged[n], background)};
+    for (std::size_t i = 0; n > 0 && i < now[0].rgba.size() / 4; ++i) {
+      if (!is_covered(now[0], now[1], i) && !is_covered(last[0], last[1], i)) continue;
+      for (std::size_t c = 4 * i; c < 4 * i + 3; ++c) {
+        const double change = double(now[0].rgba[c]) - now[1].rgba[c] - last[0].rgba[c] + last[1].rgba[c];
+        sum += change * change;
+      }
+      count += 3;
+    }
+    last = std::move(now);
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+}  // namespace catena::render

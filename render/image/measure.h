@@ -1,0 +1,36 @@
+/// How far a picture is from the converged one, where people look. Both are drawn without a background (straight alpha, 8 bits) and
+/// compared over one colour. Any thread.
+///   covered     pixels where the alpha of either picture is 1/255 or more
+///   rmse        of red, green and blue over the covered pixels, in 1/255
+///   p999        the 99.9 percentile of the largest of a covered pixel's three differences, in 1/255
+///   thin parts  of the converged picture's brightness (the mean of the three): the white top-hat, brightness less its opening by a disc of
+///               radius 3 pixels, above 8/255; its 8-connected parts of 20 pixels or more. What is kept of one: the sum over it of the
+///               lesser of both pictures' top-hats, by that of the converged one
+///   flicker     along a sequence: the RMSE of the change of the difference from one frame to the next, over pixels covered in either frame
+#pragma once
+#include <array>
+#include <vector>
+
+#include "render/image/picture.h"
+
+namespace catena::render {
+
+struct PictureError {
+  double rmse = 0, p999 = 0;  ///< 1/255
+  double covered = 0;         ///< share of the pixels
+  int thin_parts = 0;         ///< of the converged picture
+  double least_kept = 1;      ///< of the part that lost most
+  double kept = 1;            ///< of all parts together
+};
+
+/// Of pictures of one size; `background`: display values, 0 to 1.
+PictureError measure_error(const Picture& picture, const Picture& converged, const std::array<float, 3>& background = {});
+
+/// Frames and their converged pictures, in turn, two at least.
+double measure_flicker(const std::vector<Picture>& frames, const std::vector<Picture>& converged,
+                       const std::array<float, 3>& background = {});
+
+/// Over a colour; alpha stays, so that what is covered is known.
+Picture over(const Picture& picture, const std::array<float, 3>& background);
+
+}  // namespace catena::render
