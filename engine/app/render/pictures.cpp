@@ -113,10 +113,11 @@ class Frames {
 
 constexpr double kBalancedError = 2;  // 1/255: hardly seen beside the converged picture
 
-/// Settings for the goal, measured on the picture, or on its middle tile.
+/// Settings for the goal, measured on the picture, or on the middle tile of one that is large or supersampled.
 render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
   const render::TilePlan& plan = frames.plan;
-  if (plan.count() == 1 && plan.antialias == 1) return machine(render::choose_quality(*frames.renderer, packet, goal));
+  const bool whole = std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kOnePiece;
+  if (plan.antialias == 1 && (plan.count() == 1 || whole)) return machine(render::choose_quality(*frames.renderer, packet, goal));
   const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
   if (goal.kind == render::QualityGoal::Kind::time)
     goal.value *= double(middle.drawn_width) * middle.drawn_height / (double(plan.samples_x()) * plan.samples_y());

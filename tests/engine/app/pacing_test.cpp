@@ -43,8 +43,8 @@ TEST(Pacing, WhileItMovesAPictureComesInTimeAndMoreTimeMakesItBetter) {
   double before = 0;
   for (const char* words : {"time=20", "time=50", "time=200"}) {
     Pacing p = pacing(words);
-    const NextPicture next = settle(p, kFast, 400);
-    EXPECT_LE(time_of(next, 400), std::stod(std::string(words).substr(5))) << words;
+    const NextPicture next = settle(p, kFast, 320);
+    EXPECT_LE(time_of(next, 320), std::stod(std::string(words).substr(5))) << words;
     EXPECT_EQ(next.scale, 1u);
     const double cost = render::relative_cost(next.settings, false);
     EXPECT_GT(cost, before) << words;
