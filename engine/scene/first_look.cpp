@@ -26,6 +26,7 @@ constexpr double kMeanDepth = 3.5, kMostDepth = 12, kLowDepth = 0.5;            
 constexpr double kMostlyEmpty = 0.5;                                                         // of the values: the background
 constexpr double kApart = 1.0 / 17, kLineWidth = 0.0035, kLineLength = 2, kNarrowest = 0.3;  // of lines: by the domain's diagonal
 constexpr Color kFibre{0.90f, 0.62f, 0.42f};
+constexpr double kFlat = 1, kWide = 7;  // cells: a single image has at most so many one way, and at least so many the others
 constexpr const char* kQuantityMap = "viridis";
 
 /// A level that a surface can have: within the values.
@@ -87,7 +88,7 @@ std::string quantity(const std::string& field, const field::ScalarGrid& grid, co
   for (const auto& [share, depth] : {std::pair{0.0, empty ? 0.0 : kLowDepth}, {0.1, kLowDepth}, {1.0, most}})
     rows += (share > 0 ? ", [" : "[") + text_of(rounded(lo + share * (hi - lo), facts)) + ", " + text_of(three_digits(depth * clear)) + "]";
   text += rows + "]}]";
-  return text + bar_of("\"volume\": 0", field, !empty);
+  return text + bar_of("\"volume\": 0", field);
 }
 
 std::string computed_tomography(const std::string& field, const field::ScalarGrid& grid, const DataFacts& facts) {
@@ -115,6 +116,25 @@ std::string angiogram(const std::string& field, const DataFacts& facts) {
          ", \"opacity\": [[" + text_of(lo) + ", 0], [" + text_of(hi) + ", 0.95]], \"projection\": \"maximum\"}]";
 }
 
+/// The axis along which the grid is a single image, or -1.
+int flat_axis(const field::ScalarGrid& grid) {
+  const Vec3 size = grid.index_box().hi - grid.index_box().lo;
+  for (int axis = 0; axis < 3; ++axis)
+    if (size[axis] <= kFlat && std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]) >= kWide) return axis;
+  return -1;
+}
+
+/// A single image: as it is, from lo to hi in grey.
+std::string image(const std::string& field, const field::ScalarGrid& grid, int axis, const DataFacts& facts, NamedColors colors) {
+  const Vec3 middle = grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
+  if (colors.map.empty()) colors.map = "grey";
+  if (!colors.range && is_color_range(rounded(facts.lo, facts), rounded(facts.hi, facts)))
+    colors.range = {rounded(facts.lo, facts), rounded(facts.hi, facts)};
+  const Vec3 normal = direction(grid.mapping().world_gradient(Vec3(axis == 0, axis == 1, axis == 2)));
+  return "  \"slices\": [{\"field\": " + field + ", \"point\": " + text_of(middle) + ", \"normal\": " + text_of(normal) +
+         color_members(colors) + "}]" + bar_of("\"slice\": 0", field, false);
+}
+
 }  // namespace
 
 std::string soft_background() { return "  \"background\": " + text_of(kBackdrop); }
@@ -134,6 +154,11 @@ FirstLook first_look(const std::string& field, const field::ScalarGrid& grid, co
     look.shell = surfaces({surface(field, at, kSolid, kShellOpacity)});
     return surfaces({surface(field, at, kSolid)});
   };
+  if (const int axis = flat_axis(grid); axis >= 0) {
+    look.note = "is a single image";
+    look.parts = image(field, grid, axis, facts, std::move(colors)) + ",\n" + soft_background();
+    return look;
+  }
   const bool one_value = !(grid.min_value() < grid.max_value());
   if (!colors.map.empty() || colors.range || one_value) {
     look.parts = colored_volume(field, grid, colors);
@@ -176,10 +201,12 @@ FirstLook first_look(const std::string& field, const field::VectorGrid& grid, co
   const bool narrow = facts.middle < kStill * facts.fast;
   const double size = narrow ? std::clamp(std::cbrt(facts.moving), kNarrowest, 1.0) : 1;
   const double distance = three_digits(kApart * size * diagonal), radius = three_digits(kLineWidth * std::sqrt(size) * diagonal);
-  const bool named = !colors.map.empty() || colors.range, plain = facts.unit && !named;
+  const bool named = !colors.map.empty() || colors.range, plain = (facts.unit || facts.axes) && !named;
   FirstLook look;
   look.fibres = facts.unit;
-  look.note = facts.unit ? "looks like fibres: all vectors are as long" : "looks like a flow";
+  look.note = facts.unit   ? "looks like fibres: all vectors are as long"
+              : facts.axes ? "looks like fibres: neighbours point to either side"
+                           : "looks like a flow";
   NamedColors shown = colors;
   if (!named) shown.map = kQuantityMap;
   const std::array<double, 2> speeds{three_digits(facts.slow), three_digits(facts.fast)};
@@ -208,7 +235,7 @@ FirstLook first_look(const std::string& field, const field::VectorGrid& grid, co
     look.parts += ", \"radius\": " + text_of(radius) + ", \"length\": " + text_of(options.length) +
                   ",\n                   \"seeds\": {\"evenly_spaced\": {\"distance\": " + text_of(distance) +
                   ",\n                                               \"start\": " + text_of(facts.fastest) + "}}}]";
-    if (!plain) look.parts += bar_of("\"streamlines\": 0", field, !grid.has_mask());
+    if (!plain) look.parts += bar_of("\"streamlines\": 0", field);
     look.parts += ",\n" + soft_background();
   }
   return look;

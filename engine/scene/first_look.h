@@ -1,5 +1,6 @@
 /// How data are shown of which nobody says how: the parts of a scene file, chosen by the kind of the data (data_kind.h). Inside this room
 /// only. Levels and ranges are values of the field.
+///   image        one or two voxels thick, whatever it holds: a slice in grey with its scalar bar
 ///   CT           the skin (-300 HU, translucent) over the bone (250 HU), where the values reach them
 ///   MR           the surface of what is not background: halfway from the background to Otsu's threshold, which dark tissue lies below
 ///   label map    the surface of all labels together, each in its colour, with a legend; the field is read by its nearest voxels

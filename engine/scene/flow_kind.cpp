@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "engine/base/numbers.h"
 #include "engine/scene/transfer.h"
@@ -55,12 +56,15 @@ FlowFacts flow_facts(const field::VectorGrid& grid) {
   });
   for (const auto& [speed, place] : fastest)
     if (speed > 0) facts.fastest.push_back(grid.mapping().world_from_index(place));
-  facts.slow = quantile(speeds, 0.02);
+  std::vector<float> moving;  // what is empty has no length to compare
+  std::copy_if(speeds.begin(), speeds.end(), std::back_inserter(moving), [](float v) { return v > 0; });
+  facts.slow = quantile(moving, 0.02);
   facts.middle = quantile(speeds, 0.5);
   facts.fast = quantile(speeds, 0.99);
   if (!(facts.fast > 0)) facts.fast = quantile(speeds, 1);
   facts.moving = share_above(speeds, kStill * facts.fast);
-  facts.unit = facts.fast > 0 && facts.fast - facts.slow < kUnitSpread * facts.fast;
+  const double longest = moving.empty() ? 0 : quantile(moving, 0.99);
+  facts.unit = longest > 0 && longest - facts.slow < kUnitSpread * longest;
   facts.axes = double(opposite) > (facts.unit ? kOppositeShare : kRandomSigns) * double(pairs);
   return facts;
 }

@@ -2,7 +2,7 @@
 /// same answer. Off the tick, any thread.
 ///
 /// Measured on at most about a quarter of a million vectors in blocks of 8^3 that are spread over the box, those of invalid cells left out.
-///   fibres   the 2 and the 99 percentile of the lengths are within 2 % of each other
+///   fibres   the 2 and the 99 percentile of the lengths above 0 are within 2 % of each other
 ///   axes     v and -v mean the same: of all neighbours along x, 0.1 % of fibres point to opposite sides (cosine below -0.5), of other
 ///   vectors
 ///            30 %; random signs give half of them, a flow next to none, vectors without any order a quarter
@@ -17,7 +17,7 @@ namespace catena::scene {
 inline constexpr double kStill = 0.05;
 
 struct FlowFacts {
-  double slow = 0, fast = 0;  ///< the 2 and the 99 percentile of the magnitudes
+  double slow = 0, fast = 0;  ///< the 2 percentile of the magnitudes above 0, and the 99 of all
   double middle = 0;          ///< their median
   double moving = 0;          ///< share of the values: not still
   bool unit = false, axes = false;

@@ -63,16 +63,20 @@ Result<Curves> exact_lines(Scene& scene, const Seeds& seeds, const LineRequest& 
   return curves;
 }
 
-/// The curves that leave the box once more, to its end; those that stay in it are what a link feels, the same objects.
+/// The curves that leave the box, or end for their length alone, once more, to its end; the others are what a link feels, the same objects.
+/// A seed outside of the box keeps its curve.
 void end_at_box(Curves& curves, const flow::Flow& bounded) {
   std::vector<Vec3> seeds;
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const std::vector<flow::Knot>& knots = curves[i]->knots();
     const auto outside = [&](const flow::Knot& knot) { return !bounded.field->index_box().contains(knot.p); };
-    if (std::none_of(knots.begin(), knots.end(), outside)) continue;
+    const bool cut = curves[i]->first_end() == flow::End::length || curves[i]->last_end() == flow::End::length;
+    if (!cut && std::none_of(knots.begin(), knots.end(), outside)) continue;
+    const flow::Knot& seed = *std::find_if(knots.begin(), knots.end(), [](const flow::Knot& knot) { return knot.s == 0; });
+    if (outside(seed)) continue;
     at.push_back(i);
-    seeds.push_back(std::find_if(knots.begin(), knots.end(), [](const flow::Knot& knot) { return knot.s == 0; })->p);
+    seeds.push_back(seed.p);
   }
   const auto traced = flow::trace_each(bounded, seeds, {});
   for (std::size_t n = 0; n < at.size(); ++n)
@@ -159,13 +163,13 @@ std::string too_many_knots(std::size_t seeds, std::size_t done, std::size_t most
 
 namespace {
 
-/// A formula has no end of its own: evenly spaced lines end at the box of its picture, and so do those of other seeds that all lie within
-/// it, if no length was asked for.
+/// A formula has no end of its own: evenly spaced lines end at the box of its picture, and so do those of other seeds within it, if no
+/// length was asked for. Places of a pattern outside of it start nothing then, unless all of them are.
 bool ends_at_box(const Seeds& seeds, std::span<const Vec3> places, const LineRequest& request) {
   if (request.flow.field->is_grid()) return false;
   if (seeds.pattern && seeds.pattern->kind == SeedPattern::Kind::evenly_spaced) return true;
   const auto within = [&](const Vec3& p) { return formula_box(request).contains(p); };
-  return request.box && !(request.length > 0) && std::all_of(places.begin(), places.end(), within);
+  return request.box && !(request.length > 0) && std::any_of(places.begin(), places.end(), within);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 ///   points     the exact tracer, through the scene's own curves: a line that a link of the chain feels is the same object
 ///   widget     a seed as a point, a rake as a pattern
 ///   patterns   the batch tracer (engine/flow/batch.h); places of a pattern that start nothing are left out
-///   formulas   their lines end at the box of the field's picture where no length is given and the seeds lie in it; evenly spaced always
+///   formulas   their lines end at the box of the field's picture where no length is given and the seed lies in it; evenly spaced always
 ///   tolerance  of one step, times L, chooses otherwise: up to 1e-9 the exact tracer, above it the batch tracer
 /// Frame thread.
 #pragma once

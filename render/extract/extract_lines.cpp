@@ -81,10 +81,17 @@ void add_arrows(const flow::Curve& curve, double spacing, double radius, std::ve
   }
 }
 
+/// Of the domain; of a formula that of the box of its picture.
+double shown_diagonal(const scene::Scene& scene, const scene::StreamlineSet& set, const field::Field& flow) {
+  if (flow.is_grid()) return domain_diagonal(flow);
+  const std::array<double, 2>& box = scene.world.get<scene::FieldSource>(set.field).box;
+  return std::sqrt(3.0) * (box[1] - box[0]);
+}
+
 Result<FlatLines> flat_lines(scene::Scene& scene, const scene::StreamlineSet& set, std::vector<flow::CurvePtr> curves,
                              const field::VectorFieldPtr& flow) {
   FlatLines flat;
-  flat.radius = set.radius > 0 ? set.radius : kTubeShare * domain_diagonal(*flow);
+  flat.radius = set.radius > 0 ? set.radius : kTubeShare * shown_diagonal(scene, set, *flow);
   field::AnyField shown;
   if (set.color_by && set.color_by->what == scene::ColorBy::What::field) {
     CATENA_TRY(shown, scene::use_field(scene, set.color_by->field, set.where));

@@ -276,7 +276,8 @@ Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, cons
   if (!packet.eyes.empty()) return estimate_rmse(renderer, first_eye(packet), settings);
   if (!draws_rays(packet)) return 0.0;
   Search search(renderer, packet);
-  CATENA_CHECK(search.begin(0));
+  // what is coarse is told from a truth that is quicker to have
+  CATENA_CHECK(search.begin(settings.fast && settings.fast->step_voxels >= 1 ? kRoughGoal : 0));
   CATENA_TRY(const Measured error, search.of_picture(settings));
   return error.above;
 }

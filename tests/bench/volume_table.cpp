@@ -3,7 +3,7 @@
 ///   MODE: error=E | time=MS | draft | balanced | reference | exact=STEP | fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth] (1/255; < 0
 ///   nowhere)
 /// Times are medians over an orbit of 10 views, wall and process CPU (two threads: half of it is the ideal wall time); errors are
-/// against our own converged picture at azimuth 30: RMSE of 8-bit RGB over a black background, of covered and of all pixels.
+/// against our own converged picture at azimuth 30, over a black background (render/image/measure.h).
 #include <fmt/core.h>
 #include <sys/resource.h>
 
@@ -18,7 +18,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/numbers.h"
 #include "engine/field/grid.h"
-#include "render/image/picture.h"
+#include "render/image/measure.h"
 #include "render/quality/quality.h"
 
 namespace {
@@ -64,6 +64,7 @@ render::FramePacket packet_of(const std::string& raw, int n, bool shade) {
   item.shade = shade;
   render::FramePacket packet;
   packet.volumes.push_back(item);
+  packet.background[3] = 0;
   return packet;
 }
 
@@ -76,24 +77,6 @@ render::View view_at(double azimuth_deg, int n) {
   view.up = {0, 0, 1};
   view.fovy_deg = 30;
   return view;
-}
-
-struct Rmse {
-  double covered = 0, all = 0;
-};
-Rmse rmse(const render::Picture& a, const render::Picture& b) {
-  double sum = 0;
-  std::size_t covered = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-    bool any = false;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double d = double(a.rgba[i + c]) - double(b.rgba[i + c]);
-      sum += d * d;
-      any = any || a.rgba[i + c] || b.rgba[i + c];
-    }
-    covered += any;
-  }
-  return {std::sqrt(sum / (3 * double(std::max<std::size_t>(1, covered)))), std::sqrt(sum / (3 * double(a.rgba.size() / 4)))};
 }
 
 render::RenderSettings settings_of(const std::string& mode) {
@@ -150,7 +133,7 @@ int main(int argc, char** argv) {
   } else {
     draw(30, render::reference_settings());
     converged = (*renderer)->read_back().value();
-    if (folder) (void)render::write_png(kept, converged, false);
+    if (folder) (void)render::write_png(kept, converged, true);
   }
   for (int k = 4; k < argc; ++k) {
     const std::string mode = argv[k];
@@ -186,12 +169,13 @@ int main(int argc, char** argv) {
     draw(30, settings);
     const render::Picture picture = (*renderer)->read_back().value();
     if (folder) (void)render::write_png(std::string(folder) + "/" + stem + "-" + mode + ".png", picture, false);
-    const Rmse error = rmse(picture, converged);
+    const render::PictureError error = render::measure_error(picture, converged);
     fmt::print(
         "{{\"field\": \"{}\", \"shade\": {}, \"mode\": \"{}\", \"wall_ms\": {:.1f}, \"half_cpu_ms\": {:.1f}, \"rmse_covered\": {:.3f}, "
-        "\"rmse_all\": {:.3f}, \"estimated\": {:.3f}, \"what\": \"{}\", \"gpu_mib\": {:.0f}}}\n",
-        stem, shade ? 1 : 0, mode, quantile(wall, 0.5), 0.5 * quantile(cpu, 0.5), error.covered, error.all, estimated, describe(settings),
-        double((*renderer)->stats().gpu_bytes) / (1 << 20));
+        "\"p999\": {:.0f}, \"thin_least_kept\": {:.3f}, \"thin_kept\": {:.3f}, \"estimated\": {:.3f}, \"what\": \"{}\", \"gpu_mib\": "
+        "{:.0f}}}\n",
+        stem, shade ? 1 : 0, mode, quantile(wall, 0.5), 0.5 * quantile(cpu, 0.5), error.rmse, error.p999, error.least_kept, error.kept,
+        estimated, describe(settings), double((*renderer)->stats().gpu_bytes) / (1 << 20));
     std::fflush(stdout);
   }
   return 0;

@@ -141,6 +141,20 @@ TEST(FirstLook, ARampIsAQuantityAlongAnyAxis) {
   }
 }
 
+TEST(FirstLook, ASingleImageIsASlice) {
+  const test::TemporaryFolder folder;
+  std::vector<float> values;
+  for (int i = 0; i < 2 * 24 * 20; ++i) values.push_back(static_cast<float>(i % 240 - 1000));
+  const auto grid = field::make_scalar_grid("g", {}, {24, 20, 2}, values);
+  ASSERT_TRUE(field::write_vdb(folder / "a.vdb", {{{grid, nullptr}, "g"}}));
+  auto scene = scene_for_file(folder / "a.vdb");
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(scene->world.count<Slice>(), 1u);
+  EXPECT_EQ(scene->world.count<Isosurface>(), 0u);
+  const auto prepared = prepare(*scene);
+  EXPECT_TRUE(prepared) << prepared.error().message;
+}
+
 TEST(FirstLook, RandomSignsAreAxesAndAFlowIsNot) {
   constexpr int kSize = 24;
   std::vector<float> signs, flow;

@@ -76,6 +76,18 @@ TEST(SeedPatterns, LinesOfAFormulaEndAtItsBox) {
         }
       }
   }
+  // one seed outside does not let the others out
+  const auto mixed = lines_of_formula("abc", R"("seeds": [[0.3, 0.2, 0.1], [0, 1.5, 0]])");
+  ASSERT_EQ(mixed.size(), 2u);
+  EXPECT_LE(max_abs(mixed[0]->knots().back().p), 1 + 1e-8);
+  EXPECT_GT(max_abs(mixed[1]->knots().back().p), 2);
+  // to the end of a large box, not to ten lengths of the usual one
+  auto large = parse_scene(
+      R"({"fields": {"v": {"analytic": "helix", "box": [-30, 30]}}, "streamlines": [{"field": "v", "seeds": [[1, 0, 0]]}]})", "s.json");
+  ASSERT_TRUE(large);
+  const auto far = use_lines(*large, set_of(*large));
+  ASSERT_TRUE(far);
+  EXPECT_NEAR(far->front()->knots().back().p.z, 30, 1e-6);
   // a stated length, or a seed elsewhere, is what was asked for
   EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 0, 0]], "length": 7)")[0]->knots().back().s, 7, 1e-12);
   EXPECT_NEAR(lines_of_formula("uniform", R"("seeds": [[0, 3, 0]])")[0]->knots().back().s, 40, 1e-9);
