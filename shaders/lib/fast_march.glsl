@@ -109,13 +109,24 @@ vec4 march_packed(vec2 q, float end) {
   float along = 0.0, across2 = 0.0;
   if (SHADED != 0u) {
     // to what is seen first, without light
+    float behind = 0.0, code_behind = 0.0, middle = 0.0;  // the end of the segment in which it is, and the codes there and half way
     for (bool seen = false; s.t < m.end && !seen;) {
       float curved;
       const Station e = next_station(m, s, curved);
-      const float middle = middle_code(s, e, curved);
+      middle = middle_code(s, e, curved);
       seen = between(s.s.code, middle).x + between(middle, e.s.code).x > 0.0;
+      behind = e.t;
+      code_behind = e.s.code;
       if (!seen) s = e;
     }
+    // segments begin where it begins to be seen, wherever the volume does: no rings, and none that move with the camera
+    float dark = 0.0, lit = 1.0;
+    for (int k = 0; k < 3; ++k) {
+      const float f = 0.5 * (dark + lit);
+      const float code = mix(mix(s.s.code, middle, f), mix(middle, code_behind, f), f);
+      if (between(s.s.code, code).x > 0.0) lit = f; else dark = f;
+    }
+    if (behind > s.t) s = station_at(m, mix(s.t, behind, dark));
     normal = normal_at(s.p, s.s.gradient);
     along = dot(normal.xyz, along_ray);
     across2 = dot(normal.xyz, normal.xyz) - along * along;
