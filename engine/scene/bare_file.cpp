@@ -92,12 +92,12 @@ std::string other_fields(LookedInto& looked, const std::string& shown, const std
 }
 
 /// Fibres that lie in a body are what its file is looked at for: in a translucent shell.
-void show_fibres(LookedInto& file, const field::LoadRequest& shown, FirstLook& look) {
+void show_fibres(LookedInto& file, BareFile& bare, FirstLook& look) {
   const auto& grids = file.grids();
-  if (look.shell.empty() || shown.grid.empty() || !grids) return;
+  if (look.shell.empty() || bare.request.grid.empty() || !grids) return;
   for (const field::GridInfo& grid : *grids) {
     if (!grid.usable || !grid.is_vector || grid.stats.active_voxels == 0 || grid.name.empty()) continue;
-    field::LoadRequest request = shown;
+    field::LoadRequest request = bare.request;
     request.grid = grid.name;
     const auto loaded = field::load(request);
     if (!loaded || !loaded->vector) continue;
@@ -105,6 +105,8 @@ void show_fibres(LookedInto& file, const field::LoadRequest& shown, FirstLook& l
     if (!fibres.fibres) continue;
     look.parts = look.shell + ",\n" + fibres.parts;
     look.note += "; " + in_quotes(grid.name) + " " + fibres.note;
+    bare.fibres_grid = grid.name;
+    bare.fibres = *loaded;
     return;
   }
 }
@@ -218,7 +220,7 @@ Result<BareFile> describe_bare_file(const std::string& path, const std::string& 
   FirstLook look = bare.field.scalar
                        ? first_look(name, *bare.field.scalar->grid(), field::units_of(bare.request.path, bare.request.grid), colors)
                        : first_look(name, *bare.field.vector->grid(), colors);
-  if (grid.empty() && colors.map.empty() && !colors.range) show_fibres(looked, bare.request, look);
+  if (grid.empty() && colors.map.empty() && !colors.range) show_fibres(looked, bare, look);
   bare.note = name + " " + look.note;
   bare.text = "{\n  \"fields\": {" + name + ": {\"file\": " + file;
   if (!bare.request.grid.empty()) bare.text += ", \"grid\": " + json::string_text(bare.request.grid);
@@ -259,9 +261,12 @@ FileKind kind_of_file(const std::string& path) { return look_into(path).kind; }
 
 void adopt_loaded(const BareFile& bare, Scene& scene) {
   scene.world.each<FieldSource>([&](Entity, FieldSource& source) {
-    if (bare.field.get() != nullptr && source.file && same_file(source.file->path, bare.request.path) &&
-        source.file->grid == bare.request.grid)
-      source.loaded = source.drawn = bare.field;
+    const auto adopt = [&](const std::string& grid, const field::AnyField& field) {
+      if (field.get() != nullptr && source.file && same_file(source.file->path, bare.request.path) && source.file->grid == grid)
+        source.loaded = source.drawn = field;
+    };
+    adopt(bare.request.grid, bare.field);
+    adopt(bare.fibres_grid, bare.fibres);
     find_labels(source);
   });
   scene.world.each<MeshSource>([&](Entity, MeshSource& source) {

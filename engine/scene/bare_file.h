@@ -11,8 +11,10 @@ struct BareFile {
   std::string scene_path;  ///< where that scene file would be: FILE.json beside it
   std::string note;        ///< what the data look like, and why; of a mesh nothing
   field::LoadRequest request;
-  field::AnyField field;  ///< either this
-  mesh::MeshPtr mesh;     ///< or this
+  field::AnyField field;      ///< either this
+  std::string fibres_grid{};  ///< with a body's field: the fibres in it
+  field::AnyField fibres{};
+  mesh::MeshPtr mesh;  ///< or this
   curves::PointSetPtr points;
   curves::CurveSetPtr curves;  ///< or this
 };

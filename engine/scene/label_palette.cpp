@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "engine/scene/color_maps.h"
 
 namespace catena::scene {
 namespace {
@@ -14,17 +15,6 @@ constexpr int kLevels = 14;                                                     
 constexpr double kDarkest = 45, kLightest = 88, kGreyest = 20, kBrightest = 90;  // lightness, chroma
 constexpr double kLightness = 0.5;                                               // how much it counts
 constexpr Color kFirst{0.88f, 0.38f, 0.30f};
-
-double linear(double display) { return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4); }
-
-/// L*, a*, b*
-Vec3 cielab(const Color& c) {
-  const double r = linear(c.r), g = linear(c.g), b = linear(c.b);
-  const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
-  const double x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505), y = f(0.2126 * r + 0.7152 * g + 0.0722 * b),
-               z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
-  return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
-}
 
 struct Candidate {
   Color color;
@@ -35,7 +25,7 @@ struct Candidate {
 std::vector<Color> choose() {
   std::vector<Candidate> all;
   const auto add = [&](const Color& color) {
-    const Vec3 lab = cielab(color);
+    const Vec3 lab = lab_from_srgb({color.r, color.g, color.b});
     const double chroma = std::hypot(lab.y, lab.z);
     if (lab.x >= kDarkest && lab.x <= kLightest && chroma >= kGreyest && chroma <= kBrightest)
       all.push_back({color, {kLightness * lab.x, lab.y, lab.z}});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
@@ -89,27 +90,32 @@ Picture over(const Picture& picture, const std::array<float, 3>& background) {
   return out;
 }
 
+PixelErrors covered_errors(const Picture& picture, const Picture& converged) {
+  PixelErrors errors;
+  for (std::size_t i = 0; i < picture.rgba.size() / 4; ++i) {
+    if (!is_covered(picture, converged, i)) continue;
+    double square = 0, most = 0;
+    for (std::size_t c = 4 * i; c < 4 * i + 3; ++c) {
+      const double d = std::fabs(double(picture.rgba[c]) - converged.rgba[c]);
+      square += d * d / 3;
+      most = std::max(most, d);
+    }
+    errors.squares.push_back(square);
+    errors.largest.push_back(most);
+  }
+  return errors;
+}
+
 PictureError measure_error(const Picture& given, const Picture& given_converged, const std::array<float, 3>& background) {
   CATENA_ASSERT(given.width == given_converged.width && given.height == given_converged.height);
   const Picture picture = over(given, background), converged = over(given_converged, background);
   PictureError error;
-  double sum = 0;
-  std::vector<float> largest;
-  const std::size_t pixels = picture.rgba.size() / 4;
-  for (std::size_t i = 0; i < pixels; ++i) {
-    if (!is_covered(picture, converged, i)) continue;
-    float most = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double d = double(picture.rgba[4 * i + c]) - converged.rgba[4 * i + c];
-      sum += d * d;
-      most = std::max(most, float(std::fabs(d)));
-    }
-    largest.push_back(most);
-  }
-  if (largest.empty()) return error;
-  error.rmse = std::sqrt(sum / (3 * double(largest.size())));
-  error.covered = double(largest.size()) / double(pixels);
-  error.p999 = double(quantile(largest, 0.999));
+  PixelErrors errors = covered_errors(picture, converged);
+  if (errors.squares.empty()) return error;
+  const auto count = double(errors.squares.size());
+  error.rmse = std::sqrt(std::accumulate(errors.squares.begin(), errors.squares.end(), 0.0) / count);
+  error.covered = count / (double(picture.rgba.size()) / 4);
+  error.p999 = quantile(errors.largest, 0.999);
   measure_thin_parts(picture, converged, error);
   return error;
 }

@@ -15,6 +15,13 @@
 
 namespace catena::render {
 
+/// Of every covered pixel, in the order of the pixels; of pictures that lie over their background already.
+struct PixelErrors {
+  std::vector<double> squares;  ///< the mean of the three squared differences, (1/255)^2
+  std::vector<double> largest;  ///< of the three, 1/255
+};
+PixelErrors covered_errors(const Picture& picture, const Picture& converged);
+
 struct PictureError {
   double rmse = 0, p999 = 0;  ///< 1/255
   double covered = 0;         ///< share of the pixels

@@ -39,19 +39,6 @@ constexpr int kPlans = int(std::size(kPlan));
 constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
 constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25};
 
-RenderSettings exact(double step_voxels) {
-  RenderSettings s;
-  s.step_voxels = step_voxels;
-  if (step_voxels < 1) s.termination = 1e-3;
-  return s;
-}
-
-RenderSettings fast(double step_voxels, std::uint32_t spacing, double refine_half_255, double refine_full_255) {
-  RenderSettings s;
-  s.fast = FastSettings{step_voxels, spacing, refine_half_255, refine_full_255};
-  return s;
-}
-
 /// Of a driver that draws with the processor: a thread a core, or as many as it is told.
 double drawing_threads() {
   const double cores = std::max(1u, std::thread::hardware_concurrency());
@@ -69,24 +56,16 @@ struct Measured {
 };
 
 Measured compare(const Picture& a, const Picture& b) {
-  double sum = 0, squares = 0, count = 0;
-  std::vector<double> largest;
-  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
-    if (a.rgba[i + 3] == 0 && b.rgba[i + 3] == 0) continue;
-    double here = 0, most = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double d = std::fabs(double(a.rgba[i + c]) - b.rgba[i + c]);
-      here += d * d / 3;
-      most = std::max(most, d);
-    }
-    largest.push_back(most);
+  PixelErrors errors = covered_errors(a, b);
+  const auto count = double(errors.squares.size());
+  if (count == 0) return {};
+  double sum = 0, squares = 0;
+  for (const double here : errors.squares) {
     sum += here;
     squares += here * here;
-    ++count;
   }
-  if (count == 0) return {};
   const double mean = sum / count, variance = std::max(0.0, squares / count - mean * mean);
-  return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(largest, 0.999)};
+  return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(errors.largest, 0.999)};
 }
 
 /// The lattice's pixels of a finished picture.
@@ -108,7 +87,7 @@ class Search {
   /// `goal`: the least error that matters, 1/255.
   Outcome begin(double goal) {
     fast_ = renderer_.draws_fast(packet_);
-    CATENA_TRY(const Picture seen, renderer_.probe(packet_, fast_ ? fast(1, 1, 0, -1) : exact(1), kSpacings[0]));
+    CATENA_TRY(const Picture seen, renderer_.probe(packet_, fast_ ? fast_rung(1, 1, 0, -1) : exact_rung(1), kSpacings[0]));
     // it may have no memory for the grid
     fast_ = renderer_.draws_fast(packet_);
     double covered = 0;
@@ -155,8 +134,8 @@ class Search {
     // exact rays want a truth that is finer than they are
     if (fast_ && e >= kRoughGoal) CATENA_CHECK(find_truth(0));
     for (const double step : kExactSteps) {
-      CATENA_TRY(const Measured rays, of_rays(exact(step)));
-      if (rays.good_for(e)) return choice(exact(step), rays.above, true);
+      CATENA_TRY(const Measured rays, of_rays(exact_rung(step)));
+      if (rays.good_for(e)) return choice(exact_rung(step), rays.above, true);
     }
     return choice(reference_settings(), 0, true);
   }
@@ -181,7 +160,7 @@ class Search {
 
  private:
   Outcome find_truth(double goal) {
-    RenderSettings converged = exact(goal < kRoughGoal ? 0.1 : 0.25);
+    RenderSettings converged = exact_rung(goal < kRoughGoal ? 0.1 : 0.25);
     converged.termination = 1e-4;
     CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
     return Done{};
@@ -198,15 +177,12 @@ class Search {
     std::vector<Candidate> all;
     const bool smooth = packet_.volumes.front().shade;
     for (const double step : kFastSteps) {
-      RenderSettings settings = fast(step, 1, 0, -1);
-      settings.fast->smooth_gradients = smooth;
-      CATENA_TRY(const Measured rays, of_rays(settings));
+      CATENA_TRY(const Measured rays, of_rays(fast_rung(step, 1, 0, -1, smooth)));
       if (rays.rmse > kStepShare * e) continue;
       for (int plan = 0; plan < kPlans; ++plan) {
         const Plan& p = kPlan[plan];
-        RenderSettings planned = fast(step, p.spacing, p.refine_half * e, p.refine_full * e);
-        planned.fast->smooth_gradients = smooth;
-        all.push_back({planned, rays.rmse, p.overhead + p.rays * (kStepless + (1 - kStepless) / step), plan});
+        all.push_back({fast_rung(step, p.spacing, p.refine_half * e, p.refine_full * e, smooth), rays.rmse,
+                       p.overhead + p.rays * (kStepless + (1 - kStepless) / step), plan});
       }
     }
     std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });

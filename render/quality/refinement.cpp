@@ -11,20 +11,6 @@ namespace {
 constexpr double kFirstGuessMs = 400;  // a unit of cost at a megapixel on two CPU cores
 constexpr double kUpBelow = 0.85;      // of the budget: a better rung is taken only with some room, or it would come and go
 
-RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false) {
-  RenderSettings s;
-  s.fast = FastSettings{step_voxels, spacing, half, full};
-  s.fast->smooth_gradients = smooth;
-  return s;
-}
-
-RenderSettings exact_rung(double step_voxels) {
-  RenderSettings s;
-  s.step_voxels = step_voxels;
-  if (step_voxels < 1) s.termination = 1e-3;
-  return s;
-}
-
 /// The share of pixels whose rays are marched, and what interpolation costs beside them.
 struct Share {
   double rays, overhead;
@@ -38,6 +24,20 @@ Share share_of(const FastSettings& f) {
 }
 
 }  // namespace
+
+RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth) {
+  RenderSettings s;
+  s.fast = FastSettings{step_voxels, spacing, half, full};
+  s.fast->smooth_gradients = smooth;
+  return s;
+}
+
+RenderSettings exact_rung(double step_voxels) {
+  RenderSettings s;
+  s.step_voxels = step_voxels;
+  if (step_voxels < 1) s.termination = 1e-3;
+  return s;
+}
 
 double relative_cost(const RenderSettings& settings, bool shaded) {
   if (!settings.fast) return (shaded ? 3.5 : 1.1) / settings.step_voxels + 0.05;

@@ -3,6 +3,7 @@
 ///   still:  quarter -> half -> every pixel, then finished; anything that moves starts anew
 /// Times are expected from measured ones (TimeModel). Frame thread.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,12 @@ struct LadderKind {
   bool fast = true;  ///< Renderer::draws_fast
   bool shaded = false;
 };
+
+/// Every `spacing`-th pixel at that step by the fast raycast, refined where interpolation errs by more than `half` and `full` (1/255; < 0:
+/// nowhere); `smooth`: shaded by central differences.
+RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false);
+/// By the exact raycast.
+RenderSettings exact_rung(double step_voxels);
 
 /// Of what a ray costs at step 1: its way to what is seen, whatever the step.
 inline constexpr double kStepless = 0.3;
