@@ -92,12 +92,9 @@ Result<BrickMap> make_leap_map(vk::Device& device, const GridMirror& mirror, con
   return map;
 }
 
-Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, std::span<const std::uint16_t, 256> look) {
+Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, const CodeLooks& looks) {
   std::vector<std::uint16_t> kind(packed.ranges.size());
-  for (std::size_t i = 0; i < kind.size(); ++i) {
-    const CodeRange& r = packed.ranges[i];
-    kind[i] = look[r.least] == look[r.greatest] ? std::uint16_t(look[r.least] + 1) : 0;
-  }
+  std::transform(packed.ranges.begin(), packed.ranges.end(), kind.begin(), [&](const CodeRange& r) { return looks.kind(r); });
   const std::vector<std::uint8_t> distance = plain_distances(packed.bricks, kind);
   PlainMap map;
   map.leaping = double(std::count_if(distance.begin(), distance.end(), [](std::uint8_t d) { return d > 0; })) / double(distance.size());

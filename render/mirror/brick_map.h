@@ -47,8 +47,6 @@ struct PlainMap {
   double leaping = 0;  ///< share of bricks with d > 0
 };
 
-/// `look[c]`: codes c and c + 1 (and all between) look alike if look[c] == look[c + 1]; a code where the look varies within half a
-/// code of it has a number of its own.
-Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, std::span<const std::uint16_t, 256> look);
+Result<PlainMap> make_plain_map(vk::Device& device, const PackedVolume& packed, const CodeLooks& looks);
 
 }  // namespace catena::render

@@ -7,7 +7,7 @@
 
 #include "engine/base/threads.h"
 #include "render/mirror/brick_map.h"
-#include "render/mirror/packed_volume.h"
+#include "render/mirror/half.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

@@ -10,7 +10,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/threads.h"
-#include "render/mirror/packed_volume.h"
+#include "render/mirror/half.h"
 #include "render/vk/commands.h"
 
 namespace catena::render {

@@ -109,4 +109,8 @@ void Mirrors::drop_unused() {
   std::erase_if(entries_, [this](const auto& item) { return item.second.used != frame_; });
 }
 
+void Mirrors::drop_unused(const field::ScalarGrid& grid) {
+  std::erase_if(entries_, [&](const auto& item) { return std::get<0>(item.first) == grid.version() && item.second.used != frame_; });
+}
+
 }  // namespace catena::render

@@ -30,6 +30,8 @@ class Mirrors {
   /// `reserved` bytes of the budget are for others. `sharers` > 1: so many grids are to share the rest.
   void begin_frame(std::uint64_t reserved, std::size_t sharers = 1);
   void drop_unused();
+  /// Those of a grid that the frame has not asked for so far.
+  void drop_unused(const field::ScalarGrid& grid);
   void clear() { entries_.clear(); }
   std::size_t count() const { return entries_.size(); }
   double build_ms() const { return build_ms_; }

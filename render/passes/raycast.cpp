@@ -101,24 +101,24 @@ bool RaycastPass::prepare_fast(Frame& frame) {
   const VolumeItem& item = frame.packet.volumes.front();
   const FastSettings& settings = *frame.settings.fast;
   const bool gradients = item.shade && settings.smooth_gradients;
-  const std::uint64_t version = item.grid->version(), needed = packed_bytes(*item.grid) * (gradients ? 2 : 1);
+  const std::uint64_t version = item.grid->version();
   if (!refused_.reason.empty() && refused_.version == version && refused_.most_bytes == settings.most_bytes &&
       refused_.gradients == gradients)
     return false;
   refused_ = {version, settings.most_bytes, gradients, {}};
   Outcome prepared = Done{};
-  if (needed > settings.most_bytes) {
-    prepared = Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, settings.most_bytes >> 20)};
-  } else {
-    if (!fast_pass_) {
-      auto created = FastVolumeRaycast::create(frame.device);
-      if (created)
-        fast_pass_.emplace(std::move(*created));
-      else
-        prepared = created.error();
-    }
-    if (prepared) prepared = fast_pass_->prepare(item, settings);
+  if (!fast_pass_) {
+    auto created = FastVolumeRaycast::create(frame.device);
+    if (created)
+      fast_pass_.emplace(std::move(*created));
+    else
+      prepared = created.error();
   }
+  if (prepared && !can_be_packed(frame.device, *item.grid)) {
+    exact_pass_.reset();
+    frame.mirrors.drop_unused(*item.grid);
+  }
+  if (prepared) prepared = fast_pass_->prepare(item, settings);
   if (prepared) return true;
   fast_pass_.reset();
   refused_.reason = fmt::format("the grid \"{}\" is drawn by exact rays, slower: {}", item.grid->name(), prepared.error().message);
@@ -134,6 +134,7 @@ Outcome RaycastPass::prepare(Frame& frame) {
     grids_.push_back(fast_->grid.get());
     return Done{};
   }
+  if (fast_pass_ && fast_pass_->is_large()) fast_pass_.reset();
 
   std::vector<Mirrored<VolumeItem>> volumes;
   std::vector<Mirrored<IsosurfaceItem>> surfaces;
@@ -226,7 +227,7 @@ bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
   const VolumeItem& item = packet.volumes.front();
   return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
          !has_layers(packet) && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
-         item.grid->interpolation() == field::Interpolation::linear && can_be_packed(device, *packet.volumes.front().grid);
+         item.grid->interpolation() == field::Interpolation::linear && FastVolumeRaycast::can_pack(device, *packet.volumes.front().grid);
 }
 
 bool draws_rays(const FramePacket& packet) {

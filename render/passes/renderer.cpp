@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "engine/base/eye_limits.h"
-#include "render/mirror/packed_volume.h"
+#include "render/mirror/half.h"
 #include "render/passes/pack.h"
 #include "render/passes/pass.h"
 #include "render/passes/passes.h"

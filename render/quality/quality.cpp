@@ -24,6 +24,8 @@ constexpr double kUneven = 1.1;                                 // of the ideal 
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
 constexpr double kRoughGoal = 1.5;                              // 1/255: from it on the error of step 0.25 does not count
+// steps, voxels: of the converged picture; where only a rough goal is to be judged, of the fast raycast and of exact rays; of what is seen
+constexpr double kTruthStep = 0.1, kRoughTruthStep = 0.25, kExactTruthStep = 0.2, kSeenStep = 1;
 constexpr int kMaxPictures = 16;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
@@ -86,10 +88,8 @@ class Search {
 
   /// `goal`: the least error that matters, 1/255.
   Outcome begin(double goal) {
-    fast_ = renderer_.draws_fast(packet_);
-    CATENA_TRY(const Picture seen, renderer_.probe(packet_, fast_ ? fast_rung(1, 1, 0, -1) : exact_rung(1), kSpacings[0]));
-    // it may have no memory for the grid
-    fast_ = renderer_.draws_fast(packet_);
+    // exact rays come first: what a large grid needs for them and for the fast raycast is not held at once
+    CATENA_TRY(const Picture seen, renderer_.probe(packet_, exact_rung(kSeenStep), kSpacings[0]));
     double covered = 0;
     for (std::size_t i = 3; i < seen.rgba.size(); i += 4) covered += seen.rgba[i] > 0;
     covered *= double(packet_.width) * packet_.height / (double(seen.rgba.size()) / 4);
@@ -97,7 +97,12 @@ class Search {
       spacing_ = spacing;
       if (covered / (spacing * spacing) >= kSamples) break;
     }
-    return find_truth(fast_ ? goal : 0);
+    CATENA_CHECK(find_truth(renderer_.draws_fast(packet_) ? goal : 0));
+    if (!renderer_.draws_fast(packet_)) return Done{};
+    // it may have no memory for the grid
+    CATENA_CHECK(renderer_.probe(packet_, fast_rung(kSeenStep, 1, 0, -1), kSpacings[0]));
+    fast_ = renderer_.draws_fast(packet_);
+    return Done{};
   }
 
   /// Of the rays alone.
@@ -132,7 +137,7 @@ class Search {
       }
     }
     // exact rays want a truth that is finer than they are
-    if (fast_ && e >= kRoughGoal) CATENA_CHECK(find_truth(0));
+    if (fast_) CATENA_CHECK(find_truth(e, kExactTruthStep));
     for (const double step : kExactSteps) {
       CATENA_TRY(const Measured rays, of_rays(exact_rung(step)));
       if (rays.good_for(e)) return choice(exact_rung(step), rays.above, true);
@@ -159,8 +164,8 @@ class Search {
   }
 
  private:
-  Outcome find_truth(double goal) {
-    RenderSettings converged = exact_rung(goal < kRoughGoal ? 0.1 : 0.25);
+  Outcome find_truth(double goal, double rough_step = kRoughTruthStep) {
+    RenderSettings converged = exact_rung(goal < kRoughGoal ? kTruthStep : rough_step);
     converged.termination = 1e-4;
     CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
     return Done{};

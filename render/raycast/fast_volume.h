@@ -1,12 +1,16 @@
 /// One volume, fast, with an error that is measured and not assumed (render/quality/quality.h): packed words, pre-integrated
 /// table, Hermite midpoints, leaps over plain bricks; rays on a lattice of every 4th, 2nd or every pixel, refined where the fourth
 /// difference of the picture says that interpolation would err.   lattice -> marks -> finer lattice -> .. -> every pixel
-/// Volumes that it cannot draw (several at once, masked cells, too many voxels) belong to VolumeRaycast. Frame thread only.
+/// A grid of many voxels is packed as the bricks that its transfer function asks for. What cannot be drawn so (several volumes at once, too
+/// many bricks) belongs to VolumeRaycast. Frame thread only.
 #pragma once
 #include <array>
 #include <map>
+#include <optional>
 
 #include "render/mirror/brick_map.h"
+#include "render/mirror/gradient_volume.h"
+#include "render/mirror/packed_atlas.h"
 #include "render/mirror/packed_volume.h"
 #include "render/raycast/camera_rays.h"
 #include "render/raycast/render_settings.h"
@@ -19,7 +23,11 @@ namespace catena::render {
 class FastVolumeRaycast {
  public:
   static Result<FastVolumeRaycast> create(vk::Device& device);
-  /// Packs the volume, its table and its map, if they are new. `item.grid` can_be_packed.
+  /// Whether the grid of a volume can be packed in one of the two ways.
+  static bool can_pack(const vk::Device& device, const field::ScalarGrid& grid);
+  /// What is packed is too large to be held beside a mirror of its grid.
+  bool is_large() const { return bricks_.has_value(); }
+  /// Packs the volume, its table and its map, if they are new. An error where that takes more than `settings.most_bytes`.
   Outcome prepare(const VolumeItem& item, const FastSettings& settings);
   /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;
   /// not within a pass. `opaque_depth` null: nothing opaque, `none` is bound instead; else pixels near it are always marched and
@@ -41,9 +49,15 @@ class FastVolumeRaycast {
   };
   FastVolumeRaycast() = default;
   Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
-  Result<const vk::Pipeline*> pipeline(const std::array<std::uint32_t, 5>& constants, bool tiles);
+  using Constants = std::array<std::uint32_t, 7>;
+  Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
+  Outcome pack_whole(const VolumeItem& item, bool gradients, bool other_range);
+  Outcome pack_bricks(const VolumeItem& item, bool other_range, std::uint64_t most_bytes);
+  Outcome upload_table(const PreintegratedTable& table);
+  bool has_gradients() const { return bricks_ ? bool(bricks_->atlas.gradients) : bool(gradients_.image); }
   std::uint32_t shading(const FastSettings& settings) const { return item_.shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
-  float gradient_unit() const { return packed_.per_code > 0 ? float(gradients_.unit / packed_.per_code) : 0.0f; }
+  float gradient_unit() const;
+  float gradient_nodes() const { return bricks_ ? float(bricks_->atlas.gradient_nodes) : 0.0f; }
   Outcome write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque);
   Outcome mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth);
@@ -66,15 +80,22 @@ class FastVolumeRaycast {
   VolumeItem item_;
   ValueInterval active_;
   std::uint64_t version_ = 0;
+  // either whole
   PackedVolume packed_;
   PlainMap map_;
-  vk::Image table_;
   GradientVolume gradients_;
+  // or as bricks
+  struct Bricks {
+    BrickScan scan;
+    PackedAtlas atlas;
+  };
+  std::optional<Bricks> bricks_;
+  vk::Image table_;
   vk::Image no_gradients_;  ///< one voxel, bound where shading does not ask for them
   vk::Sampler linear_;
   vk::Buffer frame_;
   Level quarter_, half_, full_, probe_;
-  std::map<std::pair<std::array<std::uint32_t, 5>, bool>, vk::Pipeline> pipelines_;
+  std::map<std::pair<Constants, bool>, vk::Pipeline> pipelines_;
   std::array<vk::Pipeline, 2> mark_pipelines_;  // without and with something opaque
   vk::Pipeline tile_pipeline_, interpolate_pipeline_;
   vk::Buffer interpolate_data_;

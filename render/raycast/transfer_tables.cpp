@@ -139,14 +139,15 @@ PreintegratedTable make_preintegrated(const TransferTable& table, double lo, dou
   for (int a = 0; a + 1 < kCodes; ++a) {
     alike[a] = !shaded || !(looks[a * kFine][0] > 0);
     for (int k = a * kFine; k < (a + 1) * kFine && alike[a]; ++k) alike[a] = looks[k] == looks[k + 1];
-    out.look[a + 1] = std::uint16_t(out.look[a] + (alike[a] ? 0 : 1));
+    out.looks.look[a + 1] = std::uint16_t(out.looks.look[a] + (alike[a] ? 0 : 1));
   }
 
   out.entries.resize(std::size_t(kCodes) * kCodes);
   for (int a = 0; a < kCodes; ++a) {
+    out.looks.invisible[a] = !(looks[a * kFine][0] > 0);
     out.entries[std::size_t(a) * kCodes + a] = entry(looks[a * kFine]);
     for (int b = a + 1; b < kCodes; ++b) {
-      const bool same = out.look[a] == out.look[b];
+      const bool same = out.looks.look[a] == out.looks.look[b];
       out.entries[std::size_t(a) * kCodes + b] = out.entries[std::size_t(b) * kCodes + a] =
           entry(same ? looks[a * kFine] : mean(a * kFine, b * kFine));
     }

@@ -7,7 +7,7 @@
 
 #include "render/frame/frame_packet.h"
 #include "render/mirror/grid_mirror.h"
-#include "render/mirror/packed_volume.h"
+#include "render/mirror/voxel_block.h"
 
 namespace catena::render {
 
@@ -55,7 +55,7 @@ ValueInterval active_interval(const TransferTable& table, const ValueInterval& v
 /// the attenuation within a segment. 256 x 256 entries: sigma as float bits | red 11 bits, green 11, blue 10.
 struct PreintegratedTable {
   std::vector<std::array<std::uint32_t, 2>> entries;  ///< a + 256 b
-  std::array<std::uint16_t, 256> look{};              ///< for make_plain_map
+  CodeLooks looks;
   double greatest_sigma = 0;
 };
 

@@ -5,10 +5,8 @@ layout(constant_id = 0) const uint SHADED = 0;  // 1: by the gradient of the cel
 layout(constant_id = 1) const uint SKIPS = 0;
 layout(constant_id = 2) const uint OPAQUE = 0;
 
-layout(binding = 3) uniform utexture3D packed_words;
 layout(binding = 4) uniform utexture2D preintegrated;  // 256 x 256
-layout(binding = 5) uniform utexture3D plain_map;
-layout(binding = 8) uniform sampler3D gradients;  // render/mirror/packed_volume.h
+layout(binding = 8) uniform sampler3D gradients;       // render/mirror/gradient_volume.h
 #include "shaders/lib/packed.glsl"
 
 #define SMALL_BRICK 4.0
@@ -26,10 +24,25 @@ vec2 light_at(float n, float n2) {
   return vec2(0.2 + 0.7 * n, 0.2 * m8 * m8 * m4);
 }
 
+// A sample of the ray at depth t, and what leads on from it.
+struct Station {
+  float t;
+  vec3 p;
+  PackedSample s;
+  float slope;  // codes a depth, along the ray
+};
+
 // The gradient at a sample, codes a world length; w: the share of it that had to be shortened. Codes hold nothing below a hundredth.
-vec4 normal_at(vec3 p, vec3 of_cell) {
-  if (SHADED != 2u) return vec4(frame.grids[0].world_gradient * of_cell, 0.0);
-  const vec4 texel = textureLod(gradients, (p + 0.5) / (frame.grids[0].hi + 1.0), 0.0);
+vec4 normal_at(Station at) {
+  if (SHADED != 2u) return vec4(frame.grids[0].world_gradient * at.s.gradient, 0.0);
+  vec3 place = (at.p + 0.5) / (frame.grids[0].hi + 1.0);
+  if (BRICKS != 0u) {
+    const vec3 brick = floor(clamp(floor(at.p), frame.grids[0].lo, frame.grids[0].hi - 1.0) * 0.125);
+    const float nodes = lattice.gradient_nodes;
+    place = (nodes * slot_of(at.s.brick) + 0.125 * (nodes - 1.0) * (at.p - 8.0 * brick) + 0.5) / vec3(textureSize(gradients, 0));
+    if (!is_kept(at.s.brick)) return vec4(0.0);
+  }
+  const vec4 texel = textureLod(gradients, place, 0.0);
   const vec3 counts = 255.0 * texel.rgb - 128.0;
   return dot(counts, counts) > 1e-4 ? vec4(frame.grids[0].world_gradient * (lattice.gradient_unit * counts), texel.a) : vec4(0.0);
 }
@@ -42,14 +55,6 @@ vec2 light_between(float a, float b, float across2) {
   return length2 > 0.0 ? light_at(min(1.0, sizes * inversesqrt(length2)), squares / length2) : vec2(0.2, 0.0);
 }
 
-// A sample of the ray at depth t, and what leads on from it.
-struct Station {
-  float t;
-  vec3 p;
-  PackedSample s;
-  float slope;  // codes a depth, along the ray
-};
-
 // What a march needs all along.
 struct March {
   LocalRay ray;
@@ -60,7 +65,7 @@ struct March {
 Station station_at(March m, float t) {
   Station at;
   at.t = t;
-  at.p = clamp(m.ray.origin + t * m.ray.direction, vec3(0.0), frame.grids[0].hi);
+  at.p = clamp(m.ray.origin + t * m.ray.direction, frame.grids[0].lo, frame.grids[0].hi);
   at.s = sample_packed(at.p);
   at.slope = dot(at.s.gradient, m.ray.direction);
   return at;
@@ -71,9 +76,10 @@ Station next_station(March m, Station from, out float curved) {
   float next = from.t + m.h;
   curved = 1.0;
   if (SKIPS != 0u) {
-    const vec3 brick = min(floor(from.p * (1.0 / SMALL_BRICK)), ceil(frame.grids[0].hi * (1.0 / SMALL_BRICK)) - 1.0);
-    const float d = float(texelFetch(plain_map, ivec3(brick), 0).r);
-    const vec3 way = (mix(brick + 1.0 - d, brick + d, m.ahead) * SMALL_BRICK - from.p) * m.inverse;
+    const float size = BRICKS != 0u ? 8.0 : SMALL_BRICK;
+    const vec3 brick = min(floor(from.p * (1.0 / size)), ceil(frame.grids[0].hi * (1.0 / size)) - 1.0);
+    const float d = float(BRICKS != 0u ? from.s.brick >> 24 & 127u : texelFetch(plain_map, ivec3(brick), 0).r);
+    const vec3 way = (mix(brick + 1.0 - d, brick + d, m.ahead) * size - from.p) * m.inverse;
     const float leave = min(min(way.x, way.y), way.z);
     if (d > 0.0 && leave > m.h) {
       next = from.t + leave;
@@ -84,7 +90,16 @@ Station next_station(March m, Station from, out float curved) {
   return station_at(m, next);
 }
 
+// Which halves of the segment between two samples are seen at all: that of a sample in an invalid cell is not, nor is what was leapt over
+// on the way to one or from one.
+bvec2 seen_halves(Station a, Station b, float curved) {
+  const bool both = a.s.valid && b.s.valid;
+  return MASKED == 0u ? bvec2(true) : bvec2(both || (curved != 0.0 && a.s.valid), both || (curved != 0.0 && b.s.valid));
+}
+
+// The code half way; of a segment with one end in an invalid cell that of the other end.
 float middle_code(Station a, Station b, float curved) {
+  if (MASKED != 0u && a.s.valid != b.s.valid) return a.s.valid ? a.s.code : b.s.code;
   return clamp(0.5 * (a.s.code + b.s.code) + curved * 0.125 * (b.t - a.t) * (a.slope - b.slope), 0.0, 255.0);
 }
 
@@ -114,7 +129,8 @@ vec4 march_packed(vec2 q, float end) {
       float curved;
       const Station e = next_station(m, s, curved);
       middle = middle_code(s, e, curved);
-      seen = between(s.s.code, middle).x + between(middle, e.s.code).x > 0.0;
+      const bvec2 halves = seen_halves(s, e, curved);
+      seen = (halves.x && between(s.s.code, middle).x > 0.0) || (halves.y && between(middle, e.s.code).x > 0.0);
       behind = e.t;
       code_behind = e.s.code;
       if (!seen) s = e;
@@ -124,10 +140,12 @@ vec4 march_packed(vec2 q, float end) {
     for (int k = 0; k < 3; ++k) {
       const float f = 0.5 * (dark + lit);
       const float code = mix(mix(s.s.code, middle, f), mix(middle, code_behind, f), f);
-      if (between(s.s.code, code).x > 0.0) lit = f; else dark = f;
+      bool in_front = between(s.s.code, code).x > 0.0;
+      if (MASKED != 0u && !s.s.valid) in_front = station_at(m, mix(s.t, behind, f)).s.valid;
+      if (in_front) lit = f; else dark = f;
     }
     if (behind > s.t) s = station_at(m, mix(s.t, behind, dark));
-    normal = normal_at(s.p, s.s.gradient);
+    normal = normal_at(s);
     along = dot(normal.xyz, along_ray);
     across2 = dot(normal.xyz, normal.xyz) - along * along;
   }
@@ -141,15 +159,27 @@ vec4 march_packed(vec2 q, float end) {
 
     // its two halves
     const float middle = middle_code(s, e, curved);
-    const vec4 first = between(s.s.code, middle), second = between(middle, e.s.code);
+    vec4 first = between(s.s.code, middle), second = between(middle, e.s.code);
+    if (MASKED != 0u) {
+      const bvec2 halves = seen_halves(s, e, curved);
+      if (!halves.x) first.x = 0.0;
+      if (!halves.y) second.x = 0.0;
+    }
     const float half_length = -0.5 * 1.44269504 * extent * world_per_depth;
     const float half_way = through * exp2(first.x * half_length);
     const float after = half_way * exp2(second.x * half_length);
     if (SHADED != 0u) {
-      const vec4 normal_end = normal_at(e.p, e.s.gradient);
+      vec4 normal_end = normal_at(e);
+      if (MASKED != 0u && !e.s.valid) normal_end = normal;
       const float along_end = dot(normal_end.xyz, along_ray), across2_end = dot(normal_end.xyz, normal_end.xyz) - along_end * along_end;
+      if (MASKED != 0u && !s.s.valid) {
+        normal = normal_end;
+        along = along_end;
+        across2 = across2_end;
+      }
       const float both = dot(normal.xyz, normal_end.xyz) - along * along_end, ends = along + along_end;
-      const float rise = (e.s.code - s.s.code) / (extent * world_per_depth);
+      float rise = (e.s.code - s.s.code) / (extent * world_per_depth);
+      if (MASKED != 0u && s.s.valid != e.s.valid) rise = 0.5 * ends;
       float along_middle = SHADED == 1u ? 1.5 * rise - 0.25 * ends : mix(0.5 * ends, 0.75 * rise + 0.125 * ends, by_rise);
       along_middle = mix(along_middle, 0.5 * ends, max(normal.w, normal_end.w));
       const vec2 l0 = light_between(along, along_middle, max(0.0, 0.5625 * across2 + 0.375 * both + 0.0625 * across2_end));

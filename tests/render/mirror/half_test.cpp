@@ -1,4 +1,4 @@
-#include "render/mirror/packed_volume.h"
+#include "render/mirror/half.h"
 
 #include <gtest/gtest.h>
 

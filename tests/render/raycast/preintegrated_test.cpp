@@ -36,9 +36,9 @@ TEST(Preintegrated, AnEmptyCodeIsEmptyAndASpikeBetweenIsSeen) {
   EXPECT_EQ(sigma(t, 0, 127), 0);
   EXPECT_EQ(sigma(t, 140, 255), 0);
   EXPECT_NEAR(sigma(t, 0, 255), 0.04, 0.004);  // its area over the range
-  EXPECT_EQ(t.look[0], t.look[127]);
-  EXPECT_EQ(t.look[133], t.look[255]);
-  EXPECT_NE(t.look[127], t.look[133]);
+  EXPECT_EQ(t.looks.look[0], t.looks.look[127]);
+  EXPECT_EQ(t.looks.look[133], t.looks.look[255]);
+  EXPECT_NE(t.looks.look[127], t.looks.look[133]);
 }
 
 TEST(Preintegrated, ActiveIsWhereThePictureDependsOnTheValue) {
@@ -54,9 +54,9 @@ TEST(Preintegrated, ShadedNothingVisibleIsPlainOrLeftOut) {
   TransferTable grey = flat;
   for (auto& c : grey.colors) c = {c[0], 0.5, 0.5, 0.5};
   const auto unlit = make_preintegrated(grey, 0, 1 / 255.0, false), lit = make_preintegrated(grey, 0, 1 / 255.0, true);
-  EXPECT_EQ(unlit.look[90], unlit.look[200]);
-  EXPECT_NE(lit.look[90], lit.look[200]);
-  EXPECT_EQ(lit.look[10], lit.look[70]);  // nothing is seen there
+  EXPECT_EQ(unlit.looks.look[90], unlit.looks.look[200]);
+  EXPECT_NE(lit.looks.look[90], lit.looks.look[200]);
+  EXPECT_EQ(lit.looks.look[10], lit.looks.look[70]);  // nothing is seen there
   EXPECT_EQ(unlit.entries, lit.entries);
   EXPECT_LT(active_interval(grey, {0, 1}, false).greatest, 0.32);
   EXPECT_EQ(active_interval(grey, {0, 1}, true).greatest, 1);

@@ -1,0 +1,118 @@
+/// What the fast raycast packs beside whole grids: grids with invalid cells, and large ones as bricks. Known pictures, and agreement with
+/// exact rays.
+#include <cmath>
+
+#include "render/frame/camera.h"
+#include "render/image/measure.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test {
+namespace packed_forms_test {
+
+using namespace catena::render;
+
+RenderSettings fast(double step, bool smooth = false) {
+  RenderSettings settings;
+  settings.fast = FastSettings{step, 1, 0, -1};
+  settings.fast->smooth_gradients = smooth;
+  return settings;
+}
+
+double covered_rmse(const Picture& found, const Picture& expected) { return measure_error(found, expected).rmse; }
+
+class PackedForms : public PictureTest {};
+
+TEST_F(PackedForms, AHomogeneousBodyEndsWhereItsCellsAreValid) {
+  const auto valid = [](const Vec3& p) { return p.x <= 15; };
+  const auto masked = make_grid(
+      {32, 16, 16}, [](const Vec3& p) { return p.x <= 15 ? 0.5 : std::nan(""); }, {}, valid);
+  const auto half = make_grid({16, 16, 16}, [](const Vec3&) { return 0.5; });
+  FramePacket packet = packet_of({55, -40, 35}, {10, 8, 8});
+  packet.volumes = {volume_item(masked, {{0, 0.2}, {1, 0.2}})};
+  ASSERT_TRUE(renderer_->draws_fast(packet));
+  const Picture found = draw(packet, fast(0.25), "half");
+  packet.volumes = {volume_item(half, {{0, 0.2}, {1, 0.2}})};
+  const Picture expected = draw(packet, fast(0.25));
+  // a segment that the mask cuts counts by halves: an eighth of a voxel
+  EXPECT_LE(max_difference(found, expected), 0.125 * 0.2 * 255 + 1);
+  EXPECT_LT(covered_rmse(found, expected), 2);
+}
+
+TEST_F(PackedForms, WhatIsMaskedOutIsNotSeenAndDoesNotLightItsNeighbours) {
+  const Vec3 c(23.5, 19.5, 21.5);
+  const auto valid = [&](const Vec3& p) { return p.y > 12 || length(p - c) < 10; };
+  const auto grid = make_grid(
+      {48, 40, 44},
+      [&](const Vec3& p) {
+        if (!valid(p)) return 7.0;  // never to be seen
+        return 0.5 + 0.5 * std::sin(0.31 * p.x) * std::cos(0.27 * p.y + 0.2 * p.z);
+      },
+      {}, valid);
+  FramePacket packet = packet_of({130, -100, 90}, {23.5, 19.5, 21.5});
+  for (const bool shade : {false, true}) {
+    packet.volumes = {volume_item(grid, {{0, 0}, {0.3, 0}, {1, 0.4}, {6, 0.4}, {7, 3}})};
+    packet.volumes[0].transfer.colors = {{0, 0.1, 0.1, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}, {7, 0, 1, 0}};
+    packet.volumes[0].shade = shade;
+    const Picture exact = draw(packet, reference_settings(), shade ? "exact-shaded" : "exact");
+    ASSERT_TRUE(renderer_->draws_fast(packet));
+    EXPECT_LT(covered_rmse(draw(packet, fast(0.5, shade), shade ? "fast-shaded" : "fast"), exact), shade ? 2.0 : 1.5);
+    EXPECT_LT(covered_rmse(draw(packet, fast(1, shade)), exact), shade ? 3.0 : 2.5);
+  }
+}
+
+/// Longer than a texture may be, so that it cannot be packed whole.
+class Bricks : public PackedForms {
+ protected:
+  static double wave(const Vec3& p) {
+    return 0.5 + 0.5 * std::sin(0.31 * p.x) * std::cos(0.27 * p.y + 0.2 * p.z) * std::exp(-1e-3 * (p.x - 44) * (p.x - 44));
+  }
+  GridPtr long_grid() const { return make_grid({std::int32_t(renderer_->device().info().limits.maxImageDimension3D) + 60, 40, 36}, wave); }
+  static FramePacket looking() {
+    FramePacket packet = packet_of({134, -90, 80}, {44, 19.5, 17.5}, 40);
+    packet.background = {0, 0, 0, 0};
+    return packet;
+  }
+};
+
+TEST_F(Bricks, AreDrawnAsExactRaysDrawThem) {
+  FramePacket packet = looking();
+  for (const bool shade : {false, true}) {
+    packet.volumes = {volume_item(long_grid(), {{0, 0}, {0.55, 0}, {1, 0.3}})};
+    packet.volumes[0].transfer.colors = {{0, 0.1, 0.1, 0.9}, {0.6, 0.9, 0.8, 0.1}, {1, 1, 0, 0}};
+    packet.volumes[0].shade = shade;
+    ASSERT_TRUE(renderer_->draws_fast(packet));
+    const Picture exact = draw(packet, reference_settings(), shade ? "exact-shaded" : "exact");
+    const Picture found = draw(packet, fast(0.5, shade), shade ? "fast-shaded" : "fast");
+    EXPECT_TRUE(renderer_->stats().notes.empty());
+    EXPECT_GT(measure_error(found, exact).covered, 0.15);
+    EXPECT_LT(covered_rmse(found, exact), shade ? 1.0 : 0.5);
+  }
+}
+
+TEST_F(Bricks, ThatATransferFunctionAsksForLaterArePackedThen) {
+  FramePacket packet = looking();
+  const GridPtr grid = long_grid();
+  const auto picture = [&](double from) {
+    packet.volumes = {volume_item(grid, {{0, 0}, {from, 0}, {1, 0.3}})};
+    return draw(packet, fast(1));
+  };
+  const Picture little = picture(0.9), much = picture(0.6), again = picture(0.9);
+  EXPECT_EQ(max_difference(little, again), 0);
+  EXPECT_GT(max_difference(little, much), 20);
+  packet.volumes[0].transfer.extinctions = {{0, 0}, {0.6, 0}, {1, 0.3}};
+  EXPECT_LT(covered_rmse(much, draw(packet, reference_settings())), 1.0);
+}
+
+TEST_F(Bricks, ThatDoNotFitAreDrawnExactlyAndSaid) {
+  FramePacket packet = looking();
+  packet.volumes = {volume_item(long_grid(), {{0, 0}, {0.6, 0}, {1, 0.3}})};
+  RenderSettings settings = fast(1);
+  settings.fast->most_bytes = 1000;
+  const Picture found = draw(packet, settings);
+  ASSERT_EQ(renderer_->stats().notes.size(), 1u);
+  EXPECT_NE(renderer_->stats().notes[0].find("is drawn by exact rays"), std::string::npos) << renderer_->stats().notes[0];
+  EXPECT_EQ(max_difference(found, draw(packet)), 0);
+}
+
+}  // namespace packed_forms_test
+}  // namespace catena::test
