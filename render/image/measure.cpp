@@ -6,6 +6,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/base/result.h"
+#include "engine/base/threads.h"
 
 namespace catena::render {
 namespace {
@@ -19,17 +20,17 @@ bool is_covered(const Picture& a, const Picture& b, std::size_t i) { return a.rg
 /// The least (or the greatest) of a disc about every pixel; what lies beyond the picture is left out.
 template <class Better>
 std::vector<float> of_disc(const std::vector<float>& from, int width, int height, Better&& better) {
-  std::vector<float> to(from.size());
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      float best = from[std::size_t(y) * width + x];
-      for (int dy = -kRadius; dy <= kRadius; ++dy)
+  std::vector<float> to = from;
+  parallel_for(std::size_t(height), 16, [&](std::size_t begin, std::size_t end) {
+    for (int y = int(begin); y < int(end); ++y)
+      for (int dy = -std::min(kRadius, y); dy <= std::min(kRadius, height - 1 - y); ++dy)
         for (int dx = -kRadius; dx <= kRadius; ++dx) {
-          if (dx * dx + dy * dy > kRadius * kRadius || x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
-          best = better(best, from[std::size_t(y + dy) * width + x + dx]);
+          if (dx * dx + dy * dy > kRadius * kRadius) continue;
+          float* here = &to[std::size_t(y) * width];
+          const float* there = &from[std::size_t(y + dy) * width];
+          for (int x = std::max(0, -dx); x < std::min(width, width - dx); ++x) here[x] = better(here[x], there[x + dx]);
         }
-      to[std::size_t(y) * width + x] = best;
-    }
+  });
   return to;
 }
 
@@ -38,8 +39,8 @@ std::vector<float> top_hat(const Picture& picture) {
   std::vector<float> bright(picture.rgba.size() / 4);
   for (std::size_t i = 0; i < bright.size(); ++i)
     bright[i] = float(picture.rgba[4 * i] + picture.rgba[4 * i + 1] + picture.rgba[4 * i + 2]) / 3;
-  const auto least = of_disc(bright, width, height, [](float a, float b) { return std::min(a, b); });
-  const auto opened = of_disc(least, width, height, [](float a, float b) { return std::max(a, b); });
+  const auto least = of_disc(bright, width, height, [](float a, float b) { return b < a ? b : a; });
+  const auto opened = of_disc(least, width, height, [](float a, float b) { return b > a ? b : a; });
   for (std::size_t i = 0; i < bright.size(); ++i) bright[i] -= opened[i];
   return bright;
 }

@@ -20,6 +20,7 @@ namespace {
 constexpr double kStepShare = 0.93;                             // of the error that ray steps may take
 constexpr double kDeviations = 2;                               // of the lattice's mean, that an estimate lies above it
 constexpr double kFarthest = 8;                                 // the 99.9 percentile, in errors
+constexpr double kThinGoal = 5;                                 // a thin part may lose that share of the error
 constexpr double kUneven = 1.1;                                 // of the ideal time: threads wait for each other
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
@@ -124,14 +125,20 @@ class Search {
     if (fast_) {
       CATENA_TRY(auto candidates, fast_candidates(e));
       std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
+      bool blurs[kPlans] = {};               // what is thin
       for (int drawn = 0; drawn < kMaxPictures && !candidates.empty(); candidates.erase(candidates.begin())) {
         // what interpolation cost at another step says whether this one is worth a picture
         const Candidate& next = candidates.front();
         std::optional<double>& before = failed[next.plan];
-        if (before && std::hypot(next.rays, *before) > e) continue;
+        if (blurs[next.plan] || (before && std::hypot(next.rays, *before) > e)) continue;
         CATENA_TRY(const Measured picture, of_picture(next.settings));
         ++drawn;
-        if (picture.good_for(e)) return choice(next.settings, picture.above, true);
+        if (picture.good_for(e)) {
+          CATENA_TRY(const bool keeps, keeps_what_is_thin(next.settings, e));
+          if (keeps) return choice(next.settings, picture.above, true);
+          blurs[next.plan] = true;
+          continue;
+        }
         // where a few pixels are far off, a shorter step will not mend it
         before = picture.above <= e ? e : std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
       }
@@ -169,6 +176,20 @@ class Search {
     converged.termination = 1e-4;
     CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
     return Done{};
+  }
+
+  /// Whether interpolation between rays leaves what is thin, and far enough up in the tail of errors, in the picture that was drawn last.
+  Result<bool> keeps_what_is_thin(const RenderSettings& settings, double e) {
+    if (settings.fast->spacing == 1) return true;
+    CATENA_TRY(const Picture picture, renderer_.read_back());
+    if (all_rays_.rgba.empty()) {
+      CATENA_CHECK(
+          renderer_.draw(packet_, fast_rung(std::min(1.0, settings.fast->step_voxels), 1, 0, -1, settings.fast->smooth_gradients)));
+      CATENA_TRY(all_rays_, renderer_.read_back());
+      ++pictures_;
+    }
+    const PictureError error = measure_error(picture, all_rays_, {packet_.background[0], packet_.background[1], packet_.background[2]});
+    return error.least_kept >= 1 - e / kThinGoal && error.p999 <= kFarthest * e;
   }
 
   struct Candidate {
@@ -213,7 +234,8 @@ class Search {
 
   Renderer& renderer_;
   FramePacket packet_;
-  Picture truth_;
+  Picture truth_;     ///< the rays of the lattice
+  Picture all_rays_;  ///< the fast raycast's without interpolation
   std::uint32_t spacing_ = 1;
   bool fast_ = false;
   int pictures_ = 0;
