@@ -104,6 +104,8 @@ class RayProbe {
   virtual Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) = 0;
   /// The fast raycast was tried with this packet's volume and had no memory for it.
   virtual bool has_refused(const FramePacket& packet) const = 0;
+  /// Of the last picture only the tiles were marched that something opaque had come to or left.
+  virtual bool has_kept() const = 0;
 
  protected:
   ~RayProbe() = default;

@@ -57,6 +57,7 @@ class RaycastPass final : public Pass, public RayProbe {
 
   RayProbe* probe() override { return this; }
   Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
+  bool has_kept() const override { return fast_ && fast_pass_->has_kept(); }
   bool has_refused(const FramePacket& packet) const override {
     return !refused_.reason.empty() && packet.volumes.size() == 1 && packet.volumes.front().grid->version() == refused_.version;
   }
@@ -186,13 +187,14 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   if (fast_) {
     const bool half = ends_at_half(frame);
     CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.picture.info().extent,
-                                    half ? nullptr : &targets.volume, opaque, targets.none));
+                                    half ? nullptr : &targets.volume, opaque, targets.none, frame.settings.keep));
     if (half) {
       frame.half_lattice = &fast_pass_->half();
       frame.half_area = area;
     }
     return Done{};
   }
+  if (fast_pass_) fast_pass_->forget_target();
   targets.begin(commands, target::volume, target::volume);
   CATENA_CHECK(record_exact(commands, frame, frame.rays, area));
   commands.end_pass();

@@ -175,16 +175,17 @@ Outcome Renderer::Parts::prepare(Frame& frame) {
     CATENA_CHECK(passes[i]->prepare(frame));
   }
   mirrors->drop_unused();
-  Bounds bounds;
+  Bounds bounds, of_rays;
   TargetSet needed = target::picture;
   for (Pass* pass : active()) {
     bounds.add(pass->bounds());
+    if (pass->probe()) of_rays.add(pass->bounds());
     const TargetSet writes = pass->use(frame).writes;
     frame.written |= writes;
     needed |= writes;
   }
   frame.written = 0;
-  frame.rays = CameraRays::make(frame.packet, bounds);
+  frame.rays = CameraRays::make(frame.packet, bounds, of_rays);
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
@@ -477,9 +478,10 @@ RenderStats Renderer::stats() const {
   stats.gpu_budget = device.info().memory_budget;
   stats.passes = parts_->drawn_passes;
   stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
-  for (const Pass* pass : parts_->active()) {
+  for (Pass* pass : parts_->active()) {
     stats.mirror_ms += pass->build_ms();
     if (std::string note = pass->note(); !note.empty()) stats.notes.push_back(std::move(note));
+    if (pass->probe()) stats.rays_kept = pass->probe()->has_kept();
   }
   stats.validation_messages = device.messages().count();
   return stats;

@@ -40,6 +40,7 @@ struct RenderStats {
   std::vector<MirrorCoarsening> mirror_coarsening;  ///< of the grids that do not fit into the memory budget
   std::uint64_t gpu_budget = 0;                     ///< bytes that may be held
   double mirror_ms = 0;                             ///< spent on building and uploading mirrors so far
+  bool rays_kept = false;                           ///< RenderSettings::keep has spared the last picture most of its rays
   std::vector<std::string> notes;         ///< what the last picture lacks, or was drawn otherwise than asked, and why, a sentence each
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };

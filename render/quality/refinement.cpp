@@ -17,8 +17,8 @@ struct Share {
 };
 Share share_of(const FastSettings& f) {
   if (f.spacing == 1) return {1, 0.03};
-  // a threshold of 1/255 leaves about a quarter of what is finer
-  const auto refined = [](double threshold_255) { return threshold_255 < 0 ? 0.0 : 0.25 / (0.25 + threshold_255); };
+  // a threshold of 3/255 leaves about a third of what is finer
+  const auto refined = [](double threshold_255) { return threshold_255 < 0 ? 0.0 : 1.5 / (1.5 + threshold_255); };
   const double half = f.spacing == 2 ? 1 : refined(f.refine_half_255), full = refined(f.refine_full_255);
   return {0.1 + 0.2 * half + 0.7 * full * half, 0.02 + (half > 0 ? 0.01 : 0) + (full > 0 ? 0.03 : 0)};
 }
@@ -53,18 +53,16 @@ std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
   if (kind.fast) {
     const bool smooth = kind.shaded;
     for (const double step : {8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0}) all.push_back(fast_rung(step, 4, -1, -1, smooth));
-    all.push_back(fast_rung(1, 4, 1, -1, smooth));
+    for (const double half : {6.0, 3.0}) all.push_back(fast_rung(1, 4, half, -1, smooth));
     all.push_back(fast_rung(1, 2, 0, -1, smooth));
-    if (kind.shaded) {
-      // light wants short steps more than it wants every pixel
+    // light wants short steps more than it wants every pixel
+    if (kind.shaded)
       for (const double step : {0.7, 0.5}) all.push_back(fast_rung(step, 2, 0, -1, smooth));
-      for (const double full : {3.0, 1.0, 0.5}) all.push_back(fast_rung(0.5, 2, 0, full, smooth));
-    } else {
-      for (const double full : {3.0, 1.0}) all.push_back(fast_rung(1, 2, 0, full));
-      all.push_back(fast_rung(0.7, 2, 0, 0.7));
-      all.push_back(fast_rung(1, 1, 0, -1));
-    }
-    for (const double step : {0.7, 0.5, 0.35, 0.25}) all.push_back(fast_rung(step, 1, 0, -1, smooth));
+    const double fine = kind.shaded ? 0.5 : 1;
+    for (const double full : {12.0, 4.0}) all.push_back(fast_rung(fine, 2, 0, full, smooth));
+    if (!kind.shaded)
+      for (const double step : {1.0, 0.7}) all.push_back(fast_rung(step, 1, 0, -1));
+    for (const double step : {0.5, 0.35, 0.25}) all.push_back(fast_rung(step, 1, 0, -1, smooth));
   } else {
     for (const double step : {4.0, 3.0, 2.0, 1.5, 1.0, 0.7, 0.5, 0.35}) all.push_back(exact_rung(step));
   }

@@ -27,7 +27,7 @@ shared::FogData fog_of(const CameraRays& rays) {
 
 }  // namespace
 
-CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds) {
+CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds, const Bounds& of_rays) {
   CameraRays rays;
   rays.camera = make_camera(packet.view, packet.width, packet.height, bounds);
   rays.forward = -rays.camera.back;
@@ -35,7 +35,7 @@ CameraRays CameraRays::make(const FramePacket& packet, const Bounds& bounds) {
   rays.lights = packet.lights;
   rays.fog = packet.fog;
   if (bounds.empty()) return rays;
-  rays.reference_depth = std::max(0.0, rays.view_depth(bounds.centre()));
+  rays.reference_depth = std::max(0.0, rays.view_depth((of_rays.empty() ? bounds : of_rays).centre()));
   double farthest = 0;
   for (int i = 0; i < 8; ++i) farthest = std::max(farthest, rays.view_depth(bounds.corner(i)));
   const double scale = std::max(farthest, bounds.diagonal());

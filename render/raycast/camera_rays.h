@@ -22,8 +22,8 @@ struct CameraRays {
   std::optional<FogItem> fog;
   std::uint32_t spacing = 1;  ///< fragment (i, j) is the ray of pixel (spacing i, spacing j)
 
-  /// `bounds` of everything drawn.
-  static CameraRays make(const FramePacket& packet, const Bounds& bounds);
+  /// `bounds` of everything drawn, and of what rays meet, from whose middle depths are counted, so that they stay while other things move.
+  static CameraRays make(const FramePacket& packet, const Bounds& bounds, const Bounds& of_rays = {});
   double view_depth(const Vec3& world) const { return dot(world - camera.position, forward); }
   shared::FrameData frame() const;
   /// The ray's part of a grid's data, `whole` being the mapping of the grid that was mirrored; the caller adds table, level, colour, id and

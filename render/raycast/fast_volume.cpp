@@ -86,13 +86,15 @@ constexpr std::uint32_t kFastVolumeTilesShader[] = {
 constexpr std::uint32_t kFastVolumeInterpolateShader[] = {
 #include "spirv/interpolate.comp.inc"
 };
-constexpr std::uint32_t kFastVolumeOpaqueShader[] = {
-#include "spirv/opaque_tiles.frag.inc"
+constexpr std::uint32_t kFastVolumeChangedShader[] = {
+#include "spirv/changed_tiles.vert.inc"
 };
 constexpr std::uint32_t kFastVolumeMarkShader[] = {
 #include "spirv/volume_blocks.frag.inc"
 };
 
+/// How far, in tiles of 16 pixels, what is opaque is felt by the lattices of a spacing: rays near it are marched, and interpolated between.
+constexpr int kReach[] = {0, 1, 3, 0, 6};
 constexpr double kLeapAbove = 0.15;  // share of plain bricks from which asking for leaps pays
 constexpr std::uint32_t kBlock = 4, kTileBlocks = 4;
 constexpr double kNever = 1e9;  // an error that interpolation never makes
@@ -141,6 +143,7 @@ Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
   FastVolumeRaycast self;
   self.device_ = &device;
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
+  CATENA_CHECK(fit(device, self.no_tiles_, VK_FORMAT_R8_UINT, 1, 1));
   vk::ImageInfo info;
   info.type = VK_IMAGE_TYPE_3D;
   info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -170,6 +173,7 @@ Outcome FastVolumeRaycast::prepare(const VolumeItem& item, const FastSettings& s
   const bool other_range = other_grid || !(active == active_);
   active_ = active;
   version_ = item.grid->version();
+  ++look_;
   CATENA_CHECK(whole ? pack_whole(item, gradients, other_range) : pack_bricks(item, other_range, settings.most_bytes));
   build_ms_ += ms_since(start);
   return Done{};
@@ -238,15 +242,17 @@ Outcome FastVolumeRaycast::ensure(Level& level, std::uint32_t spacing, const VkE
   return fit(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock);
 }
 
-Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constants, bool tiles) {
+Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constants, Tiles tiles) {
   vk::Pipeline& pipeline = pipelines_[{constants, tiles}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = tiles ? vk::Spirv(kFastVolumeTilesShader) : vk::Spirv(kFastVolumeVertexShader);
+    info.vertex = tiles == Tiles::all      ? vk::Spirv(kFastVolumeVertexShader)
+                  : tiles == Tiles::marked ? vk::Spirv(kFastVolumeTilesShader)
+                                           : vk::Spirv(kFastVolumeChangedShader);
     info.fragment = kFastVolumeFragmentShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture},
-                  {3, vk::Resource::texture}, {4, vk::Resource::texture}, {5, vk::Resource::texture},
-                  {6, vk::Resource::texture}, {7, vk::Resource::texture}, {8, vk::Resource::sampled}};
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture}, {3, vk::Resource::texture},
+                  {4, vk::Resource::texture}, {5, vk::Resource::texture}, {6, vk::Resource::texture}, {7, vk::Resource::texture},
+                  {8, vk::Resource::sampled}, {9, vk::Resource::texture}};
     info.constants.assign(constants.begin(), constants.end());
     // every pixel goes to the volume target, coarser lattices to their own
     info.colors = {constants[4] & 2u ? kVolumeFormat : kLatticeFormat};
@@ -254,28 +260,6 @@ Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constan
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
   return &pipeline;
-}
-
-Outcome FastVolumeRaycast::mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth) {
-  if (!tile_pipeline_) {
-    vk::GraphicsInfo info;
-    info.vertex = kFastVolumeVertexShader;
-    info.fragment = kFastVolumeOpaqueShader;
-    info.slots = {{0, vk::Resource::texture}};
-    info.colors = {VK_FORMAT_R8_UINT};
-    CATENA_TRY(tile_pipeline_, vk::Pipeline::create(*device_, info));
-  }
-  const VkExtent3D& extent = opaque_depth.info().extent;
-  CATENA_CHECK(
-      fit(*device_, opaque_tiles_, VK_FORMAT_R8_UINT, (extent.width + kBlock - 1) / kBlock, (extent.height + kBlock - 1) / kBlock));
-  const vk::ColorTarget target{&opaque_tiles_, std::array<float, 4>{0, 0, 0, 0}};
-  commands.begin_pass({&target, 1}, {});
-  const vk::Binding bindings[] = {{0, vk::Resource::texture, nullptr, &opaque_depth, nullptr}};
-  commands.bind(tile_pipeline_, bindings);
-  commands.draw_triangle();
-  commands.end_pass();
-  commands.use(opaque_tiles_, vk::kFragmentRead);
-  return Done{};
 }
 
 Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque) {
@@ -289,13 +273,11 @@ Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image&
     info.colors = {VK_FORMAT_R8_UINT};
     CATENA_TRY(pipe, vk::Pipeline::create(*device_, info));
   }
-  if (!opaque_tiles_) CATENA_CHECK(fit(*device_, opaque_tiles_, VK_FORMAT_R8_UINT, 1, 1));
-  commands.use(opaque_tiles_, vk::kFragmentRead);
   const vk::ColorTarget target{&level.marks, std::array<float, 4>{0, 0, 0, 0}};
   commands.begin_pass({&target, 1}, {});
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &level.data, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, &coarser, nullptr},
-                                  {2, vk::Resource::texture, nullptr, &opaque_tiles_, nullptr}};
+                                  {2, vk::Resource::texture, nullptr, opaque ? &opaque_->opaque() : &no_tiles_, nullptr}};
   commands.bind(pipe, bindings);
   commands.draw_triangle();
   commands.end_pass();
@@ -304,7 +286,7 @@ Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image&
 }
 
 /// The frame's data; grid 0 counts from the origin of what is packed.
-Outcome FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
+Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
   const auto narrow = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
   GridMirror place;
   if (bricks_) {
@@ -321,7 +303,8 @@ Outcome FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSetting
   frame.grids[0].clipped = item_.clipped;
   frame.termination = float(settings.termination);
   frame.step_world = float(settings.step_voxels * item_.grid->mapping().smallest_edge());
-  return vk::write_uniform(*device_, frame_, frame);
+  CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
+  return frame;
 }
 
 Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw& draw) {
@@ -332,58 +315,86 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw
                                                 draw.tiles));
   const vk::Image& gradients = bricks_ ? bricks_->atlas.gradients : gradients_.image;
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
-  if (draw.tiles) color.clear.reset();
+  if (draw.tiles != Tiles::all) color.clear.reset();
   commands.begin_pass({&color, 1}, {});
-  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &frame_, nullptr, nullptr},
-                                  {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
-                                  {2, vk::Resource::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.none, nullptr},
-                                  {3, vk::Resource::texture, nullptr, bricks_ ? &bricks_->atlas.words : &packed_.words, nullptr},
-                                  {4, vk::Resource::texture, nullptr, &table_, nullptr},
-                                  {5, vk::Resource::texture, nullptr, bricks_ ? &bricks_->atlas.map : &map_.image, nullptr},
-                                  {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
-                                  {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
-                                  {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients : &no_gradients_, &linear_}};
+  const vk::Binding bindings[] = {
+      {0, vk::Resource::uniform, &frame_, nullptr, nullptr},
+      {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
+      {2, vk::Resource::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.none, nullptr},
+      {3, vk::Resource::texture, nullptr, bricks_ ? &bricks_->atlas.words : &packed_.words, nullptr},
+      {4, vk::Resource::texture, nullptr, &table_, nullptr},
+      {5, vk::Resource::texture, nullptr, bricks_ ? &bricks_->atlas.map : &map_.image, nullptr},
+      {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
+      {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
+      {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients : &no_gradients_, &linear_},
+      {9, vk::Resource::texture, nullptr, draw.tiles == Tiles::changed ? &opaque_->changed() : &no_tiles_, nullptr}};
   commands.scissor(draw.area);
   commands.bind(*pipe, bindings);
-  if (draw.tiles) {
-    const VkExtent3D& marks = level.marks.info().extent;
-    const auto tiles = [](std::uint32_t blocks) { return (blocks + kTileBlocks - 1) / kTileBlocks; };
-    commands.draw(6, tiles(marks.width) * tiles(marks.height));
-  } else {
+  if (draw.tiles == Tiles::all) {
     commands.draw_triangle();
+  } else {
+    const VkExtent3D& texels = draw.target->info().extent;
+    const auto tiles = [](std::uint32_t count) { return (count + kBlock * kTileBlocks - 1) / (kBlock * kTileBlocks); };
+    commands.draw(6, tiles(texels.width) * tiles(texels.height));
   }
   commands.end_pass();
   return Done{};
 }
 
-Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area) {
-  if (!interpolate_pipeline_) {
+Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area, bool keep) {
+  vk::Pipeline& pipeline = interpolate_pipelines_[keep];
+  if (!pipeline) {
     vk::ComputeInfo info;
     info.shader = kFastVolumeInterpolateShader;
-    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::storage_image}};
-    CATENA_TRY(interpolate_pipeline_, vk::Pipeline::create(*device_, info));
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}, {2, vk::Resource::storage_image}, {3, vk::Resource::texture}};
+    info.constants = {keep};
+    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }
-  const vk::ColorTarget empty{&target, std::array<float, 4>{0, 0, 0, 0}};
-  commands.begin_pass({&empty, 1}, {});
-  commands.end_pass();
+  if (!keep) {
+    const vk::ColorTarget empty{&target, std::array<float, 4>{0, 0, 0, 0}};
+    commands.begin_pass({&empty, 1}, {});
+    commands.end_pass();
+  }
   const UpsampleGroups groups = upsample_groups(area, target.info().extent);
   CATENA_CHECK(vk::write_uniform(*device_, interpolate_data_, groups.data));
   commands.use(half, vk::kFragmentRead);
   commands.use(target, vk::kComputeWrite);
   const vk::Binding bindings[] = {{0, vk::Resource::uniform, &interpolate_data_, nullptr, nullptr},
                                   {1, vk::Resource::texture, nullptr, &half, nullptr},
-                                  {2, vk::Resource::storage_image, nullptr, &target, nullptr}};
-  commands.bind(interpolate_pipeline_, bindings);
+                                  {2, vk::Resource::storage_image, nullptr, &target, nullptr},
+                                  {3, vk::Resource::texture, nullptr, keep ? &opaque_->changed() : &no_tiles_, nullptr}};
+  commands.bind(pipeline, bindings);
   if (groups.x > 0 && groups.y > 0) commands.dispatch(groups.x, groups.y, 1);
   return Done{};
 }
 
+bool FastVolumeRaycast::Kept::is(const Kept& other) const {
+  shared::FrameData a = frame, b = other.frame;
+  // what only triangles ask for
+  a.depth_near = b.depth_near = a.depth_far = b.depth_far = 0;
+  return std::memcmp(&a, &b, sizeof(a)) == 0 && settings == other.settings && look == other.look && target == other.target &&
+         target_image == other.target_image && std::memcmp(&area, &other.area, sizeof(area)) == 0 && opaque == other.opaque;
+}
+
 Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
-                                  const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none) {
+                                  const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none,
+                                  bool keep) {
   CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
   CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
-  CATENA_CHECK(write_frame(rays, settings));
-  if (opaque_depth && settings.spacing > 1) CATENA_CHECK(mark_opaque(commands, *opaque_depth));
+  CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
+  const Kept now{frame, settings, look_, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr};
+  const bool still = has_kept_ = keep && target && kept_ && kept_->is(now);
+  kept_.reset();
+  commands.use(no_tiles_, vk::kShaderRead);
+  if (opaque_depth) {
+    if (!opaque_) opaque_.emplace(*device_);
+    CATENA_CHECK(opaque_->look(commands, *opaque_depth));
+    if (still) CATENA_CHECK(opaque_->find_changed(commands, kReach[settings.spacing]));
+  }
+  if (still && !opaque_depth) {
+    kept_ = now;
+    return Done{};
+  }
 
   // from the coarsest lattice to every pixel
   vk::Image* coarser = nullptr;
@@ -397,8 +408,11 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     const bool marches = !coarser || refine_255 >= 0;
     const VkExtent3D from = coarser ? coarser->info().extent : VkExtent3D{1, 1, 1};
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
+    const VkExtent3D& own = image.info().extent;
+    const bool refines = coarser && spacing == 1;
     const shared::LatticeData data{float(spacing), apron,           float(refine_255 / 255), from.width,
-                                   from.height,    gradient_unit(), gradient_nodes()};
+                                   from.height,    gradient_unit(), gradient_nodes(),        own.width,
+                                   own.height,     refines};
     CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
@@ -406,15 +420,16 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
       commands.use(level.marks, vk::kFragmentRead);
     }
     // most of the last step is interpolation: all of it first, then what is marked
-    const bool tiles = coarser && spacing == 1;
-    if (tiles) CATENA_CHECK(interpolate(commands, *coarser, image, area));
-    if (tiles && !marches) break;
+    if (refines) CATENA_CHECK(interpolate(commands, *coarser, image, area, still));
+    if (refines && !marches) break;
+    const Tiles tiles = still ? Tiles::changed : refines ? Tiles::marked : Tiles::all;
     CATENA_CHECK(draw(commands, level,
                       {&image, coarser, marches, tiles, shading(settings), settings.skip, lattice_area(area, spacing, image.info().extent),
                        opaque_depth, &none}));
     if (spacing > 1) commands.use(image, vk::kFragmentRead);
     coarser = &image;
   }
+  if (target) kept_ = now;
   return Done{};
 }
 
@@ -424,12 +439,12 @@ Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays
   CATENA_CHECK(write_frame(rays, settings));
   CATENA_CHECK(fit(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
-  CATENA_CHECK(
-      vk::write_uniform(*device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1, gradient_unit(), gradient_nodes()}));
+  CATENA_CHECK(vk::write_uniform(*device_, probe_.data,
+                                 shared::LatticeData{float(spacing), 0, 0, 1, 1, gradient_unit(), gradient_nodes(), 0, 0, 0}));
   const VkExtent3D& extent = target.info().extent;
   return draw(
       commands, probe_,
-      {&target, nullptr, true, false, shading(settings), settings.skip, {{0, 0}, {extent.width, extent.height}}, opaque_depth, &none});
+      {&target, nullptr, true, Tiles::all, shading(settings), settings.skip, {{0, 0}, {extent.width, extent.height}}, opaque_depth, &none});
 }
 
 }  // namespace catena::render

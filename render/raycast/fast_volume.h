@@ -14,6 +14,7 @@
 #include "render/mirror/packed_volume.h"
 #include "render/raycast/camera_rays.h"
 #include "render/raycast/render_settings.h"
+#include "render/raycast/still_tiles.h"
 #include "render/raycast/transfer_tables.h"
 #include "render/vk/commands.h"
 #include "shaders/shared/fast_volume.h"
@@ -31,9 +32,14 @@ class FastVolumeRaycast {
   Outcome prepare(const VolumeItem& item, const FastSettings& settings);
   /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;
   /// not within a pass. `opaque_depth` null: nothing opaque, `none` is bound instead; else pixels near it are always marched and
-  /// `target` is needed.
+  /// `target` is needed. `keep`: what `target` and the lattices hold since the last call stays where it would come out the same, to the
+  /// bit.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
-                 const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none);
+                 const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none, bool keep = false);
+  /// Whether the last call left most of it as it was.
+  bool has_kept() const { return has_kept_; }
+  /// Something else has drawn into the target.
+  void forget_target() { kept_.reset(); }
   /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
   Outcome record_probe(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, std::uint32_t spacing,
                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
@@ -49,8 +55,10 @@ class FastVolumeRaycast {
   };
   FastVolumeRaycast() = default;
   Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
+  /// Which tiles of a lattice are drawn: the others stay as they are.
+  enum class Tiles { all, marked, changed };
   using Constants = std::array<std::uint32_t, 7>;
-  Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
+  Result<const vk::Pipeline*> pipeline(const Constants& constants, Tiles tiles);
   Outcome pack_whole(const VolumeItem& item, bool gradients, bool other_range);
   Outcome pack_bricks(const VolumeItem& item, bool other_range, std::uint64_t most_bytes);
   Outcome upload_table(const PreintegratedTable& table);
@@ -58,15 +66,14 @@ class FastVolumeRaycast {
   std::uint32_t shading(const FastSettings& settings) const { return item_.shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
   float gradient_unit() const;
   float gradient_nodes() const { return bricks_ ? float(bricks_->atlas.gradient_nodes) : 0.0f; }
-  Outcome write_frame(const CameraRays& rays, const FastSettings& settings);
+  Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque);
-  Outcome mark_opaque(vk::Commands& commands, const vk::Image& opaque_depth);
   /// What draws a level: its target, the coarser one (or null) and whether rays are marched.
   struct Draw {
     vk::Image* target = nullptr;
     const vk::Image* coarser = nullptr;
     bool marches = true;
-    bool tiles = false;  ///< `target` is interpolated already: only marked tiles are drawn
+    Tiles tiles = Tiles::all;
     std::uint32_t shading = 0;
     bool skips = true;
     VkRect2D area{};
@@ -74,7 +81,18 @@ class FastVolumeRaycast {
     const vk::Image* none = nullptr;
   };
   Outcome draw(vk::Commands& commands, Level& level, const Draw& draw);
-  Outcome interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area);
+  Outcome interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area, bool keep);
+  /// What a picture of rays follows from, beside what is opaque.
+  struct Kept {
+    shared::FrameData frame;
+    FastSettings settings;
+    std::uint64_t look = 0;
+    const vk::Image* target = nullptr;
+    VkImage target_image = VK_NULL_HANDLE;
+    VkRect2D area{};
+    bool opaque = false;
+    bool is(const Kept& other) const;
+  };
 
   vk::Device* device_ = nullptr;
   VolumeItem item_;
@@ -95,11 +113,15 @@ class FastVolumeRaycast {
   vk::Sampler linear_;
   vk::Buffer frame_;
   Level quarter_, half_, full_, probe_;
-  std::map<std::pair<Constants, bool>, vk::Pipeline> pipelines_;
-  std::array<vk::Pipeline, 2> mark_pipelines_;  // without and with something opaque
-  vk::Pipeline tile_pipeline_, interpolate_pipeline_;
+  std::map<std::pair<Constants, Tiles>, vk::Pipeline> pipelines_;
+  std::array<vk::Pipeline, 2> mark_pipelines_;         // without and with something opaque
+  std::array<vk::Pipeline, 2> interpolate_pipelines_;  // of all, of what has changed
   vk::Buffer interpolate_data_;
-  vk::Image opaque_tiles_;
+  std::optional<StillTiles> opaque_;
+  vk::Image no_tiles_;
+  std::uint64_t look_ = 0;  ///< counts what is packed and how it looks
+  std::optional<Kept> kept_;
+  bool has_kept_ = false;
   double build_ms_ = 0;
 };
 

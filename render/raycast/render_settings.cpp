@@ -13,7 +13,7 @@ RenderSettings draft_settings() {
 
 RenderSettings balanced_settings() {
   RenderSettings s;
-  s.fast = FastSettings{1, 2, 0, 3};
+  s.fast = FastSettings{1, 2, 0, 6};
   s.fast->smooth_gradients = true;
   return s;
 }

@@ -1,13 +1,28 @@
 #version 460
 #extension GL_EXT_samplerless_texture_functions : require
-// Tiles of 4 x 4 pixels: 1 where something opaque is seen.
+// Tiles of 4 x 4 pixels: 1 where something opaque is seen; and a sign of their depths, by which those are known that have changed.
 layout(binding = 0) uniform texture2D opaque_depth;
 layout(location = 0) out uint out_mark;
+layout(location = 1) out uvec2 out_sign;
+
+// Two of the mixing steps of MurmurHash3 (A. Appleby), with other constants for the second half.
+uint mixed(uint h, uint word, uint by) {
+  h ^= word;
+  h *= by;
+  return h ^ (h >> 15);
+}
 
 void main() {
   const ivec2 first = 4 * ivec2(gl_FragCoord.xy), last = textureSize(opaque_depth, 0) - 1;
   float nearest = 3.0e38;
+  uvec2 hash = uvec2(0x9747b28cu, 0x3c6ef372u);
   for (int y = 0; y < 4; ++y)
-    for (int x = 0; x < 4; ++x) nearest = min(nearest, texelFetch(opaque_depth, min(first + ivec2(x, y), last), 0).r);
+    for (int x = 0; x < 4; ++x) {
+      const float depth = texelFetch(opaque_depth, min(first + ivec2(x, y), last), 0).r;
+      nearest = min(nearest, depth);
+      const uint word = floatBitsToUint(depth);
+      hash = uvec2(mixed(hash.x, word, 0x85ebca6bu), mixed(hash.y, word, 0xc2b2ae35u));
+    }
   out_mark = nearest < 3.0e38 ? 1u : 0u;
+  out_sign = hash;
 }

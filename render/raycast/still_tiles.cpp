@@ -1,0 +1,92 @@
+#include "render/raycast/still_tiles.h"
+
+namespace catena::render {
+
+namespace {
+
+constexpr std::uint32_t kStillTilesVertexShader[] = {
+#include "spirv/screen.vert.inc"
+};
+constexpr std::uint32_t kStillTilesOpaqueShader[] = {
+#include "spirv/opaque_tiles.frag.inc"
+};
+constexpr std::uint32_t kStillTilesChangedShader[] = {
+#include "spirv/changed_tiles.frag.inc"
+};
+
+constexpr std::uint32_t kStillBlock = 4, kStillTile = 16;
+constexpr VkFormat kSignFormat = VK_FORMAT_R32G32_UINT;
+
+/// An image of one texel for so many pixels each way.
+Outcome fit_tiles(vk::Device& device, vk::Image& image, VkFormat format, const VkExtent3D& picture, std::uint32_t pixels) {
+  const std::uint32_t width = (picture.width + pixels - 1) / pixels, height = (picture.height + pixels - 1) / pixels;
+  const VkExtent3D& have = image.info().extent;
+  if (image && have.width == width && have.height == height) return Done{};
+  vk::ImageInfo info;
+  info.format = format;
+  info.extent = {width, height, 1};
+  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  CATENA_TRY(image, vk::Image::create(device, info));
+  return Done{};
+}
+
+}  // namespace
+
+Outcome StillTiles::look(vk::Commands& commands, const vk::Image& opaque_depth) {
+  if (!look_) {
+    vk::GraphicsInfo info;
+    info.vertex = kStillTilesVertexShader;
+    info.fragment = kStillTilesOpaqueShader;
+    info.slots = {{0, vk::Resource::texture}};
+    info.colors = {VK_FORMAT_R8_UINT, kSignFormat};
+    CATENA_TRY(look_, vk::Pipeline::create(*device_, info));
+  }
+  const VkExtent3D& picture = opaque_depth.info().extent;
+  newest_ = 1 - newest_;
+  CATENA_CHECK(fit_tiles(*device_, opaque_, VK_FORMAT_R8_UINT, picture, kStillBlock));
+  CATENA_CHECK(fit_tiles(*device_, signs_[newest_], kSignFormat, picture, kStillBlock));
+  const std::array<float, 4> empty{0, 0, 0, 0};
+  const vk::ColorTarget targets[] = {{&opaque_, empty}, {&signs_[newest_], empty}};
+  commands.begin_pass(targets, {});
+  const vk::Binding bindings[] = {{0, vk::Resource::texture, nullptr, &opaque_depth, nullptr}};
+  commands.bind(look_, bindings);
+  commands.draw_triangle();
+  commands.end_pass();
+  commands.use(opaque_, vk::kFragmentRead);
+  commands.use(signs_[newest_], vk::kFragmentRead);
+  return Done{};
+}
+
+Outcome StillTiles::find(vk::Commands& commands, int reach, vk::Image& before, vk::Image& now, vk::Image& target) {
+  vk::Pipeline& pipeline = find_[reach];
+  if (!pipeline) {
+    vk::GraphicsInfo info;
+    info.vertex = kStillTilesVertexShader;
+    info.fragment = kStillTilesChangedShader;
+    info.slots = {{0, vk::Resource::texture}, {1, vk::Resource::texture}};
+    info.constants = {std::uint32_t(reach)};
+    info.colors = {VK_FORMAT_R8_UINT};
+    CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
+  }
+  const vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
+  commands.begin_pass({&color, 1}, {});
+  const vk::Binding bindings[] = {{0, vk::Resource::texture, nullptr, &before, nullptr},
+                                  {1, vk::Resource::texture, nullptr, &now, nullptr}};
+  commands.bind(pipeline, bindings);
+  commands.draw_triangle();
+  commands.end_pass();
+  commands.use(target, vk::kShaderRead);
+  return Done{};
+}
+
+Outcome StillTiles::find_changed(vk::Commands& commands, int reach) {
+  CATENA_ASSERT(reach > 0 && signs_[0] && signs_[1]);
+  const VkExtent3D& blocks = opaque_.info().extent;
+  const VkExtent3D picture{kStillBlock * blocks.width, kStillBlock * blocks.height, 1};
+  CATENA_CHECK(fit_tiles(*device_, near_, VK_FORMAT_R8_UINT, picture, kStillTile));
+  CATENA_CHECK(fit_tiles(*device_, changed_, VK_FORMAT_R8_UINT, picture, kStillTile));
+  CATENA_CHECK(find(commands, 0, signs_[1 - newest_], signs_[newest_], near_));
+  return find(commands, reach, near_, near_, changed_);
+}
+
+}  // namespace catena::render

@@ -1,0 +1,36 @@
+/// What is opaque in front of rays, tile by tile: where there is something, and where it is not what it was in the picture before. While
+/// nothing else changes, only the tiles near such places are marched again: a cursor moves over a still volume at little cost. Tiles are
+/// told by two 32-bit signs of their depths a block of 4 x 4 pixels. Frame thread only.
+#pragma once
+#include <array>
+#include <map>
+
+#include "render/vk/commands.h"
+#include "render/vk/pipeline.h"
+
+namespace catena::render {
+
+class StillTiles {
+ public:
+  explicit StillTiles(vk::Device& device) : device_(&device) {}
+  /// Looks at a picture's opaque depth: fills opaque(), and knows what was seen the last time.
+  Outcome look(vk::Commands& commands, const vk::Image& opaque_depth);
+  /// After look(): fills changed(), which holds the tiles that are at most `reach` tiles from one that has changed.
+  Outcome find_changed(vk::Commands& commands, int reach);
+  /// R8_UINT, by 4 x 4 pixels: 1 where something opaque is seen.
+  vk::Image& opaque() { return opaque_; }
+  /// R8_UINT, by 16 x 16 pixels.
+  vk::Image& changed() { return changed_; }
+
+ private:
+  Outcome find(vk::Commands& commands, int reach, vk::Image& before, vk::Image& now, vk::Image& target);
+
+  vk::Device* device_;
+  vk::Image opaque_, near_, changed_;
+  std::array<vk::Image, 2> signs_;
+  std::size_t newest_ = 0;
+  vk::Pipeline look_;
+  std::map<int, vk::Pipeline> find_;  ///< by reach
+};
+
+}  // namespace catena::render
