@@ -9,6 +9,7 @@ namespace catena {
 /// `normal` need not be unit.
 struct Plane {
   Vec3 point{0.0}, normal{0.0, 0.0, 1.0};
+  bool operator==(const Plane&) const = default;
 };
 
 /// Clip planes of one picture.

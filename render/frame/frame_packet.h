@@ -25,6 +25,7 @@ namespace catena::render {
 /// A part of the symmetric frustum of a view, or beyond it, in its half extents: an eye off the axis, a tile of a large picture.
 struct Window {
   double left = -1, right = 1, bottom = -1, top = 1;
+  bool operator==(const Window&) const = default;
 };
 
 struct View {
@@ -34,6 +35,7 @@ struct View {
   double height = 1;
   Window window{};
   double aspect = 0;  ///< width by height of the symmetric frustum; 0: as pixels are square
+  bool operator==(const View&) const = default;
 };
 
 /// A light from far away; `direction` points to it. In the world, or in the view: right, up, towards the eye.
@@ -78,6 +80,7 @@ struct TransferTable {
   std::vector<std::array<double, 2>> gradient_factors;
   double opacity_unit = 0;  ///< the length whose opacity a projection takes, world units; 0: the smallest voxel edge
   bool labels = false;      ///< values are whole numbers, each with a look of its own
+  bool operator==(const TransferTable&) const = default;
 };
 
 /// How a ray makes one colour of its values.
@@ -92,6 +95,7 @@ struct ColorSource {
   std::vector<std::array<double, 4>> colors;  ///< value, r, g, b
   bool labels = false;                        ///< values are whole numbers, each with a colour of its own; 0 is no label and has none
   bool spread = false;                        ///< where the nearest voxel is no label: the colour of the nearest one that is, of the cell
+  bool operator==(const ColorSource&) const = default;
 };
 
 struct VolumeItem {
@@ -102,6 +106,7 @@ struct VolumeItem {
   bool clipped = true;
   Projection projection = Projection::composite;
   std::optional<ColorSource> color_by{};  ///< composite only
+  bool operator==(const VolumeItem&) const = default;
 };
 
 struct IsosurfaceItem {

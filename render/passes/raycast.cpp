@@ -236,6 +236,11 @@ bool draws_rays(const FramePacket& packet) {
   return !packet.volumes.empty() || has_layers(packet) || std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent);
 }
 
+bool same_rays(const FramePacket& a, const FramePacket& b) {
+  return a.view == b.view && a.eyes.empty() && b.eyes.empty() && a.width == b.width && a.height == b.height && a.volumes == b.volumes &&
+         a.clip == b.clip;
+}
+
 const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return draws_rays(frame.packet) || !frame.layers.empty(); },
                              RaycastPass::create, target::volume};
 

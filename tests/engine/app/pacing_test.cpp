@@ -125,6 +125,22 @@ TEST(Pacing, AStatedErrorEndsTheRefinement) {
   EXPECT_TRUE(p.finished());
 }
 
+TEST(Pacing, APictureThatIsKeptIsAsGoodAsTheLastAndItsTimeTeachesNothing) {
+  Pacing p = pacing("time=50");
+  settle(p, kFast, 400);
+  const auto all = rest(p, kFast, 400);
+  ASSERT_TRUE(p.finished());
+  for (int k = 0; k < 20; ++k) {
+    const NextPicture kept = p.kept();
+    EXPECT_TRUE(kept.settings.keep);
+    EXPECT_EQ(kept.settings.fast, all.back().settings.fast);
+    EXPECT_EQ(kept.scale, all.back().scale);
+    p.drawn(0.5);  // hardly anything was marched
+  }
+  // or the next that moves would come far too late
+  EXPECT_LE(time_of(p.moving(kFast), 400), 50);
+}
+
 TEST(Pacing, ASceneWithoutRaysIsDrawnOnceMoreAtMost) {
   Pacing p = pacing("time=50");
   settle(p, kNoRays, 1);

@@ -73,6 +73,14 @@ std::optional<NextPicture> Pacing::still(const SceneKind& kind) {
   return current_;
 }
 
+NextPicture Pacing::kept() {
+  // what it takes says nothing of its setting
+  asked_ = false;
+  NextPicture next = current_;
+  next.settings.keep = true;
+  return next;
+}
+
 NextPicture Pacing::best(const SceneKind& kind) {
   while (still(kind)) {
   }

@@ -2,6 +2,7 @@
 /// logic, without window and clock.
 ///   moves:  the best setting whose expected time fits the budget (time=MS: MS, else kBudgetMs); where even the cheapest takes
 ///           longer, fewer pixels
+///   a hand moves, and nothing that rays meet: as good as the last picture (RenderSettings::keep)
 ///   still:  time=MS: quarter -> half -> every pixel; error=E: the same until a picture's estimated error is at most E;
 ///           draft, balanced, reference, step=VOXELS: that setting at once
 #pragma once
@@ -41,6 +42,8 @@ class Pacing {
   NextPicture moving(const SceneKind& kind);
   /// The picture after the last, with nothing changed; nothing: it was the last.
   std::optional<NextPicture> still(const SceneKind& kind);
+  /// The picture after nothing but opaque things has moved: as good as the last one, what has not changed of it is kept.
+  NextPicture kept();
   /// The picture that still() would end with.
   NextPicture best(const SceneKind& kind);
   /// The last one.

@@ -84,7 +84,8 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   }
   const std::uint32_t scale = render::is_interlaced(render::packing_of(shared_.scene.scene().stereo)) ? 1 : next.scale;
   std::int64_t start = now_ns();
-  auto packet = this->packet(width / scale, height / scale);
+  auto packet = ahead_ && !for_file ? Result<render::FramePacket>(std::move(*ahead_)) : this->packet(width / scale, height / scale);
+  ahead_.reset();
   if (!packet) {
     // at the start it is the scene's fault; later an edit's, and the last picture stands
     if (shared_.times.count() == 0) return Failure{2, packet.error().message};
@@ -120,6 +121,15 @@ void PictureView::tell_notes() const {
   const render::RenderStats stats = screen_->renderer().stats();
   for (const std::string& note : stats.notes) tell_from_catena(note);
   for (const render::MirrorCoarsening& coarser : stats.mirror_coarsening) tell(coarser.words());
+}
+
+NextPicture PictureView::followed() {
+  Pacing& pacing = shared_.pacing;
+  if (!shown_ || !kind_.fast || pacing.again().scale != 1) return moving();
+  auto packet = this->packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
+  if (!packet || !render::same_rays(*packet, *shown_)) return moving();
+  ahead_ = std::move(*packet);
+  return pacing.kept();
 }
 
 std::optional<Failure> PictureView::estimate() {

@@ -36,6 +36,8 @@ class PictureView {
   /// The best that the scene can be drawn with.
   NextPicture best() { return shared_.pacing.best(kind_); }
   NextPicture moving() { return shared_.pacing.moving(kind_); }
+  /// The picture after the hand has moved: as good as the last where rays meet what they met, else as while something moves.
+  NextPicture followed();
   std::optional<NextPicture> still() { return shared_.pacing.still(kind_); }
   /// The error of the picture that is at rest, once.
   std::optional<Failure> estimate();
@@ -75,6 +77,7 @@ class PictureView {
   std::unique_ptr<Screen> screen_;
   std::array<std::uint32_t, 4> pixels_{};     ///< where the picture lies in the window
   std::optional<render::FramePacket> shown_;  ///< the last picture's
+  std::optional<render::FramePacket> ahead_;  ///< the next one's, where followed() has made it
   SceneKind kind_;                            ///< the last picture's
   bool picked_stale_ = true;                  ///< the place under the pointer is to be looked at again
   bool damaged_ = false;

@@ -167,12 +167,18 @@ bool Session::goes_on() const {
 }
 
 /// In time while something moves, better ones when it rests; nothing where the last one stands.
-std::optional<NextPicture> Session::next_picture(bool moved) {
+std::optional<NextPicture> Session::next_picture(bool moved, bool hand_moved) {
   const ViewOptions& options = shared_.options;
   const double rest_s = s_since(last_change_ns_);
   if (options.frames > 0 && shared_.times.count() + 1 == options.frames) return picture_.best();
   if (moved) return picture_.moving();
-  return rest_s >= kRestS ? picture_.still() : std::nullopt;
+  if (!hand_moved) return rest_s >= kRestS ? picture_.still() : std::nullopt;
+  const NextPicture next = picture_.followed();
+  if (!next.settings.keep) last_change_ns_ = now_ns();
+  // better ones come while a hand is at work, too
+  if (next.settings.keep && rest_s >= kRestS)
+    if (auto better = picture_.still()) return better;
+  return next;
 }
 
 std::optional<Failure> Session::run() {
@@ -199,11 +205,11 @@ std::optional<Failure> Session::run() {
     const bool pulsed = run_pulses(), reloaded = picture_.take_shaders();
     const bool turned = eye_.move(flies ? shared_.window.held_keys() : FlyKeys{});
     const bool resized = picture_.is_stale() || picture_.lay_out();
-    const bool moved = by_input.any() || std::exchange(changed_, false) || opened || edited || news || resized || pulsed || reloaded ||
-                       turned || shared_.times.count() == 0;
+    const bool moved = by_input.view || std::exchange(changed_, false) || opened || edited || resized || pulsed || reloaded || turned ||
+                       shared_.times.count() == 0;
     if (moved) last_change_ns_ = now_ns();
 
-    auto next = next_picture(moved);
+    auto next = next_picture(moved, news || by_input.hand);
     if (!next && s_since(last_change_ns_) >= kEstimateS && std::exchange(wants_error_, false))
       if (auto failure = picture_.estimate()) return failure;
     if (!next && (options.frames > 0 || options.seconds > 0)) next = shared_.pacing.again();

@@ -29,7 +29,7 @@ class Session {
  private:
   // the loop
   bool goes_on() const;
-  std::optional<NextPicture> next_picture(bool moved);
+  std::optional<NextPicture> next_picture(bool moved, bool hand_moved);
   bool take_edits();
   void keep_widgets();
   void look_for_pulses();
