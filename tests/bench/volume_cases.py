@@ -7,6 +7,7 @@ usage: volume_cases.py -o DIR [--size N] [--ct Cranium.inv3] [NAME ...]
   fog            smooth noise, 95 % of it cut away
   head           T1 image (ch2), value / 160, at most 1
   bone           CT of a skull, Hounsfield units, made isotropic
+                 (both with two voxels of nothing around: where opaque things are cut by the box, renderers begin at different depths)
   angiogram      vessels of 1 to 4 voxels and measurement noise
   embryo, heart  thin membranes around soft bodies
 Every case is the same bytes each time."""
@@ -115,7 +116,7 @@ def head():
     size, kind, begin = np.frombuffer(data, "<i2", 3, 42).astype(int), np.frombuffer(data, "<i2", 1, 70)[0], np.frombuffer(data, "<f4", 1, 108)[0]
     if kind != 2:
         sys.exit(f"{HEAD}: expected unsigned bytes")
-    return np.minimum(np.frombuffer(data, np.uint8, size.prod(), int(begin)).reshape(size[::-1]) / 160, 1)
+    return np.pad(np.minimum(np.frombuffer(data, np.uint8, size.prod(), int(begin)).reshape(size[::-1]) / 160, 1), 2)
 
 
 def bone(path):
@@ -124,7 +125,8 @@ def bone(path):
         about = plistlib.load(tar.extractfile(member["main.plist"]))
         raw = np.frombuffer(tar.extractfile(member["matrix.dat"]).read(), np.dtype(about["matrix"]["dtype"]))
     sx, _, sz = about["spacing"]
-    return ndimage.zoom(raw.reshape(about["matrix"]["shape"]).astype(np.float32), (sz / sx, 1, 1), order=1)
+    values = ndimage.zoom(raw.reshape(about["matrix"]["shape"]).astype(np.float32), (sz / sx, 1, 1), order=1)
+    return np.pad(values, 2, constant_values=values.min())
 
 
 # name -> (field, colour, opacity, unit in voxels; 0: a 128th of the edge)

@@ -5,7 +5,8 @@ usage: volume_peers.py --peer NAME=COMMAND ... --cases DIR -o OUT [--only CASE .
 A peer is a program that draws what it is asked for (peers/protocol.h); NAME is ours, vtk-gpu, vtk-cpu or ospray and picks its settings
 below. The settings of all peers alternate; every round draws an orbit of `views` pictures of each (and one before that is not timed).
 Times are medians: processor milliseconds by two (two threads: the ideal wall time) and wall milliseconds. Errors are taken at azimuth 30
-against that peer's own converged picture (peers/picture_error.py); how far that one is from the next lower setting is given as `left`.
+against that peer's own converged picture (peers/picture_error.py): steps are halved until a picture is within an RMSE of 0.3 of the one
+before or takes longer than a minute; how far it is from the one before is given as `left`.
 The time at an error is read off the lower envelope of a peer's settings, straight in the logarithms of both; `<` means that the quickest
 setting is better already, `-` that none is as good. The converged pictures of two peers should agree within an RMSE of 1; otherwise the
 table says `differs` and why. Of ratios, `<` and `>` say where one of both times is that of a quickest setting, `~` where both are.
@@ -18,26 +19,30 @@ import numpy as np
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "peers"))
 from picture_error import flicker, picture_error, rmse
 
-VIEW, LEVELS, AGREE, SLOW_MS = 30, (1, 2, 4), 1, 2000
-# peer -> converged, the next lower one, settings
+VIEW, LEVELS, AGREE = 30, (1, 2, 4), 1
+LEFT, SLOW_MS, LONG_MS = .3, 2000, 60000
+# peer -> settings that converge, each about twice as good as the one before; settings that are compared
 MODES = {
-    "ours": ("reference=0.05", "reference=0.1", "draft; balanced; error=8; error=4; error=2; error=1; error=0.5; exact=1; exact=0.5"),
-    "vtk-gpu": ("gpu 0.05 1", "gpu 0.1 1", "gpu 4 2; gpu 2 2; gpu 1 2; gpu 0.5 2; gpu 4 1; gpu 2 1; gpu 1 1; gpu 0.5 1; gpu 0.25 1"),
+    "ours": ("reference=0.2; reference=0.1; reference=0.05; reference=0.025; reference=0.0125",
+             "draft; balanced; error=8; error=4; error=2; error=1; error=0.5; exact=1; exact=0.5"),
+    "vtk-gpu": ("gpu 0.2 1; gpu 0.1 1; gpu 0.05 1; gpu 0.025 1",
+                "gpu 4 2; gpu 2 2; gpu 1 2; gpu 0.5 2; gpu 4 1; gpu 2 1; gpu 1 1; gpu 0.5 1; gpu 0.25 1"),
     # its fixed-point numbers lose more at every step: below 0.5 voxels it moves away from the others again
-    "vtk-cpu": ("cpu 0.5 1", "cpu 0.7 1", "cpu 4 2; cpu 2 2; cpu 1 2; cpu 0.5 2; cpu 4 1; cpu 2 1; cpu 1.4 1; cpu 1 1"),
-    "ospray": ("samplingRate=16 pixelSamples=4 minContribution=0.0001", "samplingRate=8 pixelSamples=4 minContribution=0.0001",
-               "samplingRate=0.25 pixelSamples=1; samplingRate=0.5 pixelSamples=1; samplingRate=1 pixelSamples=1; samplingRate=2 pixelSamples=1; "
-               "samplingRate=4 pixelSamples=1; samplingRate=8 pixelSamples=1; samplingRate=1 pixelSamples=4"),
+    "vtk-cpu": ("cpu 0.7 1; cpu 0.5 1", "cpu 4 2; cpu 2 2; cpu 1 2; cpu 0.5 2; cpu 4 1; cpu 2 1; cpu 1.4 1; cpu 1 1"),
+    "ospray": ("samplingRate=4 pixelSamples=4 minContribution=0.0001; samplingRate=8 pixelSamples=4 minContribution=0.0001; "
+               "samplingRate=16 pixelSamples=4 minContribution=0.0001; samplingRate=32 pixelSamples=4 minContribution=0.0001",
+               "samplingRate=0.25 pixelSamples=1; samplingRate=0.5 pixelSamples=1; samplingRate=1 pixelSamples=1; "
+               "samplingRate=2 pixelSamples=1; samplingRate=4 pixelSamples=1; samplingRate=8 pixelSamples=1; samplingRate=1 pixelSamples=4"),
 }
-FLICKER = {"ours": ("balanced", "error=2")}
+FLICKER = {"ours": ("reference=0.1", ("balanced", "error=2"))}
 # why converged pictures of a peer are others than ours: (peer, shaded)
 CAUSES = {
     ("ospray", False): "the last part of a way through what is seen, shorter than a step, is left out",
     ("ospray", True): "no highlight on volumes, the gradient of the cell for central differences, light from one direction for the whole picture",
     ("vtk-gpu", False): "rays begin a step behind the face of the box",
     ("vtk-gpu", True): "rays begin a step behind the face of the box",
-    ("vtk-cpu", False): "its picture is stretched to its place by 0.1 %, up to 0.4 pixels off; fixed-point sums, brighter the smaller the step",
-    ("vtk-cpu", True): "light from one direction for the whole picture, interpolated from the corners of a cell; stretched by 0.1 %; fixed-point sums",
+    ("vtk-cpu", False): "its picture is stretched by 0.1 %, up to 0.4 pixels off; fixed-point sums, brighter the smaller the step",
+    ("vtk-cpu", True): "light from one direction for the whole picture, interpolated from corners of cells; stretched by 0.1 %; fixed-point sums",
 }
 
 
@@ -74,8 +79,9 @@ class Peer:
 
 
 def modes_of(name, changed):
-    best, lower, modes = MODES[name]
-    return best, lower, [m.strip() for m in (changed.get(name) or modes).split(";")]
+    """Settings that converge, settings that are compared."""
+    best, modes = MODES[name]
+    return [[m.strip() for m in text.split(";")] for text in (best, changed.get(name) or modes)]
 
 
 def curve(settings, key):
@@ -108,18 +114,24 @@ def fingerprint(case, names, args):
     return digest.hexdigest()
 
 
-def converge(peer, best, lower, folder):
-    answer = peer.draw(best, [VIEW], f"{folder}/{peer.name}.npy", 0)
-    peer.draw(lower, [VIEW], f"{folder}/{peer.name}-lower.npy", 0)
-    picture = np.load(f"{folder}/{peer.name}.npy")
-    return picture, {"mode": best, "ms": answer["wall_ms"][0], "left": rmse(np.load(f"{folder}/{peer.name}-lower.npy"), picture)}
+def converge(peer, ladder, folder):
+    """Better and better pictures, until one is as the one before, or takes too long."""
+    last, tried = None, []
+    for mode in ladder:
+        tried.append({"mode": mode, "ms": peer.draw(mode, [VIEW], f"{folder}/{peer.name}.npy", 0)["wall_ms"][0]})
+        picture = np.load(f"{folder}/{peer.name}.npy")
+        tried[-1]["left"] = rmse(last, picture) if last is not None else 255.
+        if tried[-1]["left"] <= LEFT or tried[-1]["ms"] > LONG_MS:
+            break
+        last = picture
+    return picture, tried[-1]
 
 
 def run_case(peers, args, folder):
     out, pictures, plan = {}, {}, []
     for peer in peers:
-        best, lower, modes = modes_of(peer.name, args.changed)
-        pictures[peer.name], converged = converge(peer, best, lower, folder)
+        ladder, modes = modes_of(peer.name, args.changed)
+        pictures[peer.name], converged = converge(peer, ladder, folder)
         out[peer.name] = {"converged": converged, "settings": [{"mode": m, "cpu": [], "wall": []} for m in modes]}
         plan += [((k + .5) / len(modes), peer, s) for k, s in enumerate(out[peer.name]["settings"])]
     azimuths = [(360 * k / args.views + 7) % 360 for k in range(args.views - 1)] + [VIEW]
@@ -143,12 +155,12 @@ def run_case(peers, args, folder):
     if args.flicker:
         for peer in peers:
             if peer.name in FLICKER:
-                out[peer.name]["flicker"] = measure_flicker(peer, folder)
+                out[peer.name]["flicker"] = measure_flicker(peer, *FLICKER[peer.name], folder)
     return out
 
 
-def measure_flicker(peer, folder):
-    """0.2 degrees a frame, 20 frames, against the next lower one than the converged."""
+def measure_flicker(peer, truth, modes, folder):
+    """0.2 degrees a frame, 20 frames."""
     def frames(mode):
         out = []
         for k in range(20):
@@ -156,8 +168,8 @@ def measure_flicker(peer, folder):
             out.append(np.load(f"{folder}/frame.npy"))
         return out
 
-    truth = frames(MODES[peer.name][1])
-    measured = {mode: flicker(frames(mode), truth) for mode in FLICKER[peer.name]}
+    converged = frames(truth)
+    measured = {mode: flicker(frames(mode), converged) for mode in modes}
     os.remove(f"{folder}/frame.npy")
     return measured
 
