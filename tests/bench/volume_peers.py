@@ -24,7 +24,8 @@ LEFT, SLOW_MS, LONG_MS = .3, 2000, 60000
 # peer -> settings that converge, each about twice as good as the one before; settings that are compared
 MODES = {
     "ours": ("reference=0.2; reference=0.1; reference=0.05; reference=0.025; reference=0.0125",
-             "draft; balanced; error=8; error=4; error=2; error=1; error=0.5; exact=1; exact=0.5"),
+             "draft; balanced; error=8; error=4; error=2; error=1; error=0.5; exact=1; exact=0.5; "
+             "fast=0.5,1,0,-1,smooth; fast=0.25,1,0,-1,smooth"),
     "vtk-gpu": ("gpu 0.2 1; gpu 0.1 1; gpu 0.05 1; gpu 0.025 1",
                 "gpu 4 2; gpu 2 2; gpu 1 2; gpu 0.5 2; gpu 4 1; gpu 2 1; gpu 1 1; gpu 0.5 1; gpu 0.25 1"),
     # its fixed-point numbers lose more at every step: below 0.5 voxels it moves away from the others again
@@ -32,7 +33,8 @@ MODES = {
     "ospray": ("samplingRate=4 pixelSamples=4 minContribution=0.0001; samplingRate=8 pixelSamples=4 minContribution=0.0001; "
                "samplingRate=16 pixelSamples=4 minContribution=0.0001; samplingRate=32 pixelSamples=4 minContribution=0.0001",
                "samplingRate=0.25 pixelSamples=1; samplingRate=0.5 pixelSamples=1; samplingRate=1 pixelSamples=1; "
-               "samplingRate=2 pixelSamples=1; samplingRate=4 pixelSamples=1; samplingRate=8 pixelSamples=1; samplingRate=1 pixelSamples=4"),
+               "samplingRate=2 pixelSamples=1; samplingRate=4 pixelSamples=1; samplingRate=8 pixelSamples=1; "
+               "samplingRate=16 pixelSamples=1; samplingRate=1 pixelSamples=4"),
 }
 FLICKER = {"ours": ("reference=0.1", ("balanced", "error=2"))}
 # why converged pictures of a peer are others than ours: (peer, shaded)
