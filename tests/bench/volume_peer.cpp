@@ -1,0 +1,109 @@
+/// Catena as a peer of volume_peers.py (tests/bench/peers/protocol.h):   volume_peer CASE.json
+///   mode: error=E | time=MS | draft | balanced | reference[=STEP] | exact=STEP | fast=STEP,SPACING,REFINE_HALF,REFINE_FULL[,smooth]
+///   (1/255; < 0: nowhere)
+/// The settings of error=E and time=MS are chosen once, at the azimuth of the picture that is kept. The note of an answer says which,
+/// what they were expected to take and to err, and the memory held on the device.
+#include <cstdio>
+#include <cstdlib>
+
+#include "engine/field/grid.h"
+#include "render/image/measure.h"
+#include "render/quality/quality.h"
+#include "tests/bench/peers/protocol.h"
+
+namespace {
+
+using namespace catena;
+
+constexpr int kFinePoints = 64;  // from one opacity point to the next: opacity is linear there, extinction is not
+
+render::FramePacket packet_of(const peers::Case& given) {
+  render::VolumeItem item;
+  item.grid = field::make_scalar_grid("density", {}, {given.dims[0], given.dims[1], given.dims[2]}, given.values);
+  for (const auto& p : given.colour) item.transfer.colors.push_back({p[0], p[1], p[2], p[3]});
+  for (std::size_t i = 0; i < given.opacity.size(); ++i)
+    for (int k = 0; k < (i + 1 < given.opacity.size() ? kFinePoints : 1); ++k) {
+      const double value = k == 0 ? given.opacity[i][0] : std::lerp(given.opacity[i][0], given.opacity[i + 1][0], double(k) / kFinePoints);
+      item.transfer.extinctions.push_back({value, given.extinction(value)});
+    }
+  item.shade = given.shade;
+  render::FramePacket packet;
+  packet.volumes.push_back(item);
+  packet.background[3] = 0;
+  packet.width = std::uint32_t(given.width);
+  packet.height = std::uint32_t(given.height);
+  packet.view.fovy_deg = given.fovy_deg;
+  packet.view.target = given.middle();
+  return packet;
+}
+
+class Ours : public peers::Peer {
+ public:
+  Ours(const peers::Case& given, std::unique_ptr<render::Renderer> renderer)
+      : given_(given), renderer_(std::move(renderer)), packet_(packet_of(given)) {}
+
+  Outcome set_mode(const std::string& mode, double azimuth_deg) override {
+    note_.clear();
+    settings_ = {};
+    if (mode.starts_with("error=") || mode.starts_with("time=")) return choose(mode, azimuth_deg);
+    if (mode == "draft") {
+      settings_ = render::draft_settings();
+    } else if (mode == "balanced") {
+      settings_ = render::balanced_settings();
+    } else if (mode.starts_with("reference")) {
+      settings_ = render::reference_settings();
+      std::sscanf(mode.c_str(), "reference=%lf", &settings_.step_voxels);
+    } else if (std::sscanf(mode.c_str(), "exact=%lf", &settings_.step_voxels) != 1) {
+      render::FastSettings f;
+      if (std::sscanf(mode.c_str(), "fast=%lf,%u,%lf,%lf", &f.step_voxels, &f.spacing, &f.refine_half_255, &f.refine_full_255) != 4)
+        return Error{
+            mode +
+            ": expected error=E, time=MS, draft, balanced, reference[=STEP], exact=STEP or fast=STEP,SPACING,REFINE_HALF,REFINE_FULL"};
+      f.smooth_gradients = mode.ends_with(",smooth");
+      settings_.fast = f;
+    }
+    return Done{};
+  }
+
+  Outcome draw(double azimuth_deg) override {
+    packet_.view.position = given_.eye(azimuth_deg);
+    return renderer_->draw(packet_, settings_);
+  }
+
+  Result<std::vector<std::uint8_t>> picture() override {
+    CATENA_TRY(const render::Picture picture, renderer_->read_back());
+    return render::over(picture, {}).rgba;
+  }
+
+  std::string note() override {
+    return fmt::format("{}{}, {:.0f} MiB", note_, render::describe(settings_), double(renderer_->stats().gpu_bytes) / (1 << 20));
+  }
+
+ private:
+  Outcome choose(const std::string& mode, double azimuth_deg) {
+    using Kind = render::QualityGoal::Kind;
+    const Kind kind = mode.starts_with("error=") ? Kind::error : Kind::time;
+    packet_.view.position = given_.eye(azimuth_deg);
+    const std::int64_t start = now_ns();
+    CATENA_TRY(const render::QualityChoice choice,
+               render::choose_quality(*renderer_, packet_, {kind, std::atof(mode.c_str() + mode.find('=') + 1)}));
+    settings_ = choice.settings;
+    note_ = fmt::format("chosen in {:.0f} ms, estimated {:.2f}: ", ms_since(start), choice.estimated_rmse);
+    return Done{};
+  }
+
+  const peers::Case& given_;
+  std::unique_ptr<render::Renderer> renderer_;
+  render::FramePacket packet_;
+  render::RenderSettings settings_;
+  std::string note_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return peers::serve(argc, argv, [](const peers::Case& given) -> Result<std::unique_ptr<peers::Peer>> {
+    CATENA_TRY(auto renderer, render::Renderer::create({}));
+    return std::unique_ptr<peers::Peer>(std::make_unique<Ours>(given, std::move(renderer)));
+  });
+}
