@@ -25,8 +25,10 @@ constexpr double kUneven = 1.1;                                 // of the ideal 
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
 constexpr double kRoughGoal = 1.5;                              // 1/255: from it on the error of step 0.25 does not count
-// steps, voxels: of the converged picture; where only a rough goal is to be judged, of the fast raycast and of exact rays; of what is seen
-constexpr double kTruthStep = 0.1, kRoughTruthStep = 0.25, kExactTruthStep = 0.2, kSeenStep = 1;
+// steps, voxels: of what is seen, the shortest that is chosen, and those of the converged picture, which is halved until the picture
+// changes by less than a share of the goal, or by what rounding to 8 bits makes of nothing
+constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3, kRounding = 0.4,
+                 kFinestStep = 0.05;
 constexpr int kMaxPictures = 16;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
@@ -39,7 +41,7 @@ struct Plan {
 constexpr Plan kPlan[] = {{4, -1, -1, 0.03, 0.09}, {4, 1.3, -1, 0.05, 0.2}, {2, 0, -1, 0.04, 0.28}, {4, 1, 3, 0.12, 0.28},
                           {2, 0, 2, 0.1, 0.4},     {2, 0, 0.8, 0.12, 0.6},  {1, 0, -1, 0.03, 1}};
 constexpr int kPlans = int(std::size(kPlan));
-constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25};
+constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
 constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25};
 
 /// Of a driver that draws with the processor: a thread a core, or as many as it is told.
@@ -143,13 +145,15 @@ class Search {
         before = picture.above <= e ? e : std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
       }
     }
-    // exact rays want a truth that is finer than they are
-    if (fast_) CATENA_CHECK(find_truth(e, kExactTruthStep));
     for (const double step : kExactSteps) {
+      // they are judged by what is finer than they are
+      if (step < 2 * truth_step_) break;
       CATENA_TRY(const Measured rays, of_rays(exact_rung(step)));
       if (rays.good_for(e)) return choice(exact_rung(step), rays.above, true);
     }
-    return choice(reference_settings(), 0, true);
+    RenderSettings finest = reference_settings();
+    finest.step_voxels = std::clamp(truth_step_, kFinestStep, finest.step_voxels);
+    return choice(finest, truth_error_, truth_error_ <= e);
   }
 
   Result<QualityChoice> for_time(double ms, const DrawTimer& timer) {
@@ -171,10 +175,18 @@ class Search {
   }
 
  private:
-  Outcome find_truth(double goal, double rough_step = kRoughTruthStep) {
-    RenderSettings converged = exact_rung(goal < kRoughGoal ? kTruthStep : rough_step);
+  /// Opaque things of steep transfer functions want far shorter steps than haze does.
+  Outcome find_truth(double goal) {
+    RenderSettings converged = exact_rung(goal < kRoughGoal ? kTruthStep : kRoughTruthStep);
     converged.termination = 1e-4;
     CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
+    do {
+      converged.step_voxels /= 2;
+      CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing_));
+      truth_error_ = compare(truth_, finer).rmse;
+      truth_ = std::move(finer);
+    } while (truth_error_ > std::max(kRounding, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
+    truth_step_ = converged.step_voxels;
     return Done{};
   }
 
@@ -234,8 +246,9 @@ class Search {
 
   Renderer& renderer_;
   FramePacket packet_;
-  Picture truth_;     ///< the rays of the lattice
-  Picture all_rays_;  ///< the fast raycast's without interpolation
+  Picture truth_;                            ///< the rays of the lattice
+  double truth_step_ = 0, truth_error_ = 0;  ///< and what it still changed by
+  Picture all_rays_;                         ///< the fast raycast's without interpolation
   std::uint32_t spacing_ = 1;
   bool fast_ = false;
   int pictures_ = 0;
