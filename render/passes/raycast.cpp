@@ -229,7 +229,7 @@ bool can_be_drawn_fast(const vk::Device& device, const FramePacket& packet) {
   const VolumeItem& item = packet.volumes.front();
   return !is_projected(item) && !item.color_by && item.transfer.gradient_factors.empty() && packet.lights.empty() && !packet.fog &&
          !has_layers(packet) && std::none_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), is_translucent) &&
-         item.grid->interpolation() == field::Interpolation::linear && FastVolumeRaycast::can_pack(device, *packet.volumes.front().grid);
+         item.grid->interpolation() == field::Interpolation::linear && PackedLook::can_pack(device, *packet.volumes.front().grid);
 }
 
 bool draws_rays(const FramePacket& packet) {

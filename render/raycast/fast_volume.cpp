@@ -129,19 +129,10 @@ Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t
   return Done{};
 }
 
-Error too_many_bytes(std::uint64_t needed, std::uint64_t most) {
-  return Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, most >> 20)};
-}
-
-bool same_look(const VolumeItem& a, const VolumeItem& b) {
-  return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.shade == b.shade;
-}
-
 }  // namespace
 
 Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
-  FastVolumeRaycast self;
-  self.device_ = &device;
+  FastVolumeRaycast self(device);
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
   CATENA_CHECK(fit(device, self.no_tiles_, VK_FORMAT_R8_UINT, 1, 1));
   vk::ImageInfo info;
@@ -151,89 +142,6 @@ Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
   CATENA_CHECK(
       vk::upload_planes(device, self.no_gradients_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 128, 4); }));
   return self;
-}
-
-bool FastVolumeRaycast::can_pack(const vk::Device& device, const field::ScalarGrid& grid) {
-  return can_be_packed(device, grid) || can_be_packed_as_bricks(grid);
-}
-
-Outcome FastVolumeRaycast::prepare(const VolumeItem& item, const FastSettings& settings) {
-  const std::int64_t start = now_ns();
-  const bool other_grid = !table_ || version_ != item.grid->version();
-  const bool other_look = other_grid || !same_look(item_, item);
-  if (other_grid) table_ = {};
-  item_ = item;
-  const bool gradients = item.shade && settings.smooth_gradients, whole = can_be_packed(*device_, *item.grid);
-  const std::uint64_t bytes = whole ? packed_bytes(*item.grid) * (gradients ? 2 : 1) : bricks_ && !other_grid ? bricks_->atlas.bytes() : 0;
-  if (bytes > settings.most_bytes) return too_many_bytes(bytes, settings.most_bytes);
-  if (!other_look && (!gradients || has_gradients())) return Done{};
-  const double background = item.grid->background();
-  const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
-  const ValueInterval active = active_interval(item.transfer, values, item.shade);
-  const bool other_range = other_grid || !(active == active_);
-  active_ = active;
-  version_ = item.grid->version();
-  ++look_;
-  CATENA_CHECK(whole ? pack_whole(item, gradients, other_range) : pack_bricks(item, other_range, settings.most_bytes));
-  build_ms_ += ms_since(start);
-  return Done{};
-}
-
-Outcome FastVolumeRaycast::pack_whole(const VolumeItem& item, bool gradients, bool other_range) {
-  bricks_.reset();
-  if (other_range) {
-    gradients_ = {};
-    packed_ = {};
-    CATENA_TRY(packed_, make_packed_volume(*device_, *item.grid, active_));
-  }
-  if (gradients && !gradients_.image) {
-    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item.grid, active_));
-  }
-  const PreintegratedTable table = make_preintegrated(item.transfer, packed_.codes.lo, packed_.codes.per_code, item.shade);
-  CATENA_TRY(map_, make_plain_map(*device_, packed_, table.looks));
-  return upload_table(table);
-}
-
-Outcome FastVolumeRaycast::pack_bricks(const VolumeItem& item, bool other_range, std::uint64_t most_bytes) {
-  packed_ = {};
-  map_ = {};
-  gradients_ = {};
-  const bool gradients = item.shade, scans = !bricks_ || other_range || (gradients && !has_gradients());  // they are few
-  if (scans) {
-    bricks_.reset();
-    bricks_.emplace();
-    bricks_->scan = scan_bricks(*item.grid, active_, gradients);
-  }
-  BrickScan& scan = bricks_->scan;
-  PackedAtlas& atlas = bricks_->atlas;
-  const CodeScale codes(scan.range, false);
-  const PreintegratedTable table = make_preintegrated(item.transfer, codes.lo, codes.per_code, item.shade);
-  bool kept = false;
-  if (!scans) {
-    CATENA_TRY(kept, remap_atlas(*device_, atlas, scan, table.looks));
-  }
-  if (!kept) {
-    atlas = {};
-    CATENA_TRY(atlas, make_packed_atlas(*device_, *item.grid, scan, codes, table.looks, most_bytes));
-  }
-  return upload_table(table);
-}
-
-Outcome FastVolumeRaycast::upload_table(const PreintegratedTable& table) {
-  vk::ImageInfo info;
-  info.format = VK_FORMAT_R32G32_UINT;
-  info.extent = {256, 256, 1};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  CATENA_TRY(table_, vk::Image::create(*device_, info));
-  return vk::upload_planes(*device_, table_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
-    std::memcpy(out, table.entries.data(), table.entries.size() * sizeof(table.entries[0]));
-  });
-}
-
-float FastVolumeRaycast::gradient_unit() const {
-  const double unit = bricks_ ? bricks_->atlas.gradient_unit : gradients_.unit;
-  const double per_code = bricks_ ? bricks_->atlas.codes.per_code : packed_.codes.per_code;
-  return per_code > 0 ? float(unit / per_code) : 0.0f;
 }
 
 Outcome FastVolumeRaycast::ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target) {
@@ -287,33 +195,22 @@ Outcome FastVolumeRaycast::mark(vk::Commands& commands, Level& level, vk::Image&
 
 /// The frame's data; grid 0 counts from the origin of what is packed.
 Result<shared::FrameData> FastVolumeRaycast::write_frame(const CameraRays& rays, const FastSettings& settings) {
-  const auto narrow = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
-  GridMirror place;
-  if (bricks_) {
-    place.origin = bricks_->atlas.origin;
-    place.box_lo = narrow(bricks_->atlas.box_lo);
-    place.box_hi = narrow(bricks_->atlas.box_hi);
-  } else {
-    place.origin = packed_.origin;
-    place.box_hi = narrow(packed_.size) - Vec3(1.0);
-  }
   shared::FrameData frame = rays.frame();
-  frame.grids[0] = rays.grid(place, item_.grid->mapping());
-  frame.grids[0].id = item_.id;
-  frame.grids[0].clipped = item_.clipped;
+  frame.grids[0] = rays.grid(look_.place(), look_.item().grid->mapping());
+  frame.grids[0].id = look_.item().id;
+  frame.grids[0].clipped = look_.item().clipped;
   frame.termination = float(settings.termination);
-  frame.step_world = float(settings.step_voxels * item_.grid->mapping().smallest_edge());
+  frame.step_world = float(settings.step_voxels * look_.item().grid->mapping().smallest_edge());
   CATENA_CHECK(vk::write_uniform(*device_, frame_, frame));
   return frame;
 }
 
 Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw& draw) {
-  const bool leaps = draw.skips && (bricks_ || map_.leaping > kLeapAbove);
+  const bool leaps = draw.skips && look_.leaping() > kLeapAbove;
   CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                                                  (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
-                                                 bricks_.has_value(), !bricks_ && packed_.codes.masked},
+                                                 look_.as_bricks(), look_.masked()},
                                                 draw.tiles));
-  const vk::Image& gradients = bricks_ ? bricks_->atlas.gradients : gradients_.image;
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();
   commands.begin_pass({&color, 1}, {});
@@ -321,12 +218,12 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw
       {0, vk::Resource::uniform, &frame_, nullptr, nullptr},
       {1, vk::Resource::uniform, &level.data, nullptr, nullptr},
       {2, vk::Resource::texture, nullptr, draw.opaque_depth ? draw.opaque_depth : draw.none, nullptr},
-      {3, vk::Resource::texture, nullptr, bricks_ ? &bricks_->atlas.words : &packed_.words, nullptr},
-      {4, vk::Resource::texture, nullptr, &table_, nullptr},
-      {5, vk::Resource::texture, nullptr, bricks_ ? &bricks_->atlas.map : &map_.image, nullptr},
+      {3, vk::Resource::texture, nullptr, &look_.words(), nullptr},
+      {4, vk::Resource::texture, nullptr, &look_.table(), nullptr},
+      {5, vk::Resource::texture, nullptr, &look_.map(), nullptr},
       {6, vk::Resource::texture, nullptr, draw.coarser ? draw.coarser : draw.none, nullptr},
       {7, vk::Resource::texture, nullptr, &level.marks, nullptr},
-      {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &gradients : &no_gradients_, &linear_},
+      {8, vk::Resource::sampled, nullptr, draw.shading == 2 ? &look_.gradients() : &no_gradients_, &linear_},
       {9, vk::Resource::texture, nullptr, draw.tiles == Tiles::changed ? &opaque_->changed() : &no_tiles_, nullptr}};
   commands.scissor(draw.area);
   commands.bind(*pipe, bindings);
@@ -382,7 +279,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
   CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
   CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
-  const Kept now{frame, settings, look_, target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr};
+  const Kept now{frame, settings, look_.version(), target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr};
   const bool still = has_kept_ = keep && target && kept_ && kept_->is(now);
   kept_.reset();
   commands.use(no_tiles_, vk::kShaderRead);
@@ -410,9 +307,9 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
     const VkExtent3D& own = image.info().extent;
     const bool refines = coarser && spacing == 1;
-    const shared::LatticeData data{float(spacing), apron,           float(refine_255 / 255), from.width,
-                                   from.height,    gradient_unit(), gradient_nodes(),        own.width,
-                                   own.height,     refines};
+    const shared::LatticeData data{
+        float(spacing), apron,  float(refine_255 / 255), from.width, from.height, look_.gradient_unit(), look_.gradient_nodes(), own.width,
+        own.height,     refines};
     CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
@@ -440,7 +337,7 @@ Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays
   CATENA_CHECK(fit(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
   CATENA_CHECK(vk::write_uniform(*device_, probe_.data,
-                                 shared::LatticeData{float(spacing), 0, 0, 1, 1, gradient_unit(), gradient_nodes(), 0, 0, 0}));
+                                 shared::LatticeData{float(spacing), 0, 0, 1, 1, look_.gradient_unit(), look_.gradient_nodes(), 0, 0, 0}));
   const VkExtent3D& extent = target.info().extent;
   return draw(
       commands, probe_,

@@ -8,14 +8,10 @@
 #include <map>
 #include <optional>
 
-#include "render/mirror/brick_map.h"
-#include "render/mirror/gradient_volume.h"
-#include "render/mirror/packed_atlas.h"
-#include "render/mirror/packed_volume.h"
 #include "render/raycast/camera_rays.h"
+#include "render/raycast/packed_look.h"
 #include "render/raycast/render_settings.h"
 #include "render/raycast/still_tiles.h"
-#include "render/raycast/transfer_tables.h"
 #include "render/vk/commands.h"
 #include "shaders/shared/fast_volume.h"
 
@@ -24,12 +20,10 @@ namespace catena::render {
 class FastVolumeRaycast {
  public:
   static Result<FastVolumeRaycast> create(vk::Device& device);
-  /// Whether the grid of a volume can be packed in one of the two ways.
-  static bool can_pack(const vk::Device& device, const field::ScalarGrid& grid);
+  /// Packs the volume, if it is new.
+  Outcome prepare(const VolumeItem& item, const FastSettings& settings) { return look_.prepare(item, settings); }
   /// What is packed is too large to be held beside a mirror of its grid.
-  bool is_large() const { return bricks_.has_value(); }
-  /// Packs the volume, its table and its map, if they are new. An error where that takes more than `settings.most_bytes`.
-  Outcome prepare(const VolumeItem& item, const FastSettings& settings);
+  bool is_large() const { return look_.as_bricks(); }
   /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;
   /// not within a pass. `opaque_depth` null: nothing opaque, `none` is bound instead; else pixels near it are always marched and
   /// `target` is needed. `keep`: what `target` and the lattices hold since the last call stays where it would come out the same, to the
@@ -45,7 +39,7 @@ class FastVolumeRaycast {
                        vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none);
   /// Every 2nd pixel, for Upsampler.
   vk::Image& half() { return half_.color; }
-  double build_ms() const { return build_ms_; }
+  double build_ms() const { return look_.build_ms(); }
 
  private:
   /// A lattice of rays: what it needs to be drawn.
@@ -53,19 +47,13 @@ class FastVolumeRaycast {
     vk::Image color, marks;
     vk::Buffer data;
   };
-  FastVolumeRaycast() = default;
+  explicit FastVolumeRaycast(vk::Device& device) : device_(&device), look_(device) {}
   Outcome ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target);
   /// Which tiles of a lattice are drawn: the others stay as they are.
   enum class Tiles { all, marked, changed };
   using Constants = std::array<std::uint32_t, 7>;
   Result<const vk::Pipeline*> pipeline(const Constants& constants, Tiles tiles);
-  Outcome pack_whole(const VolumeItem& item, bool gradients, bool other_range);
-  Outcome pack_bricks(const VolumeItem& item, bool other_range, std::uint64_t most_bytes);
-  Outcome upload_table(const PreintegratedTable& table);
-  bool has_gradients() const { return bricks_ ? bool(bricks_->atlas.gradients) : bool(gradients_.image); }
-  std::uint32_t shading(const FastSettings& settings) const { return item_.shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
-  float gradient_unit() const;
-  float gradient_nodes() const { return bricks_ ? float(bricks_->atlas.gradient_nodes) : 0.0f; }
+  std::uint32_t shading(const FastSettings& settings) const { return look_.item().shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
   Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque);
   /// What draws a level: its target, the coarser one (or null) and whether rays are marched.
@@ -94,21 +82,8 @@ class FastVolumeRaycast {
     bool is(const Kept& other) const;
   };
 
-  vk::Device* device_ = nullptr;
-  VolumeItem item_;
-  ValueInterval active_;
-  std::uint64_t version_ = 0;
-  // either whole
-  PackedVolume packed_;
-  PlainMap map_;
-  GradientVolume gradients_;
-  // or as bricks
-  struct Bricks {
-    BrickScan scan;
-    PackedAtlas atlas;
-  };
-  std::optional<Bricks> bricks_;
-  vk::Image table_;
+  vk::Device* device_;
+  PackedLook look_;
   vk::Image no_gradients_;  ///< one voxel, bound where shading does not ask for them
   vk::Sampler linear_;
   vk::Buffer frame_;
@@ -119,10 +94,8 @@ class FastVolumeRaycast {
   vk::Buffer interpolate_data_;
   std::optional<StillTiles> opaque_;
   vk::Image no_tiles_;
-  std::uint64_t look_ = 0;  ///< counts what is packed and how it looks
   std::optional<Kept> kept_;
   bool has_kept_ = false;
-  double build_ms_ = 0;
 };
 
 /// One invocation a lattice point: what upsample.comp and interpolate.comp need for the pixels of an area.

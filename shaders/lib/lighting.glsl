@@ -1,4 +1,4 @@
-// Ambient 0.2, diffuse 0.7, white specular 0.2 with power 20, as VTK's volume mapper has them, so that pictures compare. Both sides are
+// Ambient 0.2, diffuse 0.7, white specular 0.2 with power 20 of the mirrored ray (VTK's power 80 of the half vector). Both sides are
 // lit: the normal is turned towards the eye. Without lights of the scene a headlight sits at the eye. Without a normal only the
 // ambient share is left. The includer declares `frame` with light_count, lights and fog.
 vec3 lit(vec3 color, vec3 normal, vec3 towards_eye) {

@@ -1,0 +1,120 @@
+#include "render/raycast/packed_look.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "engine/base/clock.h"
+#include "render/vk/commands.h"
+
+namespace catena::render {
+
+namespace {
+
+Error too_many_bytes(std::uint64_t needed, std::uint64_t most) {
+  return Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, most >> 20)};
+}
+
+bool same_look(const VolumeItem& a, const VolumeItem& b) {
+  return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.shade == b.shade;
+}
+
+}  // namespace
+
+bool PackedLook::can_pack(const vk::Device& device, const field::ScalarGrid& grid) {
+  return can_be_packed(device, grid) || can_be_packed_as_bricks(grid);
+}
+
+Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings) {
+  const std::int64_t start = now_ns();
+  const bool other_grid = !table_ || version_ != item.grid->version();
+  const bool other_look = other_grid || !same_look(item_, item);
+  if (other_grid) table_ = {};
+  item_ = item;
+  const bool gradients = item.shade && settings.smooth_gradients, whole = can_be_packed(*device_, *item.grid);
+  const std::uint64_t bytes = whole ? packed_bytes(*item.grid) * (gradients ? 2 : 1) : bricks_ && !other_grid ? bricks_->atlas.bytes() : 0;
+  if (bytes > settings.most_bytes) return too_many_bytes(bytes, settings.most_bytes);
+  if (!other_look && (!gradients || this->gradients())) return Done{};
+  const double background = item.grid->background();
+  const ValueInterval values{std::min(item.grid->stats().min, background), std::max(item.grid->stats().max, background)};
+  const ValueInterval active = active_interval(item.transfer, values, item.shade);
+  const bool other_range = other_grid || !(active == active_);
+  active_ = active;
+  version_ = item.grid->version();
+  ++looks_;
+  CATENA_CHECK(whole ? pack_whole(gradients, other_range) : pack_bricks(other_range, settings.most_bytes));
+  build_ms_ += ms_since(start);
+  return Done{};
+}
+
+Outcome PackedLook::pack_whole(bool gradients, bool other_range) {
+  bricks_.reset();
+  if (other_range) {
+    gradients_ = {};
+    packed_ = {};
+    CATENA_TRY(packed_, make_packed_volume(*device_, *item_.grid, active_));
+  }
+  if (gradients && !gradients_.image) {
+    CATENA_TRY(gradients_, make_gradient_volume(*device_, *item_.grid, active_));
+  }
+  const PreintegratedTable table = make_preintegrated(item_.transfer, packed_.codes.lo, packed_.codes.per_code, item_.shade);
+  CATENA_TRY(map_, make_plain_map(*device_, packed_, table.looks));
+  return upload_table(table);
+}
+
+Outcome PackedLook::pack_bricks(bool other_range, std::uint64_t most_bytes) {
+  packed_ = {};
+  map_ = {};
+  gradients_ = {};
+  // of bricks they are few, so that all that is lit has them
+  const bool gradients = item_.shade, scans = !bricks_ || other_range || (gradients && !this->gradients());
+  if (scans) {
+    bricks_.reset();
+    bricks_.emplace();
+    bricks_->scan = scan_bricks(*item_.grid, active_, gradients);
+  }
+  BrickScan& scan = bricks_->scan;
+  PackedAtlas& atlas = bricks_->atlas;
+  const CodeScale codes(scan.range, false);
+  const PreintegratedTable table = make_preintegrated(item_.transfer, codes.lo, codes.per_code, item_.shade);
+  bool kept = false;
+  if (!scans) {
+    CATENA_TRY(kept, remap_atlas(*device_, atlas, scan, table.looks));
+  }
+  if (!kept) {
+    atlas = {};
+    CATENA_TRY(atlas, make_packed_atlas(*device_, *item_.grid, scan, codes, table.looks, most_bytes));
+  }
+  return upload_table(table);
+}
+
+Outcome PackedLook::upload_table(const PreintegratedTable& table) {
+  vk::ImageInfo info;
+  info.format = VK_FORMAT_R32G32_UINT;
+  info.extent = {256, 256, 1};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  CATENA_TRY(table_, vk::Image::create(*device_, info));
+  return vk::upload_planes(*device_, table_, 1, [&](std::uint32_t, std::uint32_t, std::byte* out) {
+    std::memcpy(out, table.entries.data(), table.entries.size() * sizeof(table.entries[0]));
+  });
+}
+
+float PackedLook::gradient_unit() const {
+  const double unit = bricks_ ? bricks_->atlas.gradient_unit : gradients_.unit;
+  const double per_code = bricks_ ? bricks_->atlas.codes.per_code : packed_.codes.per_code;
+  return per_code > 0 ? float(unit / per_code) : 0.0f;
+}
+
+float PackedLook::gradient_nodes() const { return bricks_ ? float(bricks_->atlas.gradient_nodes) : 0.0f; }
+
+GridMirror PackedLook::place() const {
+  const auto wide = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
+  GridMirror place;
+  place.origin = bricks_ ? bricks_->atlas.origin : packed_.origin;
+  if (bricks_) place.box_lo = wide(bricks_->atlas.box_lo);
+  place.box_hi = bricks_ ? wide(bricks_->atlas.box_hi) : wide(packed_.size) - Vec3(1.0);
+  return place;
+}
+
+}  // namespace catena::render
