@@ -42,7 +42,7 @@ constexpr Plan kPlan[] = {{4, -1, -1, 0.03, 0.09}, {4, 1.3, -1, 0.05, 0.2}, {2, 
                           {2, 0, 2, 0.1, 0.4},     {2, 0, 0.8, 0.12, 0.6},  {1, 0, -1, 0.03, 1}};
 constexpr int kPlans = int(std::size(kPlan));
 constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
-constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25};
+constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
 
 /// Of a driver that draws with the processor: a thread a core, or as many as it is told.
 double drawing_threads() {
@@ -128,21 +128,21 @@ class Search {
       CATENA_TRY(auto candidates, fast_candidates(e));
       std::optional<double> failed[kPlans];  // what interpolation cost the latest of a plan
       bool blurs[kPlans] = {};               // what is thin
-      for (int drawn = 0; drawn < kMaxPictures && !candidates.empty(); candidates.erase(candidates.begin())) {
-        // what interpolation cost at another step says whether this one is worth a picture
+      for (int drawn = 0; !candidates.empty(); candidates.erase(candidates.begin())) {
+        // what interpolation cost at another step says whether this one is worth a picture; every ray always is
         const Candidate& next = candidates.front();
         std::optional<double>& before = failed[next.plan];
-        if (blurs[next.plan] || (before && std::hypot(next.rays, *before) > e)) continue;
+        const bool every_ray = next.settings.fast->spacing == 1;
+        if (blurs[next.plan] || (before && std::hypot(next.rays, *before) > e) || (drawn >= kMaxPictures && !every_ray)) continue;
         CATENA_TRY(const Measured picture, of_picture(next.settings));
         ++drawn;
         if (picture.good_for(e)) {
           CATENA_TRY(const bool keeps, keeps_what_is_thin(next.settings, e));
           if (keeps) return choice(next.settings, picture.above, true);
-          blurs[next.plan] = true;
-          continue;
         }
-        // where a few pixels are far off, a shorter step will not mend it
-        before = picture.above <= e ? e : std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
+        // where a few pixels are far off, or what is thin is lost, a shorter step will not mend it: rays alone were good enough
+        blurs[next.plan] = picture.above <= e && !every_ray;
+        before = std::sqrt(std::max(0.0, picture.above * picture.above - next.rays * next.rays));
       }
     }
     for (const double step : kExactSteps) {
@@ -216,7 +216,7 @@ class Search {
     const bool smooth = packet_.volumes.front().shade;
     for (const double step : kFastSteps) {
       CATENA_TRY(const Measured rays, of_rays(fast_rung(step, 1, 0, -1, smooth)));
-      if (rays.rmse > kStepShare * e) continue;
+      if (rays.rmse > kStepShare * e || rays.p999 > kFarthest * e) continue;
       for (int plan = 0; plan < kPlans; ++plan) {
         const Plan& p = kPlan[plan];
         all.push_back({fast_rung(step, p.spacing, p.refine_half * e, p.refine_full * e, smooth), rays.rmse,
