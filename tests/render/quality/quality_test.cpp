@@ -92,6 +92,50 @@ TEST_F(Quality, SmallPicturesOfThinThingsAreMeasuredToo) {
   }
 }
 
+/// Threads of a voxel's width, bright over haze: interpolation between rays of every 4th pixel loses most of them.
+TEST_F(Quality, WhatIsThinIsKept) {
+  FramePacket packet = scene();
+  packet.width = 320;
+  packet.height = 240;
+  const auto threads = make_grid({96, 96, 96}, [](const Vec3& p) {
+    const double a = std::hypot(p.x - 40 - 0.2 * p.z, p.y - 30 - 0.1 * p.z), b = std::hypot(p.y - 70 + 0.3 * p.x, p.z - 60 + 0.1 * p.x);
+    return 0.2 + 0.8 * std::max(std::exp(-0.5 * a * a), std::exp(-0.5 * b * b));
+  });
+  packet.volumes = {volume_item(threads, {{0, 0}, {0.3, 0}, {1, 0.8}})};
+  packet.view = View{{250, -170, 140}, {47.5, 47.5, 47.5}, {0, 0, 1}, 32};
+  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
+  ASSERT_TRUE(choice);
+  FramePacket alone = packet;
+  alone.background[3] = 0;
+  const Picture converged = draw(alone, reference_settings(), "converged");
+  const PictureError error = measure_error(draw(alone, choice->settings, "chosen"), converged);
+  EXPECT_GE(error.thin_parts, 1);
+  EXPECT_GT(error.least_kept, 0.6) << describe(choice->settings);
+  EXPECT_LE(error.rmse, 2.2);
+  RenderSettings coarse;
+  coarse.fast = FastSettings{1, 4, -1, -1};
+  EXPECT_LT(measure_error(draw(alone, coarse, "coarse"), converged).least_kept, 0.5);  // or it would prove nothing
+  // nor does a stricter goal cost less
+  const auto stricter = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 1});
+  ASSERT_TRUE(stricter);
+  EXPECT_LE(relative_cost(choice->settings, false), 1.01 * relative_cost(stricter->settings, false))
+      << describe(choice->settings) << "; " << describe(stricter->settings);
+}
+
+/// Opacity that rises within a tenth of a voxel: exact rays of the usual steps have not converged, and must not judge.
+TEST_F(Quality, SteepTransferFunctionsAreJudgedByRaysThatHaveConverged) {
+  FramePacket packet = scene(true);
+  packet.volumes[0].transfer.extinctions = {{0, 0}, {0.5, 0}, {0.51, 3}, {1, 4}};
+  const auto choice = choose_quality(*renderer_, packet, {QualityGoal::Kind::error, 2});
+  ASSERT_TRUE(choice);
+  EXPECT_TRUE(choice->settings.fast) << describe(choice->settings);
+  packet.background[3] = 0;
+  RenderSettings converged = reference_settings();
+  converged.step_voxels = 0.02;
+  const Picture truth = draw(packet, converged);
+  EXPECT_LE(measure_error(draw(packet, choice->settings), truth).rmse, 2.2) << describe(choice->settings);
+}
+
 TEST_F(Quality, ATinyErrorFallsBackToExactRays) {
   const auto choice = choose_quality(*renderer_, scene(true), {QualityGoal::Kind::error, 0.02});
   ASSERT_TRUE(choice);
