@@ -277,7 +277,7 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms) {
   return best;
 }
 
-Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, DrawTimer timer) {
+Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const DrawTimer& timer) {
   if (!packet.eyes.empty()) {
     const double share = goal.kind == QualityGoal::Kind::time ? double(packet.eyes.size()) : 1;
     return choose_quality(renderer, first_eye(packet), {goal.kind, goal.value / share}, timer);

@@ -33,7 +33,7 @@ using DrawTimer = std::function<Result<double>(const RenderSettings&)>;
 
 /// Stereo: the first eye's picture is measured; the eyes share a time.
 /// Draws several pictures; the caller draws the chosen one.
-Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, DrawTimer timer = nullptr);
+Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const DrawTimer& timer = nullptr);
 
 /// One setting that was tried.
 struct TimedPicture {
