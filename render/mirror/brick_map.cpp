@@ -11,12 +11,7 @@ namespace {
 
 /// One texel a brick.
 Result<vk::Image> make_image(vk::Device& device, const std::array<std::int32_t, 3>& bricks, VkFormat format) {
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.format = format;
-  info.extent = {std::uint32_t(bricks[0]), std::uint32_t(bricks[1]), std::uint32_t(bricks[2])};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  return vk::Image::create(device, info);
+  return vk::Image::create(device, vk::volume_info(format, std::size_t(bricks[0]), std::size_t(bricks[1]), std::size_t(bricks[2])));
 }
 
 }  // namespace

@@ -166,11 +166,7 @@ CellMap make_cell_map(const field::ScalarGrid& grid, const GridMirror& mirror, f
 }
 
 Result<vk::Image> upload_cell_map(vk::Device& device, const CellMap& map) {
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.format = VK_FORMAT_R16_UINT;
-  info.extent = {std::uint32_t(map.blocks[0]), std::uint32_t(map.blocks[1]), std::uint32_t(map.blocks[2])};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  const vk::ImageInfo info = vk::volume_info(VK_FORMAT_R16_UINT, map.blocks[0], map.blocks[1], map.blocks[2]);
   CATENA_TRY(vk::Image image, vk::Image::create(device, info));
   const std::size_t plane = std::size_t(map.blocks[0]) * map.blocks[1];
   CATENA_CHECK(vk::upload_planes(device, image, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {

@@ -64,11 +64,7 @@ Result<GradientVolume> make_gradient_volume(vk::Device& device, const field::Sca
   GradientVolume volume;
   volume.unit = longest / 127;
 
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.format = VK_FORMAT_R8G8B8A8_UNORM;
-  info.extent = {std::uint32_t(n.x), std::uint32_t(n.y), std::uint32_t(n.z)};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  const vk::ImageInfo info = vk::volume_info(VK_FORMAT_R8G8B8A8_UNORM, std::size_t(n.x), std::size_t(n.y), std::size_t(n.z));
   CATENA_TRY(volume.image, vk::Image::create(device, info));
   CATENA_CHECK(vk::upload_planes(device, volume.image, kSlab, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     for_slabs(grid, {int(first), int(count), 1, 1}, [&](const Slab& slab) {

@@ -150,8 +150,8 @@ class MirrorBuilder {
     } else {
       place(lo_);
     }
-    const auto value_bytes = vk::image_bytes(device_, image_info(value_format(), values[0], values[1], values[2]));
-    const auto mask_bytes = vk::image_bytes(device_, image_info(VK_FORMAT_R8_UINT, mask[0], mask[1], mask[2]));
+    const auto value_bytes = vk::image_bytes(device_, vk::volume_info(value_format(), values[0], values[1], values[2]));
+    const auto mask_bytes = vk::image_bytes(device_, vk::volume_info(VK_FORMAT_R8_UINT, mask[0], mask[1], mask[2]));
     if (!value_bytes || !mask_bytes) return std::nullopt;
     const std::uint64_t staging = std::uint64_t(kApron) * values[0] * values[1] * encoder_.texel();
     // a word a brick; for surfaces also the map of cells
@@ -238,17 +238,8 @@ class MirrorBuilder {
 
   VkFormat value_format() const { return encoder_.float32 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R16_SFLOAT; }
 
-  static vk::ImageInfo image_info(VkFormat format, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    vk::ImageInfo info;
-    info.type = VK_IMAGE_TYPE_3D;
-    info.format = format;
-    info.extent = {x, y, z};
-    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    return info;
-  }
-
   Result<vk::Image> create_image(VkFormat format, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    auto image = vk::Image::create(device_, image_info(format, x, y, z));
+    auto image = vk::Image::create(device_, vk::volume_info(format, x, y, z));
     if (!image) return Error{fmt::format("the grid \"{}\" cannot be mirrored: {}", grid_.name(), image.error().message)};
     return image;
   }

@@ -109,6 +109,10 @@ struct GradientSums {
 
 }  // namespace
 
+Error too_many_bytes(std::uint64_t needed, std::uint64_t most) {
+  return Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, most >> 20)};
+}
+
 bool can_be_packed_as_bricks(const field::ScalarGrid& grid) {
   const Vec3 n = grid.index_box().hi - grid.index_box().lo + Vec3(1.0), bricks = n / double(kBrick) + Vec3(2.0);
   return grid.stats().active_voxels > 0 && std::min({n.x, n.y, n.z}) >= 2 && bricks.x * bricks.y * bricks.z <= kMostBricks &&
@@ -186,13 +190,7 @@ std::vector<CodeRange> code_ranges(const BrickScan& scan, const CodeScale& codes
   return ranges;
 }
 
-std::vector<std::uint16_t> kinds_of(const std::vector<CodeRange>& ranges, const CodeLooks& looks) {
-  std::vector<std::uint16_t> kinds(ranges.size());
-  std::transform(ranges.begin(), ranges.end(), kinds.begin(), [&](const CodeRange& r) { return looks.kind(r); });
-  return kinds;
-}
-
-/// Whether each brick has to be kept.
+/// Which bricks have to be kept.
 std::vector<std::uint8_t> needed(const BrickScan& scan, const std::vector<CodeRange>& ranges, const std::vector<std::uint16_t>& kinds) {
   const auto [bx, by, bz] = scan.bricks;
   std::vector<std::uint8_t> keep(kinds.size());
@@ -212,15 +210,6 @@ std::vector<std::uint8_t> needed(const BrickScan& scan, const std::vector<CodeRa
   return keep;
 }
 
-vk::ImageInfo image_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z) {
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.format = format;
-  info.extent = {std::uint32_t(x), std::uint32_t(y), std::uint32_t(z)};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  return info;
-}
-
 Result<vk::Image> make_map(vk::Device& device, const BrickScan& scan, const PackedAtlas& atlas, const std::vector<CodeRange>& ranges,
                            const std::vector<std::uint16_t>& kinds) {
   const std::vector<std::uint8_t> distance = plain_distances(scan.bricks, kinds);
@@ -229,8 +218,8 @@ Result<vk::Image> make_map(vk::Device& device, const BrickScan& scan, const Pack
     const bool kept = atlas.slots[i] != PackedAtlas::kNotKept;
     words[i] = (kept ? atlas.slots[i] : kWithoutSlot | ranges[i].least) | std::uint32_t(std::min<int>(distance[i], 127)) << 24;
   }
-  CATENA_TRY(vk::Image map, vk::Image::create(device, image_info(VK_FORMAT_R32_UINT, std::size_t(scan.bricks[0]),
-                                                                 std::size_t(scan.bricks[1]), std::size_t(scan.bricks[2]))));
+  CATENA_TRY(vk::Image map, vk::Image::create(device, vk::volume_info(VK_FORMAT_R32_UINT, std::size_t(scan.bricks[0]),
+                                                                      std::size_t(scan.bricks[1]), std::size_t(scan.bricks[2]))));
   const std::size_t plane = std::size_t(scan.bricks[0]) * std::size_t(scan.bricks[1]);
   CATENA_CHECK(vk::upload_planes(device, map, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
     std::memcpy(out, words.data() + first * plane, count * plane * sizeof(words[0]));
@@ -238,14 +227,34 @@ Result<vk::Image> make_map(vk::Device& device, const BrickScan& scan, const Pack
   return map;
 }
 
+/// What a transfer function asks of a scan's bricks.
+struct BrickNeeds {
+  std::vector<CodeRange> ranges;
+  std::vector<std::uint16_t> kinds;  ///< CodeLooks::kind
+  std::vector<std::uint8_t> keep;
+
+  BrickNeeds(const BrickScan& scan, const CodeScale& codes, const CodeLooks& looks)
+      : ranges(code_ranges(scan, codes)), kinds(ranges.size()) {
+    std::transform(ranges.begin(), ranges.end(), kinds.begin(), [&](const CodeRange& r) { return looks.kind(r); });
+    keep = needed(scan, ranges, kinds);
+  }
+};
+
+struct BrickSource {
+  const field::ScalarGrid& grid;
+  const BrickScan& scan;
+};
+
 /// Slots in three dimensions for what is kept.
 struct SlotPlan {
   std::vector<std::size_t> brick_of_slot;
   std::array<std::size_t, 3> slots{};
 
-  /// Writes all slots of an image, `nx` x `ny` x `nz` texels of `texel` bytes each: write(brick, its first texel, bytes a row, a plane).
+  /// Writes all slots of an image, `nx` x `ny` x `nz` texels of `texel` bytes each: write(the brick's voxels and
+  /// `margin` layers around them, its first texel, bytes a row, a plane).
   template <class Write>
-  Outcome upload(vk::Device& device, vk::Image& image, std::array<std::size_t, 3> n, std::size_t texel, const Write& write) const {
+  Outcome upload(vk::Device& device, vk::Image& image, std::array<std::size_t, 3> n, std::size_t texel, const BrickSource& source,
+                 int margin, const Write& write) const {
     const std::size_t line = slots[0] * n[0] * texel, plane = line * slots[1] * n[1], a_layer = slots[0] * slots[1];
     return vk::upload_planes(device, image, std::uint32_t(n[2]), [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       const std::size_t begin_slot = first / n[2] * a_layer, end_slot = std::min(brick_of_slot.size(), begin_slot + count / n[2] * a_layer);
@@ -254,19 +263,19 @@ struct SlotPlan {
         BrickBlock block;
         for (std::size_t slot = begin_slot + begin; slot < begin_slot + end; ++slot) {
           const std::size_t x = slot % slots[0], y = slot / slots[0] % slots[1], z = (slot - begin_slot) / a_layer;
-          write(block, brick_of_slot[slot], out + z * n[2] * plane + y * n[1] * line + x * n[0] * texel, line, plane);
+          block.read(source.grid, source.scan, brick_at(source.scan.bricks, brick_of_slot[slot]), margin);
+          write(block, out + z * n[2] * plane + y * n[1] * line + x * n[0] * texel, line, plane);
         }
       });
     });
   }
 };
 
-Outcome upload_words(vk::Device& device, const field::ScalarGrid& grid, const BrickScan& scan, const SlotPlan& plan, PackedAtlas& atlas) {
-  CATENA_TRY(atlas.words, vk::Image::create(device, image_info(VK_FORMAT_R16_UINT, plan.slots[0] * kWordsX, plan.slots[1] * kWordsY,
-                                                               plan.slots[2] * kWordsZ)));
-  return plan.upload(device, atlas.words, {kWordsX, kWordsY, kWordsZ}, 2,
-                     [&](BrickBlock& brick, std::size_t i, std::byte* out, std::size_t line, std::size_t plane) {
-                       brick.read(grid, scan, brick_at(scan.bricks, i), 0);
+Outcome upload_words(vk::Device& device, const BrickSource& source, const SlotPlan& plan, PackedAtlas& atlas) {
+  CATENA_TRY(atlas.words, vk::Image::create(device, vk::volume_info(VK_FORMAT_R16_UINT, plan.slots[0] * kWordsX, plan.slots[1] * kWordsY,
+                                                                    plan.slots[2] * kWordsZ)));
+  return plan.upload(device, atlas.words, {kWordsX, kWordsY, kWordsZ}, 2, source, 0,
+                     [&](const BrickBlock& brick, std::byte* out, std::size_t line, std::size_t plane) {
                        const VoxelBlock& block = brick.block;
                        const Index3 o = brick.offset;
                        std::array<std::uint8_t, kApron> codes{};
@@ -282,15 +291,13 @@ Outcome upload_words(vk::Device& device, const field::ScalarGrid& grid, const Br
                      });
 }
 
-Outcome upload_gradients(vk::Device& device, const field::ScalarGrid& grid, const BrickScan& scan, const SlotPlan& plan,
-                         PackedAtlas& atlas) {
-  atlas.gradient_unit = scan.longest_gradient / 127;
+Outcome upload_gradients(vk::Device& device, const BrickSource& source, const SlotPlan& plan, PackedAtlas& atlas) {
+  atlas.gradient_unit = source.scan.longest_gradient / 127;
   const std::size_t nodes = atlas.gradient_nodes, apart = kBrick / (nodes - 1);
-  CATENA_TRY(atlas.gradients, vk::Image::create(device, image_info(VK_FORMAT_R8G8B8A8_UNORM, plan.slots[0] * nodes, plan.slots[1] * nodes,
-                                                                   plan.slots[2] * nodes)));
-  return plan.upload(device, atlas.gradients, {nodes, nodes, nodes}, 4,
-                     [&](BrickBlock& brick, std::size_t i, std::byte* out, std::size_t line, std::size_t plane) {
-                       brick.read(grid, scan, brick_at(scan.bricks, i), 1);
+  CATENA_TRY(atlas.gradients, vk::Image::create(device, vk::volume_info(VK_FORMAT_R8G8B8A8_UNORM, plan.slots[0] * nodes,
+                                                                        plan.slots[1] * nodes, plan.slots[2] * nodes)));
+  return plan.upload(device, atlas.gradients, {nodes, nodes, nodes}, 4, source, 1,
+                     [&](const BrickBlock& brick, std::byte* out, std::size_t line, std::size_t plane) {
                        const VoxelBlock& block = brick.block;
                        const Index3 o = brick.offset;
                        // beyond the grid's ends the end's gradient holds
@@ -302,7 +309,7 @@ Outcome upload_gradients(vk::Device& device, const field::ScalarGrid& grid, cons
                            for (std::size_t x = 0; x < nodes; ++x)
                              write_gradient(
                                  gradient_in(block, voxel(x, o.x, block.size.x), voxel(y, o.y, block.size.y), voxel(z, o.z, block.size.z)),
-                                 scan.longest_gradient, out + z * plane + y * line + 4 * x);
+                                 source.scan.longest_gradient, out + z * plane + y * line + 4 * x);
                      });
 }
 
@@ -310,20 +317,16 @@ Outcome upload_gradients(vk::Device& device, const field::ScalarGrid& grid, cons
 
 Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGrid& grid, const BrickScan& scan, const CodeScale& codes,
                                       const CodeLooks& looks, std::uint64_t most_bytes) {
-  const std::vector<CodeRange> ranges = code_ranges(scan, codes);
-  const std::vector<std::uint16_t> kinds = kinds_of(ranges, looks);
-  const std::vector<std::uint8_t> keep = needed(scan, ranges, kinds);
+  const BrickNeeds needs(scan, codes, looks);
+  const std::vector<std::uint8_t>& keep = needs.keep;
   PackedAtlas atlas;
-  atlas.origin = scan.origin;
-  atlas.box_lo = scan.box_lo;
-  atlas.box_hi = scan.box_hi;
   atlas.codes = codes;
   atlas.kept = std::uint64_t(std::count(keep.begin(), keep.end(), 1));
   const bool gradients = scan.longest_gradient > 0;
   const auto bytes_with = [&](std::uint64_t nodes) { return atlas.kept * (2 * kWordsX * kWordsY * kWordsZ + 4 * nodes * nodes * nodes); };
   if (gradients) atlas.gradient_nodes = scan.gradient_roughness > kRough && bytes_with(kApron) <= most_bytes ? kApron : kBrick / 2 + 1;
   const std::uint64_t bytes = bytes_with(atlas.gradient_nodes);
-  if (bytes > most_bytes) return Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", bytes >> 20, most_bytes >> 20)};
+  if (bytes > most_bytes) return too_many_bytes(bytes, most_bytes);
 
   SlotPlan plan;
   const std::uint32_t most = std::min(kAtlasSlots, device.info().limits.maxImageDimension3D / std::uint32_t(kApron));
@@ -341,19 +344,18 @@ Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGri
     atlas.slots[i] =
         std::uint32_t(slot % plan.slots[0] | slot / plan.slots[0] % plan.slots[1] << 8 | slot / plan.slots[0] / plan.slots[1] << 16);
   }
-  CATENA_CHECK(upload_words(device, grid, scan, plan, atlas));
-  if (gradients) CATENA_CHECK(upload_gradients(device, grid, scan, plan, atlas));
-  CATENA_TRY(atlas.map, make_map(device, scan, atlas, ranges, kinds));
+  CATENA_CHECK(upload_words(device, {grid, scan}, plan, atlas));
+  if (gradients) CATENA_CHECK(upload_gradients(device, {grid, scan}, plan, atlas));
+  CATENA_TRY(atlas.map, make_map(device, scan, atlas, needs.ranges, needs.kinds));
   return atlas;
 }
 
 Result<bool> remap_atlas(vk::Device& device, PackedAtlas& atlas, const BrickScan& scan, const CodeLooks& looks) {
-  const std::vector<CodeRange> ranges = code_ranges(scan, atlas.codes);
-  const std::vector<std::uint16_t> kinds = kinds_of(ranges, looks);
-  const std::vector<std::uint8_t> keep = needed(scan, ranges, kinds);
+  const BrickNeeds needs(scan, atlas.codes, looks);
+  const std::vector<std::uint8_t>& keep = needs.keep;
   for (std::size_t i = 0; i < keep.size(); ++i)
     if (keep[i] && atlas.slots[i] == PackedAtlas::kNotKept) return false;
-  CATENA_TRY(atlas.map, make_map(device, scan, atlas, ranges, kinds));
+  CATENA_TRY(atlas.map, make_map(device, scan, atlas, needs.ranges, needs.kinds));
   return true;
 }
 

@@ -29,7 +29,6 @@ struct BrickScan {
 };
 
 struct PackedAtlas {
-  field::Index3 origin, box_lo, box_hi;
   CodeScale codes;
   vk::Image words;      ///< R16_UINT
   vk::Image gradients;  ///< R8G8B8A8_UNORM, where they were asked for
@@ -46,6 +45,9 @@ struct PackedAtlas {
 bool can_be_packed_as_bricks(const field::ScalarGrid& grid);
 
 BrickScan scan_bricks(const field::ScalarGrid& grid, const ValueInterval& active, bool gradients);
+
+/// What packing says where it takes too much of the device.
+Error too_many_bytes(std::uint64_t needed, std::uint64_t most);
 
 /// An error where it takes more than `most_bytes` of the device.
 Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGrid& grid, const BrickScan& scan, const CodeScale& codes,

@@ -118,11 +118,7 @@ Result<PackedVolume> make_packed_volume(vk::Device& device, const field::ScalarG
   packed.codes = CodeScale(range_to_encode(grid, active), has_invalid_cells(grid));
   const std::vector<std::uint8_t> codes = all_codes(grid, packed.codes);
 
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.format = VK_FORMAT_R32_UINT;
-  info.extent = {std::uint32_t(n.x), std::uint32_t(n.y), std::uint32_t(n.z)};
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  const vk::ImageInfo info = vk::volume_info(VK_FORMAT_R32_UINT, std::size_t(n.x), std::size_t(n.y), std::size_t(n.z));
   auto image = vk::Image::create(device, info);
   if (!image) return Error{fmt::format("the grid \"{}\" cannot be packed: {}", grid.name(), image.error().message)};
   packed.words = std::move(*image);

@@ -85,14 +85,7 @@ Outcome LayersPass::prepare_meshes(Frame& frame) {
 
 Outcome LayersPass::prepare_images(Frame& frame) {
   const auto fit = [&](vk::Image& image, VkFormat format, VkImageUsageFlags usage) -> Outcome {
-    const VkExtent3D& have = image.info().extent;
-    if (image && have.width == frame.packet.width && have.height == frame.packet.height) return Done{};
-    vk::ImageInfo info;
-    info.format = format;
-    info.extent = {frame.packet.width, frame.packet.height, 1};
-    info.usage = usage;
-    CATENA_TRY(image, vk::Image::create(frame.device, info));
-    return Done{};
+    return vk::fit_image(frame.device, image, format, frame.packet.width, frame.packet.height, usage);
   };
   constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   for (std::uint32_t i = 0; i < MAX_LAYERS; ++i) {

@@ -21,16 +21,6 @@ bool fits(const vk::Image& image, VkFormat format, std::uint32_t width, std::uin
   return image && image.info().format == format && have.width == width && have.height == height;
 }
 
-Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
-  if (fits(image, format, width, height)) return Done{};
-  vk::ImageInfo info;
-  info.format = format;
-  info.extent = {width, height, 1};
-  info.usage = usage;
-  CATENA_TRY(image, vk::Image::create(device, info));
-  return Done{};
-}
-
 }  // namespace
 
 std::vector<VkFormat> opaque_formats() { return {kOpaqueFormat, kDepthValueFormat, kIdFormat}; }
@@ -39,7 +29,7 @@ Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t h
   constexpr VkImageUsageFlags color = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   constexpr VkImageUsageFlags read = VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   const auto want = [&](TargetSet one, VkFormat format, VkImageUsageFlags usage) -> Outcome {
-    return (needed & one) != 0 ? fit(device, image(one), format, width, height, usage) : Done{};
+    return (needed & one) != 0 ? vk::fit_image(device, image(one), format, width, height, usage) : Done{};
   };
   CATENA_CHECK(want(target::picture, picture_format, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
   CATENA_CHECK(want(target::opaque_color, kOpaqueFormat, color | read));
@@ -49,7 +39,7 @@ Outcome Targets::ensure(vk::Device& device, std::uint32_t width, std::uint32_t h
   CATENA_CHECK(want(target::volume, kVolumeFormat, color | VK_IMAGE_USAGE_STORAGE_BIT | read));
   CATENA_CHECK(want(target::ghost, kGhostFormat, color));
   if (!none) {
-    CATENA_CHECK(fit(device, none, kPictureFormat, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT));
+    CATENA_CHECK(vk::fit_image(device, none, kPictureFormat, 1, 1, VK_IMAGE_USAGE_SAMPLED_BIT));
     CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
     commands.use(none, vk::kFragmentRead);
     CATENA_CHECK(commands.finish());

@@ -81,13 +81,10 @@ constexpr std::uint32_t kFastVolumeFragmentShader[] = {
 #include "spirv/volume_fast.frag.inc"
 };
 constexpr std::uint32_t kFastVolumeTilesShader[] = {
-#include "spirv/marked_tiles.vert.inc"
+#include "spirv/lattice_tiles.vert.inc"
 };
 constexpr std::uint32_t kFastVolumeInterpolateShader[] = {
 #include "spirv/interpolate.comp.inc"
-};
-constexpr std::uint32_t kFastVolumeChangedShader[] = {
-#include "spirv/changed_tiles.vert.inc"
 };
 constexpr std::uint32_t kFastVolumeMarkShader[] = {
 #include "spirv/volume_blocks.frag.inc"
@@ -118,27 +115,13 @@ VkRect2D lattice_area(const VkRect2D& area, std::uint32_t spacing, const VkExten
   return {{x, y}, {std::uint32_t(std::max(0, x1 - x)), std::uint32_t(std::max(0, y1 - y))}};
 }
 
-Outcome fit(vk::Device& device, vk::Image& image, VkFormat format, std::uint32_t width, std::uint32_t height) {
-  const VkExtent3D& have = image.info().extent;
-  if (image && have.width == width && have.height == height) return Done{};
-  vk::ImageInfo info;
-  info.format = format;
-  info.extent = {width, height, 1};
-  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  CATENA_TRY(image, vk::Image::create(device, info));
-  return Done{};
-}
-
 }  // namespace
 
 Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
   FastVolumeRaycast self(device);
   CATENA_TRY(self.linear_, vk::Sampler::create(device, vk::Filter::linear));
-  CATENA_CHECK(fit(device, self.no_tiles_, VK_FORMAT_R8_UINT, 1, 1));
-  vk::ImageInfo info;
-  info.type = VK_IMAGE_TYPE_3D;
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  CATENA_TRY(self.no_gradients_, vk::Image::create(device, info));
+  CATENA_CHECK(vk::fit_image(device, self.no_tiles_, VK_FORMAT_R8_UINT, 1, 1));
+  CATENA_TRY(self.no_gradients_, vk::Image::create(device, vk::volume_info(VK_FORMAT_R8G8B8A8_UNORM, 1, 1, 1)));
   CATENA_CHECK(
       vk::upload_planes(device, self.no_gradients_, 1, [](std::uint32_t, std::uint32_t, std::byte* out) { std::memset(out, 128, 4); }));
   return self;
@@ -146,17 +129,15 @@ Result<FastVolumeRaycast> FastVolumeRaycast::create(vk::Device& device) {
 
 Outcome FastVolumeRaycast::ensure(Level& level, std::uint32_t spacing, const VkExtent3D& target) {
   const std::uint32_t width = lattice_size(target.width, spacing), height = lattice_size(target.height, spacing);
-  if (spacing > 1) CATENA_CHECK(fit(*device_, level.color, kLatticeFormat, width, height));
-  return fit(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock);
+  if (spacing > 1) CATENA_CHECK(vk::fit_image(*device_, level.color, kLatticeFormat, width, height));
+  return vk::fit_image(*device_, level.marks, VK_FORMAT_R8_UINT, (width + kBlock - 1) / kBlock, (height + kBlock - 1) / kBlock);
 }
 
-Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constants, Tiles tiles) {
+Result<const vk::Pipeline*> FastVolumeRaycast::pipeline(const Constants& constants, bool tiles) {
   vk::Pipeline& pipeline = pipelines_[{constants, tiles}];
   if (!pipeline) {
     vk::GraphicsInfo info;
-    info.vertex = tiles == Tiles::all      ? vk::Spirv(kFastVolumeVertexShader)
-                  : tiles == Tiles::marked ? vk::Spirv(kFastVolumeTilesShader)
-                                           : vk::Spirv(kFastVolumeChangedShader);
+    info.vertex = tiles ? vk::Spirv(kFastVolumeTilesShader) : vk::Spirv(kFastVolumeVertexShader);
     info.fragment = kFastVolumeFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::uniform}, {2, vk::Resource::texture}, {3, vk::Resource::texture},
                   {4, vk::Resource::texture}, {5, vk::Resource::texture}, {6, vk::Resource::texture}, {7, vk::Resource::texture},
@@ -210,7 +191,7 @@ Outcome FastVolumeRaycast::draw(vk::Commands& commands, Level& level, const Draw
   CATENA_TRY(const vk::Pipeline* pipe, pipeline({draw.shading, leaps, draw.opaque_depth != nullptr, draw.coarser != nullptr,
                                                  (draw.marches ? 1u : 0u) | (draw.target->info().format == kVolumeFormat ? 2u : 0u),
                                                  look_.as_bricks(), look_.masked()},
-                                                draw.tiles));
+                                                draw.tiles != Tiles::all));
   vk::ColorTarget color{draw.target, std::array<float, 4>{0, 0, 0, 0}};
   if (draw.tiles != Tiles::all) color.clear.reset();
   commands.begin_pass({&color, 1}, {});
@@ -307,9 +288,17 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     const float apron = spacing == 1 ? 0.0f : float(COARSE_APRON);
     const VkExtent3D& own = image.info().extent;
     const bool refines = coarser && spacing == 1;
-    const shared::LatticeData data{
-        float(spacing), apron,  float(refine_255 / 255), from.width, from.height, look_.gradient_unit(), look_.gradient_nodes(), own.width,
-        own.height,     refines};
+    const shared::LatticeData data{float(spacing),
+                                   apron,
+                                   float(refine_255 / 255),
+                                   from.width,
+                                   from.height,
+                                   look_.gradient_unit(),
+                                   look_.gradient_nodes(),
+                                   own.width,
+                                   own.height,
+                                   refines,
+                                   still};
     CATENA_CHECK(vk::write_uniform(*device_, level.data, data));
     if (coarser && marches) {
       CATENA_CHECK(mark(commands, level, *coarser, opaque_depth != nullptr));
@@ -334,10 +323,10 @@ Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays
                                         vk::Image& target, const vk::Image* opaque_depth, const vk::Image& none) {
   CATENA_ASSERT(target.info().format == kVolumeFormat);
   CATENA_CHECK(write_frame(rays, settings));
-  CATENA_CHECK(fit(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
+  CATENA_CHECK(vk::fit_image(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
-  CATENA_CHECK(vk::write_uniform(*device_, probe_.data,
-                                 shared::LatticeData{float(spacing), 0, 0, 1, 1, look_.gradient_unit(), look_.gradient_nodes(), 0, 0, 0}));
+  CATENA_CHECK(vk::write_uniform(
+      *device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1, look_.gradient_unit(), look_.gradient_nodes(), 0, 0, 0, 0}));
   const VkExtent3D& extent = target.info().extent;
   return draw(
       commands, probe_,

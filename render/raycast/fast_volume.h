@@ -52,7 +52,7 @@ class FastVolumeRaycast {
   /// Which tiles of a lattice are drawn: the others stay as they are.
   enum class Tiles { all, marked, changed };
   using Constants = std::array<std::uint32_t, 7>;
-  Result<const vk::Pipeline*> pipeline(const Constants& constants, Tiles tiles);
+  Result<const vk::Pipeline*> pipeline(const Constants& constants, bool tiles);
   std::uint32_t shading(const FastSettings& settings) const { return look_.item().shade ? (settings.smooth_gradients ? 2 : 1) : 0; }
   Result<shared::FrameData> write_frame(const CameraRays& rays, const FastSettings& settings);
   Outcome mark(vk::Commands& commands, Level& level, vk::Image& coarser, bool opaque);
@@ -88,7 +88,7 @@ class FastVolumeRaycast {
   vk::Sampler linear_;
   vk::Buffer frame_;
   Level quarter_, half_, full_, probe_;
-  std::map<std::pair<Constants, Tiles>, vk::Pipeline> pipelines_;
+  std::map<std::pair<Constants, bool>, vk::Pipeline> pipelines_;
   std::array<vk::Pipeline, 2> mark_pipelines_;         // without and with something opaque
   std::array<vk::Pipeline, 2> interpolate_pipelines_;  // of all, of what has changed
   vk::Buffer interpolate_data_;

@@ -1,7 +1,5 @@
 #include "render/raycast/packed_look.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
 
@@ -11,10 +9,6 @@
 namespace catena::render {
 
 namespace {
-
-Error too_many_bytes(std::uint64_t needed, std::uint64_t most) {
-  return Error{fmt::format("it takes {} MiB on the device, at most {} are allowed", needed >> 20, most >> 20)};
-}
 
 bool same_look(const VolumeItem& a, const VolumeItem& b) {
   return a.transfer.colors == b.transfer.colors && a.transfer.extinctions == b.transfer.extinctions && a.shade == b.shade;
@@ -111,9 +105,9 @@ float PackedLook::gradient_nodes() const { return bricks_ ? float(bricks_->atlas
 GridMirror PackedLook::place() const {
   const auto wide = [](const field::Index3& i) { return Vec3(i.x, i.y, i.z); };
   GridMirror place;
-  place.origin = bricks_ ? bricks_->atlas.origin : packed_.origin;
-  if (bricks_) place.box_lo = wide(bricks_->atlas.box_lo);
-  place.box_hi = bricks_ ? wide(bricks_->atlas.box_hi) : wide(packed_.size) - Vec3(1.0);
+  place.origin = bricks_ ? bricks_->scan.origin : packed_.origin;
+  if (bricks_) place.box_lo = wide(bricks_->scan.box_lo);
+  place.box_hi = bricks_ ? wide(bricks_->scan.box_hi) : wide(packed_.size) - Vec3(1.0);
   return place;
 }
 

@@ -19,15 +19,7 @@ constexpr VkFormat kSignFormat = VK_FORMAT_R32G32_UINT;
 
 /// An image of one texel for so many pixels each way.
 Outcome fit_tiles(vk::Device& device, vk::Image& image, VkFormat format, const VkExtent3D& picture, std::uint32_t pixels) {
-  const std::uint32_t width = (picture.width + pixels - 1) / pixels, height = (picture.height + pixels - 1) / pixels;
-  const VkExtent3D& have = image.info().extent;
-  if (image && have.width == width && have.height == height) return Done{};
-  vk::ImageInfo info;
-  info.format = format;
-  info.extent = {width, height, 1};
-  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  CATENA_TRY(image, vk::Image::create(device, info));
-  return Done{};
+  return vk::fit_image(device, image, format, (picture.width + pixels - 1) / pixels, (picture.height + pixels - 1) / pixels);
 }
 
 }  // namespace

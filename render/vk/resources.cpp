@@ -156,6 +156,26 @@ std::optional<VkDeviceSize> image_bytes(const Device& device, const ImageInfo& i
   return needs.memoryRequirements.size;
 }
 
+ImageInfo volume_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z) {
+  ImageInfo info;
+  info.type = VK_IMAGE_TYPE_3D;
+  info.format = format;
+  info.extent = {std::uint32_t(x), std::uint32_t(y), std::uint32_t(z)};
+  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  return info;
+}
+
+Outcome fit_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height, VkImageUsageFlags usage) {
+  const VkExtent3D& have = image.info().extent;
+  if (image && image.info().format == format && have.width == width && have.height == height) return Done{};
+  ImageInfo info;
+  info.format = format;
+  info.extent = {width, height, 1};
+  info.usage = usage;
+  CATENA_TRY(image, Image::create(device, info));
+  return Done{};
+}
+
 Result<Image> Image::create(Device& device, const ImageInfo& info) {
   // within the device's limits, with a sentence when not
   VkImageFormatProperties limits{};

@@ -46,6 +46,9 @@ struct ImageInfo {
   VkImageUsageFlags usage = 0;
 };
 
+/// Of three dimensions, uploaded once and read by shaders.
+ImageInfo volume_info(VkFormat format, std::size_t x, std::size_t y, std::size_t z);
+
 /// Bytes of one texel of the formats that Catena uses.
 VkDeviceSize texel_bytes(VkFormat format);
 
@@ -86,6 +89,10 @@ class Image {
   VkDeviceSize allocated_ = 0;
   ImageInfo info_;
 };
+
+/// Makes `image` anew unless it has this format and size already; by default a colour target that shaders read.
+Outcome fit_image(Device& device, Image& image, VkFormat format, std::uint32_t width, std::uint32_t height,
+                  VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
 
 enum class Filter { nearest, linear };
 

@@ -10,14 +10,14 @@ CATENA_SHARED_BEGIN
 
 // A lattice of rays: texel `at` is the ray through the centre of pixel spacing * (at - apron).
 struct LatticeData {
-  float spacing;               // pixels
-  float apron;                 // texels before the picture's first; coarser lattices have COARSE_APRON
-  float threshold;             // a block is marched where interpolation is expected to err by more (display units)
-  uint width, height;          // of the lattice that this one refines, texels
-  float gradient_unit;         // codes a voxel in one count of the gradient volume
-  float gradient_nodes;        // of a brick, an axis; 0: of the whole volume, one a voxel
-  uint own_width, own_height;  // of this lattice, texels
-  uint only_marked;            // of the tiles that have changed
+  float spacing;                   // pixels
+  float apron;                     // texels before the picture's first; coarser lattices have COARSE_APRON
+  float threshold;                 // a block is marched where interpolation is expected to err by more (display units)
+  uint width, height;              // of the lattice that this one refines, texels
+  float gradient_unit;             // codes a voxel in one count of the gradient volume
+  float gradient_nodes;            // of a brick, an axis; 0: of the whole volume, one a voxel
+  uint own_width, own_height;      // of this lattice, texels
+  uint only_marked, only_changed;  // 1: of its tiles only those are drawn
 };
 
 // From every 2nd pixel to the picture, in invocations from lattice point first_x, first_y on.

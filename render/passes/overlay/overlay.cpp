@@ -92,14 +92,7 @@ Outcome OverlayPass::upload_atlas(vk::Device& device) {
 
 /// An image of the picture's size.
 Outcome OverlayPass::prepare(Frame& frame) {
-  const VkExtent3D& have = image_.info().extent;
-  if (image_ && have.width == frame.packet.width && have.height == frame.packet.height) return Done{};
-  vk::ImageInfo info;
-  info.format = kOverlayFormat;
-  info.extent = {frame.packet.width, frame.packet.height, 1};
-  info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  CATENA_TRY(image_, vk::Image::create(frame.device, info));
-  return Done{};
+  return vk::fit_image(frame.device, image_, kOverlayFormat, frame.packet.width, frame.packet.height);
 }
 
 /// The items as shapes; the camera is known now.

@@ -74,6 +74,7 @@ Result<render::FramePacket> PictureView::packet(std::uint32_t width, std::uint32
 }
 
 std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file) {
+  auto ahead = std::exchange(ahead_, std::nullopt);
   if (is_minimised()) return std::nullopt;
   std::uint32_t width = 0, height = 0;
   screen_->size(width, height);
@@ -84,8 +85,7 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
   }
   const std::uint32_t scale = render::is_interlaced(render::packing_of(shared_.scene.scene().stereo)) ? 1 : next.scale;
   std::int64_t start = now_ns();
-  auto packet = ahead_ && !for_file ? Result<render::FramePacket>(std::move(*ahead_)) : this->packet(width / scale, height / scale);
-  ahead_.reset();
+  auto packet = ahead && !for_file ? Result<render::FramePacket>(std::move(*ahead)) : this->packet(width / scale, height / scale);
   if (!packet) {
     // at the start it is the scene's fault; later an edit's, and the last picture stands
     if (shared_.times.count() == 0) return Failure{2, packet.error().message};
