@@ -1,0 +1,160 @@
+// Rows of the world: grids of any size, shape and place, and values of any size, under the hand.
+#include "tests/acceptance/chain_rig.h"
+#include "tests/extremes/hand_path.h"
+#include "tests/extremes/table.h"
+
+namespace catena::extremes {
+namespace world_test {
+
+using acceptance::ChainRig;
+using acceptance::Program;
+using acceptance::program_of;
+using haptics::Status;
+
+constexpr const char* kLine = R"("type": "streamline", "field": "v", "follow": "selected")";
+constexpr const char* kOnline = R"("type": "streamline", "field": "v", "follow": "online")";
+constexpr const char* kSurface = R"("type": "isosurface", "field": "s", "level": 0.9)";
+
+/// A link on grids whose voxels have the edge `h` and whose middle is at `origin` (in voxels). Values go by the node's number: the same
+/// floats in every world.
+std::shared_ptr<const Program> on_grids(const std::string& link, double h, const Vec3& origin) {
+  constexpr int n = 33;
+  const Vec3 middle(0.5 * (n - 1));
+  const auto mapping = field::Mapping::from_linear(Mat3(h), h * (origin - middle));
+  haptics::tests::Fields fields;
+  std::vector<float> scalars, vectors;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const Vec3 p = 0.125 * (Vec3(x, y, z) - middle);
+        scalars.push_back(static_cast<float>(norm(p)));
+        for (const double v : {-p.y, p.x, 0.2}) vectors.push_back(static_cast<float>(v));
+      }
+  fields.named["s"].scalar = field::make_scalar_grid("s", mapping, {n, n, n}, scalars);
+  fields.named["v"].vector = field::make_vector_grid("v", mapping, {n, n, n}, vectors);
+  const Vec3 seed = h * (origin + 8.0 * Vec3(0.8, 0.1, -0.5));
+  const std::string with_seed = link == kSurface ? "" : fmt::format(R"(, "seed": [{}, {}, {}])", seed.x, seed.y, seed.z);
+  const auto constraint = haptics::tests::build(R"({"name": "a", )" + link + with_seed + "}", fields);
+  auto program = std::make_shared<Program>(*program_of(std::vector{constraint}));
+  program->metres_per_unit = 0.05 / (8 * h);
+  return program;
+}
+
+struct World {
+  double h;
+  Vec3 origin;
+};
+
+/// How far the proxies of these worlds are from those of voxels of 0.125 at the origin, under the same hand.
+std::string same_proxies(const std::vector<std::string>& links, const std::vector<World>& worlds, double bound) {
+  constexpr int kTicks = 1500;
+  const auto probe = [](int i) { return hand_at(i) - Vec3(0, 0, 0.5 - 1e-3 * i); };
+  double off = 0;
+  long long same = 0, asked = 0;
+  for (const std::string& link : links) {
+    ChainRig plain(on_grids(link, 0.125, Vec3(0.0)));
+    std::vector<std::pair<Vec3, Status>> right;
+    for (int i = 0; i < kTicks; ++i) {
+      plain.to(probe(i));
+      right.push_back({plain.proxy(), plain.status()});
+    }
+    for (const World& world : worlds) {
+      ChainRig rig(on_grids(link, world.h, world.origin));
+      for (int i = 0; i < kTicks; ++i, ++asked) {
+        rig.to(world.h * (world.origin + 8.0 * probe(i)));
+        const auto& [place, status] = right[static_cast<std::size_t>(i)];
+        const double d = norm(0.125 * ((1 / world.h) * rig.proxy() - world.origin) - place) / 4;
+        off = d <= off ? off : d;
+        same += rig.status() == status;
+      }
+    }
+  }
+  return Found().at_most("proxies off those at the origin by", off, bound, "L").all("the same status", same, asked);
+}
+
+std::string voxels_of_any_size() {
+  std::vector<World> worlds;
+  for (const double h : {1e-100, 1e-30, 1e-9, 1e-3, 1e3, 1e9, 1e30, 1e100}) worlds.push_back({h, Vec3(0.0)});
+  return same_proxies({kLine, kOnline, kSurface}, worlds, 1e-9);
+}
+
+const std::vector<World> kFar{
+    {0.125, {1e7, 0, 0}}, {0.125, {1e7, -1e7, 1e7}}, {0.1, {1e7, 1e7, -1e7}}, {1e-9, {0, 0, 1e7}}, {1e9, {-1e7, 3e6, 0}}};
+
+std::string surface_far_from_the_origin() { return same_proxies({kSurface}, kFar, 1e-9); }
+std::string selected_line_far_from_the_origin() { return same_proxies({kLine}, kFar, 1e-7); }
+
+std::string voxels_a_thousand_times_as_long() {
+  // s = x + z / 1000 at voxels of 1/1024, 1/1024 and 1 (ratio 1:1024), exact at every node: a plane in closed form
+  const Vec3 edges(0x1p-10, 0x1p-10, 1);
+  Mat3 linear(0.0);
+  for (int a = 0; a < 3; ++a) linear[a][a] = edges[a];
+  const auto grid =
+      haptics::tests::grid_of(field::Mapping::from_linear(linear, Vec3(0.0)), {33, 33, 33}, [](const Vec3& p) { return p.x * 1024 + p.z; });
+  haptics::tests::Rig rig(haptics::tests::isosurface(grid, 32));
+  const Vec3 normal = direction(Vec3(1024, 0, 1));
+  double off = 0;
+  long long ok = 0;
+  constexpr int kTicks = 2000;
+  for (int i = 0; i < kTicks; ++i) {
+    const double u = i / double(kTicks);
+    const Vec3 on(0x1p-10 * (26 - 20 * u), 0x1p-10 * (16 + 8 * std::sin(9 * u)), 6 + 20 * u),
+        probe = on + (0.004 * std::sin(20 * u)) * normal;
+    rig.tick(probe);
+    off = std::max(off, norm(rig.state.proxy - on));
+    ok += rig.state.status == Status::ok;
+  }
+  return Found().all("OK", ok, kTicks).at_most("proxies off the closest place by", off, 1e-9, "of the shortest edge of the domain's 0.03");
+}
+
+/// Sampled spheres whose values are s times as large, exactly.
+std::string values_of_any_size() {
+  constexpr int n = 33;
+  const auto mapping = field::Mapping::from_linear(Mat3(0.125), Vec3(-2.0));
+  const auto proxies = [&](double s) {
+    const auto grid = haptics::tests::grid_of(mapping, {n, n, n}, [&](const Vec3& p) { return s * std::floor(64 * norm(p)); });
+    haptics::tests::Rig rig(haptics::tests::isosurface(grid, s * 51.5));
+    std::vector<Vec3> out;
+    for (int i = 0; i < 1000; ++i) out.push_back(rig.tick(hand_at(i)).proxy);
+    return out;
+  };
+  const auto plain = proxies(1);
+  double off = 0;
+  // 2^-149 is the least float: all values are denormal
+  for (const double s : {0x1p-149, 0x1p-140, 0x1p-100, 0x1p100, 0x1p119}) {
+    const auto scaled = proxies(s);
+    for (std::size_t i = 0; i < plain.size(); ++i) off = std::max(off, norm(scaled[i] - plain[i]) / 4);
+  }
+  return Found().at_most("proxies off those of values about 1 by", off, 1e-9, "L");
+}
+
+}  // namespace world_test
+
+Group world_rows() {
+  using namespace world_test;
+  return {"The world under the hand",
+          {
+              {"VoxelsOfAnySize", "Lines, traced and online, and a surface of grids with voxels of 1e-100 to 1e100, beside those of 0.125",
+               "proxies off those at the origin by at most 1e-09 L; the same status in every one", voxels_of_any_size},
+              {"SurfaceFarFromTheOrigin", "A surface of a grid 1e7 voxels away from the origin, along one axis and all",
+               "proxies off those at the origin by at most 1e-09 L; the same status in every one", surface_far_from_the_origin},
+              {"SelectedLineFarFromTheOrigin", "A line of such a grid, traced once",
+               "proxies off those at the origin by at most 1e-07 L; the same status in every one", selected_line_far_from_the_origin,
+               "At most 1e-09 L. A traced line has pieces of 1e-5 L where it crosses the corner of a cell; there the rounding of its "
+               "knots' world coordinates turns it by 1e-5"},
+              {"VoxelsAThousandTimesAsLong", "A surface across voxels with edges of 1:1:1024",
+               "OK in every one; proxies off the closest place by at most 1e-09 of the shortest edge of the domain's 0.03",
+               voxels_a_thousand_times_as_long},
+              {"ValuesOfAnySize", "A surface of a grid whose values are denormal floats, down to 2^-149, and up to 2^127",
+               "proxies off those of values about 1 by at most 1e-09 L", values_of_any_size},
+              elsewhere("A formula's line whose velocities are 1e-300 to 1e300", "the same proxies to 1e-9",
+                        "Number11.TheSameStreamlineProxiesAtAnyScaleOfTheField"),
+              elsewhere("A formula's surface whose values are 1e-300 to 1e300", "the same proxies to 1e-9",
+                        "Number11.TheSameSurfaceProxiesAtAnyScaleOfTheField"),
+              elsewhere("Spheres of 1e-300 to 1e300, and probes as far away", "the closest place to round-off",
+                        "Sphere.FarAndTinyProbesAndRadii"),
+              elsewhere("Meshes of any size", "the same as of size 1", "Mesh.HugeAndTinyMeshesBehaveTheSame"),
+          }};
+}
+
+}  // namespace catena::extremes
