@@ -82,6 +82,7 @@ const std::vector<World> kFar{
     {0.125, {1e7, 0, 0}}, {0.125, {1e7, -1e7, 1e7}}, {0.1, {1e7, 1e7, -1e7}}, {1e-9, {0, 0, 1e7}}, {1e9, {-1e7, 3e6, 0}}};
 
 std::string surface_far_from_the_origin() { return same_proxies({kSurface}, kFar, 1e-9); }
+std::string online_line_far_from_the_origin() { return same_proxies({kOnline}, kFar, 1e-8); }
 std::string selected_line_far_from_the_origin() { return same_proxies({kLine}, kFar, 1e-7); }
 
 std::string voxels_a_thousand_times_as_long() {
@@ -138,6 +139,9 @@ Group world_rows() {
                "proxies off those at the origin by at most 1e-09 L; the same status in every one", voxels_of_any_size},
               {"SurfaceFarFromTheOrigin", "A surface of a grid 1e7 voxels away from the origin, along one axis and all",
                "proxies off those at the origin by at most 1e-09 L; the same status in every one", surface_far_from_the_origin},
+              {"OnlineLineFarFromTheOrigin", "A line of such a grid, integrated in every tick",
+               "proxies off those at the origin by at most 1e-08 L; the same status in every one", online_line_far_from_the_origin,
+               "At most 1e-09 L. The proxy is rounded to its world coordinates in every step, which adds up along the line"},
               {"SelectedLineFarFromTheOrigin", "A line of such a grid, traced once",
                "proxies off those at the origin by at most 1e-07 L; the same status in every one", selected_line_far_from_the_origin,
                "At most 1e-09 L. A traced line has pieces of 1e-5 L where it crosses the corner of a cell; there the rounding of its "

@@ -14,8 +14,9 @@ using OnlineMode = OnlineMemory::Mode;
 // lengths, times L
 constexpr double kConverged = 1e-12, kLongestStep = 0.1, kFirstTrust = 0.02;
 constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15, kCalm = 1e-3, kNear = 0.02;
-constexpr int kSearches = 2;  ///< for a zero, a tick
-constexpr int kHalvings = 4;  ///< on the way to a wall, before the rest is tried as a whole
+constexpr double kRounding = 4 * 2.220446049250313e-16;  ///< times the proxy's coordinates: far from the origin no place is nearer
+constexpr int kSearches = 2;                             ///< for a zero, a tick
+constexpr int kHalvings = 4;                             ///< on the way to a wall, before the rest is tried as a whole
 
 /// One tick of one link.
 class OnlineTick {
@@ -168,7 +169,7 @@ class OnlineTick {
       const Vec3 e = x_ - state_.proxy;
       const double g = equation::way_to_foot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
       state_.residual = std::fabs(g);
-      if (!(std::fabs(g) > kConverged * length_)) return;
+      if (!(std::fabs(g) > std::max(kConverged * length_, kRounding * max_abs(state_.proxy)))) return;
       if (way != bad_way) bad = -1;
 
       // the step: Newton with the curvature, within the trust radius and the bracket
