@@ -31,6 +31,8 @@ struct Group {
 Group hand_rows();
 Group world_rows();
 Group coupling_rows();
+Group critical_rows();
+Group flow_rows();
 
 /// What a row has found, one sentence after the other.
 class Found {
