@@ -33,6 +33,8 @@ Group world_rows();
 Group coupling_rows();
 Group critical_rows();
 Group flow_rows();
+Group eye_rows();
+Group picture_rows();
 
 /// What a row has found, one sentence after the other.
 class Found {
