@@ -81,6 +81,9 @@ Result<const vk::Pipeline*> SliceDrawer::pipeline(std::uint32_t flags, std::uint
 Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice& slice, const Peel& peel) {
   const SliceItem& item = slice.item_;
   const field::ScalarGrid* grid = item.grid.get();
+  // a plane through the eye is seen edge-on: where a ray meets it, if at all, is rounding
+  const double away = std::fabs(dot(direction(item.normal), rays.camera.position - item.point));
+  if (!rays.camera.orthographic && away < rays.depth_near) return Done{};
 
   // the frame's data
   shared::FrameData frame = rays.frame();

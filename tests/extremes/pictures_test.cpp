@@ -84,6 +84,20 @@ std::string on_the_target() {
   return Eye::only().said;
 }
 
+std::string in_the_plane_of_a_slice() {
+  const std::string slice = R"("slices": [{"field": "s", "axis": "z", "at": 0, "color": "viridis"}])";
+  Found found;
+  double most = 0;
+  for (const Vec3& eye : {Vec3(0, -6, 0), Vec3(0, -1, 0), Vec3(0.3, 0.2, 0), Vec3(1e-3, 0, 0)}) {
+    const Picture picture = ball(from(eye, 60), 64, 48, slice);
+    if (!Eye::only().said.empty()) return Eye::only().said;
+    most = std::max(most, covered(picture));
+  }
+  found.at_most("pixels of it that are seen", most, 0);
+  const Picture above = ball(from({0, -1, 1e-3}, 60), 64, 48, slice);
+  return found.say(covered(above) > 300 ? "from 0.001 above it is seen" : "from 0.001 above it is not seen");
+}
+
 // ---- lines ----
 
 std::string lines(const std::string& seeds, const std::string& more = {}) {
@@ -127,6 +141,8 @@ Group picture_rows() {
           {"AsFarAwayAsCanBe", "An eye 1e15 units away", "nothing is seen", as_far_away_as_can_be},
           {"OnTheTarget", "An eye on its target",
            "s.json:1: \"target\": the target is at the position, or too near to it; two different points were expected", on_the_target},
+          {"InThePlaneOfASlice", "An eye in the very plane of a slice, beside its field and within it",
+           "pixels of it that are seen at most 0; from 0.001 above it is seen", in_the_plane_of_a_slice},
           {"NoLines", "No seeds", "s.json:2: \"seeds\" is missing or empty; at least one seed [x, y, z], or a pattern, was expected",
            no_lines},
           {"NoLinesOfAPattern", "A pattern of 0 seeds", "s.json:2: \"count\" is 0; a whole number from 1 to 100000 was expected",
