@@ -161,7 +161,7 @@ Result<NpyHead> read_npy_head(std::span<const std::byte> bytes, bool axes_xyz) {
 
 field::Size3 npy_grid_size(const NpyHead& head) {
   field::Size3 size = head.size;
-  size.z = std::max<std::int64_t>(size.z, 2);
+  for (std::int64_t* n : {&size.x, &size.y, &size.z}) *n = std::max<std::int64_t>(*n, 2);
   return size;
 }
 
@@ -173,14 +173,18 @@ std::uint64_t npy_floats(const NpyHead& head) {
 
 void decode_npy(const NpyHead& head, std::span<const std::byte> numbers, std::span<float> out) {
   const std::size_t components = head.components == 1 ? 1 : 3;
+  const field::Size3 n = npy_grid_size(head);
   const auto row = static_cast<std::size_t>(head.size.x);
+  // where the array is flat, its only voxel twice
+  const auto voxel = [](std::int64_t i, std::int64_t size) { return static_cast<std::uint64_t>(std::min(i, size - 1)); };
   float* to = out.data();
-  for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(head.size.z); ++k)
-    for (std::uint64_t j = 0; j < static_cast<std::uint64_t>(head.size.y); ++j, to += row * components)
+  for (std::int64_t k = 0; k < n.z; ++k)
+    for (std::int64_t j = 0; j < n.y; ++j, to += static_cast<std::size_t>(n.x) * components) {
+      const std::uint64_t first = voxel(k, head.size.z) * head.stride[2] + voxel(j, head.size.y) * head.stride[1];
       for (std::uint64_t c = 0; c < static_cast<std::uint64_t>(head.components); ++c)
-        decode_row(head, numbers.data(), k * head.stride[2] + j * head.stride[1] + c * head.stride[3], head.stride[0], row, to + c,
-                   components);
-  if (head.size.z == 1) std::copy_n(out.data(), out.size() / 2, out.data() + out.size() / 2);
+        decode_row(head, numbers.data(), first + c * head.stride[3], head.stride[0], row, to + c, components);
+      if (row == 1) std::copy_n(to, components, to + components);
+    }
 }
 
 field::ReadReply answer_npy(const field::ReadRequest& request, std::span<const std::byte> file, AnswerFile& out) {

@@ -27,8 +27,8 @@ struct NpyHead {
 /// `bytes`: the file, at least its head. An error is a phrase ("begins with ...").
 Result<NpyHead> read_npy_head(std::span<const std::byte> bytes, bool axes_xyz);
 
-/// All numbers as 32-bit floats, x fastest; vectors of two get a third, 0. A flat array (one voxel along z) is written twice, which gives
-/// it a thickness. `numbers` must be as long as the head says.
+/// All numbers as 32-bit floats, x fastest; vectors of two get a third, 0. Where an array is flat (one voxel along an axis), that voxel is
+/// written twice, which gives it a thickness. `numbers` must be as long as the head says.
 void decode_npy(const NpyHead& head, std::span<const std::byte> numbers, std::span<float> out);
 /// How many floats that are, and the size of the grid.
 field::Size3 npy_grid_size(const NpyHead& head);

@@ -147,6 +147,24 @@ std::string two_voxels_each_way() {
   return seen(grid_of(
       {2, 2, 2}, [](int x, int, int) { return 1.0 * x; }, R"("volumes": [{"field": "s"}], "isosurfaces": [{"field": "s", "level": 0.5}])"));
 }
+/// An array of ones as NumPy writes it, drawn from all sides; its indices go z, y, x.
+std::string flat_arrays() {
+  Found found;
+  for (const std::array<int, 3>& n : {std::array{1, 1, 1}, {1, 1, 5}, {1, 5, 1}, {5, 1, 1}, {1, 5, 5}, {5, 5, 1}}) {
+    const test::TemporaryFolder folder;
+    std::string head = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, {}), }}", n[0], n[1], n[2]);
+    head += std::string(118 - 1 - head.size(), ' ') + "\n";
+    test::write_file(folder / "a.npy", std::string("\x93NUMPY\x01\x00\x76\x00", 10) + head +
+                                           bytes_of(std::vector<float>(static_cast<std::size_t>(n[0] * n[1] * n[2]), 1.0f)));
+    const Picture picture =
+        Eye::only().draw(R"({"fields": {"s": {"file": "a.npy"}}, "volumes": [{"field": "s", "extinction": [[0, 0], [1, 5]]}],
+        "background": "transparent"})",
+                         folder, 32, 24);
+    found.say(fmt::format("{}x{}x{}: ", n[0], n[1], n[2]) + seen(picture));
+  }
+  return found;
+}
+
 }  // namespace eye_test
 
 Group eye_rows() {
@@ -171,6 +189,10 @@ Group eye_rows() {
               {"OneVoxel", "A .raw file of one voxel", "s.json:1: \"shape\" holds 1; three whole numbers from 2 to 65536 were expected",
                one_voxel},
               {"TwoVoxelsEachWay", "One cell", "something is seen", two_voxels_each_way},
+              {"FlatArrays", "Arrays of NumPy's of one voxel, and flat along one axis or two",
+               "1x1x1: something is seen; 1x1x5: something is seen; 1x5x1: something is seen; 5x1x1: something is seen; 1x5x5: something "
+               "is seen; 5x5x1: something is seen",
+               flat_arrays},
           }};
 }
 
