@@ -2,6 +2,7 @@
 /// here. To add one: a reader with a row of the registry, NAME_format() below, and a line in formats.cpp. Any thread.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "engine/base/result.h"
 #include "engine/field/dense.h"
 #include "engine/field/load.h"
+#include "engine/field/number_type.h"
 #include "engine/field/units.h"
 
 namespace catena::field {
@@ -43,6 +45,7 @@ struct DenseFile {
   DenseSource source;           ///< keeps the file open
   std::vector<double> times{};  ///< as those of AnyField
   std::vector<std::string> notes{};
+  std::shared_ptr<const Rounding> rounding{};  ///< what reading the numbers has rounded so far; none: nothing is told of it
 };
 Result<AnyField> load_dense(const DenseFile& file);
 /// Of a format that holds one grid: what there is once it is loaded.

@@ -51,6 +51,8 @@ Result<AnyField> load_dense(const DenseFile& file) {
   }
   field.times = file.times;
   field.notes = file.notes;
+  if (file.rounding)
+    for (std::string& note : notes_of(*file.rounding, file.type)) field.notes.push_back(std::move(note));
   count_file();
   count_grid();
   return field;

@@ -92,7 +92,7 @@ class NiftiLayers {
       done_ += got <= wanted ? got : 0;
       if (got != wanted) return cut(done_);
       if (swapped_ && type_.bytes > 1) nifti_swap_Nbytes(count, static_cast<int>(type_.bytes), raw_.data());
-      type_.decode(raw_.data(), count, slope_, inter_, values.data() + at);
+      type_.decode(raw_.data(), count, slope_, inter_, values.data() + at, *rounding);
     }
     if (done_ < bytes_) return Done{};
     // one byte beyond lets the decompressor check its trailer when the volume is the whole file
@@ -103,6 +103,8 @@ class NiftiLayers {
     if (!sound) return Error{fmt::format("{}: the compressed file is cut short or damaged", path_)};
     return Done{};
   }
+
+  const std::shared_ptr<Rounding> rounding = std::make_shared<Rounding>();
 
  private:
   struct Close {
@@ -203,6 +205,7 @@ static Result<DenseFile> open_nifti(const LoadRequest& request) {
         fmt::format("volume {} of {}, counted from 0: the header does not say that they are steps in time; \"step\" of the "
                     "field chooses another",
                     volume, volumes));
+  file.rounding = layers->rounding;
   file.source.size = {image.nx, image.ny, image.nz};
   CATENA_CHECK(ask_for_dense(fmt::format("{}: the grid of {} x {} x {} voxels", path, image.nx, image.ny, image.nz), file.source.size, 1,
                              /*masked=*/false));

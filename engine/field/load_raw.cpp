@@ -30,10 +30,12 @@ class RawLayers {
       const std::size_t count = std::min(kPiece, values.size() - at);
       in_.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(count * type_.bytes));
       CATENA_CHECK(whole());
-      type_.decode(bytes_.data(), count, 1, 0, values.data() + at);
+      type_.decode(bytes_.data(), count, 1, 0, values.data() + at, *rounding);
     }
     return Done{};
   }
+
+  const std::shared_ptr<Rounding> rounding = std::make_shared<Rounding>();
 
  private:
   Outcome whole() const {
@@ -90,6 +92,7 @@ static Result<DenseFile> open_raw(const LoadRequest& request) {
   for (int a = 0; a < 3; ++a) linear[a][a] = raw.spacing[a];
   const auto layers = std::make_shared<RawLayers>(path, *type);
   DenseFile file{name, raw.type, path + ": the data ", Mapping::from_linear(linear, raw.origin), static_cast<int>(components), {}};
+  file.rounding = layers->rounding;
   file.source.size = n;
   file.source.read = [layers](int, int, std::span<float> values, std::span<std::uint8_t>) { return layers->read(values); };
   return file;

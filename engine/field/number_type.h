@@ -1,26 +1,48 @@
-/// Private to this room: plain numbers in files, by their word: float32 float64 uint8 int8 uint16 int16 uint32 int32 uint64 int64.
+/// Plain numbers in files, by their word: float32 float64 uint8 int8 uint16 int16 uint32 int32 uint64 int64.
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace catena::field {
+
+/// What becomes of numbers that a 32-bit float does not hold.
+struct Rounding {
+  bool any = false;          ///< a number is rounded (one that is scaled does not count)
+  std::uint64_t beyond = 0;  ///< finite numbers that are too large: they become infinite, which is a hole
+};
+
+/// What a note says of it, sentences without an end; `type`: the word of the file's numbers.
+inline std::vector<std::string> notes_of(const Rounding& rounding, std::string_view type) {
+  std::vector<std::string> notes;
+  if (rounding.any) notes.push_back("values of type " + std::string(type) + " are rounded to 32-bit floats");
+  if (rounding.beyond > 0) notes.push_back(std::to_string(rounding.beyond) + " values are beyond 32-bit floats: they are holes");
+  return notes;
+}
 
 struct NumberType {
   std::string_view word;
   std::size_t bytes;
   /// out[i] = slope * in[i] + inter, computed in double; `in` in the machine's byte order, of any alignment.
-  void (*decode)(const std::byte* in, std::size_t count, double slope, double inter, float* out);
+  void (*decode)(const std::byte* in, std::size_t count, double slope, double inter, float* out, Rounding& rounding);
 };
 
 template <class T>
-void decode_numbers(const std::byte* in, std::size_t count, double slope, double inter, float* out) {
+void decode_numbers(const std::byte* in, std::size_t count, double slope, double inter, float* out, Rounding& rounding) {
+  const bool plain = slope == 1 && inter == 0;
   for (std::size_t i = 0; i < count; ++i) {
     T v;
     std::memcpy(&v, in + i * sizeof(T), sizeof(T));
-    out[i] = static_cast<float>(slope * static_cast<double>(v) + inter);
+    const double number = slope * static_cast<double>(v) + inter;
+    out[i] = static_cast<float>(number);
+    if (static_cast<double>(out[i]) == number || std::isnan(number)) continue;
+    rounding.any = rounding.any || plain;
+    rounding.beyond += std::isinf(out[i]);
   }
 }
 

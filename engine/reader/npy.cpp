@@ -84,7 +84,7 @@ Outcome read_type(std::string_view word, NpyHead& head) {
 
 /// `count` numbers from number `first` on, `stride` apart.
 void decode_row(const NpyHead& head, const std::byte* data, std::uint64_t first, std::uint64_t stride, std::size_t count, float* out,
-                std::size_t out_stride) {
+                std::size_t out_stride, field::Rounding& rounding) {
   const auto type = field::number_type(head.type);
   for (std::size_t i = 0; i < count; ++i) {
     std::array<std::byte, 8> number{};
@@ -92,7 +92,7 @@ void decode_row(const NpyHead& head, const std::byte* data, std::uint64_t first,
     if (head.swapped) std::reverse(number.begin(), number.begin() + static_cast<std::ptrdiff_t>(head.bytes));
     float& to = out[i * out_stride];
     if (type) {
-      type->decode(number.data(), 1, 1, 0, &to);
+      type->decode(number.data(), 1, 1, 0, &to, rounding);
     } else if (head.type == "bool") {
       to = number[0] != std::byte{0} ? 1.f : 0.f;
     } else {
@@ -171,7 +171,8 @@ std::uint64_t npy_floats(const NpyHead& head) {
          (head.components == 1 ? 1 : 3);
 }
 
-void decode_npy(const NpyHead& head, std::span<const std::byte> numbers, std::span<float> out) {
+field::Rounding decode_npy(const NpyHead& head, std::span<const std::byte> numbers, std::span<float> out) {
+  field::Rounding rounding;
   const std::size_t components = head.components == 1 ? 1 : 3;
   const field::Size3 n = npy_grid_size(head);
   const auto row = static_cast<std::size_t>(head.size.x);
@@ -182,9 +183,10 @@ void decode_npy(const NpyHead& head, std::span<const std::byte> numbers, std::sp
     for (std::int64_t j = 0; j < n.y; ++j, to += static_cast<std::size_t>(n.x) * components) {
       const std::uint64_t first = voxel(k, head.size.z) * head.stride[2] + voxel(j, head.size.y) * head.stride[1];
       for (std::uint64_t c = 0; c < static_cast<std::uint64_t>(head.components); ++c)
-        decode_row(head, numbers.data(), first + c * head.stride[3], head.stride[0], row, to + c, components);
+        decode_row(head, numbers.data(), first + c * head.stride[3], head.stride[0], row, to + c, components, rounding);
       if (row == 1) std::copy_n(to, components, to + components);
     }
+  return rounding;
 }
 
 field::ReadReply answer_npy(const field::ReadRequest& request, std::span<const std::byte> file, AnswerFile& out) {
@@ -212,7 +214,9 @@ field::ReadReply answer_npy(const field::ReadRequest& request, std::span<const s
   reply.is_vector = head->components > 1;
   reply.dense = {npy_grid_size(*head), reply.is_vector ? 3 : 1, head->type, {}, {}};
   field::NanoMemory memory = out.allocate(static_cast<std::size_t>(bytes), reply.dense.values);
-  decode_npy(*head, numbers, {reinterpret_cast<float*>(memory.data()), static_cast<std::size_t>(npy_floats(*head))});
+  const field::Rounding rounding =
+      decode_npy(*head, numbers, {reinterpret_cast<float*>(memory.data()), static_cast<std::size_t>(npy_floats(*head))});
+  reply.notes = field::notes_of(rounding, head->type);
   return reply;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/base/result.h"
+#include "engine/field/number_type.h"
 #include "engine/field/reader_exchange.h"
 
 namespace catena::reader {
@@ -29,7 +30,8 @@ Result<NpyHead> read_npy_head(std::span<const std::byte> bytes, bool axes_xyz);
 
 /// All numbers as 32-bit floats, x fastest; vectors of two get a third, 0. Where an array is flat (one voxel along an axis), that voxel is
 /// written twice, which gives it a thickness. `numbers` must be as long as the head says.
-void decode_npy(const NpyHead& head, std::span<const std::byte> numbers, std::span<float> out);
+/// What was rounded is counted once for every copy.
+field::Rounding decode_npy(const NpyHead& head, std::span<const std::byte> numbers, std::span<float> out);
 /// How many floats that are, and the size of the grid.
 field::Size3 npy_grid_size(const NpyHead& head);
 std::uint64_t npy_floats(const NpyHead& head);

@@ -165,6 +165,22 @@ std::string flat_arrays() {
   return found;
 }
 
+std::string beyond_floats() {
+  const test::TemporaryFolder folder;
+  std::vector<double> values;
+  for (int i = 0; i < 512; ++i) values.push_back(i % 2 ? 1e300 : 0.1 * i);
+  test::write_file(folder / "s.raw", bytes_of(values));
+  auto scene = scene::parse_scene(R"({"fields": {"s": {"file": "s.raw", "type": "float64", "shape": [8, 8, 8]}},
+      "slices": [{"field": "s", "axis": "z", "at": 4}]})",
+                                  folder / "s.json");
+  if (!scene) return scene.error().message;
+  const auto drawn = render::make_frame(*scene, 8, 8);
+  if (!drawn) return drawn.error().message;
+  Found found;
+  for (const std::string& note : scene->notes) found.say(note.substr(note.rfind('/') + 1));
+  return found;
+}
+
 }  // namespace eye_test
 
 Group eye_rows() {
@@ -193,6 +209,9 @@ Group eye_rows() {
                "1x1x1: something is seen; 1x1x5: something is seen; 1x5x1: something is seen; 5x1x1: something is seen; 1x5x5: something "
                "is seen; 5x5x1: something is seen",
                flat_arrays},
+              {"BeyondFloats", "Numbers of 64 bits that 32-bit floats do not hold",
+               "s.raw: values of type float64 are rounded to 32-bit floats; s.raw: 256 values are beyond 32-bit floats: they are holes",
+               beyond_floats},
           }};
 }
 
