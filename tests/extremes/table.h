@@ -35,6 +35,7 @@ Group critical_rows();
 Group flow_rows();
 Group eye_rows();
 Group picture_rows();
+Group command_rows();
 
 /// What a row has found, one sentence after the other.
 class Found {
