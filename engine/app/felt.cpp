@@ -19,6 +19,9 @@ bool holds(exchange::Status status) {
 /// "12.5 mm", or "3 m" from one metre on.
 std::string hand_length(double metres) { return metres < 1 ? fmt::format("{:.3g} mm", 1e3 * metres) : fmt::format("{:.3g} m", metres); }
 
+/// "3.88", or "1.7e+308" where that would be hundreds of digits.
+std::string seconds(double s) { return s < 1e9 ? fmt::format("{:.2f}", s) : fmt::format("{:.3g}", s); }
+
 }  // namespace
 
 void Felt::add(const exchange::HapticState& state) {
@@ -50,10 +53,10 @@ std::string Felt::sentence(const Touch& touch, const haptics::Link& link, const 
   const std::string lies_on = printable(link.lies_on);
   std::string text = link.one_sided ? fmt::format("pressed {} {}", length, lies_on.empty() ? "deep" : "into " + lies_on)
                                     : fmt::format("pulled up to {} off{}", length, lies_on.empty() ? "" : " " + lies_on);
-  text += fmt::format("{}; held {:.2f} of {:.2f} s",
+  text += fmt::format("{}; held {} of {} s",
                       program.links.size() == 1 && max_force_n_ > 0 ? fmt::format(", at most {:.2g} N", max_force_n_)
                                                                     : fmt::format(", own share at most {:.2g} N", share_n),
-                      touch.held_s, last_s_ - first_s_);
+                      seconds(touch.held_s), seconds(last_s_ - first_s_));
   if (touch.let_go == 1) text += ", let go once";
   if (touch.let_go > 1) text += fmt::format(", let go {} times", touch.let_go);
   return text;

@@ -73,6 +73,21 @@ std::string infinity_in_a_path() { return replay({}, "0,0.5,0,0\n0.001,0,-inf,0\
 std::string path_beyond_doubles() { return replay({}, "0,0.5,0,1e309\n"); }
 std::string path_at_the_ends_of_doubles() { return replay({}, "0,1.7e308,0,0\n0.001,-1e308,1e-320,0\n0.002,5e-324,0,0\n0.003,0.5,0,0\n"); }
 
+std::string times_at_the_ends_of_doubles() {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", Files().scene);
+  test::write_file(folder / "p.csv", "t,x,y,z\n0,0,0,0\n1e-320,0.5,0,0\n1e-310,0.6,0,0\n1,0.5,0,0\n1e300,0.5,0,0\n1.7e308,0.4,0,0\n");
+  const auto result = test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "out.csv"});
+  std::size_t longest = 0, at = 0;
+  const std::string text = result.out + result.err;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    longest = std::max(longest, end - at);
+    at = end + 1;
+  }
+  return Found().say(ran(folder, result)).at_most("bytes of the longest line that is said", static_cast<double>(longest), 200);
+}
+
 std::string far_seed() { return trace("1e300,0,0"); }
 std::string denormal_seed() { return trace("1e-320,1e-310,0"); }
 std::string nan_seed() { return trace("nan,0,0"); }
@@ -139,6 +154,8 @@ Group command_rows() {
       {"PathBeyondDoubles", "A path with 1e309", exit + "p.csv:2: \"1e309\" in column \"z\"; a finite number was expected",
        path_beyond_doubles},
       {"PathAtTheEndsOfDoubles", "A path with 1.7e308 and 5e-324", "done", path_at_the_ends_of_doubles},
+      {"TimesAtTheEndsOfDoubles", "A path whose times rise from 1e-320 to 1.7e308 s",
+       "done; bytes of the longest line that is said at most 200", times_at_the_ends_of_doubles},
       {"FarSeed", "A line from 1e300 units away", "done", far_seed},
       {"DenormalSeed", "A line from 1e-320 beside a vortex ring's axis", "done", denormal_seed},
       {"NanSeed", "A seed that is NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected", nan_seed},
