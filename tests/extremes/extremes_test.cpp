@@ -23,8 +23,8 @@ Found& Found::all(const std::string& what, long long count, long long of) {
 namespace extremes_test {
 
 const std::vector<Group>& table() {
-  static const std::vector<Group> all{hand_rows(), world_rows(), coupling_rows(), critical_rows(),
-                                      flow_rows(), eye_rows(),   picture_rows(),  command_rows()};
+  static const std::vector<Group> all{hand_rows(), world_rows(), index_rows(),   coupling_rows(), critical_rows(),
+                                      flow_rows(), eye_rows(),   picture_rows(), command_rows()};
   return all;
 }
 

@@ -30,6 +30,7 @@ struct Group {
 /// In the order of the document; each in a file of its own.
 Group hand_rows();
 Group world_rows();
+Group index_rows();
 Group coupling_rows();
 Group critical_rows();
 Group flow_rows();

@@ -14,7 +14,7 @@ using OnlineMode = OnlineMemory::Mode;
 // lengths, times L
 constexpr double kConverged = 1e-12, kLongestStep = 0.1, kFirstTrust = 0.02;
 constexpr double kCritical = 1e-7, kCapture = 1e-4, kBoundary = 1e-9, kSmallest = 1e-15, kCalm = 1e-3, kNear = 0.02;
-constexpr double kRounding = 4 * 2.220446049250313e-16;  ///< times the proxy's coordinates: far from the origin no place is nearer
+constexpr double kRounding = 4 * 2.220446049250313e-16;  ///< times a place's coordinates: far from the origin no place is nearer
 constexpr int kSearches = 2;                             ///< for a zero, a tick
 constexpr int kHalvings = 4;                             ///< on the way to a wall, before the rest is tried as a whole
 
@@ -139,6 +139,11 @@ class OnlineTick {
     return step;
   }
 
+  /// Of the proxy's place, in the world and among the grid's voxels, whichever is counted from farther away.
+  double rounding() const noexcept {
+    return kRounding * std::max(max_abs(state_.proxy), max_abs(state_.proxy - spec_.field->mapping().origin));
+  }
+
   bool affordable() noexcept {
     if (state_.evaluations + (cells_ ? 3 : 1) * tableau_.stages <= kEvaluationCap) return true;
     state_.status = Status::budget;
@@ -169,7 +174,7 @@ class OnlineTick {
       const Vec3 e = x_ - state_.proxy;
       const double g = equation::way_to_foot(e, memory_.t), way = g < 0 ? -1.0 : 1.0;
       state_.residual = std::fabs(g);
-      if (!(std::fabs(g) > std::max(kConverged * length_, kRounding * max_abs(state_.proxy)))) return;
+      if (!(std::fabs(g) > std::max(kConverged * length_, rounding()))) return;
       if (way != bad_way) bad = -1;
 
       // the step: Newton with the curvature, within the trust radius and the bracket

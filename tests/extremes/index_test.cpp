@@ -1,0 +1,112 @@
+// Rows of .vdb grids whose voxels are counted from far away: indices of 1e7, at the same place of the world.
+#include <openvdb/openvdb.h>
+
+#include "tests/acceptance/chain_rig.h"
+#include "tests/extremes/eye_rig.h"
+#include "tests/extremes/hand_path.h"
+#include "tests/extremes/table.h"
+
+namespace catena::extremes {
+namespace index_test {
+
+using acceptance::ChainRig;
+using acceptance::program_of;
+
+constexpr double kEdge = 0.125;
+
+/// The distance from the origin and a helix of a flow, on 33^3 voxels of 0.125 about the origin of the world; the first one's index is
+/// `first`.
+void write_vdb(const std::string& path, const openvdb::Coord& first) {
+  openvdb::initialize();
+  auto scalars = openvdb::FloatGrid::create();
+  auto vectors = openvdb::Vec3SGrid::create();
+  scalars->setName("s");
+  vectors->setName("v");
+  const auto transform = openvdb::math::Transform::createLinearTransform(kEdge);
+  transform->postTranslate(openvdb::Vec3d(-2) - kEdge * first.asVec3d());
+  scalars->setTransform(transform);
+  vectors->setTransform(transform->copy());
+  for (int z = 0; z < 33; ++z)
+    for (int y = 0; y < 33; ++y)
+      for (int x = 0; x < 33; ++x) {
+        const openvdb::Vec3d p = kEdge * openvdb::Vec3d(x, y, z) - openvdb::Vec3d(2);
+        scalars->tree().setValue(first.offsetBy(x, y, z), static_cast<float>(p.length()));
+        vectors->tree().setValue(first.offsetBy(x, y, z), openvdb::Vec3s(openvdb::Vec3d(-p.y(), p.x(), 0.2)));
+      }
+  openvdb::io::File(path).write({scalars, vectors});
+}
+
+const openvdb::Coord kNear(0, 0, 0), kFar(10'000'000, -10'000'000, 10'000'000);
+
+std::string fields_of(const std::string& path) {
+  return R"({"fields": {"s": {"file": ")" + path + R"(", "grid": "s"}, "v": {"file": ")" + path + R"(", "grid": "v"}}, )";
+}
+
+std::string under_the_hand(const std::string& link, double bound) {
+  const test::TemporaryFolder folder;
+  std::vector<ChainRig> rigs;
+  for (const auto& [name, first] : {std::pair{"near.vdb", kNear}, {"far.vdb", kFar}}) {
+    write_vdb(folder / name, first);
+    const auto program =
+        program_of(fields_of(folder / name) + R"("workspace": {"metres_per_unit": 0.05}, "chain": [{"name": "a", )" + link + "}]}");
+    if (!program) return "no program";
+    rigs.emplace_back(program);
+  }
+  double off = 0;
+  long long same = 0;
+  constexpr int kTicks = 1500;
+  for (int i = 0; i < kTicks; ++i) {
+    for (ChainRig& rig : rigs) rig.to(hand_at(i) - Vec3(0, 0, 0.5 - 1e-3 * i));
+    off = std::max(off, norm(rigs[0].proxy() - rigs[1].proxy()) / 4);
+    same += rigs[0].status() == rigs[1].status();
+  }
+  return Found().at_most("proxies off those of indices from 0 by", off, bound, "L").all("the same status", same, kTicks);
+}
+
+std::string surface() { return under_the_hand(R"("type": "isosurface", "field": "s", "level": 0.9)", 1e-9); }
+std::string selected_line() { return under_the_hand(R"("type": "streamline", "field": "v", "seed": [0.8, 0.1, -0.5])", 1e-7); }
+std::string online_line() {
+  return under_the_hand(R"("type": "streamline", "field": "v", "seed": [0.8, 0.1, -0.5], "follow": "online")", 1e-9);
+}
+
+std::string under_the_eye() {
+  std::vector<render::Picture> pictures;
+  for (const openvdb::Coord& first : {kNear, kFar}) {
+    const test::TemporaryFolder folder;
+    write_vdb(folder / "a.vdb", first);
+    pictures.push_back(Eye::only().draw(fields_of("a.vdb") + R"("background": "transparent",
+      "volumes": [{"field": "s", "extinction": [[1.5, 0], [3.4, 1]]}], "isosurfaces": [{"field": "s", "level": 0.9}],
+      "slices": [{"field": "s", "axis": "z", "at": -1, "color": "viridis"}],
+      "streamlines": [{"field": "v", "seeds": [[0.8, 0.1, -0.5]], "radius": 0.05}],
+      "camera": {"position": [4, -6, 3], "target": [0, 0, 0], "fovy_deg": 36}})",
+                                        folder, 96, 72));
+    if (!Eye::only().said.empty()) return Eye::only().said;
+  }
+  return Found()
+      .say(covered(pictures[0]) > 500 ? "something is seen" : "nothing is seen")
+      .at_most("pixels that differ by more than 24/255", differing(pictures[0], pictures[1], 24), 0.002);
+}
+
+}  // namespace index_test
+
+Group index_rows() {
+  using namespace index_test;
+  const std::string same = "proxies off those of indices from 0 by at most 1e-09 L; the same status in every one";
+  return {"Indices from far away",
+          {
+              {"SurfaceOfFarIndices", "A surface of a .vdb grid whose indices begin at 1e7, -1e7, 1e7, at the same place of the world",
+               same, surface},
+              {"SelectedLineOfFarIndices", "A line of such a grid, traced once",
+               "proxies off those of indices from 0 by at most 1e-07 L; the same status in every one", selected_line,
+               "At most 1e-09 L: as `SelectedLineFarFromTheOrigin`, with the rounding of places among the voxels"},
+              {"OnlineLineOfFarIndices", "A line of such a grid, integrated in every tick", same, online_line},
+              {"PicturesOfFarIndices", "A volume, a surface, a slice and a line of such a grid: 24/255 is a tenth of a pixel",
+               "something is seen; pixels that differ by more than 24/255 at most 0.002", under_the_eye},
+              elsewhere("Indices at the ends of 32-bit numbers", "an error that says which were expected",
+                        "LoadVdb.VoxelsAtTheEndsOfTheIndexRange"),
+              elsewhere("A .vdb grid without an active voxel", "an error that says so", "LoadVdb.EveryBadGridHasItsSentence"),
+              elsewhere("Tiles of 2^36 voxels of one value", "they cost nothing", "LoadVdb.TilesOfAnyExtentCostNothing"),
+          }};
+}
+
+}  // namespace catena::extremes
