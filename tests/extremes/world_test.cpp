@@ -1,5 +1,7 @@
 // Rows of the world: grids of any size, shape and place, and values of any size, under the hand.
 #include "tests/acceptance/chain_rig.h"
+#include "tests/engine/flow/fields.h"
+#include "tests/extremes/flow_rig.h"
 #include "tests/extremes/hand_path.h"
 #include "tests/extremes/table.h"
 
@@ -129,36 +131,118 @@ std::string values_of_any_size() {
   return Found().at_most("proxies off those of values about 1 by", off, 1e-9, "L");
 }
 
+// ---- grids with little or nothing in them ----
+
+const double kNan = std::nan("");
+const auto kVoxels = field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0));
+constexpr field::Index3 kSize{17, 17, 17};
+
+bool even(const Vec3& p) { return static_cast<int>(4 * (p.x + p.y + p.z + 6) + 0.5) % 2 == 0; }
+
+/// A hand walks, jumps and rests on the surface of a grid.
+std::string on_surface(const std::function<double(const Vec3&)>& value, double level) {
+  haptics::tests::Rig rig(haptics::tests::isosurface(haptics::tests::grid_of(kVoxels, kSize, value), level));
+  haptics::tests::Random random(3);
+  long long bounded = 0, nothing = 0, still = 0, rests = 0, ticks = 0;
+  Vec3 probe(0.1, 0.2, 0.3);
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 before = rig.state.proxy;
+    const Status status = rig.state.status;
+    const bool rest = i % 30 > 20;
+    if (!rest) probe = i % 30 == 0 ? random.box(1.8) : probe + random.box(0.01);
+    rig.tick(probe);
+    ++ticks;
+    bounded += is_finite(rig.state.proxy) && rig.state.evaluations <= haptics::kEvaluationCap && rig.state.work() <= haptics::kWorkCap;
+    nothing += (rig.state.status == Status::no_surface || (rig.state.status == Status::budget && i > 0)) &&
+               haptics::same_bits(rig.state.proxy, probe);
+    if (i % 30 < 28 || status == Status::budget) continue;
+    ++rests;
+    still += haptics::same_bits(before, rig.state.proxy);
+  }
+  Found found;
+  found.all("finite and within the work of a tick", bounded, ticks).all("still under a still probe", still, rests);
+  return found.say(nothing == ticks ? "the hand passes to the bit, NO_SURFACE, or BUDGET while it looks for one"
+                   : nothing == 0   ? "held always"
+                                    : "held at times");
+}
+
+std::string on_a_checkerboard() {
+  return on_surface([](const Vec3& p) { return even(p) ? 1.0 : -1.0; }, 0.25);
+}
+std::string on_a_constant() {
+  return on_surface([](const Vec3&) { return 2.5; }, 2.5);
+}
+std::string without_a_whole_cell() {
+  return on_surface([](const Vec3& p) { return even(p) ? kNan : p.x; }, 0.25);
+}
+
+std::string lines_of(const std::function<Vec3(const Vec3&)>& value) {
+  const auto grid = test::grid_of(kVoxels, kSize, value);
+  const auto traced = flow::trace({grid.get()}, {0.1, 0.2, 0.3});
+  haptics::tests::Rig rig = online_rig(grid, {0.1, 0.2, 0.3});
+  rig.tick({0.3, 0.2, 0.1});
+  return Found()
+      .say("traced: " + (traced ? ends_of(**traced) : traced.error().message))
+      .say(fmt::format("online: {}, {}", exchange::status_word(rig.state.status), reason_word(rig.state.reason)));
+}
+std::string lines_of_nothing() {
+  return lines_of([](const Vec3&) { return Vec3(0.0); });
+}
+std::string lines_without_a_whole_cell() {
+  return lines_of([](const Vec3& p) { return even(p) ? Vec3(kNan) : Vec3(1.0); });
+}
+
 }  // namespace world_test
 
 Group world_rows() {
   using namespace world_test;
-  return {"The world under the hand",
-          {
-              {"VoxelsOfAnySize", "Lines, traced and online, and a surface of grids with voxels of 1e-100 to 1e100, beside those of 0.125",
-               "proxies off those at the origin by at most 1e-09 L; the same status in every one", voxels_of_any_size},
-              {"SurfaceFarFromTheOrigin", "A surface of a grid 1e7 voxels away from the origin, along one axis and all",
-               "proxies off those at the origin by at most 1e-09 L; the same status in every one", surface_far_from_the_origin},
-              {"OnlineLineFarFromTheOrigin", "A line of such a grid, integrated in every tick",
-               "proxies off those at the origin by at most 1e-08 L; the same status in every one", online_line_far_from_the_origin,
-               "At most 1e-09 L. The proxy is rounded to its world coordinates in every step, which adds up along the line"},
-              {"SelectedLineFarFromTheOrigin", "A line of such a grid, traced once",
-               "proxies off those at the origin by at most 1e-07 L; the same status in every one", selected_line_far_from_the_origin,
-               "At most 1e-09 L. A traced line has pieces of 1e-5 L where it crosses the corner of a cell; there the rounding of its "
-               "knots' world coordinates turns it by 1e-5"},
-              {"VoxelsAThousandTimesAsLong", "A surface across voxels with edges of 1:1:1024",
-               "OK in every one; proxies off the closest place by at most 1e-09 of the shortest edge of the domain's 0.03",
-               voxels_a_thousand_times_as_long},
-              {"ValuesOfAnySize", "A surface of a grid whose values are denormal floats, down to 2^-149, and up to 2^127",
-               "proxies off those of values about 1 by at most 1e-09 L", values_of_any_size},
-              elsewhere("A formula's line whose velocities are 1e-300 to 1e300", "the same proxies to 1e-9",
-                        "Number11.TheSameStreamlineProxiesAtAnyScaleOfTheField"),
-              elsewhere("A formula's surface whose values are 1e-300 to 1e300", "the same proxies to 1e-9",
-                        "Number11.TheSameSurfaceProxiesAtAnyScaleOfTheField"),
-              elsewhere("Spheres of 1e-300 to 1e300, and probes as far away", "the closest place to round-off",
-                        "Sphere.FarAndTinyProbesAndRadii"),
-              elsewhere("Meshes of any size", "the same as of size 1", "Mesh.HugeAndTinyMeshesBehaveTheSame"),
-          }};
+  return {
+      "The world under the hand",
+      {
+          {"VoxelsOfAnySize", "Lines, traced and online, and a surface of grids with voxels of 1e-100 to 1e100, beside those of 0.125",
+           "proxies off those at the origin by at most 1e-09 L; the same status in every one", voxels_of_any_size},
+          {"SurfaceFarFromTheOrigin", "A surface of a grid 1e7 voxels away from the origin, along one axis and all",
+           "proxies off those at the origin by at most 1e-09 L; the same status in every one", surface_far_from_the_origin},
+          {"OnlineLineFarFromTheOrigin", "A line of such a grid, integrated in every tick",
+           "proxies off those at the origin by at most 1e-08 L; the same status in every one", online_line_far_from_the_origin,
+           "At most 1e-09 L. The proxy is rounded to its world coordinates in every step, which adds up along the line"},
+          {"SelectedLineFarFromTheOrigin", "A line of such a grid, traced once",
+           "proxies off those at the origin by at most 1e-07 L; the same status in every one", selected_line_far_from_the_origin,
+           "At most 1e-09 L. A traced line has pieces of 1e-5 L where it crosses the corner of a cell; there the rounding of its "
+           "knots' world coordinates turns it by 1e-5"},
+          {"VoxelsAThousandTimesAsLong", "A surface across voxels with edges of 1:1:1024",
+           "OK in every one; proxies off the closest place by at most 1e-09 of the shortest edge of the domain's 0.03",
+           voxels_a_thousand_times_as_long},
+          {"ValuesOfAnySize", "A surface of a grid whose values are denormal floats, down to 2^-149, and up to 2^127",
+           "proxies off those of values about 1 by at most 1e-09 L", values_of_any_size},
+          {"OnACheckerboard", "A hand that walks, jumps and rests on a checkerboard of 1 and -1, at the level 1/4",
+           "finite and within the work of a tick in every one; still under a still probe in every one; held always", on_a_checkerboard},
+          {"OnAConstant", "On a grid of one value, at that value",
+           "finite and within the work of a tick in every one; still under a still probe in every one; the hand passes to the bit, "
+           "NO_SURFACE, or BUDGET while it looks for one",
+           on_a_constant},
+          {"WithoutAWholeCell", "On a grid whose every second voxel is NaN",
+           "finite and within the work of a tick in every one; still under a still probe in every one; the hand passes to the bit, "
+           "NO_SURFACE, or BUDGET while it looks for one",
+           without_a_whole_cell},
+          elsewhere("Voxels that are NaN or infinite, at random, under a surface", "nothing of them comes out",
+                    "IsosurfaceRules.BrokenVoxelsNeverComeOut"),
+          elsewhere("A grid of one layer", "its surface is a curve", "IsosurfaceRules.ASliceHasACurve"),
+          {"LinesOfNothing", "Lines of a grid of zeros",
+           "traced: seed (0.1, 0.2, 0.3): field 'test' is zero there, so no line passes through it; online: CRITICAL, ZERO",
+           lines_of_nothing},
+          {"LinesWithoutAWholeCell", "Lines of a grid whose every second voxel is NaN",
+           "traced: seed (0.1, 0.2, 0.3) lies outside the domain of field 'test' (its box goes from (-2, -2, -2) to (2, 2, 2); masked and "
+           "non-finite cells do not count); online: BOUNDARY, NOT_FINITE",
+           lines_without_a_whole_cell},
+          elsewhere("A formula's line whose velocities are 1e-300 to 1e300", "the same proxies to 1e-9",
+                    "Number11.TheSameStreamlineProxiesAtAnyScaleOfTheField"),
+          elsewhere("A formula's surface whose values are 1e-300 to 1e300", "the same proxies to 1e-9",
+                    "Number11.TheSameSurfaceProxiesAtAnyScaleOfTheField"),
+          elsewhere("Spheres of 1e-300 to 1e300, and probes as far away", "the closest place to round-off",
+                    "Sphere.FarAndTinyProbesAndRadii"),
+          elsewhere("Meshes of any size", "the same as of size 1", "Mesh.HugeAndTinyMeshesBehaveTheSame"),
+      }};
 }
 
 }  // namespace catena::extremes
