@@ -49,14 +49,16 @@ class TableReader {
     CATENA_CHECK(read_header());
     const std::size_t rows = static_cast<std::size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), '\n')) + 1;
     if (rows > kMaxPoints) return failed(fmt::format("there are {} lines; at most {} points were expected", rows, kMaxPoints));
-    CATENA_CHECK(ask_for_text_memory(one_line(fmt::format("{}: {} points", name_, rows)),
-                                     static_cast<double>(rows) * static_cast<double>(sizeof(glm::vec3) + columns_.size() * sizeof(float))));
+    CATENA_CHECK(ask_for_text_memory(
+        one_line(fmt::format("{}: {} points", name_, rows)),
+        static_cast<double>(rows) * static_cast<double>(sizeof(Vec3) + sizeof(glm::vec3) + columns_.size() * sizeof(float))));
     std::string_view line;
     while (next(line)) {
       if (trim(line).empty()) continue;
       CATENA_CHECK(read_row(line, rows));
     }
-    if (set_.points.empty()) return failed("the table ends after its names; rows of numbers were expected");
+    if (places_.empty()) return failed("the table ends after its names; rows of numbers were expected");
+    set_.keep(places_);
     return std::move(set_);
   }
 
@@ -123,14 +125,14 @@ class TableReader {
     split(line, separator_, cells_);
     if (cells_.size() != names_.size())
       return failed(fmt::format("the row has {} cells; {} were expected, as in the first line", cells_.size(), names_.size()));
-    if (set_.points.empty()) choose_columns(rows);
-    glm::vec3 p(0.0f);
+    if (places_.empty()) choose_columns(rows);
+    Vec3 p;
     for (int i = 0; i < 3; ++i) {
       const std::string_view cell = unquoted(cells_[axes_[i]]);
       const auto number = parse_double(cell);
       if (!number || !(std::fabs(*number) <= kFarthestPoint))
         return failed(fmt::format("{} is {}; a number up to 1e15 in size was expected", "xyz"[i], in_quotes(cell)));
-      p[i] = static_cast<float>(*number);
+      p[i] = *number;
     }
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const std::string_view cell = unquoted(cells_[columns_[k]]);
@@ -140,7 +142,7 @@ class TableReader {
       const double value = number.value_or(kNone);
       set_.values[k].values.push_back(std::fabs(value) <= kFarthestValue ? static_cast<float>(value) : kNone);
     }
-    set_.points.push_back(p);
+    places_.push_back(p);
     return Done{};
   }
 
@@ -154,6 +156,7 @@ class TableReader {
   std::vector<std::string> names_;
   std::size_t axes_[3] = {};
   std::vector<std::size_t> columns_;
+  std::vector<Vec3> places_;
   PointSet set_;
 };
 
@@ -174,6 +177,21 @@ double spacing_of(const std::vector<glm::vec3>& points) {
 
 }  // namespace
 
+void PointSet::keep(const std::vector<Vec3>& places) {
+  // single precision says a coordinate to 1 in 2^24: of this many edges of their box that leaves 1 in 4096 of an edge
+  constexpr double kFarEdges = 4096;
+  Bounds box;
+  double reach = 0;
+  for (const Vec3& p : places) {
+    box.add(p);
+    reach = std::max(reach, max_abs(p));
+  }
+  origin = reach > kFarEdges * max_abs(box.hi - box.lo) ? box.centre() : Vec3(0.0);
+  points.clear();
+  points.reserve(places.size());
+  for (const Vec3& p : places) points.emplace_back(p - origin);
+}
+
 const PointValues* PointSet::find(std::string_view wanted) const {
   for (const PointValues& one : values)
     if (one.name == wanted) return &one;
@@ -193,13 +211,12 @@ namespace {
 
 Result<PointSet> completed(PointSet set, const std::string& name) {
   set.name = name;
-  set.lowest = set.highest = Vec3(set.points.front());
-  for (const glm::vec3& p : set.points)
-    for (int i = 0; i < 3; ++i) {
-      set.lowest[i] = std::min(set.lowest[i], static_cast<double>(p[i]));
-      set.highest[i] = std::max(set.highest[i], static_cast<double>(p[i]));
-    }
+  Bounds box;
+  for (std::size_t i = 0; i < set.points.size(); ++i) box.add(set.place(i));
+  set.lowest = box.lo;
+  set.highest = box.hi;
   set.core = core_of(set.points);
+  if (!(set.origin == Vec3(0.0)) && !set.core.box.empty()) set.core.box = {set.core.box.lo + set.origin, set.core.box.hi + set.origin};
   set.spacing = spacing_of(set.points);
   set.version = next_point_version.fetch_add(1);
   set.held = HeldMemory(set.bytes());

@@ -51,12 +51,14 @@ Result<PointSet> read_point_shape(const std::string& path) {
   const auto values = answer.numbers<float>(shape.values);
   if (xyz.size() < 3) return cannot_be(path, "holds no points");
   PointSet set;
+  std::vector<Vec3> places;
   constexpr double kFarthest = 1e15;
   for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) {
     const Vec3 p(xyz[i], xyz[i + 1], xyz[i + 2]);
     if (!(max_abs(p) <= kFarthest)) return cannot_be(path, "a point is not finite, or too far away; numbers up to 1e15 were expected");
-    set.points.emplace_back(p);
+    places.push_back(p);
   }
+  set.keep(places);
   if (!shape.value_name.empty() && values.size() == set.points.size())
     set.values.push_back({shape.value_name, {values.begin(), values.end()}});
   return set;

@@ -1,6 +1,7 @@
 /// Points from a table of text: .csv, .tsv, .xyz. The first line names the columns; x, y and z must be there, in any order and case; cells
 /// are parted by commas, semicolons or tabs, else by blanks. A column of numbers is values by its name (an empty cell, or "nan": none), one
-/// of words is left out. Points are world units, in single precision. Refused, with one line "FILE:LINE: what; what was expected": places
+/// of words is left out. Points are world units, in single precision; those that lie together far from the world's origin are kept beside
+/// an origin of their own, so that single precision does not part them. Refused, with one line "FILE:LINE: what; what was expected": places
 /// that are not finite or beyond 1e15, rows of another length, more than kMaxPoints, more than the memory that is allowed. Immutable once
 /// made; reading is safe from every thread.
 #pragma once
@@ -11,6 +12,7 @@ namespace catena::curves {
 
 struct PointSet {
   std::string name;  ///< of the file
+  Vec3 origin{0.0};  ///< of `points`; 0 unless they are far from it and near to each other
   std::vector<glm::vec3> points;
   std::vector<PointValues> values{};
   std::string note{};  ///< what was left out, in words; may be empty
@@ -20,6 +22,10 @@ struct PointSet {
   std::uint64_t version = 0;  ///< unique in the process
   HeldMemory held{};
 
+  /// Of a point in the world.
+  Vec3 place(std::size_t i) const { return origin == Vec3(0.0) ? Vec3(points[i]) : origin + Vec3(points[i]); }
+  /// Keeps these places as origin and points.
+  void keep(const std::vector<Vec3>& places);
   std::size_t bytes() const { return points.size() * (sizeof(glm::vec3) + values.size() * sizeof(float)); }
   const PointValues* find(std::string_view name) const;  ///< nullptr: none is called so
 };

@@ -161,7 +161,7 @@ Bounds drawn_bounds(const FramePacket& packet) {
   for (const TubeItem& tube : packet.tubes)
     for (const Vec3& p : tube.points) bounds.add(p, tube.radius);
   for (const BallsItem& item : packet.balls)
-    for (std::size_t i = 0; i < item.balls->places.size(); ++i) bounds.add(Vec3(item.balls->places[i]), double(item.balls->radii[i]));
+    for (std::size_t i = 0; i < item.balls->places.size(); ++i) bounds.add(item.balls->place(i), double(item.balls->radii[i]));
   for (const ArrowItem& arrow : packet.arrows) {
     bounds.add(arrow.base, arrow.radius);
     bounds.add(arrow.tip);

@@ -44,15 +44,16 @@ double fitted_ball(const curves::PointSet& set) {
 }
 
 /// Values of a field at all points; not a number outside of it.
-std::vector<float> field_values(const field::AnyField& shown, const std::vector<glm::vec3>& points) {
+std::vector<float> field_values(const field::AnyField& shown, const curves::PointSet& set) {
   field::Cursor cursor;
   std::vector<float> values;
-  values.reserve(points.size());
-  for (const glm::vec3& p : points) {
+  values.reserve(set.points.size());
+  for (std::size_t i = 0; i < set.points.size(); ++i) {
+    const Vec3 p = set.place(i);
     double value = std::numeric_limits<double>::quiet_NaN();
     if (shown.vector) {
-      if (const auto sample = shown.vector->sample(Vec3(p), cursor); sample.inside) value = norm(sample.value);
-    } else if (const auto sample = shown.scalar->sample(Vec3(p), cursor); sample.inside) {
+      if (const auto sample = shown.vector->sample(p, cursor); sample.inside) value = norm(sample.value);
+    } else if (const auto sample = shown.scalar->sample(p, cursor); sample.inside) {
       value = sample.value;
     }
     values.push_back(static_cast<float>(value));
@@ -83,7 +84,7 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& dr
     CATENA_TRY(values, column_of(set, drawn.color_by->where, "value", drawn.color_by->value));
   } else if (drawn.color_by) {
     CATENA_TRY(const field::AnyField shown, scene::use_field(scene, drawn.color_by->field, drawn.color_by->where));
-    sampled = field_values(shown, set.points);
+    sampled = field_values(shown, set);
     values = &sampled;
   }
   if (values != nullptr) {
@@ -96,6 +97,7 @@ Result<FlatPoints> flat_points(scene::Scene& scene, const scene::DrawnPoints& dr
   // a ball without a radius is not drawn
   const auto fitted = static_cast<float>(drawn.radius > 0 ? drawn.radius : fitted_ball(set));
   auto balls = std::make_shared<Balls>();
+  balls->origin = set.origin;
   balls->places.reserve(count);
   balls->radii.reserve(count);
   balls->colors.reserve(count);

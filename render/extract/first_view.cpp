@@ -296,7 +296,7 @@ View first_view(const scene::Scene& scene, const FramePacket& packet) {
     const Bounds& core = item.balls->core;
     std::vector<Vec3> places;
     for (std::size_t i = 0; i < item.balls->places.size(); i += 1 + item.balls->places.size() / kMost)
-      if (const Vec3 p(item.balls->places[i]); core.empty() || core.has(p)) places.push_back(p);
+      if (const Vec3 p = item.balls->place(i); core.empty() || core.has(p)) places.push_back(p);
     clouds.push_back({item.clipped ? kept(std::move(places), packet) : std::move(places)});
   }
   Bounds rest;

@@ -242,10 +242,12 @@ struct WidgetItems {
 
 /// Balls at points, made once a set, shared by frames.
 struct Balls {
+  Vec3 origin{0.0};  ///< of the places
   std::vector<glm::vec3> places;
-  std::vector<float> radii;   ///< one a place
-  std::vector<Color> colors;  ///< one a place
-  Bounds core{};              ///< what a first view shows of them; empty: all
+  std::vector<float> radii;                                             ///< one a place
+  std::vector<Color> colors;                                            ///< one a place
+  Bounds core{};                                                        ///< what a first view shows of them; empty: all
+  Vec3 place(std::size_t i) const { return origin + Vec3(places[i]); }  ///< in the world
 };
 
 struct BallsItem {

@@ -47,7 +47,7 @@ class BallPass final : public Pass {
     buffers_.clear();
     bounds_ = {};
     for (const BallsItem& item : packet.balls)
-      for (std::size_t i = 0; i < item.balls->places.size(); ++i) bounds_.add(Vec3(item.balls->places[i]), double(item.balls->radii[i]));
+      for (std::size_t i = 0; i < item.balls->places.size(); ++i) bounds_.add(item.balls->place(i), double(item.balls->radii[i]));
     if (bounds_.empty()) return Done{};
     origin_ = bounds_.centre();
     for (const BallsItem& item : packet.balls) CATENA_CHECK(upload(frame.device, item));
@@ -77,7 +77,7 @@ class BallPass final : public Pass {
     data.reserve(balls.places.size());
     const std::uint32_t id = item.id | (item.clipped ? 0u : UNCLIPPED);
     for (std::size_t i = 0; i < balls.places.size(); ++i)
-      data.push_back({glm::vec3(Vec3(balls.places[i]) - origin_), balls.radii[i], packed(balls.colors[i]), id});
+      data.push_back({glm::vec3(balls.place(i) - origin_), balls.radii[i], packed(balls.colors[i]), id});
     CATENA_TRY(vk::Buffer buffer, vk::upload_buffer(device, std::as_bytes(std::span(data)), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
     buffers_.emplace_back(std::move(buffer), static_cast<std::uint32_t>(data.size()));
     return Done{};

@@ -1,4 +1,5 @@
-// Rows of .vdb grids whose voxels are counted from far away: indices of 1e7, at the same place of the world.
+// Rows of .vdb grids whose voxels are counted from far away, indices of 1e7 at the same place of the world; and of points that lie far
+// away.
 #include <openvdb/openvdb.h>
 
 #include "tests/acceptance/chain_rig.h"
@@ -87,12 +88,56 @@ std::string under_the_eye() {
       .at_most("pixels that differ by more than 24/255", differing(pictures[0], pictures[1], 24), 0.002);
 }
 
+// ---- points of a table ----
+
+/// Twenty places about the origin, and the same as a table at `far`.
+Vec3 place(int i) { return {0.9 * std::cos(i), 0.9 * std::sin(i), -0.8 + 0.08 * i}; }
+std::string table_at(const Vec3& far) {
+  std::string text = "x,y,z\n";
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 p = far + place(i);
+    text += fmt::format("{},{},{}\n", p.x, p.y, p.z);
+  }
+  return text;
+}
+const Vec3 kFarPlace(625000, -5250000, 1250000);
+
+std::string points_under_the_hand() {
+  haptics::tests::Fields fields;
+  auto set = curves::parse_points(table_at(kFarPlace), "p.csv");
+  if (!set) return set.error().message;
+  fields.points["p"] = std::make_shared<const curves::PointSet>(std::move(*set));
+  double off = 0;
+  for (int i = 0; i < 20; ++i) {
+    haptics::tests::Rig rig(haptics::tests::build(R"({"name": "a", "type": "points", "points": "p"})", fields));
+    rig.tick(kFarPlace + place(i) + Vec3(0.02, -0.01, 0.01));
+    off = std::max(off, norm(rig.state.proxy - (kFarPlace + place(i))));
+  }
+  return Found().at_most("off its place", off, 1e-6);
+}
+
+std::string points_under_the_eye() {
+  std::vector<render::Picture> pictures;
+  for (const Vec3& far : {Vec3(0.0), kFarPlace}) {
+    const test::TemporaryFolder folder;
+    test::write_file(folder / "p.csv", table_at(far));
+    pictures.push_back(Eye::only().draw(R"({"points": [{"name": "p", "file": "p.csv", "radius": 0.1}], "background": "transparent",
+      "camera": {"position": )" + triple(far + Vec3(2, -3.2, 1.5)) +
+                                            R"(, "target": )" + triple(far) + R"(, "fovy_deg": 36}})",
+                                        folder, 96, 72));
+    if (!Eye::only().said.empty()) return Eye::only().said;
+  }
+  return Found()
+      .say(covered(pictures[0]) > 100 ? "something is seen" : "nothing is seen")
+      .at_most("pixels that differ by more than 24/255", differing(pictures[0], pictures[1], 24), 0.002);
+}
+
 }  // namespace index_test
 
 Group index_rows() {
   using namespace index_test;
   const std::string same = "proxies off those of indices from 0 by at most 1e-09 L; the same status in every one";
-  return {"Indices from far away",
+  return {"Indices and points from far away",
           {
               {"SurfaceOfFarIndices", "A surface of a .vdb grid whose indices begin at 1e7, -1e7, 1e7, at the same place of the world",
                same, surface},
@@ -102,6 +147,11 @@ Group index_rows() {
               {"OnlineLineOfFarIndices", "A line of such a grid, integrated in every tick", same, online_line},
               {"PicturesOfFarIndices", "A volume, a surface, a slice and a line of such a grid: 24/255 is a tenth of a pixel",
                "something is seen; pixels that differ by more than 24/255 at most 0.002", under_the_eye},
+              {"FarPointsUnderTheHand",
+               "Twenty points of a table within a unit of each other, at (625000, -5250000, 1250000), as maps have them",
+               "off its place at most 1e-06", points_under_the_hand},
+              {"PicturesOfFarPoints", "The same as balls, beside those about the origin",
+               "something is seen; pixels that differ by more than 24/255 at most 0.002", points_under_the_eye},
               elsewhere("Indices at the ends of 32-bit numbers", "an error that says which were expected",
                         "LoadVdb.VoxelsAtTheEndsOfTheIndexRange"),
               elsewhere("A .vdb grid without an active voxel", "an error that says so", "LoadVdb.EveryBadGridHasItsSentence"),

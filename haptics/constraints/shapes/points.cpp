@@ -14,15 +14,16 @@ constexpr std::size_t kPointsOfLeaf = 8;
 /// Points in the order of a Morton curve, eight of them a leaf.
 struct PointTree {
   using Tree = ClosestSearch<glm::vec3>;
+  Vec3 origin;  ///< of points and tree
   std::vector<glm::vec3> points;
   Tree tree;
 
-  explicit PointTree(const curves::PointSet& set) {
+  explicit PointTree(const curves::PointSet& set) : origin(set.origin) {
     const double edge = std::max(max_abs(set.highest - set.lowest), 1e-300);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
     order.reserve(set.points.size());
     for (std::size_t i = 0; i < set.points.size(); ++i)
-      order.emplace_back(morton_code(Vec3(set.points[i]), set.lowest, edge), static_cast<std::uint32_t>(i));
+      order.emplace_back(morton_code(set.place(i), set.lowest, edge), static_cast<std::uint32_t>(i));
     std::sort(order.begin(), order.end());
     points.reserve(order.size());
     for (const auto& [code, i] : order) points.push_back(set.points[i]);
@@ -54,7 +55,7 @@ class NearestPoint final : public Surface {
   Hold place(const Vec3& probe) noexcept override {
     SearchState& search = memory_.search;
     shape_.tree.search(
-        probe, search.any ? kVisits : kFirstVisits, search, [&](std::uint32_t k) { return Vec3(shape_.points[k]); },
+        probe - shape_.origin, search.any ? kVisits : kFirstVisits, search, [&](std::uint32_t k) { return Vec3(shape_.points[k]); },
         [&](std::size_t leaf, const auto& see) {
           const std::size_t last = std::min((leaf + 1) * kPointsOfLeaf, shape_.points.size());
           for (std::size_t k = leaf * kPointsOfLeaf; k < last; ++k) see(static_cast<std::uint32_t>(k));
@@ -76,12 +77,16 @@ class NearestPoint final : public Surface {
   Vec3 normal() const noexcept override { return Vec3(0.0); }
   double domain_length() const noexcept override { return std::max(kSceneLength, shape_.tree.extent()); }
   bool primitive(const Vec3&, Primitive& out) noexcept {
-    out = {Primitive::Kind::point, Vec3(shape_.points[memory_.held]), Vec3(0.0)};
+    out = {Primitive::Kind::point, held(), Vec3(0.0)};
     return true;
   }
 
  private:
-  Hold hold(Status status) const noexcept { return {true, Vec3(shape_.points[memory_.held]), 0, status}; }
+  Vec3 held() const noexcept {
+    const Vec3 p(shape_.points[memory_.held]);
+    return shape_.origin == Vec3(0.0) ? p : shape_.origin + p;
+  }
+  Hold hold(Status status) const noexcept { return {true, held(), 0, status}; }
 
   const PointTree& shape_;
   Memory& memory_;
