@@ -33,7 +33,7 @@ Curve::Curve(std::vector<Knot> knots, bool closed, LineEnd first_end, LineEnd la
 void Curve::evaluate_in(std::size_t k, double s, Vec3& p, Vec3& derivative) const noexcept {
   const Knot &a = knots_[k], &b = knots_[k + 1];
   const double h = b.s - a.s;
-  const Hermite hermite(a.p, b.p - a.p, h, a.t, b.t);
+  const Hermite hermite(a.p, a.to(b), h, a.t, b.t);
   const double theta = (s - a.s) / h;
   p = theta == 1 ? b.p : hermite.at(theta);
   derivative = theta == 1 ? b.t : hermite.derivative(theta) / h;
@@ -105,7 +105,7 @@ std::uint32_t NearestOnCurve::make(std::uint32_t first, std::uint32_t count) {
 
 void NearestOnCurve::look(std::size_t k, const Vec3& x, NearestPlace& best) const noexcept {
   const Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
-  const double h = b.s - a.s, below = dot(x - a.p, a.t), above = dot(x - b.p, b.t);
+  const double h = b.s - a.s, below = dot(a.to(x), a.t), above = dot(b.to(x), b.t);
   const auto offer = [&](double s, const Vec3& p) {
     const Vec3 e = x - p;
     if (!(dot(e, e) < best.distance2)) return;
@@ -116,7 +116,7 @@ void NearestOnCurve::look(std::size_t k, const Vec3& x, NearestPlace& best) cons
   offer(a.s, a.p);
   offer(b.s, b.p);
   if (!(below >= 0 && above <= 0)) return;
-  const Hermite piece(a.p, b.p - a.p, h, a.t, b.t);
+  const Hermite piece(a.p, a.to(b), h, a.t, b.t);
   const double theta = piece.foot(x, below * h, above * h);
   offer(theta >= 1 ? b.s : a.s + theta * h, theta >= 1 ? b.p : piece.at(theta));
 }

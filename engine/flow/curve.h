@@ -64,6 +64,13 @@ struct Knot {
   double s = 0;  ///< arc length from the seed, signed, world units
   Vec3 p{0.0};
   Vec3 t{0.0};  ///< unit tangent
+  /// What p has lost by rounding, of grids so far from the origin that it counts; else 0. A piece between two knots may be so short that
+  /// the rounding of its ends would turn it.
+  glm::vec3 low{0.0f};
+
+  /// From here to a place; from here to the next knot.
+  Vec3 to(const Vec3& x) const { return low == glm::vec3(0.0f) ? x - p : x - p - Vec3(low); }
+  Vec3 to(const Knot& next) const { return low == next.low ? next.p - p : next.p - p + (Vec3(next.low) - Vec3(low)); }
 };
 
 enum class End { boundary, critical, length, lap, incoherent };

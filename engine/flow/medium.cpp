@@ -39,6 +39,15 @@ CellMedium::CellMedium(const Flow& flow, field::Cursor* cursor) : flow_(flow), g
   for (int axis = 0; axis < 3; ++axis) longest_step_ = std::max(longest_step_, 2 * norm(grid_->mapping().world_from_index_linear[axis]));
 }
 
+glm::vec3 CellMedium::lost(const Vec3& q) const {
+  constexpr double kFar = 500;  // times L
+  const Vec3 place = world(q);
+  if (max_abs(place) <= kFar * grid_->length()) return glm::vec3(0.0f);
+  // the error of the sum, exactly (Knuth's TwoSum)
+  const Vec3 within = world_difference(q), &origin = grid_->mapping().origin, rest = place - within;
+  return glm::vec3((within - (place - rest)) + (origin - rest));
+}
+
 bool CellMedium::enter(const field::Index3& base) {
   const field::VectorCell cell = grid_->cell(base, cursor());
   outside_ = !(cell.base == base) ? Reason::box : cell.valid ? Reason::none : Reason::mask;

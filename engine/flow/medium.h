@@ -42,6 +42,7 @@ class FormulaMedium {
   }
   Vec3 world(const Vec3& q) const { return q; }
   Vec3 world_difference(const Vec3& d) const { return d; }
+  glm::vec3 lost(const Vec3&) const { return glm::vec3(0.0f); }  ///< by the rounding of world(q)
   Stop rate(const Vec3& q, Vec3& w, Vec3& u) {
     const Stop stop = direction_at(flow_, q, reference_, cursor_, u);
     if (stop == Stop::outside) outside_ = flow_.field->why_outside(q, cursor_);
@@ -74,6 +75,7 @@ class CellMedium {
   bool begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q);
   Vec3 world(const Vec3& q) const { return grid_->mapping().world_from_index(q); }
   Vec3 world_difference(const Vec3& d) const { return grid_->mapping().world_from_index_linear * d; }
+  glm::vec3 lost(const Vec3& q) const;  ///< by the rounding of world(q), where that is more than 1e-13 L; else 0
   Stop rate(const Vec3& q, Vec3& w, Vec3& u) const;
   /// Goes on to neighbours while q lies on (or beyond) a face and moves outward.
   Settled settle(Vec3& q, const Vec3& w);

@@ -126,7 +126,7 @@ class March {
     // of knots closer than 1e-10 L only the later stays, but the seed always
     const bool close = s_ - std::fabs(knots.back().s) < 1e-10 * domain_;
     if (close && knots.size() > 1) knots.pop_back();
-    if (!close || knots.size() > 1 || end) knots.push_back({sign_ * s_, medium_.world(q_), sign_ * u_});
+    if (!close || knots.size() > 1 || end) knots.push_back({sign_ * s_, medium_.world(q_), sign_ * u_, medium_.lost(q_)});
     if (!end && norm(u_ - u_start) * kCapture * 2 * domain_ > h) end = capture(knots);
     return end;
   }

@@ -85,7 +85,7 @@ const std::vector<World> kFar{
 
 std::string surface_far_from_the_origin() { return same_proxies({kSurface}, kFar, 1e-9); }
 std::string online_line_far_from_the_origin() { return same_proxies({kOnline}, kFar, 1e-8); }
-std::string selected_line_far_from_the_origin() { return same_proxies({kLine}, kFar, 1e-7); }
+std::string selected_line_far_from_the_origin() { return same_proxies({kLine}, kFar, 1e-9); }
 
 std::string voxels_a_thousand_times_as_long() {
   // s = x + z / 1000 at voxels of 1/1024, 1/1024 and 1 (ratio 1:1024), exact at every node: a plane in closed form
@@ -207,9 +207,7 @@ Group world_rows() {
            "proxies off those at the origin by at most 1e-08 L; the same status in every one", online_line_far_from_the_origin,
            "At most 1e-09 L. The proxy is rounded to its world coordinates in every step, which adds up along the line"},
           {"SelectedLineFarFromTheOrigin", "A line of such a grid, traced once",
-           "proxies off those at the origin by at most 1e-07 L; the same status in every one", selected_line_far_from_the_origin,
-           "At most 1e-09 L. A traced line has pieces of 1e-5 L where it crosses the corner of a cell; there the rounding of its "
-           "knots' world coordinates turns it by 1e-5"},
+           "proxies off those at the origin by at most 1e-09 L; the same status in every one", selected_line_far_from_the_origin},
           {"VoxelsAThousandTimesAsLong", "A surface across voxels with edges of 1:1:1024",
            "OK in every one; proxies off the closest place by at most 1e-09 of the shortest edge of the domain's 0.03",
            voxels_a_thousand_times_as_long},

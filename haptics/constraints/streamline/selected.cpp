@@ -68,7 +68,7 @@ class SelectedStreamline final : public Constraint {
     // the foot, from the interval's own knots
     const flow::Knot &a = curve_->knots()[k], &b = curve_->knots()[k + 1];
     const double h = b.s - a.s;
-    const flow::Hermite piece(a.p, b.p - a.p, h, a.t, b.t);
+    const flow::Hermite piece(a.p, a.to(b), h, a.t, b.t);
     const double theta = piece.foot(probe, below * h, above * h);
     place(memory, k, theta >= 1 ? b.s : a.s + theta * h, state);
   }
@@ -100,7 +100,7 @@ class SelectedStreamline final : public Constraint {
  private:
   double slope_at_knot(std::size_t k, const Vec3& x) const noexcept {
     const flow::Knot& knot = curve_->knots()[k];
-    return dot(x - knot.p, knot.t);
+    return dot(knot.to(x), knot.t);
   }
   double slope_at(std::size_t k, double s, const Vec3& x) const noexcept {
     Vec3 p, derivative;
