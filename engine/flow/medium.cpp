@@ -34,9 +34,16 @@ double first_passage(double c0, double c1, double c2, double c3, double face, do
 
 }  // namespace
 
-CellMedium::CellMedium(const Flow& flow, field::Cursor* cursor) : flow_(flow), grid_(flow.field->grid()), shared_cursor_(cursor) {
+CellMedium::CellMedium(const Flow& flow, field::Cursor* cursor)
+    : flow_(flow), grid_(flow.field->grid()), mapping_(grid_->mapping()), box_(grid_->index_box()), shared_cursor_(cursor) {
+  constexpr double kFarIndex = 1 << 16;
+  if (const Vec3 lo = box_.lo; max_abs(lo) > kFarIndex) {
+    first_ = {static_cast<std::int32_t>(lo.x), static_cast<std::int32_t>(lo.y), static_cast<std::int32_t>(lo.z)};
+    mapping_.origin = mapping_.world_from_index(lo);
+    box_ = {box_.lo - lo, box_.hi - lo};
+  }
   longest_step_ = 2 * norm(world_difference(Vec3(1.0)));
-  for (int axis = 0; axis < 3; ++axis) longest_step_ = std::max(longest_step_, 2 * norm(grid_->mapping().world_from_index_linear[axis]));
+  for (int axis = 0; axis < 3; ++axis) longest_step_ = std::max(longest_step_, 2 * norm(mapping_.world_from_index_linear[axis]));
 }
 
 glm::vec3 CellMedium::lost(const Vec3& q) const {
@@ -44,19 +51,25 @@ glm::vec3 CellMedium::lost(const Vec3& q) const {
   const Vec3 place = world(q);
   if (max_abs(place) <= kFar * grid_->length()) return glm::vec3(0.0f);
   // the error of the sum, exactly (Knuth's TwoSum)
-  const Vec3 within = world_difference(q), &origin = grid_->mapping().origin, rest = place - within;
+  const Vec3 within = world_difference(q), &origin = mapping_.origin, rest = place - within;
   return glm::vec3((within - (place - rest)) + (origin - rest));
 }
 
+field::VectorCell CellMedium::cell(const field::Index3& base) {
+  field::VectorCell cell = grid_->cell({base.x + first_.x, base.y + first_.y, base.z + first_.z}, cursor());
+  cell.base = {cell.base.x - first_.x, cell.base.y - first_.y, cell.base.z - first_.z};
+  return cell;
+}
+
 bool CellMedium::enter(const field::Index3& base) {
-  const field::VectorCell cell = grid_->cell(base, cursor());
+  const field::VectorCell cell = this->cell(base);
   outside_ = !(cell.base == base) ? Reason::box : cell.valid ? Reason::none : Reason::mask;
   for (const Vec3& v : cell.corner)
     if (!is_finite(v) && outside_ != Reason::box) outside_ = Reason::not_finite;
   if (outside_ != Reason::none) return false;
   base_ = base;
   lo_ = Vec3(base.x, base.y, base.z);
-  for (int axis = 0; axis < 3; ++axis) hi_[axis] = std::min(lo_[axis] + 1, grid_->index_box().hi[axis]);
+  for (int axis = 0; axis < 3; ++axis) hi_[axis] = std::min(lo_[axis] + 1, box_.hi[axis]);
   if (flow_.line) {
     dyads_ = field::DyadCell(cell.corner);
     return true;
@@ -70,15 +83,16 @@ bool CellMedium::enter(const field::Index3& base) {
 }
 
 bool CellMedium::begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q) {
-  q = grid_->mapping().index_from_world(seed);
-  const field::Box& box = grid_->index_box();
+  q = mapping_.index_from_world(seed);
+  const field::Box& box = box_;
   outside_ = is_finite(q) ? Reason::box : Reason::not_finite;
   if (!is_finite(q) || !box.contains(q, kSeedSlack)) return false;
   for (int axis = 0; axis < 3; ++axis) q[axis] = std::clamp(q[axis], box.lo[axis], box.hi[axis]);
   motion_ = sign * u;
   sign_ = flow_.line ? 1 : sign;
   // the cell of the seed, or one that it lies on the face of (a rounding beside a face is on it)
-  const field::Index3 base = grid_->base_of(q);
+  const field::Index3 found = grid_->base_of(q + Vec3(first_.x, first_.y, first_.z));
+  const field::Index3 base{found.x - first_.x, found.y - first_.y, found.z - first_.z};
   const std::int32_t bases[3] = {base.x, base.y, base.z};
   int beside[3];
   for (int axis = 0; axis < 3; ++axis)
@@ -97,7 +111,7 @@ Stop CellMedium::seed(const Vec3& place, Vec3& u) {
   Vec3 q, w;
   if (!begin(place, Vec3(0.0), 1, q)) return Stop::outside;
   // of a line field the side of the nearest voxel
-  if (flow_.line) motion_ = field::line_axis(grid_->cell(base_, cursor()).corner, q - lo_).axis;
+  if (flow_.line) motion_ = field::line_axis(cell(base_).corner, q - lo_).axis;
   return rate(q, w, u);
 }
 
@@ -107,12 +121,12 @@ Stop CellMedium::seed(const Vec3& place, Vec3& u) {
   const auto& c = polynomial_;
   if (flow_.line) {
     const Stop stop = axis_direction(dyads_.at(f), flow_.min_speed, motion_, u);
-    w = grid_->mapping().index_from_world_linear * u;
+    w = mapping_.index_from_world_linear * u;
     return stop;
   }
   const Vec3 v = (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
   const Stop stop = unit_direction(v, flow_.min_speed, u);
-  w = grid_->mapping().index_from_world_linear * u;
+  w = mapping_.index_from_world_linear * u;
   return stop;
 }
 

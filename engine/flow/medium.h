@@ -65,7 +65,7 @@ class FormulaMedium {
 };
 
 /// A sampled field: within a cell every stage uses that cell's polynomial (of a line field: its dyads), extended as far as a stage
-/// may reach.
+/// may reach. Index coordinates are counted from the grid's first voxel where its own are far from 0, so that they stay exact.
 class CellMedium {
  public:
   /// `cursor`: where the walk remembers nodes; none: its own.
@@ -73,8 +73,8 @@ class CellMedium {
   Reason outside() const { return outside_; }  ///< why the last cell that could not be entered could not
   Stop seed(const Vec3& place, Vec3& u);
   bool begin(const Vec3& seed, const Vec3& u, double sign, Vec3& q);
-  Vec3 world(const Vec3& q) const { return grid_->mapping().world_from_index(q); }
-  Vec3 world_difference(const Vec3& d) const { return grid_->mapping().world_from_index_linear * d; }
+  Vec3 world(const Vec3& q) const { return mapping_.world_from_index(q); }
+  Vec3 world_difference(const Vec3& d) const { return mapping_.world_from_index_linear * d; }
   glm::vec3 lost(const Vec3& q) const;  ///< by the rounding of world(q), where that is more than 1e-13 L; else 0
   Stop rate(const Vec3& q, Vec3& w, Vec3& u) const;
   /// Goes on to neighbours while q lies on (or beyond) a face and moves outward.
@@ -87,11 +87,15 @@ class CellMedium {
 
  private:
   bool enter(const field::Index3& base);
+  field::VectorCell cell(const field::Index3& base);
 
   field::Cursor& cursor() { return shared_cursor_ != nullptr ? *shared_cursor_ : own_cursor_; }
 
   Flow flow_;
   const field::VectorGrid* grid_;
+  field::Index3 first_;     ///< from which voxels are counted here
+  field::Mapping mapping_;  ///< of indices as they are counted here
+  field::Box box_;
   field::Cursor* shared_cursor_;
   field::Cursor own_cursor_;
   field::Index3 base_;
