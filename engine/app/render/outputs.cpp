@@ -44,6 +44,7 @@ std::string what_is_drawn(const render::FramePacket& packet) {
   };
   add(packet.volumes.size(), "volume", "volumes");
   add(packet.isosurfaces.size(), "isosurface", "isosurfaces");
+  add(packet.slices.size(), "slice", "slices");
   add(packet.meshes.size(), "mesh", "meshes");
   const auto curves = static_cast<std::size_t>(std::ranges::count_if(
       packet.tubes, [&](const render::TubeItem& tube) { return tube.id > 0 && packet.objects[tube.id - 1].kind == "curves"; }));
