@@ -26,8 +26,8 @@ RayScene ray_scene(const Frame& frame) {
 }
 
 /// What can be drawn together.
-Outcome check(const Frame& frame, std::size_t volumes, std::size_t surfaces, std::size_t colors) {
-  const std::size_t layers = frame.layers.size(), grids = volumes + surfaces + colors;
+Outcome check(const FramePacket& packet, std::size_t layers, std::size_t volumes, std::size_t surfaces, std::size_t colors) {
+  const std::size_t grids = volumes + surfaces + colors;
   if (volumes > MAX_VOLUMES) return Error{fmt::format("the scene has {} volumes, expected at most {}", volumes, MAX_VOLUMES)};
   if (surfaces > MAX_SURFACES)
     return Error{fmt::format("the scene has {} translucent isosurfaces, expected at most {}", surfaces, MAX_SURFACES)};
@@ -37,7 +37,7 @@ Outcome check(const Frame& frame, std::size_t volumes, std::size_t surfaces, std
     return Error{
         fmt::format("the scene has {} volumes, translucent isosurfaces and fields that colour them{}, expected at most {} together", grids,
                     layers == 0 ? "" : " beside translucent triangles", most)};
-  const auto& items = frame.packet.volumes;
+  const auto& items = packet.volumes;
   if (volumes + surfaces + layers > 1 && std::any_of(items.begin(), items.end(), is_projected))
     return Error{
         "a volume with a projection (maximum, minimum, average) stands beside another volume or something translucent, expected alone "
@@ -155,7 +155,7 @@ Outcome RaycastPass::prepare(Frame& frame) {
   for (const VolumeItem& item : packet.volumes) CATENA_CHECK(mirror(item, volumes));
   for (const IsosurfaceItem& item : packet.isosurfaces)
     if (is_translucent(item)) CATENA_CHECK(mirror(item, surfaces));
-  CATENA_CHECK(check(frame, volumes.size(), surfaces.size(), colors));
+  CATENA_CHECK(check(packet, frame.layers.size(), volumes.size(), surfaces.size(), colors));
   any_ = !volumes.empty() || !surfaces.empty() || !frame.layers.empty();
   projected_ = !volumes.empty() && is_projected(*volumes.front().item);
   if (!any_) return Done{};
@@ -243,5 +243,9 @@ bool same_rays(const FramePacket& a, const FramePacket& b) {
 
 const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return draws_rays(frame.packet) || !frame.layers.empty(); },
                              RaycastPass::create, target::volume};
+
+Outcome check_rays(const FramePacket& packet) {
+  return check(packet, 0, packet.volumes.size(), static_cast<std::size_t>(std::ranges::count_if(packet.isosurfaces, is_translucent)), 0);
+}
 
 }  // namespace catena::render

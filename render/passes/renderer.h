@@ -48,6 +48,9 @@ struct RenderStats {
 /// Whether anything of the packet is drawn by rays, so that it matters how finely they are marched.
 bool draws_rays(const FramePacket& packet);
 
+/// What of the packet rays cannot draw together: the sentence that draw() would fail with, for who asks before there is a device.
+Outcome check_rays(const FramePacket& packet);
+
 /// Whether the fast raycast meets the same in both: what is opaque may differ (RenderSettings::keep).
 bool same_rays(const FramePacket& a, const FramePacket& b);
 

@@ -94,6 +94,14 @@ std::string nan_seed() { return trace("nan,0,0"); }
 std::string no_length() { return trace("0.5,0,0", {"--length", "1e-300"}); }
 std::string no_tolerance() { return trace("0.5,0,0", {"--tolerance", "1e-300"}); }
 
+std::string nine_translucent_surfaces() {
+  std::string surfaces;
+  for (int i = 0; i < 9; ++i) surfaces += std::string(i > 0 ? ", " : "") + R"({"field": "s", "level": 1, "opacity": 0.5})";
+  Files files;
+  files.scene = R"({"fields": {"s": {"analytic": "sphere", "resolution": 9}}, "isosurfaces": [)" + surfaces + "]}";
+  return run(files, {"render", "S", "-o", "G", "--size", "16x12"});
+}
+
 // ---- 512^3 without a single block of one value ----
 
 const test::TemporaryFolder& dense() {
@@ -160,6 +168,8 @@ Group command_rows() {
       {"DenormalSeed", "A line from 1e-320 beside a vortex ring's axis", "done", denormal_seed},
       {"NanSeed", "A seed that is NaN", exit + "z.csv:2: \"nan\" in column \"x\"; a finite number was expected", nan_seed},
       {"NoLength", "A line of length 1e-300", exit + "z.csv:2: seed (0.5, 0, 0): the line ends on the spot in both directions", no_length},
+      {"NineTranslucentSurfaces", "A scene of nine translucent isosurfaces",
+       exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
       {"NoTolerance", "A tolerance of 1e-300", "done", no_tolerance},
   };
   rows.push_back({"FullUnderTheHand", "512^3 voxels of noise under the hand, within 700000 KB of addresses", "done", full_under_the_hand});

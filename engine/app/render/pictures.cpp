@@ -178,6 +178,7 @@ Outcome render_pictures(const RenderOptions& given) {
   FeltPath hand(program, std::move(path));
   Frames frames(scene, o, motion, hand, size, steps);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
+  if (const Outcome drawable = render::check_rays(packet); !drawable) return Error{o.source + ": " + drawable.error().message};
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
   if (quality == "balanced" && render::draws_rays(packet)) wanted.goal = {render::QualityGoal::Kind::error, kBalancedError};
