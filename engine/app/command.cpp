@@ -32,16 +32,12 @@ Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std:
   return overrides;
 }
 
-namespace {
-
-/// The first of them; a scene may write the same thing a hundred times.
-void tell_notes(const std::vector<std::string>& notes) {
-  if (notes.empty()) return;
-  const std::string more = notes.size() > 1 ? " (and " + std::to_string(notes.size() - 1) + " more)" : "";
-  tell_from_catena("note: " + notes.front() + more);
+// a scene may write the same thing a hundred times
+void tell_new_notes(const scene::Scene& scene, std::size_t told) {
+  if (scene.notes.size() <= told) return;
+  const std::size_t rest = scene.notes.size() - told - 1;
+  tell_from_catena("note: " + scene.notes[told] + (rest > 0 ? " (and " + std::to_string(rest) + " more)" : ""));
 }
-
-}  // namespace
 
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options, const scene::NamedColors& colors,
                                 const std::string& grid) {
@@ -50,7 +46,7 @@ Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::
     if (!grid.empty()) return Error{path + ": --grid goes with a data file; a scene names its grids"};
     if (!colors.map.empty() || colors.range) return Error{path + ": --colormap and --range go with a data file; a scene says its colours"};
     auto scene = scene::read_scene(path, overrides);
-    if (scene) tell_notes(scene->notes);
+    if (scene) tell_new_notes(*scene, 0);
     return scene;
   }
   if (!overrides.empty()) return Error{path + ": --field goes with a scene file (.json)"};

@@ -41,6 +41,9 @@ bool is_scene_file(const std::string& path);
 /// `colors` is for a bare data file.
 Result<scene::Scene> open_scene(const std::string& path, const std::vector<std::string>& field_options = {},
                                 const scene::NamedColors& colors = {}, const std::string& grid = {});
+/// Says the notes that a scene has got since it had `told` of them: the first, and how many more. (open_scene has told those of the scene
+/// file; those of its data come when they are loaded.)
+void tell_new_notes(const scene::Scene& scene, std::size_t told);
 /// NAME=FILE[:GRID], as the command line gives them.
 Result<std::vector<scene::FieldOverride>> field_overrides(const std::vector<std::string>& field_options);
 

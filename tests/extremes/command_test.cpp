@@ -102,6 +102,19 @@ std::string nine_translucent_surfaces() {
   return run(files, {"render", "S", "-o", "G", "--size", "16x12"});
 }
 
+/// What is said of numbers that 32-bit floats do not hold.
+std::string notes_of_data() {
+  const test::TemporaryFolder folder;
+  std::vector<double> values;
+  for (int i = 0; i < 512; ++i) values.push_back(i % 2 ? 1e300 : 0.1 * i);
+  test::write_file(folder / "d.raw", bytes_of(values));
+  test::write_file(folder / "p.csv", Files().probe);
+  test::write_file(folder / "s.json", R"({"fields": {"d": {"file": "d.raw", "type": "float64", "shape": [8, 8, 8]}},
+    "chain": [{"name": "a", "type": "isosurface", "field": "d", "level": 5}]})");
+  const auto result = test::run_catena({"replay", folder / "s.json", "--probe", folder / "p.csv", "-o", folder / "out.csv"});
+  return result.err.substr(0, result.err.find('\n')).replace(0, result.err.find("d.raw"), "");
+}
+
 // ---- 512^3 without a single block of one value ----
 
 const test::TemporaryFolder& dense() {
@@ -170,6 +183,8 @@ Group command_rows() {
       {"NoLength", "A line of length 1e-300", exit + "z.csv:2: seed (0.5, 0, 0): the line ends on the spot in both directions", no_length},
       {"NineTranslucentSurfaces", "A scene of nine translucent isosurfaces",
        exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
+      {"NotesOfData", "A scene whose data hold 0.1 and 1e300, felt: its note",
+       "d.raw: values of type float64 are rounded to 32-bit floats (and 1 more)", notes_of_data},
       {"NoTolerance", "A tolerance of 1e-300", "done", no_tolerance},
   };
   rows.push_back({"FullUnderTheHand", "512^3 voxels of noise under the hand, within 700000 KB of addresses", "done", full_under_the_hand});

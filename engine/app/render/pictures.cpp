@@ -155,6 +155,7 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_TRY(const scene::NamedColors colors, o.colors.named());
   const std::int64_t load_start = now_ns();
   CATENA_TRY(scene::Scene scene, open_scene(o.source, o.fields, colors, o.grid));
+  const std::size_t told = scene.notes.size();
   if (o.step >= 0 || !steps.empty()) scene::set_step(scene, steps.empty() ? o.step : steps.front());
   CATENA_CHECK(annotate(scene, o.annotate));
   CATENA_CHECK(o.stereo.apply(scene.stereo));
@@ -178,6 +179,7 @@ Outcome render_pictures(const RenderOptions& given) {
   FeltPath hand(program, std::move(path));
   Frames frames(scene, o, motion, hand, size, steps);
   CATENA_TRY(const render::FramePacket packet, frames.packet(0));
+  if (is_scene_file(o.source)) tell_new_notes(scene, told);
   if (const Outcome drawable = render::check_rays(packet); !drawable) return Error{o.source + ": " + drawable.error().message};
   if (!o.ids.empty() && packet.objects.size() > 65535)
     return Error{o.ids + ": the scene has " + std::to_string(packet.objects.size()) + " objects; 16 bits hold 65535"};
