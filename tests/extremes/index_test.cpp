@@ -116,6 +116,23 @@ std::string points_under_the_hand() {
   return Found().at_most("off its place", off, 1e-6);
 }
 
+std::string curves_under_the_hand() {
+  haptics::tests::Fields fields;
+  test::Polylines lines(1);
+  for (int i = 0; i < 20; ++i) lines[0].push_back(kFarPlace + place(i));
+  auto set = curves::parse_tck(test::tck_bytes(lines, "Float64LE"), "c.tck");
+  if (!set) return set.error().message;
+  fields.curves["c"] = std::make_shared<const curves::CurveSet>(std::move(*set));
+  double off = 0;
+  for (int i = 1; i < 20; ++i) {
+    haptics::tests::Rig rig(haptics::tests::build(R"({"name": "a", "type": "curves", "curves": "c"})", fields));
+    const Vec3 probe = kFarPlace + 0.5 * (place(i - 1) + place(i));
+    for (int tick = 0; tick < 3; ++tick) rig.tick(probe);
+    off = std::max(off, norm(rig.state.proxy - probe));
+  }
+  return Found().at_most("off the middle of its pieces", off, 0.5);
+}
+
 std::string points_under_the_eye() {
   std::vector<render::Picture> pictures;
   for (const Vec3& far : {Vec3(0.0), kFarPlace}) {
@@ -148,6 +165,9 @@ Group index_rows() {
               {"FarPointsUnderTheHand",
                "Twenty points of a table within a unit of each other, at (625000, -5250000, 1250000), as maps have them",
                "off its place at most 1e-06", points_under_the_hand},
+              {"FarCurvesUnderTheHand", "A line of a .tck file of 64-bit numbers at that place", "off the middle of its pieces at most 0.5",
+               curves_under_the_hand,
+               "At most 1e-06. Curves are kept in single precision from the world's origin, as most of their files have them"},
               {"PicturesOfFarPoints", "The same as balls, beside those about the origin",
                "something is seen; pixels that differ by more than 24/255 at most 0.002", points_under_the_eye},
               elsewhere("Indices at the ends of 32-bit numbers", "an error that says which were expected",

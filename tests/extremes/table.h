@@ -3,6 +3,7 @@
 /// docs/extremes.md is made from the table. A number within a sentence is a bound, never a measured figure.
 /// One row: build/dev/test_extremes --gtest_filter='*NAME*'.
 #pragma once
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct Row {
   std::string should = {};     ///< of a known defect: what would be right
   std::string proved_by = {};  ///< the case of another test program, `Suite.Case`
 };
+
+/// For the messages of a failing case.
+inline void PrintTo(const Row& row, std::ostream* out) { *out << row.name; }
 
 /// What another test proves already.
 inline Row elsewhere(std::string asked, std::string expected, std::string proved_by) {
