@@ -188,7 +188,7 @@ Group command_rows() {
       {"NoTolerance", "A tolerance of 1e-300", "done", no_tolerance},
   };
   rows.push_back({"FullUnderTheHand", "512^3 voxels of noise under the hand, within 700000 KB of addresses", "done", full_under_the_hand});
-  rows.push_back({"FullWithoutRoom", "The same picture with 300 MB allowed",
+  rows.push_back({"FullWithoutRoom", "A picture of them with 300 MB allowed",
                   exit + "s.json:1: field \"d\": d.raw: the grid of 512 x 512 x 512 voxels needs 576 MB of memory, expected at most 300 MB "
                          "(--memory MB allows more)",
                   full_without_room});

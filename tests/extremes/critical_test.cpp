@@ -102,7 +102,7 @@ Group critical_rows() {
       "Online at most 1e-06 L off: a hand that comes back from the node leaves it by another line, for there lines lie nearer together "
       "than a step's tolerance. A line that is traced once (`selected`) keeps its way";
   return {
-      "The flow",
+      "Critical points",
       {
           elsewhere("Nodes (attracting, repelling, star), saddles on their straight ways, a zero of third order",
                     "held within 1e-6 L of the zero in 6 ticks, CRITICAL; let go when the hand turns back",
