@@ -21,7 +21,8 @@ struct Rounding {
 inline std::vector<std::string> notes_of(const Rounding& rounding, std::string_view type) {
   std::vector<std::string> notes;
   if (rounding.any) notes.push_back("values of type " + std::string(type) + " are rounded to 32-bit floats");
-  if (rounding.beyond > 0) notes.push_back(std::to_string(rounding.beyond) + " values are beyond 32-bit floats: they are holes");
+  if (rounding.beyond == 1) notes.push_back("1 value is beyond 32-bit floats: it is a hole");
+  if (rounding.beyond > 1) notes.push_back(std::to_string(rounding.beyond) + " values are beyond 32-bit floats: they are holes");
   return notes;
 }
 
