@@ -6,6 +6,7 @@
 #include "tests/extremes/eye_rig.h"
 #include "tests/extremes/hand_path.h"
 #include "tests/extremes/table.h"
+#include "tests/support/curve_files.h"
 
 namespace catena::extremes {
 namespace index_test {
