@@ -86,7 +86,7 @@ Result<Report> measure(const MeasureOptions& options) {
       if (curves)
         for (Curve& curve : *curves) {
           curve.part = m.part;
-          if (!curve.error_name.empty()) tradeoff::choose(curve);
+          if (!curve.error_name.empty() && curve.why.empty()) tradeoff::choose(curve);
           report.curves.push_back(std::move(curve));
         }
     }

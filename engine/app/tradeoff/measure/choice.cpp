@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace catena::app::tradeoff {
 namespace {
 
-bool counts(const Point& p, Cost cost) { return std::isfinite(p.error) && std::isfinite(cost_of(p, cost)); }
+constexpr double kKnee = 0.1;  // of the chord: what is less deep is none
+
+bool counts(const Point& p, Cost cost) { return p.offered && std::isfinite(p.error) && std::isfinite(cost_of(p, cost)); }
 
 /// What is exact to the last bit has a place on a logarithmic axis, too.
 double log_of(double value, double least) { return std::log(std::max(value, least)); }
 
+/// -1: error and cost trade evenly.
 int knee(const std::vector<Point>& points, const std::vector<int>& front, Cost cost) {
   if (front.size() < 3) return front.back();
   double least = 1e-300;
@@ -28,7 +32,7 @@ int knee(const std::vector<Point>& points, const std::vector<int>& front, Cost c
     const double below = (y(i) - y0) / dy - (x(i) - x0) / dx;
     if (below > deepest + 1e-9) deepest = below, best = i;
   }
-  return best;
+  return deepest < kKnee ? -1 : best;
 }
 
 bool alike(const Point& a, const Point& b, Cost cost) {
@@ -76,13 +80,24 @@ void choose(Curve& curve) {
   std::vector<int> good;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (counts(points[i], curve.cost) && points[i].error <= reached) good.push_back(static_cast<int>(i));
-  if (curve.front.size() == 1) {
+  std::vector<int> all;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!counts(points[i], curve.cost)) continue;
+    all.push_back(static_cast<int>(i));
+    least = std::min(least, points[i].error), most = std::max(most, points[i].error);
+  }
+  if (points.size() == 1) {
     curve.chosen = curve.front.front();
-    curve.why = points.size() == 1 ? fmt::format("There is one setting; its error is {:.2g}{}.", points[0].error,
-                                                 reached > points[0].error && points[0].error > 0
-                                                     ? fmt::format(", {:.2g} times below that of the data", reached / points[0].error)
-                                                     : "")
-                                   : "It is the cheapest and the most exact at once.";
+    curve.why = fmt::format("There is one setting; its error is {:.2g}.", points[0].error);
+  } else if (most <= least) {
+    const int now = curve.current, best = cheapest(points, all, curve.cost);
+    curve.chosen = now >= 0 && alike(points[now], points[best], curve.cost) ? now : best;
+    curve.why = fmt::format("No setting changes the error here, {:.2g}{}.", least,
+                            now == curve.chosen ? ", so that what the scene has may stay" : ", so that the cheapest will do");
+  } else if (curve.front.size() == 1) {
+    curve.chosen = curve.front.front();
+    curve.why = "It is the cheapest and the most exact at once.";
   } else if (reached > 0 && !good.empty()) {
     curve.chosen = cheapest(points, good, curve.cost);
     const Point& p = points[curve.chosen];
@@ -90,10 +105,16 @@ void choose(Curve& curve) {
         "It is the cheapest whose error, {:.2g}, is not above {}, {:.2g}: to go below costs more and gains nothing that can be told.",
         p.error, curve.floor >= reached ? curve.floor_name : "what the reference can tell", reached);
   } else {
-    curve.chosen = knee(points, curve.front, curve.cost);
+    const int bend = knee(points, curve.front, curve.cost);
+    const bool keeps = bend < 0 && std::find(curve.front.begin(), curve.front.end(), curve.current) != curve.front.end();
+    curve.chosen = bend >= 0 ? bend : keeps ? curve.current : curve.front.back();
     const Point& p = points[curve.chosen];
     const std::string none = reached > 0 ? fmt::format("None reaches {}, {:.2g}; t", curve.floor_name, reached) : "T";
-    if (curve.chosen == curve.front.back()) {
+    if (keeps) {
+      curve.why = fmt::format(
+          "Error and cost trade evenly, and no setting stands out: what the scene has is as good as any, with an error of {:.2g}.",
+          p.error);
+    } else if (curve.chosen == curve.front.back()) {
       curve.why = fmt::format("{}his is the most exact, with an error of {:.2g}.", none, p.error);
     } else {
       const auto at = static_cast<std::size_t>(std::find(curve.front.begin(), curve.front.end(), curve.chosen) - curve.front.begin());

@@ -22,9 +22,10 @@ struct Point {
   std::string series;   ///< points of one series are joined in the plot: "rkf34"
   double error = kNotMeasured;
   double work = kNotMeasured;  ///< counted, the same on every machine
-  Timing time;
+  Timing time{};
   double bytes = kNotMeasured;
-  std::vector<double> more;  ///< one a name of Curve::more
+  std::vector<double> more{};  ///< one a name of Curve::more
+  bool offered = true;         ///< false: shown beside the others, never chosen
 };
 
 /// Which cost a choice goes by.

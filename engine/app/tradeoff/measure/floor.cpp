@@ -134,8 +134,9 @@ Extrapolated from_errors(double at_2h, double at_4h) {
 
 Extrapolated from_differences(double at_2h, double at_4h) {
   if (!(at_2h > 0)) return {0, 4, true};
-  const double ratio = at_4h / at_2h - 1, order = ratio > 0 ? std::log2(ratio) : 0, p = std::clamp(order, 0.5, 4.0);
-  return {at_2h / (std::exp2(p) - 1), p, order > 0.5};
+  if (!(at_4h / at_2h - 1 > std::sqrt(2.0))) return {at_2h / 3, 2, false};
+  const double p = std::min(std::log2(at_4h / at_2h - 1), 4.0);
+  return {at_2h / (std::exp2(p) - 1), p, true};
 }
 
 std::optional<Levels<field::ScalarGrid>> make_levels(const field::ScalarGrid& grid, double most) { return levels_of(grid, most); }

@@ -17,7 +17,8 @@ struct Extrapolated {
 
 /// From errors at 2 h and 4 h that were measured against the truth:  p = log2(E4 / E2),  E(h) = E2 / 2^p
 Extrapolated from_errors(double at_2h, double at_4h);
-/// From what 2 h and 4 h differ from h by:  d4 / d2 = (4^p - 1) / (2^p - 1) = 2^p + 1,  E(h) = d2 / (2^p - 1)
+/// From what 2 h and 4 h differ from h by:  d4 / d2 = (4^p - 1) / (2^p - 1) = 2^p + 1,  E(h) = d2 / (2^p - 1).
+/// Where they do not settle, the order of linear interpolation, 2, is taken: the least that the error can be.
 Extrapolated from_differences(double at_2h, double at_4h);
 
 /// A grid at spacings h, 2 h and 4 h over one domain.

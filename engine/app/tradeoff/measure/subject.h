@@ -23,6 +23,13 @@ struct Effort {
 };
 const Effort& effort(bool quick, bool thorough);
 
+/// The scene's links of a type.
+struct LinkOf {
+  std::string name;
+  json::Node node;
+};
+std::vector<LinkOf> links_of_type(const scene::Scene& scene, const std::string& type);
+
 /// Where the hand goes, at any rate: world units by seconds.
 struct Motion {
   std::function<Vec3(double t_s)> at;
@@ -31,6 +38,10 @@ struct Motion {
   std::string words;  ///< what it does
   std::vector<haptics::ProbeSample> samples(double rate_hz) const;
 };
+
+/// Where a link is followed: along its streamline and a little beside it; through its surface and back. Nothing where it has none.
+std::optional<Motion> along_streamline(scene::Scene& scene, const LinkOf& link, double seconds);
+std::optional<Motion> through_surface(scene::Scene& scene, const LinkOf& link, double seconds);
 
 /// A path of the user's own, or else one that follows the first link: along a streamline and a little beside it, through a surface and
 /// back, or a loop of 4 cm. At 0.15 m/s of the hand.
@@ -58,12 +69,5 @@ struct Subject {
   std::unique_ptr<Eye> eye;           ///< none: no pictures
   std::vector<std::string> left_out;  ///< what was not measured, and why: a sentence each
 };
-
-/// The scene's links by type, with the field that each names.
-struct LinkOf {
-  std::string name;
-  json::Node node;
-};
-std::vector<LinkOf> links_of_type(const scene::Scene& scene, const std::string& type);
 
 }  // namespace catena::app::tradeoff

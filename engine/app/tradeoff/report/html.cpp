@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/command.h"
 #include "engine/app/tradeoff/report/report.h"
 #include "engine/base/text.h"
 
@@ -91,7 +92,7 @@ std::string points_table(const Curve& c, const Curve* other) {
     }
     if (other != nullptr && !c.error_name.empty()) cell(theirs != nullptr ? short_number(theirs->error) : "-");
     if (!c.work_name.empty()) cell(short_number(p.work));
-    if (!c.bytes_name.empty()) cell(short_number(p.bytes));
+    if (!c.bytes_name.empty()) cell(std::isfinite(p.bytes) ? human_bytes(p.bytes) : "-");
     for (const double value : p.more) cell(short_number(value));
     text += fmt::format("<td>{}</td><td>{}</td></tr>\n", on_front(c, index) ? "&#9679;" : "",
                         p.write.empty() ? "" : "<code>" + escaped(p.write) + "</code>");
@@ -130,7 +131,8 @@ std::string summary(const Report& report) {
         "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{} "
         "<small>{}</small></td></tr>\n",
         escaped(c.id), escaped(c.title), c.current >= 0 ? escaped(c.points[c.current].setting) : "-", escaped(p.setting),
-        short_number(p.error), short_number(c.floor), short_number(cost_of(p, c.cost)), escaped(unit));
+        short_number(p.error), short_number(c.floor), c.cost == Cost::bytes ? human_bytes(p.bytes) : short_number(cost_of(p, c.cost)),
+        escaped(unit));
   }
   return text + "</table></div>\n";
 }
@@ -151,7 +153,11 @@ std::string about_table(const Report& report, const Report* other) {
 
 }  // namespace
 
-std::string short_number(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return "-";
+  const bool plain = std::fabs(value) >= 1000 && std::fabs(value) < 1e7;
+  return plain ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
 
 std::string to_html(const Report& report, const Report* other, const std::vector<std::vector<std::string>>& plots) {
   std::string text = kHead;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/app/tradeoff/report/report.h"
@@ -26,9 +27,9 @@ std::string list(const Items& items, const Print& print) {
 
 std::string json_of(const Point& p) {
   return fmt::format(
-      R"({{"setting": {}, "write": {}, "series": {}, "error": {}, "work": {}, "time": {{"median": {}, "low": {}, "high": {}, "repeats": {}}}, "bytes": {}, "more": {}}})",
+      R"({{"setting": {}, "write": {}, "series": {}, "error": {}, "work": {}, "time": {{"median": {}, "low": {}, "high": {}, "repeats": {}}}, "bytes": {}, "offered": {}, "more": {}}})",
       json_string(p.setting), json_string(p.write), json_string(p.series), number(p.error), number(p.work), number(p.time.median),
-      number(p.time.low), number(p.time.high), p.time.repeats, number(p.bytes), list(p.more, number));
+      number(p.time.low), number(p.time.high), p.time.repeats, number(p.bytes), p.offered, list(p.more, number));
 }
 
 constexpr const char* kCosts[] = {"time", "work", "bytes"};
@@ -96,6 +97,7 @@ Result<Point> read_point(const json::Node& node) {
     CATENA_TRY(p.time.high, number_at(*time, "high"));
     CATENA_TRY(p.time.repeats, json::get_integer(*time, "repeats", 0, 0, 1'000'000));
   }
+  CATENA_TRY(p.offered, json::get_boolean(node, "offered", true));
   CATENA_TRY(const std::vector<json::Node> more, items_of(node, "more"));
   for (const json::Node& item : more) p.more.push_back(item.kind == json::Kind::number ? item.number : kNotMeasured);
   return p;
@@ -179,18 +181,17 @@ Result<Report> read_report(const std::string& path) {
 }
 
 std::string to_csv(const Curve& c) {
-  const auto quoted = [](std::string word) {
-    if (word.find_first_of(",\"") == std::string::npos) return word;
-    std::string out = "\"";
-    for (const char letter : word) out += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-    return out + "\"";
+  // a table of Catena's knows no quotes
+  const auto cell = [](std::string word) {
+    std::replace(word.begin(), word.end(), ',', ';');
+    return one_line(word);
   };
   std::string header = "setting,series,error,work,time_median,time_low,time_high,repeats,bytes,front,chosen";
-  for (const std::string& name : c.more) header += "," + quoted(name);
+  for (const std::string& name : c.more) header += "," + cell(name);
   CsvTable table(header);
   for (std::size_t i = 0; i < c.points.size(); ++i) {
     const Point& p = c.points[i];
-    table.add(quoted(p.setting)).add(quoted(p.series)).add(p.error).add(p.work).add(p.time.median).add(p.time.low).add(p.time.high);
+    table.add(cell(p.setting)).add(cell(p.series)).add(p.error).add(p.work).add(p.time.median).add(p.time.low).add(p.time.high);
     table.add(p.time.repeats).add(p.bytes);
     table.add(std::find(c.front.begin(), c.front.end(), static_cast<int>(i)) != c.front.end() ? 1 : 0)
         .add(static_cast<int>(i) == c.chosen ? 1 : 0);

@@ -59,7 +59,7 @@ void add(Drawn& drawn, const std::string& name, const std::string& data, const s
 PlotScript plot_script(const Curve& curve, const Curve* other, const std::string& prefix) {
   PlotScript script;
   script.text =
-      "set terminal svg size 560,380 dynamic noenhanced font 'sans-serif,13'\nset border lc rgb 'black'\nset format '%.1g'\n"
+      "set terminal svg size 560,380 dynamic noenhanced font 'sans-serif,13'\nset border lc rgb 'black'\nset format '%g'\n"
       "set grid lc rgb '#888888' lw 0.5\nset key outside bottom center horizontal samplen 1.5 maxcols 3\nset logscale xy\n";
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const Curve* c : {&curve, other})

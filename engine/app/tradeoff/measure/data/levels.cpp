@@ -77,6 +77,8 @@ Result<std::vector<Curve>> measure_levels(Subject& subject) {
         floor->at_h.settled ? "" : "; the error does not fall with the spacing: the data are not smooth at their own spacing, or noisy");
     if (source.drawn.get() == grid.get() && source.loaded.get() != nullptr && !source.loaded.get()->is_grid())
       curve.floor_from += fmt::format("; by the formula itself it is {:.3g}", true_error(grid, source.loaded) / floor->scale);
+    curve.why = fmt::format(
+        "Between its voxels the grid is off by {:.2g} of the range: nothing that is drawn or felt of it can be more exact.", curve.floor);
     curves.push_back(std::move(curve));
   });
   return curves;

@@ -21,10 +21,10 @@ Result<std::vector<Curve>> measure_budget(Subject& subject) {
   curve.more.emplace_back("drawn at 1 / this resolution");
   const render::RenderSettings settings = render::exact_rung(0.5);
   CATENA_CHECK(eye.renderer->draw(eye.packet, settings));
-  const double whole = static_cast<double>(eye.renderer->device().counters().peak);
+  const double whole = static_cast<double>(eye.renderer->device().counters().bytes);
   std::vector<std::unique_ptr<render::Renderer>> renderers;
   std::vector<Repeat> repeats;
-  for (const double share : {0.0, 0.6, 0.4, 0.25, 0.15, 0.08}) {
+  for (const double share : {0.0, 0.8, 0.6, 0.4, 0.25, 0.15, 0.08}) {
     render::vk::DeviceOptions options;
     options.memory_budget_bytes = static_cast<std::uint64_t>(share * whole);
     auto renderer = render::Renderer::create(options);
@@ -33,6 +33,7 @@ Result<std::vector<Curve>> measure_budget(Subject& subject) {
     if (!picture) break;  // nothing smaller is enough
     const render::RenderStats stats = (*renderer)->stats();
     const double factor = stats.mirror_coarsening.empty() ? 1 : stats.mirror_coarsening.front().factor;
+    if (!curve.points.empty() && factor == curve.points.back().more.back()) continue;  // the same picture
     const render::PictureError error = render::measure_error(*picture, eye.truth);
     const std::string budget = fmt::format("{:.3g} MB", 1e-6 * static_cast<double>(stats.gpu_budget));
     curve.points.push_back({share > 0 ? budget : "as much as there is",

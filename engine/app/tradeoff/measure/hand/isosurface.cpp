@@ -29,13 +29,15 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
   const json::Node* level = link.node.find("level");
   if (!field || level == nullptr || level->kind != json::Kind::number)
     return Error{"link \"" + link.name + "\" has no field with a stated level"};
+  const auto motion = through_surface(subject.scene, link, subject.effort.motion_s);
+  if (!motion) return Error{"from the faces of its domain to the middle, no way meets the level of link \"" + link.name + "\""};
   Curve curve;
   curve.id = "hand-isosurface-" + link.name;
   curve.title = "How exactly the surface \"" + link.name + "\" is felt";
   curve.what = fmt::format(
       "The hand goes {} ({:g} Hz). The link has no setting for it: it stops where 1e-8 L is left along the surface. Beside it the same "
       "link on every 2nd and 4th voxel.",
-      subject.motion.words, subject.rate_hz);
+      motion->words, subject.rate_hz);
   curve.error_name = "distance off the surface / L (RMS)";
   curve.work_name = "field fetches a tick";
   curve.time_name = "ns a tick";
@@ -48,7 +50,7 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
   } else {
     curve.floor_from = "The field is a formula: the data leave nothing open.";
   }
-  const std::vector<haptics::ProbeSample> path = subject.motion.samples(subject.rate_hz);
+  const std::vector<haptics::ProbeSample> path = motion->samples(subject.rate_hz);
   std::vector<haptics::Program> programs;
   const char* words[] = {"as it is", "on every 2nd voxel", "on every 4th voxel"};
   for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -75,14 +77,14 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
     p.more[0] /= static_cast<double>(path.size());
     curve.points.push_back(std::move(p));
   }
-  if (!(curve.points[0].more[0] > 0))
-    return Error{"link \"" + link.name + "\" never holds along this motion (--probe PATH.csv gives another one)"};
+  if (!(curve.points[0].more[0] > 0)) return Error{"link \"" + link.name + "\" never holds along this motion"};
   curve.current = 0;
   if (curve.points.size() == 3) {
     const Extrapolated e = from_differences(curve.points[1].error, curve.points[2].error);
     curve.floor = e.error;
-    curve.floor_from = fmt::format("from the surfaces that every 2nd and 4th voxel hold, observed order {:.1f}{}", e.order,
-                                   e.settled ? "" : "; they do not settle, so that this is a guess");
+    curve.floor_from = fmt::format(
+        "from the surfaces that every 2nd and 4th voxel hold, order {:.1f}{}", e.order,
+        e.settled ? "" : "; they do not settle with the spacing, so that the data are not resolved, and this is the least that it can be");
   }
   std::vector<Repeat> repeats;
   for (const haptics::Program& program : programs) repeats.push_back(ticks_of(program, path));

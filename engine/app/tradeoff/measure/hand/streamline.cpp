@@ -35,6 +35,7 @@ struct Line {
   flow::TraceOptions options;
   flow::CurvePtr truth;
   double lo = 0, hi = 0;  ///< arc lengths that the hand comes to
+  Motion motion;
 };
 
 void add_floor(const Line& line, Curve& curve) {
@@ -62,9 +63,10 @@ void add_floor(const Line& line, Curve& curve) {
   }
   const Extrapolated e = from_differences(off[0], off[1]);
   curve.floor = e.error;
-  curve.floor_from =
-      fmt::format("from the lines through the same seed on every 2nd voxel (off by {:.2g}) and every 4th ({:.2g}), observed order {:.1f}{}",
-                  off[0], off[1], e.order, e.settled ? "" : "; they do not settle, so that this is a guess");
+  curve.floor_from = fmt::format(
+      "from the lines through the same seed on every 2nd voxel (off by {:.2g}) and every 4th ({:.2g}), order {:.1f}{}", off[0], off[1],
+      e.order,
+      e.settled ? "" : "; they do not settle with the spacing, so that the data are not resolved, and this is the least that it can be");
 }
 
 Result<Line> make_line(Subject& subject, const LinkOf& link) {
@@ -79,7 +81,13 @@ Result<Line> make_line(Subject& subject, const LinkOf& link) {
   CATENA_TRY(const auto seed, json::get_optional_vec3(link.node, "seed"));
   if (!seed) return Error{"link \"" + link.name + "\" has no seed: which line it follows is known only while it is felt"};
   line.seed = *seed;
-  line.options.length = std::min(0.5 * 0.15 * subject.motion.seconds / subject.scene.workspace.metres_per_unit, line.field->length());
+  const auto motion = along_streamline(subject.scene, link, subject.effort.motion_s);
+  if (!motion) return Error{"from the seed of link \"" + link.name + "\" no line goes"};
+  line.motion = *motion;
+  // somewhat farther than the hand goes
+  line.options.length =
+      std::min(0.6 * 0.15 * subject.effort.motion_s / subject.scene.workspace.metres_per_unit, 1.2 * line.field->length());
+  line.options.length += 0.02 * line.field->length();
   line.options.tolerance = kReferenceTolerance;
   line.options.hermite_tolerance = kReferenceHermite;
   CATENA_TRY(line.truth, flow::trace(line.flow, line.seed, line.options));
@@ -95,12 +103,14 @@ Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
   Curve curve;
   curve.id = "hand-streamline-" + line.name;
   curve.title = "How the streamline \"" + line.name + "\" is followed";
-  curve.what =
-      fmt::format("The hand goes {} ({:g} Hz); each setting follows it alone, from the seed on.", subject.motion.words, subject.rate_hz);
+  curve.what = fmt::format(
+      "The hand goes {} ({:g} Hz where no rate is named); each setting follows it alone, from the seed on. Tick by tick (1 ms at 1 kHz) "
+      "the fixed steps are as long as the hand's way, so that the servo's rate is their knob: other rates are shown, but not chosen here.",
+      line.motion.words, subject.rate_hz);
   curve.error_name = "greatest distance from the line / L";
-  curve.work_name = "field fetches a tick";
-  curve.time_name = "ns a tick";
-  curve.more = {"before the first tick, ms", "ticks not OK"};
+  curve.work_name = "field fetches a millisecond";
+  curve.time_name = "ns a millisecond";
+  curve.more = {"before the first tick, ms", "ticks not OK, %"};
 
   // the line that errors are measured from, and a less exact one
   flow::TraceOptions coarser = line.options;
@@ -112,30 +122,38 @@ Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
   add_floor(line, curve);
 
   std::vector<haptics::Program> programs;
-  const auto add = [&](const std::string& setting, const std::string& write, const std::string& series,
-                       std::shared_ptr<const haptics::Constraint> constraint, double before_ms) {
+  std::vector<double> rates;
+  const auto add = [&](Point point, std::shared_ptr<const haptics::Constraint> constraint, double rate_hz) {
     programs.push_back(only_link(*subject.program, line.name, std::move(constraint)));
-    Point p{setting, write, series, kNotMeasured, kNotMeasured, {}, kNotMeasured, {before_ms, 0}};
-    curve.points.push_back(std::move(p));
+    rates.push_back(rate_hz);
+    point.more.resize(2, 0);
+    point.offered = rate_hz == subject.rate_hz;  // the rate is a choice of its own (rate.cpp)
+    curve.points.push_back(std::move(point));
   };
   const std::int64_t start = now_ns();
   flow::TraceOptions usual;
   usual.length = line.options.length;
   CATENA_TRY(flow::CurvePtr selected, flow::trace(line.flow, line.seed, usual));
-  add("selected", R"("follow": "selected")", "selected (traced once)", haptics::make_selected_streamline(std::move(selected)),
-      ms_since(start));
+  Point cached{"selected", R"("follow": "selected")", "selected (traced once)"};
+  cached.more = {ms_since(start)};
+  add(std::move(cached), haptics::make_selected_streamline(std::move(selected)), subject.rate_hz);
   using flow::Method;
-  for (const Method method : {Method::linear, Method::euler, Method::rk2, Method::rk3, Method::rk4, Method::rkf34, Method::dp54}) {
-    const std::string word = flow::method_word(method);
-    const bool embedded = method == Method::rkf34 || method == Method::dp54;
-    for (int digits = embedded ? 3 : 9; digits <= (embedded ? 13 : 9); digits += 2) {
-      haptics::OnlineSpec spec{line.field, line.flow.line, line.flow.min_speed, method, std::pow(10.0, -digits), line.seed};
-      const std::string tolerance = fmt::format("1e-{}", digits);
-      add(embedded ? word + ", tolerance " + tolerance : word,
-          R"("method": ")" + word + "\"" + (embedded ? ", \"tolerance\": " + tolerance : ""), embedded ? word : "fixed step",
-          haptics::make_online_streamline(spec), 0);
+  const auto online = [&](Method method, double tolerance) {
+    return haptics::make_online_streamline({line.field, line.flow.line, line.flow.min_speed, method, tolerance, line.seed});
+  };
+  // a fixed step is as long as the hand's way in a tick: the servo's rate is its knob
+  for (const Method method : {Method::linear, Method::euler, Method::rk2, Method::rk3, Method::rk4})
+    for (const double times : {0.25, 1.0, 4.0}) {
+      const std::string word = flow::method_word(method), rate = fmt::format("{:g}", times * subject.rate_hz);
+      add({times == 1 ? word : word + ", " + rate + " Hz", "\"method\": \"" + word + "\"" + (times == 1 ? "" : "; --rate " + rate), word},
+          online(method, 1e-9), times * subject.rate_hz);
     }
-  }
+  for (const Method method : {Method::rkf34, Method::dp54})
+    for (int digits = 3; digits <= 13; digits += 2) {
+      const std::string word = flow::method_word(method);
+      add({fmt::format("{}, tolerance 1e-{}", word, digits), fmt::format("\"method\": \"{}\", \"tolerance\": 1e-{}", word, digits), word},
+          online(method, std::pow(10.0, -digits)), subject.rate_hz);
+    }
   const json::Node *method = link.node.find("method"), *follow = link.node.find("follow");
   if (method == nullptr && (follow == nullptr || follow->string == "selected")) curve.current = 0;
   if (method != nullptr || curve.current < 0) {
@@ -146,21 +164,27 @@ Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
       if (curve.points[i].setting == word || curve.points[i].setting == text) curve.current = static_cast<int>(i);
   }
 
-  const std::vector<haptics::ProbeSample> path = subject.motion.samples(subject.rate_hz);
+  std::vector<std::vector<haptics::ProbeSample>> paths;
+  for (const double rate : rates) paths.push_back(line.motion.samples(rate));
   std::vector<Repeat> repeats;
   for (std::size_t i = 0; i < programs.size(); ++i) {
     Point& p = curve.points[i];
     double far2 = 0, fetches = 0, bad = 0;
-    run_ticks(programs[i], path, [&](const exchange::HapticState& out) {
+    run_ticks(programs[i], paths[i], [&](const exchange::HapticState& out) {
       const exchange::LinkReport& report = out.links[0];
       far2 = std::max(far2, nearest.at(report.proxy).distance2);
       fetches += report.evaluations;
       bad += report.status != exchange::Status::ok;
     });
+    const double ticks_a_ms = 1e-3 * rates[i];
     p.error = std::sqrt(far2) / length;
-    p.work = fetches / static_cast<double>(path.size());
-    p.more[1] = bad / static_cast<double>(path.size());
-    repeats.push_back(ticks_of(programs[i], path));
+    p.work = ticks_a_ms * fetches / static_cast<double>(paths[i].size());
+    p.more[1] = 100 * bad / static_cast<double>(paths[i].size());
+    const Repeat ticks = ticks_of(programs[i], paths[i]);
+    repeats.push_back([ticks, ticks_a_ms]() -> Result<double> {
+      CATENA_TRY(const double ns, ticks());
+      return ns * ticks_a_ms;
+    });
   }
   CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
   for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
