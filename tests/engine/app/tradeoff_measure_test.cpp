@@ -166,7 +166,7 @@ TEST(TradeoffChoice, TakesTheKneeOrWhatTheSceneHas) {
 TEST(TradeoffTiming, RunsSettingsInTurns) {
   std::string order;
   const auto times =
-      interleave({[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 0, 3);
+      interleave({[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 1000, 3);
   ASSERT_TRUE(times);
   EXPECT_EQ(order, "abbaabba");  // the first round warms up
   EXPECT_EQ((*times)[1].median, 2);

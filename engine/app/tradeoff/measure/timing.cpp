@@ -21,7 +21,8 @@ Result<std::vector<Timing>> interleave(const std::vector<Repeat>& settings, doub
   std::vector<std::vector<double>> times(n);
   const std::int64_t start = now_ns();
   for (int round = 0; round <= most; ++round) {
-    if (round > kLeast && 1e-3 * ms_since(start) > seconds) break;
+    const double over = 1e-3 * ms_since(start) - seconds;
+    if (round > kLeast ? over > 0 : round > 1 && over > seconds) break;
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t i = (k + static_cast<std::size_t>(round)) % n;
       CATENA_TRY(const double took, settings[i]());

@@ -12,7 +12,8 @@ namespace catena::app::tradeoff {
 /// One repeat of a setting: what it took, in the unit of the curve.
 using Repeat = std::function<Result<double>()>;
 
-/// Rounds until `seconds` of wall time are over, three at least and `most` at most. The first round warms up and does not count.
+/// Rounds until `seconds` of wall time are over, three at least (one, where that takes twice as long) and `most` at most. The first round
+/// warms up and does not count.
 Result<std::vector<Timing>> interleave(const std::vector<Repeat>& settings, double seconds, int most = 31);
 
 /// Median and quartiles; not finite of nothing.

@@ -12,7 +12,7 @@ namespace catena::app::tradeoff {
 namespace {
 
 /// Middle tones that are read on white and on black.
-constexpr const char* kColors[] = {"#2a7de1", "#d9480f", "#2b9a4b", "#9c36b5", "#b8860b", "#0c8599", "#c2255c"};
+constexpr const char* kColors[] = {"#2a7de1", "#d9480f", "#2b9a4b", "#9c36b5", "#b8860b", "#0c8599", "#c2255c", "#868e96"};
 
 /// In single quotes, as gnuplot has them.
 std::string quoted(const std::string& text) {

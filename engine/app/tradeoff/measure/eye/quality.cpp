@@ -59,9 +59,10 @@ Result<std::vector<Curve>> measure_quality(Subject& subject) {
   for (const double e : {8.0, 4.0, 2.0, 1.0}) {
     CATENA_TRY(const render::QualityChoice choice,
                render::choose_quality(*eye.renderer, eye.packet, {render::QualityGoal::Kind::error, e}));
-    if (!choice.reached) continue;
-    if (e == 2) add("balanced", choice.settings);
-    add(fmt::format("error={:g}", e), choice.settings);
+    if (e == 2)
+      add("balanced", choice.settings);
+    else if (choice.reached)
+      add(fmt::format("error={:g}", e), choice.settings);
   }
   for (const double step : {2.0, 1.0, 0.5}) {
     CATENA_TRY(const Quality quality, parse_quality(fmt::format("step={:g}", step)));

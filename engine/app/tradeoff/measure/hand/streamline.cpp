@@ -105,7 +105,9 @@ Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
   curve.title = "How the streamline \"" + line.name + "\" is followed";
   curve.what = fmt::format(
       "The hand goes {} ({:g} Hz where no rate is named); each setting follows it alone, from the seed on. Tick by tick (1 ms at 1 kHz) "
-      "the fixed steps are as long as the hand's way, so that the servo's rate is their knob: other rates are shown, but not chosen here.",
+      "the fixed steps are as long as the hand's way, so that the servo's rate is their knob: other rates are shown, but not chosen here. "
+      "The cached line fetches "
+      "nothing in a tick, so that it has no place in a plot by fetches.",
       line.motion.words, subject.rate_hz);
   curve.error_name = "greatest distance from the line / L";
   curve.work_name = "field fetches a millisecond";
