@@ -91,7 +91,9 @@ void choose(Curve& curve) {
     curve.chosen = curve.front.front();
     curve.why = fmt::format("There is one setting; its error is {:.2g}.", points[0].error);
   } else if (most <= least) {
-    const int now = curve.current, best = cheapest(points, all, curve.cost);
+    const int now = curve.current, least_cost = cheapest(points, all, curve.cost);
+    // the first as listed of those that noise cannot tell apart
+    const int best = *std::find_if(all.begin(), all.end(), [&](int i) { return alike(points[i], points[least_cost], curve.cost); });
     curve.chosen = now >= 0 && alike(points[now], points[best], curve.cost) ? now : best;
     curve.why = fmt::format("No setting changes the error here, {:.2g}{}.", least,
                             now == curve.chosen ? ", so that what the scene has may stay" : ", so that the cheapest will do");

@@ -27,7 +27,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-// gnuplot writes black and currentColor: both become the page's ink
+// gnuplot writes black in two ways: both become the page's ink
 constexpr const char* kHead = R"html(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>What it costs, what it buys</title><style>
 :root { color-scheme: light dark; --ink: #1c2024; --paper: #ffffff; --soft: #f1f3f5; --line: #ced4da; --good: #e3f6e8; }
@@ -38,7 +38,10 @@ table { border-collapse: collapse; font-size: 0.88rem; } th, td { padding: 0.25r
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } code { background: var(--soft); padding: 0 0.25rem; }
 tr.chosen { background: var(--good); } .why { background: var(--good); padding: 0.5rem 0.8rem; } .plots { display: flex; flex-wrap: wrap; gap: 1rem; }
 .plots svg { width: 34rem; max-width: 100%; height: auto; } .wide { overflow-x: auto; } .note { font-size: 0.88rem; }
-svg [fill="black"] { fill: var(--ink); } svg [stroke="black"] { stroke: var(--ink); } svg [color="black"] { color: var(--ink); }
+svg :is([fill="black"], [fill="rgb(0,0,0)"], [fill="rgb(  0,   0,   0)"]) { fill: var(--ink); }
+svg :is([stroke="black"], [stroke="rgb(  0,   0,   0)"]) { stroke: var(--ink); }
+svg :is([color="black"], [color="rgb(  0,   0,   0)"]) { color: var(--ink); }
+td code { white-space: nowrap; }
 details { margin: 0.6rem 0; }
 </style></head><body>
 )html";

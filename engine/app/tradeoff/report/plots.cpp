@@ -59,13 +59,14 @@ void add(Drawn& drawn, const std::string& name, const std::string& data, const s
 PlotScript plot_script(const Curve& curve, const Curve* other, const std::string& prefix) {
   PlotScript script;
   script.text =
-      "set terminal svg size 560,380 dynamic noenhanced font 'sans-serif,13'\nset border lc rgb 'black'\nset format '%g'\n"
+      "set terminal svg size 560,420 dynamic noenhanced font 'sans-serif,13'\nset border lc rgb 'black'\nset format '%g'\n"
       "set grid lc rgb '#888888' lw 0.5\nset key outside bottom center horizontal samplen 1.5 maxcols 3\nset logscale xy\n";
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const Curve* c : {&curve, other})
     if (c != nullptr)
       for (const Point& p : c->points)
         if (p.error > 0 && std::isfinite(p.error)) least = std::min(least, p.error), most = std::max(most, p.error);
+  if (!(most > 0)) return script;  // all are exact
   for (const double level : {curve.floor, curve.reference_error})
     if (level > 0) least = std::min(least, level), most = std::max(most, level);
   if (!std::isfinite(least) || !(most > 0) || curve.error_name.empty()) return script;

@@ -176,7 +176,7 @@ Curve eye_curve(const Subject& subject, const std::string& id, const std::string
   curve.id = "eye-" + id;
   curve.title = title;
   curve.what = what;
-  curve.error_name = "error of the picture, 1/255 (RMSE, covered pixels)";
+  curve.error_name = "error of the picture (RMSE, 1/255)";
   curve.time_name = eye.renderer->device().info().is_cpu() ? "ms of processor a picture" : "ms a picture";
   curve.more = {"99.9 %, 1/255", "thin parts kept, %", "of the worst thin part, %"};
   curve.reference =
