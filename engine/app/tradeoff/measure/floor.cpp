@@ -1,5 +1,7 @@
 #include "engine/app/tradeoff/measure/floor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -134,9 +136,14 @@ Extrapolated from_errors(double at_2h, double at_4h) {
 
 Extrapolated from_differences(double at_2h, double at_4h) {
   if (!(at_2h > 0)) return {0, 4, true};
-  if (!(at_4h / at_2h - 1 > std::sqrt(2.0))) return {at_2h / 3, 2, false};
+  if (!(at_4h / at_2h - 1 > std::exp2(0.9))) return {at_2h / 3, 2, false};
   const double p = std::min(std::log2(at_4h / at_2h - 1), 4.0);
   return {at_2h / (std::exp2(p) - 1), p, true};
+}
+
+std::string order_words(const Extrapolated& e) {
+  return e.settled ? fmt::format("observed order {:.1f}", e.order)
+                   : "they fall more slowly than the spacing, as edges and noise make them: this is the least that it can be";
 }
 
 std::optional<Levels<field::ScalarGrid>> make_levels(const field::ScalarGrid& grid, double most) { return levels_of(grid, most); }

@@ -4,6 +4,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "engine/field/grid.h"
 
@@ -11,15 +12,19 @@ namespace catena::app::tradeoff {
 
 struct Extrapolated {
   double error = 0;     ///< at the spacing h
-  double order = 0;     ///< p, as observed, within 0 .. 4 (half .. 4 from differences)
-  bool settled = true;  ///< the errors fall as the spacing does; if not, `error` is a lower guess
+  double order = 0;     ///< p, as observed, at most 4
+  bool settled = true;  ///< the errors fall as the spacing does; if not, that of differences is the least that it can be
 };
 
 /// From errors at 2 h and 4 h that were measured against the truth:  p = log2(E4 / E2),  E(h) = E2 / 2^p
 Extrapolated from_errors(double at_2h, double at_4h);
 /// From what 2 h and 4 h differ from h by:  d4 / d2 = (4^p - 1) / (2^p - 1) = 2^p + 1,  E(h) = d2 / (2^p - 1).
-/// Where they do not settle, the order of linear interpolation, 2, is taken: the least that the error can be.
+/// Where that is below order 0.9, as edges and noise make it, the order of linear interpolation, 2, is taken: a floor that is too low
+/// chooses too fine a setting, one that is too high too coarse a one.
 Extrapolated from_differences(double at_2h, double at_4h);
+
+/// "observed order 1.9", or that the differences fall too slowly for one.
+std::string order_words(const Extrapolated& e);
 
 /// A grid at spacings h, 2 h and 4 h over one domain.
 template <class Grid>

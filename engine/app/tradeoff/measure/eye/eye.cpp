@@ -81,9 +81,8 @@ Outcome find_floor(Eye& eye) {
   const double at_2h = render::measure_error(pictures[1], pictures[0]).rmse, at_4h = render::measure_error(pictures[2], pictures[0]).rmse;
   const Extrapolated e = from_differences(at_2h, at_4h);
   eye.floor = e.error;
-  eye.floor_from = fmt::format(
-      "from the pictures of every 2nd voxel (off by {:.3g}) and every 4th ({:.3g}), order {:.1f}{}", at_2h, at_4h, e.order,
-      e.settled ? "" : "; they do not settle with the spacing, so that the data are not resolved, and this is the least that it can be");
+  eye.floor_from =
+      fmt::format("from the pictures of every 2nd voxel (off by {:.3g}) and every 4th ({:.3g}); {}", at_2h, at_4h, order_words(e));
   return Done{};
 }
 

@@ -82,9 +82,7 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
   if (curve.points.size() == 3) {
     const Extrapolated e = from_differences(curve.points[1].error, curve.points[2].error);
     curve.floor = e.error;
-    curve.floor_from = fmt::format(
-        "from the surfaces that every 2nd and 4th voxel hold, order {:.1f}{}", e.order,
-        e.settled ? "" : "; they do not settle with the spacing, so that the data are not resolved, and this is the least that it can be");
+    curve.floor_from = fmt::format("from the surfaces that every 2nd and 4th voxel hold; {}", order_words(e));
   }
   std::vector<Repeat> repeats;
   for (const haptics::Program& program : programs) repeats.push_back(ticks_of(program, path));

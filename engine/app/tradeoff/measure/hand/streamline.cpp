@@ -63,10 +63,8 @@ void add_floor(const Line& line, Curve& curve) {
   }
   const Extrapolated e = from_differences(off[0], off[1]);
   curve.floor = e.error;
-  curve.floor_from = fmt::format(
-      "from the lines through the same seed on every 2nd voxel (off by {:.2g}) and every 4th ({:.2g}), order {:.1f}{}", off[0], off[1],
-      e.order,
-      e.settled ? "" : "; they do not settle with the spacing, so that the data are not resolved, and this is the least that it can be");
+  curve.floor_from = fmt::format("from the lines through the same seed on every 2nd voxel (off by {:.2g}) and every 4th ({:.2g}); {}",
+                                 off[0], off[1], order_words(e));
 }
 
 Result<Line> make_line(Subject& subject, const LinkOf& link) {
