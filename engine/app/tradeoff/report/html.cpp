@@ -41,7 +41,7 @@ tr.chosen { background: var(--good); } .why { background: var(--good); padding: 
 svg :is([fill="black"], [fill="rgb(0,0,0)"], [fill="rgb(  0,   0,   0)"]) { fill: var(--ink); }
 svg :is([stroke="black"], [stroke="rgb(  0,   0,   0)"]) { stroke: var(--ink); }
 svg :is([color="black"], [color="rgb(  0,   0,   0)"]) { color: var(--ink); }
-td code { white-space: nowrap; }
+td code, td:first-child { white-space: nowrap; }
 details { margin: 0.6rem 0; }
 </style></head><body>
 )html";

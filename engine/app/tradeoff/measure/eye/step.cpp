@@ -12,9 +12,10 @@ Result<std::vector<Curve>> measure_step(Subject& subject) {
     subject.left_out.emplace_back("Step: nothing in the picture is drawn by rays.");
     return std::vector<Curve>{};
   }
-  Curve curve = eye_curve(subject, "step", "How far apart a ray's samples are",
-                          "Every pixel has a ray. Exact rays sample the values; fast ones integrate the transfer function between two "
-                          "samples beforehand, plain or with the light of smooth gradients.");
+  Curve curve =
+      eye_curve(subject, "step", "How far apart a ray's samples are",
+                "Every pixel has a ray. Exact rays sample the values; fast ones integrate the transfer function between two "
+                "samples beforehand, plain or with the light of smooth gradients; --quality error=E and balanced choose among those.");
   const bool shaded = !subject.eye->packet.volumes.empty() && subject.eye->packet.volumes.front().shade;
   std::vector<Tried> tried;
   for (const double step : {4.0, 2.0, 1.0, 0.5, 0.25, 0.125}) {
