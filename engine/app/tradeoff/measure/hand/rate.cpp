@@ -103,18 +103,17 @@ Result<Curve> stability_curve(Subject& subject) {
       device = "the scene's device, " + settings.type;
     }
   }
-  double spring = 0;
-  for (const haptics::Link& link : subject.program->links)
-    spring = std::max(spring, subject.program->coupling.stiffness_n_per_m), (void)link;
+  const double spring = subject.program->coupling.stiffness_n_per_m;
   Curve curve;
   curve.id = "hand-rate-stability";
   curve.title = "How often the servo ticks: the spring that stays stable";
   curve.what = fmt::format(
-      "The scene's spring of {:g} N/m beside the stiffest that {} ({:.3g} kg, {:.3g} N s/m) shows without making energy, K <= 2 b / (T + 2 "
+      "The coupling's spring of {:g} N/m beside the stiffest that {} ({:.3g} kg, {:.3g} N s/m) shows without making energy, K <= 2 b / (T "
+      "+ 2 "
       "delay); and the stiffest at "
       "which a simulated mass on a plane comes to rest. Above 1 it may buzz.",
       spring, device, setting.mass_kg, setting.damping);
-  curve.error_name = "the scene's spring / the stable one";
+  curve.error_name = "the coupling's spring / the stable one";
   curve.work_name = "ticks a second";
   curve.cost = Cost::work;
   curve.more = {"2 b / (T + 2 delay), N/m", "simulated, N/m"};
