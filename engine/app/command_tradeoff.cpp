@@ -1,10 +1,12 @@
-/// catena tradeoff --figure 2|3|stiffness -o DIR
+/// catena tradeoff SCENE|FILE -o DIR [--quick|--thorough] [--compare OTHER.json]: error against cost of this scene's settings
+/// catena tradeoff --figure 2|3|stiffness -o DIR: figures of the paper
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "engine/app/command.h"
+#include "engine/app/tradeoff/measure_scene.h"
 #include "engine/app/tradeoff/results.h"
 #include "engine/base/text.h"
 
@@ -12,14 +14,17 @@ namespace catena::app {
 
 namespace {
 
-struct TradeoffOptions {
-  std::string figure, output;
+struct TradeoffOptions : MeasureOptions {
+  std::string figure;
 };
 
-Outcome tradeoff(const TradeoffOptions& options) {
+Outcome run_tradeoff(const TradeoffOptions& options) {
+  if (!options.source.empty() && !options.figure.empty()) return Error{"--figure goes without a scene: its scenes are its own"};
+  if (!options.source.empty()) return measure_scene(options);
   if (options.figure.empty())
     return Error{
-        "tradeoff: expected --figure 2 (drift of the methods from a streamline) or --figure 3 (a penetrable surface and a curve: "
+        "tradeoff: expected a scene or a data file to measure, --figure 2 (drift of the methods from a streamline), --figure 3 (a "
+        "penetrable surface and a curve: "
         "the chain beside its baselines) or --figure stiffness (the largest spring by damping, rate and delay)"};
   CATENA_TRY(ResultFolder folder, ResultFolder::open(options.output));
   CATENA_CHECK(options.figure == "2" ? figure2(folder) : options.figure == "3" ? figure3(folder) : figure_stiffness(folder));
@@ -34,13 +39,23 @@ Outcome tradeoff(const TradeoffOptions& options) {
 
 void add_tradeoff(CLI::App& program, Work& chosen) {
   auto options = std::make_shared<TradeoffOptions>();
-  CLI::App* command = program.add_subcommand("tradeoff", "the figures of the paper, and of the device's stability, as tables and plots");
+  CLI::App* command =
+      program.add_subcommand("tradeoff", "what the settings of a scene cost and what they buy, measured; or figures of the paper");
+  command->add_option("SOURCE", options->source,
+                      "a scene (.json) or a data file to measure; or the tradeoff.json of a run, for its page again");
   command
       ->add_option("--figure", options->figure,
                    "2: drift from a streamline; 3: a penetrable surface and a curve; stiffness: the largest spring")
       ->check(CLI::IsMember({"2", "3", "stiffness"}));
-  command->add_option("-o,--output", options->output, "a folder for tables (CSV), the gnuplot script and plots (PNG)")->required();
-  command->callback([&chosen, options] { chosen = [options] { return tradeoff(*options); }; });
+  command->add_option("-o,--output", options->output, "a folder for the page and the tables; of a figure its script and plots")->required();
+  command->add_flag("--quick", options->quick, "two minutes at most");
+  command->add_flag("--thorough", options->thorough, "larger pictures and more repeats: up to 20 minutes");
+  command->add_option("--compare", options->compare, "the tradeoff.json of another machine or version: side by side on the page");
+  command->add_option("--probe", options->probe, "a hand's path of your own, CSV: t,x,y,z[,buttons]");
+  command->add_option("--only", options->only, "measure only these")->delimiter(',')->check(CLI::IsMember(measurement_names()));
+  command->add_option("--grid", options->grid, "of a data file that holds several");
+  command->add_option("--field", options->fields, "replace a field of the scene: NAME=FILE[:GRID]")->allow_extra_args(false);
+  command->callback([&chosen, options] { chosen = [options] { return run_tradeoff(*options); }; });
 }
 
 }  // namespace catena::app

@@ -107,6 +107,22 @@ Outcome ResultFolder::plot(const std::string& script, const std::vector<std::str
   return Done{};
 }
 
+Result<std::vector<std::string>> ResultFolder::draw(const std::string& script, const std::vector<std::string>& pictures) {
+  std::vector<std::string> drawn;
+  if (pictures.empty()) return drawn;
+  CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/draw.gp"));
+  file.write(script);
+  CATENA_CHECK(file.commit());
+  if (run_gnuplot(staging_, "draw.gp") != 0) return drawn;
+  for (const std::string& name : pictures) {
+    CATENA_TRY(const std::string text, read_text(staging_ + "/" + name, "a picture of gnuplot's"));
+    // without the lines before the picture, which a page may not have within it
+    const auto begin = text.find("<svg");
+    if (begin != std::string::npos) drawn.push_back(text.substr(begin));
+  }
+  return drawn;
+}
+
 Outcome ResultFolder::commit() {
   for (const std::string& name : names_) {
     std::error_code code;

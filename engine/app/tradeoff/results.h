@@ -36,6 +36,9 @@ class ResultFolder {
   /// Runs the program gnuplot on a script that was added, then adds the plots that it names. Where gnuplot is missing or fails
   /// there are none; says so in a line.
   Outcome plot(const std::string& script, const std::vector<std::string>& plots);
+  /// Draws pictures of text (SVG) with gnuplot for a page, and keeps neither the script nor them as files. Empty where gnuplot is missing
+  /// or fails.
+  Result<std::vector<std::string>> draw(const std::string& script, const std::vector<std::string>& pictures);
   /// Everything to its place.
   Outcome commit();
   const std::vector<std::string>& names() const { return names_; }

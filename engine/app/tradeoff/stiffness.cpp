@@ -11,6 +11,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/results.h"
+#include "engine/app/tradeoff/stiffness.h"
 #include "haptics/chain/tick.h"
 #include "haptics/device/mechanism.h"
 #include "haptics/device/simulated_hand.h"
@@ -21,15 +22,12 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kMass_kg = 0.159, kStart_m = 1e-3, kDamping = 0.5;
+constexpr double kStart_m = 1e-3, kDamping = 0.5;
 constexpr double kDampings[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20};
 constexpr double kDelays_ms[] = {0, 0.25, 0.5, 1, 1.5, 2, 3, 4, 5};
 constexpr double kVirtual[] = {0, 1, 2, 5, 10, 20, 35, 50, 75, 100, 125, 150, 175, 200};
 
-/// A device, a rate, and a plane to feel.
-struct Setting {
-  double damping = kDamping, rate_hz = 1000, delay_s = 0, virtual_damping = 0;
-};
+using Setting = StiffnessSetting;
 
 haptics::Program plane_program(const Setting& setting, double stiffness, bool controlled) {
   auto scene = scene::parse_scene(R"({"chain": [{"name": "plane", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}]})", "figure");
@@ -44,14 +42,14 @@ haptics::Program plane_program(const Setting& setting, double stiffness, bool co
     program.limits.passivity = true;
     program.limits.damping_ns_per_m = setting.damping;
     program.limits.delay_s = setting.delay_s;
-    program.limits.max_added_damping_ns_per_m = haptics::most_added_damping(kMass_kg, 1 / setting.rate_hz, setting.delay_s);
+    program.limits.max_added_damping_ns_per_m = haptics::most_added_damping(setting.mass_kg, 1 / setting.rate_hz, setting.delay_s);
   }
   return program;
 }
 
 haptics::HandParameters mechanism_of(const Setting& setting) {
   haptics::HandParameters p;
-  p.mass_kg = kMass_kg;
+  p.mass_kg = setting.mass_kg;
   p.stiffness_n_per_m = p.damping_ns_per_m = 0;
   p.device_damping_ns_per_m = setting.damping;
   p.delay_s = setting.delay_s;
@@ -69,8 +67,9 @@ class Swing {
         state_(std::make_unique<haptics::ChainState>()),
         scratch_(std::make_unique<haptics::ChainScratch>()),
         period_s_(1 / setting.rate_hz),
-        stiffness_(stiffness) {
-    window_ = std::max(300, static_cast<int>(1.5 * 2 * std::numbers::pi * std::sqrt(kMass_kg / stiffness) / period_s_));
+        stiffness_(stiffness),
+        mass_kg_(setting.mass_kg) {
+    window_ = std::max(300, static_cast<int>(1.5 * 2 * std::numbers::pi * std::sqrt(mass_kg_ / stiffness) / period_s_));
   }
   double start_j() const { return 0.5 * stiffness_ * kStart_m * kStart_m; }
   double window() {
@@ -79,8 +78,8 @@ class Swing {
       const haptics::DeviceInput input = hand_.read();
       haptics::tick(program_, {period_s_ * static_cast<double>(ticks_++), input.position_m}, *state_, *scratch_, out_);
       hand_.write({out_.force_n, Vec3(0.0)});
-      kinetic_ = std::max(kinetic_, 0.5 * kMass_kg * dot(hand_.velocity_m_per_s(), hand_.velocity_m_per_s()));
-      most = std::max(most, 0.5 * kMass_kg * dot(hand_.velocity_m_per_s(), hand_.velocity_m_per_s()) +
+      kinetic_ = std::max(kinetic_, 0.5 * mass_kg_ * dot(hand_.velocity_m_per_s(), hand_.velocity_m_per_s()));
+      most = std::max(most, 0.5 * mass_kg_ * dot(hand_.velocity_m_per_s(), hand_.velocity_m_per_s()) +
                                 0.5 * stiffness_ * dot(hand_.position_m(), hand_.position_m()));
     }
     return most;
@@ -105,20 +104,22 @@ class Swing {
   std::unique_ptr<haptics::ChainState> state_;
   std::unique_ptr<haptics::ChainScratch> scratch_;
   exchange::HapticState out_;
-  double period_s_, stiffness_, kinetic_ = 0;
+  double period_s_, stiffness_, mass_kg_, kinetic_ = 0;
   int window_;
   std::uint64_t ticks_ = 0;
 };
 
-double passive(const Setting& setting) {
-  return haptics::safe_stiffness({.mass_kg = kMass_kg, .damping_ns_per_m = setting.damping, .delay_s = setting.delay_s},
+}  // namespace
+
+double passive_stiffness(const StiffnessSetting& setting) {
+  return haptics::safe_stiffness({.mass_kg = setting.mass_kg, .damping_ns_per_m = setting.damping, .delay_s = setting.delay_s},
                                  1 / setting.rate_hz)
       .n_per_m();
 }
 
-double largest_stable(const Setting& setting) {
+double largest_stable(const StiffnessSetting& setting) {
   const auto stable = [&](double k) { return Swing(setting, k, false).dies_away(); };
-  double lo = 0.5 * passive(setting);
+  double lo = 0.5 * passive_stiffness(setting);
   while (lo > 1 && !stable(lo)) lo *= 0.25;
   if (lo <= 1) return 0;
   double hi = 1.3 * lo;
@@ -130,8 +131,10 @@ double largest_stable(const Setting& setting) {
   return lo;
 }
 
+namespace {
+
 double largest_controlled(const Setting& setting) {
-  double k = passive(setting);
+  double k = passive_stiffness(setting);
   for (int i = 0; i < 40 && Swing(setting, 1.25 * k, true).stays_bounded(); ++i) k *= 1.25;
   return k;
 }
@@ -141,7 +144,13 @@ std::string damping_table(Progress& progress, double& done) {
   for (const auto& [rate_hz, delay_s] : {std::pair{1000.0, 0.0}, {1000.0, 1e-3}, {2000.0, 0.0}, {4000.0, 0.0}})
     for (const double damping : kDampings) {
       const Setting s{damping, rate_hz, delay_s, 0};
-      table.add(rate_hz).add(1e3 * delay_s).add(damping).add(passive(s)).add(largest_stable(s)).add(largest_controlled(s)).end_row();
+      table.add(rate_hz)
+          .add(1e3 * delay_s)
+          .add(damping)
+          .add(passive_stiffness(s))
+          .add(largest_stable(s))
+          .add(largest_controlled(s))
+          .end_row();
       progress.at(++done);
     }
   return table.text();
@@ -151,7 +160,7 @@ std::string delay_table(Progress& progress, double& done) {
   CsvTable table("delay_ms,passive_n_per_m,stable_n_per_m,controlled_n_per_m");
   for (const double delay_ms : kDelays_ms) {
     const Setting s{kDamping, 1000, 1e-3 * delay_ms, 0};
-    table.add(delay_ms).add(passive(s)).add(largest_stable(s)).add(largest_controlled(s)).end_row();
+    table.add(delay_ms).add(passive_stiffness(s)).add(largest_stable(s)).add(largest_controlled(s)).end_row();
     progress.at(++done);
   }
   return table.text();
@@ -161,7 +170,12 @@ std::string virtual_table(Progress& progress, double& done) {
   CsvTable table("virtual_damping_ns_per_m,passive_n_per_m,stable_n_per_m,passive_delayed_n_per_m,stable_delayed_n_per_m");
   for (const double b : kVirtual) {
     const Setting prompt{kDamping, 1000, 0, b}, delayed{kDamping, 1000, 1e-3, b};
-    table.add(b).add(passive(prompt)).add(largest_stable(prompt)).add(passive(delayed)).add(largest_stable(delayed)).end_row();
+    table.add(b)
+        .add(passive_stiffness(prompt))
+        .add(largest_stable(prompt))
+        .add(passive_stiffness(delayed))
+        .add(largest_stable(delayed))
+        .end_row();
     progress.at(++done);
   }
   return table.text();

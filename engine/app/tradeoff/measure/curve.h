@@ -1,0 +1,56 @@
+/// What `catena tradeoff SCENE` measures: curves of error against cost. One knob of the hand or of the eye is one curve; each of its
+/// settings is a point. Plain data: written as JSON and CSV, read back for --compare.
+/// NaN stands for what was not measured, or means nothing for this curve.
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace catena::app::tradeoff {
+
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// Of repeats that were interleaved with those of the other settings (timing.h).
+struct Timing {
+  double median = kNotMeasured, low = kNotMeasured, high = kNotMeasured;  ///< the quartiles
+  int repeats = 0;
+};
+
+struct Point {
+  std::string setting;  ///< for a person: "rkf34, tolerance 1e-6"
+  std::string write;    ///< what to write to get it: keys of the scene, an option; empty: it cannot be asked for
+  std::string series;   ///< points of one series are joined in the plot: "rkf34"
+  double error = kNotMeasured;
+  double work = kNotMeasured;  ///< counted, the same on every machine
+  Timing time{};
+  double bytes = kNotMeasured;
+  std::vector<double> more{};  ///< one a name of Curve::more
+  bool offered = true;         ///< false: shown beside the others, never chosen
+};
+
+/// Which cost a choice goes by.
+enum class Cost { time, work, bytes };
+
+struct Curve {
+  std::string id;                                            ///< of its CSV: "hand-streamline-curve"
+  std::string part;                                          ///< hand, eye or data
+  std::string title;                                         ///< "How the streamline `curve` is followed"
+  std::string what;                                          ///< what was done, in a sentence or two
+  std::string error_name, work_name, time_name, bytes_name;  ///< with their units; empty: there is none
+  std::vector<std::string> more;                             ///< further columns
+  std::vector<Point> points;
+  double floor = kNotMeasured;  ///< the data's own error, in the unit of `error`
+  std::string floor_name = "the data's own error";
+  std::string floor_from;                 ///< how it was found
+  double reference_error = kNotMeasured;  ///< of what the errors are measured against
+  std::string reference;                  ///< what that is, and how its convergence was seen
+  Cost cost = Cost::time;
+  int current = -1;        ///< the point that the scene has now; -1: none of them
+  std::vector<int> front;  ///< the Pareto front, cheapest first (choice.h)
+  int chosen = -1;         ///< -1: there is nothing to choose
+  std::string why;         ///< one sentence
+};
+
+inline double cost_of(const Point& p, Cost cost) { return cost == Cost::time ? p.time.median : cost == Cost::work ? p.work : p.bytes; }
+
+}  // namespace catena::app::tradeoff

@@ -1,0 +1,56 @@
+/// How much memory of the device may be used: what does not fit is drawn at 1/2, 1/4 or 1/8 of its resolution.
+#include <fmt/format.h>
+
+#include "engine/app/tradeoff/measure/eye/eye.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "render/quality/refinement.h"
+
+namespace catena::app::tradeoff {
+
+Result<std::vector<Curve>> measure_budget(Subject& subject) {
+  Eye& eye = *subject.eye;
+  if (eye.packet.volumes.empty() && eye.packet.isosurfaces.empty() && eye.packet.slices.empty()) {
+    subject.left_out.emplace_back("Memory budget: no grid is drawn.");
+    return std::vector<Curve>{};
+  }
+  Curve curve = eye_curve(subject, "budget", "How much memory of the device may be used",
+                          "The same picture (exact rays, steps of half a voxel) by renderers that may hold less and less: grids that do "
+                          "not fit are drawn coarser.");
+  curve.bytes_name = "bytes on the device";
+  curve.cost = Cost::bytes;
+  curve.more.emplace_back("drawn at 1 / this resolution");
+  const render::RenderSettings settings = render::exact_rung(0.5);
+  CATENA_CHECK(eye.renderer->draw(eye.packet, settings));
+  const double whole = static_cast<double>(eye.renderer->device().counters().bytes);
+  std::vector<std::unique_ptr<render::Renderer>> renderers;
+  std::vector<Repeat> repeats;
+  for (const double share : {0.0, 0.8, 0.6, 0.4, 0.25, 0.15, 0.08}) {
+    render::vk::DeviceOptions options;
+    options.memory_budget_bytes = static_cast<std::uint64_t>(share * whole);
+    auto renderer = render::Renderer::create(options);
+    if (!renderer) break;
+    auto picture = picture_of(**renderer, eye.packet, settings);
+    if (!picture) break;  // nothing smaller is enough
+    const render::RenderStats stats = (*renderer)->stats();
+    const double factor = stats.mirror_coarsening.empty() ? 1 : stats.mirror_coarsening.front().factor;
+    if (!curve.points.empty() && factor == curve.points.back().more.back()) continue;  // the same picture
+    const render::PictureError error = render::measure_error(*picture, eye.truth);
+    const std::string budget = fmt::format("{:.3g} MB", 1e-6 * static_cast<double>(stats.gpu_budget));
+    curve.points.push_back({share > 0 ? budget : "as much as there is",
+                            share > 0 ? fmt::format("--gpu-memory {:.3g}", 1e-6 * static_cast<double>(stats.gpu_budget)) : "",
+                            "",
+                            error.rmse,
+                            kNotMeasured,
+                            {},
+                            static_cast<double>(stats.gpu_bytes),
+                            {error.p999, 100 * error.kept, 100 * error.least_kept, factor}});
+    repeats.push_back(drawing_of(**renderer, eye.packet, settings));
+    renderers.push_back(std::move(*renderer));
+  }
+  curve.current = curve.points.empty() ? -1 : 0;
+  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, 0.3 * subject.effort.eye_s, 9));
+  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  return std::vector<Curve>{curve};
+}
+
+}  // namespace catena::app::tradeoff

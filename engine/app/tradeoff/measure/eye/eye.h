@@ -1,0 +1,37 @@
+/// The eye's picture and its measure. Errors are of render/image/measure.h: over covered pixels, in 1/255, against the converged
+/// picture. Frame thread.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/app/tradeoff/measure/subject.h"
+#include "engine/app/tradeoff/measure/timing.h"
+#include "render/image/measure.h"
+
+namespace catena::app::tradeoff {
+
+/// Makes the renderer, the packet, the converged picture and the floor. An Error is the scene's (exit code 2). Where there is no device,
+/// or nothing to draw, there is no eye, and a sentence in left_out.
+Outcome open_eye(Subject& subject);
+
+/// A picture as it is drawn with these settings.
+Result<render::Picture> picture_of(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings);
+
+/// Milliseconds of drawing: of a processor's time where the driver draws with it, else of wall time.
+Repeat drawing_of(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings);
+
+/// A setting to try.
+struct Tried {
+  std::string setting, write, series;
+  render::RenderSettings settings;
+};
+
+/// Draws them, the cheapest first, measures each against the converged picture, and times them in turns. What one picture alone would take
+/// more than a fifth of the curve's time for is left out, with all that follows it in its series.
+Outcome measure_settings(Subject& subject, const std::vector<Tried>& tried, Curve& curve);
+
+/// What all curves of the eye have: names, reference, floor.
+Curve eye_curve(const Subject& subject, const std::string& id, const std::string& title, const std::string& what);
+
+}  // namespace catena::app::tradeoff

@@ -1,0 +1,91 @@
+/// What a person types after --quality: draft, balanced, a step, a stated error, reference; with the flicker of a slow turn.
+#include <fmt/format.h>
+
+#include "engine/app/render/options.h"
+#include "engine/app/tradeoff/measure/eye/eye.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "render/frame/camera.h"
+#include "render/quality/quality.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+constexpr double kTurn_deg = 0.2;
+constexpr int kFrames = 3;
+
+/// The packet with its eye turned about the target.
+std::vector<render::FramePacket> slow_turn(const Subject& subject) {
+  std::vector<render::FramePacket> frames;
+  for (int k = 0; k < kFrames; ++k) {
+    render::FramePacket packet = subject.eye->packet;
+    packet.view = render::turned(packet.view, k * kTurn_deg, 0);
+    frames.push_back(std::move(packet));
+  }
+  return frames;
+}
+
+Result<std::vector<render::Picture>> pictures_of(Eye& eye, const std::vector<render::FramePacket>& frames,
+                                                 const render::RenderSettings& settings) {
+  std::vector<render::Picture> pictures;
+  for (const render::FramePacket& frame : frames) {
+    CATENA_TRY(render::Picture picture, picture_of(*eye.renderer, frame, settings));
+    pictures.push_back(std::move(picture));
+  }
+  return pictures;
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_quality(Subject& subject) {
+  Eye& eye = *subject.eye;
+  if (!eye.rays) {
+    subject.left_out.emplace_back("Quality: nothing in the picture is drawn by rays, so that --quality changes nothing but the texels.");
+    return std::vector<Curve>{};
+  }
+  Curve curve = eye_curve(
+      subject, "quality", "Which --quality",
+      fmt::format(
+          "What may be typed after --quality, or stand in the scene as \"quality\". Flicker is of three pictures {:g} degrees apart.",
+          kTurn_deg));
+  std::vector<Tried> tried;
+  const auto add = [&](const std::string& words, const render::RenderSettings& settings) {
+    tried.push_back({words, "--quality " + words,
+                     words.starts_with("error")  ? "error=E"
+                     : words.starts_with("step") ? "step=VOXELS"
+                                                 : words,
+                     settings});
+  };
+  add("draft", render::draft_settings());
+  for (const double e : {8.0, 4.0, 2.0, 1.0}) {
+    CATENA_TRY(const render::QualityChoice choice,
+               render::choose_quality(*eye.renderer, eye.packet, {render::QualityGoal::Kind::error, e}));
+    if (e == 2)
+      add("balanced", choice.settings);
+    else if (choice.reached)
+      add(fmt::format("error={:g}", e), choice.settings);
+  }
+  for (const double step : {2.0, 1.0, 0.5}) {
+    CATENA_TRY(const Quality quality, parse_quality(fmt::format("step={:g}", step)));
+    add(fmt::format("step={:g}", step), quality.settings);
+  }
+  add("reference", render::reference_settings());
+  CATENA_CHECK(measure_settings(subject, tried, curve));
+  const std::string now = subject.scene.quality.empty() ? "balanced" : subject.scene.quality;
+  for (std::size_t i = 0; i < curve.points.size(); ++i)
+    if (curve.points[i].setting == now) curve.current = static_cast<int>(i);
+
+  curve.more.emplace_back("flicker, 1/255");
+  const std::vector<render::FramePacket> frames = slow_turn(subject);
+  render::RenderSettings converged = render::reference_settings();
+  converged.step_voxels = std::max(0.125, eye.truth_step);
+  CATENA_TRY(const std::vector<render::Picture> truth, pictures_of(eye, frames, converged));
+  std::size_t at = 0;
+  for (Point& p : curve.points) {
+    while (at < tried.size() && tried[at].setting != p.setting) ++at;
+    CATENA_TRY(const std::vector<render::Picture> pictures, pictures_of(eye, frames, tried[at].settings));
+    p.more.push_back(render::measure_flicker(pictures, truth));
+  }
+  return std::vector<Curve>{curve};
+}
+
+}  // namespace catena::app::tradeoff

@@ -1,0 +1,98 @@
+/// How many samples the picture has: fewer pixels, scaled up, and several samples a pixel, against 4 x 4 samples a pixel.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/app/tradeoff/measure/eye/eye.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "render/quality/refinement.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+render::FramePacket sized(const render::FramePacket& packet, double factor) {
+  render::FramePacket p = packet;
+  p.width = static_cast<std::uint32_t>(std::lround(packet.width * factor));
+  p.height = static_cast<std::uint32_t>(std::lround(packet.height * factor));
+  return p;
+}
+
+/// To another size: the mean of what a pixel covers, or linear between pixel centres; premultiplied.
+render::Picture resized(const render::Picture& from, std::uint32_t width, std::uint32_t height) {
+  if (from.width == width && from.height == height) return from;
+  render::Picture to{width, height, std::vector<std::uint8_t>(std::size_t(4) * width * height)};
+  const double sx = double(from.width) / width, sy = double(from.height) / height;
+  const int n = std::max(1, static_cast<int>(std::lround(sx)));
+  for (std::uint32_t y = 0; y < height; ++y)
+    for (std::uint32_t x = 0; x < width; ++x) {
+      double sum[4] = {}, weights = 0;
+      const auto add = [&](double weight, long px, long py) {
+        const std::uint8_t* p = from.pixel(static_cast<std::uint32_t>(std::clamp<long>(px, 0, from.width - 1)),
+                                           static_cast<std::uint32_t>(std::clamp<long>(py, 0, from.height - 1)));
+        for (int c = 0; c < 3; ++c) sum[c] += weight * p[c] * p[3] / 255;
+        sum[3] += weight * p[3];
+        weights += weight;
+      };
+      if (sx > 1) {
+        for (int j = 0; j < n; ++j)
+          for (int i = 0; i < n; ++i) add(1, static_cast<long>(x) * n + i, static_cast<long>(y) * n + j);
+      } else {
+        const double u = (x + 0.5) * sx - 0.5, v = (y + 0.5) * sy - 0.5, fu = u - std::floor(u), fv = v - std::floor(v);
+        const long px = static_cast<long>(std::floor(u)), py = static_cast<long>(std::floor(v));
+        add((1 - fu) * (1 - fv), px, py), add(fu * (1 - fv), px + 1, py), add((1 - fu) * fv, px, py + 1), add(fu * fv, px + 1, py + 1);
+      }
+      std::uint8_t* out = to.rgba.data() + 4 * (std::size_t(y) * width + x);
+      for (int c = 0; c < 3; ++c) out[c] = sum[3] > 0 ? static_cast<std::uint8_t>(std::lround(std::min(255.0, 255 * sum[c] / sum[3]))) : 0;
+      out[3] = static_cast<std::uint8_t>(std::lround(sum[3] / weights));
+    }
+  return to;
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_resolution(Subject& subject) {
+  Eye& eye = *subject.eye;
+  const std::uint32_t width = eye.packet.width, height = eye.packet.height;
+  Curve curve = eye_curve(subject, "resolution", "How many samples the picture has",
+                          fmt::format("A picture of {}x{} from fewer pixels, scaled up, or from several samples a pixel.", width, height));
+  curve.work_name = "samples";
+  const render::RenderSettings settings = eye.rays ? render::exact_rung(1) : render::RenderSettings{};
+  // what 4 x 4 samples still lack is seen beside 3 x 3
+  CATENA_TRY(const render::Picture four, picture_of(*eye.renderer, sized(eye.packet, 4), settings));
+  CATENA_TRY(const render::Picture three, picture_of(*eye.renderer, sized(eye.packet, 3), settings));
+  const render::Picture truth = resized(four, width, height);
+  curve.reference = "4 x 4 samples a pixel (3 x 3: so much away), the same rays";
+  curve.reference_error = render::measure_error(resized(three, width, height), truth).rmse;
+  curve.floor = kNotMeasured;
+  curve.floor_from = "The data's own error is in all of them alike.";
+  std::vector<render::FramePacket> packets;
+  struct Try {
+    double factor;
+    const char *words, *write;
+  };
+  for (const Try& t : {Try{0.25, "a quarter of the pixels each way", "--size"},
+                       {0.5, "half of the pixels each way", "--size"},
+                       {1, "a sample a pixel", ""},
+                       {2, "2 x 2 samples a pixel", "--antialias 2"},
+                       {3, "3 x 3 samples a pixel", "--antialias 3"}}) {
+    packets.push_back(sized(eye.packet, t.factor));
+    CATENA_TRY(const render::Picture picture, picture_of(*eye.renderer, packets.back(), settings));
+    const render::PictureError error = render::measure_error(resized(picture, width, height), truth);
+    curve.points.push_back({t.words,
+                            t.write,
+                            "",
+                            error.rmse,
+                            double(picture.width) * picture.height,
+                            {},
+                            kNotMeasured,
+                            {error.p999, 100 * error.kept, 100 * error.least_kept}});
+  }
+  curve.current = 2;
+  std::vector<Repeat> repeats;
+  for (const render::FramePacket& packet : packets) repeats.push_back(drawing_of(*eye.renderer, packet, settings));
+  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, 0.5 * subject.effort.eye_s, 9));
+  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  return std::vector<Curve>{curve};
+}
+
+}  // namespace catena::app::tradeoff

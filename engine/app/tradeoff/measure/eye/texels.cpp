@@ -1,0 +1,34 @@
+/// How the grids are kept on the device: 16 or 32 bits a texel, whole or as bricks.
+#include <fmt/format.h>
+
+#include "engine/app/tradeoff/measure/eye/eye.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "render/quality/refinement.h"
+
+namespace catena::app::tradeoff {
+
+Result<std::vector<Curve>> measure_texels(Subject& subject) {
+  const render::FramePacket& packet = subject.eye->packet;
+  if (packet.volumes.empty() && packet.isosurfaces.empty() && packet.slices.empty()) {
+    subject.left_out.emplace_back("Texels: no grid is drawn.");
+    return std::vector<Curve>{};
+  }
+  Curve curve = eye_curve(subject, "texels", "How the grids are kept on the device",
+                          "Exact rays with steps of a quarter of a voxel, so that what differs is the texels. The command line has no "
+                          "setting for it: 16 bits are taken for volumes, 32 for surfaces and slices, 32 by --quality reference.");
+  curve.bytes_name = "bytes on the device";
+  curve.cost = Cost::bytes;
+  std::vector<Tried> tried;
+  using render::MirrorLayout, render::TexelFormat;
+  for (const auto& [format, bits] : {std::pair{TexelFormat::r16f, "16 bits"}, {TexelFormat::r32f, "32 bits"}})
+    for (const auto& [layout, word] : {std::pair{MirrorLayout::dense, "whole"}, {MirrorLayout::atlas, "bricks"}}) {
+      render::RenderSettings s = render::exact_rung(0.25);
+      s.texels = format;
+      s.layout = layout;
+      tried.push_back({fmt::format("{}, {}", bits, word), "", word, s});
+    }
+  CATENA_CHECK(measure_settings(subject, tried, curve));
+  return std::vector<Curve>{curve};
+}
+
+}  // namespace catena::app::tradeoff

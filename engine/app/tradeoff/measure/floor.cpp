@@ -1,0 +1,159 @@
+#include "engine/app/tradeoff/measure/floor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace catena::app::tradeoff {
+
+namespace {
+
+using field::Index3;
+
+constexpr int kComponents[2] = {1, 3};
+
+void read(const field::ScalarGrid& grid, const Index3& origin, const Index3& size, std::vector<float>& out) {
+  grid.read_block(origin, size, out);
+}
+void read(const field::VectorGrid& grid, const Index3& origin, const Index3& size, std::vector<float>& out) {
+  grid.read_block(origin, size, out);
+}
+
+template <class Grid>
+constexpr int components() {
+  return kComponents[std::is_same_v<Grid, field::VectorGrid>];
+}
+
+auto make(const field::ScalarGrid& like, const field::Mapping& m, const Index3& n, const std::vector<float>& values,
+          const std::vector<std::uint8_t>& valid) {
+  return field::make_scalar_grid(like.name(), m, n, values, valid);
+}
+auto make(const field::VectorGrid& like, const field::Mapping& m, const Index3& n, const std::vector<float>& values,
+          const std::vector<std::uint8_t>& valid) {
+  return field::make_vector_grid(like.name(), m, n, values, valid);
+}
+
+/// 1 where a voxel has its value: it is a corner of a cell that is valid.
+template <class Grid>
+std::vector<std::uint8_t> valid_voxels(const Grid& grid, const Index3& origin, const Index3& n) {
+  std::vector<std::uint8_t> valid;
+  if (!grid.has_mask()) return valid;
+  valid.assign(std::size_t(n.x) * n.y * n.z, 0);
+  field::Cursor cursor;
+  for (int z = 0; z + 1 < n.z; ++z)
+    for (int y = 0; y + 1 < n.y; ++y)
+      for (int x = 0; x + 1 < n.x; ++x) {
+        if (!grid.cell({origin.x + x, origin.y + y, origin.z + z}, cursor).valid) continue;
+        for (int c = 0; c < 8; ++c) valid[(std::size_t(z + (c >> 2)) * n.y + (y + (c >> 1 & 1))) * n.x + (x + (c & 1))] = 1;
+      }
+  return valid;
+}
+
+template <class Grid>
+std::optional<Levels<Grid>> levels_of(const Grid& grid, double most) {
+  const field::Box& box = grid.index_box();
+  const Vec3 span = box.hi - box.lo;
+  Index3 n;
+  for (const auto& [size, length] : {std::pair{&n.x, span.x}, {&n.y, span.y}, {&n.z, span.z}}) {
+    if (length < 8) return std::nullopt;
+    *size = 4 * (static_cast<int>(length) / 4) + 1;
+  }
+  if (double(n.x) * n.y * n.z > most) return std::nullopt;
+  const Index3 origin{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
+  constexpr int k = components<Grid>();
+  std::vector<float> all(std::size_t(k) * n.x * n.y * n.z);
+  read(grid, origin, n, all);
+  const std::vector<std::uint8_t> valid = valid_voxels(grid, origin, n);
+  Levels<Grid> levels;
+  for (int level = 0; level < 3; ++level) {
+    const int step = 1 << level;
+    const Index3 m{(n.x - 1) / step + 1, (n.y - 1) / step + 1, (n.z - 1) / step + 1};
+    std::vector<float> values;
+    std::vector<std::uint8_t> has;
+    values.reserve(std::size_t(k) * m.x * m.y * m.z);
+    for (int z = 0; z < n.z; z += step)
+      for (int y = 0; y < n.y; y += step)
+        for (int x = 0; x < n.x; x += step) {
+          const std::size_t i = (std::size_t(z) * n.y + y) * n.x + x;
+          for (int c = 0; c < k; ++c) values.push_back(all[k * i + c]);
+          if (!valid.empty()) has.push_back(valid[i]);
+        }
+    if (!has.empty() && std::none_of(has.begin(), has.end(), [](std::uint8_t v) { return v != 0; })) return std::nullopt;
+    const field::Mapping& from = grid.mapping();
+    levels.at[level] =
+        make(grid, field::Mapping::from_linear(double(step) * from.world_from_index_linear, from.world_from_index(box.lo)), m, values, has);
+  }
+  return levels;
+}
+
+double square(double a, double b) { return (a - b) * (a - b); }
+double square(const Vec3& a, const Vec3& b) { return dot(a - b, a - b); }
+
+/// Root mean square of coarse - fine at the voxels of `fine`; both have values there.
+template <class Grid>
+double seen_error(const Grid& fine, const Grid& coarse) {
+  field::Cursor at_fine, at_coarse;
+  const field::Box& box = fine.index_box();
+  double sum = 0, count = 0;
+  // every voxel of small grids, a lattice with an odd step of large ones
+  const double voxels = (box.hi.x - box.lo.x + 1) * (box.hi.y - box.lo.y + 1) * (box.hi.z - box.lo.z + 1);
+  const int step = std::max(1, static_cast<int>(std::cbrt(voxels / 4e6)) * 2 - 1);
+  for (double z = box.lo.z; z <= box.hi.z; z += step)
+    for (double y = box.lo.y; y <= box.hi.y; y += step)
+      for (double x = box.lo.x; x <= box.hi.x; x += step) {
+        const Vec3 p = fine.mapping().world_from_index({x, y, z});
+        const auto a = fine.sample(p, at_fine), b = coarse.sample(p, at_coarse);
+        if (!a.inside || !b.inside) continue;
+        const double e = square(a.value, b.value);
+        if (!std::isfinite(e)) continue;
+        sum += e;
+        ++count;
+      }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+template <class Grid>
+std::optional<InterpolationFloor> floor_of(const Grid& grid, double scale) {
+  const auto levels = make_levels(grid);
+  if (!levels) return std::nullopt;
+  InterpolationFloor f;
+  f.at_2h = seen_error(*levels->at[0], *levels->at[1]);
+  f.at_4h = seen_error(*levels->at[1], *levels->at[2]);
+  f.at_h = from_errors(f.at_2h, f.at_4h);
+  f.scale = scale;
+  return f;
+}
+
+}  // namespace
+
+Extrapolated from_errors(double at_2h, double at_4h) {
+  if (!(at_2h > 0)) return {0, 4, true};
+  const double order = std::log2(at_4h / at_2h), p = std::clamp(order, 0.0, 4.0);
+  return {at_2h / std::exp2(p), p, order > 0.5};
+}
+
+Extrapolated from_differences(double at_2h, double at_4h) {
+  if (!(at_2h > 0)) return {0, 4, true};
+  if (!(at_4h / at_2h - 1 > std::exp2(0.9))) return {at_2h / 3, 2, false};
+  const double p = std::min(std::log2(at_4h / at_2h - 1), 4.0);
+  return {at_2h / (std::exp2(p) - 1), p, true};
+}
+
+std::string order_words(const Extrapolated& e) {
+  return e.settled ? fmt::format("observed order {:.1f}", e.order)
+                   : "they fall more slowly than the spacing, as edges and noise make them: this is the least that it can be";
+}
+
+std::optional<Levels<field::ScalarGrid>> make_levels(const field::ScalarGrid& grid, double most) { return levels_of(grid, most); }
+std::optional<Levels<field::VectorGrid>> make_levels(const field::VectorGrid& grid, double most) { return levels_of(grid, most); }
+
+std::optional<InterpolationFloor> interpolation_floor(const field::AnyField& field) {
+  if (field.scalar && field.scalar->grid() && field.scalar->interpolation() == field::Interpolation::linear)
+    return floor_of(*field.scalar->grid(), field.scalar->max_value() - field.scalar->min_value());
+  if (field.vector && field.vector->grid()) return floor_of(*field.vector->grid(), 2 * field.vector->grid()->stats().max);
+  return std::nullopt;
+}
+
+}  // namespace catena::app::tradeoff

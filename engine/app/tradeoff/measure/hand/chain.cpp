@@ -1,0 +1,57 @@
+/// What each link of the chain costs: the scene's chain cut off after 1, 2, ... links.
+#include <fmt/format.h>
+
+#include "engine/app/tradeoff/measure/hand/replay_link.h"
+#include "engine/app/tradeoff/measure/registry.h"
+
+namespace catena::app::tradeoff {
+
+Result<std::vector<Curve>> measure_chain(Subject& subject) {
+  const std::size_t links = subject.program->scene_links();
+  Curve curve;
+  curve.id = "hand-chain";
+  curve.title = "How long the chain is";
+  curve.what =
+      "The scene's links in their order, cut off after the first, the second ...: what is felt differs, so that there is only a cost.";
+  curve.work_name = "field fetches a tick";
+  curve.time_name = "ns a tick";
+  curve.more = {"share of the tick's period, %"};
+  const std::vector<haptics::ProbeSample> path = subject.motion.samples(subject.rate_hz);
+  std::vector<haptics::Program> programs;
+  for (std::size_t n = 1; n <= links; ++n) {
+    haptics::Program part = *subject.program;
+    part.links.resize(n);
+    part.first_widget_link = -1;
+    part.widgets.clear();
+    part.widget_names.clear();
+    part.modes.clear();
+    programs.push_back(std::move(part));
+    double fetches = 0;
+    run_ticks(programs.back(), path, [&](const exchange::HapticState& out) {
+      for (int i = 0; i < out.link_count; ++i) fetches += out.links[static_cast<std::size_t>(i)].evaluations;
+    });
+    Point p{fmt::format("{} link{}, to \"{}\"", n, n > 1 ? "s" : "", subject.program->links[n - 1].name),
+            "",
+            "",
+            kNotMeasured,
+            fetches / static_cast<double>(path.size()),
+            {},
+            kNotMeasured,
+            {0}};
+    curve.points.push_back(std::move(p));
+  }
+  if (programs.empty()) return std::vector<Curve>{};
+  std::vector<Repeat> repeats;
+  for (const haptics::Program& program : programs) repeats.push_back(ticks_of(program, path));
+  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    curve.points[i].time = times[i];
+    curve.points[i].more[0] = 100e-9 * times[i].median * subject.rate_hz;
+  }
+  curve.current = static_cast<int>(links) - 1;
+  curve.why = fmt::format("The whole chain takes {:.2g} us, {:.2g} % of a tick at {:g} Hz.", 1e-3 * times.back().median,
+                          curve.points.back().more[0], subject.rate_hz);
+  return std::vector<Curve>{curve};
+}
+
+}  // namespace catena::app::tradeoff

@@ -1,0 +1,108 @@
+/// How exactly an isosurface link stays on its surface: as it is, and on coarser grids. The link has no setting of its own: it goes on
+/// until the tangential way left is below 1e-8 L (haptics/constraints/isosurface).
+///   error  the root mean square over the ticks that hold of |s(p) - level| / |grad s| in the field as it is, by L
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/hand/replay_link.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "haptics/constraints/registry.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+/// The same link on another field.
+Result<std::shared_ptr<const haptics::Constraint>> link_on(Subject& subject, const json::Node& node, const field::ScalarFieldPtr& field,
+                                                           const std::string& name) {
+  haptics::BuildContext context;
+  context.field = [&](const json::Node& where, const std::string& wanted) -> Result<field::AnyField> {
+    if (wanted == name) return field::AnyField{field, nullptr};
+    return scene::use_field(subject.scene, wanted, where);
+  };
+  return haptics::build_constraint(node, context);
+}
+
+Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
+  const field::ScalarFieldPtr field = scalar_field_of(subject.scene, link.node);
+  const json::Node* level = link.node.find("level");
+  if (!field || level == nullptr || level->kind != json::Kind::number)
+    return Error{"link \"" + link.name + "\" has no field with a stated level"};
+  const auto motion = through_surface(subject.scene, link, subject.effort.motion_s);
+  if (!motion) return Error{"from the faces of its domain to the middle, no way meets the level of link \"" + link.name + "\""};
+  Curve curve;
+  curve.id = "hand-isosurface-" + link.name;
+  curve.title = "How exactly the surface \"" + link.name + "\" is felt";
+  curve.what = fmt::format(
+      "The hand goes {} ({:g} Hz). The link has no setting for it: it stops where 1e-8 L is left along the surface. Beside it the same "
+      "link on every 2nd and 4th voxel.",
+      motion->words, subject.rate_hz);
+  curve.error_name = "distance off the surface / L (RMS)";
+  curve.work_name = "field fetches a tick";
+  curve.time_name = "ns a tick";
+  curve.bytes_name = "bytes of the field";
+  curve.more = {"ticks that hold"};
+  curve.reference = "the level of the field as it is, which is known at every place";
+  std::vector<field::ScalarFieldPtr> fields{field};
+  if (field->grid() != nullptr) {
+    if (const auto levels = make_levels(*field->grid())) fields.insert(fields.end(), {levels->at[1], levels->at[2]});
+  } else {
+    curve.floor_from = "The field is a formula: the data leave nothing open.";
+  }
+  const std::vector<haptics::ProbeSample> path = motion->samples(subject.rate_hz);
+  std::vector<haptics::Program> programs;
+  const char* words[] = {"as it is", "on every 2nd voxel", "on every 4th voxel"};
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const json::Node* name = link.node.find("field");
+    CATENA_TRY(auto constraint, link_on(subject, link.node, fields[i], name->string));
+    programs.push_back(only_link(*subject.program, link.name, std::move(constraint)));
+    Point p{words[i], "", i == 0 ? "the field as it is" : "coarser", 0, 0, {}, static_cast<double>(fields[i]->bytes()), {0}};
+    if (fields[i]->bytes() == 0) p.bytes = kNotMeasured;
+    field::Cursor cursor;
+    double squares = 0, fetches = 0;
+    run_ticks(programs.back(), path, [&](const exchange::HapticState& out) {
+      const exchange::LinkReport& report = out.links[0];
+      fetches += report.evaluations;
+      if (report.status != exchange::Status::ok) return;
+      const field::ScalarSample s = field->sample(report.proxy, cursor);
+      const double slope = norm(s.gradient);
+      if (!s.inside || !(slope > 0)) return;
+      const double off = (s.value - level->number) / slope / field->length();
+      squares += off * off;
+      ++p.more[0];
+    });
+    p.error = p.more[0] > 0 ? std::sqrt(squares / p.more[0]) : kNotMeasured;
+    p.work = fetches / static_cast<double>(path.size());
+    p.more[0] /= static_cast<double>(path.size());
+    curve.points.push_back(std::move(p));
+  }
+  if (!(curve.points[0].more[0] > 0)) return Error{"link \"" + link.name + "\" never holds along this motion"};
+  curve.current = 0;
+  if (curve.points.size() == 3) {
+    const Extrapolated e = from_differences(curve.points[1].error, curve.points[2].error);
+    curve.floor = e.error;
+    curve.floor_from = fmt::format("from the surfaces that every 2nd and 4th voxel hold; {}", order_words(e));
+  }
+  std::vector<Repeat> repeats;
+  for (const haptics::Program& program : programs) repeats.push_back(ticks_of(program, path));
+  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
+  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  return curve;
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_isosurface(Subject& subject) {
+  std::vector<Curve> curves;
+  for (const LinkOf& link : links_of_type(subject.scene, "isosurface")) {
+    auto curve = measure_surface(subject, link);
+    if (curve)
+      curves.push_back(std::move(*curve));
+    else
+      subject.left_out.push_back("How exactly a surface is felt: " + curve.error().message + ".");
+  }
+  return curves;
+}
+
+}  // namespace catena::app::tradeoff

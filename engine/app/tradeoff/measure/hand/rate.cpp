@@ -1,0 +1,141 @@
+/// How often the servo ticks: the force that the hand gets against that of a servo of 10 kHz, and the largest spring that stays stable.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/tradeoff/measure/choice.h"
+#include "engine/app/tradeoff/measure/hand/replay_link.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "engine/app/tradeoff/stiffness.h"
+#include "haptics/device/registry.h"
+#include "haptics/device/simulated_hand.h"
+#include "haptics/servo/limits_for.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+constexpr double kRates_hz[] = {250, 500, 1000, 2000, 4000, 5000, 10000}, kFinest_hz = 10000;
+
+std::vector<Vec3> forces_of(const haptics::Program& program, const std::vector<haptics::ProbeSample>& path) {
+  std::vector<Vec3> forces;
+  run_ticks(program, path, [&](const exchange::HapticState& out) { forces.push_back(out.force_n); });
+  return forces;
+}
+
+/// Root mean square of the difference, each force held until the next tick; seen at the finer servo's ticks.
+double difference(const std::vector<Vec3>& coarse, double coarse_hz, const std::vector<Vec3>& fine, double fine_hz) {
+  double sum = 0;
+  for (std::size_t k = 0; k < fine.size(); ++k) {
+    const auto held =
+        std::min(coarse.size() - 1, static_cast<std::size_t>(std::floor(static_cast<double>(k) * coarse_hz / fine_hz + 1e-9)));
+    const Vec3 d = coarse[held] - fine[k];
+    sum += dot(d, d);
+  }
+  return std::sqrt(sum / static_cast<double>(fine.size()));
+}
+
+void mark_current(Curve& curve, double rate_hz) {
+  for (std::size_t i = 0; i < curve.points.size(); ++i)
+    if (curve.points[i].work == rate_hz) curve.current = static_cast<int>(i);
+}
+
+std::string rate_key(double rate_hz) { return fmt::format("\"device\": {{\"rate\": {:g}}}, or --rate {:g}", rate_hz, rate_hz); }
+
+Result<Curve> force_curve(Subject& subject) {
+  Curve curve;
+  curve.id = "hand-rate-force";
+  curve.title = "How often the servo ticks: the force";
+  curve.what = fmt::format("The hand goes {}, the same way at every rate; a force is held until the next tick, as a device holds it.",
+                           subject.motion.words);
+  curve.error_name = "difference of the force from 10 kHz, N (RMS)";
+  curve.work_name = "ticks a second";
+  curve.time_name = "us of processor a second";
+  curve.more = {"greatest force, N"};
+  std::vector<std::vector<haptics::ProbeSample>> paths;
+  for (const double rate : kRates_hz) paths.push_back(subject.motion.samples(rate));
+  const std::vector<Vec3> truth = forces_of(*subject.program, paths.back());
+  const double finer = 2 * kFinest_hz;
+  curve.reference_error = difference(truth, kFinest_hz, forces_of(*subject.program, subject.motion.samples(finer)), finer);
+  curve.reference = "a servo of 10 kHz (20 kHz: so much away)";
+  curve.floor_from = "There is no error of the data here: it is in all rates alike.";
+  std::vector<Repeat> repeats;
+  for (std::size_t i = 0; i < std::size(kRates_hz); ++i) {
+    const std::vector<Vec3> forces = forces_of(*subject.program, paths[i]);
+    Point p{fmt::format("{:g} Hz", kRates_hz[i]),
+            rate_key(kRates_hz[i]),
+            "",
+            difference(forces, kRates_hz[i], truth, kFinest_hz),
+            kRates_hz[i],
+            {},
+            kNotMeasured,
+            {0}};
+    for (const Vec3& f : forces) p.more[0] = std::max(p.more[0], norm(f));
+    if (i + 1 == std::size(kRates_hz)) p.error = curve.reference_error;
+    curve.points.push_back(std::move(p));
+    const Repeat ticks = ticks_of(*subject.program, paths[i]);
+    const double rate = kRates_hz[i];
+    repeats.push_back([ticks, rate]() -> Result<double> {
+      CATENA_TRY(const double ns, ticks());
+      return 1e-3 * ns * rate;
+    });
+  }
+  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
+  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  mark_current(curve, subject.rate_hz);
+  return curve;
+}
+
+Result<Curve> stability_curve(Subject& subject) {
+  // the device that the scene names, or else the simulated one
+  StiffnessSetting setting;
+  const haptics::HandParameters simulated = haptics::simulated_device();
+  setting.damping = simulated.device_damping_ns_per_m;
+  setting.mass_kg = simulated.mass_kg;
+  std::string device = "a simulated device";
+  if (subject.scene.device) {
+    CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*subject.scene.device, subject.scene.path));
+    const haptics::Mechanics m = haptics::mechanics_of(haptics::nominal_capabilities(settings.type), settings);
+    if (m.damping_ns_per_m > 0 && m.mass_kg > 0) {
+      setting.damping = m.damping_ns_per_m;
+      setting.mass_kg = m.mass_kg;
+      setting.delay_s = m.delay_s;
+      device = "the scene's device, " + settings.type;
+    }
+  }
+  const double spring = subject.program->coupling.stiffness_n_per_m;
+  Curve curve;
+  curve.id = "hand-rate-stability";
+  curve.title = "How often the servo ticks: the spring that stays stable";
+  curve.what = fmt::format(
+      "The coupling's spring of {:g} N/m beside the stiffest that {} ({:.3g} kg, {:.3g} N s/m) shows without making energy, K <= 2 b / (T "
+      "+ 2 "
+      "delay); and the stiffest at "
+      "which a simulated mass on a plane comes to rest. Above 1 it may buzz.",
+      spring, device, setting.mass_kg, setting.damping);
+  curve.error_name = "the coupling's spring / the stable one";
+  curve.work_name = "ticks a second";
+  curve.cost = Cost::work;
+  curve.more = {"2 b / (T + 2 delay), N/m", "simulated, N/m"};
+  for (const double rate : kRates_hz) {
+    setting.rate_hz = rate;
+    const double passive = passive_stiffness(setting);
+    curve.points.push_back(
+        {fmt::format("{:g} Hz", rate), rate_key(rate), "", spring / passive, rate, {}, kNotMeasured, {passive, largest_stable(setting)}});
+  }
+  curve.floor = 1;
+  curve.floor_name = "the limit of stability";
+  curve.floor_from = "at or below it the spring makes no energy";
+  mark_current(curve, subject.rate_hz);
+  return curve;
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_rate(Subject& subject) {
+  CATENA_TRY(Curve force, force_curve(subject));
+  CATENA_TRY(Curve stability, stability_curve(subject));
+  return std::vector<Curve>{std::move(force), std::move(stability)};
+}
+
+}  // namespace catena::app::tradeoff

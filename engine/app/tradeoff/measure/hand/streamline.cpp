@@ -1,0 +1,208 @@
+/// How a streamline link is followed: every integrator, the embedded ones at several tolerances, and the curve that is traced once.
+///   error  the greatest distance of the proxy from the converged line, along the whole motion, by L
+///   floor  the lines through the same seed on the grid at 2 h and 4 h, extrapolated; a formula has none
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/hand/replay_link.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "engine/base/clock.h"
+#include "engine/base/numbers.h"
+#include "haptics/constraints/streamline/online.h"
+#include "haptics/constraints/streamline/selected.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+constexpr double kReferenceTolerance = 1e-13, kReferenceHermite = 1e-13;
+
+/// The greatest distance of one line from another, over the arc lengths lo..hi, by L.
+double apart(const flow::Curve& line, const flow::NearestOnCurve& other, double lo, double hi, double length) {
+  double most = 0;
+  constexpr int kPlaces = 400;
+  for (int k = 0; k <= kPlaces; ++k) most = std::max(most, other.at(line.position(lo + (hi - lo) * k / kPlaces)).distance2);
+  return std::sqrt(most) / length;
+}
+
+struct Line {
+  std::string name;
+  flow::Flow flow;
+  field::VectorFieldPtr field;
+  Vec3 seed{0.0};
+  flow::TraceOptions options;
+  flow::CurvePtr truth;
+  double lo = 0, hi = 0;  ///< arc lengths that the hand comes to
+  Motion motion;
+};
+
+void add_floor(const Line& line, Curve& curve) {
+  if (!line.field->is_grid()) {
+    curve.floor_from = "The field is a formula, which the hand reads exactly: the data leave nothing open.";
+    return;
+  }
+  const auto levels = make_levels(*line.field->grid());
+  if (!levels) {
+    curve.floor_from = "The data's own error is not known: the grid is too small, or too large, to be subsampled.";
+    return;
+  }
+  double off[2];
+  const flow::NearestOnCurve nearest(line.truth);
+  for (int level = 1; level < 3; ++level) {
+    const auto coarse = flow::trace({levels->at[level].get(), line.flow.line, line.flow.min_speed}, line.seed, line.options);
+    if (!coarse) {
+      curve.floor_from = "The data's own error is not known: at every " + std::string(level == 1 ? "2nd" : "4th") +
+                         " voxel there is no line through the seed.";
+      return;
+    }
+    // no farther than both lines go
+    const double lo = std::max(line.lo, (*coarse)->knots().front().s), hi = std::min(line.hi, (*coarse)->knots().back().s);
+    off[level - 1] = apart(**coarse, nearest, lo, hi, line.field->length());
+  }
+  const Extrapolated e = from_differences(off[0], off[1]);
+  curve.floor = e.error;
+  curve.floor_from = fmt::format("from the lines through the same seed on every 2nd voxel (off by {:.2g}) and every 4th ({:.2g}); {}",
+                                 off[0], off[1], order_words(e));
+}
+
+Result<Line> make_line(Subject& subject, const LinkOf& link) {
+  Line line;
+  line.name = link.name;
+  line.field = vector_field_of(subject.scene, link.node);
+  if (!line.field) return Error{"link \"" + link.name + "\" has no vector field"};
+  const json::Node* kind = link.node.find("kind");
+  CATENA_TRY(line.flow.min_speed, json::get_number(link.node, "min_speed", 0));
+  line.flow.field = line.field.get();
+  line.flow.line = kind != nullptr && kind->string == "line";
+  CATENA_TRY(const auto seed, json::get_optional_vec3(link.node, "seed"));
+  if (!seed) return Error{"link \"" + link.name + "\" has no seed: which line it follows is known only while it is felt"};
+  line.seed = *seed;
+  const auto motion = along_streamline(subject.scene, link, subject.effort.motion_s);
+  if (!motion) return Error{"from the seed of link \"" + link.name + "\" no line goes"};
+  line.motion = *motion;
+  // somewhat farther than the hand goes
+  line.options.length =
+      std::min(0.6 * 0.15 * subject.effort.motion_s / subject.scene.workspace.metres_per_unit, 1.2 * line.field->length());
+  line.options.length += 0.02 * line.field->length();
+  line.options.tolerance = kReferenceTolerance;
+  line.options.hermite_tolerance = kReferenceHermite;
+  CATENA_TRY(line.truth, flow::trace(line.flow, line.seed, line.options));
+  line.lo = line.truth->knots().front().s;
+  line.hi = line.truth->knots().back().s;
+  return line;
+}
+
+Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
+  CATENA_TRY(const Line line, make_line(subject, link));
+  const double length = line.field->length();
+  const flow::NearestOnCurve nearest(line.truth);
+  Curve curve;
+  curve.id = "hand-streamline-" + line.name;
+  curve.title = "How the streamline \"" + line.name + "\" is followed";
+  curve.what = fmt::format(
+      "The hand goes {} ({:g} Hz where no rate is named); each setting follows it alone, from the seed on. Tick by tick (1 ms at 1 kHz) "
+      "the fixed steps are as long as the hand's way, so that the servo's rate is their knob: other rates are shown, but not chosen here. "
+      "The cached line fetches "
+      "nothing in a tick, so that it has no place in a plot by fetches.",
+      line.motion.words, subject.rate_hz);
+  curve.error_name = "greatest distance from the line / L";
+  curve.work_name = "field fetches a millisecond";
+  curve.time_name = "ns a millisecond";
+  curve.more = {"before the first tick, ms", "ticks not OK, %"};
+
+  // the line that errors are measured from, and a less exact one
+  flow::TraceOptions coarser = line.options;
+  coarser.tolerance *= 100;
+  coarser.hermite_tolerance *= 100;
+  CATENA_TRY(const flow::CurvePtr check, flow::trace(line.flow, line.seed, coarser));
+  curve.reference_error = apart(*check, nearest, line.lo, line.hi, length);
+  curve.reference = "the line traced with a tolerance of 1e-13 L (1e-11 L: that much away)";
+  add_floor(line, curve);
+
+  std::vector<haptics::Program> programs;
+  std::vector<double> rates;
+  const auto add = [&](Point point, std::shared_ptr<const haptics::Constraint> constraint, double rate_hz) {
+    programs.push_back(only_link(*subject.program, line.name, std::move(constraint)));
+    rates.push_back(rate_hz);
+    point.more.resize(2, 0);
+    point.offered = rate_hz == subject.rate_hz;  // the rate is a choice of its own (rate.cpp)
+    curve.points.push_back(std::move(point));
+  };
+  const std::int64_t start = now_ns();
+  flow::TraceOptions usual;
+  usual.length = line.options.length;
+  CATENA_TRY(flow::CurvePtr selected, flow::trace(line.flow, line.seed, usual));
+  Point cached{"selected", R"("follow": "selected")", "selected (traced once)"};
+  cached.more = {ms_since(start)};
+  add(std::move(cached), haptics::make_selected_streamline(std::move(selected)), subject.rate_hz);
+  using flow::Method;
+  const auto online = [&](Method method, double tolerance) {
+    return haptics::make_online_streamline({line.field, line.flow.line, line.flow.min_speed, method, tolerance, line.seed});
+  };
+  // a fixed step is as long as the hand's way in a tick: the servo's rate is its knob
+  for (const Method method : {Method::linear, Method::euler, Method::rk2, Method::rk3, Method::rk4})
+    for (const double times : {0.25, 1.0, 4.0}) {
+      const std::string word = flow::method_word(method), rate = fmt::format("{:g}", times * subject.rate_hz);
+      add({times == 1 ? word : word + ", " + rate + " Hz", "\"method\": \"" + word + "\"" + (times == 1 ? "" : "; --rate " + rate), word},
+          online(method, 1e-9), times * subject.rate_hz);
+    }
+  for (const Method method : {Method::rkf34, Method::dp54})
+    for (int digits = 3; digits <= 13; digits += 2) {
+      const std::string word = flow::method_word(method);
+      add({fmt::format("{}, tolerance 1e-{}", word, digits), fmt::format("\"method\": \"{}\", \"tolerance\": 1e-{}", word, digits), word},
+          online(method, std::pow(10.0, -digits)), subject.rate_hz);
+    }
+  const json::Node *method = link.node.find("method"), *follow = link.node.find("follow");
+  if (method == nullptr && (follow == nullptr || follow->string == "selected")) curve.current = 0;
+  if (method != nullptr || curve.current < 0) {
+    const std::string word = method != nullptr ? method->string : "rkf34";
+    CATENA_TRY(const double tolerance, json::get_number(link.node, "tolerance", 1e-9));
+    const std::string text = fmt::format("{}, tolerance 1e-{}", word, static_cast<int>(std::lround(-std::log10(tolerance))));
+    for (std::size_t i = 0; i < curve.points.size(); ++i)
+      if (curve.points[i].setting == word || curve.points[i].setting == text) curve.current = static_cast<int>(i);
+  }
+
+  std::vector<std::vector<haptics::ProbeSample>> paths;
+  for (const double rate : rates) paths.push_back(line.motion.samples(rate));
+  std::vector<Repeat> repeats;
+  for (std::size_t i = 0; i < programs.size(); ++i) {
+    Point& p = curve.points[i];
+    double far2 = 0, fetches = 0, bad = 0;
+    run_ticks(programs[i], paths[i], [&](const exchange::HapticState& out) {
+      const exchange::LinkReport& report = out.links[0];
+      far2 = std::max(far2, nearest.at(report.proxy).distance2);
+      fetches += report.evaluations;
+      bad += report.status != exchange::Status::ok;
+    });
+    const double ticks_a_ms = 1e-3 * rates[i];
+    p.error = std::sqrt(far2) / length;
+    p.work = ticks_a_ms * fetches / static_cast<double>(paths[i].size());
+    p.more[1] = 100 * bad / static_cast<double>(paths[i].size());
+    const Repeat ticks = ticks_of(programs[i], paths[i]);
+    repeats.push_back([ticks, ticks_a_ms]() -> Result<double> {
+      CATENA_TRY(const double ns, ticks());
+      return ns * ticks_a_ms;
+    });
+  }
+  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
+  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  return curve;
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_streamline(Subject& subject) {
+  std::vector<Curve> curves;
+  for (const LinkOf& link : links_of_type(subject.scene, "streamline")) {
+    auto curve = measure_line(subject, link);
+    if (curve)
+      curves.push_back(std::move(*curve));
+    else
+      subject.left_out.push_back("How a streamline is followed: " + curve.error().message + ".");
+  }
+  return curves;
+}
+
+}  // namespace catena::app::tradeoff

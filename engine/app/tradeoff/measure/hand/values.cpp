@@ -1,0 +1,155 @@
+/// In how many bits the values of a grid are kept: floats, half floats, bytes between the least and the greatest value. Measured on a
+/// copy with its own trilinear fetch; Catena's hand reads floats, and has no setting for it.
+///   error  root mean square of what a sample differs by from that of floats, at places within the grid, by the range of the values
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/hand/replay_link.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "engine/base/clock.h"
+#include "render/mirror/half.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+struct AsFloat {
+  static double value(float v, double, double) { return static_cast<double>(v); }
+};
+struct AsHalf {
+  static double value(std::uint16_t v, double, double) { return static_cast<double>(render::float_from_half(v)); }
+};
+struct AsByte {
+  static double value(std::uint8_t v, double offset, double scale) { return offset + scale * v; }
+};
+
+/// A block of samples and their trilinear fetch.
+template <class T, class As>
+struct Block {
+  field::Index3 n;
+  double offset = 0, scale = 1;
+  std::vector<T> values;
+
+  double at(const Vec3& p) const {
+    const int x = static_cast<int>(p.x), y = static_cast<int>(p.y), z = static_cast<int>(p.z);
+    const std::size_t base = (std::size_t(z) * n.y + y) * n.x + x, row = std::size_t(n.x), layer = row * n.y;
+    std::array<double, 8> c;
+    for (std::size_t k = 0; k < 8; ++k) c[k] = As::value(values[base + (k & 1) + (k >> 1 & 1) * row + (k >> 2) * layer], offset, scale);
+    double value;
+    Vec3 gradient;
+    field::trilinear(c, {p.x - x, p.y - y, p.z - z}, value, gradient);
+    return value + 1e-300 * gradient.x;
+  }
+};
+
+/// Places along random straight walks, as a hand's fetches lie: steps of a tenth of a voxel.
+std::vector<Vec3> walk(const field::Index3& n) {
+  std::mt19937 random(7);
+  const auto unit = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
+  std::vector<Vec3> places;
+  while (places.size() < 100000) {
+    Vec3 p(unit() * (n.x - 1), unit() * (n.y - 1), unit() * (n.z - 1));
+    const Vec3 step = 0.1 * direction(Vec3(unit() - 0.5, unit() - 0.5, unit() - 0.5));
+    for (int k = 0; k < 200; ++k, p += step) {
+      if (p.x < 0 || p.y < 0 || p.z < 0 || !(p.x < n.x - 1) || !(p.y < n.y - 1) || !(p.z < n.z - 1)) break;
+      places.push_back(p);
+    }
+  }
+  return places;
+}
+
+template <class B>
+Repeat fetches_of(const B& block, const std::vector<Vec3>& places) {
+  return [&]() -> Result<double> {
+    const std::int64_t start = processor_ns();
+    double sum = 0;
+    for (const Vec3& p : places) sum += block.at(p);
+    volatile double keep = sum;
+    (void)keep;
+    return static_cast<double>(processor_ns() - start) / static_cast<double>(places.size());
+  };
+}
+
+Result<Curve> measure_grid(Subject& subject, const std::string& name, const field::ScalarGrid& grid) {
+  const field::Box& box = grid.index_box();
+  const auto cut = [](double span) { return std::min(static_cast<int>(span) + 1, 256); };
+  const field::Index3 n{cut(box.hi.x - box.lo.x), cut(box.hi.y - box.lo.y), cut(box.hi.z - box.lo.z)};
+  if (n.x < 2 || n.y < 2 || n.z < 2) return Error{"field \"" + name + "\" is thinner than a cell"};
+  const field::Index3 origin{static_cast<int>(box.lo.x), static_cast<int>(box.lo.y), static_cast<int>(box.lo.z)};
+  Block<float, AsFloat> floats{n, 0, 1, std::vector<float>(std::size_t(n.x) * n.y * n.z)};
+  grid.read_block(origin, n, floats.values);
+  for (float& v : floats.values)
+    if (!std::isfinite(v)) v = static_cast<float>(grid.min_value());
+  const double lo = grid.min_value(), range = grid.max_value() - lo;
+  if (!(range > 0)) return Error{"field \"" + name + "\" has one value only"};
+  Block<std::uint16_t, AsHalf> halves{n, 0, 1, {}};
+  Block<std::uint8_t, AsByte> bytes{n, lo, range / 255, {}};
+  for (const float v : floats.values) {
+    halves.values.push_back(render::half_from_float(v));
+    bytes.values.push_back(static_cast<std::uint8_t>(std::lround(std::clamp((static_cast<double>(v) - lo) / range, 0.0, 1.0) * 255)));
+  }
+  Curve curve;
+  curve.id = "hand-values-" + name;
+  curve.title = "In how many bits the values of \"" + name + "\" are kept";
+  curve.what =
+      "A copy of the grid's samples in each format, fetched along straight walks of a tenth of a voxel a step. The hand keeps floats: this "
+      "is what other formats would change, not a setting.";
+  curve.error_name = "error of a sample / range (RMS)";
+  curve.time_name = "ns a fetch";
+  curve.bytes_name = "bytes of the samples";
+  curve.cost = Cost::bytes;
+  curve.more = {"greatest error / range"};
+  curve.reference = "the same samples as floats, as they were read";
+  if (const auto floor = interpolation_floor({grid.interpolated(field::Interpolation::linear), nullptr})) {
+    curve.floor = floor->at_h.error / range;
+    curve.floor_from =
+        fmt::format("of linear interpolation between the samples, from every 2nd and 4th voxel, observed order {:.1f}", floor->at_h.order);
+  }
+  const std::vector<Vec3> places = walk(n);
+  const auto add = [&](const char* setting, double size, const auto& block) {
+    Point p{setting, "", "", 0, kNotMeasured, {}, size * static_cast<double>(floats.values.size()), {0}};
+    double squares = 0;
+    for (const Vec3& place : places) {
+      const double off = std::fabs(block.at(place) - floats.at(place)) / range;
+      squares += off * off;
+      p.more[0] = std::max(p.more[0], off);
+    }
+    p.error = std::sqrt(squares / static_cast<double>(places.size()));
+    curve.points.push_back(std::move(p));
+  };
+  add("float (32 bits)", 4, floats);
+  add("half float (16 bits)", 2, halves);
+  add("byte (8 bits)", 1, bytes);
+  curve.current = 0;
+  CATENA_TRY(const std::vector<Timing> times,
+             interleave({fetches_of(floats, places), fetches_of(halves, places), fetches_of(bytes, places)}, 0.3 * subject.effort.hand_s));
+  for (std::size_t i = 0; i < 3; ++i) curve.points[i].time = times[i];
+  return curve;
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_values(Subject& subject) {
+  std::vector<Curve> curves;
+  bool felt = false;
+  std::vector<std::string> done;
+  subject.scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    const field::ScalarFieldPtr field = scalar_field_of(subject.scene, link.node);
+    if (!field || field->grid() == nullptr) return;
+    felt = true;
+    const std::string name = link.node.find("field")->string;
+    if (std::find(done.begin(), done.end(), name) != done.end()) return;
+    done.push_back(name);
+    auto curve = measure_grid(subject, name, *field->grid());
+    if (curve)
+      curves.push_back(std::move(*curve));
+    else
+      subject.left_out.push_back("In how many bits values are kept: " + curve.error().message + ".");
+  });
+  if (!felt) subject.left_out.emplace_back("In how many bits values are kept: no link feels a scalar grid; formulas keep no values.");
+  return curves;
+}
+
+}  // namespace catena::app::tradeoff

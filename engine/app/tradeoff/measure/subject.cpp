@@ -1,0 +1,151 @@
+#include "engine/app/tradeoff/measure/subject.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/app/felt_cursor.h"
+#include "engine/app/hand/open_hand.h"
+#include "engine/flow/curve.h"
+#include "engine/scene/prepare.h"
+
+namespace catena::app::tradeoff {
+
+namespace {
+
+constexpr double kSpeed_m_per_s = 0.15;
+constexpr double kTau = 2 * std::numbers::pi;
+
+/// A tremor and a wander beside the way, within `reach`.
+Vec3 beside(double t, double reach) {
+  return reach * Vec3(std::sin(kTau * 1.3 * t), std::sin(kTau * 1.7 * t + 1), std::cos(kTau * 1.1 * t));
+}
+
+/// Where a way from the outside of the domain to its middle first meets the level, and the gradient there.
+std::optional<std::pair<Vec3, Vec3>> first_crossing(const field::ScalarField& s, double level) {
+  const Bounds box = s.world_bounds();
+  field::Cursor cursor;
+  for (int way = 0; way < 6; ++way) {
+    Vec3 from = box.centre();
+    from[way / 2] = way % 2 ? box.hi[way / 2] : box.lo[way / 2];
+    double last = 0;
+    for (int k = 1; k < 512; ++k) {
+      const Vec3 p = from + (k / 512.0) * (box.centre() - from);
+      const field::ScalarSample here = s.sample(p, cursor);
+      if (!here.inside) continue;
+      const double now = here.value - level;
+      if (((last < 0 && now >= 0) || (last > 0 && now <= 0)) && max_abs(here.gradient) > 0) return std::pair{p, here.gradient};
+      last = now;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Motion> along_streamline(scene::Scene& scene, const LinkOf& link, double seconds) {
+  const json::Node *name = link.node.find("field"), *kind = link.node.find("kind");
+  const auto seed = json::get_optional_vec3(link.node, "seed");
+  if (name == nullptr || !seed || !*seed) return std::nullopt;
+  const auto any = scene::use_field(scene, name->string, *name);
+  if (!any || !any->vector) return std::nullopt;
+  const double length = any->vector->length(), speed = kSpeed_m_per_s / scene.workspace.metres_per_unit;
+  const bool line = kind != nullptr && kind->string == "line";
+  const auto traced = flow::trace({any->vector.get(), line, 0}, **seed, {.length = std::min(0.5 * speed * seconds, length)});
+  if (!traced) return std::nullopt;
+  const flow::CurvePtr curve = *traced;
+  const double lo = curve->knots().front().s, span = curve->knots().back().s - lo;
+  const double reach = std::min(0.005 / scene.workspace.metres_per_unit, 0.01 * length);
+  if (!(span > 0)) return std::nullopt;
+  Motion motion;
+  motion.seconds = seconds;
+  motion.at = [=](double t) {
+    // from the seed to one end and back to the other
+    const double u = std::fmod(speed * t - lo, 2 * span);
+    return curve->position(lo + (u <= span ? u : 2 * span - u)) + beside(t, reach);
+  };
+  motion.words = "along the streamline of \"" + link.name + "\" at 0.15 m/s, up to 5 mm beside it";
+  return motion;
+}
+
+std::optional<Motion> through_surface(scene::Scene& scene, const LinkOf& link, double seconds) {
+  const json::Node *name = link.node.find("field"), *level = link.node.find("level"), *side = link.node.find("free");
+  if (name == nullptr || level == nullptr || level->kind != json::Kind::number) return std::nullopt;
+  const auto any = scene::use_field(scene, name->string, *name);
+  if (!any || !any->scalar) return std::nullopt;
+  const field::ScalarField& s = *any->scalar;
+  const auto met = first_crossing(s, level->number);
+  if (!met) return std::nullopt;
+  const Vec3 p = met->first, n = (side != nullptr && side->string == "below" ? -1.0 : 1.0) * direction(met->second);  // to the free side
+  const Vec3 a = direction(cross(n, std::fabs(n.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0))), b = cross(n, a);
+  const json::Node* release = link.node.find("release");
+  double deep = std::min(0.01 / scene.workspace.metres_per_unit, 0.03 * s.length());
+  if (release != nullptr && release->kind == json::Kind::number) deep = std::min(deep, 0.5 * release->number);
+  const double wide = std::min(0.02 / scene.workspace.metres_per_unit, 0.05 * s.length());
+  Motion motion;
+  motion.seconds = seconds;
+  motion.at = [=](double t) {
+    return p + deep * std::cos(kTau * 1.5 * t) * n + wide * (std::sin(kTau * 0.5 * t) * a + std::sin(kTau * 0.37 * t) * b);
+  };
+  motion.words = "through the surface of \"" + link.name + "\" and back, three times in two seconds, while it wanders along it";
+  return motion;
+}
+
+const Effort& effort(bool quick, bool thorough) {
+  static constexpr Effort kQuick{"quick", 1.5, 8, 1, 256, 192}, kDefault{"default", 6, 30, 2, 400, 300},
+      kThorough{"thorough", 20, 120, 4, 640, 480};
+  return quick ? kQuick : thorough ? kThorough : kDefault;
+}
+
+std::vector<haptics::ProbeSample> Motion::samples(double rate_hz) const {
+  std::vector<haptics::ProbeSample> all;
+  const auto count = static_cast<std::size_t>(seconds * rate_hz);
+  all.reserve(count + 1);
+  for (std::size_t k = 0; k <= count; ++k) {
+    const double t = static_cast<double>(k) / rate_hz;
+    all.push_back({t, at(t), buttons ? buttons(t) : 0});
+  }
+  return all;
+}
+
+std::vector<LinkOf> links_of_type(const scene::Scene& scene, const std::string& type) {
+  std::vector<LinkOf> all;
+  scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
+    if (link.type == type) all.push_back({link.name, link.node});
+  });
+  return all;
+}
+
+Result<Motion> make_motion(scene::Scene& scene, const std::string& probe_csv, double seconds) {
+  Motion motion;
+  if (!probe_csv.empty()) {
+    CATENA_TRY(const HandPath path, read_hand_path(probe_csv));
+    const double begin = path.front().t_s;
+    motion.seconds = std::min(path.back().t_s - begin, 4 * seconds);
+    const auto before = [path, begin](double t) {
+      const auto after = std::upper_bound(path.begin(), path.end(), begin + t, [](double at, const auto& row) { return at < row.t_s; });
+      return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - path.begin() - 1));
+    };
+    motion.buttons = [path, before](double t) { return path[before(t)].buttons; };
+    motion.at = [path, begin, before](double t) {
+      const std::size_t k = before(t);
+      if (k + 1 >= path.size()) return path.back().position;
+      const double f = std::max(0.0, (begin + t - path[k].t_s) / (path[k + 1].t_s - path[k].t_s));
+      return path[k].position + f * (path[k + 1].position - path[k].position);
+    };
+    motion.words = "along the path of --probe";
+    return motion;
+  }
+  for (const LinkOf& link : links_of_type(scene, "streamline"))
+    if (auto found = along_streamline(scene, link, seconds)) return *found;
+  for (const LinkOf& link : links_of_type(scene, "isosurface"))
+    if (auto found = through_surface(scene, link, seconds)) return *found;
+  const Vec3 first = first_probe(scene, scene::prepared_bounds(scene));
+  const double radius = 0.02 / scene.workspace.metres_per_unit;
+  motion.at = [=](double t) { return first + beside(0.5 * t, radius); };
+  motion.words = "a loop of 4 cm about the first place of the probe";
+  motion.seconds = seconds;
+  return motion;
+}
+
+}  // namespace catena::app::tradeoff

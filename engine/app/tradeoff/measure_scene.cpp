@@ -1,0 +1,143 @@
+#include "engine/app/tradeoff/measure_scene.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/app/command.h"
+#include "engine/app/hand/open_hand.h"
+#include "engine/app/run_files.h"
+#include "engine/app/tradeoff/measure/choice.h"
+#include "engine/app/tradeoff/measure/eye/eye.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "engine/app/tradeoff/report/report.h"
+#include "engine/base/text.h"
+#include "engine/scene/prepare.h"
+#include "haptics/device/settings.h"
+#include "haptics/extract/extract.h"
+
+namespace catena::app {
+
+namespace {
+
+using tradeoff::Curve;
+using tradeoff::Report;
+using tradeoff::Subject;
+
+constexpr double kReach_m = 0.1;  // of a hand whose scene states no workspace
+
+Outcome add_hand(const MeasureOptions& options, Subject& subject) {
+  if (subject.scene.world.count<scene::Link>() == 0) {
+    subject.left_out.emplace_back("The hand: the scene has no chain, so that there is nothing to feel.");
+    return Done{};
+  }
+  if (subject.scene.device) {
+    CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*subject.scene.device, subject.scene.path));
+    subject.rate_hz = settings.rate_hz;
+  }
+  fit_workspace(subject.scene, scene::prepared_bounds(subject.scene), kReach_m);
+  CATENA_TRY(subject.program, haptics::extract_program(subject.scene));
+  CATENA_TRY(subject.motion, tradeoff::make_motion(subject.scene, options.probe, subject.effort.motion_s));
+  return Done{};
+}
+
+/// All that the scene has, in the order of the registry.
+Result<Report> measure(const MeasureOptions& options) {
+  CATENA_TRY(scene::Scene scene, open_scene(options.source, options.fields, {}, options.grid));
+  RunFiles files(scene);
+  files.reads(options.compare);
+  files.reads(options.probe);
+  files.writes("-o", options.output + "/report.html");
+  files.writes("-o", options.output + "/tradeoff.json");
+  if (std::filesystem::is_directory(options.output)) CATENA_CHECK(files.check());
+  CATENA_CHECK(scene::prepare(scene));
+  Subject subject{std::move(scene), tradeoff::effort(options.quick, options.thorough), {}, {}, 1000, {}, {}};
+  CATENA_CHECK(add_hand(options, subject));
+  const auto wanted = [&](const tradeoff::Measurement& m) {
+    return options.only.empty() || std::find(options.only.begin(), options.only.end(), m.name) != options.only.end();
+  };
+  const auto has_part = [&](const tradeoff::Measurement& m) {
+    const std::string_view part = m.part;
+    return part == "data" || (part == "hand" ? subject.program != nullptr : subject.eye != nullptr);
+  };
+  const auto all = tradeoff::measurements();
+  Report report;
+  report.source = std::filesystem::path(options.source).filename().string();
+  report.about = tradeoff::about_this_machine();
+  const bool sees = std::any_of(all.begin(), all.end(), [&](const auto& m) { return wanted(m) && std::string_view(m.part) == "eye"; });
+  Progress progress("tradeoff", static_cast<double>(all.size()) + 3);
+  double done = 0;
+  if (sees) {
+    CATENA_CHECK(tradeoff::open_eye(subject));
+    if (subject.eye) {
+      report.about.emplace_back("GPU", subject.eye->renderer->stats().device + ", " + subject.eye->renderer->stats().driver);
+      report.about.emplace_back("pictures", fmt::format("{}x{}", subject.effort.width, subject.effort.height));
+    }
+  }
+  progress.at(done += 3);
+  report.about.emplace_back("effort", subject.effort.word);
+  if (subject.program)
+    report.about.emplace_back("hand", fmt::format("{}, {:g} s at {:g} Hz", subject.motion.words, subject.motion.seconds, subject.rate_hz));
+  for (const tradeoff::Measurement& m : all) {
+    if (wanted(m) && has_part(m)) {
+      auto curves = m.measure(subject);
+      if (!curves) subject.left_out.push_back(std::string(m.name) + ": " + curves.error().message + ".");
+      if (curves)
+        for (Curve& curve : *curves) {
+          curve.part = m.part;
+          if (!curve.error_name.empty() && curve.why.empty()) tradeoff::choose(curve);
+          report.curves.push_back(std::move(curve));
+        }
+    }
+    progress.at(++done);
+  }
+  report.left_out = std::move(subject.left_out);
+  return report;
+}
+
+const Curve* curve_of(const Report* report, const std::string& id) {
+  if (report == nullptr) return nullptr;
+  for (const Curve& curve : report->curves)
+    if (curve.id == id) return &curve;
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<std::string> measurement_names() {
+  std::vector<std::string> names;
+  for (const tradeoff::Measurement& m : tradeoff::measurements()) names.emplace_back(m.name);
+  return names;
+}
+
+Outcome measure_scene(const MeasureOptions& options) {
+  if (options.quick && options.thorough) return Error{"--quick goes without --thorough"};
+  std::optional<Report> other;
+  if (!options.compare.empty()) {
+    CATENA_TRY(other, tradeoff::read_report(options.compare));
+  }
+  const bool again = tradeoff::is_report(options.source);
+  CATENA_TRY(ResultFolder folder, ResultFolder::open(options.output));
+  CATENA_TRY(const Report report, again ? tradeoff::read_report(options.source) : measure(options));
+  std::vector<std::vector<std::string>> plots;
+  for (const Curve& curve : report.curves) {
+    const tradeoff::PlotScript script = tradeoff::plot_script(curve, curve_of(other ? &*other : nullptr, curve.id), "plot");
+    CATENA_TRY(std::vector<std::string> drawn, folder.draw(script.text, script.files));
+    plots.push_back(std::move(drawn));
+  }
+  CATENA_CHECK(folder.add("report.html", tradeoff::to_html(report, other ? &*other : nullptr, plots)));
+  for (const Curve& curve : report.curves) CATENA_CHECK(folder.add(curve.id + ".csv", tradeoff::to_csv(curve)));
+  CATENA_CHECK(folder.add("tradeoff.json", tradeoff::to_json(report)));
+  CATENA_CHECK(folder.commit());
+  for (const Curve& curve : report.curves)
+    if (curve.chosen >= 0)
+      fmt::print("{}: {}. {}\n", printable(curve.title), printable(curve.points[curve.chosen].setting), printable(curve.why));
+  for (const std::string& sentence : report.left_out) fmt::print("left out: {}\n", printable(sentence));
+  fmt::print("{}:", printable(options.output));
+  for (const std::string& name : folder.names()) fmt::print(" {}", name);
+  fmt::print("\n");
+  return Done{};
+}
+
+}  // namespace catena::app

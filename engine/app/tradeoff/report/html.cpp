@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/command.h"
+#include "engine/app/tradeoff/report/report.h"
+#include "engine/base/text.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : one_line(text)) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+// gnuplot writes black in two ways: both become the page's ink
+constexpr const char* kHead = R"html(<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>What it costs, what it buys</title><style>
+:root { color-scheme: light dark; --ink: #1c2024; --paper: #ffffff; --soft: #f1f3f5; --line: #ced4da; --good: #e3f6e8; }
+@media (prefers-color-scheme: dark) { :root { --ink: #e4e7ea; --paper: #15181b; --soft: #22272c; --line: #454d55; --good: #163a22; } }
+body { color: var(--ink); background: var(--paper); font: 16px/1.5 sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; }
+h1, h2, h3 { line-height: 1.2; } h2 { margin-top: 3rem; border-bottom: 1px solid var(--line); } h3 { margin-top: 2.5rem; }
+table { border-collapse: collapse; font-size: 0.88rem; } th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
+td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } code { background: var(--soft); padding: 0 0.25rem; }
+tr.chosen { background: var(--good); } .why { background: var(--good); padding: 0.5rem 0.8rem; } .plots { display: flex; flex-wrap: wrap; gap: 1rem; }
+.plots svg { width: 34rem; max-width: 100%; height: auto; } .wide { overflow-x: auto; } .note { font-size: 0.88rem; }
+svg :is([fill="black"], [fill="rgb(0,0,0)"], [fill="rgb(  0,   0,   0)"]) { fill: var(--ink); }
+svg :is([stroke="black"], [stroke="rgb(  0,   0,   0)"]) { stroke: var(--ink); }
+svg :is([color="black"], [color="rgb(  0,   0,   0)"]) { color: var(--ink); }
+td code, td:first-child { white-space: nowrap; }
+details { margin: 0.6rem 0; }
+</style></head><body>
+)html";
+
+std::string time_text(const Timing& t) {
+  return std::isfinite(t.median) ? fmt::format("{:.4g} <small>({:.4g} .. {:.4g})</small>", t.median, t.low, t.high) : "-";
+}
+
+bool on_front(const Curve& c, int i) { return std::find(c.front.begin(), c.front.end(), i) != c.front.end(); }
+
+/// The same knob of the other report.
+const Curve* same(const Report* other, const Curve& c) {
+  if (other == nullptr) return nullptr;
+  for (const Curve& theirs : other->curves)
+    if (theirs.id == c.id) return &theirs;
+  return nullptr;
+}
+
+const Point* same(const Curve* other, const Point& p) {
+  if (other == nullptr) return nullptr;
+  for (const Point& theirs : other->points)
+    if (theirs.setting == p.setting) return &theirs;
+  return nullptr;
+}
+
+std::string points_table(const Curve& c, const Curve* other) {
+  std::string text = "<div class=\"wide\"><table><tr><th>setting</th>";
+  const auto column = [&](const std::string& name) {
+    if (!name.empty()) text += "<th class=\"n\">" + escaped(name) + "</th>";
+  };
+  column(c.error_name);
+  column(c.time_name);
+  if (other != nullptr && !c.time_name.empty()) text += "<th class=\"n\">the other's time</th><th class=\"n\">other / this</th>";
+  if (other != nullptr && !c.error_name.empty()) text += "<th class=\"n\">the other's error</th>";
+  column(c.work_name);
+  column(c.bytes_name);
+  for (const std::string& name : c.more) column(name);
+  text += "<th>front</th><th>how to ask for it</th></tr>\n";
+  for (std::size_t i = 0; i < c.points.size(); ++i) {
+    const Point& p = c.points[i];
+    const Point* theirs = same(other, p);
+    const int index = static_cast<int>(i);
+    text += fmt::format("<tr{}><td>{}{}{}</td>", index == c.chosen ? " class=\"chosen\"" : "", escaped(p.setting),
+                        index == c.chosen ? " <b>(chosen)</b>" : "", index == c.current ? " <b>(now)</b>" : "");
+    const auto cell = [&](const std::string& value) { text += "<td class=\"n\">" + value + "</td>"; };
+    if (!c.error_name.empty()) cell(short_number(p.error));
+    if (!c.time_name.empty()) cell(time_text(p.time));
+    if (other != nullptr && !c.time_name.empty()) {
+      cell(theirs != nullptr ? time_text(theirs->time) : "-");
+      cell(theirs != nullptr ? short_number(theirs->time.median / p.time.median) : "-");
+    }
+    if (other != nullptr && !c.error_name.empty()) cell(theirs != nullptr ? short_number(theirs->error) : "-");
+    if (!c.work_name.empty()) cell(short_number(p.work));
+    if (!c.bytes_name.empty()) cell(std::isfinite(p.bytes) ? human_bytes(p.bytes) : "-");
+    for (const double value : p.more) cell(short_number(value));
+    text += fmt::format("<td>{}</td><td>{}</td></tr>\n", on_front(c, index) ? "&#9679;" : "",
+                        p.write.empty() ? "" : "<code>" + escaped(p.write) + "</code>");
+  }
+  return text + "</table></div>\n";
+}
+
+std::string section(const Curve& c, const Curve* other, const std::vector<std::string>& plots) {
+  std::string text = fmt::format("<h3 id=\"{0}\">{1}</h3>\n<p>{2}</p>\n", escaped(c.id), escaped(c.title), escaped(c.what));
+  if (c.chosen >= 0)
+    text += fmt::format("<p class=\"why\"><b>Choose: {}.</b> {}</p>\n", escaped(c.points[c.chosen].setting), escaped(c.why));
+  else if (!c.why.empty())
+    text += "<p class=\"why\">" + escaped(c.why) + "</p>\n";
+  text += "<div class=\"plots\">";
+  for (const std::string& plot : plots) text += plot;
+  text += "</div>\n" + points_table(c, other) + "<p class=\"note\">";
+  if (std::isfinite(c.floor))
+    text += fmt::format("The dashed line, {}: {}, {}. ", escaped(c.floor_name), short_number(c.floor), escaped(c.floor_from));
+  else if (!c.floor_from.empty())
+    text += escaped(c.floor_from) + " ";
+  if (!c.reference.empty())
+    text += fmt::format("Errors are against {}{}. ", escaped(c.reference),
+                        std::isfinite(c.reference_error) ? ", whose own error is " + short_number(c.reference_error) : "");
+  return text + fmt::format("As a table: <code>{}.csv</code></p>\n", escaped(c.id));
+}
+
+std::string summary(const Report& report) {
+  std::string text =
+      "<div class=\"wide\"><table><tr><th>what</th><th>now</th><th>Catena would choose</th><th class=\"n\">error</th><th class=\"n\">the "
+      "data's own</th><th class=\"n\">cost</th></tr>\n";
+  for (const Curve& c : report.curves) {
+    if (c.chosen < 0) continue;
+    const Point& p = c.points[c.chosen];
+    const std::string& unit = c.cost == Cost::time ? c.time_name : c.cost == Cost::work ? c.work_name : c.bytes_name;
+    text += fmt::format(
+        "<tr><td><a href=\"#{}\">{}</a></td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{} "
+        "<small>{}</small></td></tr>\n",
+        escaped(c.id), escaped(c.title), c.current >= 0 ? escaped(c.points[c.current].setting) : "-", escaped(p.setting),
+        short_number(p.error), short_number(c.floor), c.cost == Cost::bytes ? human_bytes(p.bytes) : short_number(cost_of(p, c.cost)),
+        escaped(unit));
+  }
+  return text + "</table></div>\n";
+}
+
+std::string about_table(const Report& report, const Report* other) {
+  std::string text = "<table>";
+  if (other != nullptr) text += "<tr><th></th><th>this</th><th>the other</th></tr>";
+  for (const auto& [key, value] : report.about) {
+    text += fmt::format("<tr><th>{}</th><td>{}</td>", escaped(key), escaped(value));
+    if (other != nullptr) {
+      const auto found = std::find_if(other->about.begin(), other->about.end(), [&](const auto& item) { return item.first == key; });
+      text += "<td>" + (found != other->about.end() ? escaped(found->second) : "-") + "</td>";
+    }
+    text += "</tr>\n";
+  }
+  return text + "</table>\n";
+}
+
+}  // namespace
+
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return "-";
+  const bool plain = std::fabs(value) >= 1000 && std::fabs(value) < 1e7;
+  return plain ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
+std::string to_html(const Report& report, const Report* other, const std::vector<std::vector<std::string>>& plots) {
+  std::string text = kHead;
+  text += fmt::format("<h1>{}: what it costs, what it buys</h1>\n", escaped(report.source));
+  text +=
+      "<p>Every setting below was measured on this scene and this machine. Lower is more exact, further left is cheaper. The dashed line "
+      "is what the data themselves "
+      "leave open: below it, exactness shows nothing that was measured. <b>(now)</b> is what the scene has, <b>(chosen)</b> what Catena "
+      "would take. Times are medians of "
+      "repeats in turns; in brackets and as bars their quartiles.</p>\n";
+  text += about_table(report, other) + "<h2>In short</h2>\n" + summary(report);
+  bool drawn = false;
+  for (const auto& [part, heading] : {std::pair{"data", "The data"}, {"hand", "The hand"}, {"eye", "The eye"}}) {
+    bool begun = false;
+    for (std::size_t i = 0; i < report.curves.size(); ++i) {
+      const Curve& c = report.curves[i];
+      if (c.part != part) continue;
+      if (!begun) text += fmt::format("<h2>{}</h2>\n", heading);
+      begun = true;
+      drawn = drawn || (i < plots.size() && !plots[i].empty());
+      text += section(c, same(other, c), i < plots.size() ? plots[i] : std::vector<std::string>());
+    }
+  }
+  if (!report.left_out.empty() || !drawn) text += "<h2>Left out</h2>\n<ul>\n";
+  if (!drawn) text += "<li>Plots: gnuplot is not installed, or there is no curve to draw; the tables are complete.</li>\n";
+  for (const std::string& sentence : report.left_out) text += "<li>" + escaped(sentence) + "</li>\n";
+  if (!report.left_out.empty() || !drawn) text += "</ul>\n";
+  if (other != nullptr && other->source != report.source)
+    text +=
+        "<p>The other report is of another scene, " + escaped(other->source) + ": only settings of the same name stand side by side.</p>\n";
+  return text + "</body></html>\n";
+}
+
+}  // namespace catena::app::tradeoff

@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/tradeoff/report/report.h"
+#include "engine/app/tradeoff/results.h"
+#include "engine/base/json.h"
+#include "engine/base/json_text.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+constexpr const char* kMark = "catena_tradeoff";
+constexpr int kFormat = 1;
+
+std::string number(double value) { return std::isfinite(value) ? to_text(value) : "null"; }
+
+template <class Items, class Print>
+std::string list(const Items& items, const Print& print) {
+  std::string text;
+  for (const auto& item : items) text += (text.empty() ? "" : ", ") + print(item);
+  return "[" + text + "]";
+}
+
+std::string json_of(const Point& p) {
+  return fmt::format(
+      R"({{"setting": {}, "write": {}, "series": {}, "error": {}, "work": {}, "time": {{"median": {}, "low": {}, "high": {}, "repeats": {}}}, "bytes": {}, "offered": {}, "more": {}}})",
+      json_string(p.setting), json_string(p.write), json_string(p.series), number(p.error), number(p.work), number(p.time.median),
+      number(p.time.low), number(p.time.high), p.time.repeats, number(p.bytes), p.offered, list(p.more, number));
+}
+
+constexpr const char* kCosts[] = {"time", "work", "bytes"};
+
+std::string json_of(const Curve& c) {
+  std::string text = "  {";
+  const auto add = [&](const char* key, const std::string& value) {
+    text += (text.size() > 3 ? ",\n   \"" : "\"") + std::string(key) + "\": " + value;
+  };
+  for (const auto& [key, word] : {std::pair{"id", &c.id},
+                                  {"part", &c.part},
+                                  {"title", &c.title},
+                                  {"what", &c.what},
+                                  {"error_name", &c.error_name},
+                                  {"work_name", &c.work_name},
+                                  {"time_name", &c.time_name},
+                                  {"bytes_name", &c.bytes_name},
+                                  {"floor_name", &c.floor_name},
+                                  {"floor_from", &c.floor_from},
+                                  {"reference", &c.reference},
+                                  {"why", &c.why}})
+    add(key, json_string(*word));
+  add("more", list(c.more, json_string));
+  add("floor", number(c.floor));
+  add("reference_error", number(c.reference_error));
+  add("cost", json_string(kCosts[static_cast<int>(c.cost)]));
+  add("current", std::to_string(c.current));
+  add("chosen", std::to_string(c.chosen));
+  add("front", list(c.front, [](int i) { return std::to_string(i); }));
+  std::string points;
+  for (const Point& p : c.points) points += (points.empty() ? "\n     " : ",\n     ") + json_of(p);
+  add("points", "[" + points + "]");
+  return text + "}";
+}
+
+Result<double> number_at(const json::Node& node, std::string_view key) {
+  const json::Node* found = node.find(key);
+  if (found == nullptr || found->is_null()) return kNotMeasured;
+  return json::as_number(*found, key);
+}
+
+/// An index of a point, or -1.
+Result<int> index_at(const json::Node& node, std::string_view key, std::size_t count) {
+  return json::get_integer(node, key, -1, -1, static_cast<int>(count) - 1);
+}
+
+Result<std::vector<json::Node>> items_of(const json::Node& node, std::string_view key) {
+  const json::Node* found = node.find(key);
+  if (found == nullptr || found->kind != json::Kind::array)
+    return json::error_at(json::member_or(node, key), "\"" + std::string(key) + "\": a list was expected");
+  return found->items;
+}
+
+Result<Point> read_point(const json::Node& node) {
+  Point p;
+  CATENA_TRY(p.setting, json::require_string(node, "setting"));
+  CATENA_TRY(p.write, json::get_string(node, "write", ""));
+  CATENA_TRY(p.series, json::get_string(node, "series", ""));
+  CATENA_TRY(p.error, number_at(node, "error"));
+  CATENA_TRY(p.work, number_at(node, "work"));
+  CATENA_TRY(p.bytes, number_at(node, "bytes"));
+  if (const json::Node* time = node.find("time")) {
+    CATENA_TRY(p.time.median, number_at(*time, "median"));
+    CATENA_TRY(p.time.low, number_at(*time, "low"));
+    CATENA_TRY(p.time.high, number_at(*time, "high"));
+    CATENA_TRY(p.time.repeats, json::get_integer(*time, "repeats", 0, 0, 1'000'000));
+  }
+  CATENA_TRY(p.offered, json::get_boolean(node, "offered", true));
+  CATENA_TRY(const std::vector<json::Node> more, items_of(node, "more"));
+  for (const json::Node& item : more) p.more.push_back(item.kind == json::Kind::number ? item.number : kNotMeasured);
+  return p;
+}
+
+Result<Curve> read_curve(const json::Node& node) {
+  Curve c;
+  for (const auto& [key, word] : {std::pair{"id", &c.id},
+                                  {"part", &c.part},
+                                  {"title", &c.title},
+                                  {"what", &c.what},
+                                  {"error_name", &c.error_name},
+                                  {"work_name", &c.work_name},
+                                  {"time_name", &c.time_name},
+                                  {"bytes_name", &c.bytes_name},
+                                  {"floor_name", &c.floor_name},
+                                  {"floor_from", &c.floor_from},
+                                  {"reference", &c.reference},
+                                  {"why", &c.why}}) {
+    CATENA_TRY(*word, json::require_string(node, key));
+  }
+  CATENA_TRY(const std::vector<json::Node> more, items_of(node, "more"));
+  for (const json::Node& item : more) {
+    CATENA_TRY(const std::string name, json::as_string(item, "more"));
+    c.more.push_back(name);
+  }
+  CATENA_TRY(const std::vector<json::Node> points, items_of(node, "points"));
+  for (const json::Node& item : points) {
+    CATENA_TRY(Point point, read_point(item));
+    point.more.resize(c.more.size(), kNotMeasured);
+    c.points.push_back(std::move(point));
+  }
+  CATENA_TRY(c.floor, number_at(node, "floor"));
+  CATENA_TRY(c.reference_error, number_at(node, "reference_error"));
+  CATENA_TRY(const int cost, json::get_choice(node, "cost", 0, {std::begin(kCosts), std::end(kCosts)}));
+  c.cost = static_cast<Cost>(cost);
+  CATENA_TRY(c.current, index_at(node, "current", c.points.size()));
+  CATENA_TRY(c.chosen, index_at(node, "chosen", c.points.size()));
+  CATENA_TRY(const std::vector<json::Node> front, items_of(node, "front"));
+  for (const json::Node& item : front) {
+    CATENA_TRY(const double i, json::as_number(item, "front", json::Range::not_negative));
+    if (i >= static_cast<double>(c.points.size())) return json::error_at(item, "\"front\": the index of a point was expected");
+    c.front.push_back(static_cast<int>(i));
+  }
+  return c;
+}
+
+}  // namespace
+
+std::string to_json(const Report& report) {
+  std::string curves;
+  for (const Curve& c : report.curves) curves += (curves.empty() ? "\n" : ",\n") + json_of(c);
+  std::string about;
+  for (const auto& [key, value] : report.about) about += (about.empty() ? "" : ", ") + json_string(key) + ": " + json_string(value);
+  return fmt::format("{{\"{}\": {},\n \"source\": {},\n \"about\": {{{}}},\n \"left_out\": {},\n \"curves\": [{}]}}\n", kMark, kFormat,
+                     json_string(report.source), about, list(report.left_out, json_string), curves);
+}
+
+bool is_report(const std::string& path) {
+  if (!has_ending(path, ".json")) return false;
+  const auto root = json::read(path);
+  return root && root->find(kMark) != nullptr;
+}
+
+Result<Report> read_report(const std::string& path) {
+  CATENA_TRY(const json::Node root, json::read(path));
+  if (root.find(kMark) == nullptr) return json::error_at(root, "this is no report; the tradeoff.json of `catena tradeoff` was expected");
+  CATENA_CHECK(json::get_integer(root, kMark, kFormat, kFormat, kFormat));
+  Report report;
+  CATENA_TRY(report.source, json::require_string(root, "source"));
+  if (const json::Node* about = root.find("about"))
+    for (const auto& [key, value] : about->members) report.about.emplace_back(key, value.string);
+  CATENA_TRY(const std::vector<json::Node> left_out, items_of(root, "left_out"));
+  for (const json::Node& item : left_out) report.left_out.push_back(item.string);
+  CATENA_TRY(const std::vector<json::Node> curves, items_of(root, "curves"));
+  for (const json::Node& item : curves) {
+    CATENA_TRY(Curve curve, read_curve(item));
+    report.curves.push_back(std::move(curve));
+  }
+  return report;
+}
+
+std::string to_csv(const Curve& c) {
+  // a table of Catena's knows no quotes
+  const auto cell = [](std::string word) {
+    std::replace(word.begin(), word.end(), ',', ';');
+    return one_line(word);
+  };
+  std::string header = "setting,series,error,work,time_median,time_low,time_high,repeats,bytes,front,chosen";
+  for (const std::string& name : c.more) header += "," + cell(name);
+  CsvTable table(header);
+  for (std::size_t i = 0; i < c.points.size(); ++i) {
+    const Point& p = c.points[i];
+    table.add(cell(p.setting)).add(cell(p.series)).add(p.error).add(p.work).add(p.time.median).add(p.time.low).add(p.time.high);
+    table.add(p.time.repeats).add(p.bytes);
+    table.add(std::find(c.front.begin(), c.front.end(), static_cast<int>(i)) != c.front.end() ? 1 : 0)
+        .add(static_cast<int>(i) == c.chosen ? 1 : 0);
+    for (const double value : p.more) table.add(value);
+    table.end_row();
+  }
+  return table.text();
+}
+
+}  // namespace catena::app::tradeoff

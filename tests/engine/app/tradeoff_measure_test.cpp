@@ -1,0 +1,287 @@
+/// `catena tradeoff SCENE`: what it measures with (the floor, the front, the choice, times in turns), its report written and read, and
+/// the command from the outside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "engine/app/tradeoff/measure/choice.h"
+#include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/timing.h"
+#include "engine/app/tradeoff/report/report.h"
+#include "engine/field/analytic.h"
+#include "engine/flow/curve.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace tradeoff_measure_test {
+
+using namespace catena;
+using namespace catena::app::tradeoff;
+using test::Table;
+
+/// Root mean square of grid - formula on a lattice that falls together with no voxels.
+template <class Grid, class Formula, class Off>
+double true_error(const Grid& grid, const Formula& formula, const Off& off) {
+  field::Cursor a, b;
+  const field::Box& box = grid.index_box();
+  double sum = 0, count = 0;
+  for (double z = box.lo.z + 0.21; z < box.hi.z; z += 1.37)
+    for (double y = box.lo.y + 0.13; y < box.hi.y; y += 1.37)
+      for (double x = box.lo.x + 0.17; x < box.hi.x; x += 1.37) {
+        const Vec3 p = grid.mapping().world_from_index({x, y, z});
+        sum += off(grid.sample(p, a).value, formula.sample(p, b).value);
+        ++count;
+      }
+  return std::sqrt(sum / count);
+}
+
+TEST(TradeoffFloor, IsWithinTwiceTheTruthOnScalarFormulas) {
+  for (const char* name : {"gaussian", "torus", "tanh", "sphere"}) {
+    const auto formula = field::make_analytic(name);
+    ASSERT_TRUE(formula);
+    const auto grid = field::sample_on_grid(*formula->scalar, 41, -2, 2);
+    const auto floor = interpolation_floor({grid, nullptr});
+    ASSERT_TRUE(floor) << name;
+    const double truth = true_error(*grid, *formula->scalar, [](double a, double b) { return (a - b) * (a - b); });
+    EXPECT_GT(floor->at_h.error, truth / 2) << name;
+    EXPECT_LT(floor->at_h.error, truth * 2) << name;
+    EXPECT_GT(floor->at_4h, floor->at_2h) << name;
+  }
+}
+
+TEST(TradeoffFloor, IsWithinTwiceTheTruthOnVectorFormulas) {
+  for (const char* name : {"lamb-oseen", "abc"}) {
+    const auto formula = field::make_analytic(name);
+    ASSERT_TRUE(formula);
+    const auto grid = field::sample_on_grid(*formula->vector, 41, -2, 2);
+    const auto floor = interpolation_floor({nullptr, grid});
+    ASSERT_TRUE(floor) << name;
+    const double truth = true_error(*grid, *formula->vector, [](const Vec3& a, const Vec3& b) { return dot(a - b, a - b); });
+    EXPECT_GT(floor->at_h.error, truth / 2) << name;
+    EXPECT_LT(floor->at_h.error, truth * 2) << name;
+  }
+}
+
+/// What a line is off the formula's line, from the grid alone: differences of lines rather than errors of samples.
+TEST(TradeoffFloor, OfAStreamlineIsWithinTwiceTheTruth) {
+  const auto formula = field::make_analytic("abc");
+  ASSERT_TRUE(formula);
+  const auto grid = field::sample_on_grid(*formula->vector, 65, -2, 2);
+  const auto levels = make_levels(*grid);
+  ASSERT_TRUE(levels);
+  const Vec3 seed(0.3, 0.2, -0.4);
+  const auto far = [&](const field::VectorField& field, const field::VectorField& from) {
+    const auto line = flow::trace({&field, false, 0}, seed, {.length = 1}), truth = flow::trace({&from, false, 0}, seed, {.length = 1.1});
+    EXPECT_TRUE(line && truth);
+    const flow::NearestOnCurve nearest(*truth);
+    double most = 0;
+    for (double s = -1; s <= 1; s += 0.01) most = std::max(most, nearest.at((*line)->position(s)).distance2);
+    return std::sqrt(most);
+  };
+  const double truth = far(*levels->at[0], *formula->vector);
+  const Extrapolated e = from_differences(far(*levels->at[1], *levels->at[0]), far(*levels->at[2], *levels->at[0]));
+  EXPECT_GT(e.error, truth / 2);
+  EXPECT_LT(e.error, truth * 2);
+  EXPECT_NEAR(e.order, 2, 0.7);
+  EXPECT_TRUE(e.settled);
+}
+
+TEST(TradeoffFloor, SaysWhereDifferencesDoNotSettle) {
+  const Extrapolated e = from_differences(3, 3.5);
+  EXPECT_FALSE(e.settled);
+  EXPECT_DOUBLE_EQ(e.error, 1);  // at order 2: the least
+  EXPECT_DOUBLE_EQ(from_differences(3, 15).error, 1);
+  EXPECT_DOUBLE_EQ(from_errors(4, 16).error, 1);
+}
+
+TEST(TradeoffFloor, CoarserGridsHaveTheSameDomainAndTheirOwnVoxels) {
+  const auto formula = field::make_analytic("linear");
+  ASSERT_TRUE(formula);
+  const auto grid = field::sample_on_grid(*formula->scalar, 20, -2, 2);
+  const auto levels = make_levels(*grid);
+  ASSERT_TRUE(levels);
+  for (const auto& level : levels->at) {
+    EXPECT_LT(max_abs(level->world_bounds().lo - levels->at[0]->world_bounds().lo), 1e-12);
+    EXPECT_LT(max_abs(level->world_bounds().hi - levels->at[0]->world_bounds().hi), 1e-12);
+    EXPECT_LT(true_error(*level, *formula->scalar, [](double a, double b) { return (a - b) * (a - b); }), 1e-6);
+  }
+  EXPECT_EQ(levels->at[2]->index_box().hi.x, 4);
+  EXPECT_FALSE(make_levels(*field::sample_on_grid(*formula->scalar, 8, -2, 2)));
+}
+
+Point made(double error, double time, double spread = 0.01) {
+  Point p;
+  p.error = error;
+  p.time = {time, time - spread, time + spread, 9};
+  return p;
+}
+
+TEST(TradeoffChoice, FrontHoldsWhatNothingBeats) {
+  const std::vector<Point> points{made(1, 10), made(5, 2), made(5, 3), made(7, 4), made(0.5, 30), made(kNotMeasured, 0.1), made(1, 11)};
+  EXPECT_EQ(pareto_front(points, Cost::time), (std::vector<int>{1, 0, 4}));
+  EXPECT_TRUE(pareto_front({}, Cost::time).empty());
+}
+
+TEST(TradeoffChoice, TakesTheCheapestThatReachesTheFloor) {
+  Curve curve;
+  curve.points = {made(8, 1), made(2, 5), made(0.9, 10), made(0.1, 20)};
+  curve.floor = 1;
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 2);
+  curve.reference_error = 3;  // what the reference cannot tell is no reason
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 1);
+  EXPECT_NE(curve.why.find("the reference can tell"), std::string::npos) << curve.why;
+  curve.floor = 0.01, curve.reference_error = kNotMeasured;
+  choose(curve);
+  EXPECT_NE(curve.why.find("None reaches"), std::string::npos) << curve.why;
+}
+
+TEST(TradeoffChoice, NoiseDoesNotDecide) {
+  Curve curve;
+  curve.points = {made(0.5, 10, 2), made(0.4, 9.5, 2), made(0.3, 10.5, 2)};
+  for (std::size_t i = 0; i < 3; ++i) curve.points[i].work = i == 2 ? 7 : 8;
+  curve.floor = 1;
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 2);
+}
+
+TEST(TradeoffChoice, TakesTheKneeOrWhatTheSceneHas) {
+  Curve curve;
+  curve.points = {made(100, 1), made(1, 1.5), made(0.5, 100)};
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 1);
+  curve.points = {made(8, 1), made(4, 2), made(2, 4), made(1, 8)};  // a straight line has none
+  curve.current = 2;
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 2);
+  curve.points = {made(0, 1), made(0, 2)};
+  curve.current = -1;
+  choose(curve);
+  EXPECT_EQ(curve.chosen, 0);
+  EXPECT_NE(curve.why.find("No setting changes"), std::string::npos);
+}
+
+TEST(TradeoffTiming, RunsSettingsInTurns) {
+  std::string order;
+  const auto times =
+      interleave({[&]() -> Result<double> { return order += 'a', 1.0; }, [&]() -> Result<double> { return order += 'b', 2.0; }}, 1000, 3);
+  ASSERT_TRUE(times);
+  EXPECT_EQ(order, "abbaabba");  // the first round warms up
+  EXPECT_EQ((*times)[1].median, 2);
+  EXPECT_EQ((*times)[0].repeats, 3);
+  const Timing t = timing_of({5, 1, 4, 2, 3});
+  EXPECT_EQ(t.low, 2);
+  EXPECT_EQ(t.median, 3);
+  EXPECT_EQ(t.high, 4);
+  EXPECT_FALSE(interleave({[]() -> Result<double> { return Error{"no"}; }}, 0, 3));
+}
+
+TEST(TradeoffReport, ReadsBackWhatItWrote) {
+  Report report;
+  report.source = "a \"scene\".json";
+  report.about = {{"processor", "x<y>"}};
+  report.left_out = {"The eye: none."};
+  Curve curve;
+  curve.id = "hand-x";
+  curve.part = "hand";
+  curve.title = "Q & A's";
+  curve.error_name = "error";
+  curve.time_name = "ns";
+  curve.more = {"b"};
+  curve.floor = 0.125;
+  curve.points = {made(0.1, 3), made(1e-300, 4)};
+  curve.points[0].setting = "one, \"1\"";
+  for (Point& p : curve.points) p.more = {7};
+  choose(curve);
+  report.curves = {curve};
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "tradeoff.json", to_json(report));
+  EXPECT_TRUE(is_report(folder / "tradeoff.json"));
+  const auto back = read_report(folder / "tradeoff.json");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(to_json(*back), to_json(report));
+  const std::string page = to_html(*back, &*back, {{}});
+  EXPECT_NE(page.find("Q &amp; A"), std::string::npos);
+  EXPECT_NE(page.find("the other's time"), std::string::npos);
+  EXPECT_NE(page.find("gnuplot is not installed"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos);  // opens without a network
+  // gnuplot gets no quote of ours as its own
+  EXPECT_EQ(plot_script(curve, nullptr, "p").files, std::vector<std::string>{"p0.svg"});
+}
+
+constexpr const char* kScene = R"({"fields": {"flow": {"analytic": "helix"}, "ball": {"analytic": "sphere", "resolution": 24}},
+  "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, -1.2]},
+            {"name": "skin", "type": "isosurface", "field": "ball", "level": 1, "free": "above", "release": 0.3}],
+  "volumes": [{"field": "ball", "color": [[0, 1, 0, 0], [2, 0, 0, 1]], "extinction": [[0, 0.5], [2, 0]]}],
+  "workspace": {"metres_per_unit": 0.05}})";
+
+TEST(TradeoffScene, IsMeasuredAndComparedFromTheOutside) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", kScene);
+  const auto run = test::run_catena(
+      {"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "interpolation,streamline,isosurface,chain length"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Table line = Table::read(folder / "out/hand-streamline-curve.csv");
+  double linear = 0, rk4 = 1, selected = 1;
+  for (std::size_t row = 0; row < line.rows(); ++row) {
+    if (line.word(row, "setting") == "linear") linear = line.number(row, "error");
+    if (line.word(row, "setting") == "rk4") rk4 = line.number(row, "error");
+    if (line.word(row, "setting") == "selected") selected = line.number(row, "error");
+  }
+  EXPECT_GT(linear, 1e-5);
+  EXPECT_LT(rk4, 1e-8);
+  EXPECT_LT(selected, 1e-9);
+  const Table skin = Table::read(folder / "out/hand-isosurface-skin.csv");
+  EXPECT_LT(skin.number(0, "error"), 1e-10);
+  EXPECT_EQ(Table::read(folder / "out/hand-chain.csv").rows(), 2u);
+  EXPECT_NE(test::read_file(folder / "out/report.html").find("(chosen)"), std::string::npos);
+
+  // the page again, beside itself; nothing is measured
+  const std::string report = folder / "out/tradeoff.json";
+  const auto again = test::run_catena({"tradeoff", report, "-o", folder / "again", "--compare", report});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(test::read_file(folder / "again/tradeoff.json"), test::read_file(report));
+  EXPECT_NE(test::read_file(folder / "again/report.html").find("the other's time"), std::string::npos);
+}
+
+TEST(TradeoffScene, PicturesAreMeasuredOfABareFile) {
+  const test::TemporaryFolder folder;
+  ASSERT_EQ(test::run_catena({"generate", "gaussian", "-o", folder / "g.vdb", "--resolution", "24"}).exit_code, 0);
+  const auto run = test::run_catena({"tradeoff", folder / "g.vdb", "-o", folder / "out", "--quick", "--only", "memory budget"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("left out: The hand:"), std::string::npos) << run.out;
+  if (run.out.find("left out: The eye:") != std::string::npos) GTEST_SKIP() << run.out;
+  const Table budget = Table::read(folder / "out/eye-budget.csv");
+  EXPECT_LT(budget.number(0, "error"), 3);
+}
+
+TEST(TradeoffScene, BadInputIsOneLineAndNothingIsWritten) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", kScene);
+  test::write_file(folder / "bad.json", R"({"curves": 3})");
+  test::write_file(folder / "worse.json", R"({"catena_tradeoff": 1, "source": "s", "left_out": [], "curves": [{"id": 4}]})");
+  const std::string out = folder / "out", scene = folder / "s.json";
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{folder / "none.json"},
+                                                                                     {folder / "none.vdb"},
+                                                                                     {folder / "bad.json"},
+                                                                                     {folder / "worse.json"},
+                                                                                     {scene, "--compare", folder / "bad.json"},
+                                                                                     {scene, "--compare", folder / "worse.json"},
+                                                                                     {scene, "--compare", folder / "none.json"},
+                                                                                     {scene, "--probe", folder / "none.csv"},
+                                                                                     {scene, "--quick", "--thorough"},
+                                                                                     {scene, "--only", "luck"},
+                                                                                     {scene, "--figure", "2"}}) {
+    std::vector<std::string> all{"tradeoff"};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"-o", out});
+    const auto run = test::run_catena(all);
+    EXPECT_EQ(run.exit_code, 2) << words.back() << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(out)) << words.back();
+  }
+}
+
+}  // namespace tradeoff_measure_test
