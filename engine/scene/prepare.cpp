@@ -170,10 +170,18 @@ void drive_seeds(Scene& scene, Entity entity, const Widget& widget, WidgetChange
   });
 }
 
+/// It is drawn, or something that is drawn lies on it.
+bool is_shown(const Scene& scene, Entity surface) {
+  bool shown = !is_hidden(scene.world, surface);
+  scene.world.each<GlyphSet>([&](Entity e, const GlyphSet& set) { shown = shown || (set.base == surface && !is_hidden(scene.world, e)); });
+  return shown;
+}
+
+/// Levels of surfaces that nobody sees are left: their fields are not loaded for them.
 Outcome drive_levels(Scene& scene, Entity entity, double value, WidgetChanges& changes) {
   std::vector<Entity> surfaces;
   scene.world.each<Isosurface>([&](Entity e, const Isosurface& surface) {
-    if (surface.level_from == entity) surfaces.push_back(e);
+    if (surface.level_from == entity && is_shown(scene, e)) surfaces.push_back(e);
   });
   for (const Entity e : surfaces) {
     const Isosurface& surface = scene.world.get<Isosurface>(e);

@@ -137,9 +137,13 @@ class MirrorBuilder {
     return std::move(mirror_);
   }
 
-  std::optional<std::uint64_t> bytes() {
+  /// Of the images, and with what making them and the maps needs.
+  struct Bytes {
+    std::uint64_t images = 0, needed = 0;
+  };
+  std::optional<Bytes> bytes() {
     if (!ask()) return std::nullopt;
-    if (!plan()) return 0;
+    if (!plan()) return Bytes{};
     std::array<std::uint32_t, 3> values{std::uint32_t(size_.x), std::uint32_t(size_.y), std::uint32_t(size_.z)}, mask = values;
     if (mirror_.atlas) {
       if (!assign_slots()) return std::nullopt;
@@ -156,7 +160,8 @@ class MirrorBuilder {
     const std::uint64_t staging = std::uint64_t(kApron) * values[0] * values[1] * encoder_.texel();
     // a word a brick; for surfaces also the map of cells
     const std::uint64_t map = mirror_.ranges.size() * (sizeof(std::uint32_t) + (encoder_.float32 ? kCellMapBytes : 0));
-    return *value_bytes + (mirror_.masked ? *mask_bytes : 0) + std::max(staging, map) + map;
+    const std::uint64_t images = *value_bytes + (mirror_.masked ? *mask_bytes : 0);
+    return Bytes{images, images + std::max(staging, map) + map};
   }
 
  private:
@@ -398,7 +403,13 @@ Result<GridMirror> make_grid_mirror(vk::Device& device, const field::ScalarGrid&
 }
 
 std::optional<std::uint64_t> mirror_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options) {
-  return MirrorBuilder(device, grid, options).bytes();
+  const auto bytes = MirrorBuilder(device, grid, options).bytes();
+  return bytes ? std::optional(bytes->needed) : std::nullopt;
+}
+
+std::optional<std::uint64_t> mirror_image_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options) {
+  const auto bytes = MirrorBuilder(device, grid, options).bytes();
+  return bytes ? std::optional(bytes->images) : std::nullopt;
 }
 
 Result<GridMirror> make_coarse_mirror(vk::Device& device, const field::CoarseGrid& grid, int factor, const MirrorOptions& options) {

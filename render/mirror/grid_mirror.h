@@ -60,6 +60,9 @@ struct GridMirror {
   const field::ScalarGrid& source(const field::ScalarGrid& grid) const { return coarse ? *coarse : grid; }
 };
 
+/// Bytes of the mirror's images, as make_grid_mirror would make them; nothing is read but which blocks hold one value.
+std::optional<std::uint64_t> mirror_image_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
+
 /// What make_grid_mirror and the maps of a volume or a surface need, staging included; none where the device cannot hold it at any price.
 std::optional<std::uint64_t> mirror_bytes(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options);
 

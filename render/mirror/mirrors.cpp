@@ -105,6 +105,12 @@ std::vector<MirrorCoarsening> Mirrors::coarsenings() const {
   return list;
 }
 
+std::uint64_t Mirrors::bytes() const {
+  std::uint64_t sum = 0;
+  for (const auto& [key, entry] : entries_) sum += entry.mirror->bytes();
+  return sum;
+}
+
 void Mirrors::drop_unused() {
   std::erase_if(entries_, [this](const auto& item) { return item.second.used != frame_; });
 }

@@ -34,6 +34,8 @@ class Mirrors {
   void drop_unused(const field::ScalarGrid& grid);
   void clear() { entries_.clear(); }
   std::size_t count() const { return entries_.size(); }
+  /// Of their images.
+  std::uint64_t bytes() const;
   double build_ms() const { return build_ms_; }
   /// Of the grids that are mirrored now, older grids first.
   std::vector<MirrorCoarsening> coarsenings() const;

@@ -96,13 +96,17 @@ void Targets::begin(vk::Commands& commands, TargetSet writes, TargetSet cleared,
   commands.begin_pass(colors, depth, area);
 }
 
-Result<std::shared_ptr<const GridMirror>> Frame::mirror(const field::ScalarGrid& grid) const {
+MirrorOptions mirror_options(const FramePacket& packet, const RenderSettings& settings, const field::ScalarGrid& grid) {
   const auto uses = [&](const auto& item) { return item.grid.get() == &grid; };
   const bool surface = std::any_of(packet.isosurfaces.begin(), packet.isosurfaces.end(), uses) ||
                        std::any_of(packet.slices.begin(), packet.slices.end(), uses) ||
                        grid.interpolation() == field::Interpolation::nearest;  // a label that is rounded is another one
   const bool float32 = settings.texels == TexelFormat::r32f || (settings.texels == TexelFormat::automatic && surface);
-  return mirrors.get(grid, {float32, settings.layout});
+  return {float32, settings.layout};
+}
+
+Result<std::shared_ptr<const GridMirror>> Frame::mirror(const field::ScalarGrid& grid) const {
+  return mirrors.get(grid, mirror_options(packet, settings, grid));
 }
 
 }  // namespace catena::render

@@ -25,6 +25,9 @@ struct EmbeddedShader {
 /// One for every file of shaders/passes, in the order of their names.
 std::span<const EmbeddedShader> embedded_shaders();
 
+/// How the grid is mirrored for this packet where exact rays, surfaces or slices need it.
+MirrorOptions mirror_options(const FramePacket& packet, const RenderSettings& settings, const field::ScalarGrid& grid);
+
 /// A pass: one kind of thing that a picture can hold. It declares which targets it reads and writes; the renderer (renderer.cpp) holds
 /// the passes in order and derives clears, barriers and groups from the declarations. A pass is created when a packet first wants
 /// it; a scene without streamlines has no streamline pass.
@@ -122,6 +125,8 @@ class Pass {
   virtual Outcome record(vk::Commands& commands, Frame& frame) = 0;
   /// Milliseconds spent so far on images made from grids, beside the mirrors.
   virtual double build_ms() const { return 0; }
+  /// Of images of grids' voxels, beside the mirrors.
+  virtual std::uint64_t grid_bytes() const { return 0; }
   /// Null: it casts no rays that others are blended with.
   virtual RayProbe* probe() { return nullptr; }
   /// What the last picture lacks, or was drawn otherwise than asked, and why, one sentence; empty: nothing.

@@ -53,6 +53,7 @@ class RaycastPass final : public Pass, public RayProbe {
   Bounds bounds() const override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
   double build_ms() const override { return fast_pass_ ? fast_pass_->build_ms() : 0; }
+  std::uint64_t grid_bytes() const override { return fast_pass_ ? fast_pass_->grid_bytes() : 0; }
   std::string note() const override { return wanted_fast_ && !fast_ ? refused_.reason : std::string(); }
 
   RayProbe* probe() override { return this; }

@@ -474,12 +474,14 @@ RenderStats Renderer::stats() const {
   stats.upload_bytes = device.counters().upload_bytes;
   stats.pipelines = device.counters().pipelines;
   stats.mirrors = parts_->mirrors->count();
+  stats.mirror_bytes = parts_->mirrors->bytes();
   stats.mirror_coarsening = parts_->mirrors->coarsenings();
   stats.gpu_budget = device.info().memory_budget;
   stats.passes = parts_->drawn_passes;
   stats.mirror_ms = parts_->mirrors->build_ms() + parts_->gone_build_ms;
   for (Pass* pass : parts_->active()) {
     stats.mirror_ms += pass->build_ms();
+    stats.mirror_bytes += pass->grid_bytes();
     if (std::string note = pass->note(); !note.empty()) stats.notes.push_back(std::move(note));
     if (pass->probe()) stats.rays_kept = pass->probe()->has_kept();
   }

@@ -39,6 +39,7 @@ struct RenderStats {
   std::uint64_t mirrors = 0;                        ///< grids mirrored now
   std::vector<MirrorCoarsening> mirror_coarsening;  ///< of the grids that do not fit into the memory budget
   std::uint64_t gpu_budget = 0;                     ///< bytes that may be held
+  std::uint64_t mirror_bytes = 0;                   ///< of images of grids' voxels, held now
   double mirror_ms = 0;                             ///< spent on building and uploading mirrors so far
   bool rays_kept = false;                           ///< RenderSettings::keep has spared the last picture most of its rays
   std::vector<std::string> notes;         ///< what the last picture lacks, or was drawn otherwise than asked, and why, a sentence each
