@@ -36,7 +36,7 @@ std::string scene_text(const Parts& p) {
          p.glyphs +
          R"({"field": "flow", "on": {"plane": {"point": [1, 0, 0], "normal": [1, 0, 0]}}, "spacing": 0.8, "length": 0.4, "radius": 0.03}],
   "chain": [)" +
-         p.chain + R"({"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, -1.2]}],
+         p.chain + R"({"name": "curve", "type": "streamline", "follow": "online", "field": "flow", "seed": [0.6, 0, -1.2]}],
   "widgets": [)" +
          p.widgets + "]" + p.members + R"(, "workspace": {"metres_per_unit": 0.05},
   "camera": {"position": [6, -6, 4], "target": [0, 0, 0]} })";
