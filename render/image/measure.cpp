@@ -79,6 +79,19 @@ void measure_thin_parts(const Picture& picture, const Picture& converged, Pictur
   if (all > 0) error.kept = all_kept / all;
 }
 
+/// Squares of the changes of the difference from one frame to the next, over what is covered in either.
+void add_changes(const Picture& last, const Picture& last_converged, const Picture& now, const Picture& converged, double& sum,
+                 double& count) {
+  for (std::size_t i = 0; i < now.rgba.size() / 4; ++i) {
+    if (!is_covered(now, converged, i) && !is_covered(last, last_converged, i)) continue;
+    for (std::size_t c = 4 * i; c < 4 * i + 3; ++c) {
+      const double change = double(now.rgba[c]) - converged.rgba[c] - last.rgba[c] + last_converged.rgba[c];
+      sum += change * change;
+    }
+    count += 3;
+  }
+}
+
 }  // namespace
 
 Picture over(const Picture& picture, const std::array<float, 3>& background) {
@@ -121,20 +134,19 @@ PictureError measure_error(const Picture& given, const Picture& given_converged,
   return error;
 }
 
+double flicker_between(const Picture& last, const Picture& last_converged, const Picture& now, const Picture& converged) {
+  double sum = 0, count = 0;
+  add_changes(last, last_converged, now, converged, sum, count);
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
 double measure_flicker(const std::vector<Picture>& frames, const std::vector<Picture>& converged, const std::array<float, 3>& background) {
   CATENA_ASSERT(frames.size() == converged.size() && frames.size() >= 2);
   double sum = 0, count = 0;
   std::array<Picture, 2> last;
   for (std::size_t n = 0; n < frames.size(); ++n) {
     std::array<Picture, 2> now{over(frames[n], background), over(converged[n], background)};
-    for (std::size_t i = 0; n > 0 && i < now[0].rgba.size() / 4; ++i) {
-      if (!is_covered(now[0], now[1], i) && !is_covered(last[0], last[1], i)) continue;
-      for (std::size_t c = 4 * i; c < 4 * i + 3; ++c) {
-        const double change = double(now[0].rgba[c]) - now[1].rgba[c] - last[0].rgba[c] + last[1].rgba[c];
-        sum += change * change;
-      }
-      count += 3;
-    }
+    if (n > 0) add_changes(last[0], last[1], now[0], now[1], sum, count);
     last = std::move(now);
   }
   return count > 0 ? std::sqrt(sum / count) : 0;

@@ -37,6 +37,9 @@ PictureError measure_error(const Picture& picture, const Picture& converged, con
 double measure_flicker(const std::vector<Picture>& frames, const std::vector<Picture>& converged,
                        const std::array<float, 3>& background = {});
 
+/// Of two frames that lie over their background already, and their converged pictures.
+double flicker_between(const Picture& last, const Picture& last_converged, const Picture& now, const Picture& converged);
+
 /// Over a colour; alpha stays, so that what is covered is known.
 Picture over(const Picture& picture, const std::array<float, 3>& background);
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <thread>
 
 #include "engine/base/clock.h"
@@ -20,7 +21,9 @@ namespace {
 constexpr double kStepShare = 0.93;                             // of the error that ray steps may take
 constexpr double kDeviations = 2;                               // of the lattice's mean, that an estimate lies above it
 constexpr double kFarthest = 8;                                 // the 99.9 percentile, in errors
-constexpr double kThinGoal = 5;                                 // a thin part may lose that share of the error
+constexpr double kThinGoal = 6;                                 // a thin part may lose that share of the error
+constexpr double kFlickerGoal = 0.5;                            // the flicker, in errors, or in what the picture itself changes by
+constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
 constexpr double kUneven = 1.1;                                 // of the ideal time: threads wait for each other
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
 constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, so that no lattice of rays is met alone
@@ -28,7 +31,7 @@ constexpr double kRoughGoal = 1.5;                              // 1/255: from i
 // steps, voxels: of what is seen, the shortest that is chosen, and those of the converged picture, which is halved until the picture
 // changes by less than a share of the goal, or by what rounding to 8 bits makes of nothing
 constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3, kRounding = 0.4,
-                 kFinestStep = 0.05;
+                 kFinestStep = 0.05, kConverged = 1e-4;
 constexpr int kMaxPictures = 16;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
@@ -73,6 +76,20 @@ Measured compare(const Picture& a, const Picture& b) {
   return {std::sqrt(mean), std::sqrt(mean + kDeviations * std::sqrt(variance / count)), quantile(errors.largest, 0.999)};
 }
 
+/// The same seen by a camera that has gone a little around its target.
+FramePacket turned(const FramePacket& packet) {
+  FramePacket out = packet;
+  const Vec3 turn = direction(packet.view.up) * (kTurn * std::numbers::pi / 180);
+  out.view.position = packet.view.target + rotate(rotation_of(turn), packet.view.position - packet.view.target);
+  return out;
+}
+
+RenderSettings converged_rung(double step) {
+  RenderSettings settings = exact_rung(step);
+  settings.termination = kConverged;
+  return settings;
+}
+
 /// The lattice's pixels of a finished picture.
 Picture on_lattice(const Picture& picture, std::uint32_t spacing) {
   Picture out;
@@ -89,8 +106,8 @@ class Search {
   /// The picture is drawn without a background, so that it says what it covers.
   Search(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) { packet_.background[3] = 0; }
 
-  /// `goal`: the least error that matters, 1/255.
-  Outcome begin(double goal) {
+  /// `goal`: the least error that matters, 1/255. `moves`: the error is wanted to be steady, too.
+  Outcome begin(double goal, bool moves = false) {
     // exact rays come first: what a large grid needs for them and for the fast raycast is not held at once
     CATENA_TRY(const Picture seen, renderer_.probe(packet_, exact_rung(kSeenStep), kSpacings[0]));
     double covered = 0;
@@ -101,6 +118,9 @@ class Search {
       if (covered / (spacing * spacing) >= kSamples) break;
     }
     CATENA_CHECK(find_truth(renderer_.draws_fast(packet_) ? goal : 0));
+    if (moves && renderer_.draws_fast(packet_)) {
+      CATENA_TRY(next_truth_, renderer_.probe(turned(packet_), converged_rung(truth_step_), spacing_));
+    }
     if (!renderer_.draws_fast(packet_)) return Done{};
     // it may have no memory for the grid
     CATENA_CHECK(renderer_.probe(packet_, fast_rung(kSeenStep, 1, 0, -1), kSpacings[0]));
@@ -118,9 +138,8 @@ class Search {
   Result<Measured> of_picture(const RenderSettings& settings) {
     CATENA_CHECK(renderer_.draw(packet_, settings));
     ++pictures_;
-    CATENA_TRY(const Picture picture, renderer_.read_back());
-    const std::array<float, 4>& b = packet_.background;
-    return compare(over(on_lattice(picture, spacing_), {b[0], b[1], b[2]}), truth_);
+    CATENA_TRY(drawn_, drawn_lattice());
+    return compare(drawn_, truth_);
   }
 
   Result<QualityChoice> for_error(double e) {
@@ -138,7 +157,9 @@ class Search {
         ++drawn;
         if (picture.good_for(e)) {
           CATENA_TRY(const bool keeps, keeps_what_is_thin(next.settings, e));
-          if (keeps) return choice(next.settings, picture.above, true);
+          CATENA_TRY(const bool steady, keeps ? is_steady(next.settings, e) : false);
+          if (steady) return choice(next.settings, picture.above, true);
+          if (keeps) continue;
         }
         // where a few pixels are far off, or what is thin is lost, a shorter step will not mend it: rays alone were good enough
         blurs[next.plan] = picture.above <= e && !every_ray;
@@ -177,8 +198,7 @@ class Search {
  private:
   /// Opaque things of steep transfer functions want far shorter steps than haze does.
   Outcome find_truth(double goal) {
-    RenderSettings converged = exact_rung(goal < kRoughGoal ? kTruthStep : kRoughTruthStep);
-    converged.termination = 1e-4;
+    RenderSettings converged = converged_rung(goal < kRoughGoal ? kTruthStep : kRoughTruthStep);
     CATENA_TRY(truth_, renderer_.probe(packet_, converged, spacing_));
     do {
       converged.step_voxels /= 2;
@@ -202,6 +222,23 @@ class Search {
     }
     const PictureError error = measure_error(picture, all_rays_, {packet_.background[0], packet_.background[1], packet_.background[2]});
     return error.least_kept >= 1 - e / kThinGoal && error.p999 <= kFarthest * e;
+  }
+
+  /// Of the picture that was drawn last.
+  Result<Picture> drawn_lattice() {
+    CATENA_TRY(const Picture picture, renderer_.read_back());
+    const std::array<float, 4>& b = packet_.background;
+    return over(on_lattice(picture, spacing_), {b[0], b[1], b[2]});
+  }
+
+  /// Whether the error of the picture that was drawn last stays much the same where the camera goes on.
+  Result<bool> is_steady(const RenderSettings& settings, double e) {
+    CATENA_CHECK(renderer_.draw(turned(packet_), settings));
+    ++pictures_;
+    CATENA_TRY(const Picture after, drawn_lattice());
+    const Picture none{truth_.width, truth_.height, std::vector<std::uint8_t>(truth_.rgba.size())};
+    const double change = flicker_between(none, truth_, none, next_truth_);
+    return flicker_between(drawn_, truth_, after, next_truth_) <= kFlickerGoal * std::max(e, change);
   }
 
   struct Candidate {
@@ -246,7 +283,8 @@ class Search {
 
   Renderer& renderer_;
   FramePacket packet_;
-  Picture truth_;                            ///< the rays of the lattice
+  Picture truth_, next_truth_;               ///< the rays of the lattice; and from where the camera goes
+  Picture drawn_;                            ///< the lattice of the picture that was drawn last
   double truth_step_ = 0, truth_error_ = 0;  ///< and what it still changed by
   Picture all_rays_;                         ///< the fast raycast's without interpolation
   std::uint32_t spacing_ = 1;
@@ -284,8 +322,9 @@ Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& pack
   }
   if (!draws_rays(packet)) return QualityChoice{balanced_settings(), 0, 0, true, 0};
   Search search(renderer, packet);
-  CATENA_CHECK(search.begin(goal.kind == QualityGoal::Kind::error ? goal.value : 0));
-  return goal.kind == QualityGoal::Kind::error ? search.for_error(goal.value) : search.for_time(goal.value, timer);
+  const bool has_error = goal.kind == QualityGoal::Kind::error;
+  CATENA_CHECK(search.begin(has_error ? goal.value : 0, has_error));
+  return has_error ? search.for_error(goal.value) : search.for_time(goal.value, timer);
 }
 
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
