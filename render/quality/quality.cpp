@@ -22,7 +22,7 @@ constexpr double kStepShare = 0.93;                             // of the error 
 constexpr double kDeviations = 2;                               // of the lattice's mean, that an estimate lies above it
 constexpr double kFarthest = 8;                                 // the 99.9 percentile, in errors
 constexpr double kThinGoal = 6;                                 // a thin part may lose that share of the error
-constexpr double kFlickerGoal = 0.5;                            // the flicker, in errors, or in what the picture itself changes by
+constexpr double kFlickerGoal = 0.625;                          // the flicker, in errors, or in what the picture itself changes by
 constexpr double kTurn = 0.2;                                   // degrees a frame, which flicker is measured at
 constexpr double kUneven = 1.1;                                 // of the ideal time: threads wait for each other
 constexpr double kSamples = 6000;                               // covered pixels on the lattice
@@ -42,7 +42,7 @@ struct Plan {
   double overhead, rays;
 };
 constexpr Plan kPlan[] = {{4, -1, -1, 0.03, 0.09}, {4, 1.3, -1, 0.05, 0.2}, {2, 0, -1, 0.04, 0.28}, {4, 1, 3, 0.12, 0.28},
-                          {2, 0, 2, 0.1, 0.4},     {2, 0, 0.8, 0.12, 0.6},  {1, 0, -1, 0.03, 1}};
+                          {2, 0, 2, 0.1, 0.4},     {2, 0, 1.5, 0.11, 0.46}, {2, 0, 0.8, 0.12, 0.6}, {1, 0, -1, 0.03, 1}};
 constexpr int kPlans = int(std::size(kPlan));
 constexpr double kFastSteps[] = {8, 6, 4, 3, 2, 1.5, 1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
 constexpr double kExactSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
@@ -214,10 +214,11 @@ class Search {
   Result<bool> keeps_what_is_thin(const RenderSettings& settings, double e) {
     if (settings.fast->spacing == 1) return true;
     CATENA_TRY(const Picture picture, renderer_.read_back());
-    if (all_rays_.rgba.empty()) {
-      CATENA_CHECK(
-          renderer_.draw(packet_, fast_rung(std::min(1.0, settings.fast->step_voxels), 1, 0, -1, settings.fast->smooth_gradients)));
+    const double step = std::min(1.0, settings.fast->step_voxels);
+    if (step != all_rays_step_) {
+      CATENA_CHECK(renderer_.draw(packet_, fast_rung(step, 1, 0, -1, settings.fast->smooth_gradients)));
       CATENA_TRY(all_rays_, renderer_.read_back());
+      all_rays_step_ = step;
       ++pictures_;
     }
     const PictureError error = measure_error(picture, all_rays_, {packet_.background[0], packet_.background[1], packet_.background[2]});
@@ -287,6 +288,7 @@ class Search {
   Picture drawn_;                            ///< the lattice of the picture that was drawn last
   double truth_step_ = 0, truth_error_ = 0;  ///< and what it still changed by
   Picture all_rays_;                         ///< the fast raycast's without interpolation
+  double all_rays_step_ = 0;
   std::uint32_t spacing_ = 1;
   bool fast_ = false;
   int pictures_ = 0;
