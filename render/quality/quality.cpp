@@ -31,7 +31,7 @@ constexpr double kRoughGoal = 1.5;                              // 1/255: from i
 // steps, voxels: of what is seen, the shortest that is chosen, and those of the converged picture, which is halved until the picture
 // changes by less than a share of the goal, or by what rounding to 8 bits makes of nothing
 constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3, kRounding = 0.4,
-                 kFinestStep = 0.05, kConverged = 1e-4;
+                 kFinestStep = 0.05;
 constexpr int kMaxPictures = 16;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
@@ -82,12 +82,6 @@ FramePacket turned(const FramePacket& packet) {
   const Vec3 turn = direction(packet.view.up) * (kTurn * std::numbers::pi / 180);
   out.view.position = packet.view.target + rotate(rotation_of(turn), packet.view.position - packet.view.target);
   return out;
-}
-
-RenderSettings converged_rung(double step) {
-  RenderSettings settings = exact_rung(step);
-  settings.termination = kConverged;
-  return settings;
 }
 
 /// The lattice's pixels of a finished picture.

@@ -39,6 +39,12 @@ RenderSettings exact_rung(double step_voxels) {
   return s;
 }
 
+RenderSettings converged_rung(double step_voxels) {
+  RenderSettings s = exact_rung(step_voxels);
+  s.termination = 1e-4;
+  return s;
+}
+
 double relative_cost(const RenderSettings& settings, bool shaded) {
   if (!settings.fast) return (shaded ? 3.5 : 1.1) / settings.step_voxels + 0.05;
   const FastSettings& f = *settings.fast;

@@ -22,6 +22,8 @@ struct LadderKind {
 RenderSettings fast_rung(double step_voxels, std::uint32_t spacing, double half, double full, bool smooth = false);
 /// By the exact raycast.
 RenderSettings exact_rung(double step_voxels);
+/// The same for what others are measured against: rays end only where a ten-thousandth gets through.
+RenderSettings converged_rung(double step_voxels);
 
 /// Of what a ray costs at step 1: its way to what is seen, whatever the step.
 inline constexpr double kStepless = 0.3;

@@ -96,13 +96,6 @@ Result<Report> measure(const MeasureOptions& options) {
   return report;
 }
 
-const Curve* curve_of(const Report* report, const std::string& id) {
-  if (report == nullptr) return nullptr;
-  for (const Curve& curve : report->curves)
-    if (curve.id == id) return &curve;
-  return nullptr;
-}
-
 }  // namespace
 
 std::vector<std::string> measurement_names() {
@@ -122,7 +115,7 @@ Outcome measure_scene(const MeasureOptions& options) {
   CATENA_TRY(const Report report, again ? tradeoff::read_report(options.source) : measure(options));
   std::vector<std::vector<std::string>> plots;
   for (const Curve& curve : report.curves) {
-    const tradeoff::PlotScript script = tradeoff::plot_script(curve, curve_of(other ? &*other : nullptr, curve.id), "plot");
+    const tradeoff::PlotScript script = tradeoff::plot_script(curve, tradeoff::curve_of(other ? &*other : nullptr, curve.id), "plot");
     CATENA_TRY(std::vector<std::string> drawn, folder.draw(script.text, script.files));
     plots.push_back(std::move(drawn));
   }

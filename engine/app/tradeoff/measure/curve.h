@@ -2,6 +2,7 @@
 /// settings is a point. Plain data: written as JSON and CSV, read back for --compare.
 /// NaN stands for what was not measured, or means nothing for this curve.
 #pragma once
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -51,6 +52,7 @@ struct Curve {
   std::string why;         ///< one sentence
 };
 
+inline bool on_front(const Curve& c, int i) { return std::find(c.front.begin(), c.front.end(), i) != c.front.end(); }
 inline double cost_of(const Point& p, Cost cost) { return cost == Cost::time ? p.time.median : cost == Cost::work ? p.work : p.bytes; }
 
 }  // namespace catena::app::tradeoff

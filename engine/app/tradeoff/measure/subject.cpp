@@ -43,15 +43,24 @@ std::optional<std::pair<Vec3, Vec3>> first_crossing(const field::ScalarField& s,
 
 }  // namespace
 
+double hand_speed(const scene::Scene& scene) { return kSpeed_m_per_s / scene.workspace.metres_per_unit; }
+
+field::AnyField field_of(scene::Scene& scene, const json::Node& link) {
+  const json::Node* name = link.find("field");
+  if (name == nullptr || name->kind != json::Kind::string) return {};
+  auto field = scene::use_field(scene, name->string, *name);
+  return field ? std::move(*field) : field::AnyField{};
+}
+
 std::optional<Motion> along_streamline(scene::Scene& scene, const LinkOf& link, double seconds) {
-  const json::Node *name = link.node.find("field"), *kind = link.node.find("kind");
+  const json::Node* kind = link.node.find("kind");
   const auto seed = json::get_optional_vec3(link.node, "seed");
-  if (name == nullptr || !seed || !*seed) return std::nullopt;
-  const auto any = scene::use_field(scene, name->string, *name);
-  if (!any || !any->vector) return std::nullopt;
-  const double length = any->vector->length(), speed = kSpeed_m_per_s / scene.workspace.metres_per_unit;
+  if (!seed || !*seed) return std::nullopt;
+  const field::VectorFieldPtr field = field_of(scene, link.node).vector;
+  if (!field) return std::nullopt;
+  const double length = field->length(), speed = hand_speed(scene);
   const bool line = kind != nullptr && kind->string == "line";
-  const auto traced = flow::trace({any->vector.get(), line, 0}, **seed, {.length = std::min(0.5 * speed * seconds, length)});
+  const auto traced = flow::trace({field.get(), line, 0}, **seed, {.length = std::min(0.5 * speed * seconds, length)});
   if (!traced) return std::nullopt;
   const flow::CurvePtr curve = *traced;
   const double lo = curve->knots().front().s, span = curve->knots().back().s - lo;
@@ -69,11 +78,11 @@ std::optional<Motion> along_streamline(scene::Scene& scene, const LinkOf& link, 
 }
 
 std::optional<Motion> through_surface(scene::Scene& scene, const LinkOf& link, double seconds) {
-  const json::Node *name = link.node.find("field"), *level = link.node.find("level"), *side = link.node.find("free");
-  if (name == nullptr || level == nullptr || level->kind != json::Kind::number) return std::nullopt;
-  const auto any = scene::use_field(scene, name->string, *name);
-  if (!any || !any->scalar) return std::nullopt;
-  const field::ScalarField& s = *any->scalar;
+  const json::Node *level = link.node.find("level"), *side = link.node.find("free");
+  if (level == nullptr || level->kind != json::Kind::number) return std::nullopt;
+  const field::ScalarFieldPtr field = field_of(scene, link.node).scalar;
+  if (!field) return std::nullopt;
+  const field::ScalarField& s = *field;
   const auto met = first_crossing(s, level->number);
   if (!met) return std::nullopt;
   const Vec3 p = met->first, n = (side != nullptr && side->string == "below" ? -1.0 : 1.0) * direction(met->second);  // to the free side

@@ -39,6 +39,12 @@ struct Motion {
   std::vector<haptics::ProbeSample> samples(double rate_hz) const;
 };
 
+/// Of the hand's own motions, world units a second: 0.15 m/s.
+double hand_speed(const scene::Scene& scene);
+
+/// The field that an item of the chain names; neither kind where there is none.
+field::AnyField field_of(scene::Scene& scene, const json::Node& link);
+
 /// Where a link is followed: along its streamline and a little beside it; through its surface and back. Nothing where it has none.
 std::optional<Motion> along_streamline(scene::Scene& scene, const LinkOf& link, double seconds);
 std::optional<Motion> through_surface(scene::Scene& scene, const LinkOf& link, double seconds);

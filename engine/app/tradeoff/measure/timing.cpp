@@ -34,4 +34,11 @@ Result<std::vector<Timing>> interleave(const std::vector<Repeat>& settings, doub
   return out;
 }
 
+Outcome time_points(Curve& curve, const std::vector<Repeat>& repeats, double seconds, int most) {
+  CATENA_ASSERT(repeats.size() == curve.points.size());
+  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, seconds, most));
+  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  return Done{};
+}
+
 }  // namespace catena::app::tradeoff

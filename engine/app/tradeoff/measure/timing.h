@@ -16,6 +16,9 @@ using Repeat = std::function<Result<double>()>;
 /// warms up and does not count.
 Result<std::vector<Timing>> interleave(const std::vector<Repeat>& settings, double seconds, int most = 31);
 
+/// The same into the points of a curve; a repeat is one of each, in their order.
+Outcome time_points(Curve& curve, const std::vector<Repeat>& repeats, double seconds, int most = 31);
+
 /// Median and quartiles; not finite of nothing.
 Timing timing_of(std::vector<double> times);
 

@@ -5,27 +5,13 @@
 
 #include "engine/app/command.h"
 #include "engine/app/tradeoff/report/report.h"
+#include "engine/base/appended.h"
 #include "engine/base/text.h"
 
 namespace catena::app::tradeoff {
 namespace {
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : one_line(text)) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
+std::string escaped(const std::string& text) { return xml_text(one_line(text)); }
 
 // gnuplot writes black in two ways: both become the page's ink
 constexpr const char* kHead = R"html(<!DOCTYPE html>
@@ -48,16 +34,6 @@ details { margin: 0.6rem 0; }
 
 std::string time_text(const Timing& t) {
   return std::isfinite(t.median) ? fmt::format("{:.4g} <small>({:.4g} .. {:.4g})</small>", t.median, t.low, t.high) : "-";
-}
-
-bool on_front(const Curve& c, int i) { return std::find(c.front.begin(), c.front.end(), i) != c.front.end(); }
-
-/// The same knob of the other report.
-const Curve* same(const Report* other, const Curve& c) {
-  if (other == nullptr) return nullptr;
-  for (const Curve& theirs : other->curves)
-    if (theirs.id == c.id) return &theirs;
-  return nullptr;
 }
 
 const Point* same(const Curve* other, const Point& p) {
@@ -181,7 +157,7 @@ std::string to_html(const Report& report, const Report* other, const std::vector
       if (!begun) text += fmt::format("<h2>{}</h2>\n", heading);
       begun = true;
       drawn = drawn || (i < plots.size() && !plots[i].empty());
-      text += section(c, same(other, c), i < plots.size() ? plots[i] : std::vector<std::string>());
+      text += section(c, curve_of(other, c.id), i < plots.size() ? plots[i] : std::vector<std::string>());
     }
   }
   if (!report.left_out.empty() || !drawn) text += "<h2>Left out</h2>\n<ul>\n";

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/app/tradeoff/report/report.h"
@@ -34,24 +35,29 @@ std::string json_of(const Point& p) {
 
 constexpr const char* kCosts[] = {"time", "work", "bytes"};
 
+/// The members of a curve that are text.
+template <class AnyCurve>
+auto words_of(AnyCurve& c) {
+  return std::to_array({std::pair{"id", &c.id},
+                        {"part", &c.part},
+                        {"title", &c.title},
+                        {"what", &c.what},
+                        {"error_name", &c.error_name},
+                        {"work_name", &c.work_name},
+                        {"time_name", &c.time_name},
+                        {"bytes_name", &c.bytes_name},
+                        {"floor_name", &c.floor_name},
+                        {"floor_from", &c.floor_from},
+                        {"reference", &c.reference},
+                        {"why", &c.why}});
+}
+
 std::string json_of(const Curve& c) {
   std::string text = "  {";
   const auto add = [&](const char* key, const std::string& value) {
     text += (text.size() > 3 ? ",\n   \"" : "\"") + std::string(key) + "\": " + value;
   };
-  for (const auto& [key, word] : {std::pair{"id", &c.id},
-                                  {"part", &c.part},
-                                  {"title", &c.title},
-                                  {"what", &c.what},
-                                  {"error_name", &c.error_name},
-                                  {"work_name", &c.work_name},
-                                  {"time_name", &c.time_name},
-                                  {"bytes_name", &c.bytes_name},
-                                  {"floor_name", &c.floor_name},
-                                  {"floor_from", &c.floor_from},
-                                  {"reference", &c.reference},
-                                  {"why", &c.why}})
-    add(key, json_string(*word));
+  for (const auto& [key, word] : words_of(c)) add(key, json_string(*word));
   add("more", list(c.more, json_string));
   add("floor", number(c.floor));
   add("reference_error", number(c.reference_error));
@@ -105,18 +111,7 @@ Result<Point> read_point(const json::Node& node) {
 
 Result<Curve> read_curve(const json::Node& node) {
   Curve c;
-  for (const auto& [key, word] : {std::pair{"id", &c.id},
-                                  {"part", &c.part},
-                                  {"title", &c.title},
-                                  {"what", &c.what},
-                                  {"error_name", &c.error_name},
-                                  {"work_name", &c.work_name},
-                                  {"time_name", &c.time_name},
-                                  {"bytes_name", &c.bytes_name},
-                                  {"floor_name", &c.floor_name},
-                                  {"floor_from", &c.floor_from},
-                                  {"reference", &c.reference},
-                                  {"why", &c.why}}) {
+  for (const auto& [key, word] : words_of(c)) {
     CATENA_TRY(*word, json::require_string(node, key));
   }
   CATENA_TRY(const std::vector<json::Node> more, items_of(node, "more"));
@@ -180,6 +175,13 @@ Result<Report> read_report(const std::string& path) {
   return report;
 }
 
+const Curve* curve_of(const Report* report, const std::string& id) {
+  if (report == nullptr) return nullptr;
+  for (const Curve& curve : report->curves)
+    if (curve.id == id) return &curve;
+  return nullptr;
+}
+
 std::string to_csv(const Curve& c) {
   // a table of Catena's knows no quotes
   const auto cell = [](std::string word) {
@@ -193,8 +195,7 @@ std::string to_csv(const Curve& c) {
     const Point& p = c.points[i];
     table.add(cell(p.setting)).add(cell(p.series)).add(p.error).add(p.work).add(p.time.median).add(p.time.low).add(p.time.high);
     table.add(p.time.repeats).add(p.bytes);
-    table.add(std::find(c.front.begin(), c.front.end(), static_cast<int>(i)) != c.front.end() ? 1 : 0)
-        .add(static_cast<int>(i) == c.chosen ? 1 : 0);
+    table.add(on_front(c, static_cast<int>(i)) ? 1 : 0).add(static_cast<int>(i) == c.chosen ? 1 : 0);
     for (const double value : p.more) table.add(value);
     table.end_row();
   }

@@ -21,8 +21,6 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
-double value_of(const Point& p, Cost cost) { return cost_of(p, cost); }
-
 std::vector<std::string> series_of(const Curve& c) {
   std::vector<std::string> all;
   for (const Point& p : c.points)
@@ -35,7 +33,7 @@ std::string rows(const Curve& c, Cost cost, double least, const std::string& ser
   std::string text;
   for (std::size_t i = 0; i < c.points.size(); ++i) {
     const Point& p = c.points[i];
-    const double x = value_of(p, cost);
+    const double x = cost_of(p, cost);
     if ((only >= 0 && static_cast<int>(i) != only) || (only < 0 && p.series != series) || !(x > 0) || !std::isfinite(p.error)) continue;
     const bool times = cost == Cost::time;
     text += fmt::format("{} {} {} {}\n", to_text(x), to_text(std::max(p.error, least)), to_text(times ? p.time.low : x),
@@ -80,7 +78,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
     for (const Curve* c : {&curve, other}) {
       if (c == nullptr) continue;
       for (const Point& p : c->points)
-        if (value_of(p, cost) > 0 && std::isfinite(p.error)) lo = std::min(lo, value_of(p, cost)), hi = std::max(hi, value_of(p, cost));
+        if (cost_of(p, cost) > 0 && std::isfinite(p.error)) lo = std::min(lo, cost_of(p, cost)), hi = std::max(hi, cost_of(p, cost));
       int color = 0;
       for (const std::string& series : series_of(*c)) {
         const std::string look =

@@ -26,9 +26,12 @@ Result<Report> read_report(const std::string& path);
 /// Whether a JSON file says that it is one; false also where it cannot be read.
 bool is_report(const std::string& path);
 
+/// Of that id; null where there is none, or no report.
+const Curve* curve_of(const Report* report, const std::string& id);
+
 std::string to_csv(const Curve& curve);
 
-/// One page that opens without a network. `plots`: SVG by curve, "" where there is none. `other`: beside the first.
+/// One page that opens without a network. `plots`: SVG, none or more a curve. `other`: beside the first.
 std::string to_html(const Report& report, const Report* other, const std::vector<std::vector<std::string>>& plots);
 
 /// The gnuplot script of a curve's plots, one after the other into `files` (SVG): error against each cost that was measured, or the cost

@@ -9,7 +9,7 @@ namespace catena::app::tradeoff {
 
 Result<std::vector<Curve>> measure_budget(Subject& subject) {
   Eye& eye = *subject.eye;
-  if (eye.packet.volumes.empty() && eye.packet.isosurfaces.empty() && eye.packet.slices.empty()) {
+  if (!draws_grids(eye.packet)) {
     subject.left_out.emplace_back("Memory budget: no grid is drawn.");
     return std::vector<Curve>{};
   }
@@ -36,20 +36,15 @@ Result<std::vector<Curve>> measure_budget(Subject& subject) {
     if (!curve.points.empty() && factor == curve.points.back().more.back()) continue;  // the same picture
     const render::PictureError error = render::measure_error(*picture, eye.truth);
     const std::string budget = fmt::format("{:.3g} MB", 1e-6 * static_cast<double>(stats.gpu_budget));
-    curve.points.push_back({share > 0 ? budget : "as much as there is",
-                            share > 0 ? fmt::format("--gpu-memory {:.3g}", 1e-6 * static_cast<double>(stats.gpu_budget)) : "",
-                            "",
-                            error.rmse,
-                            kNotMeasured,
-                            {},
-                            static_cast<double>(stats.gpu_bytes),
-                            {error.p999, 100 * error.kept, 100 * error.least_kept, factor}});
+    const Tried tried{share > 0 ? budget : "as much as there is",
+                      share > 0 ? fmt::format("--gpu-memory {:.3g}", 1e-6 * static_cast<double>(stats.gpu_budget)) : "", "", settings};
+    curve.points.push_back(point_of(tried, error, stats));
+    curve.points.back().more.push_back(factor);
     repeats.push_back(drawing_of(**renderer, eye.packet, settings));
     renderers.push_back(std::move(*renderer));
   }
   curve.current = curve.points.empty() ? -1 : 0;
-  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, 0.3 * subject.effort.eye_s, 9));
-  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  CATENA_CHECK(time_points(curve, repeats, 0.3 * subject.effort.eye_s, 9));
   return std::vector<Curve>{curve};
 }
 

@@ -17,8 +17,7 @@ namespace {
 constexpr double kSettled = 0.3;  // 1/255: a step that changes less is short enough
 
 render::RenderSettings converged(double step) {
-  render::RenderSettings s = render::exact_rung(step);
-  s.termination = 1e-4;
+  render::RenderSettings s = render::converged_rung(step);
   s.texels = render::TexelFormat::r32f;
   return s;
 }
@@ -63,7 +62,7 @@ bool on_level(render::FramePacket& packet, std::map<const field::ScalarGrid*, Le
 
 /// The picture of the same data with every 2nd and every 4th voxel, extrapolated. Steps of one length in the world.
 Outcome find_floor(Eye& eye) {
-  if (eye.packet.volumes.empty() && eye.packet.isosurfaces.empty() && eye.packet.slices.empty()) {
+  if (!draws_grids(eye.packet)) {
     eye.floor_from = "No grid is drawn: the data leave nothing open.";
     return Done{};
   }
@@ -88,6 +87,21 @@ Outcome find_floor(Eye& eye) {
 
 }  // namespace
 
+bool draws_grids(const render::FramePacket& packet) {
+  return !packet.volumes.empty() || !packet.isosurfaces.empty() || !packet.slices.empty();
+}
+
+Point point_of(const Tried& t, const render::PictureError& error, const render::RenderStats& stats) {
+  return {t.setting,
+          t.write,
+          t.series,
+          error.rmse,
+          kNotMeasured,
+          {},
+          static_cast<double>(stats.gpu_bytes),
+          {error.p999, 100 * error.kept, 100 * error.least_kept}};
+}
+
 Result<render::Picture> picture_of(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings) {
   CATENA_CHECK(renderer.draw(packet, settings));
   return renderer.read_back();
@@ -111,8 +125,7 @@ Outcome open_eye(Subject& subject) {
   packet.overlay = {};
   packet.cursors.clear();
   packet.background[3] = 0;
-  if (packet.volumes.empty() && packet.isosurfaces.empty() && packet.slices.empty() && packet.meshes.empty() && packet.tubes.empty() &&
-      packet.balls.empty() && packet.glyphs.empty()) {
+  if (!draws_grids(packet) && packet.meshes.empty() && packet.tubes.empty() && packet.balls.empty() && packet.glyphs.empty()) {
     subject.left_out.emplace_back("The eye: the scene draws nothing.");
     return Done{};
   }
@@ -152,21 +165,11 @@ Outcome measure_settings(Subject& subject, const std::vector<Tried>& tried, Curv
     const double seconds = 1e-3 * ms_since(start);
     CATENA_TRY(const render::Picture picture, eye.renderer->read_back());
     const render::PictureError error = render::measure_error(picture, eye.truth);
-    Point p{t.setting,
-            t.write,
-            t.series,
-            error.rmse,
-            kNotMeasured,
-            {},
-            static_cast<double>(eye.renderer->stats().gpu_bytes),
-            {error.p999, 100 * error.kept, 100 * error.least_kept}};
-    curve.points.push_back(std::move(p));
+    curve.points.push_back(point_of(t, error, eye.renderer->stats()));
     repeats.push_back(draw);
     if (seconds > 0.2 * subject.effort.eye_s) too_long.insert(t.series);
   }
-  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.eye_s, 15));
-  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
-  return Done{};
+  return time_points(curve, repeats, subject.effort.eye_s, 15);
 }
 
 Curve eye_curve(const Subject& subject, const std::string& id, const std::string& title, const std::string& what) {

@@ -21,11 +21,16 @@ Result<render::Picture> picture_of(render::Renderer& renderer, const render::Fra
 /// Milliseconds of drawing: of a processor's time where the driver draws with it, else of wall time.
 Repeat drawing_of(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings);
 
+bool draws_grids(const render::FramePacket& packet);
+
 /// A setting to try.
 struct Tried {
   std::string setting, write, series;
   render::RenderSettings settings;
 };
+
+/// What was measured of it, but for the time; `more` as eye_curve names it.
+Point point_of(const Tried& tried, const render::PictureError& error, const render::RenderStats& stats);
 
 /// Draws them, the cheapest first, measures each against the converged picture, and times them in turns. What one picture alone would take
 /// more than a fifth of the curve's time for is left out, with all that follows it in its series.

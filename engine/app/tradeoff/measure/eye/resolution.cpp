@@ -90,8 +90,7 @@ Result<std::vector<Curve>> measure_resolution(Subject& subject) {
   curve.current = 2;
   std::vector<Repeat> repeats;
   for (const render::FramePacket& packet : packets) repeats.push_back(drawing_of(*eye.renderer, packet, settings));
-  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, 0.5 * subject.effort.eye_s, 9));
-  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  CATENA_CHECK(time_points(curve, repeats, 0.5 * subject.effort.eye_s, 9));
   return std::vector<Curve>{curve};
 }
 

@@ -8,8 +8,7 @@
 namespace catena::app::tradeoff {
 
 Result<std::vector<Curve>> measure_texels(Subject& subject) {
-  const render::FramePacket& packet = subject.eye->packet;
-  if (packet.volumes.empty() && packet.isosurfaces.empty() && packet.slices.empty()) {
+  if (!draws_grids(subject.eye->packet)) {
     subject.left_out.emplace_back("Texels: no grid is drawn.");
     return std::vector<Curve>{};
   }

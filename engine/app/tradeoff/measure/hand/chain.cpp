@@ -19,12 +19,8 @@ Result<std::vector<Curve>> measure_chain(Subject& subject) {
   const std::vector<haptics::ProbeSample> path = subject.motion.samples(subject.rate_hz);
   std::vector<haptics::Program> programs;
   for (std::size_t n = 1; n <= links; ++n) {
-    haptics::Program part = *subject.program;
+    haptics::Program part = without_widgets(*subject.program);
     part.links.resize(n);
-    part.first_widget_link = -1;
-    part.widgets.clear();
-    part.widget_names.clear();
-    part.modes.clear();
     programs.push_back(std::move(part));
     double fetches = 0;
     run_ticks(programs.back(), path, [&](const exchange::HapticState& out) {
@@ -43,13 +39,10 @@ Result<std::vector<Curve>> measure_chain(Subject& subject) {
   if (programs.empty()) return std::vector<Curve>{};
   std::vector<Repeat> repeats;
   for (const haptics::Program& program : programs) repeats.push_back(ticks_of(program, path));
-  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    curve.points[i].time = times[i];
-    curve.points[i].more[0] = 100e-9 * times[i].median * subject.rate_hz;
-  }
+  CATENA_CHECK(time_points(curve, repeats, subject.effort.hand_s));
+  for (Point& p : curve.points) p.more[0] = 100e-9 * p.time.median * subject.rate_hz;
   curve.current = static_cast<int>(links) - 1;
-  curve.why = fmt::format("The whole chain takes {:.2g} us, {:.2g} % of a tick at {:g} Hz.", 1e-3 * times.back().median,
+  curve.why = fmt::format("The whole chain takes {:.2g} us, {:.2g} % of a tick at {:g} Hz.", 1e-3 * curve.points.back().time.median,
                           curve.points.back().more[0], subject.rate_hz);
   return std::vector<Curve>{curve};
 }

@@ -25,7 +25,7 @@ Result<std::shared_ptr<const haptics::Constraint>> link_on(Subject& subject, con
 }
 
 Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
-  const field::ScalarFieldPtr field = scalar_field_of(subject.scene, link.node);
+  const field::ScalarFieldPtr field = field_of(subject.scene, link.node).scalar;
   const json::Node* level = link.node.find("level");
   if (!field || level == nullptr || level->kind != json::Kind::number)
     return Error{"link \"" + link.name + "\" has no field with a stated level"};
@@ -86,23 +86,14 @@ Result<Curve> measure_surface(Subject& subject, const LinkOf& link) {
   }
   std::vector<Repeat> repeats;
   for (const haptics::Program& program : programs) repeats.push_back(ticks_of(program, path));
-  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
-  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  CATENA_CHECK(time_points(curve, repeats, subject.effort.hand_s));
   return curve;
 }
 
 }  // namespace
 
 Result<std::vector<Curve>> measure_isosurface(Subject& subject) {
-  std::vector<Curve> curves;
-  for (const LinkOf& link : links_of_type(subject.scene, "isosurface")) {
-    auto curve = measure_surface(subject, link);
-    if (curve)
-      curves.push_back(std::move(*curve));
-    else
-      subject.left_out.push_back("How exactly a surface is felt: " + curve.error().message + ".");
-  }
-  return curves;
+  return curves_of_links(subject, "isosurface", "How exactly a surface is felt", measure_surface);
 }
 
 }  // namespace catena::app::tradeoff

@@ -80,8 +80,7 @@ Result<Curve> force_curve(Subject& subject) {
       return 1e-3 * ns * rate;
     });
   }
-  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
-  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  CATENA_CHECK(time_points(curve, repeats, subject.effort.hand_s));
   mark_current(curve, subject.rate_hz);
   return curve;
 }

@@ -25,14 +25,19 @@ Repeat ticks_of(const haptics::Program& program, std::span<const haptics::ProbeS
   };
 }
 
+haptics::Program without_widgets(const haptics::Program& program) {
+  haptics::Program bare = program;
+  bare.first_widget_link = -1;
+  bare.widgets.clear();
+  bare.widget_names.clear();
+  bare.modes.clear();
+  return bare;
+}
+
 haptics::Program only_link(const haptics::Program& program, const std::string& name,
                            std::shared_ptr<const haptics::Constraint> constraint) {
-  haptics::Program one = program;
+  haptics::Program one = without_widgets(program);
   std::erase_if(one.links, [&](const haptics::Link& link) { return link.name != name; });
-  one.modes.clear();
-  one.widgets.clear();
-  one.widget_names.clear();
-  one.first_widget_link = -1;
   one.coupling.method = haptics::CouplingMethod::chain;
   for (haptics::Link& link : one.links) {
     link.on = {};
@@ -41,18 +46,17 @@ haptics::Program only_link(const haptics::Program& program, const std::string& n
   return one;
 }
 
-field::VectorFieldPtr vector_field_of(scene::Scene& scene, const json::Node& link) {
-  const json::Node* name = link.find("field");
-  if (name == nullptr || name->kind != json::Kind::string) return nullptr;
-  const auto any = scene::use_field(scene, name->string, *name);
-  return any ? any->vector : nullptr;
-}
-
-field::ScalarFieldPtr scalar_field_of(scene::Scene& scene, const json::Node& link) {
-  const json::Node* name = link.find("field");
-  if (name == nullptr || name->kind != json::Kind::string) return nullptr;
-  const auto any = scene::use_field(scene, name->string, *name);
-  return any ? any->scalar : nullptr;
+Result<std::vector<Curve>> curves_of_links(Subject& subject, const std::string& type, const std::string& what,
+                                           Result<Curve> (*measure)(Subject& subject, const LinkOf& link)) {
+  std::vector<Curve> curves;
+  for (const LinkOf& link : links_of_type(subject.scene, type)) {
+    auto curve = measure(subject, link);
+    if (curve)
+      curves.push_back(std::move(*curve));
+    else
+      subject.left_out.push_back(what + ": " + curve.error().message + ".");
+  }
+  return curves;
 }
 
 }  // namespace catena::app::tradeoff

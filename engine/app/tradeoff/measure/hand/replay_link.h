@@ -3,6 +3,7 @@
 #include <functional>
 #include <span>
 
+#include "engine/app/tradeoff/measure/subject.h"
 #include "engine/app/tradeoff/measure/timing.h"
 #include "engine/scene/scene.h"
 #include "haptics/chain/tick.h"
@@ -16,12 +17,15 @@ void run_ticks(const haptics::Program& program, std::span<const haptics::ProbeSa
 /// A repeat that runs the whole path and gives the processor's nanoseconds a tick. Both outlive it.
 Repeat ticks_of(const haptics::Program& program, std::span<const haptics::ProbeSample> path);
 
+/// The program without what a person can hold or switch: its links may be taken out.
+haptics::Program without_widgets(const haptics::Program& program);
+
 /// The program with one link alone, another constraint in its place where `constraint` is given.
 haptics::Program only_link(const haptics::Program& program, const std::string& name,
                            std::shared_ptr<const haptics::Constraint> constraint = {});
 
-/// The field that an item of the chain names; nothing where it is another kind.
-field::VectorFieldPtr vector_field_of(scene::Scene& scene, const json::Node& link);
-field::ScalarFieldPtr scalar_field_of(scene::Scene& scene, const json::Node& link);
+/// A curve for each link of the scene of a type; of one that cannot be measured the sentence "WHAT: why." in left_out.
+Result<std::vector<Curve>> curves_of_links(Subject& subject, const std::string& type, const std::string& what,
+                                           Result<Curve> (*measure)(Subject& subject, const LinkOf& link));
 
 }  // namespace catena::app::tradeoff

@@ -70,7 +70,7 @@ void add_floor(const Line& line, Curve& curve) {
 Result<Line> make_line(Subject& subject, const LinkOf& link) {
   Line line;
   line.name = link.name;
-  line.field = vector_field_of(subject.scene, link.node);
+  line.field = field_of(subject.scene, link.node).vector;
   if (!line.field) return Error{"link \"" + link.name + "\" has no vector field"};
   const json::Node* kind = link.node.find("kind");
   CATENA_TRY(line.flow.min_speed, json::get_number(link.node, "min_speed", 0));
@@ -83,8 +83,7 @@ Result<Line> make_line(Subject& subject, const LinkOf& link) {
   if (!motion) return Error{"from the seed of link \"" + link.name + "\" no line goes"};
   line.motion = *motion;
   // somewhat farther than the hand goes
-  line.options.length =
-      std::min(0.6 * 0.15 * subject.effort.motion_s / subject.scene.workspace.metres_per_unit, 1.2 * line.field->length());
+  line.options.length = std::min(0.6 * hand_speed(subject.scene) * subject.effort.motion_s, 1.2 * line.field->length());
   line.options.length += 0.02 * line.field->length();
   line.options.tolerance = kReferenceTolerance;
   line.options.hermite_tolerance = kReferenceHermite;
@@ -186,23 +185,14 @@ Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
       return ns * ticks_a_ms;
     });
   }
-  CATENA_TRY(const std::vector<Timing> times, interleave(repeats, subject.effort.hand_s));
-  for (std::size_t i = 0; i < times.size(); ++i) curve.points[i].time = times[i];
+  CATENA_CHECK(time_points(curve, repeats, subject.effort.hand_s));
   return curve;
 }
 
 }  // namespace
 
 Result<std::vector<Curve>> measure_streamline(Subject& subject) {
-  std::vector<Curve> curves;
-  for (const LinkOf& link : links_of_type(subject.scene, "streamline")) {
-    auto curve = measure_line(subject, link);
-    if (curve)
-      curves.push_back(std::move(*curve));
-    else
-      subject.left_out.push_back("How a streamline is followed: " + curve.error().message + ".");
-  }
-  return curves;
+  return curves_of_links(subject, "streamline", "How a streamline is followed", measure_line);
 }
 
 }  // namespace catena::app::tradeoff

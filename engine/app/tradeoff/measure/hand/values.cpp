@@ -123,9 +123,8 @@ Result<Curve> measure_grid(Subject& subject, const std::string& name, const fiel
   add("half float (16 bits)", 2, halves);
   add("byte (8 bits)", 1, bytes);
   curve.current = 0;
-  CATENA_TRY(const std::vector<Timing> times,
-             interleave({fetches_of(floats, places), fetches_of(halves, places), fetches_of(bytes, places)}, 0.3 * subject.effort.hand_s));
-  for (std::size_t i = 0; i < 3; ++i) curve.points[i].time = times[i];
+  CATENA_CHECK(
+      time_points(curve, {fetches_of(floats, places), fetches_of(halves, places), fetches_of(bytes, places)}, 0.3 * subject.effort.hand_s));
   return curve;
 }
 
@@ -136,7 +135,7 @@ Result<std::vector<Curve>> measure_values(Subject& subject) {
   bool felt = false;
   std::vector<std::string> done;
   subject.scene.world.each<scene::Link>([&](scene::Entity, const scene::Link& link) {
-    const field::ScalarFieldPtr field = scalar_field_of(subject.scene, link.node);
+    const field::ScalarFieldPtr field = field_of(subject.scene, link.node).scalar;
     if (!field || field->grid() == nullptr) return;
     felt = true;
     const std::string name = link.node.find("field")->string;
