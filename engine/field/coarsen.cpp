@@ -241,7 +241,8 @@ Result<CoarseGrid> coarsen(const ScalarGrid& grid, int factor) {
       Mapping::from_linear(fine.world_from_index_linear * double(factor), fine.world_from_index(Vec3(0.5 * (factor - 1))));
   CoarseGrid coarse;
   CATENA_TRY(coarse.grid, grid_from_buffers<ScalarGrid>(grid.name(), mapping, std::move(buffers)));
-  if (grid.interpolation() != coarse.grid->interpolation()) coarse.grid = coarse.grid->interpolated(grid.interpolation());
+  // of a cubic grid the coarse one is linear: a preview, as every coarse grid is
+  if (grid.interpolation() == Interpolation::nearest) coarse.grid = coarse.grid->interpolated(Interpolation::nearest);
   coarse.domain = {{axes[0].domain_lo, axes[1].domain_lo, axes[2].domain_lo}, {axes[0].domain_hi, axes[1].domain_hi, axes[2].domain_hi}};
   return coarse;
 }

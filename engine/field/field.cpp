@@ -22,7 +22,7 @@ void Field::set_domain(std::string name, const Mapping& mapping, const Box& inde
 }
 
 std::string why_no_surface(const ScalarField& field, const std::string& name) {
-  if (field.interpolation() == Interpolation::linear) return {};
+  if (field.interpolation() != Interpolation::nearest) return {};
   return "field \"" + name + "\" is read by its nearest voxels: it has no surface of its own; a field {\"label\": NUMBER, \"of\": \"" +
          name + "\"} at level 0.5, or \"interpolation\": \"linear\", was expected";
 }

@@ -1,6 +1,6 @@
 /// Fields: immutable, versioned, in world coordinates and double precision. Grids and analytic fields serve one interface, so
 /// that every algorithm can be tested against closed forms. One fetch (= one evaluation) gives the value and, for scalars,
-/// the analytic gradient: of the trilinear cell on grids, of the formula on analytic fields.
+/// the analytic gradient: of the trilinear or cubic cell on grids, of the formula on analytic fields.
 /// Threads: any number at once, each with its own Cursor. No allocation, lock or throw in any const noexcept function.
 #pragma once
 #include <cstddef>
@@ -20,7 +20,7 @@ namespace catena::field {
 /// Zero-initialised it belongs to no grid; a fetch from another grid than the last starts it anew.
 struct Cursor {
   const void* owner = nullptr;
-  alignas(16) std::byte memory[368]{};
+  alignas(16) std::byte memory[1280]{};
 };
 
 struct ScalarSample {
@@ -42,8 +42,9 @@ struct LineSample : LineAxis {
 /// How a grid says what lies between its voxel centres.
 ///   linear    trilinear in the cell of eight centres
 ///   nearest   the value of the nearest centre (of two as near, the one of the greater index), never a mix; its gradient is 0
-/// The domain is the box of voxel centres either way.
-enum class Interpolation { linear, nearest };
+///   cubic     of 4 x 4 x 4 centres: smooth (C1) from cell to cell (cubic.h)
+/// The domain is the box of voxel centres, less cells with a missing corner, every time.
+enum class Interpolation { linear, nearest, cubic };
 
 class Field {
  public:

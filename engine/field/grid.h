@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "engine/field/cubic.h"
 #include "engine/field/field.h"
 
 namespace catena::field {
@@ -21,8 +22,9 @@ struct GridStats {
 class ScalarGrid final : public ScalarField {
  public:
   struct Storage;  ///< the NanoVDB buffers
+  struct Ghosts;   ///< what cubic cells need beside them
   ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage, const GridStats& stats,
-             Interpolation interpolation = Interpolation::linear);
+             Interpolation interpolation = Interpolation::linear, std::shared_ptr<const Ghosts> ghosts = {});
   ~ScalarGrid() override;
 
   ScalarSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
@@ -33,8 +35,12 @@ class ScalarGrid final : public ScalarField {
   bool is_grid() const noexcept override { return true; }
   Interpolation interpolation() const noexcept override { return interpolation_; }
   std::size_t bytes() const noexcept override;
-  /// The same voxels read in another way: they are shared, the version is its own.
-  std::shared_ptr<const ScalarGrid> interpolated(Interpolation interpolation) const;
+  /// The same voxels read in another way: they are shared, the version is its own. Cubic: an error (one phrase) where there is no memory
+  /// for its ghosts; the others never fail.
+  Result<std::shared_ptr<const ScalarGrid>> cubic() const;
+  std::shared_ptr<const ScalarGrid> interpolated(Interpolation linear_or_nearest) const;
+  /// Of a cubic grid, the samples of a legal cell that is valid; null elsewhere. Good until the cursor's next use.
+  const CubicSamples<1>* samples(const Index3& base, Cursor& cursor) const noexcept;
 
   /// The cell whose base is the nearest legal one to `base` (clamped so that base and base + 1 lie in the index box).
   ScalarCell cell(const Index3& base, Cursor& cursor) const noexcept;
@@ -42,7 +48,8 @@ class ScalarGrid final : public ScalarField {
   const GridStats& stats() const { return stats_; }
   float background() const;
   bool has_mask() const;  ///< some cells may be invalid: a `valid` mask, or values that are not finite
-  /// Copies `size` voxels an axis from `origin` into out (x fastest); voxels outside the tree give the background.
+  /// Copies `size` voxels an axis from `origin` into out (x fastest); voxels outside the tree give the background. Of a cubic grid
+  /// missing samples are given as their ghosts (ghosts.h).
   void read_block(const Index3& origin, const Index3& size, std::span<float> out) const;
   /// 1 where the *cell* based at the voxel is valid (always 1 inside the box without a mask), 0 elsewhere.
   void read_cell_valid(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const;
@@ -54,12 +61,15 @@ class ScalarGrid final : public ScalarField {
   std::shared_ptr<const Storage> storage_;
   GridStats stats_;
   Interpolation interpolation_;
+  std::shared_ptr<const Ghosts> ghosts_;  ///< of a cubic grid
 };
 
 class VectorGrid final : public VectorField {
  public:
   struct Storage;
-  VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::unique_ptr<Storage> storage, const GridStats& stats);
+  struct Ghosts;
+  VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage, const GridStats& stats,
+             std::shared_ptr<const Ghosts> ghosts = {});
   ~VectorGrid() override;
 
   VectorSample sample(const Vec3& world, Cursor& cursor) const noexcept override;
@@ -67,6 +77,10 @@ class VectorGrid final : public VectorField {
   Reason why_outside(const Vec3& world, Cursor& cursor) const noexcept override;
   const VectorGrid* grid() const noexcept override { return this; }
   bool is_grid() const noexcept override { return true; }
+  Interpolation interpolation() const noexcept { return ghosts_ ? Interpolation::cubic : Interpolation::linear; }
+  /// As of scalar grids. A line field's axes are mixed linearly either way (line_axis.h).
+  Result<std::shared_ptr<const VectorGrid>> cubic() const;
+  const CubicSamples<3>* samples(const Index3& base, Cursor& cursor) const noexcept;
   std::size_t bytes() const noexcept override;
 
   VectorCell cell(const Index3& base, Cursor& cursor) const noexcept;
@@ -77,8 +91,9 @@ class VectorGrid final : public VectorField {
   const Storage& storage() const { return *storage_; }  ///< opaque outside this room
 
  private:
-  std::unique_ptr<Storage> storage_;
+  std::shared_ptr<const Storage> storage_;
   GridStats stats_;
+  std::shared_ptr<const Ghosts> ghosts_;  ///< of a cubic grid
 };
 
 /// Grids made in memory: values by voxel, x fastest, over `size` voxels from index (0, 0, 0). `valid` (optional) by voxel.

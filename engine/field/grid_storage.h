@@ -17,6 +17,7 @@ inline nanovdb::Coord coord(const Index3& i) { return {i.x, i.y, i.z}; }
 
 template <class T>
 struct GridStorage {
+  using Value = T;
   NanoMemory values_memory, voxels_memory, cells_memory;
   const nanovdb::NanoGrid<T>* values = nullptr;
   const NanoMask* valid_voxels = nullptr;  ///< null: no mask
@@ -50,7 +51,7 @@ struct GridStorage {
 struct ScalarGrid::Storage : GridStorage<float> {};
 struct VectorGrid::Storage : GridStorage<nanovdb::Vec3f> {};
 
-/// What a Cursor's bytes hold: the accessors and the last cell.
+/// What a Cursor's bytes hold: the accessors and the last cell; of a cubic grid its samples, too.
 template <class T, class Corner>
 struct Walk {
   using Values = nanovdb::ReadAccessor<T, 0, 1, 2>;
@@ -66,14 +67,27 @@ struct Walk {
       : version(v), base{}, filled(false), valid(false), corner{}, values(grid), cells{} {}
 };
 
+using ScalarWalk = Walk<float, double>;
+using VectorWalk = Walk<nanovdb::Vec3f, Vec3>;
+static_assert(offsetof(ScalarWalk, version) == 0 && offsetof(VectorWalk, version) == 0);
+
+template <class T, class Corner>
+struct CubicWalk : Walk<T, Corner> {
+  alignas(16) CubicSamples<sizeof(T) / sizeof(float)> samples;
+  typename Walk<T, Corner>::Values ghosts;
+
+  CubicWalk(const nanovdb::NanoGrid<T>& grid, const nanovdb::NanoGrid<T>& ghost_grid, std::uint64_t v)
+      : Walk<T, Corner>(grid, v), samples{}, ghosts(ghost_grid) {}
+};
+
 /// The walk in the cursor's memory, made anew when the cursor comes from another grid (or from one freed at the same address).
-template <class W, class Storage>
-W& walk_of(Cursor& cursor, const void* owner, std::uint64_t version, const Storage& storage) {
+/// `ghosts`: of a CubicWalk.
+template <class W, class Storage, class... Ghosts>
+W& walk_of(Cursor& cursor, const void* owner, std::uint64_t version, const Storage& storage, const Ghosts&... ghosts) {
   static_assert(sizeof(W) <= sizeof(Cursor::memory) && alignof(W) <= 16 && std::is_trivially_copyable_v<W>);
-  static_assert(offsetof(W, version) == 0);
   W* walk = std::launder(reinterpret_cast<W*>(cursor.memory));
   if (cursor.owner == owner && walk->version == version) return *walk;
-  walk = new (cursor.memory) W(*storage.values, version);
+  walk = new (cursor.memory) W(*storage.values, ghosts..., version);
   if (storage.valid_cells) new (walk->cells) typename W::Cells(*storage.valid_cells);
   cursor.owner = owner;
   return *walk;
@@ -99,6 +113,45 @@ void fetch(W& walk, const Storage& storage, const Index3& base, const Convert& c
   walk.valid = true;
   if (storage.valid_cells) walk.valid = std::launder(reinterpret_cast<typename W::Cells*>(walk.cells))->getValue(ijk);
   for (int n = 0; n < 8; ++n) walk.valid = walk.valid && finite(walk.corner[n]);
+}
+
+/// Fills a cubic walk with the samples about a legal base: by blocks, at most two an axis. Ghosts stand where they are.
+template <class W, class Storage>
+void fetch_samples(W& walk, const Storage& storage, const Index3& base) {
+  constexpr int C = sizeof(typename Storage::Value) / sizeof(float);
+  const std::int32_t first[3] = {base.x - storage.step.x, base.y - storage.step.y, base.z - storage.step.z};
+  const std::int32_t step[3] = {storage.step.x, storage.step.y, storage.step.z};
+  int split[3];  // samples in the first block
+  for (int a = 0; a < 3; ++a) split[a] = step[a] == 0 ? 4 : std::min(4, 8 - (first[a] & 7));
+  const bool inner = storage.legal({first[0], first[1], first[2]}) &&
+                     storage.legal({base.x + storage.step.x, base.y + storage.step.y, base.z + storage.step.z});
+  const bool whole = inner && !storage.may_be_invalid;
+  for (int part = 0; part < 8; ++part) {
+    int from[3], to[3];
+    for (int a = 0; a < 3; ++a) {
+      const bool second = (part >> a & 1) != 0;
+      from[a] = second ? split[a] : 0;
+      to[a] = second ? 4 : split[a];
+    }
+    if (from[0] >= to[0] || from[1] >= to[1] || from[2] >= to[2]) continue;
+    const nanovdb::Coord corner(first[0] + from[0] * step[0], first[1] + from[1] * step[1], first[2] + from[2] * step[2]);
+    const auto* leaf = walk.values.probeLeaf(corner);
+    const auto* ghosts = whole ? nullptr : walk.ghosts.probeLeaf(corner);
+    const auto constant = leaf ? typename Storage::Value(0.f) : walk.values.getValue(corner);
+    for (int z = from[2]; z < to[2]; ++z)
+      for (int y = from[1]; y < to[1]; ++y)
+        for (int x = from[0]; x < to[0]; ++x) {
+          const auto n = static_cast<std::uint32_t>(((first[0] + x * step[0]) & 7) * 64 + ((first[1] + y * step[1]) & 7) * 8 +
+                                                    ((first[2] + z * step[2]) & 7));
+          auto value = leaf ? leaf->getValue(n) : constant;
+          if (ghosts && ghosts->valueMask().isOn(n)) value = ghosts->getValue(n);
+          float* out = &walk.samples[static_cast<std::size_t>(C * (x + 4 * y + 16 * z))];
+          if constexpr (C == 1)
+            *out = value;
+          else
+            for (int c = 0; c < 3; ++c) out[c] = value[c];
+        }
+  }
 }
 
 /// The place within the cell. Far outside it is held to a range in which the polynomial cannot overflow.

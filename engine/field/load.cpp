@@ -13,6 +13,22 @@
 namespace catena::field {
 namespace {
 
+/// The same grid read by its cubic cells. What is no grid of its own values (points, meshes) is as it was.
+Result<AnyField> smooth(AnyField field, const std::string& path) {
+  const auto told = [&](const Error& e) { return Error{fmt::format("{}: {}", path, e.message)}; };
+  if (field.scalar && field.scalar->grid()) {
+    auto made = field.scalar->grid()->cubic();
+    if (!made) return told(made.error());
+    field.scalar = *made;
+  }
+  if (field.vector && field.vector->grid()) {
+    auto made = field.vector->grid()->cubic();
+    if (!made) return told(made.error());
+    field.vector = *made;
+  }
+  return field;
+}
+
 std::atomic<std::uint64_t> files{0}, grids{0}, masks{0};
 
 /// Nothing that a library throws leaves this room.
@@ -110,6 +126,7 @@ Result<AnyField> load(const LoadRequest& request) {
     if (field && !has_finite_box(*field->get()))
       return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
     if (!field || request.interpolation == Interpolation::linear) return field;
+    if (request.interpolation == Interpolation::cubic) return smooth(std::move(*field), request.path);
     if (field->vector)
       return Error{fmt::format("{}: the grid \"{}\" holds vectors, expected numbers for the interpolation \"nearest\"", request.path,
                                field->get()->name())};

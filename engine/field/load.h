@@ -31,7 +31,7 @@ struct LoadRequest {
   bool axes_xyz = false;                                ///< .npy, .npz: the first index is x, not z
   Vec3 spacing{1.0}, origin{0.0};                       ///< .npy, .npz
   std::optional<RawLayout> raw;                         ///< for .raw
-  Interpolation interpolation = Interpolation::linear;  ///< of a scalar grid; a vector grid knows only this one
+  Interpolation interpolation = Interpolation::linear;  ///< of a scalar grid; nearest: of scalar grids only
   bool operator==(const LoadRequest&) const = default;
 };
 

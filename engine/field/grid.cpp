@@ -1,0 +1,294 @@
+// Fetches from grids: the cell that holds the place, and its polynomial.
+#include "engine/field/grid.h"
+
+#include <cmath>
+
+#include "engine/field/ghosts.h"
+#include "engine/field/grid_storage.h"
+
+namespace catena::field {
+namespace {
+
+constexpr auto scalar_corner = [](float v) -> double { return v; };
+constexpr auto finite_scalar_corner = [](double v) { return std::isfinite(v); };
+
+ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const Index3& base, Cursor& cursor) {
+  ScalarWalk& walk = walk_of<ScalarWalk>(cursor, &grid, grid.version(), storage);
+  if (!walk.filled || !(walk.base == base)) [[unlikely]]
+    fetch(walk, storage, base, scalar_corner, finite_scalar_corner);
+  return walk;
+}
+
+using CubicScalarWalk = CubicWalk<float, double>;
+CubicScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const ScalarGrid::Ghosts& ghosts, const Index3& base,
+                         Cursor& cursor) {
+  CubicScalarWalk& walk = walk_of<CubicScalarWalk>(cursor, &grid, grid.version(), storage, *ghosts.grid);
+  if (!walk.filled || !(walk.base == base)) [[unlikely]] {
+    fetch(walk, storage, base, scalar_corner, finite_scalar_corner);
+    if (walk.valid) fetch_samples(walk, storage, base);
+  }
+  return walk;
+}
+
+/// What every walk knows, cubic or not: the corners.
+ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const ScalarGrid::Ghosts* ghosts, const Index3& base,
+                    Cursor& cursor) {
+  return ghosts ? walk_to(grid, storage, *ghosts, base, cursor) : walk_to(grid, storage, base, cursor);
+}
+
+}  // namespace
+
+ScalarGrid::ScalarGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage,
+                       const GridStats& stats, Interpolation interpolation, std::shared_ptr<const Ghosts> ghosts)
+    : storage_(std::move(storage)), stats_(stats), interpolation_(interpolation), ghosts_(std::move(ghosts)) {
+  CATENA_ASSERT(storage_ && storage_->values && (interpolation_ == Interpolation::cubic) == (ghosts_ != nullptr));
+  set_domain(std::move(name), mapping, index_box);
+}
+
+ScalarGrid::~ScalarGrid() = default;
+
+std::shared_ptr<const ScalarGrid> ScalarGrid::interpolated(Interpolation interpolation) const {
+  return std::make_shared<ScalarGrid>(name(), mapping(), index_box(), storage_, stats_, interpolation);
+}
+
+Result<std::shared_ptr<const ScalarGrid>> ScalarGrid::cubic() const {
+  CATENA_TRY(auto made, make_ghosts(*storage_, stats_));
+  auto ghosts = std::make_shared<const Ghosts>(Ghosts{std::move(made)});
+  return std::shared_ptr<const ScalarGrid>(
+      std::make_shared<ScalarGrid>(name(), mapping(), index_box(), storage_, stats_, Interpolation::cubic, std::move(ghosts)));
+}
+
+ScalarSample ScalarGrid::sample(const Vec3& world, Cursor& cursor) const noexcept {
+  ScalarSample s;
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return s;
+  const Index3 base = storage_->base_of(index);
+  if (ghosts_) {
+    const CubicScalarWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+    if (walk.valid) {
+      const auto cubic = field::cubic<1>(walk.samples, place_in_cell(index, base));
+      s.value = cubic.value[0];
+      s.gradient = mapping().world_gradient({cubic.slope[0][0], cubic.slope[1][0], cubic.slope[2][0]});
+      s.inside = index_box().contains(index, domain_slack);
+      return s;
+    }
+  }
+  const ScalarWalk& walk = walk_to(*this, *storage_, ghosts_.get(), base, cursor);
+  const Vec3 place = place_in_cell(index, walk.base);
+  if (interpolation_ != Interpolation::nearest) [[likely]] {
+    Vec3 g;
+    trilinear(walk.corner, place, s.value, g);
+    s.gradient = mapping().world_gradient(g);
+  } else {
+    s.value = walk.corner[(place.x >= 0.5 ? 1u : 0u) + (place.y >= 0.5 ? 2u : 0u) + (place.z >= 0.5 ? 4u : 0u)];
+  }
+  s.inside = walk.valid && index_box().contains(index, domain_slack);
+  return s;
+}
+
+Reason ScalarGrid::why_outside(const Vec3& world, Cursor& cursor) const noexcept {
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return Reason::not_finite;
+  return reason_outside(walk_to(*this, *storage_, ghosts_.get(), storage_->base_of(index), cursor), index_box(), index,
+                        finite_scalar_corner);
+}
+
+const CubicSamples<1>* ScalarGrid::samples(const Index3& base, Cursor& cursor) const noexcept {
+  if (!ghosts_ || !storage_->legal(base)) return nullptr;
+  const CubicScalarWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+  return walk.valid ? &walk.samples : nullptr;
+}
+
+ScalarCell ScalarGrid::cell(const Index3& base, Cursor& cursor) const noexcept {
+  const ScalarWalk& walk = walk_to(*this, *storage_, ghosts_.get(), storage_->clamp(base), cursor);
+  ScalarCell c;
+  c.base = walk.base;
+  c.valid = walk.valid;
+  c.corner = walk.corner;
+  return c;
+}
+
+Index3 ScalarGrid::base_of(const Vec3& index) const noexcept { return storage_->base_of(index); }
+std::size_t ScalarGrid::bytes() const noexcept { return storage_->bytes() + (ghosts_ ? ghosts_->memory.size() : 0); }
+float ScalarGrid::background() const { return storage_->values->tree().background(); }
+bool ScalarGrid::has_mask() const { return storage_->may_be_invalid; }
+
+namespace {
+
+/// Calls visit(place in the block, value) for every ghost of the region.
+template <class Grid, class Visit>
+void for_ghosts(const Grid& ghosts, const Index3& origin, const Index3& size, const Visit& visit) {
+  for_blocks(ghosts, origin, size, [&](auto& accessor, const nanovdb::Coord& block, const Index3& first, const Index3& after) {
+    const auto* leaf = accessor.probeLeaf(block);
+    if (leaf == nullptr) return;
+    for (std::int32_t z = first.z; z < after.z; ++z)
+      for (std::int32_t y = first.y; y < after.y; ++y)
+        for (std::int32_t x = first.x; x < after.x; ++x) {
+          const auto n = static_cast<std::uint32_t>((x & 7) * 64 + (y & 7) * 8 + (z & 7));
+          if (!leaf->valueMask().isOn(n)) continue;
+          visit((static_cast<std::size_t>(z - origin.z) * size.y + (y - origin.y)) * size.x + (x - origin.x), leaf->getValue(n));
+        }
+  });
+}
+
+}  // namespace
+
+void ScalarGrid::read_block(const Index3& origin, const Index3& size, std::span<float> out) const {
+  CATENA_ASSERT(out.size() >= static_cast<std::size_t>(size.x) * size.y * size.z);
+  for_blocks(*storage_->values, origin, size, [&](auto& accessor, const nanovdb::Coord& block, const Index3& first, const Index3& after) {
+    const auto* leaf = accessor.probeLeaf(block);
+    const float* values = leaf ? leaf->data()->mValues : nullptr;
+    const float constant = leaf ? 0.f : accessor.getValue(block);
+    for (std::int32_t z = first.z; z < after.z; ++z)
+      for (std::int32_t y = first.y; y < after.y; ++y) {
+        float* row = out.data() + (static_cast<std::size_t>(z - origin.z) * size.y + (y - origin.y)) * size.x;
+        for (std::int32_t x = first.x; x < after.x; ++x)
+          row[x - origin.x] = values ? values[(x & 7) * 64 + (y & 7) * 8 + (z & 7)] : constant;
+      }
+  });
+  if (ghosts_) for_ghosts(*ghosts_->grid, origin, size, [&](std::size_t at, float ghost) { out[at] = ghost; });
+}
+
+void ScalarGrid::read_cell_valid(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const {
+  CATENA_ASSERT(out.size() >= static_cast<std::size_t>(size.x) * size.y * size.z);
+  Cursor cursor;
+  std::size_t n = 0;
+  for (std::int32_t z = origin.z; z < origin.z + size.z; ++z)
+    for (std::int32_t y = origin.y; y < origin.y + size.y; ++y)
+      for (std::int32_t x = origin.x; x < origin.x + size.x; ++x, ++n) {
+        const Index3 base{x, y, z};
+        out[n] = storage_->legal(base) && (!storage_->may_be_invalid || walk_to(*this, *storage_, ghosts_.get(), base, cursor).valid);
+      }
+}
+
+bool ScalarGrid::constant_block(const Index3& origin, float& value) const {
+  const auto accessor = storage_->values->getAccessor();
+  if (accessor.probeLeaf(coord(origin))) return false;
+  value = accessor.getValue(coord(origin));
+  return true;
+}
+
+namespace {
+
+constexpr auto vector_corner = [](const nanovdb::Vec3f& v) { return Vec3(v[0], v[1], v[2]); };
+constexpr auto finite_vector_corner = [](const Vec3& v) { return is_finite(v); };
+
+VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const Index3& base, Cursor& cursor) {
+  VectorWalk& walk = walk_of<VectorWalk>(cursor, &grid, grid.version(), storage);
+  if (!walk.filled || !(walk.base == base)) [[unlikely]]
+    fetch(walk, storage, base, vector_corner, finite_vector_corner);
+  return walk;
+}
+
+using CubicVectorWalk = CubicWalk<nanovdb::Vec3f, Vec3>;
+CubicVectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const VectorGrid::Ghosts& ghosts, const Index3& base,
+                         Cursor& cursor) {
+  CubicVectorWalk& walk = walk_of<CubicVectorWalk>(cursor, &grid, grid.version(), storage, *ghosts.grid);
+  if (!walk.filled || !(walk.base == base)) [[unlikely]] {
+    fetch(walk, storage, base, vector_corner, finite_vector_corner);
+    if (walk.valid) fetch_samples(walk, storage, base);
+  }
+  return walk;
+}
+
+/// What every walk knows, cubic or not: the corners.
+VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const VectorGrid::Ghosts* ghosts, const Index3& base,
+                    Cursor& cursor) {
+  return ghosts ? walk_to(grid, storage, *ghosts, base, cursor) : walk_to(grid, storage, base, cursor);
+}
+
+}  // namespace
+
+VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage,
+                       const GridStats& stats, std::shared_ptr<const Ghosts> ghosts)
+    : storage_(std::move(storage)), stats_(stats), ghosts_(std::move(ghosts)) {
+  CATENA_ASSERT(storage_ && storage_->values);
+  set_domain(std::move(name), mapping, index_box);
+}
+
+VectorGrid::~VectorGrid() = default;
+
+Result<std::shared_ptr<const VectorGrid>> VectorGrid::cubic() const {
+  CATENA_TRY(auto made, make_ghosts(*storage_, stats_));
+  auto ghosts = std::make_shared<const Ghosts>(Ghosts{std::move(made)});
+  return std::shared_ptr<const VectorGrid>(
+      std::make_shared<VectorGrid>(name(), mapping(), index_box(), storage_, stats_, std::move(ghosts)));
+}
+
+const CubicSamples<3>* VectorGrid::samples(const Index3& base, Cursor& cursor) const noexcept {
+  if (!ghosts_ || !storage_->legal(base)) return nullptr;
+  const CubicVectorWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+  return walk.valid ? &walk.samples : nullptr;
+}
+
+VectorSample VectorGrid::sample(const Vec3& world, Cursor& cursor) const noexcept {
+  VectorSample s;
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return s;
+  const Index3 base = storage_->base_of(index);
+  if (ghosts_) {
+    const CubicVectorWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+    if (walk.valid) {
+      s.value = cubic_vector(walk.samples, place_in_cell(index, base));
+      s.inside = index_box().contains(index, domain_slack);
+      return s;
+    }
+  }
+  const VectorWalk& walk = walk_to(*this, *storage_, ghosts_.get(), base, cursor);
+  s.value = trilinear(walk.corner, place_in_cell(index, walk.base));
+  s.inside = walk.valid && index_box().contains(index, domain_slack);
+  return s;
+}
+
+LineSample VectorGrid::sample_line(const Vec3& world, Cursor& cursor) const noexcept {
+  LineSample s;
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return s;
+  const VectorWalk& walk = walk_to(*this, *storage_, ghosts_.get(), storage_->base_of(index), cursor);
+  static_cast<LineAxis&>(s) = line_axis(walk.corner, place_in_cell(index, walk.base));
+  s.inside = walk.valid && index_box().contains(index, domain_slack);
+  return s;
+}
+
+Reason VectorGrid::why_outside(const Vec3& world, Cursor& cursor) const noexcept {
+  const Vec3 index = mapping().index_from_world(world);
+  if (!is_finite(index)) return Reason::not_finite;
+  return reason_outside(walk_to(*this, *storage_, ghosts_.get(), storage_->base_of(index), cursor), index_box(), index,
+                        finite_vector_corner);
+}
+
+VectorCell VectorGrid::cell(const Index3& base, Cursor& cursor) const noexcept {
+  const VectorWalk& walk = walk_to(*this, *storage_, ghosts_.get(), storage_->clamp(base), cursor);
+  VectorCell c;
+  c.base = walk.base;
+  c.valid = walk.valid;
+  c.corner = walk.corner;
+  return c;
+}
+
+Index3 VectorGrid::base_of(const Vec3& index) const noexcept { return storage_->base_of(index); }
+std::size_t VectorGrid::bytes() const noexcept { return storage_->bytes() + (ghosts_ ? ghosts_->memory.size() : 0); }
+bool VectorGrid::has_mask() const { return storage_->may_be_invalid; }
+
+void VectorGrid::read_block(const Index3& origin, const Index3& size, std::span<float> xyz_out) const {
+  CATENA_ASSERT(xyz_out.size() >= 3 * static_cast<std::size_t>(size.x) * size.y * size.z);
+  for_blocks(*storage_->values, origin, size, [&](auto& accessor, const nanovdb::Coord& block, const Index3& first, const Index3& after) {
+    const auto* leaf = accessor.probeLeaf(block);
+    const nanovdb::Vec3f* values = leaf ? leaf->data()->mValues : nullptr;
+    const nanovdb::Vec3f constant = leaf ? nanovdb::Vec3f(0.f) : accessor.getValue(block);
+    for (std::int32_t z = first.z; z < after.z; ++z)
+      for (std::int32_t y = first.y; y < after.y; ++y) {
+        float* row = xyz_out.data() + 3 * (static_cast<std::size_t>(z - origin.z) * size.y + (y - origin.y)) * size.x;
+        for (std::int32_t x = first.x; x < after.x; ++x) {
+          const nanovdb::Vec3f& v = values ? values[(x & 7) * 64 + (y & 7) * 8 + (z & 7)] : constant;
+          for (int c = 0; c < 3; ++c) row[3 * (x - origin.x) + c] = v[c];
+        }
+      }
+  });
+  if (!ghosts_) return;
+  for_ghosts(*ghosts_->grid, origin, size, [&](std::size_t at, const nanovdb::Vec3f& ghost) {
+    for (int c = 0; c < 3; ++c) xyz_out[3 * at + static_cast<std::size_t>(c)] = ghost[c];
+  });
+}
+
+}  // namespace catena::field
