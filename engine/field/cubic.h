@@ -75,17 +75,20 @@ CubicValue<C> cubic(const CubicSamples<C>& samples, const Vec3& f) {
   return out;
 }
 
-/// The same without the gradient.
-inline Vec3 cubic_vector(const CubicSamples<3>& samples, const Vec3& f) {
-  if (!(f.x >= 0 && f.x <= 1 && f.y >= 0 && f.y <= 1 && f.z >= 0 && f.z <= 1)) {
-    const auto out = cubic<3>(samples, f);
-    return {out.value[0], out.value[1], out.value[2]};
-  }
+/// The same without the gradient: of the cell's own polynomial, which goes on beyond the cell.
+inline Vec3 cubic_vector_within(const CubicSamples<3>& samples, const Vec3& f) {
   double plane[48], row[12], value[3];
   cubic_values<48>(samples.data(), CubicWeights(f.z), plane);
   cubic_values<12>(plane, CubicWeights(f.y), row);
   cubic_values<3>(row, CubicWeights(f.x), value);
   return {value[0], value[1], value[2]};
+}
+
+/// And anywhere.
+inline Vec3 cubic_vector(const CubicSamples<3>& samples, const Vec3& f) {
+  if (f.x >= 0 && f.x <= 1 && f.y >= 0 && f.y <= 1 && f.z >= 0 && f.z <= 1) return cubic_vector_within(samples, f);
+  const auto out = cubic<3>(samples, f);
+  return {out.value[0], out.value[1], out.value[2]};
 }
 
 }  // namespace catena::field

@@ -367,7 +367,7 @@ class Worker {
 
 BatchTracer::BatchTracer(const Flow& flow, const BatchOptions& options) : flow_(flow), options_(options) {
   const field::VectorGrid* grid = flow.field->grid();
-  if (grid == nullptr || flow.line) return;
+  if (grid == nullptr || flow.line || grid->interpolation() == field::Interpolation::cubic) return;
   const Vec3 size = grid->index_box().hi - grid->index_box().lo;
   if (size.x >= 1 && size.y >= 1 && size.z >= 1) bricks_ = std::make_unique<VelocityBricks>(*grid);
 }

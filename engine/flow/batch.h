@@ -4,7 +4,7 @@
 ///          length by Simpson's rule on each step's cubic. Where a line leaves the domain or its valid cells, or slows down to
 ///          nothing, steps are halved to 0.01 voxel and the exact marcher (march.h) takes over for a while: ends mean the same
 ///          BOUNDARY, CRITICAL, LENGTH, LAP. A lap closes within 0.01 voxel, or 10 tolerances, of the seed.
-///   formulas, line fields (v ~ -v), grids of one layer: trace() itself at this tolerance, seeds over all cores
+///   formulas, line fields (v ~ -v), cubic grids, grids of one layer: trace() itself at this tolerance, seeds over all cores
 /// Results do not depend on the number of threads, nor on which other seeds are in the batch, nor on AVX2. Off the tick.
 #pragma once
 #include <span>

@@ -12,11 +12,27 @@ constexpr double kDifference = 2e-6;  // of L
 
 Vec3 mix(const Vec3& a, const Vec3& b, double t) { return a * (1 - t) + b * t; }
 
+VelocityGradient of_cubic_cell(const field::VectorGrid& grid, const Vec3& index, field::Cursor& cursor) noexcept {
+  VelocityGradient out;
+  const field::Index3 base = grid.base_of(index);
+  const field::CubicSamples<3>* samples = grid.samples(base, cursor);
+  if (samples == nullptr) return out;
+  for (const float c : *samples) out.scale = std::max(out.scale, std::fabs(double{c}));
+  out.known = true;
+  if (!(out.scale > 0)) return out;
+  const auto cubic = field::cubic_within<3>(*samples, index - Vec3(base.x, base.y, base.z));
+  const auto scaled = [&](const std::array<double, 3>& v) { return Vec3(v[0] / out.scale, v[1] / out.scale, v[2] / out.scale); };
+  out.v = scaled(cubic.value);
+  out.gradient = Mat3(scaled(cubic.slope[0]), scaled(cubic.slope[1]), scaled(cubic.slope[2])) * grid.mapping().index_from_world_linear;
+  return out;
+}
+
 VelocityGradient of_cell(const field::VectorGrid& grid, const Vec3& world, field::Cursor& cursor, int& evaluations) noexcept {
   VelocityGradient out;
   const Vec3 index = grid.mapping().index_from_world(world);
   if (!grid.index_box().contains(index)) return out;
   ++evaluations;
+  if (grid.interpolation() == field::Interpolation::cubic) return of_cubic_cell(grid, index, cursor);
   field::VectorCell cell = grid.cell(grid.base_of(index), cursor);
   if (!cell.valid) return out;
   for (const Vec3& c : cell.corner) {

@@ -1,5 +1,5 @@
 /// Velocity and velocity gradient of a vector field at a place, without trouble at either end of the double range.
-///   grids: both of the trilinear cell, exactly, one fetch;  formulas: central differences over 2e-6 L, seven fetches
+///   grids: both of the trilinear or cubic cell, exactly, one fetch;  formulas: central differences over 2e-6 L, seven fetches
 /// And Newton's search for a zero of the field near a place: nodes, saddles, centres. Central differences over 2e-6 L; minimum-norm
 /// steps, so that planar fields and lines of zeros work. Scale of the field is irrelevant. Any thread; no allocation.
 #pragma once

@@ -35,7 +35,12 @@ double first_passage(double c0, double c1, double c2, double c3, double face, do
 }  // namespace
 
 CellMedium::CellMedium(const Flow& flow, field::Cursor* cursor)
-    : flow_(flow), grid_(flow.field->grid()), mapping_(grid_->mapping()), box_(grid_->index_box()), shared_cursor_(cursor) {
+    : flow_(flow),
+      grid_(flow.field->grid()),
+      mapping_(grid_->mapping()),
+      box_(grid_->index_box()),
+      shared_cursor_(cursor),
+      cubic_(!flow.line && grid_->interpolation() == field::Interpolation::cubic) {
   constexpr double kFarIndex = 1 << 16;
   if (const Vec3 lo = box_.lo; max_abs(lo) > kFarIndex) {
     first_ = {static_cast<std::int32_t>(lo.x), static_cast<std::int32_t>(lo.y), static_cast<std::int32_t>(lo.z)};
@@ -72,6 +77,10 @@ bool CellMedium::enter(const field::Index3& base) {
   for (int axis = 0; axis < 3; ++axis) hi_[axis] = std::min(lo_[axis] + 1, box_.hi[axis]);
   if (flow_.line) {
     dyads_ = field::DyadCell(cell.corner);
+    return true;
+  }
+  if (cubic_) {
+    samples_ = *grid_->samples({base.x + first_.x, base.y + first_.y, base.z + first_.z}, cursor());
     return true;
   }
   const auto& c = cell.corner;
@@ -118,13 +127,14 @@ Stop CellMedium::seed(const Vec3& place, Vec3& u) {
 // flat, as direction_at (flow.cpp)
 [[gnu::flatten]] Stop CellMedium::rate(const Vec3& q, Vec3& w, Vec3& u) const {
   const Vec3 f = q - lo_;
-  const auto& c = polynomial_;
   if (flow_.line) {
     const Stop stop = axis_direction(dyads_.at(f), flow_.min_speed, motion_, u);
     w = mapping_.index_from_world_linear * u;
     return stop;
   }
-  const Vec3 v = (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
+  const auto& c = polynomial_;
+  const Vec3 v = cubic_ ? sign_ * field::cubic_vector_within(samples_, f)
+                        : (c[0] + f.x * c[1]) + f.y * (c[2] + f.x * c[3]) + f.z * ((c[4] + f.x * c[5]) + f.y * (c[6] + f.x * c[7]));
   const Stop stop = unit_direction(v, flow_.min_speed, u);
   w = mapping_.index_from_world_linear * u;
   return stop;

@@ -101,6 +101,8 @@ class CellMedium {
   field::Index3 base_;
   Vec3 lo_{0.0}, hi_{0.0};          ///< the current cell's faces, index coordinates
   std::array<Vec3, 8> polynomial_;  ///< of a vector field: coefficients of 1, x, y, xy, z, xz, yz, xyz
+  bool cubic_;
+  field::CubicSamples<3> samples_;  ///< of a cubic vector field, instead
   field::DyadCell dyads_;           ///< of a line field
   Vec3 motion_{0.0};                ///< last tangent: line fields are turned to its side
   double sign_ = 1;
