@@ -215,6 +215,10 @@ Result<std::shared_ptr<const VectorGrid>> VectorGrid::cubic() const {
       std::make_shared<VectorGrid>(name(), mapping(), index_box(), storage_, stats_, std::move(ghosts)));
 }
 
+std::shared_ptr<const VectorGrid> VectorGrid::linear() const {
+  return std::make_shared<VectorGrid>(name(), mapping(), index_box(), storage_, stats_);
+}
+
 const CubicSamples<3>* VectorGrid::samples(const Index3& base, Cursor& cursor) const noexcept {
   if (!ghosts_ || !storage_->legal(base)) return nullptr;
   const CubicVectorWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);

@@ -38,6 +38,7 @@ class ScalarGrid final : public ScalarField {
   /// The same voxels read in another way: they are shared, the version is its own. Cubic: an error (one phrase) where there is no memory
   /// for its ghosts; the others never fail.
   Result<std::shared_ptr<const ScalarGrid>> cubic() const;
+  std::shared_ptr<const ScalarGrid> linear() const { return interpolated(Interpolation::linear); }
   std::shared_ptr<const ScalarGrid> interpolated(Interpolation linear_or_nearest) const;
   /// Of a cubic grid, the samples of a legal cell that is valid; null elsewhere. Good until the cursor's next use.
   const CubicSamples<1>* samples(const Index3& base, Cursor& cursor) const noexcept;
@@ -80,6 +81,7 @@ class VectorGrid final : public VectorField {
   Interpolation interpolation() const noexcept { return ghosts_ ? Interpolation::cubic : Interpolation::linear; }
   /// As of scalar grids. A line field's axes are mixed linearly either way (line_axis.h).
   Result<std::shared_ptr<const VectorGrid>> cubic() const;
+  std::shared_ptr<const VectorGrid> linear() const;
   const CubicSamples<3>* samples(const Index3& base, Cursor& cursor) const noexcept;
   std::size_t bytes() const noexcept override;
 

@@ -1,4 +1,4 @@
-// One fetch: value and gradient, on a haptic walk (steps of 0.05 voxel) and at random places of a 256^3 grid.
+// One fetch: value and gradient, of linear and of cubic cells, on a haptic walk (steps of 0.05 voxel) and at random places of a 256^3 grid.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -20,6 +20,16 @@ const field::ScalarGrid& scalar_grid() {
 
 const field::VectorGrid& vector_grid() {
   static const auto grid = field::sample_on_grid(*field::make_analytic("abc").value().vector, resolution, -2, 2);
+  return *grid;
+}
+
+const field::ScalarGrid& cubic_scalar_grid() {
+  static const auto grid = scalar_grid().cubic().value();
+  return *grid;
+}
+
+const field::VectorGrid& cubic_vector_grid() {
+  static const auto grid = vector_grid().cubic().value();
   return *grid;
 }
 
@@ -57,11 +67,21 @@ void scalar_stride(benchmark::State& state) { fetch_all(state, scalar_grid(), wa
 void scalar_random(benchmark::State& state) { fetch_all(state, scalar_grid(), scattered()); }
 void vector_walk(benchmark::State& state) { fetch_all(state, vector_grid(), walk(0.05)); }
 void vector_random(benchmark::State& state) { fetch_all(state, vector_grid(), scattered()); }
+void cubic_scalar_walk(benchmark::State& state) { fetch_all(state, cubic_scalar_grid(), walk(0.05)); }
+void cubic_scalar_stride(benchmark::State& state) { fetch_all(state, cubic_scalar_grid(), walk(1)); }
+void cubic_scalar_random(benchmark::State& state) { fetch_all(state, cubic_scalar_grid(), scattered()); }
+void cubic_vector_walk(benchmark::State& state) { fetch_all(state, cubic_vector_grid(), walk(0.05)); }
+void cubic_vector_random(benchmark::State& state) { fetch_all(state, cubic_vector_grid(), scattered()); }
 
 BENCHMARK(scalar_walk);
 BENCHMARK(scalar_stride);
 BENCHMARK(scalar_random);
 BENCHMARK(vector_walk);
 BENCHMARK(vector_random);
+BENCHMARK(cubic_scalar_walk);
+BENCHMARK(cubic_scalar_stride);
+BENCHMARK(cubic_scalar_random);
+BENCHMARK(cubic_vector_walk);
+BENCHMARK(cubic_vector_random);
 
 }  // namespace field_bench

@@ -60,7 +60,7 @@ void for_subsets(unsigned mask, const Visit& visit) {
 /// The last point of the way from..to over one piece that keeps within `limit` and is no further from the probe than `from`.
 Vec3 cut_short(const LevelField& field, const Piece& piece, const Vec3& probe, const TravelLimit& limit, const PieceSample& s,
                const Vec3& from, const Vec3& to) {
-  const Vec3 chord = field.grid()->mapping().world_from_index_linear * (to - from), along = equation::tangential(chord, s.n);
+  const Vec3 chord = field.cells()->mapping().world_from_index_linear * (to - from), along = equation::tangential(chord, s.n);
   const double most = norm(probe - piece.world(from));
   Vec3 kept = from, g;
   double low = 0, high = 1;
@@ -95,7 +95,7 @@ Vec3 world_of(const field::ScalarGrid& grid, const CellPoint& at) noexcept {
 }
 
 WalkResult walk_cells(LevelField& field, const PieceFrames& frames, const Vec3& probe, CellPoint& at, TravelLimit* limit) noexcept {
-  const field::ScalarGrid& grid = *field.grid();
+  const field::ScalarGrid& grid = *field.cells();
   const field::Mapping& mapping = grid.mapping();
   const double length = field.length();
   Cells cells(field);

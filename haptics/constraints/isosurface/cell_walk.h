@@ -14,7 +14,7 @@ inline bool is_flat(const field::Box& box, int a) { return !(box.hi[a] > box.lo[
 /// The cells fetched in this tick: each is counted once.
 class Cells {
  public:
-  explicit Cells(LevelField& field) : field_(field), grid_(*field.grid()) {}
+  explicit Cells(LevelField& field) : field_(field), grid_(*field.cells()) {}
 
   /// nullptr: a wall, of which `wall` then says the kind, or the budget is spent.
   const field::ScalarCell* find(const field::Index3& base) {

@@ -4,6 +4,7 @@
 #include "haptics/constraints/isosurface/analytic.h"
 #include "haptics/constraints/isosurface/cell_walk.h"
 #include "haptics/constraints/isosurface/reach.h"
+#include "haptics/constraints/isosurface/wall.h"
 #include "haptics/constraints/rules/link_keys.h"
 #include "haptics/constraints/rules/surface_side.h"
 
@@ -22,9 +23,9 @@ constexpr double kOnLevel = 1e-9;    // of L: as good as on the level, to go on 
 /// What the link remembers: the rules' part, the point held, the curvature learned.
 struct IsosurfaceMemory {
   SideMemory side;
-  LevelPoint at;        // formulas: the point held
+  LevelPoint at;        // formulas and cubic grids: the point held
   Curvature curvature;  // formulas
-  CellPoint cell;       // grids: the point held
+  CellPoint cell;       // linear grids: the point held
   Vec3 normal;
   Scan scan;
   double owed;  // of the way that a walk out of budget was allowed and has not gone
@@ -53,12 +54,12 @@ class LevelSurface final : public Surface {
     const Hold hold = settle(reached.at, probe, Curvature{});
     // further away than the field says: something nearer may be in sight
     const bool far = norm(probe - hold.proxy) > 1.05 * std::fabs(start.distance);
-    return field_.grid() || !far ? hold : settle_in_sight(start, hold);
+    return field_.cells() || !far ? hold : settle_in_sight(start, hold);
   }
 
   Hold slide(const Vec3& probe) noexcept override {
     const double travel = travel_of(memory_.side, probe, norm(probe - memory_.side.proxy), field_.state());
-    return field_.grid() ? slide_grid(probe, travel) : slide_formula(probe, travel);
+    return field_.cells() ? slide_grid(probe, travel) : slide_formula(probe, travel);
   }
 
   Hold cross(const Vec3& from, const Vec3& probe) noexcept override {
@@ -93,7 +94,7 @@ class LevelSurface final : public Surface {
 
   Hold slide_grid(const Vec3& probe, double travel) noexcept {
     CellPoint cell = memory_.cell;
-    const Vec3 held = world_of(*field_.grid(), cell);
+    const Vec3 held = world_of(*field_.cells(), cell);
     // a probe that was thrown goes far along the surface first as if it were smooth
     if (is_thrown(memory_.side, probe, field_.length())) {
       const LevelPoint start = field_.at(held);
@@ -101,7 +102,7 @@ class LevelSurface final : public Surface {
     }
     TravelLimit limit{held, travel + memory_.owed, false, {}, Vec3(0.0)};
     WalkResult walk = walk_cells(field_, frames_, probe, cell, &limit);
-    const Vec3 met = world_of(*field_.grid(), cell);
+    const Vec3 met = world_of(*field_.cells(), cell);
     memory_.owed = 0;
     if (!limit.passed_by(met)) {
       if (walk.status == Status::budget && std::isfinite(limit.room)) memory_.owed = limit.room - norm(met - held);
@@ -135,8 +136,8 @@ class LevelSurface final : public Surface {
 
   /// From a point on the level to the closest point.
   Hold settle(const LevelPoint& start, const Vec3& probe, const Curvature& curvature) noexcept {
-    if (!field_.grid()) return settle_formula(start, probe, curvature, true);
-    return settle_grid(cell_point(*field_.grid(), start.p), start, probe);
+    if (!field_.cells()) return settle_formula(start, probe, curvature, true);
+    return settle_grid(cell_point(*field_.cells(), start.p), start, probe);
   }
 
   /// From anywhere to the level, without an earlier point. A scan that runs out of budget stays open in the memory.
@@ -148,7 +149,7 @@ class LevelSurface final : public Surface {
     if (!goes_on) {
       const Reached reached = reach_along_gradient(field_, start, Vec3(0.0), radius);
       if (reached.found) return closed(reached);
-      if (!field_.grid()) {
+      if (!field_.cells()) {
         Scan near{};
         const Reached by_axes = reach_by_scan(field_, start, true, near);
         if (by_axes.found) return by_axes;
@@ -176,10 +177,12 @@ class LevelSurface final : public Surface {
   /// held, from a fresh projection.
   Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
     LevelPoint best = at;
+    if (Hold wall; field_.grid() && pushes_out(field_, at, probe) && hold_wall(at, probe, wall)) return wall;
     if (closest_point(field_, probe, goal(kQuick), at, curvature) == Closest::converged)
       return hold_formula(at, Closest::converged, probe, curvature);
     at = relevelled(at);
     if (nearer(best, at, probe)) at = usable(best) ? best : relevelled(best);
+    if (Hold wall; field_.grid() && hold_wall(at, probe, wall)) return wall;
     Closest how = Closest::stuck;
     if (usable(at)) how = descend(field_, probe, goal(kEvaluationCap), at, curvature);
     if ((!any_sheet && usable(at)) || how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
@@ -192,6 +195,18 @@ class LevelSurface final : public Surface {
     best = relevelled(best);
     if (!nearer(best, at, probe)) return hold_formula(at, how, probe, curvature);
     return hold_formula(best, again, probe, other);
+  }
+
+  /// On the walls of a cubic grid: its box, masks, and values that are not finite. False: no wall is in the way.
+  bool hold_wall(const LevelPoint& at, const Vec3& probe, Hold& hold) noexcept {
+    if (!at.valid || at.plateau) return false;
+    const AtWall found = closest_at_wall(field_, probe, goal(kQuick), at);
+    if (!found.found) return false;
+    memory_.at = found.at;
+    memory_.curvature = Curvature{};
+    memory_.normal = found.at.n;
+    hold = {true, found.at.p, std::fabs(found.at.distance), Status::boundary, found.reason};
+    return true;
   }
 
   /// From a point between the probe and what is held, if the level is met there.
@@ -269,7 +284,7 @@ class LevelSurface final : public Surface {
       Curvature curvature;
       closest_point(field_, probe, {1.5 * voxel, 0.1 * voxel, 48}, at, curvature);
       const Reached reached = reach_along_gradient(field_, at, at.n, 2 * voxel);
-      if (reached.found && reached.at.valid && norm(probe - reached.at.p) < norm(e)) return cell_point(*field_.grid(), reached.at.p);
+      if (reached.found && reached.at.valid && norm(probe - reached.at.p) < norm(e)) return cell_point(*field_.cells(), reached.at.p);
     }
     return cell;
   }
@@ -284,7 +299,7 @@ class LevelSurface final : public Surface {
   Hold hold_cell(const CellPoint& cell, const WalkResult& walk) noexcept {
     memory_.cell = cell;
     memory_.normal = walk.normal;
-    return {true, world_of(*field_.grid(), cell), walk.residual, walk.status, walk.reason};
+    return {true, world_of(*field_.cells(), cell), walk.residual, walk.status, walk.reason};
   }
 
   LevelField field_;

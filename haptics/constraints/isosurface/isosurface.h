@@ -4,7 +4,8 @@
 ///   reach (isosurface/reach.h)          from anywhere to the level: march, bracket, Illinois; then a scan of 26 directions
 ///   closest (isosurface/analytic.h)     formulas: Newton with the surface's curvature, SR1
 ///   descent (isosurface/reach.h)      formulas with folds, where that is stuck: down on the surface, in a trust region
-///   cell walk (isosurface/cell_walk.h)  grids: exact within each trilinear cell, from cell to cell
+///   cell walk (isosurface/cell_walk.h)  linear grids: exact within each trilinear cell, from cell to cell
+///   walls (isosurface/wall.h)           cubic grids, which are else searched as formulas: where their domain ends
 /// Search radius: 2 L around the first probe (the probe clamped to the domain on grids) along the gradient, then L along 26
 /// directions. Off the level by at most 1e-11 L (formulas), 1e-9 L (grids); from the closest point by at most 1e-6 L.
 /// Travel: while it holds it walks on its own sheet (cells that share a face, |x - p| falling), at most LinkState::travel a tick; where

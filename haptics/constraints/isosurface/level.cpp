@@ -1,15 +1,18 @@
 #include "haptics/constraints/isosurface/level.h"
 
+#include <bit>
+
 #include "engine/field/grid.h"
 
 namespace catena::haptics {
 
 LevelPoint LevelField::at(const Vec3& world) noexcept {
   LevelPoint out;
-  out.p = clamped(world);
+  out.p = clamped(held_ != 0 ? on_wall(world) : world);
   if (spent()) return out;
   count_fetch();
-  const field::ScalarSample sample = grid_ ? grid_->sample(out.p, cursor_) : field_.sample(out.p, cursor_);
+  field::ScalarSample sample = grid_ ? grid_->sample(out.p, cursor_) : field_.sample(out.p, cursor_);
+  if (held_ != 0) sample.gradient = along_wall(sample.gradient);
   out.finite = std::isfinite(sample.value) && is_finite(sample.gradient);
   out.valid = out.finite && (sample.inside || grid_ == nullptr);
   if (!out.finite) return out;
@@ -29,6 +32,38 @@ Vec3 LevelField::nearest(const Vec3& index) const noexcept {
   const Vec3 inside{std::min(std::max(index.x, box.lo.x), box.hi.x), std::min(std::max(index.y, box.lo.y), box.hi.y),
                     std::min(std::max(index.z, box.lo.z), box.hi.z)};
   return field_.mapping().world_from_index(inside);
+}
+
+void LevelField::hold(unsigned axes, const Vec3& index) noexcept {
+  held_ = axes;
+  wall_ = index;
+  const field::Mapping& mapping = field_.mapping();
+  const auto is_held = [axes](int a) { return (axes >> a & 1) != 0; };
+  way_ = Vec3(0.0);
+  if (std::popcount(axes) == 1) {
+    for (int a = 0; a < 3; ++a)
+      if (is_held(a)) way_ = direction(mapping.world_gradient(Vec3(a == 0, a == 1, a == 2)));
+  } else if (std::popcount(axes) == 2) {
+    for (int a = 0; a < 3; ++a)
+      if (!is_held(a)) way_ = direction(mapping.world_from_index_linear[a]);
+  }
+}
+
+Vec3 LevelField::on_wall(const Vec3& world) const noexcept {
+  if (held_ == 0) return world;
+  const field::Mapping& mapping = field_.mapping();
+  Vec3 off = wall_ - mapping.index_from_world(world);
+  for (int a = 0; a < 3; ++a)
+    if ((held_ >> a & 1) == 0) off[a] = 0;
+  // along the wall's normal, or across the edge: the nearest place, not the one along an oblique axis
+  const Vec3 there = world + mapping.world_from_index_linear * off;
+  return there + along_wall(world - there);
+}
+
+/// The part of a vector along what is held.
+Vec3 LevelField::along_wall(const Vec3& v) const noexcept {
+  if (std::popcount(held_) == 1) return v - way_ * dot(way_, v);
+  return std::popcount(held_) == 2 ? way_ * dot(way_, v) : Vec3(0.0);
 }
 
 double LevelField::march_step() const noexcept { return grid_ ? 0.5 * field_.mapping().smallest_edge() : field_.length() * (1.0 / 256); }

@@ -24,18 +24,22 @@ inline bool is_sane(const LevelPoint& at) noexcept { return are_bools(at.valid, 
 class LevelField {
  public:
   LevelField(const field::ScalarField& field, double level, field::Cursor& cursor, LinkState& state)
-      : field_(field), grid_(field.grid()), level_(level), cursor_(cursor), state_(state) {}
+      : field_(field), grid_(field.grid()), level_(level), cursor_(cursor), state_(state) {
+    if (grid_ == nullptr) return;
+    linear_ = field.interpolation() != field::Interpolation::cubic;
+    cell_work_ = linear_ ? kCellWork : kCubicWork;
+  }
 
   /// One evaluation. Costs nothing and is not valid when the budget is spent.
   LevelPoint at(const Vec3& world) noexcept;
   /// Fewer than `reserve` fetches are left, or no work.
   bool spent(int reserve = 0) const noexcept {
-    return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(reserve * (kFetchWork + (grid_ ? kCellWork : 0)));
+    return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(reserve * (kFetchWork + cell_work_));
   }
   /// Counts one fetch.
   void count_fetch() noexcept {
     ++state_.evaluations;
-    if (grid_) state_.steps += kCellWork;
+    state_.steps += cell_work_;
   }
 
   /// Less work than `reserve` is left, whatever fetches are.
@@ -58,14 +62,27 @@ class LevelField {
   double voxel() const noexcept { return grid_ ? field_.longest_edge() : 0; }
   const field::ScalarField& field() const noexcept { return field_; }
   const field::ScalarGrid* grid() const noexcept { return grid_; }
+  /// The grid where its cells are trilinear, so that the surface is exact within each of them (cell_walk.h); else none.
+  const field::ScalarGrid* cells() const noexcept { return linear_ ? grid_ : nullptr; }
+
+  /// From now on places lie on a wall: of the axes whose bits are set, the index is held. The gradient is that on the wall.
+  void hold(unsigned axes, const Vec3& index) noexcept;
+  unsigned held() const noexcept { return held_; }
+  /// The place on the wall nearest to `world`, where one is held.
+  Vec3 on_wall(const Vec3& world) const noexcept;
   field::Cursor& cursor() noexcept { return cursor_; }
   std::int32_t& evaluations() noexcept { return state_.evaluations; }
   std::int32_t& steps() const noexcept { return state_.steps; }
 
  private:
   Vec3 nearest(const Vec3& index) const noexcept;
+  Vec3 along_wall(const Vec3& v) const noexcept;
   const field::ScalarField& field_;
   const field::ScalarGrid* grid_;  ///< the same, or none
+  bool linear_ = false;
+  int cell_work_ = 0;
+  unsigned held_ = 0;
+  Vec3 wall_{0.0}, way_{0.0};  ///< indices held; the wall's normal, or where two axes are held the edge's direction
   double level_;
   field::Cursor& cursor_;
   LinkState& state_;

@@ -89,7 +89,7 @@ constexpr double kFlat = 0.25;        // voxels: so far off the level a straight
 }  // namespace
 
 Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, bool steepest, Vec3& f, PieceSample& s, Vec3& t) noexcept {
-  const field::Mapping& mapping = field.grid()->mapping();
+  const field::Mapping& mapping = field.cells()->mapping();
   const double length = field.length(), voxel = field.voxel();
   for (int i = 0; i < 40 && !field.exhausted(); ++i) {
     if (!s.usable) return Followed::blocked;
@@ -193,7 +193,7 @@ Followed follow(const LevelField& field, const Piece& piece, const Vec3& probe, 
 
 bool cross_cell(const LevelField& field, const PieceFrames& frames, const Piece& piece, const field::ScalarCell& cell, unsigned held,
                 const Vec3& probe, const PieceSample& s, const Vec3& t, Vec3& f) noexcept {
-  const field::Mapping& mapping = field.grid()->mapping();
+  const field::Mapping& mapping = field.cells()->mapping();
   const Vec3 d = piece.frame().index_step(mapping, t);
   int axis;
   const double part = piece.part_inside(f, d, axis);

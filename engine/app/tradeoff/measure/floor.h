@@ -35,7 +35,7 @@ struct Levels {
 std::optional<Levels<field::ScalarGrid>> make_levels(const field::ScalarGrid& grid, double most = 1.5e8);
 std::optional<Levels<field::VectorGrid>> make_levels(const field::VectorGrid& grid, double most = 5e7);
 
-/// Root mean square of linear interpolation's error in the field's own unit: seen at 2 h and 4 h at the voxels between, extrapolated to h.
+/// Root mean square of the field's own interpolation's error (linear or cubic), in its own unit: seen at 2 h and 4 h at the voxels between, extrapolated to h.
 struct InterpolationFloor {
   Extrapolated at_h;
   double at_2h = 0, at_4h = 0;

@@ -18,6 +18,7 @@ std::span<const Measurement> measurements();
 
 // measure/data
 Result<std::vector<Curve>> measure_levels(Subject& subject);  ///< interpolation error by the grid's spacing
+Result<std::vector<Curve>> measure_cells(Subject& subject);   ///< linear or cubic cells
 
 // measure/hand
 Result<std::vector<Curve>> measure_streamline(Subject& subject);

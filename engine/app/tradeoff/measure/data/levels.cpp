@@ -1,5 +1,5 @@
-/// What linear interpolation errs by on each grid of the scene: seen at every 4th and every 2nd voxel, extrapolated to the grid itself.
-/// The last is the floor of all that is felt and drawn of it. Of a formula that is drawn from a grid the truth stands beside it.
+/// What interpolation, linear or cubic, errs by on each grid of the scene: seen at every 4th and every 2nd voxel, extrapolated to the grid
+/// itself. The last is the floor of all that is felt and drawn of it. Of a formula that is drawn from a grid the truth stands beside it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -49,15 +49,16 @@ Result<std::vector<Curve>> measure_levels(Subject& subject) {
     const std::string name = subject.scene.world.get<scene::Name>(e).value;
     const auto floor = interpolation_floor(grid);
     if (!floor || !(floor->scale > 0)) {
-      subject.left_out.push_back("The error of the data, field \"" + name +
-                                 "\": it has no linear interpolation, fewer than nine voxels along an axis, or too many to be copied.");
+      subject.left_out.push_back(
+          "The error of the data, field \"" + name +
+          "\": it is read by its nearest voxels, has fewer than nine voxels along an axis, or too many to be copied.");
       return;
     }
     Curve curve;
     curve.id = "data-" + name;
     curve.title = "What the grid \"" + name + "\" leaves open between its voxels";
     curve.what =
-        "Linear interpolation from every 4th and every 2nd voxel is held against the voxels left out; the error between the voxels that "
+        "Interpolation from every 4th and every 2nd voxel is held against the voxels left out; the error between the voxels that "
         "there are follows from the observed order.";
     curve.error_name = "error of interpolation / range (RMS)";
     curve.bytes_name = "bytes of the values";

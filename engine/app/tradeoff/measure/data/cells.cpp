@@ -1,0 +1,115 @@
+/// How each grid of the scene is read between its voxels: by linear or by cubic cells.
+///   error  root mean square of the interpolation's error, by the range of the values: seen at every 4th and every 2nd voxel and
+///          extrapolated to the grid itself (floor.h); where the field is a formula that is drawn from a grid, against the formula
+///   time   one fetch of value and gradient along straight walks, as a hand's fetches lie
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/app/tradeoff/measure/choice.h"
+#include "engine/app/tradeoff/measure/floor.h"
+#include "engine/app/tradeoff/measure/registry.h"
+#include "engine/app/tradeoff/measure/timing.h"
+#include "engine/base/clock.h"
+
+namespace catena::app::tradeoff {
+namespace {
+
+/// Places in the world along random straight walks of a tenth of a voxel a step; many cells, each fetched some ten times.
+std::vector<Vec3> hand_places(const field::Field& field) {
+  std::mt19937 random(17);
+  const auto unit = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
+  const field::Box& box = field.index_box();
+  std::vector<Vec3> places;
+  while (places.size() < 100000) {
+    Vec3 p = box.lo + Vec3(unit(), unit(), unit()) * (box.hi - box.lo);
+    const Vec3 step = 0.1 * direction(Vec3(unit() - 0.5, unit() - 0.5, unit() - 0.5));
+    for (int k = 0; k < 200 && box.contains(p); ++k, p += step) places.push_back(field.mapping().world_from_index(p));
+  }
+  return places;
+}
+
+double one_number(double v) { return v; }
+double one_number(const Vec3& v) { return v.x; }
+
+template <class FieldPtr>
+Repeat fetches(const FieldPtr& field, const std::vector<Vec3>& places) {
+  return [&field = *field, &places]() -> Result<double> {
+    field::Cursor cursor;
+    const std::int64_t start = processor_ns();
+    double sum = 0;
+    for (const Vec3& p : places) sum += one_number(field.sample(p, cursor).value);
+    volatile double keep = sum;
+    (void)keep;
+    return static_cast<double>(processor_ns() - start) / static_cast<double>(places.size());
+  };
+}
+
+field::AnyField any(std::shared_ptr<const field::ScalarGrid> grid) { return {std::move(grid), nullptr}; }
+field::AnyField any(std::shared_ptr<const field::VectorGrid> grid) { return {nullptr, std::move(grid)}; }
+
+/// Adds both ways of reading one grid to the curve.
+template <class Grid>
+Outcome add_cells(Subject& subject, const Grid& grid, Curve& curve) {
+  const std::shared_ptr<const Grid> linear = grid.linear();
+  CATENA_TRY(const auto cubic, grid.cubic());
+  const std::vector<Vec3> places = hand_places(grid);
+  for (const auto& [word, one] : {std::pair<const char*, const std::shared_ptr<const Grid>&>{"linear", linear}, {"cubic", cubic}}) {
+    const auto floor = interpolation_floor(any(one));
+    Point p{word, fmt::format("\"interpolation\": \"{}\"", word), "", kNotMeasured, kNotMeasured, {}, kNotMeasured, {}};
+    if (floor && floor->scale > 0) p.error = floor->at_h.error / floor->scale;
+    p.bytes = static_cast<double>(one->bytes());
+    curve.points.push_back(std::move(p));
+  }
+  if (!(std::isfinite(curve.points[0].error) && std::isfinite(curve.points[1].error)))
+    return Error{"it has fewer than nine voxels along an axis, or too many to be copied"};
+  curve.current = grid.interpolation() == field::Interpolation::cubic ? 1 : 0;
+  return time_points(curve, {fetches(linear, places), fetches(cubic, places)}, 0.3 * subject.effort.hand_s);
+}
+
+/// Cubic cells take longer everywhere: they are chosen where they are nearer by a quarter at least.
+void decide(Curve& curve) {
+  const double gain = curve.points[0].error / curve.points[1].error, cost = curve.points[1].time.median / curve.points[0].time.median;
+  curve.front = pareto_front(curve.points, curve.cost);
+  curve.chosen = gain >= 1.25 ? 1 : 0;
+  curve.why = gain >= 1.25
+                  ? fmt::format("Cubic cells are {:.3g} times nearer to these data, at {:.2g} times the cost of a fetch.", gain, cost)
+              : gain >= 1 ? fmt::format("Cubic cells are nearer to these data by {:.0f} % only: they are not smooth at their own spacing.",
+                                        100 * (1 - 1 / gain))
+                          : "Cubic cells are farther from these data than linear ones: they overshoot where noise and edges are.";
+}
+
+}  // namespace
+
+Result<std::vector<Curve>> measure_cells(Subject& subject) {
+  std::vector<Curve> curves;
+  subject.scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource& source) {
+    const field::AnyField& loaded = source.loaded;
+    if (!source.file || loaded.get() == nullptr || !loaded.get()->is_grid()) return;
+    if (loaded.scalar && loaded.scalar->interpolation() == field::Interpolation::nearest) return;
+    const std::string name = subject.scene.world.get<scene::Name>(e).value;
+    Curve curve;
+    curve.id = "data-cells-" + name;
+    curve.title = "How \"" + name + "\" is read between its voxels";
+    curve.what =
+        "Linear cells of eight samples, or cubic ones of 64. Every 4th and every 2nd voxel, read in either way, are held against the "
+        "voxels "
+        "left out; the error between the voxels that there are follows from the observed order. One fetch is value and gradient.";
+    curve.error_name = "error of interpolation / range (RMS)";
+    curve.time_name = "ns a fetch";
+    curve.bytes_name = "bytes of the grid";
+    curve.reference = "the data's own voxels";
+    const Outcome made =
+        loaded.scalar ? add_cells(subject, *loaded.scalar->grid(), curve) : add_cells(subject, *loaded.vector->grid(), curve);
+    if (!made) {
+      subject.left_out.push_back("How field \"" + name + "\" is read: " + made.error().message + ".");
+      return;
+    }
+    decide(curve);
+    curves.push_back(std::move(curve));
+  });
+  return curves;
+}
+
+}  // namespace catena::app::tradeoff

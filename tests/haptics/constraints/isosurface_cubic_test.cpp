@@ -1,0 +1,211 @@
+// Isosurfaces of cubic grids in the hand: the closest point, its normal, and the walls of the domain. Judged by the field's own samples,
+// by closed forms (the cubic repeats planes and paraboloids exactly) and beside linear cells.
+#include "tests/haptics/constraints/rig.h"
+
+namespace catena::haptics::tests {
+namespace isosurface_cubic_test {
+
+std::shared_ptr<const field::ScalarGrid> cubic_of(const std::shared_ptr<const field::ScalarGrid>& grid) {
+  auto made = grid->cubic();
+  EXPECT_TRUE(made) << (made ? "" : made.error().message);
+  return *made;
+}
+
+struct Judged {
+  double off_level, tangential;  ///< of L
+};
+Judged judge(const field::ScalarField& f, double level, const Vec3& probe, const Vec3& proxy) {
+  field::Cursor cursor;
+  const auto s = f.sample(proxy, cursor);
+  const Vec3 n = direction(s.gradient), e = probe - proxy;
+  return {std::fabs(s.value - level) / norm(s.gradient) / f.length(), norm(e - n * dot(n, e)) / f.length()};
+}
+
+struct Case {
+  const char* name;
+  double level;
+  int resolution;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name << " " << c.resolution; }
+
+class CubicIsosurface : public testing::TestWithParam<Case> {
+ protected:
+  std::shared_ptr<const field::ScalarGrid> make() const {
+    const auto sampled = tests::sampled(GetParam().name, GetParam().resolution);
+    return cubic_of(std::dynamic_pointer_cast<const field::ScalarGrid>(sampled));
+  }
+  /// Counts a place that is not on the level, or not the closest nearby.
+  void count(const field::ScalarField& field, const Vec3& probe, const LinkState& state) {
+    const Judged j = judge(field, GetParam().level, probe, state.proxy);
+    ++runs;
+    worst_off = std::max(worst_off, j.off_level);
+    bad += state.status != Status::ok || !(j.off_level <= 1e-9) || !(j.tangential <= 1e-6);
+    EXPECT_LE(state.evaluations, kEvaluationCap);
+    EXPECT_LE(state.work(), kWorkCap);
+  }
+  int runs = 0, bad = 0;
+  double worst_off = 0;
+};
+
+TEST_P(CubicIsosurface, ReachesTheClosestPointFromAnyStart) {
+  const auto grid = make();
+  const auto constraint = isosurface(grid, GetParam().level), exact = isosurface(analytic(GetParam().name), GetParam().level);
+  Random random(11);
+  int farther = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 probe = random.box(1.6);
+    Rig rig(constraint), true_one(exact);
+    rig.tick(probe);
+    for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick(probe);
+    count(*grid, probe, rig.state);
+    true_one.tick(probe);
+    farther += norm(probe - rig.state.proxy) > norm(probe - true_one.state.proxy) + 1e-3;
+  }
+  EXPECT_LE(bad, runs / 500) << worst_off;
+  EXPECT_LE(farther, runs / 500);
+}
+
+TEST_P(CubicIsosurface, WalksWithAHand) {
+  const auto grid = make();
+  Rig rig(isosurface(grid, GetParam().level));
+  Random random(12);
+  const double speed = 0.3 * grid->mapping().smallest_edge();
+  Vec3 probe(0.9, 0.3, 0.4), velocity = random.unit() * speed;
+  rig.tick(probe);
+  for (int i = 0; i < 5000; ++i) {
+    velocity = direction(velocity + random.unit() * (0.1 * speed)) * speed;
+    if (norm(probe + velocity) > 1.6) velocity = velocity * -1.0;
+    probe = probe + velocity;
+    rig.tick(probe);
+    count(*grid, probe, rig.state);
+  }
+  EXPECT_LE(bad, runs / 1000) << worst_off;
+}
+
+INSTANTIATE_TEST_SUITE_P(Grids, CubicIsosurface,
+                         testing::Values(Case{"torus", 0.4, 32}, Case{"torus", 0.4, 64}, Case{"sphere", 1, 32}, Case{"gaussian", 0.5, 48}),
+                         [](const auto& test) { return std::string(test.param.name) + std::to_string(test.param.resolution); });
+
+/// The greatest angle between the felt normal and that of the sphere of |x|, over hands all about it.
+double normal_error(const field::ScalarFieldPtr& field, double radius) {
+  Rig rig(isosurface(field, radius));
+  Random random(14);
+  double worst = 0;
+  field::Cursor cursor;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 probe = random.unit() * (1.02 * radius);
+    rig.tick(probe);
+    for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick(probe);
+    const Vec3 n = direction(field->sample(rig.state.proxy, cursor).gradient);
+    worst = std::max(worst, norm(n - direction(rig.state.proxy)));
+  }
+  return worst;
+}
+
+TEST(CubicIsosurface, NormalsOfSpheresAreTwentyTimesNearerToTheTruth) {
+  const auto linear = std::dynamic_pointer_cast<const field::ScalarGrid>(sampled("sphere", 64));
+  const auto cubic = cubic_of(linear);
+  for (const double radius : {0.5, 0.8, 1.0, 1.25, 1.5}) {
+    const double of_linear = normal_error(linear, radius), of_cubic = normal_error(cubic, radius);
+    std::printf("R %.2f: linear %.3g, cubic %.3g, ratio %.1f\n", radius, of_linear, of_cubic, of_linear / of_cubic);
+    EXPECT_GT(of_linear, 20 * of_cubic) << radius;
+  }
+}
+
+/// z - x / 10 - (x^2 + y^2) / 4, repeated exactly.
+double bowl(const Vec3& p) { return p.z - 0.1 * p.x - 0.25 * (p.x * p.x + p.y * p.y); }
+field::Mapping cube() { return field::Mapping::from_linear(Mat3(0.25), Vec3(-2.0)); }
+
+TEST(CubicWalls, TheProxySlidesOnTheBoxAndComesBack) {
+  const auto grid = cubic_of(grid_of(cube(), {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
+  Rig rig(isosurface(grid, 0));
+  for (double x = 0; x < 3; x += 0.01) {
+    rig.tick({x, 0.33, 0.5});
+    ASSERT_LE(rig.state.proxy.x, 2 + 1e-12);
+    // the foot on the plane; beyond the wall the nearest on the edge
+    const double foot = (x + 0.1 * 0.5) / 1.01;
+    ASSERT_TRUE(std::fabs(foot - 2) < 1e-6 || rig.state.status == (foot < 2 ? Status::ok : Status::boundary)) << x;
+    ASSERT_NEAR(rig.state.proxy.x, std::min(foot, 2.0), 1e-6) << x;
+    ASSERT_NEAR(rig.state.proxy.y, 0.33, 1e-6) << x;
+  }
+  EXPECT_NEAR(rig.state.proxy.z, 0.2, 1e-9);
+  EXPECT_EQ(rig.state.reason, Reason::box);
+  rig.tick({3, -0.7, 0.5});
+  EXPECT_NEAR(rig.state.proxy.y, -0.7, 1e-6);
+  rig.tick({3, 3, 0.5});  // where two walls meet
+  EXPECT_NEAR(norm(rig.state.proxy - Vec3(2, 2, 0.2)), 0, 1e-6);
+  EXPECT_EQ(rig.state.status, Status::boundary);
+  EXPECT_EQ(rig.tick({1, 0, 0}).status, Status::ok);
+}
+
+TEST(CubicWalls, OnACurvedSurfaceTheWallIsACurve) {
+  const auto grid = cubic_of(grid_of(cube(), {17, 17, 17}, bowl));
+  Rig rig(isosurface(grid, 0.5));
+  // on x = 2: z = 1.7 + y^2 / 4; brute force over y
+  for (double y = -1; y <= 1; y += 0.05) {
+    const Vec3 probe(2.6, y, 2.2);
+    rig.tick(probe);
+    double best = 1e9, at = 0;
+    for (double t = -1.0954; t <= 1.0954; t += 1e-4) {  // below the box's top
+      const double d = norm(probe - Vec3(2, t, 0.5 + 0.2 + 0.25 * (4 + t * t)));
+      if (d < best) best = d, at = t;
+    }
+    ASSERT_EQ(rig.state.status, Status::boundary) << y;
+    ASSERT_NEAR(rig.state.proxy.x, 2, 1e-9);
+    ASSERT_NEAR(rig.state.proxy.y, at, 2e-4) << y;
+    ASSERT_NEAR(bowl(rig.state.proxy), 0.5, 1e-7) << "the samples are floats";
+  }
+}
+
+TEST(CubicWalls, ObliqueBoxesToo) {
+  const auto mapping = field::Mapping::from_linear(Mat3(0.2, 0.05, 0, -0.04, 0.25, 0.02, 0.03, 0, 0.3), Vec3(-2.0));
+  const auto grid = cubic_of(grid_of(mapping, {17, 17, 17}, [](const Vec3& p) { return p.z - 0.1 * p.x; }));
+  const Vec3 from = mapping.world_from_index(Vec3(8.0)), out = mapping.world_from_index(Vec3(22, 8, 8));
+  Rig rig(isosurface(grid, from.z - 0.1 * from.x));
+  for (int k = 0; k <= 100; ++k) rig.tick(from + (k / 100.0) * (out - from));
+  ASSERT_EQ(rig.state.status, Status::boundary);
+  EXPECT_NEAR(mapping.index_from_world(rig.state.proxy).x, 16, 1e-8);
+  // what is left of the way points out of the wall, in the plane of the wall and the level's normal only
+  const Vec3 n = direction(Vec3(-0.1, 0, 1)), wall = direction(mapping.world_gradient(Vec3(1, 0, 0)));
+  const Vec3 edge = direction(cross(n, wall));
+  EXPECT_NEAR(dot(out - rig.state.proxy, edge), 0, 1e-6);
+  EXPECT_GT(dot(out - rig.state.proxy, wall), 0);
+}
+
+TEST(CubicWalls, MasksAndValuesThatAreNoneAreWalls) {
+  for (const bool masked : {true, false}) {
+    std::vector<std::uint8_t> valid;
+    for (int z = 0; z < 17; ++z)
+      for (int y = 0; y < 17; ++y)
+        for (int x = 0; x < 17; ++x) valid.push_back(x <= 10);
+    const double hole = masked ? 9.0 : 0.6;
+    const auto made = grid_of(
+        cube(), {17, 17, 17}, [&](const Vec3& p) { return p.x > hole ? std::nan("") : p.z - 0.1 * p.x; },
+        masked ? valid : std::vector<std::uint8_t>{});
+    Rig rig(isosurface(cubic_of(made), 0));
+    for (double x = -1; x < 1.5; x += 0.01) {
+      rig.tick({x, 0.1 + 0.2 * x, 0.3});
+      ASSERT_TRUE(is_finite(rig.state.proxy));
+      ASSERT_LE(rig.state.proxy.x, 0.5 + 1e-12);
+    }
+    EXPECT_EQ(rig.state.status, Status::boundary);
+    EXPECT_EQ(rig.state.reason, masked ? Reason::mask : Reason::not_finite);
+    EXPECT_NEAR(rig.state.proxy.x, 0.5, 1e-8);
+    EXPECT_NEAR(rig.state.proxy.y, 0.1 + 0.2 * 1.49, 1e-6) << "it goes on along the wall";
+    EXPECT_EQ(rig.tick({-0.5, 0, 0.1}).status, Status::ok);
+  }
+}
+
+TEST(CubicWalls, ASliceHasACurve) {
+  const auto grid = cubic_of(grid_of(cube(), {17, 17, 1}, [](const Vec3& p) { return p.y - 0.25 * p.x * p.x; }));
+  Rig rig(isosurface(grid, 0));
+  rig.tick({1, 1, -2});
+  for (int k = 0; k < 3 && rig.state.status == Status::budget; ++k) rig.tick({1, 1, -2});
+  const Judged j = judge(*grid, 0, {1, 1, -2}, rig.state.proxy);
+  EXPECT_LE(j.off_level, 1e-9);
+  EXPECT_LE(j.tangential, 1e-6);
+  EXPECT_NEAR(rig.state.proxy.z, -2, 1e-12);
+}
+
+}  // namespace isosurface_cubic_test
+}  // namespace catena::haptics::tests
