@@ -77,14 +77,27 @@ inline std::map<std::string, std::vector<std::string>> examples() {
         R"("center": [0, 0, 0], "size": [1, 1, 0.001], "rotation": [1, 0, 0, 0, 0.6, -0.8, 0, 0.8, 0.6], "free": "above")",
         R"("center": [0, 0, 0], "size": [1, 1, 0.5], "release": 0.1)"}},
       {"isosurface",
-       {R"("field": "sphere", "level": 1)", R"("field": "sphere", "level": 1, "free": "above")",
-        R"("field": "torus", "level": 0.4, "free": "below", "release": 0.2)", R"("field": "torus", "level": 0.3)",
-        R"("field": "gaussian", "level": 0.5, "release": 0.3)", R"("field": "tanh", "level": 0.9, "free": "below")",
-        R"("field": "marschner-lobb", "level": 0.5)", R"("field": "constant", "level": 1)", R"("field": "sphere_grid", "level": 1)",
-        R"("field": "sphere_grid", "level": 0.05)", R"("field": "torus_grid", "level": 0.4, "free": "above", "release": 0.2)",
-        R"("field": "boxes_grid", "level": 0.9, "free": "below")", R"("field": "noise_grid", "level": 0.1)",
-        R"("field": "noise_grid", "level": 0.1, "free": "above", "release": 0.1)", R"("field": "broken_grid", "level": 0.5)",
-        R"("field": "broken_grid", "level": 0.5, "free": "above")"}},
+       {R"("field": "sphere", "level": 1)",
+        R"("field": "sphere", "level": 1, "free": "above")",
+        R"("field": "torus", "level": 0.4, "free": "below", "release": 0.2)",
+        R"("field": "torus", "level": 0.3)",
+        R"("field": "gaussian", "level": 0.5, "release": 0.3)",
+        R"("field": "tanh", "level": 0.9, "free": "below")",
+        R"("field": "marschner-lobb", "level": 0.5)",
+        R"("field": "constant", "level": 1)",
+        R"("field": "sphere_grid", "level": 1)",
+        R"("field": "sphere_grid", "level": 0.05)",
+        R"("field": "torus_grid", "level": 0.4, "free": "above", "release": 0.2)",
+        R"("field": "boxes_grid", "level": 0.9, "free": "below")",
+        R"("field": "noise_grid", "level": 0.1)",
+        R"("field": "noise_grid", "level": 0.1, "free": "above", "release": 0.1)",
+        R"("field": "broken_grid", "level": 0.5)",
+        R"("field": "broken_grid", "level": 0.5, "free": "above")",
+        R"("field": "cubic_sphere", "level": 1)",
+        R"("field": "cubic_noise", "level": 0.1, "free": "above", "release": 0.1)",
+        R"("field": "cubic_noise", "level": 0.1)",
+        R"("field": "cubic_broken", "level": 0.5)",
+        R"("field": "cubic_broken", "level": 0.5, "free": "above")"}},
       {"mesh",
        {R"("mesh": "box")", R"("mesh": "box", "free": "above")", R"("mesh": "box", "free": "below", "release": 0.2)",
         R"("mesh": "sheet", "free": "above", "release": 0.3)", R"("mesh": "sheet", "release": 0.1)", R"("mesh": "book", "free": "above")",
@@ -109,7 +122,9 @@ inline std::map<std::string, std::vector<std::string>> examples() {
        {R"("field": "circle", "seed": [0.5, 0, 0])", R"("field": "saddle", "seed": [0.5, 0.2, 0.1])", R"("field": "circle")",
         R"("field": "hill", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "method": "linear")",
         R"("field": "circle", "seed": [0.5, 0, 0], "method": "rk4")", R"("field": "circle_grid", "seed": [0.5, 0, 0])",
-        R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "release": 0.5)"}},
+        R"("field": "circle_grid", "seed": [0.5, 0, 0], "follow": "online")", R"("field": "circle", "seed": [0.5, 0, 0], "release": 0.5)",
+        R"("field": "cubic_circle", "seed": [0.5, 0, 0])", R"("field": "cubic_circle", "seed": [0.5, 0, 0], "follow": "online")",
+        R"("field": "cubic_vectors", "follow": "online")"}},
       {"drag",
        {R"("threshold": 0.05)", R"("threshold": 0)", R"("threshold": {"field": "sphere_grid", "map": [[0, 0.01], [2, 0.2]]})",
         R"("threshold": 0.02, "surface": "sphere", "level": 1)", R"("threshold": 0.02, "surface": "broken_grid", "level": 0.5)",
@@ -165,6 +180,12 @@ inline const Fields& fields() {
     made.named["broken_circle"].vector = catena::test::grid_of(nodes, {21, 21, 21}, [&](const Vec3& p) {
       return random.in(0, 1) < 0.03 ? Vec3(std::numeric_limits<double>::quiet_NaN()) : Vec3(-p.y, p.x, 0.1);
     });
+    // the same voxels in cubic cells
+    for (const auto& [cubic, linear] :
+         {std::pair{"cubic_sphere", "sphere_grid"}, {"cubic_noise", "noise_grid"}, {"cubic_broken", "broken_grid"}})
+      made.named[cubic].scalar = made.named[linear].scalar->grid()->cubic().value();
+    for (const auto& [cubic, linear] : {std::pair{"cubic_circle", "circle_grid"}, {"cubic_vectors", "broken_vectors"}})
+      made.named[cubic].vector = made.named[linear].vector->grid()->cubic().value();
     made.meshes["box"] = catena::test::mesh_of(catena::test::box_soup());
     made.meshes["sheet"] = catena::test::mesh_of(catena::test::sheet_soup(12, 1, [](double x, double y) { return 0.3 * x * x - 0.4 * y; }));
     made.meshes["sphere"] = catena::test::mesh_of(catena::test::sphere_soup(12));
