@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/app/command.h"
+#include "engine/app/cost/cost.h"
 #include "engine/app/info_json.h"
 #include "engine/app/replay_log.h"
 #include "engine/app/scene_schema.h"
@@ -259,19 +260,23 @@ Outcome print_keys(const std::string& part) {
 void add_info(CLI::App& program, Work& chosen) {
   auto path = std::make_shared<std::string>();
   auto schema = std::make_shared<bool>(false), maps = std::make_shared<bool>(false), formats = std::make_shared<bool>(false),
-       json = std::make_shared<bool>(false);
+       json = std::make_shared<bool>(false), cost = std::make_shared<bool>(false), measure = std::make_shared<bool>(false);
   auto part = std::make_shared<std::string>();
   CLI::App* command = program.add_subcommand("info", "describe a data file or a scene");
   command->add_option(
       "FILE", *path,
       "a data file, a folder of DICOM images, a triangle mesh, curves, a table of points, a scene (.json) or a recording (.catlog)");
   command->add_flag("--json", *json, "the same facts as one JSON object");
+  CLI::Option* costs = command->add_flag(
+      "--cost", *cost,
+      "what of it will be loaded, mirrored, created, evaluated a tick and drawn a frame: bytes and expected times instead");
+  command->add_flag("--measure", *measure, "with --cost: beside it what was then measured")->needs(costs);
   command->add_flag("--formats", *formats, "list the endings of the files that are read instead");
   command->add_flag("--schema", *schema, "print the JSON Schema of scenes instead, for an editor");
   command->add_option("--keys", *part, "list the keys of a part of a scene instead: volumes, chain, camera, ...");
   command->add_flag("--colormaps", *maps, "list the colour maps instead");
-  command->callback([&chosen, path, schema, maps, part, formats, json] {
-    chosen = [path, schema, maps, part, formats, json]() -> Outcome {
+  command->callback([&chosen, path, schema, maps, part, formats, json, cost, measure] {
+    chosen = [path, schema, maps, part, formats, json, cost, measure]() -> Outcome {
       if (*formats) {
         fmt::print("fields: {}\nmeshes: {}\nfolders: DICOM images\n", joined(field::field_endings()), joined(mesh::mesh_endings()));
         return Done{};
@@ -286,6 +291,8 @@ void add_info(CLI::App& program, Work& chosen) {
       }
       if (!part->empty()) return print_keys(*part);
       if (path->empty()) return Error{"info: expected a data file or a scene (see catena info --help)"};
+      if (*cost && is_log_file(*path)) return Error{*path + ": --cost: a recording draws nothing; a scene or a data file was expected"};
+      if (*cost) return print_costs(*path, *json, *measure);
       if (*json) return print_json_info(*path);
       if (is_log_file(*path)) return describe_log(*path);
       if (is_scene_file(*path)) return describe_scene(*path);

@@ -1,0 +1,44 @@
+/// `catena info --cost`: what a scene, or a data file as `render` shows it, will load, mirror, create, evaluate a tick and draw a frame,
+/// with bytes and expected times, and with --measure what was then measured. Bytes are those that the functions that allocate would take.
+/// Times are counts of work times a unit cost, which is measured here and now:
+///   a formula on its grid   nodes x what a node of the same formula took on a lattice of 24^3
+///   a mirror                bytes x what a byte of a mirror of 48^3 took
+///   a tick                  one of an empty chain + units of work (constraint.h) of a standard walk x a fetch's time / its units
+///   a frame                 a start + rows x what a row took: of strips of the picture, some of 1 row and some of 8
+/// What has no model has no expected time. Frame thread.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/scene/scene.h"
+#include "haptics/chain/program.h"
+#include "render/frame/frame_packet.h"
+
+namespace catena::app {
+
+struct Cost {
+  std::optional<double> bytes, ms;
+};
+
+struct CostRow {
+  std::string part;  ///< load, mirror, create, tick, frame
+  std::string name, work;
+  Cost expected, measured;
+};
+using CostTable = std::vector<CostRow>;
+
+/// The grids that the scene has loaded and sampled, by now. `fresh`: the same scene, nothing of it loaded, to be measured on.
+Outcome add_load_costs(scene::Scene& scene, scene::Scene* fresh, CostTable& table);
+/// Links and their fetches on a walk through the box of what is loaded.
+void add_tick_costs(const scene::Scene& scene, const haptics::Program& program, bool measure, CostTable& table);
+/// Mirrors, passes and a picture of the packet at `balanced`, as that quality stands: without the search that `render` makes for its error.
+/// An error is the device's.
+Outcome add_frame_costs(const render::FramePacket& packet, bool measure, CostTable& table);
+
+/// Prints the table, or one JSON object on one line.
+Outcome print_costs(const std::string& path, bool json, bool measure);
+
+}  // namespace catena::app

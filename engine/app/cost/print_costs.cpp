@@ -1,0 +1,71 @@
+#include <fmt/core.h>
+
+#include "engine/app/command.h"
+#include "engine/app/cost/cost.h"
+#include "engine/base/json_text.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "haptics/extract/extract.h"
+#include "render/extract/extract.h"
+
+namespace catena::app {
+namespace {
+
+constexpr std::uint32_t kWidth = 1024, kHeight = 768;
+
+std::string bytes_text(const std::optional<double>& bytes) { return bytes ? human_bytes(*bytes) : "-"; }
+
+std::string time_text(const std::optional<double>& ms) {
+  if (!ms) return "-";
+  return *ms >= 1 || *ms == 0 ? fmt::format("{:.1f} ms", *ms)
+         : *ms >= 1e-3        ? fmt::format("{:.2f} us", 1e3 * *ms)
+                              : fmt::format("{:.0f} ns", 1e6 * *ms);
+}
+
+std::string json_number(const std::optional<double>& value) { return value ? to_text(*value) : "null"; }
+
+void print_table(const CostTable& table, bool measure) {
+  fmt::print("{:8}{:20}{:44}{:>12}{:>12}", "", "", "", "bytes", "expected");
+  fmt::print("{}\n", measure ? fmt::format("{:>12}{:>12}", "bytes", "measured") : "");
+  for (const CostRow& row : table) {
+    fmt::print("{:8}{:20}{:44}{:>12}{:>12}", row.part, printable(row.name), printable(row.work), bytes_text(row.expected.bytes),
+               time_text(row.expected.ms));
+    fmt::print("{}\n", measure ? fmt::format("{:>12}{:>12}", bytes_text(row.measured.bytes), time_text(row.measured.ms)) : "");
+  }
+}
+
+void print_json(const std::string& path, const CostTable& table) {
+  std::string rows;
+  for (const CostRow& row : table)
+    rows += fmt::format(
+        "{}{{\"part\":{},\"name\":{},\"work\":{},\"expected_bytes\":{},\"expected_ms\":{},\"measured_bytes\":{},\"measured_ms\":{}}}",
+        rows.empty() ? "" : ",", json_string(row.part), json_string(printable(row.name)), json_string(printable(row.work)),
+        json_number(row.expected.bytes), json_number(row.expected.ms), json_number(row.measured.bytes), json_number(row.measured.ms));
+  fmt::print("{{\"kind\":\"cost\",\"file\":{},\"rows\":[{}]}}\n", json_string(printable(path)), rows);
+}
+
+}  // namespace
+
+Outcome print_costs(const std::string& path, bool json, bool measure) {
+  CATENA_TRY(scene::Scene scene, open_scene(path));
+  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
+  CATENA_TRY(const render::FramePacket packet, render::make_frame(scene, kWidth, kHeight));
+  CostTable table;
+  if (measure && is_scene_file(path)) {
+    CATENA_TRY(scene::Scene fresh, open_scene(path));
+    CATENA_CHECK(add_load_costs(scene, &fresh, table));
+  } else {
+    CATENA_CHECK(add_load_costs(scene, nullptr, table));
+  }
+  if (const Outcome drawn = add_frame_costs(packet, measure, table); !drawn) throw MachineFailure{drawn.error().message};
+  table.push_back({"create", "widgets", std::to_string(program->widgets.size()), {}, {}});
+  table.push_back({"create", "devices", scene.device ? "1, by view and feel alone" : "0", {}, {}});
+  add_tick_costs(scene, *program, measure, table);
+  if (json)
+    print_json(path, table);
+  else
+    print_table(table, measure);
+  return Done{};
+}
+
+}  // namespace catena::app
