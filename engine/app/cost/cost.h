@@ -1,9 +1,10 @@
 /// `catena info --cost`: what a scene, or a data file as `render` shows it, will load, mirror, create, evaluate a tick and draw a frame,
 /// with bytes and expected times, and with --measure what was then measured. Bytes are those that the functions that allocate would take.
-/// Times are counts of work times a unit cost, which is measured here and now:
+/// Expected times are counts of work times a unit cost, or sums of parts, which are measured here and now:
 ///   a formula on its grid   nodes x what a node of the same formula took on a lattice of 24^3
-///   a mirror                bytes x what a byte of a mirror of 48^3 took
-///   a tick                  one of an empty chain + units of work (constraint.h) of a standard walk x a fetch's time / its units
+///   a mirror                bytes x what a byte of a mirror of 64^3 took
+///   a grid from a file      what loading it took just now
+///   a tick                  one without links + what each link adds that is alone in its chain, on a standard walk through the scene
 ///   a frame                 a start + rows x what a row took: of strips of the picture, some of 1 row and some of 8
 /// What has no model has no expected time. Frame thread.
 #pragma once
@@ -30,8 +31,8 @@ struct CostRow {
 };
 using CostTable = std::vector<CostRow>;
 
-/// The grids that the scene has loaded and sampled, by now. `fresh`: the same scene, nothing of it loaded, to be measured on.
-Outcome add_load_costs(scene::Scene& scene, scene::Scene* fresh, CostTable& table);
+/// The fields that the scene has loaded and sampled, by now: each is loaded again from the file of the scene, measured twice.
+Outcome add_load_costs(const std::string& path, const scene::Scene& scene, bool measure, CostTable& table);
 /// Links and their fetches on a walk through the box of what is loaded.
 void add_tick_costs(const scene::Scene& scene, const haptics::Program& program, bool measure, CostTable& table);
 /// Mirrors, passes and a picture of the packet at `balanced`, as that quality stands: without the search that `render` makes for its error.

@@ -15,13 +15,13 @@
 namespace catena::app {
 namespace {
 
-constexpr int kRepeats = 5;
+constexpr int kRepeats = 7;
 constexpr std::uint32_t kStrips = 12, kLow = 1, kHigh = 8;  // of the picture; rows of a strip
 
-/// Milliseconds a byte, of a mirror of 48^3.
+/// Milliseconds a byte, of a mirror of 64^3.
 Result<double> mirror_unit(render::vk::Device& device, bool float32) {
   CATENA_TRY(const field::AnyField formula, field::make_analytic("marschner-lobb"));
-  CATENA_TRY(const field::AnyField grid, field::try_sample_on_grid(formula, 48, -1, 1));
+  CATENA_TRY(const field::AnyField grid, field::try_sample_on_grid(formula, 64, -1, 1));
   double quickest = 0;
   for (int k = 0; k < kRepeats; ++k) {
     const std::int64_t start = now_ns();

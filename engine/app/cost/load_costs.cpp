@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "engine/app/command.h"
 #include "engine/app/cost/cost.h"
 #include "engine/base/clock.h"
 
@@ -21,9 +22,28 @@ std::optional<double> expected_ms(const scene::FieldSource& source) {
   return quickest * nodes / (double(kLattice) * kLattice * kLattice);
 }
 
+/// Loads a field of a scene of which nothing is loaded, and samples it where it is drawn from a grid.
+Result<Cost> load_once(const std::string& path, const std::string& name, bool sampled) {
+  const std::int64_t opened = now_ns();
+  CATENA_TRY(scene::Scene fresh, open_scene(path));
+  const scene::Entity e = scene::find_field(fresh, name);
+  const json::Node where = fresh.world.get<scene::FieldSource>(e).where;
+  // a data file is loaded when it is opened, a scene's when they are asked for
+  const std::int64_t start = is_scene_file(path) ? now_ns() : opened;
+  CATENA_CHECK(scene::use_field(fresh, e, where));
+  const scene::FieldSource& source = fresh.world.get<scene::FieldSource>(e);
+  Cost cost{double(source.loaded.get()->bytes()), {}};
+  if (sampled) {
+    CATENA_TRY(const field::AnyField drawn, field::try_sample_on_grid(source.loaded, source.resolution, source.box[0], source.box[1]));
+    *cost.bytes += double(drawn.get()->bytes());
+  }
+  cost.ms = ms_since(start);
+  return cost;
+}
+
 }  // namespace
 
-Outcome add_load_costs(scene::Scene& scene, scene::Scene* fresh, CostTable& table) {
+Outcome add_load_costs(const std::string& path, const scene::Scene& scene, bool measure, CostTable& table) {
   std::vector<scene::Entity> sources;
   scene.world.each<scene::FieldSource>([&](scene::Entity e, const scene::FieldSource& source) {
     if (source.loaded.get() != nullptr) sources.push_back(e);
@@ -37,20 +57,14 @@ Outcome add_load_costs(scene::Scene& scene, scene::Scene* fresh, CostTable& tabl
     row.work = sampled                          ? fmt::format("a formula on {0} x {0} x {0} nodes", source.resolution)
                : source.loaded.get()->is_grid() ? "a grid"
                                                 : "a formula";
-    if (!source.loaded.get()->is_grid()) row.expected.ms = sampled ? expected_ms(source) : 0;
-    if (fresh != nullptr) {
-      const scene::Entity same = scene::find_field(*fresh, name);
-      const json::Node where = fresh->world.get<scene::FieldSource>(same).where;
-      const std::int64_t start = now_ns();
-      CATENA_CHECK(scene::use_field(*fresh, same, where));
-      const scene::FieldSource& loaded = fresh->world.get<scene::FieldSource>(same);
-      if (sampled) {
-        CATENA_TRY(const field::AnyField drawn, field::try_sample_on_grid(loaded.loaded, loaded.resolution, loaded.box[0], loaded.box[1]));
-        row.measured.bytes = double(loaded.loaded.get()->bytes() + drawn.get()->bytes());
-      } else {
-        row.measured.bytes = double(loaded.loaded.get()->bytes());
-      }
-      row.measured.ms = ms_since(start);
+    if (sampled) {
+      row.expected.ms = expected_ms(source);
+    } else {
+      CATENA_TRY(const Cost once, load_once(path, name, sampled));
+      row.expected.ms = once.ms;
+    }
+    if (measure) {
+      CATENA_TRY(row.measured, load_once(path, name, sampled));
     }
     table.push_back(std::move(row));
   }

@@ -51,12 +51,7 @@ Outcome print_costs(const std::string& path, bool json, bool measure) {
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   CATENA_TRY(const render::FramePacket packet, render::make_frame(scene, kWidth, kHeight));
   CostTable table;
-  if (measure && is_scene_file(path)) {
-    CATENA_TRY(scene::Scene fresh, open_scene(path));
-    CATENA_CHECK(add_load_costs(scene, &fresh, table));
-  } else {
-    CATENA_CHECK(add_load_costs(scene, nullptr, table));
-  }
+  CATENA_CHECK(add_load_costs(path, scene, measure, table));
   if (const Outcome drawn = add_frame_costs(packet, measure, table); !drawn) throw MachineFailure{drawn.error().message};
   table.push_back({"create", "widgets", std::to_string(program->widgets.size()), {}, {}});
   table.push_back({"create", "devices", scene.device ? "1, by view and feel alone" : "0", {}, {}});

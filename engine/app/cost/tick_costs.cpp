@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "engine/app/cost/cost.h"
 #include "engine/base/clock.h"
@@ -12,10 +13,8 @@ namespace {
 
 constexpr int kTicks = 1500, kRepeats = 5;
 
-/// Slowly through the box of what is loaded, on a closed curve about its middle.
-std::vector<haptics::ProbeSample> standard_walk(const scene::Scene& scene) {
-  const Bounds box = scene::prepared_bounds(scene);
-  const Vec3 middle = box.empty() ? Vec3(0.0) : (box.lo + box.hi) / 2.0, half = box.empty() ? Vec3(1.0) : (box.hi - box.lo) * 0.35;
+/// Slowly on a closed curve about the middle of a box.
+std::vector<haptics::ProbeSample> closed_walk(const Vec3& middle, const Vec3& half) {
   std::vector<haptics::ProbeSample> walk;
   for (int k = 0; k < kTicks; ++k) {
     const double a = 2 * 3.14159265358979 * k / kTicks;
@@ -49,49 +48,37 @@ Walked walk_through(const haptics::Program& program, const std::vector<haptics::
   return walked;
 }
 
-/// Of a fetch from the fields that the hand may feel, along the walk.
-double fetch_ns(const scene::Scene& scene, const std::vector<haptics::ProbeSample>& walk) {
-  double sum = 0, count = 0, used = 0;
-  scene.world.each<scene::FieldSource>([&](scene::Entity, const scene::FieldSource& source) {
-    if (source.loaded.get() == nullptr) return;
-    double quickest = 1e9;
-    for (int repeat = 0; repeat < kRepeats; ++repeat) {
-      field::Cursor cursor;
-      const std::int64_t start = now_ns();
-      for (const haptics::ProbeSample& probe : walk)
-        used += source.loaded.scalar ? source.loaded.scalar->sample(probe.position, cursor).value
-                                     : source.loaded.vector->sample(probe.position, cursor).value.x;
-      quickest = std::min(quickest, double(now_ns() - start) / double(walk.size()));
-    }
-    sum += quickest;
-    ++count;
-  });
-  volatile double kept = used;
-  (void)kept;
-  return count > 0 ? sum / count : 0;
+/// The same with only some of the links; `widgets`: they are the widgets' own.
+haptics::Program with_links(const haptics::Program& program, std::vector<haptics::Link> links, bool widgets = false) {
+  haptics::Program some = program;
+  some.links = std::move(links);
+  some.modes.clear();
+  some.first_widget_link = widgets ? 0 : -1;
+  if (!widgets) some.widgets.clear(), some.widget_names.clear();
+  return some;
 }
 
 }  // namespace
 
 void add_tick_costs(const scene::Scene& scene, const haptics::Program& program, bool measure, CostTable& table) {
-  const std::vector<haptics::ProbeSample> walk = standard_walk(scene);
-  haptics::Program empty;
-  empty.coupling = program.coupling;
-  empty.metres_per_unit = program.metres_per_unit;
-  const double base_ns = walk_through(empty, walk).ns, unit_ns = fetch_ns(scene, walk) / haptics::kFetchWork;
-  const Walked walked = walk_through(program, walk);
-  double all_ns = base_ns;
-  for (std::size_t i = 0; i < program.links.size(); ++i) {
-    const double ns = walked.work[i] * unit_ns;
+  const Bounds box = scene::prepared_bounds(scene);
+  const Vec3 middle = box.empty() ? Vec3(0.0) : (box.lo + box.hi) / 2.0, half = box.empty() ? Vec3(1.0) : (box.hi - box.lo) * 0.35;
+  const std::vector<haptics::ProbeSample> walk = closed_walk(middle, half);
+  const double none_ns = walk_through(with_links(program, {}), walk).ns;
+  double all_ns = none_ns;
+  const auto add = [&](const std::string& name, const haptics::Program& part) {
+    const Walked alone = walk_through(part, walk);
+    const double ns = std::max(0.0, alone.ns - none_ns), fetches = std::accumulate(alone.fetches.begin(), alone.fetches.end(), 0.0),
+                 work = std::accumulate(alone.work.begin(), alone.work.end(), 0.0);
     all_ns += ns;
-    table.push_back({"tick",
-                     program.links[i].name,
-                     fmt::format("{:.1f} fetches, {:.0f} units of work", walked.fetches[i], walked.work[i]),
-                     {{}, 1e-6 * ns},
-                     {}});
-  }
-  CostRow all{"tick", "all", fmt::format("{} links, {} widgets", program.links.size(), program.widgets.size()), {{}, 1e-6 * all_ns}, {}};
-  if (measure) all.measured.ms = 1e-6 * walked.ns;
+    table.push_back({"tick", name, fmt::format("{:.1f} fetches, {:.0f} units of work", fetches, work), {{}, 1e-6 * ns}, {}});
+  };
+  const auto scene_links = static_cast<std::ptrdiff_t>(program.scene_links());
+  for (auto link = program.links.begin(); link != program.links.begin() + scene_links; ++link)
+    add(link->name, with_links(program, {*link}));
+  if (!program.widgets.empty()) add("widgets", with_links(program, {program.links.begin() + scene_links, program.links.end()}, true));
+  CostRow all{"tick", "all", fmt::format("{} links, {} widgets", scene_links, program.widgets.size()), {{}, 1e-6 * all_ns}, {}};
+  if (measure) all.measured.ms = 1e-6 * walk_through(program, walk).ns;
   table.push_back(std::move(all));
 }
 

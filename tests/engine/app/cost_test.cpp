@@ -1,0 +1,77 @@
+/// `catena info --cost`: what a scene will take, and with --measure what it took. Times are not judged here: they are a benchmark's.
+#include <gtest/gtest.h>
+
+#include "engine/base/json.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace catena {
+namespace cost_test {
+
+class InfoCost : public ::testing::Test {
+ protected:
+  std::vector<json::Node> rows(const std::string& scene, bool measure) {
+    test::write_file(folder_ / "s.json", scene);
+    std::vector<std::string> arguments{"info", folder_ / "s.json", "--cost", "--json"};
+    if (measure) arguments.push_back("--measure");
+    const test::ProgramResult run = test::run_catena(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    auto node = json::parse(run.out, "out");
+    EXPECT_TRUE(node) << run.out;
+    return node ? node->find("rows")->items : std::vector<json::Node>{};
+  }
+  static const json::Node* find(const std::vector<json::Node>& rows, const std::string& part, const std::string& name) {
+    for (const json::Node& row : rows)
+      if (row.find("part")->string == part && row.find("name")->string == name) return &row;
+    return nullptr;
+  }
+  static double number(const json::Node* row, const char* key) {
+    const json::Node* value = row != nullptr ? row->find(key) : nullptr;
+    return value != nullptr && value->kind == json::Kind::number ? value->number : -1;
+  }
+  test::TemporaryFolder folder_;
+};
+
+const char* kScene = R"({
+  "fields": {"ball": {"analytic": "sphere", "resolution": 40, "box": [-1, 1]}, "flow": {"analytic": "circle"},
+             "unused": {"analytic": "torus", "resolution": 64}},
+  "isosurfaces": [{"field": "ball", "level": 0.5}, {"field": "unused", "level": 0.2, "visible": false}],
+  "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.5, 0, 0]},
+            {"name": "skin", "type": "isosurface", "field": "ball", "level": 0.5}]})";
+
+TEST_F(InfoCost, BytesAreThoseThatAreThenHeldAndEveryPartHasItsRow) {
+  const auto found = rows(kScene, true);
+  const json::Node* ball = find(found, "load", "ball");
+  ASSERT_NE(ball, nullptr);
+  EXPECT_GE(number(ball, "expected_bytes"), 40 * 40 * 40 * 4);
+  EXPECT_EQ(number(ball, "expected_bytes"), number(ball, "measured_bytes"));
+  const json::Node* mirrors = find(found, "mirror", "all");
+  EXPECT_GE(number(mirrors, "expected_bytes"), 40 * 40 * 40 * 4);
+  EXPECT_EQ(number(mirrors, "expected_bytes"), number(mirrors, "measured_bytes"));
+  for (const auto& [part, name] : {std::pair{"tick", "curve"}, {"tick", "skin"}, {"tick", "all"}, {"frame", "all"}})
+    EXPECT_GT(number(find(found, part, name), "expected_ms"), 0) << part << " " << name;
+  EXPECT_GT(number(find(found, "tick", "all"), "measured_ms"), 0);
+  EXPECT_GT(number(find(found, "frame", "all"), "measured_ms"), 0);
+}
+
+TEST_F(InfoCost, WhatIsHiddenOrUnusedHasNone) {
+  const auto found = rows(kScene, false);
+  EXPECT_EQ(find(found, "load", "unused"), nullptr);
+  EXPECT_EQ(find(found, "mirror", "torus"), nullptr);
+  ASSERT_NE(find(found, "create", "widgets"), nullptr);
+  EXPECT_EQ(find(found, "create", "widgets")->find("work")->string, "0");
+  EXPECT_EQ(number(find(found, "tick", "all"), "measured_ms"), -1) << "it was not asked for";
+}
+
+TEST_F(InfoCost, BadInputIsOneLine) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", "--measure", folder_ / "s.json"}, {"info", "--cost", folder_ / "none.json"}, {"info", "--cost"}}) {
+    const test::ProgramResult run = test::run_catena(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_TRUE(run.out.empty());
+  }
+}
+
+}  // namespace cost_test
+}  // namespace catena
