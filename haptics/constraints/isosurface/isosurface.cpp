@@ -15,6 +15,9 @@ constexpr double kSearchRadius = 2;  // of L
 constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no hand's
 constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
 constexpr int kQuick = 200;          // fetches before a formula asks for the descent
+constexpr int kQuickOfGrids = 60;    // likewise: a cubic grid's cost more, and walls may be the reason
+constexpr int kOntoLinear = 5;       // Newton steps
+constexpr int kThrownQuick = 20;     // of those, in a tick with less work
 constexpr int kQuickRefusals = 8;    // in a row, likewise
 constexpr int kSight = 16;           // fetches on the line of sight
 constexpr int kForLevel = 12;        // fetches kept for the way back to the level
@@ -28,6 +31,7 @@ struct IsosurfaceMemory {
   CellPoint cell;       // linear grids: the point held
   Vec3 normal;
   Scan scan;
+  bool walled;  // cubic grids: held by a wall
   double owed;  // of the way that a walk out of budget was allowed and has not gone
 };
 
@@ -116,8 +120,11 @@ class LevelSurface final : public Surface {
   Hold slide_formula(const Vec3& probe, double travel) noexcept {
     const LevelPoint from = memory_.at;
     const Curvature curvature = memory_.curvature;
+    travel_ = travel;
     const Hold hold = settle_formula(from, probe, curvature, false);
     if (!(norm(hold.proxy - from.p) > travel) || has_moved(from.p, hold.proxy)) return hold;
+    memory_.at = from;
+    if (Hold wall; hold_along(from, probe, wall)) return wall;
 
     // so far down the surface as it may go
     const Vec3 e = probe - from.p, way = direction(equation::tangential(e, from.n));
@@ -144,6 +151,7 @@ class LevelSurface final : public Surface {
   Reached project(const LevelPoint& start, double radius) noexcept {
     Scan& scan = memory_.scan;
     if (scan.nothing && same_bits(scan.probe, start.p)) return {};
+    if (scan.met && same_bits(scan.probe, start.p)) return {true, field_.at(scan.nearest)};
     const bool goes_on = scan.open && norm(scan.probe - start.p) <= kThrown * field_.length();
     LevelPoint centre = start;
     if (!goes_on) {
@@ -166,7 +174,16 @@ class LevelSurface final : public Surface {
     Reached reached = reach_by_scan(field_, centre, false, scan);
     if (!reached.found && !scan.open && reached.at.valid) reached = reach_along_gradient(field_, reached.at, Vec3(0.0), field_.length(), 0);
     scan.nothing = !reached.found && !scan.open;
+    if (reached.found && goes_on) return met_late(start.p, reached);
     return reached.found ? closed(reached) : reached;
+  }
+  /// Of a scan that has taken more than one tick: a probe that rests need not make it again.
+  Reached met_late(const Vec3& probe, const Reached& reached) noexcept {
+    memory_.scan = Scan{};
+    memory_.scan.probe = probe;
+    memory_.scan.nearest = reached.at.p;
+    memory_.scan.met = true;
+    return reached;
   }
   Reached closed(const Reached& reached) noexcept {
     memory_.scan = Scan{};
@@ -177,12 +194,13 @@ class LevelSurface final : public Surface {
   /// held, from a fresh projection.
   Hold settle_formula(LevelPoint at, const Vec3& probe, Curvature curvature, bool any_sheet) noexcept {
     LevelPoint best = at;
-    if (Hold wall; field_.grid() && pushes_out(field_, at, probe) && hold_wall(at, probe, wall)) return wall;
-    if (closest_point(field_, probe, goal(kQuick), at, curvature) == Closest::converged)
+    if (Hold wall; memory_.walled && hold_along(at, probe, wall)) return wall;
+    memory_.walled = false;
+    if (closest_point(field_, probe, goal(field_.grid() ? quick_of_grid() : kQuick), at, curvature) == Closest::converged)
       return hold_formula(at, Closest::converged, probe, curvature);
     at = relevelled(at);
     if (nearer(best, at, probe)) at = usable(best) ? best : relevelled(best);
-    if (Hold wall; field_.grid() && hold_wall(at, probe, wall)) return wall;
+    if (Hold wall; hold_along(at, probe, wall)) return wall;
     Closest how = Closest::stuck;
     if (usable(at)) how = descend(field_, probe, goal(kEvaluationCap), at, curvature);
     if ((!any_sheet && usable(at)) || how != Closest::stuck || field_.spent(6 * kForLevel)) return hold_formula(at, how, probe, curvature);
@@ -197,15 +215,47 @@ class LevelSurface final : public Surface {
     return hold_formula(best, again, probe, other);
   }
 
-  /// On the walls of a cubic grid: its box, masks, and values that are not finite. False: no wall is in the way.
-  bool hold_wall(const LevelPoint& at, const Vec3& probe, Hold& hold) noexcept {
-    if (!at.valid || at.plateau) return false;
-    const AtWall found = closest_at_wall(field_, probe, goal(kQuick), at);
-    if (!found.found) return false;
+  /// Of a cubic grid: the place's cell, and on the level as its trilinear polynomial has it, or as near as the cell reaches.
+  CellPoint on_linear_level(const Vec3& place) noexcept {
+    const field::Mapping& mapping = field_.grid()->mapping();
+    CellPoint at = cell_point(*field_.grid(), place);
+    field_.count_fetch();
+    const field::ScalarCell cell = field_.grid()->cell(at.base, field_.cursor());
+    for (int k = 0; k < kOntoLinear; ++k) {
+      double value;
+      Vec3 slope;
+      cell.value_and_gradient(at.f, value, slope);
+      ++field_.steps();
+      slope = mapping.world_gradient(slope);
+      const double square = dot(slope, slope);
+      if (!(square > 0) || !std::isfinite(value)) break;
+      at.f = glm::clamp(at.f - mapping.index_from_world_linear * (slope * ((value - field_.level()) / square)), Vec3(0.0), Vec3(1.0));
+    }
+    return at;
+  }
+
+  /// On a cubic grid: along the trilinear cells of the same samples, whose surface lies near, to where walls hold that, at most as far as
+  /// this tick may; from there onto the cubic's own. False: no wall holds it, or what is found is no nearer.
+  bool hold_along(const LevelPoint& at, const Vec3& probe, Hold& hold) noexcept {
+    if (field_.grid() == nullptr || !usable(at) || field_.spent(2 * kForLevel)) return false;
+    LevelField linear = field_.by_cells();
+    linear.keep(2 * kForLevel);
+    CellPoint cell = on_linear_level(at.p);
+    TravelLimit limit{memory_.at.p, travel_, false, {}, Vec3(0.0)};
+    WalkResult walk = walk_cells(linear, frames_, probe, cell, &limit);
+    if (limit.passed_by(world_of(*field_.grid(), cell))) {
+      cell = limit.last;
+      walk.status = Status::budget;
+    }
+    if (walk.status != Status::boundary && walk.status != Status::budget) return false;
+    const AtWall found = onto_level(field_, probe, goal(quick_of_grid()), cell.base, cell.f);
+    if (!found.found || norm(probe - found.at.p) > norm(probe - at.p) + kOnLevel * field_.length()) return false;
+    if (walk.status == Status::budget && !(norm(found.at.p - at.p) > kOnLevel * field_.length())) return false;
     memory_.at = found.at;
     memory_.curvature = Curvature{};
     memory_.normal = found.at.n;
-    hold = {true, found.at.p, std::fabs(found.at.distance), Status::boundary, found.reason};
+    memory_.walled = walk.status == Status::boundary;
+    hold = {true, found.at.p, std::fabs(found.at.distance), walk.status, walk.reason};
     return true;
   }
 
@@ -247,6 +297,7 @@ class LevelSurface final : public Surface {
     return {true, at.p, std::fabs(at.distance), status, reason};
   }
 
+  int quick_of_grid() const noexcept { return field_.state().most <= kThrownWork ? kThrownQuick : kQuickOfGrids; }
   ClosestGoal goal(int most) noexcept {
     return {1e-8 * field_.length(), 1e-12 * field_.length(), std::min(most, kEvaluationCap - field_.evaluations() - kForLevel),
             kQuickRefusals};
@@ -305,6 +356,7 @@ class LevelSurface final : public Surface {
   LevelField field_;
   const PieceFrames& frames_;
   IsosurfaceMemory& memory_;
+  double travel_ = std::numeric_limits<double>::infinity();  ///< of this tick, along a wall
   LevelPoint here_;
   Vec3 asked_{0.0};
   bool have_here_ = false;
@@ -340,7 +392,8 @@ class Isosurface final : public Constraint {
   }
   bool is_sane(const LinkState& state) const noexcept override {
     const IsosurfaceMemory& memory = memory_of<IsosurfaceMemory>(state);
-    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) && haptics::is_sane(memory.scan);
+    return haptics::is_sane(memory.side) && haptics::is_sane(memory.at) && haptics::is_sane(memory.cell) && haptics::is_sane(memory.scan) &&
+           are_bools(memory.walled);
   }
   bool has_primitive() const noexcept override { return true; }
   /// The tangent plane of the level by the value and gradient at `at` (Eq. 6): one fetch.

@@ -34,7 +34,7 @@ class LevelField {
   LevelPoint at(const Vec3& world) noexcept;
   /// Fewer than `reserve` fetches are left, or no work.
   bool spent(int reserve = 0) const noexcept {
-    return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(reserve * (kFetchWork + cell_work_));
+    return state_.evaluations + reserve >= kEvaluationCap || state_.exhausted(kept_ + reserve * (kFetchWork + cell_work_));
   }
   /// Counts one fetch.
   void count_fetch() noexcept {
@@ -43,7 +43,7 @@ class LevelField {
   }
 
   /// Less work than `reserve` is left, whatever fetches are.
-  bool exhausted(int reserve = 0) const noexcept { return state_.exhausted(reserve); }
+  bool exhausted(int reserve = 0) const noexcept { return state_.exhausted(kept_ + reserve); }
   /// A tick that takes long: the rest of it need not be as exact on its way as at its end.
   bool hurried() const noexcept { return state_.work() > kWorkCap / 8; }
   const LinkState& state() const noexcept { return state_; }
@@ -65,9 +65,18 @@ class LevelField {
   /// The grid where its cells are trilinear, so that the surface is exact within each of them (cell_walk.h); else none.
   const field::ScalarGrid* cells() const noexcept { return linear_ ? grid_ : nullptr; }
 
+  /// The same samples in trilinear cells, whose surface lies near the cubic's: for a walk.
+  LevelField by_cells() const noexcept {
+    LevelField linear = *this;
+    linear.linear_ = grid_ != nullptr;
+    linear.cell_work_ = kCellWork;
+    return linear;
+  }
+  /// This one is spent while so many fetches are left for others.
+  void keep(int fetches) noexcept { kept_ = fetches * (kFetchWork + kCubicWork); }
+
   /// From now on places lie on a wall: of the axes whose bits are set, the index is held. The gradient is that on the wall.
   void hold(unsigned axes, const Vec3& index) noexcept;
-  unsigned held() const noexcept { return held_; }
   /// The place on the wall nearest to `world`, where one is held.
   Vec3 on_wall(const Vec3& world) const noexcept;
   field::Cursor& cursor() noexcept { return cursor_; }
@@ -80,7 +89,7 @@ class LevelField {
   const field::ScalarField& field_;
   const field::ScalarGrid* grid_;  ///< the same, or none
   bool linear_ = false;
-  int cell_work_ = 0;
+  int cell_work_ = 0, kept_ = 0;
   unsigned held_ = 0;
   Vec3 wall_{0.0}, way_{0.0};  ///< indices held; the wall's normal, or where two axes are held the edge's direction
   double level_;

@@ -29,15 +29,16 @@ Reached reach_along_gradient(LevelField& field, const LevelPoint& start, const V
 
 /// How far a scan has come that takes more than one tick. Zero bytes: not begun.
 struct Scan {
-  Vec3 probe, centre, nearest;  ///< what it is made for; where it looks from; the sample nearest in value
+  Vec3 probe, centre, nearest;  ///< what it is made for; where it looks from; the sample nearest in value, or what was met
   std::int32_t next;
   bool open, has_nearest;
   bool nothing;  ///< has looked everywhere for `probe`
+  bool met;      ///< has found the level for `probe`, in a later tick than it began in
 };
 
 /// Of a state from a file: see Constraint::is_sane.
 inline bool is_sane(const Scan& scan) noexcept {
-  return are_bools(scan.open, scan.has_nearest, scan.nothing) && scan.next >= 0 && scan.next < 1 << 20;
+  return are_bools(scan.open, scan.has_nearest, scan.nothing, scan.met) && scan.next >= 0 && scan.next < 1 << 20;
 }
 
 /// Looks along 26 directions, or along the 6 axes only, near before far, up to L from the centre. Not found: `at` is the sample

@@ -1,8 +1,9 @@
-/// The closest point of a level set where the domain of a cubic grid ends: on a face of its box, or of a cell beside one that a mask or a
-/// value that is not finite makes invalid; on one face, or where two meet. There the search of isosurface/analytic.h goes on with
-/// places, probe and gradient held to the wall:
-///   minimise |x - p| on s(p) = level, index_a(p) = wall        (t within the wall is 0, the rest of t points out of it)
-/// Faces of masked cells are held 1e-9 voxel before the face, so that the cell that is fetched is the valid one. Haptic thread.
+/// Where the domain of a cubic grid ends, at its box or beside a cell that a mask or a value that is not finite makes invalid: from a place
+/// that a walk along trilinear cells of the same samples ended in (isosurface/cell_walk.h) onto the cubic's own level. Faces through the
+/// place that have nothing behind them are walls, and held:
+///   minimise |x - p| on s(p) = level, index_a(p) = wall
+/// by the search of isosurface/analytic.h with places, probe and gradient within the wall. Walls of invalid cells are held 1e-9 voxel
+/// before the face, so that the cell that is fetched is the valid one. Haptic thread.
 #pragma once
 #include "haptics/constraints/isosurface/analytic.h"
 
@@ -11,14 +12,9 @@ namespace catena::haptics {
 struct AtWall {
   bool found = false;
   LevelPoint at;  ///< n is the normal of the level set itself, not of its cut with the wall
-  Reason reason = Reason::none;
 };
 
-/// A wall lies less than a voxel ahead on the straight way along the surface to the place closest to the probe.
-bool pushes_out(LevelField& field, const LevelPoint& at, const Vec3& probe) noexcept;
-
-/// From `at` (valid, not a plateau), where a search stopped before the wall. Not found: no wall is near on the way, or on it the level
-/// is not met, or only farther from the probe.
-AtWall closest_at_wall(LevelField& field, const Vec3& probe, const ClosestGoal& goal, const LevelPoint& at) noexcept;
+/// The place is f in [0, 1]^3 of the cell at `base`; exactly 0 or 1 on a face. Not found: the level is not met near by.
+AtWall onto_level(LevelField& field, const Vec3& probe, const ClosestGoal& goal, const field::Index3& base, const Vec3& f) noexcept;
 
 }  // namespace catena::haptics
