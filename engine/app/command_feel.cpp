@@ -15,6 +15,8 @@
 #include "engine/app/hand/recording.h"
 #include "engine/app/hand/signals.h"
 #include "engine/app/options.h"
+#include "engine/app/plan/make_plan.h"
+#include "engine/app/plan/observe.h"
 #include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
@@ -27,7 +29,7 @@ namespace catena::app {
 namespace {
 
 struct FeelOptions {
-  std::string scene, device, firmware, forces = "off", stats, record;
+  std::string scene, device, firmware, forces = "off", stats, record, plan;
   std::vector<std::string> fields;
   double seconds = 0;
   std::optional<double> rate_hz;
@@ -85,7 +87,7 @@ class StatusLine {
 
 /// Until the time is over or somebody asks to end.
 void wait(haptics::Servo& servo, const haptics::Device& device, const Recording& recording, const FeelOptions& options,
-          const Interrupt& interrupt, StatusLine& line, Felt& felt) {
+          const Interrupt& interrupt, StatusLine& line, Felt& felt, plan::HandObserver& observer) {
   constexpr double kStep = 0.02, kLine = 1;
   const std::int64_t start = now_ns();
   exchange::HapticState state;
@@ -95,7 +97,10 @@ void wait(haptics::Servo& servo, const haptics::Device& device, const Recording&
   while (!interrupt.asked()) {
     const double t = 1e-3 * ms_since(start);
     if (options.seconds > 0 && t >= options.seconds) return;
-    if (servo.take(state) && state.condition != exchange::Condition::no_device) felt.add(state);
+    if (servo.take(state) && state.condition != exchange::Condition::no_device) {
+      felt.add(state);
+      observer.add(state);
+    }
     line.tell(device.status_text());
     if (recording.failed() && !std::exchange(told_of_recording, true))
       line.say(options.record + ": the recording has stopped; the rest is felt only");
@@ -118,7 +123,15 @@ Outcome feel(const FeelOptions& options) {
   files.writes("--stats", options.stats);
   files.writes("--record", options.record);
   CATENA_CHECK(files.check());
+  CATENA_TRY(const scene::Plan wanted, plan::wanted_plan(scene, options.plan));
   CATENA_TRY(OpenHand hand, open_hand(scene, options.device, options.rate_hz, options.firmware));
+  // the plan stands before the first tick, and is part of the text that is recorded
+  CATENA_TRY(std::string text, plan::text_of(scene));
+  CATENA_TRY(const std::optional<plan::HandPlan> plan,
+             plan::plan_links(scene, wanted, hand.settings.rate_hz, options.fields, [](const std::string& said) { print_out(printable(said) + "\n"); }));
+  if (plan) {
+    CATENA_TRY(text, plan->apply(text, options.scene));
+  }
   // from here on: while it opens there is no force, and Ctrl-C ends at once
   const Interrupt interrupt;
   const CrashGuard crash_guard(*hand.device);
@@ -130,7 +143,7 @@ Outcome feel(const FeelOptions& options) {
   servo_options.rate_hz = hand.settings.rate_hz;
   servo_options.forces = options.forces == "on";
   servo_options.realtime = options.realtime.options();
-  CATENA_TRY(Recording recording, Recording::open(options.record, scene, options.fields, hand, *program));
+  CATENA_TRY(Recording recording, Recording::open(options.record, {options.scene, text, options.fields, inputs_of(scene)}, hand, *program));
   servo_options.sink = recording.sink();
   haptics::Servo servo(*hand.device, program, servo_options);
   CATENA_CHECK(servo.start());
@@ -139,13 +152,15 @@ Outcome feel(const FeelOptions& options) {
                         servo_options.rate_hz, options.forces, program->metres_per_unit, options.seconds > 0 ? "" : "; Ctrl-C ends"));
   StatusLine line(*program);
   Felt felt;
-  wait(servo, *hand.device, recording, options, interrupt, line, felt);
+  plan::HandObserver observer(plan ? &*plan : nullptr, *program);
+  wait(servo, *hand.device, recording, options, interrupt, line, felt, observer);
   servo.stop();
   line.end();
   CATENA_CHECK(recording.finish());
   CATENA_CHECK(write_servo_stats(options.stats, servo, *hand.device));
   if (!servo_options.forces && !program->links.empty())
     print_out("the forces were off: nothing was pushed, the shares are what the links asked for\n", kPatienceMs);
+  print_out(observer.sentence(scene, servo.report().compute.p50_us), kPatienceMs);
   print_out(felt.sentences(*program), kPatienceMs);
   print_out(haptics::servo_summary(servo.report(), printable(hand.device->capabilities().name)), kPatienceMs);
   return interrupt.outcome();
@@ -163,6 +178,7 @@ void add_feel(CLI::App& program, Work& chosen) {
       ->check(number_between(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
   command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
   command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
+  command->add_option("--plan", options->plan, "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
   command->add_option("--forces", options->forces, "on: the device may push. Off at first, for a simulated device too")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();

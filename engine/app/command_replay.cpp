@@ -9,10 +9,13 @@
 #include "engine/app/command.h"
 #include "engine/app/felt.h"
 #include "engine/app/felt_cursor.h"
+#include "engine/app/plan/make_plan.h"
+#include "engine/app/plan/observe.h"
 #include "engine/app/replay_log.h"
 #include "engine/app/tick_csv.h"
 #include "engine/base/csv.h"
 #include "engine/base/output_file.h"
+#include "engine/base/text.h"
 #include "haptics/device/registry.h"
 #include "haptics/extract/extract.h"
 #include "haptics/servo/limits_for.h"
@@ -29,6 +32,17 @@ Result<haptics::Limits> device_limits(const scene::Scene& scene, const std::stri
   return haptics::limits_for(haptics::nominal_capabilities(settings.type), settings);
 }
 
+/// Before anything is felt: from here on the links say how they are followed.
+Result<std::optional<plan::HandPlan>> plan_the_hand(scene::Scene& scene, const ReplayOptions& options) {
+  CATENA_TRY(const scene::Plan wanted, plan::wanted_plan(scene, options.plan));
+  double rate_hz = 1000;
+  if (scene.device) {
+    CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, scene.path));
+    rate_hz = settings.rate_hz;
+  }
+  return plan::plan_links(scene, wanted, rate_hz, options.fields, [](const std::string& line) { fmt::print("{}\n", printable(line)); });
+}
+
 Outcome replay_scene(const ReplayOptions& options) {
   if (options.scene.empty()) return Error{"SCENE is required (see catena replay --help)"};
   if (options.probe.empty()) return Error{"--probe or --log is required (see catena replay --help)"};
@@ -40,6 +54,7 @@ Outcome replay_scene(const ReplayOptions& options) {
   named.reads(scene);
   CATENA_CHECK(named.check());
   CATENA_TRY(const haptics::Limits limits, device_limits(scene, options.scene));
+  CATENA_TRY(const std::optional<plan::HandPlan> plan, plan_the_hand(scene, options));
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene, limits));
   tell_new_notes(scene, told);
   CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(options.probe));
@@ -62,6 +77,7 @@ Outcome replay_scene(const ReplayOptions& options) {
     widgets->write(widget_header(*program));
   }
   Felt felt;
+  plan::HandObserver observer(plan ? &*plan : nullptr, *program);
   WidgetUse use;
   Progress progress("replay", static_cast<double>(path.size()));
   std::string line;
@@ -81,6 +97,7 @@ Outcome replay_scene(const ReplayOptions& options) {
       widgets->write(line);
     }
     felt.add(state);
+    observer.add(state);
     use.add(state);
     if (state.tick % 1024 == 0) progress.at(static_cast<double>(state.tick));
     return true;
@@ -97,6 +114,7 @@ Outcome replay_scene(const ReplayOptions& options) {
   }
   CATENA_CHECK(commit_all(files));
   if (!scene.workspace.given) fmt::print("{}", scale_sentence({program->metres_per_unit}, false));
+  fmt::print("{}", observer.sentence(scene, 1e-3 * stats.tick_ns_p50));
   fmt::print("{}", felt.text(*program, stats));
   fmt::print("{}", use.text(*program));
   return Done{};
@@ -115,6 +133,7 @@ void add_replay(CLI::App& program, Work& chosen) {
   command->add_option("--widgets", options->widgets,
                       "modes and poses of the widgets, CSV: t, NAME_mode, NAME_handle, NAME_held, NAME_x,y,z ..");
   command->add_option("--stats", options->stats, "figures, JSON");
+  command->add_option("--plan", options->plan, "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback(
       [&chosen, options] { chosen = [options] { return options->log.empty() ? replay_scene(*options) : replay_log_file(*options); }; });

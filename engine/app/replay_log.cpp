@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "engine/app/plan/hand_plan.h"
 #include "engine/app/run_files.h"
 #include "engine/app/tick_csv.h"
 #include "engine/base/numbers.h"
@@ -60,6 +61,7 @@ Outcome verdict(const ReplayOptions& options, const log::LogReader& reader, cons
 
 Outcome replay_log_file(const ReplayOptions& options) {
   if (!options.probe.empty()) return Error{"--probe and --log exclude each other: the recording has its own probe"};
+  if (!options.plan.empty()) return Error{"--plan and --log exclude each other: the recording has the plan that was felt"};
   CATENA_TRY(log::LogReader reader, log::LogReader::open(options.log));
   LogScene scene(reader.header(), options.scene, options.fields);
   CATENA_TRY(const LinkColumns all_links, columns_of_log(options.log));
@@ -178,6 +180,8 @@ Outcome LogScene::read(const std::optional<std::string>& own_text) {
   own_text_ = own_text;
   if (!own_text && (from_file_ || !is_scene_file(scene_path_))) {
     CATENA_TRY(scene_, open_scene(scene_path_, field_options_));
+    // no curve and no clock has a say in what was felt
+    if (scene_->plan.of_hand() && is_scene_file(header_.scene_path)) return plan::take_recorded(header_.scene_text, *scene_);
     return Done{};
   }
   CATENA_TRY(const std::vector<scene::FieldOverride> overrides, field_overrides(field_options_));

@@ -16,7 +16,7 @@
 namespace catena::app {
 
 struct ReplayOptions {
-  std::string scene, probe, log, output, details, widgets, stats;
+  std::string scene, probe, log, output, details, widgets, stats, plan;
   std::vector<std::string> fields;
 };
 

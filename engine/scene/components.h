@@ -318,6 +318,17 @@ struct Coupling {
   CouplingMethod method = CouplingMethod::chain;
 };
 
+/// What may be given up for what, by measured curves (engine/app/plan): of each pair one at most.
+struct Plan {
+  std::optional<double> error;       ///< of the picture, 1/255, root mean square over what is covered
+  std::optional<double> time;        ///< of a picture, ms
+  std::optional<double> hand_error;  ///< of the places that links hold, world units
+  std::optional<double> hand_time;   ///< of a tick, us
+  bool of_eye() const { return error || time; }
+  bool of_hand() const { return hand_error || hand_time; }
+  bool operator==(const Plan&) const = default;
+};
+
 struct Workspace {
   double metres_per_unit = 1;
   Vec3 origin{0.0};

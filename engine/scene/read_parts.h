@@ -49,6 +49,7 @@ Part stereo_part();
 Part background_part();
 Part quality_part();
 Part jitter_part();
+Part plan_part();
 Part cursor_part();
 Part unit_length_part();
 Part bounding_box_part();

@@ -40,6 +40,7 @@ struct Scene {
   std::optional<Fog> fog;
   std::vector<Light> lights;
   std::string quality;  ///< draft, balanced, reference, time=MS, error=E; empty: not stated
+  Plan plan;            ///< empty: none
   Entity cursor;
   double phase = 0;  ///< of what moves along the streamlines; the fraction counts
 
@@ -59,6 +60,9 @@ struct Scene {
 struct FieldOverride {
   std::string name, file, grid;
 };
+
+/// "error=2,hand_time=5": a plan as the command line has it. The error begins with the words.
+Result<Plan> parse_plan(std::string_view words);
 
 /// Reads and checks the whole file; every error names file, line and what was expected. Does not load fields, but every
 /// file that it names must exist.

@@ -29,7 +29,8 @@ const std::vector<Part>& parts() {
                                      clip_part(),         jitter_part(),
                                      bounding_box_part(), axes_part(),
                                      ground_part(),       fog_part(),
-                                     lights_part(),       unit_length_part()};
+                                     lights_part(),       unit_length_part(),
+                                     plan_part()};
   return all;
 }
 

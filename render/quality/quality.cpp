@@ -122,6 +122,8 @@ class Search {
     return Done{};
   }
 
+  double truth_error() const { return truth_error_; }
+
   /// Of the rays alone.
   Result<Measured> of_rays(const RenderSettings& settings) {
     CATENA_TRY(const Picture rays, renderer_.probe(packet_, settings, spacing_));
@@ -259,17 +261,10 @@ class Search {
     return all;
   }
 
-  /// The quicker of two. On a processor the time is what its cores had to do, so that other programs on the machine do not count.
   Result<double> quicker_of_two(const RenderSettings& settings) {
-    const bool is_cpu = renderer_.device().info().is_cpu();
-    double quicker = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < 2; ++k) {
-      const std::int64_t start = is_cpu ? processor_ns() : now_ns();
-      CATENA_CHECK(renderer_.draw(packet_, settings));
-      const double ms = 1e-6 * double((is_cpu ? processor_ns() : now_ns()) - start);
-      quicker = std::min(quicker, is_cpu ? kUneven * ms / drawing_threads() : ms);
-    }
-    return quicker;
+    CATENA_TRY(const double first, drawing_ms(renderer_, packet_, settings));
+    CATENA_TRY(const double second, drawing_ms(renderer_, packet_, settings));
+    return std::min(first, second);
   }
 
   QualityChoice choice(const RenderSettings& settings, double error, bool reached) const {
@@ -331,6 +326,35 @@ Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, cons
   CATENA_CHECK(search.begin(settings.fast && settings.fast->step_voxels >= 1 ? kRoughGoal : 0));
   CATENA_TRY(const Measured error, search.of_picture(settings));
   return error.above;
+}
+
+Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings, double least,
+                                      const std::function<bool(double last)>& go_on) {
+  if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, least, go_on);
+  MeasuredSettings all;
+  Search search(renderer, packet);
+  CATENA_CHECK(search.begin(least));
+  all.reference_rmse = search.truth_error();
+  for (const RenderSettings& next : settings) {
+    if (!go_on(all.rmse.empty() ? 0 : all.rmse.back())) break;
+    CATENA_TRY(const Measured error, search.of_picture(next));
+    all.rmse.push_back(error.rmse);
+  }
+  return all;
+}
+
+DrawingClock::DrawingClock(Renderer& renderer)
+    : is_cpu_(renderer.device().info().is_cpu()), start_ns_(is_cpu_ ? processor_ns() : now_ns()) {}
+
+double DrawingClock::ms() const {
+  const double ms = 1e-6 * double((is_cpu_ ? processor_ns() : now_ns()) - start_ns_);
+  return is_cpu_ ? kUneven * ms / drawing_threads() : ms;
+}
+
+Result<double> drawing_ms(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
+  const DrawingClock clock(renderer);
+  CATENA_CHECK(renderer.draw(packet, settings));
+  return clock.ms();
 }
 
 std::string describe(const RenderSettings& settings) {

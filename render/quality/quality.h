@@ -8,6 +8,7 @@
 /// on, until a picture takes longer than MS; the least error among those that did not. More time therefore never makes the error worse.
 /// What the fast raycast cannot draw or cannot reach is left to the exact one. Frame thread.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -45,6 +46,30 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms);
 
 /// The error of the picture that `settings` draw, measured the same way.
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
+
+/// Several settings of one picture, measured the same way against one converged picture.
+struct MeasuredSettings {
+  std::vector<double> rmse;   ///< one a setting, as it was found: not the estimate above it
+  double reference_rmse = 0;  ///< what halving the converged picture's step still changed
+};
+/// `least`: errors below it need not be told apart, 1/255. `go_on` is asked before each setting with
+/// the error of the one before (of the first with 0); false: the rest is left out.
+Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings, double least,
+                                      const std::function<bool(double last)>& go_on);
+
+/// Milliseconds of drawing it: of wall time; on a driver that draws with the processor what its cores had to do, so that other programs on
+/// the machine do not count.
+Result<double> drawing_ms(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
+/// The same of any work: begin() .. ms().
+class DrawingClock {
+ public:
+  explicit DrawingClock(Renderer& renderer);
+  double ms() const;
+
+ private:
+  bool is_cpu_;
+  std::int64_t start_ns_;
+};
 
 /// "step 3, every 4th pixel, refined to every 2nd above 0.5"
 std::string describe(const RenderSettings& settings);

@@ -1,19 +1,9 @@
 #include "engine/app/hand/recording.h"
 
 #include "engine/app/command.h"
-#include "engine/app/replay_log.h"
-#include "engine/app/run_files.h"
 #include "engine/base/clock.h"
 
 namespace catena::app {
-
-Result<Recording> Recording::open(const std::string& path, const scene::Scene& scene, const std::vector<std::string>& field_options,
-                                  const OpenHand& hand, const haptics::Program& program) {
-  if (path.empty()) return Recording();
-  if (!is_scene_file(scene.path)) return Error{path + ": only what is felt of a scene file (.json) can be recorded"};
-  CATENA_TRY(const haptics::log::LogHeader header, log_header(scene.path, {}, {}, 0));
-  return open(path, {scene.path, header.scene_text, field_options, inputs_of(scene)}, hand, program);
-}
 
 Result<Recording> Recording::open(const std::string& path, RecordedScene scene, const OpenHand& hand, const haptics::Program& program) {
   Recording recording;

@@ -19,10 +19,7 @@ struct RecordedScene {
 
 class Recording {
  public:
-  /// Nothing is recorded where `path` is empty. `program`: that with which the servo begins. The text is the file's.
-  static Result<Recording> open(const std::string& path, const scene::Scene& scene, const std::vector<std::string>& field_options,
-                                const OpenHand& hand, const haptics::Program& program);
-  /// `program`: that which the servo runs, or was given last.
+  /// Nothing is recorded where `path` is empty. `program`: that with which the servo begins, or which it runs.
   static Result<Recording> open(const std::string& path, RecordedScene scene, const OpenHand& hand, const haptics::Program& program);
 
   /// Another program, before the servo gets it. `text`: the scene's, now.

@@ -15,7 +15,7 @@ namespace catena::app {
 inline constexpr int kMaxFrames = 100000;
 
 struct RenderOptions {
-  std::string source, grid, output, size = "1024x768", quality, stats, probe;
+  std::string source, grid, output, size = "1024x768", quality, plan, stats, probe;
   std::vector<std::string> fields;  ///< NAME=FILE[:GRID]
   // outputs
   int bits = 8;            ///< of -o FILE.png

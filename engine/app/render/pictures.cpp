@@ -9,6 +9,7 @@
 #include "engine/app/frame_stats.h"
 #include "engine/app/hand/signals.h"
 #include "engine/app/options.h"
+#include "engine/app/plan/make_plan.h"
 #include "engine/app/render/options.h"
 #include "engine/app/render/outputs.h"
 #include "engine/base/clock.h"
@@ -82,7 +83,9 @@ class Frames {
       return stopped = outputs->take(band);
     };
     if (outputs != nullptr) CATENA_CHECK(outputs->begin(frame));
+    const render::DrawingClock clock(*renderer);
     const auto ms = render::draw_bands(*renderer, next, settings, plan, wants, outputs != nullptr ? take : decltype(nothing_)());
+    last_ms = ms ? by_plan && outputs == nullptr ? clock.ms() : 0 : 0;
     CATENA_CHECK(stopped);
     if (interrupted || interrupt_->asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
     if (!ms) throw MachineFailure{ms.error().message};

@@ -6,7 +6,6 @@
 #include <filesystem>
 
 #include "engine/app/command.h"
-#include "engine/app/hand/open_hand.h"
 #include "engine/app/run_files.h"
 #include "engine/app/tradeoff/measure/choice.h"
 #include "engine/app/tradeoff/measure/eye/eye.h"
@@ -14,8 +13,6 @@
 #include "engine/app/tradeoff/report/report.h"
 #include "engine/base/text.h"
 #include "engine/scene/prepare.h"
-#include "haptics/device/settings.h"
-#include "haptics/extract/extract.h"
 
 namespace catena::app {
 
@@ -24,23 +21,6 @@ namespace {
 using tradeoff::Curve;
 using tradeoff::Report;
 using tradeoff::Subject;
-
-constexpr double kReach_m = 0.1;  // of a hand whose scene states no workspace
-
-Outcome add_hand(const MeasureOptions& options, Subject& subject) {
-  if (subject.scene.world.count<scene::Link>() == 0) {
-    subject.left_out.emplace_back("The hand: the scene has no chain, so that there is nothing to feel.");
-    return Done{};
-  }
-  if (subject.scene.device) {
-    CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*subject.scene.device, subject.scene.path));
-    subject.rate_hz = settings.rate_hz;
-  }
-  fit_workspace(subject.scene, scene::prepared_bounds(subject.scene), kReach_m);
-  CATENA_TRY(subject.program, haptics::extract_program(subject.scene));
-  CATENA_TRY(subject.motion, tradeoff::make_motion(subject.scene, options.probe, subject.effort.motion_s));
-  return Done{};
-}
 
 /// All that the scene has, in the order of the registry.
 Result<Report> measure(const MeasureOptions& options) {
@@ -53,7 +33,7 @@ Result<Report> measure(const MeasureOptions& options) {
   if (std::filesystem::is_directory(options.output)) CATENA_CHECK(files.check());
   CATENA_CHECK(scene::prepare(scene));
   Subject subject{std::move(scene), tradeoff::effort(options.quick, options.thorough), {}, {}, 1000, {}, {}};
-  CATENA_CHECK(add_hand(options, subject));
+  CATENA_CHECK(tradeoff::add_hand(subject, options.probe));
   const auto wanted = [&](const tradeoff::Measurement& m) {
     return options.only.empty() || std::find(options.only.begin(), options.only.end(), m.name) != options.only.end();
   };

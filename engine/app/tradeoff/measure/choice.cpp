@@ -70,13 +70,48 @@ std::vector<int> pareto_front(std::span<const Point> points, Cost cost) {
   return front;
 }
 
+double least_told(const Curve& curve) {
+  const auto known = [](double error) { return std::isfinite(error) ? error : 0.0; };
+  return std::max(known(curve.floor), known(curve.reference_error));
+}
+
+Picked pick(const Curve& curve, const Target& target) {
+  const std::vector<Point>& points = curve.points;
+  const double floor = least_told(curve);
+  std::vector<int> all, good;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (counts(points[i], curve.cost)) all.push_back(static_cast<int>(i));
+  if (all.empty()) return {-1, false, false};
+  const auto error = [&](int i) { return std::max(points[i].error, floor); };
+  const auto cost = [&](int i) { return cost_of(points[i], curve.cost); };
+  Picked picked;
+  double most = 0;  // of the errors that will do
+  if (target.error) {
+    picked.floored = *target.error < floor;
+    most = std::max(*target.error, floor);
+    const double least = error(*std::min_element(all.begin(), all.end(), [&](int a, int b) { return error(a) < error(b); }));
+    picked.reached = least <= most;
+    most = std::max(most, least);
+    good = all;
+  } else {
+    for (const int i : all)
+      if (cost(i) <= *target.cost) good.push_back(i);
+    picked.reached = !good.empty();
+    if (good.empty()) return {*std::min_element(all.begin(), all.end(), [&](int a, int b) { return cost(a) < cost(b); }), false, false};
+    most = error(*std::min_element(good.begin(), good.end(), [&](int a, int b) { return error(a) < error(b); }));
+    picked.floored = floor > 0 && most <= floor;
+  }
+  std::erase_if(good, [&](int i) { return error(i) > most; });
+  picked.point = cheapest(points, good, curve.cost);
+  return picked;
+}
+
 void choose(Curve& curve) {
   curve.front = pareto_front(curve.points, curve.cost);
   curve.chosen = -1;
   if (curve.front.empty()) return;
   const std::vector<Point>& points = curve.points;
-  const double reached =
-      std::isfinite(curve.floor) ? std::max(curve.floor, std::isfinite(curve.reference_error) ? curve.reference_error : 0.0) : 0;
+  const double reached = std::isfinite(curve.floor) ? least_told(curve) : 0;
   std::vector<int> good;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (counts(points[i], curve.cost) && points[i].error <= reached) good.push_back(static_cast<int>(i));

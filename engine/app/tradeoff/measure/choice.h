@@ -7,6 +7,7 @@
 ///   even    where no setting changes the error, what the scene has stays, or else the cheapest
 /// Times whose quartiles overlap are one: then less counted work decides, then less error, so that noise does not.
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,5 +20,22 @@ std::vector<int> pareto_front(std::span<const Point> points, Cost cost);
 
 /// Fills front, chosen and why.
 void choose(Curve& curve);
+
+/// What a plan wants of a curve: an error, or a cost; one of the two.
+struct Target {
+  std::optional<double> error, cost;
+};
+/// What the curve has for it. What can be told of an error ends at the floor, and at the reference's own error: less is never asked for.
+///   error  the cheapest point whose error is not above it; where there is none, the most exact
+///   cost   the least error within it, and of those at the floor the cheapest; where there is none, the cheapest
+struct Picked {
+  int point = -1;        ///< -1: there is nothing to choose
+  bool reached = true;   ///< false: nothing meets the target, the nearest was taken
+  bool floored = false;  ///< the target lies below what the data, or the reference, hold
+};
+Picked pick(const Curve& curve, const Target& target);
+
+/// The greater of the floor and the reference's own error, as far as they are known; else 0.
+double least_told(const Curve& curve);
 
 }  // namespace catena::app::tradeoff

@@ -8,12 +8,15 @@
 #include "engine/app/hand/open_hand.h"
 #include "engine/flow/curve.h"
 #include "engine/scene/prepare.h"
+#include "haptics/device/settings.h"
+#include "haptics/extract/extract.h"
 
 namespace catena::app::tradeoff {
 
 namespace {
 
 constexpr double kSpeed_m_per_s = 0.15;
+constexpr double kReach_m = 0.1;  // of a hand whose scene states no workspace
 constexpr double kTau = 2 * std::numbers::pi;
 
 /// A tremor and a wander beside the way, within `reach`.
@@ -155,6 +158,21 @@ Result<Motion> make_motion(scene::Scene& scene, const std::string& probe_csv, do
   motion.words = "a loop of 4 cm about the first place of the probe";
   motion.seconds = seconds;
   return motion;
+}
+
+Outcome add_hand(Subject& subject, const std::string& probe_csv) {
+  if (subject.scene.world.count<scene::Link>() == 0) {
+    subject.left_out.emplace_back("The hand: the scene has no chain, so that there is nothing to feel.");
+    return Done{};
+  }
+  if (subject.scene.device) {
+    CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*subject.scene.device, subject.scene.path));
+    subject.rate_hz = settings.rate_hz;
+  }
+  fit_workspace(subject.scene, scene::prepared_bounds(subject.scene), kReach_m);
+  CATENA_TRY(subject.program, haptics::extract_program(subject.scene));
+  CATENA_TRY(subject.motion, make_motion(subject.scene, probe_csv, subject.effort.motion_s));
+  return Done{};
 }
 
 }  // namespace catena::app::tradeoff

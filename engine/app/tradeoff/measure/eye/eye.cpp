@@ -60,32 +60,25 @@ bool on_level(render::FramePacket& packet, std::map<const field::ScalarGrid*, Le
   return all;
 }
 
-/// The picture of the same data with every 2nd and every 4th voxel, extrapolated. Steps of one length in the world.
-Outcome find_floor(Eye& eye) {
-  if (!draws_grids(eye.packet)) {
-    eye.floor_from = "No grid is drawn: the data leave nothing open.";
-    return Done{};
-  }
+}  // namespace
+
+Result<PictureFloor> picture_floor(render::Renderer& renderer, const render::FramePacket& packet) {
+  if (!draws_grids(packet)) return PictureFloor{kNotMeasured, "No grid is drawn: the data leave nothing open."};
   std::map<const field::ScalarGrid*, Levels<field::ScalarGrid>> levels;
   render::Picture pictures[3];
   for (int level = 0; level < 3; ++level) {
-    render::FramePacket packet = eye.packet;
-    if (!on_level(packet, levels, level)) {
-      eye.floor_from =
-          "The data's own error is not known: a grid has fewer than nine voxels along an axis, too many to be copied, or is a label map.";
-      return Done{};
-    }
-    CATENA_TRY(pictures[level], picture_of(*eye.renderer, packet, converged(0.5 / (1 << level))));
+    render::FramePacket coarse = packet;
+    if (!on_level(coarse, levels, level))
+      return PictureFloor{
+          kNotMeasured,
+          "The data's own error is not known: a grid has fewer than nine voxels along an axis, too many to be copied, or is a label map."};
+    CATENA_TRY(pictures[level], picture_of(renderer, coarse, converged(0.5 / (1 << level))));
   }
   const double at_2h = render::measure_error(pictures[1], pictures[0]).rmse, at_4h = render::measure_error(pictures[2], pictures[0]).rmse;
   const Extrapolated e = from_differences(at_2h, at_4h);
-  eye.floor = e.error;
-  eye.floor_from =
-      fmt::format("from the pictures of every 2nd voxel (off by {:.3g}) and every 4th ({:.3g}); {}", at_2h, at_4h, order_words(e));
-  return Done{};
+  return PictureFloor{
+      e.error, fmt::format("from the pictures of every 2nd voxel (off by {:.3g}) and every 4th ({:.3g}); {}", at_2h, at_4h, order_words(e))};
 }
-
-}  // namespace
 
 bool draws_grids(const render::FramePacket& packet) {
   return !packet.volumes.empty() || !packet.isosurfaces.empty() || !packet.slices.empty();
@@ -140,7 +133,9 @@ Outcome open_eye(Subject& subject) {
   eye->rays = render::draws_rays(eye->packet) || !eye->packet.isosurfaces.empty();
   const auto work = [&]() -> Outcome {
     CATENA_CHECK(find_truth(*eye, effort.eye_s));
-    CATENA_CHECK(find_floor(*eye));
+    CATENA_TRY(const PictureFloor floor, picture_floor(*eye->renderer, eye->packet));
+    eye->floor = floor.error;
+    eye->floor_from = floor.from;
     CATENA_CHECK(eye->renderer->draw(eye->packet, render::balanced_settings()));
     return Done{};
   };

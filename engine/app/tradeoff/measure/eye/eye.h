@@ -21,6 +21,14 @@ Result<render::Picture> picture_of(render::Renderer& renderer, const render::Fra
 /// Milliseconds of drawing: of a processor's time where the driver draws with it, else of wall time.
 Repeat drawing_of(render::Renderer& renderer, const render::FramePacket& packet, const render::RenderSettings& settings);
 
+/// The data's own error in a picture: that of the same data with every 2nd and every 4th voxel, extrapolated. Steps of one length in the
+/// world.
+struct PictureFloor {
+  double error = kNotMeasured;  ///< RMSE, 1/255
+  std::string from;
+};
+Result<PictureFloor> picture_floor(render::Renderer& renderer, const render::FramePacket& packet);
+
 bool draws_grids(const render::FramePacket& packet);
 
 /// A setting to try.

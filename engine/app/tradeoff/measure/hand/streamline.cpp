@@ -1,6 +1,8 @@
 /// How a streamline link is followed: every integrator, the embedded ones at several tolerances, and the curve that is traced once.
 ///   error  the greatest distance of the proxy from the converged line, along the whole motion, by L
 ///   floor  the lines through the same seed on the grid at 2 h and 4 h, extrapolated; a formula has none
+#include "engine/app/tradeoff/measure/hand/streamline.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -93,12 +95,44 @@ Result<Line> make_line(Subject& subject, const LinkOf& link) {
   return line;
 }
 
-Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
+}  // namespace
+
+std::string StreamlineSetting::write() const {
+  std::string text;
+  for (const auto& [key, value] : keys) text += (text.empty() ? "\"" : ", \"") + key + "\": " + value;
+  return text;
+}
+
+std::vector<StreamlineSetting> streamline_settings(const json::Node& link) {
+  using flow::Method;
+  std::vector<StreamlineSetting> all{{"selected", "selected (traced once)", {{"follow", "\"selected\""}}, true}};
+  const auto word_of = [](Method method) { return std::string(flow::method_word(method)); };
+  for (const Method method : {Method::linear, Method::euler, Method::rk2, Method::rk3, Method::rk4}) {
+    const std::string word = word_of(method);
+    all.push_back({word, word, {{"method", "\"" + word + "\""}}, false, method});
+  }
+  std::vector<std::pair<double, std::string>> tolerances;
+  for (int digits = 3; digits <= 13; digits += 2) tolerances.emplace_back(std::pow(10.0, -digits), fmt::format("1e-{}", digits));
+  // what the link itself says, if it is another one
+  if (const json::Node* own = link.find("tolerance"); own != nullptr && own->kind == json::Kind::number && own->number > 0 && own->number < 1) {
+    const auto near = [&](const auto& t) { return std::fabs(t.first - own->number) <= 1e-9 * own->number; };
+    if (std::none_of(tolerances.begin(), tolerances.end(), near)) tolerances.emplace_back(own->number, to_text(own->number));
+  }
+  for (const Method method : {Method::rkf34, Method::dp54})
+    for (const auto& [tolerance, text] : tolerances) {
+      const std::string word = word_of(method);
+      all.push_back(
+          {word + ", tolerance " + text, word, {{"method", "\"" + word + "\""}, {"tolerance", text}}, false, method, tolerance});
+    }
+  return all;
+}
+
+Result<Curve> measure_followed(Subject& subject, const LinkOf& link) {
   CATENA_TRY(const Line line, make_line(subject, link));
   const double length = line.field->length();
   const flow::NearestOnCurve nearest(line.truth);
   Curve curve;
-  curve.id = "hand-streamline-" + line.name;
+  curve.id = streamline_curve_id(line.name);
   curve.title = "How the streamline \"" + line.name + "\" is followed";
   curve.what = fmt::format(
       "The hand goes {} ({:g} Hz where no rate is named); each setting follows it alone, from the seed on. Tick by tick (1 ms at 1 kHz) "
@@ -133,34 +167,35 @@ Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
   flow::TraceOptions usual;
   usual.length = line.options.length;
   CATENA_TRY(flow::CurvePtr selected, flow::trace(line.flow, line.seed, usual));
-  Point cached{"selected", R"("follow": "selected")", "selected (traced once)"};
+  const std::vector<StreamlineSetting> settings = streamline_settings(link.node);
+  Point cached{settings[0].words, settings[0].write(), settings[0].series};
   cached.more = {ms_since(start)};
   add(std::move(cached), haptics::make_selected_streamline(std::move(selected)), subject.rate_hz);
-  using flow::Method;
-  const auto online = [&](Method method, double tolerance) {
+  const auto online = [&](flow::Method method, double tolerance) {
     return haptics::make_online_streamline({line.field, line.flow.line, line.flow.min_speed, method, tolerance, line.seed});
   };
-  // a fixed step is as long as the hand's way in a tick: the servo's rate is its knob
-  for (const Method method : {Method::linear, Method::euler, Method::rk2, Method::rk3, Method::rk4})
-    for (const double times : {0.25, 1.0, 4.0}) {
-      const std::string word = flow::method_word(method), rate = fmt::format("{:g}", times * subject.rate_hz);
-      add({times == 1 ? word : word + ", " + rate + " Hz", "\"method\": \"" + word + "\"" + (times == 1 ? "" : "; --rate " + rate), word},
-          online(method, 1e-9), times * subject.rate_hz);
+  for (const StreamlineSetting& setting : settings) {
+    if (setting.selected) continue;
+    // a fixed step is as long as the hand's way in a tick: the servo's rate is its knob
+    const bool fixed = !setting.tolerance;
+    for (const double times : fixed ? std::vector{0.25, 1.0, 4.0} : std::vector{1.0}) {
+      const std::string rate = fmt::format("{:g}", times * subject.rate_hz);
+      add({times == 1 ? setting.words : setting.words + ", " + rate + " Hz", setting.write() + (times == 1 ? "" : "; --rate " + rate),
+           setting.series},
+          online(*setting.method, setting.tolerance.value_or(1e-9)), times * subject.rate_hz);
     }
-  for (const Method method : {Method::rkf34, Method::dp54})
-    for (int digits = 3; digits <= 13; digits += 2) {
-      const std::string word = flow::method_word(method);
-      add({fmt::format("{}, tolerance 1e-{}", word, digits), fmt::format("\"method\": \"{}\", \"tolerance\": 1e-{}", word, digits), word},
-          online(method, std::pow(10.0, -digits)), subject.rate_hz);
-    }
+  }
   const json::Node *method = link.node.find("method"), *follow = link.node.find("follow");
   if (method == nullptr && (follow == nullptr || follow->string == "selected")) curve.current = 0;
   if (method != nullptr || curve.current < 0) {
     const std::string word = method != nullptr ? method->string : "rkf34";
     CATENA_TRY(const double tolerance, json::get_number(link.node, "tolerance", 1e-9));
-    const std::string text = fmt::format("{}, tolerance 1e-{}", word, static_cast<int>(std::lround(-std::log10(tolerance))));
-    for (std::size_t i = 0; i < curve.points.size(); ++i)
-      if (curve.points[i].setting == word || curve.points[i].setting == text) curve.current = static_cast<int>(i);
+    for (const StreamlineSetting& s : settings) {
+      const bool own = !s.selected && flow::method_word(*s.method) == word;
+      if (!own || (s.tolerance && !(std::fabs(*s.tolerance - tolerance) <= 1e-9 * tolerance))) continue;
+      for (std::size_t i = 0; i < curve.points.size(); ++i)
+        if (curve.points[i].setting == s.words) curve.current = static_cast<int>(i);
+    }
   }
 
   std::vector<std::vector<haptics::ProbeSample>> paths;
@@ -189,10 +224,8 @@ Result<Curve> measure_line(Subject& subject, const LinkOf& link) {
   return curve;
 }
 
-}  // namespace
-
 Result<std::vector<Curve>> measure_streamline(Subject& subject) {
-  return curves_of_links(subject, "streamline", "How a streamline is followed", measure_line);
+  return curves_of_links(subject, "streamline", "How a streamline is followed", measure_followed);
 }
 
 }  // namespace catena::app::tradeoff

@@ -1,0 +1,166 @@
+#include "engine/app/plan/eye_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/tradeoff/measure/eye/eye.h"
+#include "engine/app/tradeoff/measure/timing.h"
+#include "engine/base/clock.h"
+#include "engine/base/numbers.h"
+#include "render/quality/quality.h"
+
+namespace catena::app::plan {
+namespace {
+
+constexpr double kTold = 0.4;                           // 1/255: errors below it are rounding to 8 bits
+constexpr double kErrorsS = 60, kTimesS = 6;            // at most for errors, and about for times
+constexpr std::uint32_t kFloorWidth = 256;              // of the picture that the data's own error is looked up in
+constexpr int kRounds = 5;                              // of times
+constexpr double kHolds = 1.15;                         // of the time that is wanted: a setting that is there stays within it
+
+/// What nobody looks at while it is measured: `tradeoff` leaves it out, too.
+render::FramePacket bare(render::FramePacket packet) {
+  packet.background[3] = 0;
+  return packet;
+}
+
+render::FramePacket small(render::FramePacket packet) {
+  if (!packet.eyes.empty()) packet.view = packet.eyes.front();
+  packet.eyes.clear();
+  packet.packing = render::Packing::single;
+  packet.overlay = {};
+  packet.cursors.clear();
+  const double scale = std::min(1.0, double(kFloorWidth) / packet.width);
+  packet.width = std::max(16u, static_cast<std::uint32_t>(packet.width * scale));
+  packet.height = std::max(16u, static_cast<std::uint32_t>(packet.height * scale));
+  return packet;
+}
+
+render::LadderKind kind_of(render::Renderer& renderer, const render::FramePacket& packet) {
+  return {renderer.draws_fast(packet), std::any_of(packet.volumes.begin(), packet.volumes.end(), [](const auto& item) { return item.shade; })};
+}
+
+}  // namespace
+
+std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind) {
+  std::vector<render::RenderSettings> all = render::quality_ladder(kind);
+  all.push_back(render::reference_settings());
+  return all;
+}
+
+Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& whole, const std::function<void(double)>& at) {
+  const render::FramePacket packet = bare(whole);
+  EyeCurve made;
+  Curve& curve = made.curve;
+  curve.id = "eye-plan";
+  curve.part = "eye";
+  curve.title = "With which settings the picture is drawn";
+  curve.what = fmt::format("The settings of a plan on the very picture, {}x{}.", packet.width, packet.height);
+  curve.error_name = "error of the picture (RMSE, 1/255)";
+  curve.time_name = "ms a picture";
+  at(0);
+  CATENA_TRY(const tradeoff::PictureFloor floor, tradeoff::picture_floor(renderer, small(packet)));
+  curve.floor = floor.error;
+  curve.floor_from = floor.from;
+  at(0.1);
+  // the first picture says what can draw it
+  CATENA_CHECK(renderer.draw(packet, render::balanced_settings()));
+  const std::vector<render::RenderSettings> all = eye_settings(kind_of(renderer, packet));
+  const double enough = std::max(kTold, std::isfinite(curve.floor) ? 0.5 * curve.floor : 0);
+  const std::int64_t start = now_ns();
+  const auto share = [&](std::size_t done) { return double(done) / double(all.size()); };
+  std::size_t count = 0;
+  // errors: what is more exact than can be told is left out, but for one
+  const auto go_on = [&](double last) {
+    at(0.1 + 0.5 * share(count));
+    const bool more = count == 0 || (last > enough && 1e-3 * ms_since(start) < kErrorsS);
+    count += more;
+    return more;
+  };
+  CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, kTold, go_on));
+  curve.reference = "converged rays through a lattice of pixels";
+  curve.reference_error = errors.reference_rmse;
+  std::vector<tradeoff::Repeat> repeats;
+  for (std::size_t i = 0; i < errors.rmse.size(); ++i) {
+    tradeoff::Point point;
+    point.setting = render::describe(all[i]);
+    point.error = errors.rmse[i];
+    curve.points.push_back(point);
+    made.settings.push_back(all[i]);
+    repeats.push_back([&, i] {
+      at(0.6 + 0.4 * share(i));
+      return render::drawing_ms(renderer, packet, all[i]);
+    });
+  }
+  CATENA_CHECK(tradeoff::time_points(curve, repeats, kTimesS, kRounds));
+  at(1);
+  curve.front = tradeoff::pareto_front(curve.points, curve.cost);
+  return made;
+}
+
+std::optional<EyeCurve> eye_curve(const Curve& curve, const render::LadderKind& kind) {
+  const std::vector<render::RenderSettings> all = eye_settings(kind);
+  EyeCurve made{curve, {}};
+  for (const tradeoff::Point& point : curve.points) {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& s) { return render::describe(s) == point.setting; });
+    if (found == all.end() || !std::isfinite(point.error) || !std::isfinite(point.time.median)) return std::nullopt;
+    made.settings.push_back(*found);
+  }
+  if (made.settings.empty()) return std::nullopt;
+  return made;
+}
+
+EyePlan::EyePlan(EyeCurve curve, const scene::Plan& wanted) : curve_(std::move(curve)), wanted_(wanted), times_({}, 1) {
+  std::vector<double> costs;
+  for (const tradeoff::Point& point : curve_.curve.points) costs.push_back(point.time.median);
+  times_ = render::TimeModel(std::move(costs), 1);
+  choose();
+}
+
+void EyePlan::want(const scene::Plan& wanted) {
+  wanted_ = wanted;
+  choose();
+}
+
+void EyePlan::choose() {
+  // the curve as it would be measured now
+  Curve expected = curve_.curve;
+  for (std::size_t i = 0; i < expected.points.size(); ++i) {
+    tradeoff::Timing& time = expected.points[i].time;
+    const double factor = expected_ms(static_cast<int>(i)) / time.median;
+    time.low *= factor, time.median *= factor, time.high *= factor;
+  }
+  picked_ = tradeoff::pick(expected, {wanted_.error, wanted_.time});
+  now_ = std::max(0, picked_.point);
+}
+
+void EyePlan::drawn(double ms) {
+  times_.measured(static_cast<std::size_t>(now_), ms);
+  const int before = now_;
+  const tradeoff::Picked was = picked_;
+  choose();
+  // one that is a little late would only come and go
+  const bool fits = wanted_.time && expected_ms(before) <= kHolds * *wanted_.time && expected_ms(before) >= expected_ms(now_);
+  if (!fits) return;
+  now_ = before;
+  picked_ = was;
+}
+
+std::vector<int> EyePlan::front() const { return tradeoff::pareto_front(curve_.curve.points, curve_.curve.cost); }
+
+std::string EyePlan::sentence() const {
+  std::string text = fmt::format("plan {}={}: {}; expected: error {:.2g}/255 in {:.3g} ms", wanted_.error ? "error" : "time",
+                                 to_text(wanted_.error ? *wanted_.error : *wanted_.time), render::describe(settings()), expected_error(),
+                                 expected_ms());
+  const Curve& c = curve_.curve;
+  const bool by_data = std::isfinite(c.floor) && c.floor >= tradeoff::least_told(c);
+  if (picked_.floored)
+    text += fmt::format(" (no more is asked for: {} {:.2g}/255)", by_data ? "the data's own error is" : "what can be told ends at",
+                        tradeoff::least_told(c));
+  if (!picked_.reached) text += wanted_.error ? " (none is as exact: this is the most exact)" : " (none is as quick: this is the quickest)";
+  return text;
+}
+
+}  // namespace catena::app::plan

@@ -1,0 +1,68 @@
+/// The eye's plan: which settings a picture is drawn with, from measured curves of error against time.
+///   error=E  the cheapest setting whose error is at most E, or the data's own if that is greater
+///   time=T   the least error within T milliseconds
+/// Errors are root mean squares over the covered pixels, 1/255, against converged rays, on the very picture; times are of drawing it
+/// (render/quality). Where pictures follow each other, what each took moves what is expected of all settings (TimeModel), and the next
+/// picture may have another one. Frame thread.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/app/plan/store.h"
+#include "engine/app/tradeoff/measure/choice.h"
+#include "render/passes/renderer.h"
+#include "render/quality/refinement.h"
+
+namespace catena::app::plan {
+
+/// The ladder of refinement.h up to the reference: what a plan may choose from.
+std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind);
+
+/// A curve and what its points stand for.
+struct EyeCurve {
+  Curve curve;  ///< error: 1/255; time: ms
+  std::vector<render::RenderSettings> settings;
+};
+
+/// Measures the picture with settings from the cheapest on, until nothing more exact can be told from the truth. `packet`: with or without
+/// a background. `at`: the share that is done, 0 to 1.
+Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const std::function<void(double)>& at);
+/// Of a kept curve; nothing where one of its points is no setting of this program.
+std::optional<EyeCurve> eye_curve(const Curve& curve, const render::LadderKind& kind);
+
+class EyePlan {
+ public:
+  EyePlan(EyeCurve curve, const scene::Plan& wanted);
+
+  /// Of the next picture.
+  const render::RenderSettings& settings() const { return curve_.settings[static_cast<std::size_t>(now_)]; }
+  double expected_error() const { return curve_.curve.points[static_cast<std::size_t>(now_)].error; }
+  double expected_ms() const { return expected_ms(now_); }
+  /// What that picture took: other settings may follow.
+  void drawn(double ms);
+  /// Other wishes.
+  void want(const scene::Plan& wanted);
+  const scene::Plan& wanted() const { return wanted_; }
+
+  /// The settings that nothing beats, the fastest first, and the place of that of the next picture among the ones that are at most as exact.
+  std::vector<int> front() const;
+  int now() const { return now_; }
+  const Curve& curve() const { return curve_.curve; }
+
+  /// "plan error=2: fast, step 1; expected: error 1.6/255 in 92 ms", and what could not be had or is not asked for.
+  std::string sentence() const;
+
+ private:
+  double expected_ms(int point) const { return times_.expected_ms(static_cast<std::size_t>(point)); }
+  void choose();
+
+  EyeCurve curve_;
+  scene::Plan wanted_;
+  render::TimeModel times_;
+  tradeoff::Picked picked_;
+  int now_ = 0;
+};
+
+}  // namespace catena::app::plan

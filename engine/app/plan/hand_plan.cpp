@@ -1,0 +1,160 @@
+#include "engine/app/plan/hand_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/app/tradeoff/measure/choice.h"
+#include "engine/base/json_edit.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+
+namespace catena::app::plan {
+namespace {
+
+constexpr const char* kKeys[] = {"follow", "method", "tolerance"};
+
+/// The links of a scene's text by their names: "/chain/2".
+Result<std::map<std::string, std::string>> places_of_links(const json::Node& root) {
+  std::map<std::string, std::string> places;
+  const json::Node* chain = root.find("chain");
+  for (std::size_t i = 0; chain != nullptr && i < chain->items.size(); ++i) {
+    CATENA_TRY(const std::string name, json::require_string(chain->items[i], "name"));
+    places[name] = "/chain/" + std::to_string(i);
+  }
+  return places;
+}
+
+/// At the place of the object, for messages.
+void add_member(json::Node& object, const std::string& key, json::Node value) {
+  value.file = object.file, value.line = object.line, value.label = key;
+  object.members.emplace_back(key, std::move(value));
+}
+
+/// Whether the scene has come to say itself what the plan would.
+bool is_pinned(const json::Node& link, const LinkKeys& keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return link.find(key.first) != nullptr; });
+}
+
+}  // namespace
+
+HandPlan::HandPlan(HandCurves curves, const scene::Plan& wanted) : curves_(std::move(curves)) { want(wanted); }
+
+double HandPlan::pick(double error, std::vector<PlannedLink>& out) const {
+  out.clear();
+  double ns = curves_.rest_ns;
+  for (const LinkCurve& link : curves_.links) {
+    const tradeoff::Picked picked = tradeoff::pick(link.curve, {error / link.length, {}});
+    if (picked.point < 0) continue;
+    const tradeoff::Point& point = link.curve.points[static_cast<std::size_t>(picked.point)];
+    out.push_back({link.link, point.setting, link.keys[static_cast<std::size_t>(picked.point)], point.error * link.length,
+                   tradeoff::least_told(link.curve) * link.length, picked.floored, picked.reached});
+    ns += std::max(0.0, point.time.median / link.ticks_a_ms - curves_.bare_ns);
+  }
+  return ns;
+}
+
+std::vector<double> HandPlan::stops() const {
+  std::set<double, std::greater<>> errors;
+  for (const LinkCurve& link : curves_.links)
+    for (const tradeoff::Point& point : link.curve.points)
+      if (std::isfinite(point.error)) errors.insert(std::max(point.error, tradeoff::least_told(link.curve)) * link.length);
+  std::vector<double> stops;
+  double last = -1;
+  std::vector<PlannedLink> links;
+  for (const double error : errors) {
+    const double ns = pick(error, links);
+    if (ns == last) continue;
+    stops.push_back(error);
+    last = ns;
+  }
+  return stops;
+}
+
+void HandPlan::want(const scene::Plan& wanted) {
+  wanted_ = wanted;
+  reached_ = true;
+  if (curves_.links.empty()) {
+    ns_ = curves_.rest_ns;
+    return;
+  }
+  if (wanted.hand_error) {
+    ns_ = pick(*wanted.hand_error, links_);
+    for (const PlannedLink& link : links_) reached_ = reached_ && link.reached;
+    return;
+  }
+  // the least error for which the tick is quick enough; where none is, the quickest tick
+  const std::vector<double> errors = stops();
+  const double most = 1e3 * wanted.hand_time.value_or(0);
+  double quickest = 0, least = -1;
+  for (const double error : errors) {
+    std::vector<PlannedLink> links;
+    const double ns = pick(error, links);
+    if (ns <= most) least = error;  // they fall
+    if (quickest == 0 || ns < quickest) quickest = ns, reached_ = reached_ && ns <= most, links_ = std::move(links), ns_ = ns;
+  }
+  reached_ = least >= 0;
+  if (reached_) ns_ = pick(least, links_);
+}
+
+double HandPlan::expected_error() const {
+  double most = 0;
+  for (const PlannedLink& link : links_) most = std::max(most, link.error);
+  return most;
+}
+
+void HandPlan::apply(scene::Scene& scene) const {
+  for (const PlannedLink& planned : links_)
+    scene.world.each<scene::Link>([&](scene::Entity, scene::Link& link) {
+      if (link.name != planned.link || is_pinned(link.node, planned.keys)) return;
+      for (const auto& [key, text] : planned.keys)
+        if (auto value = json::parse(text, scene.path)) add_member(link.node, key, std::move(*value));
+    });
+}
+
+Result<std::string> HandPlan::apply(const std::string& text, const std::string& file) const {
+  if (links_.empty()) return text;
+  CATENA_TRY(const json::Node root, json::parse(text, file));
+  CATENA_TRY(const auto places, places_of_links(root));
+  std::string out = text;
+  for (const PlannedLink& link : links_) {
+    const auto place = places.find(link.link);
+    if (place == places.end() || is_pinned(*json::find_value(root, place->second), link.keys)) continue;
+    for (const auto& [key, value] : link.keys) {
+      CATENA_TRY(out, json::set_value(out, file, place->second + "/" + key, value));
+    }
+  }
+  return out;
+}
+
+std::string HandPlan::sentence() const {
+  std::string text = fmt::format("plan {}={}:", wanted_.hand_error ? "hand_error" : "hand_time",
+                                 to_text(wanted_.hand_error ? *wanted_.hand_error : wanted_.hand_time.value_or(0)));
+  for (const PlannedLink& link : links_) text += fmt::format("{} {} {}", &link == links_.data() ? "" : ",", link.link, link.setting);
+  text += fmt::format("; expected: error {:.2g} in {:.3g} us a tick", expected_error(), expected_us());
+  for (const PlannedLink& link : links_)
+    if (wanted_.hand_error && link.floored)
+      text += fmt::format(" (of {} no more is asked for: what can be told ends at {:.2g})", link.link, link.floor);
+  if (!reached_) text += wanted_.hand_error ? " (none is as exact: this is the most exact)" : " (none is as quick: this is the quickest)";
+  return text;
+}
+
+Outcome take_recorded(const std::string& recorded_text, scene::Scene& scene) {
+  CATENA_TRY(const json::Node root, json::parse(recorded_text, "the recorded scene"));
+  CATENA_TRY(const auto places, places_of_links(root));
+  for (const auto& [name, place] : places) {
+    const json::Node* from = json::find_value(root, place);
+    scene.world.each<scene::Link>([&, &name = name](scene::Entity, scene::Link& link) {
+      if (link.name != name) return;
+      const bool stated = std::any_of(std::begin(kKeys), std::end(kKeys), [&](const char* key) { return link.node.find(key) != nullptr; });
+      if (stated) return;
+      for (const char* key : kKeys)
+        if (const json::Node* value = from->find(key)) add_member(link.node, key, *value);
+    });
+  }
+  return Done{};
+}
+
+}  // namespace catena::app::plan

@@ -1,0 +1,90 @@
+/// The hand's plan: how each streamline link is followed, from measured curves of error against time (tradeoff/measure/hand).
+///   hand_error=E  for each link the cheapest setting whose error is at most E, or the data's own if that is greater
+///   hand_time=T   the least error of the worst link for which the whole tick takes T microseconds at most
+/// Errors are the greatest distance of a link's proxy from the converged line, world units; the time of a tick is that of the tick without
+/// these links, and what each of them adds. A link that says how it is followed ("follow", "method", "tolerance") keeps what it says.
+/// The plan is made before the first tick and written into the links as if the scene had said it: the program, a recording and its replay
+/// know nothing of curves and clocks. Off the tick.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/app/plan/store.h"
+#include "engine/app/tradeoff/measure/subject.h"
+#include "engine/scene/scene.h"
+
+namespace catena::app::plan {
+
+/// Keys of a link as JSON text: {"method", "\"dp54\""}.
+using LinkKeys = std::vector<std::pair<std::string, std::string>>;
+
+/// A link that leaves its setting open, and what is known of each.
+struct LinkCurve {
+  std::string link;
+  double length = 1;          ///< L of its field, world units: the curve's errors are shares of it
+  double ticks_a_ms = 1;      ///< the curve's times are of a millisecond
+  Curve curve;                ///< only what agrees with what the link says
+  std::vector<LinkKeys> keys; ///< one a point
+};
+
+struct HandCurves {
+  std::vector<LinkCurve> links;
+  double rest_ns = 0;  ///< a tick without those links
+  double bare_ns = 0;  ///< a tick without any: it is in each link's time
+};
+
+/// What one link gets.
+struct PlannedLink {
+  std::string link, setting;
+  LinkKeys keys;
+  double error = 0;  ///< expected, world units
+  double floor = 0;  ///< the data's own, or what the reference can tell; world units
+  bool floored = false, reached = true;
+};
+
+class HandPlan {
+ public:
+  HandPlan() = default;
+  HandPlan(HandCurves curves, const scene::Plan& wanted);
+
+  bool is_empty() const { return links_.empty(); }
+  const std::vector<PlannedLink>& links() const { return links_; }
+  double expected_error() const;  ///< of the worst link, world units
+  double expected_us() const { return 1e-3 * ns_; }
+  bool reached() const { return reached_; }
+  const scene::Plan& wanted() const { return wanted_; }
+  void want(const scene::Plan& wanted);
+
+  /// From the fastest to the most exact: the errors at which what is chosen changes, falling.
+  std::vector<double> stops() const;
+
+  /// Into the links of a scene that was just read; into its text. A link that has come to say it itself keeps what it says.
+  void apply(scene::Scene& scene) const;
+  Result<std::string> apply(const std::string& text, const std::string& file) const;
+
+  /// "plan hand_error=1e-06: curve rkf34, tolerance 1e-07; expected: error 3.1e-07 in 1.9 us", and what could not be had.
+  std::string sentence() const;
+
+ private:
+  /// For the error: what each link gets, and what the tick takes.
+  double pick(double error, std::vector<PlannedLink>& out) const;
+
+  HandCurves curves_;
+  scene::Plan wanted_;
+  std::vector<PlannedLink> links_;
+  double ns_ = 0;
+  bool reached_ = true;
+};
+
+/// What the recording's text says of how links are followed, for a scene from outside whose plan leaves it open.
+Outcome take_recorded(const std::string& recorded_text, scene::Scene& scene);
+
+/// Measures the links that leave their setting open. `left_out` gets a sentence for each that cannot be measured.
+Result<std::vector<Curve>> measure_hand(tradeoff::Subject& subject);
+/// What those curves, or kept ones, are of this scene; nothing where they do not fit it.
+std::optional<HandCurves> hand_curves(scene::Scene& scene, const std::vector<Curve>& curves, double rate_hz);
+
+}  // namespace catena::app::plan

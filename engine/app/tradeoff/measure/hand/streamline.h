@@ -1,0 +1,30 @@
+/// What a streamline link can be asked for, and the curve of it. One place for `tradeoff` and for plans. Off the haptic thread.
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/app/tradeoff/measure/subject.h"
+#include "engine/flow/flow.h"
+
+namespace catena::app::tradeoff {
+
+struct StreamlineSetting {
+  std::string words, series;                               ///< of its point
+  std::vector<std::pair<std::string, std::string>> keys;   ///< of the link, as JSON text
+  bool selected = false;                                   ///< traced once
+  std::optional<flow::Method> method{};                    ///< of online following
+  std::optional<double> tolerance{};                       ///< of an embedded one, L
+  std::string write() const;                               ///< the keys as a scene has them
+};
+
+/// All of them, the traced line first; embedded methods with tolerances 1e-3 .. 1e-13 and the link's own.
+std::vector<StreamlineSetting> streamline_settings(const json::Node& link);
+
+/// The curve of one link.
+Result<Curve> measure_followed(Subject& subject, const LinkOf& link);
+
+inline std::string streamline_curve_id(const std::string& link) { return "hand-streamline-" + link; }
+
+}  // namespace catena::app::tradeoff
