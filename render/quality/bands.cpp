@@ -7,6 +7,7 @@
 
 #include "engine/base/clock.h"
 #include "engine/base/result.h"
+#include "render/quality/quality.h"
 
 namespace catena::render {
 namespace {
@@ -106,28 +107,36 @@ Result<Samples> read(Renderer& renderer, const BandWants& wants, bool floats, bo
   return samples;
 }
 
+Outcome draw_timed(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings, BandTimes& times) {
+  const DrawingClock clock(renderer);
+  const std::int64_t start = now_ns();
+  CATENA_CHECK(renderer.draw(packet, settings));
+  times.wall_ms += ms_since(start);
+  times.drawing_ms += clock.ms();
+  return Done{};
+}
+
 /// The packed picture of several eyes, in one piece: one band.
-Result<double> draw_packed(Renderer& renderer, const FramePacket& packet, const RenderSettings& given, const BandWants& wants,
+Result<BandTimes> draw_packed(Renderer& renderer, const FramePacket& packet, const RenderSettings& given, const BandWants& wants,
                            const std::function<Outcome(const Band&)>& take) {
   CATENA_ASSERT(!wants.depth && !wants.ids);
   RenderSettings settings = given;
   settings.float_picture = wants.floats;
-  const std::int64_t start = now_ns();
-  CATENA_CHECK(renderer.draw(packet, settings));
-  const double ms = ms_since(start);
-  if (!take) return ms;
+  BandTimes times;
+  CATENA_CHECK(draw_timed(renderer, packet, settings, times));
+  if (!take) return times;
   CATENA_TRY(Samples samples, read(renderer, wants, settings.float_picture, false));
   const PackedSize size = packed_size(packet.packing, packet.eyes.size(), packet.width, packet.height);
   Band band{
       std::uint32_t(size.width), 0, std::uint32_t(size.height), std::move(samples.bytes.rgba), std::move(samples.floats.rgba), {}, {}};
   CATENA_CHECK(take({band.width, 0, 0, {}, {}, {}, {}}));
   CATENA_CHECK(take(band));
-  return ms;
+  return times;
 }
 
 }  // namespace
 
-Result<double> draw_bands(Renderer& renderer, const FramePacket& whole, const RenderSettings& given, const TilePlan& plan,
+Result<BandTimes> draw_bands(Renderer& renderer, const FramePacket& whole, const RenderSettings& given, const TilePlan& plan,
                           const BandWants& wants, const std::function<Outcome(const Band&)>& take) {
   if (!whole.eyes.empty() && whole.packing != Packing::single) {
     CATENA_ASSERT(plan.count() == 1 && plan.antialias == 1);
@@ -145,7 +154,7 @@ Result<double> draw_bands(Renderer& renderer, const FramePacket& whole, const Re
   const std::uint32_t n = plan.antialias;
   RenderSettings settings = given;
   settings.float_picture = wants.floats || (wants.bytes && n > 1);
-  double ms = 0;
+  BandTimes times;
   Band band;
   band.width = plan.width;
   for (std::uint32_t row = 0; row < plan.rows(); ++row) {
@@ -154,9 +163,7 @@ Result<double> draw_bands(Renderer& renderer, const FramePacket& whole, const Re
     if (take) resize(band, wants);
     for (std::uint32_t column = 0; column < plan.columns(); ++column) {
       const TileArea area = plan.area(column, row);
-      const std::int64_t start = now_ns();
-      CATENA_CHECK(renderer.draw(plan.count() == 1 && n == 1 ? packet : tile_packet(packet, plan, area), settings));
-      ms += ms_since(start);
+      CATENA_CHECK(draw_timed(renderer, plan.count() == 1 && n == 1 ? packet : tile_packet(packet, plan, area), settings, times));
       if (!take) continue;
       CATENA_TRY(const Samples samples, read(renderer, wants, settings.float_picture, n > 1));
       if (n == 1) {
@@ -168,7 +175,7 @@ Result<double> draw_bands(Renderer& renderer, const FramePacket& whole, const Re
     }
     if (take) CATENA_CHECK(take(band));
   }
-  return ms;
+  return times;
 }
 
 }  // namespace catena::render

@@ -28,10 +28,16 @@ struct Band {
   std::vector<std::uint32_t> ids;   ///< 0: nothing opaque
 };
 
-/// Milliseconds of drawing (start to fence), without read-back. An error is the renderer's, or the one that `take` returned; `take`
+/// Milliseconds of drawing all of them, without read-back.
+struct BandTimes {
+  double wall_ms = 0;     ///< start to fence
+  double drawing_ms = 0;  ///< as DrawingClock counts (quality.h)
+};
+
+/// An error is the renderer's, or the one that `take` returned; `take`
 /// is also asked, with a band of height 0, after every tile: an error ends the work. Without `take`
 /// nothing is read back.
-Result<double> draw_bands(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings, const TilePlan& plan,
+Result<BandTimes> draw_bands(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings, const TilePlan& plan,
                           const BandWants& wants, const std::function<Outcome(const Band&)>& take);
 
 }  // namespace catena::render

@@ -20,18 +20,12 @@ constexpr std::uint32_t kFloorWidth = 256;              // of the picture that t
 constexpr int kRounds = 5;                              // of times
 constexpr double kHolds = 1.15;                         // of the time that is wanted: a setting that is there stays within it
 
-/// What nobody looks at while it is measured: `tradeoff` leaves it out, too.
-render::FramePacket bare(render::FramePacket packet) {
-  packet.background[3] = 0;
-  return packet;
-}
-
+/// Small, as one eye sees it.
 render::FramePacket small(render::FramePacket packet) {
   if (!packet.eyes.empty()) packet.view = packet.eyes.front();
   packet.eyes.clear();
   packet.packing = render::Packing::single;
-  packet.overlay = {};
-  packet.cursors.clear();
+  packet.background[3] = 0;
   const double scale = std::min(1.0, double(kFloorWidth) / packet.width);
   packet.width = std::max(16u, static_cast<std::uint32_t>(packet.width * scale));
   packet.height = std::max(16u, static_cast<std::uint32_t>(packet.height * scale));
@@ -50,8 +44,15 @@ std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind)
   return all;
 }
 
+render::FramePacket without_annotations(render::FramePacket packet) {
+  packet.overlay = {};
+  packet.cursors.clear();
+  packet.indicators.clear();
+  return packet;
+}
+
 Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& whole, const std::function<void(double)>& at) {
-  const render::FramePacket packet = bare(whole);
+  const render::FramePacket packet = without_annotations(whole);
   EyeCurve made;
   Curve& curve = made.curve;
   curve.id = "eye-plan";

@@ -26,6 +26,9 @@ struct EyeCurve {
   std::vector<render::RenderSettings> settings;
 };
 
+/// What is written over a picture is not in the truth that its error is measured against.
+render::FramePacket without_annotations(render::FramePacket packet);
+
 /// Measures the picture with settings from the cheapest on, until nothing more exact can be told from the truth. `packet`: with or without
 /// a background. `at`: the share that is done, 0 to 1.
 Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const std::function<void(double)>& at);
@@ -46,7 +49,7 @@ class EyePlan {
   void want(const scene::Plan& wanted);
   const scene::Plan& wanted() const { return wanted_; }
 
-  /// The settings that nothing beats, the fastest first, and the place of that of the next picture among the ones that are at most as exact.
+  /// The settings that nothing beats, the fastest first.
   std::vector<int> front() const;
   int now() const { return now_; }
   const Curve& curve() const { return curve_.curve; }

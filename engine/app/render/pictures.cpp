@@ -83,22 +83,26 @@ class Frames {
       return stopped = outputs->take(band);
     };
     if (outputs != nullptr) CATENA_CHECK(outputs->begin(frame));
-    const render::DrawingClock clock(*renderer);
     const auto ms = render::draw_bands(*renderer, next, settings, plan, wants, outputs != nullptr ? take : decltype(nothing_)());
-    last_ms = ms ? by_plan && outputs == nullptr ? clock.ms() : 0 : 0;
     CATENA_CHECK(stopped);
     if (interrupted || interrupt_->asked()) throw MachineFailure{"interrupted: nothing half-written was kept"};
     if (!ms) throw MachineFailure{ms.error().message};
     if (outputs != nullptr) CATENA_CHECK(outputs->end());
-    return extract_ms + *ms;
+    drawing_ms = ms->drawing_ms;
+    // the next picture may have other settings; the first one pays for what stays
+    if (goal && warm_) goal->drawn(drawing_ms), settings = goal->settings();
+    warm_ = true;
+    return extract_ms + ms->wall_ms;
   }
 
   std::unique_ptr<render::Renderer> renderer;
   render::RenderSettings settings;
+  std::optional<plan::EyePlan> goal;  ///< says the settings of the next picture
   render::TilePlan plan;
   render::BandWants wants;
   Progress* progress = nullptr;
-  double first_ms = 0;  ///< process start to the first pixels on the host
+  double drawing_ms = 0;  ///< of the last picture (render/quality)
+  double first_ms = 0;    ///< process start to the first pixels on the host
 
  private:
   scene::Scene& scene_;
@@ -111,20 +115,51 @@ class Frames {
   Bounds base_bounds_;
   std::optional<Interrupt> interrupt_;  // while it draws
   double tiles_done_ = 0;
+  bool warm_ = false;
   std::function<Outcome(const render::Band&)> nothing_;
 };
 
 constexpr double kBalancedError = 2;  // 1/255: hardly seen beside the converged picture
 
-/// Settings for the goal, measured on the picture, or on the middle tile of one that is large or supersampled.
-render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
-  const render::TilePlan& plan = frames.plan;
+/// What is measured of a picture: all of it, or the middle tile of one that is large or supersampled.
+struct Sample {
+  render::FramePacket packet;
+  double share = 1;  ///< of the picture's samples
+};
+Sample sample_of(const render::FramePacket& packet, const render::TilePlan& plan) {
   const bool whole = std::uint64_t(plan.samples_x()) * plan.samples_y() <= render::kOnePiece;
-  if (plan.antialias == 1 && (plan.count() == 1 || whole)) return machine(render::choose_quality(*frames.renderer, packet, goal));
+  if (plan.antialias == 1 && (plan.count() == 1 || whole)) return {packet};
   const render::TileArea middle = plan.area(plan.columns() / 2, plan.rows() / 2);
-  if (goal.kind == render::QualityGoal::Kind::time)
-    goal.value *= double(middle.drawn_width) * middle.drawn_height / (double(plan.samples_x()) * plan.samples_y());
-  return machine(render::choose_quality(*frames.renderer, render::tile_packet(packet, plan, middle), goal));
+  return {render::tile_packet(packet, plan, middle),
+          double(middle.drawn_width) * middle.drawn_height / (double(plan.samples_x()) * plan.samples_y())};
+}
+
+/// Settings for the goal.
+render::QualityChoice choose(Frames& frames, const render::FramePacket& packet, render::QualityGoal goal) {
+  const Sample sample = sample_of(packet, frames.plan);
+  if (goal.kind == render::QualityGoal::Kind::time) goal.value *= sample.share;
+  return machine(render::choose_quality(*frames.renderer, sample.packet, goal));
+}
+
+/// What `quality` leaves to the plan: its settings, said before the first picture.
+Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const scene::Plan& wanted, const RenderOptions& o,
+                      const scene::Scene& scene, std::FILE* words) {
+  CATENA_TRY(const std::string text, plan::text_of(scene));
+  const Sample sample = sample_of(packet, frames.plan);
+  std::vector<std::string> options = o.fields;
+  options.insert(options.end(), {o.grid, o.colors.map, fmt::format("{}", fmt::join(o.colors.range, " ")), o.annotate.title});
+  frames.goal = machine(plan::make_eye_plan(*frames.renderer, sample.packet, wanted, {scene, text, options, sample.share},
+                                            [&](const std::string& line) { say(words, line); }));
+  frames.settings = frames.goal->settings();
+  say(words, frames.goal->sentence());
+  return Done{};
+}
+
+/// "observed: error 1.7/255 in 95 ms": the error of the last picture, the median of the times.
+std::string observed(Frames& frames, const render::FramePacket& packet, const render::RenderSettings& settings, std::vector<double> times) {
+  const auto error = render::measure_rmse(*frames.renderer, plan::without_annotations(sample_of(packet, frames.plan).packet), {settings}, 0.4, [](double) { return true; });
+  return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", error->rmse.front()) : "not known",
+                     quantile(times, 0.5));
 }
 
 /// Of the finished picture. Several eyes in one are drawn in one piece.
@@ -165,6 +200,10 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_TRY(const Size picture, picture_size(o, scene.stereo, size));
   const std::string quality = !o.quality.empty() ? o.quality : scene.quality.empty() ? "balanced" : scene.quality;
   CATENA_TRY(Quality wanted, parse_quality(quality));
+  CATENA_TRY(scene::Plan plan, plan::wanted_plan(scene, o.plan));
+  if (!o.quality.empty() && !o.plan.empty() && plan.of_eye())
+    return Error{"--quality " + o.quality + ": goes without error and time of --plan: one of them says how good the picture is to be"};
+  const bool pinned = !o.quality.empty() || !scene.quality.empty();
   RunFiles files(scene);
   files.reads(o.probe);
   files.reads(o.camera);
@@ -172,6 +211,9 @@ Outcome render_pictures(const RenderOptions& given) {
   CATENA_CHECK(check_outputs(o, shape, motion.frames(), files));
   std::FILE* const words = uses_standard_output(o) ? stderr : stdout;
 
+  const auto tell_plan = [&](const std::string& line) { say(words, line); };
+  if (plan.of_eye() && pinned) tell_plan("plan: the picture stays as it is: its quality is stated, " + quality);
+  if (!o.probe.empty()) CATENA_CHECK(plan::plan_links(scene, plan, 1000, o.fields, tell_plan));
   // the chain is checked with the picture: one scene, two senses
   CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene));
   if (o.probe.empty()) {
@@ -202,16 +244,21 @@ Outcome render_pictures(const RenderOptions& given) {
   const auto antialias = static_cast<std::uint32_t>(o.antialias), tile = static_cast<std::uint32_t>(o.tile);
   frames.plan = render::views_of(scene.stereo) > 1
                     ? render::TilePlan{size.width, size.height, 1, size.width, size.height, 0}
-                    : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || wanted.settings.fast,
+                    : render::plan_tiles(size.width, size.height, antialias, tile, wanted.goal || plan.of_eye() || wanted.settings.fast,
                                          frames.renderer->longest_side());
-  if (wanted.goal) {
+  const bool planned = plan.of_eye() && !pinned && render::draws_rays(packet);
+  if (plan.of_eye() && !pinned && !planned) tell_plan("plan: the picture has no settings: nothing in it is drawn by rays");
+  if (planned) {
+    CATENA_CHECK(plan_pictures(frames, packet, plan, o, scene, words));
+    stats.estimated_rmse = frames.goal->expected_error();
+  } else if (wanted.goal) {
     const render::QualityChoice choice = choose(frames, packet, *wanted.goal);
     frames.settings = choice.settings;
     stats.estimated_rmse = choice.estimated_rmse;
     say(words, fmt::format("quality {}: {}, error about {:.2f}/255{}", quality, describe(frames.settings), choice.estimated_rmse,
                            choice.reached ? "" : " (nothing reached the goal: the nearest was taken)"));
   }
-  stats.quality_mode = wanted.goal ? quality + ": " + describe(frames.settings) : quality;
+  stats.quality_mode = planned ? frames.goal->sentence() : wanted.goal ? quality + ": " + describe(frames.settings) : quality;
   stats.tiles = frames.plan.count();
   stats.device = frames.renderer->stats().device;
 
@@ -222,6 +269,8 @@ Outcome render_pictures(const RenderOptions& given) {
     const double parts = frames.plan.count() * (more ? double(motion.frames()) : 1.0);
     Progress progress("render", parts);
     frames.progress = parts > 1 ? &progress : nullptr;
+    std::vector<double> took;
+    render::RenderSettings last = frames.settings;
     CATENA_TRY(const double first, frames.draw(0, &outputs));
     stats.first_frame_ms = frames.first_ms;
     stats.mirror_coarsening = frames.renderer->stats().mirror_coarsening;
@@ -232,16 +281,25 @@ Outcome render_pictures(const RenderOptions& given) {
                            stats.tiles > 1 ? fmt::format(", {} tiles", stats.tiles) : "", stats.device));
     // a frame of many tiles has warmed up by itself
     const bool timed = !o.stats.empty() && stats.tiles == 1;
-    for (int k = 1; k < kUnreportedFrames && timed; ++k) CATENA_CHECK(frames.draw(0, nullptr));
+    for (int k = 1; k < kUnreportedFrames && (timed || (planned && motion.frames() == 1)); ++k) {
+      CATENA_CHECK(frames.draw(0, nullptr));
+      took.push_back(frames.drawing_ms);
+    }
     for (int k = 0; k < motion.frames(); ++k) {
       if (k == 0 && !timed) {
         stats.frame_ms.push_back(first);
         continue;
       }
+      last = frames.settings;
       CATENA_TRY(const double ms, frames.draw(k, k > 0 && outputs.takes_all_frames() ? &outputs : nullptr));
       stats.frame_ms.push_back(ms);
+      took.push_back(frames.drawing_ms);
     }
     frames.progress = nullptr;
+    if (planned) {
+      CATENA_TRY(const render::FramePacket shown, frames.packet(motion.frames() - 1));
+      tell_plan(observed(frames, shown, last, took));
+    }
   }
   if (!o.stats.empty() || motion.frames() > 1)
     say(words, fmt::format("frame {:.1f} ms (median of {})", stats.median_ms(), stats.frame_ms.size()));
