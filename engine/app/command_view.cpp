@@ -4,6 +4,7 @@
 
 #include "engine/app/command.h"
 #include "engine/app/options.h"
+#include "engine/app/plan/make_plan.h"
 #include "engine/app/run_files.h"
 #include "engine/app/viewer/viewer.h"
 
@@ -14,7 +15,7 @@ namespace {
 const std::string kQuality = "time=50";
 
 struct ViewArguments {
-  std::string source, device, size = "1024x768", quality, shaders, screenshot, window_screenshot, servo_stats, frame_stats, record,
+  std::string source, device, size = "1024x768", quality, plan, shaders, screenshot, window_screenshot, servo_stats, frame_stats, record,
                               firmware;
   std::vector<std::string> fields;
   int frames = 0;
@@ -56,6 +57,12 @@ Outcome open_window(const ViewArguments& o, int& exit_code) {
     options.quality_stated = !o.quality.empty();
     const std::string& own = scene.quality.empty() ? kQuality : scene.quality;
     CATENA_TRY(options.quality, parse_quality(options.quality_stated ? o.quality : own));
+    options.plan.stated = scene.plan;
+    CATENA_TRY(options.plan.wanted, plan::wanted_plan(scene, o.plan));
+    options.plan.quality_stated = options.quality_stated || !scene.quality.empty();
+    if (options.quality_stated && !o.plan.empty() && options.plan.wanted.of_eye())
+      return Error{"--quality " + o.quality + ": goes without error and time of --plan: one of them says how good the picture is to be"};
+    if (options.plan.quality_stated) options.plan.wanted.error = options.plan.wanted.time = std::nullopt;
   }
   options.gpu_memory = static_cast<std::uint64_t>(1e6 * o.gpu_memory_mb);
   options.shaders = o.shaders;
@@ -89,6 +96,9 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
       "--quality", options->quality,
       "time=MS, error=E (RMSE, 1/255), draft, balanced, reference or step=VOXELS, of a picture at rest; while something moves "
       "it comes within MS or 50 ms. Default: the scene's, or else time=50");
+  command->add_option(
+      "--plan", options->plan,
+      "error=E (RMSE, 1/255) or time=MS, and hand_error=E (world units) or hand_time=US (a tick): the settings by measured curves");
   command
       ->add_option("--gpu-memory", options->gpu_memory_mb, "MB of GPU memory to keep within; what does not fit is drawn coarser, and said")
       ->check(number_between(1, 1e9));

@@ -97,8 +97,11 @@ Picture on_lattice(const Picture& picture, std::uint32_t spacing) {
 
 class Search {
  public:
-  /// The picture is drawn without a background, so that it says what it covers.
-  Search(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) { packet_.background[3] = 0; }
+  /// The picture is drawn without a background, so that it says what it covers, and without what is written over it, which rays lack.
+  Search(Renderer& renderer, const FramePacket& packet) : renderer_(renderer), packet_(packet) {
+    packet_.background[3] = 0;
+    packet_.overlay = {};
+  }
 
   /// `goal`: the least error that matters, 1/255. `moves`: the error is wanted to be steady, too.
   Outcome begin(double goal, bool moves = false) {
@@ -328,8 +331,8 @@ Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, cons
   return error.above;
 }
 
-Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings, double least,
-                                      const std::function<bool(double last)>& go_on) {
+Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
+                                      double least, const std::function<bool(double last)>& go_on) {
   if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, least, go_on);
   MeasuredSettings all;
   Search search(renderer, packet);

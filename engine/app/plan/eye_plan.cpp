@@ -14,11 +14,11 @@
 namespace catena::app::plan {
 namespace {
 
-constexpr double kTold = 0.4;                           // 1/255: errors below it are rounding to 8 bits
-constexpr double kErrorsS = 60, kTimesS = 6;            // at most for errors, and about for times
-constexpr std::uint32_t kFloorWidth = 256;              // of the picture that the data's own error is looked up in
-constexpr int kRounds = 5;                              // of times
-constexpr double kHolds = 1.15;                         // of the time that is wanted: a setting that is there stays within it
+constexpr double kTold = 0.4;                 // 1/255: errors below it are rounding to 8 bits
+constexpr double kErrorsS = 60, kTimesS = 6;  // at most for errors, and about for times
+constexpr std::uint32_t kFloorWidth = 256;    // of the picture that the data's own error is looked up in
+constexpr int kRounds = 5;                    // of times
+constexpr double kHolds = 1.15;               // of a time: a setting that is there stays within it
 
 /// Small, as one eye sees it.
 render::FramePacket small(render::FramePacket packet) {
@@ -33,7 +33,8 @@ render::FramePacket small(render::FramePacket packet) {
 }
 
 render::LadderKind kind_of(render::Renderer& renderer, const render::FramePacket& packet) {
-  return {renderer.draws_fast(packet), std::any_of(packet.volumes.begin(), packet.volumes.end(), [](const auto& item) { return item.shade; })};
+  return {renderer.draws_fast(packet),
+          std::any_of(packet.volumes.begin(), packet.volumes.end(), [](const auto& item) { return item.shade; })};
 }
 
 }  // namespace
@@ -44,15 +45,7 @@ std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind)
   return all;
 }
 
-render::FramePacket without_annotations(render::FramePacket packet) {
-  packet.overlay = {};
-  packet.cursors.clear();
-  packet.indicators.clear();
-  return packet;
-}
-
-Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& whole, const std::function<void(double)>& at) {
-  const render::FramePacket packet = without_annotations(whole);
+Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const std::function<void(double)>& at) {
   EyeCurve made;
   Curve& curve = made.curve;
   curve.id = "eye-plan";
@@ -142,19 +135,31 @@ void EyePlan::drawn(double ms) {
   const int before = now_;
   const tradeoff::Picked was = picked_;
   choose();
-  // one that is a little late would only come and go
-  const bool fits = wanted_.time && expected_ms(before) <= kHolds * *wanted_.time && expected_ms(before) >= expected_ms(now_);
-  if (!fits) return;
+  // it stays while it will do and nothing is much quicker: else settings would come and go
+  const double told = tradeoff::least_told(curve_.curve),
+               error = std::max(told, curve_.curve.points[static_cast<std::size_t>(before)].error);
+  const bool stays = wanted_.time ? expected_ms(before) <= kHolds * *wanted_.time && expected_ms(before) * kHolds >= expected_ms(now_)
+                                  : error <= std::max(told, wanted_.error.value_or(0)) && expected_ms(before) <= kHolds * expected_ms(now_);
+  if (!stays) return;
   now_ = before;
   picked_ = was;
 }
 
-std::vector<int> EyePlan::front() const { return tradeoff::pareto_front(curve_.curve.points, curve_.curve.cost); }
+std::vector<double> EyePlan::stops() const {
+  const Curve& c = curve_.curve;
+  const double told = tradeoff::least_told(c);
+  std::vector<double> errors;
+  for (const int i : tradeoff::pareto_front(c.points, c.cost)) {
+    errors.push_back(std::max(told, c.points[static_cast<std::size_t>(i)].error));
+    if (errors.back() <= told) break;
+  }
+  return errors;
+}
 
 std::string EyePlan::sentence() const {
-  std::string text = fmt::format("plan {}={}: {}; expected: error {:.2g}/255 in {:.3g} ms", wanted_.error ? "error" : "time",
-                                 to_text(wanted_.error ? *wanted_.error : *wanted_.time), render::describe(settings()), expected_error(),
-                                 expected_ms());
+  std::string text =
+      fmt::format("plan {}={}: {}; expected: error {:.2g}/255 in {:.3g} ms", wanted_.error ? "error" : "time",
+                  to_text(wanted_.error ? *wanted_.error : *wanted_.time), render::describe(settings()), expected_error(), expected_ms());
   const Curve& c = curve_.curve;
   const bool by_data = std::isfinite(c.floor) && c.floor >= tradeoff::least_told(c);
   if (picked_.floored)

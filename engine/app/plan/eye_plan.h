@@ -26,11 +26,8 @@ struct EyeCurve {
   std::vector<render::RenderSettings> settings;
 };
 
-/// What is written over a picture is not in the truth that its error is measured against.
-render::FramePacket without_annotations(render::FramePacket packet);
-
-/// Measures the picture with settings from the cheapest on, until nothing more exact can be told from the truth. `packet`: with or without
-/// a background. `at`: the share that is done, 0 to 1.
+/// Measures the picture with settings from the cheapest on, until nothing more exact can be told from the truth. `at`: the share that is
+/// done, 0 to 1.
 Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const std::function<void(double)>& at);
 /// Of a kept curve; nothing where one of its points is no setting of this program.
 std::optional<EyeCurve> eye_curve(const Curve& curve, const render::LadderKind& kind);
@@ -49,8 +46,8 @@ class EyePlan {
   void want(const scene::Plan& wanted);
   const scene::Plan& wanted() const { return wanted_; }
 
-  /// The settings that nothing beats, the fastest first.
-  std::vector<int> front() const;
+  /// The errors at which what is chosen changes, from the fastest setting on; none below what can be told.
+  std::vector<double> stops() const;
   int now() const { return now_; }
   const Curve& curve() const { return curve_.curve; }
 

@@ -9,7 +9,8 @@
 namespace catena::app::plan {
 namespace {
 
-constexpr const char *kRestId = "hand-rest", *kRest = "the tick without the links that a plan chooses for", *kBare = "the tick without links";
+constexpr const char *kRestId = "hand-rest", *kRest = "the tick without the links that a plan chooses for",
+                     *kBare = "the tick without links";
 
 using tradeoff::StreamlineSetting;
 
@@ -84,7 +85,8 @@ std::optional<HandCurves> hand_curves(scene::Scene& scene, const std::vector<Cur
       has_rest = true;
       continue;
     }
-    const auto link = std::find_if(links.begin(), links.end(), [&](const auto& l) { return tradeoff::streamline_curve_id(l.name) == curve.id; });
+    const auto link =
+        std::find_if(links.begin(), links.end(), [&](const auto& l) { return tradeoff::streamline_curve_id(l.name) == curve.id; });
     if (link == links.end()) return std::nullopt;
     const field::AnyField field = tradeoff::field_of(scene, link->node);
     if (!field.vector) return std::nullopt;

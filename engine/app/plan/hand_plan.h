@@ -24,10 +24,10 @@ using LinkKeys = std::vector<std::pair<std::string, std::string>>;
 /// A link that leaves its setting open, and what is known of each.
 struct LinkCurve {
   std::string link;
-  double length = 1;          ///< L of its field, world units: the curve's errors are shares of it
-  double ticks_a_ms = 1;      ///< the curve's times are of a millisecond
-  Curve curve;                ///< only what agrees with what the link says
-  std::vector<LinkKeys> keys; ///< one a point
+  double length = 1;           ///< L of its field, world units: the curve's errors are shares of it
+  double ticks_a_ms = 1;       ///< the curve's times are of a millisecond
+  Curve curve;                 ///< only what agrees with what the link says
+  std::vector<LinkKeys> keys;  ///< one a point
 };
 
 struct HandCurves {

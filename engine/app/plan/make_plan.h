@@ -36,8 +36,8 @@ Result<EyePlan> make_eye_plan(render::Renderer& renderer, const render::FramePac
 Result<HandPlan> make_hand_plan(scene::Scene& scene, const std::string& text, const scene::Plan& wanted, double rate_hz,
                                 const std::vector<std::string>& options, const Tell& tell, const CurveStore* store = nullptr);
 
-/// All of it for a command: nothing where no hand_error or hand_time is wanted, or no link leaves its setting open (which is told); else the
-/// plan, told, and applied to the scene.
+/// All of it for a command: nothing where no hand_error or hand_time is wanted, or no link leaves its setting open (which is told); else
+/// the plan, told, and applied to the scene.
 Result<std::optional<HandPlan>> plan_links(scene::Scene& scene, const scene::Plan& wanted, double rate_hz,
                                            const std::vector<std::string>& options, const Tell& tell);
 

@@ -38,8 +38,8 @@ bool is_sane(double value) { return std::isnan(value) || (std::isfinite(value) &
 /// Numbers that a measurement can have.
 bool is_sane(const Curve& curve) {
   const auto point = [](const tradeoff::Point& p) {
-    return is_sane(p.error) && is_sane(p.work) && is_sane(p.bytes) && is_sane(p.time.median) && is_sane(p.time.low) && is_sane(p.time.high) &&
-           !(p.time.median <= 0);
+    return is_sane(p.error) && is_sane(p.work) && is_sane(p.bytes) && is_sane(p.time.median) && is_sane(p.time.low) &&
+           is_sane(p.time.high) && !(p.time.median <= 0);
   };
   return curve.points.size() <= kMostPoints && is_sane(curve.floor) && is_sane(curve.reference_error) &&
          std::all_of(curve.points.begin(), curve.points.end(), point);

@@ -1,8 +1,8 @@
 /// Where measured curves are kept from run to run, so that a plan is made at once the next time: one file a key in
-/// $XDG_CACHE_HOME/catena/plans (else ~/.cache/catena/plans). Each is a report of `catena tradeoff` (tradeoff/report), which makes a page of
-/// it, too. All of it can be deleted at any time. A file that is damaged, is none of ours or belongs to another key is said in one sentence
-/// and never believed: what its points stand for is looked up among the settings that this program offers (eye_plan.h, hand_plan.h).
-/// Files are written whole or not at all; where nothing can be written, nothing is kept. Any thread.
+/// $XDG_CACHE_HOME/catena/plans (else ~/.cache/catena/plans). Each is a report of `catena tradeoff` (tradeoff/report), which makes a page
+/// of it, too. All of it can be deleted at any time. A file that is damaged, is none of ours or belongs to another key is said in one
+/// sentence and never believed: what its points stand for is looked up among the settings that this program offers (eye_plan.h,
+/// hand_plan.h). Files are written whole or not at all; where nothing can be written, nothing is kept. Any thread.
 #pragma once
 #include <functional>
 #include <optional>

@@ -70,6 +70,7 @@ Result<std::vector<int>> parse_steps(const std::string& words);
 struct Quality {
   render::RenderSettings settings;
   std::optional<render::QualityGoal> goal;
+  std::optional<double> moving_ms = {};  ///< of a picture while something moves, in a window
 };
 
 Result<Quality> parse_quality(const std::string& words);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "engine/app/plan/make_plan.h"
 #include "engine/app/viewer/shell/session.h"
 #include "engine/base/tell.h"
 #include "render/extract/extract.h"
@@ -46,6 +47,20 @@ Failure draw_without_window(const ViewOptions& options, SceneHost& host, HandHos
   return {0, why.substr(0, why.find(';')) + "; " + options.screenshot + " was drawn without a window"};
 }
 
+std::optional<Failure> plan_hand(LivePlan& live, SceneHost& scene, const HandHost& hand) {
+  if (!live.wanted.of_hand()) return std::nullopt;
+  const auto say = [](const std::string& line) { tell_from_catena(line); };
+  auto made = plan::make_hand_plan(scene.scene(), scene.document().text(), live.wanted, hand.hand().settings.rate_hz, hand.fields(), say);
+  if (!made) return Failure{2, made.error().message};
+  if (made->is_empty()) return std::nullopt;
+  say(made->sentence());
+  live.hand = std::move(*made);
+  const Outcome taken = scene.plan_hand(live.hand);
+  if (!taken) return Failure{2, taken.error().message};
+  scene.take_changed();
+  return std::nullopt;
+}
+
 /// What is wrong with the scene, the device or the shaders is said before any window opens.
 std::optional<Failure> show(const ViewOptions& options) {
   auto scene = read_scene(options);
@@ -53,6 +68,9 @@ std::optional<Failure> show(const ViewOptions& options) {
   std::optional<Interrupt> interrupt;
   HandHost hand(options.hand);
   if (auto opened = hand.open_device(scene->scene()); !opened) return Failure{2, opened.error().message};
+  // before anything is felt
+  ViewOptions planned = options;
+  if (auto failure = plan_hand(planned.plan, *scene, hand)) return failure;
   std::optional<ShaderReload> reload;
   if (!options.shaders.empty()) {
     auto opened = ShaderReload::open(options.shaders);
@@ -61,7 +79,7 @@ std::optional<Failure> show(const ViewOptions& options) {
   }
   auto window = Window::create(options.width, options.height, "catena");
   if (!window) return draw_without_window(options, *scene, hand, window.error().message);
-  Session session(options, *scene, hand, **window, std::move(reload), interrupt);
+  Session session(planned, *scene, hand, **window, std::move(reload), interrupt);
   if (auto failure = session.open()) return failure;
   return session.run();
 }

@@ -9,6 +9,7 @@
 
 #include "engine/app/render/options.h"
 #include "engine/app/viewer/shell/hand_host.h"
+#include "engine/app/viewer/shell/live_plan.h"
 #include "engine/scene/document.h"
 #include "render/vk/device.h"
 
@@ -22,6 +23,7 @@ struct ViewOptions {
   std::uint32_t width = 1024, height = 768;
   Quality quality;               ///< of a picture at rest (pacing.h)
   bool quality_stated = false;   ///< a scene's own does not count
+  LivePlan plan{};               ///< what is wanted; the hand's is made before the window opens, the eye's with its first picture
   std::uint64_t gpu_memory = 0;  ///< bytes; 0: what the driver offers
   std::string shaders;           ///< folder of shaders to watch; empty: none
   int frames = 0;                ///< quit after so many frames; 0: until the window is closed

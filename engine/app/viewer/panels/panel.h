@@ -13,6 +13,7 @@
 #include "engine/app/viewer/shell/draft.h"
 #include "engine/app/viewer/shell/hand_host.h"
 #include "engine/app/viewer/shell/layout.h"
+#include "engine/app/viewer/shell/live_plan.h"
 #include "engine/app/viewer/shell/pacing.h"
 #include "engine/app/viewer/shell/scene_host.h"
 #include "engine/app/viewer/shell/screen.h"
@@ -108,6 +109,7 @@ struct PanelContext {
   Screen& screen;
   Controls& controls;
   Pacing& pacing;
+  LivePlan& plan;
   FrameTimes& times;
   ViewState& state;
   Commands& commands;

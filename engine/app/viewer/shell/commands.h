@@ -86,6 +86,10 @@ struct ChooseQuality {
 };
 /// The error of the picture at rest is looked at: asked with every frame that shows it.
 struct EstimateError {};
+/// What the plan's settings cost is measured now: the window stands still meanwhile.
+struct MeasurePlan {};
+/// How far the hand's proxies are off their lines: asked with every frame that shows it.
+struct ObserveHand {};
 /// A link of the chain that lies on that item, "isosurfaces[0]" (edit/feel.h).
 struct Feel {
   std::string item;
@@ -106,8 +110,9 @@ struct Record {
   std::string path;  ///< .catlog of every tick from now on; empty: no more
 };
 
-using Command = std::variant<Action, Edit, OpenFile, DropFile, AnswerToDropped, SaveAs, GiveUpSaving, AnswerToUnsaved, AnswerToLeft,
-                             ChooseStereo, ChooseQuality, EstimateError, Feel, RemoveItem, ChooseDevice, ShowStep, Record>;
+using Command =
+    std::variant<Action, Edit, OpenFile, DropFile, AnswerToDropped, SaveAs, GiveUpSaving, AnswerToUnsaved, AnswerToLeft, ChooseStereo,
+                 ChooseQuality, EstimateError, MeasurePlan, ObserveHand, Feel, RemoveItem, ChooseDevice, ShowStep, Record>;
 using Commands = std::vector<Command>;
 
 /// What a stroke asks of the program when it is no text for the interface. `fly`: letters and arrows fly, and ask for nothing.

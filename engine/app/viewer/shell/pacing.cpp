@@ -10,6 +10,7 @@ constexpr double kFinerBelow = 0.7;  // of the budget: more pixels again only wi
 bool is_goal(const Quality& quality) { return quality.goal.has_value(); }
 
 double budget_of(const Quality& quality) {
+  if (quality.moving_ms) return *quality.moving_ms;
   return is_goal(quality) && quality.goal->kind == render::QualityGoal::Kind::time ? quality.goal->value : kBudgetMs;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/app/plan/make_plan.h"
 #include "engine/app/viewer/shell/file_list.h"
 #include "engine/base/clock.h"
 #include "engine/base/tell.h"
@@ -100,13 +101,19 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
     start = now_ns();
   }
   const int recoveries = screen_->recoveries();
+  const render::DrawingClock clock(screen_->renderer());
   auto drawn = screen_->draw(*packet, next.settings);
   // with the embedded shaders if those of --shaders cannot be drawn with
   if (!drawn && reload_ && reload_->give_up(screen_->renderer(), drawn.error().message)) drawn = screen_->draw(*packet, next.settings);
   if (!drawn) return Failure{1, drawn.error().message};
   if (screen_->recoveries() != recoveries) shared_.state.say("the graphics device was lost and has been started again", true);
-  const double ms = ms_since(start);
+  const double ms = ms_since(start), drawing_ms = clock.ms();
   pacing.drawn(ms);
+  LivePlan& live = shared_.plan;
+  const bool as_planned = live.eye && next.scale == 1 && !next.settings.keep && !for_file && shared_.times.count() > 0 &&
+                          render::describe(next.settings) == render::describe(live.eye->settings());
+  if (as_planned && live.drawn(drawing_ms))
+    if (const auto quality = live.quality()) pacing = Pacing(*quality);
   kind_ = {!packet->volumes.empty() || !packet->isosurfaces.empty(), screen_->renderer().draws_fast(*packet),
            std::ranges::any_of(packet->volumes, &render::VolumeItem::shade)};
   if (shared_.times.count() == 0) tell_notes();
@@ -143,6 +150,28 @@ std::optional<Failure> PictureView::estimate() {
   // the estimate drew with the renderer's own images
   if (auto drawn = screen_->draw(*packet, pacing.again().settings); !drawn) return Failure{1, drawn.error().message};
   damaged_ = true;
+  return std::nullopt;
+}
+
+std::optional<Failure> PictureView::plan() {
+  if (is_minimised()) return std::nullopt;
+  lay_out();
+  auto packet = this->packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
+  if (!packet) return Failure{2, packet.error().message};
+  LivePlan& live = shared_.plan;
+  const SceneHost& scene = shared_.scene;
+  if (!render::draws_rays(*packet)) {
+    shared_.state.say("plan: the picture has no settings: nothing in it is drawn by rays");
+    return std::nullopt;
+  }
+  auto made =
+      plan::make_eye_plan(screen_->renderer(), *packet, live.wanted, {scene.scene(), scene.document().text(), shared_.hand.fields()},
+                          [this](const std::string& line) { shared_.state.say(line); });
+  if (!made) return Failure{1, made.error().message};
+  live.eye = std::move(*made);
+  shared_.state.say(live.eye->sentence());
+  if (const auto quality = live.quality()) shared_.pacing = Pacing(*quality);
+  picked_stale_ = damaged_ = true;
   return std::nullopt;
 }
 

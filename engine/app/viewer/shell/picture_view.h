@@ -41,6 +41,8 @@ class PictureView {
   std::optional<NextPicture> still() { return shared_.pacing.still(kind_); }
   /// The error of the picture that is at rest, once.
   std::optional<Failure> estimate();
+  /// The plan of the picture as it is now: measured, or out of the store. From then on it is drawn by it.
+  std::optional<Failure> plan();
   /// The interface over the last picture.
   std::optional<Failure> show(const std::function<void()>& make_panels);
 

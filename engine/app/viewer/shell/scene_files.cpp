@@ -25,7 +25,7 @@ RecordedScene recorded(const SceneHost& scene, const HandHost& hand) {
   RunFiles files(scene.scene());
   files.reads_device(hand.device_name());
   files.reads(hand.firmware());
-  return {scene.document().path(), scene.document().text(), hand.fields(), files.inputs()};
+  return {scene.document().path(), scene.felt_text(), hand.fields(), files.inputs()};
 }
 
 Result<LoadedScene> load_first(SceneHost& scene, HandHost& hand, std::uint32_t width, std::uint32_t height) {

@@ -74,7 +74,20 @@ Result<scene::Scene> SceneHost::read() const {
   CATENA_TRY(scene::Scene scene, document_.read());
   make_cursor(scene);
   if (adjust_) CATENA_CHECK(adjust_(scene));
+  if (plan_) plan_->apply(scene);
   return scene;
+}
+
+Outcome SceneHost::plan_hand(std::optional<plan::HandPlan> plan) {
+  std::swap(plan_, plan);
+  const Outcome done = change([](scene::Document&) -> Outcome { return Done{}; });
+  if (!done) std::swap(plan_, plan);
+  return done;
+}
+
+std::string SceneHost::felt_text() const {
+  auto text = plan_ ? plan_->apply(document_.text(), document_.path()) : Result<std::string>(document_.text());
+  return text ? std::move(*text) : document_.text();
 }
 
 void SceneHost::keep_what_is_lived(scene::Scene& fresh) const {

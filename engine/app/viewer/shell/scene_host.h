@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "engine/app/plan/hand_plan.h"
 #include "engine/base/result.h"
 #include "engine/scene/document.h"
 #include "render/frame/camera.h"
@@ -39,6 +40,11 @@ class SceneHost {
   Outcome redo();
   Outcome save(const std::string& path);
 
+  /// The links are followed as this plan says, from now on and whenever the scene is read; read again at once.
+  Outcome plan_hand(std::optional<plan::HandPlan> plan);
+  /// The text of what is felt: with the plan's settings, for a recording.
+  std::string felt_text() const;
+
   /// The scene differs from what it was at the last call: picture and program have to be made again.
   bool take_changed() { return std::exchange(changed_, false); }
   void touch() { changed_ = true; }
@@ -58,6 +64,7 @@ class SceneHost {
   scene::Document document_;
   std::function<Outcome(scene::Scene&)> adjust_;
   Check check_;
+  std::optional<plan::HandPlan> plan_;
   scene::Scene scene_;
   bool changed_ = false;
 };

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/app/plan/make_plan.h"
 #include "engine/base/clock.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -40,7 +41,8 @@ Session::Session(const ViewOptions& options, SceneHost& scene, HandHost& hand, W
 Session::~Session() { shared_.hand.stop(); }
 
 PanelContext Session::context() {
-  return {shared_.scene, shared_.hand, picture_.screen(), shared_.controls, shared_.pacing, shared_.times, shared_.state, shared_.commands};
+  return {shared_.scene, shared_.hand,  picture_.screen(), shared_.controls, shared_.pacing,
+          shared_.plan,  shared_.times, shared_.state,     shared_.commands};
 }
 
 std::optional<Failure> Session::open() {
@@ -60,6 +62,9 @@ std::optional<Failure> Session::open() {
   files_.show(*loaded);
   look_for_pulses();
   if (auto failure = picture_.open()) return failure;
+  if (shared_.plan.wanted.of_eye())
+    if (auto failure = picture_.plan()) return failure;
+  observe_hand_anew();
   files_.begin();
   // a device that pushes is let go by its own way out, Ctrl-C or not
   if (!hand.is_mouse()) interrupt_.emplace();
@@ -72,9 +77,54 @@ std::optional<Failure> Session::open() {
 bool Session::take_edits() {
   SceneHost& scene = shared_.scene;
   if (!scene.take_changed()) return false;
-  shared_.state.say_if_wrong(shared_.hand.publish(scene.scene(), scene.document().text()));
+  LivePlan& live = shared_.plan;
+  if (live.follow(scene.scene().plan)) {
+    if (live.hand && live.wanted.of_hand()) shared_.state.say_if_wrong(scene.plan_hand(live.hand));
+    if (const auto quality = live.quality(); quality && live.wanted.of_eye()) shared_.pacing = Pacing(*quality);
+    scene.take_changed();
+  }
+  shared_.state.say_if_wrong(shared_.hand.publish(scene.scene(), scene.felt_text()));
+  observe_hand_anew();
   look_for_pulses();
   return true;
+}
+
+/// Another scene has curves of its own.
+void Session::forget_plan() {
+  LivePlan& live = shared_.plan;
+  live = {};
+  const scene::Scene& scene = std::as_const(shared_.scene).scene();
+  live.wanted = live.stated = scene.plan;
+  live.quality_stated = shared_.options.quality_stated || !scene.quality.empty();
+}
+
+/// The curves of this scene, whatever is wanted of it: the slider goes by them.
+std::optional<Failure> Session::measure_plan() {
+  LivePlan& live = shared_.plan;
+  SceneHost& scene = shared_.scene;
+  const auto tell = [&](const std::string& line) { shared_.state.say(line); };
+  scene::Plan wanted = live.wanted;
+  if (!wanted.of_eye()) wanted.error = 2;
+  // as good as what a scene without a plan has
+  if (!wanted.of_hand()) wanted.hand_error = 1e-9;
+  auto hand = plan::make_hand_plan(scene.scene(), scene.document().text(), wanted, shared_.hand.hand().settings.rate_hz,
+                                   shared_.hand.fields(), tell);
+  if (!hand) tell(hand.error().message);
+  live.wanted = wanted;
+  if (hand && !hand->is_empty()) {
+    live.hand = std::move(*hand);
+    shared_.state.say_if_wrong(scene.plan_hand(live.hand));
+  }
+  if (live.quality_stated) return std::nullopt;
+  return picture_.plan();
+}
+
+/// What was felt with other settings is no observation of these.
+void Session::observe_hand_anew() {
+  LivePlan& live = shared_.plan;
+  live.hand_error.reset();
+  live.observer.reset();
+  if (live.hand && !live.hand->is_empty()) live.observer.emplace(&*live.hand, *shared_.hand.program());
 }
 
 void Session::look_for_pulses() {
@@ -190,9 +240,16 @@ std::optional<Failure> Session::run() {
   const Gui::Frame frame = interface_frame();
   while (goes_on()) {
     const Changed by_input = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS);
+    if (std::exchange(measure_, false)) {
+      if (auto failure = measure_plan()) return failure;
+      changed_ = true;
+    }
     // what has changed since the last picture
     run_steps();
-    const bool opened = files_.take_loaded(), edited = take_edits(), news = shared_.hand.take(scene.scene());
+    const bool opened = files_.take_loaded();
+    if (opened) forget_plan();
+    const bool edited = take_edits(), news = shared_.hand.take(scene.scene());
+    if (news && shared_.plan.observer) shared_.plan.observer->add(shared_.hand.felt());
     live = live || news || files_.is_loading() || shared_.hand.recording().running();
     if (news) keep_widgets();
     minimised = picture_.is_minimised();

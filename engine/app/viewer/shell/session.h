@@ -33,6 +33,10 @@ class Session {
   bool take_edits();
   void keep_widgets();
   void look_for_pulses();
+  void observe_hand_anew();
+  void observe_hand();
+  void forget_plan();
+  std::optional<Failure> measure_plan();
   bool run_pulses();
   void show_step(int step);
   void run_steps();
@@ -71,6 +75,8 @@ class Session {
   std::int64_t start_ns_ = 0, last_change_ns_ = 0;  ///< of the loop; of what the picture shows
   bool changed_ = false;                            ///< a command has changed what the picture shows
   bool wants_error_ = false;                        ///< of the picture at rest
+  bool measure_ = false;                            ///< what a plan goes by
+  std::int64_t last_observed_ns_ = 0;               ///< the hand
   bool interface_holds_pointer_ = false;            ///< the buttons that are down went down on it
   int unsettled_ = 0;                               ///< interfaces to come though nothing happens: they settle their sizes
   std::int64_t last_title_ns_ = 0;

@@ -4,6 +4,7 @@
 #include "engine/app/viewer/edit/feel.h"
 #include "engine/app/viewer/edit/removal.h"
 #include "engine/app/viewer/shell/session.h"
+#include "engine/base/clock.h"
 
 namespace catena::app {
 
@@ -40,17 +41,27 @@ void Session::carry_out(const Command& command) {
     scene.scene().stereo.mode = asked.mode;
     changed_ = true;
   };
-  std::visit(
-      Overloaded{
-          [&](Action action) { act(action); }, [&](const Edit& edit) { state.say_if_wrong(scene.apply(edit.edits, edit.what, edit.drag)); },
-          [&](const OpenFile& file) { files_.open(file.path); }, [&](const DropFile& file) { files_.drop(file.path); },
-          [&](const SaveAs& file) { files_.save_as(file.path); }, [&](GiveUpSaving) { files_.give_up_saving(); },
-          [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
-          [&](AnswerToLeft answer) { files_.answer(answer); }, [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); },
-          [&](EstimateError) { wants_error_ = true; }, [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); },
-          [&](const RemoveItem& asked) { remove(asked.item, asked.what); }, choose_stereo, choose_device,
-          [&](ShowStep asked) { show_step(asked.step); }, record},
-      command);
+  std::visit(Overloaded{[&](Action action) { act(action); },
+                        [&](const Edit& edit) { state.say_if_wrong(scene.apply(edit.edits, edit.what, edit.drag)); },
+                        [&](const OpenFile& file) { files_.open(file.path); }, [&](const DropFile& file) { files_.drop(file.path); },
+                        [&](const SaveAs& file) { files_.save_as(file.path); }, [&](GiveUpSaving) { files_.give_up_saving(); },
+                        [&](AnswerToUnsaved answer) { files_.answer(answer); }, [&](AnswerToDropped answer) { files_.answer(answer); },
+                        [&](AnswerToLeft answer) { files_.answer(answer); },
+                        [&](const ChooseQuality& asked) { shared_.pacing = Pacing(asked.quality); },
+                        [&](EstimateError) { wants_error_ = true; }, [&](MeasurePlan) { measure_ = true; },
+                        [&](ObserveHand) { observe_hand(); }, [&](const Feel& asked) { feel(asked.item, picture_.seen_place(asked.item)); },
+                        [&](const RemoveItem& asked) { remove(asked.item, asked.what); }, choose_stereo, choose_device,
+                        [&](ShowStep asked) { show_step(asked.step); }, record},
+             command);
+}
+
+/// Now and then: its lines are traced as far as the hand has gone.
+void Session::observe_hand() {
+  constexpr double kEveryMs = 2000;
+  LivePlan& live = shared_.plan;
+  if (!live.observer || ms_since(last_observed_ns_) < kEveryMs) return;
+  live.hand_error = live.observer->error(shared_.scene.scene());
+  last_observed_ns_ = now_ns();
 }
 
 void Session::act(Action action) {

@@ -22,6 +22,7 @@ struct Shared {
   Window& window;
   Gui& gui;
   Pacing pacing{options.quality};
+  LivePlan plan = options.plan;
   Controls controls{};
   FrameTimes times{};
   ViewState state{};

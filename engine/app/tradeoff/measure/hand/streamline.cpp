@@ -114,15 +114,15 @@ std::vector<StreamlineSetting> streamline_settings(const json::Node& link) {
   std::vector<std::pair<double, std::string>> tolerances;
   for (int digits = 3; digits <= 13; digits += 2) tolerances.emplace_back(std::pow(10.0, -digits), fmt::format("1e-{}", digits));
   // what the link itself says, if it is another one
-  if (const json::Node* own = link.find("tolerance"); own != nullptr && own->kind == json::Kind::number && own->number > 0 && own->number < 1) {
+  if (const json::Node* own = link.find("tolerance");
+      own != nullptr && own->kind == json::Kind::number && own->number > 0 && own->number < 1) {
     const auto near = [&](const auto& t) { return std::fabs(t.first - own->number) <= 1e-9 * own->number; };
     if (std::none_of(tolerances.begin(), tolerances.end(), near)) tolerances.emplace_back(own->number, to_text(own->number));
   }
   for (const Method method : {Method::rkf34, Method::dp54})
     for (const auto& [tolerance, text] : tolerances) {
       const std::string word = word_of(method);
-      all.push_back(
-          {word + ", tolerance " + text, word, {{"method", "\"" + word + "\""}, {"tolerance", text}}, false, method, tolerance});
+      all.push_back({word + ", tolerance " + text, word, {{"method", "\"" + word + "\""}, {"tolerance", text}}, false, method, tolerance});
     }
   return all;
 }

@@ -11,12 +11,12 @@
 namespace catena::app::tradeoff {
 
 struct StreamlineSetting {
-  std::string words, series;                               ///< of its point
-  std::vector<std::pair<std::string, std::string>> keys;   ///< of the link, as JSON text
-  bool selected = false;                                   ///< traced once
-  std::optional<flow::Method> method{};                    ///< of online following
-  std::optional<double> tolerance{};                       ///< of an embedded one, L
-  std::string write() const;                               ///< the keys as a scene has them
+  std::string words, series;                              ///< of its point
+  std::vector<std::pair<std::string, std::string>> keys;  ///< of the link, as JSON text
+  bool selected = false;                                  ///< traced once
+  std::optional<flow::Method> method{};                   ///< of online following
+  std::optional<double> tolerance{};                      ///< of an embedded one, L
+  std::string write() const;                              ///< the keys as a scene has them
 };
 
 /// All of them, the traced line first; embedded methods with tolerances 1e-3 .. 1e-13 and the link's own.

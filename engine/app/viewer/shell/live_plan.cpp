@@ -1,0 +1,84 @@
+#include "engine/app/viewer/shell/live_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/json_edit.h"
+#include "render/quality/quality.h"
+
+namespace catena::app {
+namespace {
+
+/// Up to three digits, so that what is wanted is not missed by a hair.
+double rounded_up(double value) {
+  if (!(value > 0)) return 1e-30;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+  return std::ceil(value / unit * (1 - 1e-12)) * unit;
+}
+
+/// The item at a place of the slider, and the place of the first item that is at most `error`.
+std::size_t index_at(double place, std::size_t count) {
+  return std::min(count - 1, static_cast<std::size_t>(std::lround(place * static_cast<double>(count - 1))));
+}
+double place_of(const std::vector<double>& errors, double error) {
+  const auto found = std::find_if(errors.begin(), errors.end(), [&](double e) { return e <= error * (1 + 1e-9); });
+  const auto index = std::min(static_cast<std::size_t>(found - errors.begin()), errors.size() - 1);
+  return errors.size() < 2 ? 1 : static_cast<double>(index) / static_cast<double>(errors.size() - 1);
+}
+
+}  // namespace
+
+bool LivePlan::follow(const scene::Plan& text) {
+  if (text == stated) return false;
+  wanted = stated = text;
+  if (eye && wanted.of_eye()) eye->want(wanted);
+  if (hand && wanted.of_hand()) hand->want(wanted);
+  return true;
+}
+
+bool LivePlan::drawn(double ms) {
+  const int before = eye->now();
+  eye_ms = ms;
+  eye->drawn(ms);
+  return eye->now() != before;
+}
+
+std::optional<Quality> LivePlan::quality() const {
+  if (!eye || quality_stated) return std::nullopt;
+  Quality quality{eye->settings(), {}};
+  quality.moving_ms = wanted.time.value_or(std::clamp(eye->expected_ms(), 5.0, 50.0));
+  return quality;
+}
+
+scene::Plan LivePlan::at(double place) const {
+  scene::Plan plan;
+  if (eye && !quality_stated) {
+    const std::vector<double> errors = eye->stops();
+    plan.error = rounded_up(errors[index_at(place, errors.size())]);
+  }
+  if (hand && !hand->is_empty()) {
+    const std::vector<double> errors = hand->stops();
+    plan.hand_error = rounded_up(errors[index_at(place, errors.size())]);
+  }
+  return plan;
+}
+
+double LivePlan::place() const {
+  if (eye && !quality_stated) return place_of(eye->stops(), eye->expected_error());
+  if (hand && !hand->is_empty()) return place_of(hand->stops(), hand->expected_error());
+  return 1;
+}
+
+std::string LivePlan::text_of(const scene::Plan& plan) {
+  std::string text;
+  const auto add = [&](const char* key, const std::optional<double>& value) {
+    if (value) text += (text.empty() ? "\"" : ", \"") + std::string(key) + "\": " + json::number_text(*value);
+  };
+  add("error", plan.error);
+  add("time", plan.time);
+  add("hand_error", plan.hand_error);
+  add("hand_time", plan.hand_time);
+  return "{" + text + "}";
+}
+
+}  // namespace catena::app

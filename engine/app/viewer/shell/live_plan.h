@@ -1,0 +1,38 @@
+/// The plan in an open window (engine/app/plan): what is wanted, the curves of eye and hand once they are measured, what was observed, and
+/// the slider between fast and exact. The scene's text has the last word on what is wanted: the slider edits its "plan". Frame thread.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "engine/app/plan/eye_plan.h"
+#include "engine/app/plan/observe.h"
+#include "engine/app/render/options.h"
+
+namespace catena::app {
+
+struct LivePlan {
+  scene::Plan wanted;           ///< of the command line, until the scene's text says otherwise
+  scene::Plan stated;           ///< what the text said when it was looked at last
+  bool quality_stated = false;  ///< of the picture: the plan leaves it alone
+  std::optional<plan::EyePlan> eye;
+  std::optional<plan::HandPlan> hand;
+  std::optional<plan::HandObserver> observer;
+  double eye_ms = 0;                 ///< of the last picture with the plan's settings; 0: none yet
+  std::optional<double> hand_error;  ///< observed, world units
+
+  /// The text has come to say something else: true, and it is wanted.
+  bool follow(const scene::Plan& text);
+  /// A picture at rest with the plan's settings took so long: true where another setting follows.
+  bool drawn(double ms);
+
+  /// What the picture is to be drawn with; nothing without a plan of the eye.
+  std::optional<Quality> quality() const;
+
+  /// What a place of the slider wants, 0 fast to 1 exact; and the place of what is wanted now.
+  scene::Plan at(double place) const;
+  double place() const;
+  /// The same as the text of "plan" has it.
+  static std::string text_of(const scene::Plan& plan);
+};
+
+}  // namespace catena::app
