@@ -30,8 +30,7 @@ constexpr std::uint32_t kSpacings[] = {13, 11, 9, 7, 5, 3, 1};  // pixels; odd, 
 constexpr double kRoughGoal = 1.5;                              // 1/255: from it on the error of step 0.25 does not count
 // steps, voxels: of what is seen, the shortest that is chosen, and those of the converged picture, which is halved until the picture
 // changes by less than a share of the goal, or by what rounding to 8 bits makes of nothing
-constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3, kRounding = 0.4,
-                 kFinestStep = 0.05;
+constexpr double kSeenStep = 1, kRoughTruthStep = 0.5, kTruthStep = 0.25, kLeastTruthStep = 0.03, kTruthShare = 0.3, kFinestStep = 0.05;
 constexpr int kMaxPictures = 16;
 
 /// How rays become a picture. Refinement thresholds in shares of the error; costs by those of marching every pixel at step 1, as a
@@ -204,7 +203,7 @@ class Search {
       CATENA_TRY(Picture finer, renderer_.probe(packet_, converged, spacing_));
       truth_error_ = compare(truth_, finer).rmse;
       truth_ = std::move(finer);
-    } while (truth_error_ > std::max(kRounding, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
+    } while (truth_error_ > std::max(kLeastTold, kTruthShare * goal) && converged.step_voxels > kLeastTruthStep);
     truth_step_ = converged.step_voxels;
     return Done{};
   }
@@ -332,11 +331,11 @@ Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, cons
 }
 
 Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
-                                      double least, const std::function<bool(double last)>& go_on) {
-  if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, least, go_on);
+                                      const std::function<bool(double last)>& go_on) {
+  if (!packet.eyes.empty()) return measure_rmse(renderer, first_eye(packet), settings, go_on);
   MeasuredSettings all;
   Search search(renderer, packet);
-  CATENA_CHECK(search.begin(least));
+  CATENA_CHECK(search.begin(kLeastTold));
   all.reference_rmse = search.truth_error();
   for (const RenderSettings& next : settings) {
     if (!go_on(all.rmse.empty() ? 0 : all.rmse.back())) break;
@@ -345,6 +344,12 @@ Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& pac
     all.rmse.push_back(error.rmse);
   }
   return all;
+}
+
+Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings) {
+  if (!draws_rays(packet)) return 0.0;
+  CATENA_TRY(const MeasuredSettings one, measure_rmse(renderer, packet, {settings}, [](double) { return true; }));
+  return one.rmse.front();
 }
 
 DrawingClock::DrawingClock(Renderer& renderer)

@@ -35,7 +35,8 @@ using DrawTimer = std::function<Result<double>(const RenderSettings&)>;
 
 /// Stereo: the first eye's picture is measured; the eyes share a time.
 /// Draws several pictures; the caller draws the chosen one.
-Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal, const DrawTimer& timer = nullptr);
+Result<QualityChoice> choose_quality(Renderer& renderer, const FramePacket& packet, const QualityGoal& goal,
+                                     const DrawTimer& timer = nullptr);
 
 /// One setting that was tried.
 struct TimedPicture {
@@ -47,15 +48,21 @@ std::size_t best_within(const std::vector<TimedPicture>& tried, double ms);
 /// The error of the picture that `settings` draw, measured the same way.
 Result<double> estimate_rmse(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
+/// Errors below it are what rounding to 8 bits makes of nothing, 1/255.
+inline constexpr double kLeastTold = 0.4;
+
 /// Several settings of one picture, measured the same way against one converged picture.
 struct MeasuredSettings {
   std::vector<double> rmse;   ///< one a setting, as it was found: not the estimate above it
   double reference_rmse = 0;  ///< what halving the converged picture's step still changed
 };
-/// `least`: errors below it need not be told apart, 1/255. `go_on` is asked before each setting with
+/// `go_on` is asked before each setting with
 /// the error of the one before (of the first with 0); false: the rest is left out.
-Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings, double least,
+Result<MeasuredSettings> measure_rmse(Renderer& renderer, const FramePacket& packet, const std::vector<RenderSettings>& settings,
                                       const std::function<bool(double last)>& go_on);
+
+/// The same of one.
+Result<double> rmse_of(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings);
 
 /// Milliseconds of drawing it: of wall time; on a driver that draws with the processor what its cores had to do, so that other programs on
 /// the machine do not count.

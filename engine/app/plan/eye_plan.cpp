@@ -14,7 +14,6 @@
 namespace catena::app::plan {
 namespace {
 
-constexpr double kTold = 0.4;                 // 1/255: errors below it are rounding to 8 bits
 constexpr double kErrorsS = 60, kTimesS = 6;  // at most for errors, and about for times
 constexpr std::uint32_t kFloorWidth = 256;    // of the picture that the data's own error is looked up in
 constexpr int kRounds = 5;                    // of times
@@ -40,7 +39,12 @@ render::LadderKind kind_of(render::Renderer& renderer, const render::FramePacket
 }  // namespace
 
 std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind) {
-  std::vector<render::RenderSettings> all = render::quality_ladder(kind);
+  std::vector<render::RenderSettings> all;
+  // coarse pictures may do with the light of the cell's gradient, which the ladder leaves out
+  if (kind.fast && kind.shaded)
+    for (const double step : {8.0, 6.0, 4.0, 3.0, 2.0, 1.5, 1.0}) all.push_back(render::fast_rung(step, 4, -1, -1));
+  const std::vector<render::RenderSettings> ladder = render::quality_ladder(kind);
+  all.insert(all.end(), ladder.begin(), ladder.end());
   all.push_back(render::reference_settings());
   return all;
 }
@@ -62,7 +66,7 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
   // the first picture says what can draw it
   CATENA_CHECK(renderer.draw(packet, render::balanced_settings()));
   const std::vector<render::RenderSettings> all = eye_settings(kind_of(renderer, packet));
-  const double enough = std::max(kTold, std::isfinite(curve.floor) ? 0.5 * curve.floor : 0);
+  const double enough = std::max(render::kLeastTold, std::isfinite(curve.floor) ? 0.5 * curve.floor : 0);
   const std::int64_t start = now_ns();
   const auto share = [&](std::size_t done) { return double(done) / double(all.size()); };
   std::size_t count = 0;
@@ -73,7 +77,7 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
     count += more;
     return more;
   };
-  CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, kTold, go_on));
+  CATENA_TRY(const render::MeasuredSettings errors, render::measure_rmse(renderer, packet, all, go_on));
   curve.reference = "converged rays through a lattice of pixels";
   curve.reference_error = errors.reference_rmse;
   std::vector<tradeoff::Repeat> repeats;

@@ -157,10 +157,8 @@ Outcome plan_pictures(Frames& frames, const render::FramePacket& packet, const s
 
 /// "observed: error 1.7/255 in 95 ms": the error of the last picture, the median of the times.
 std::string observed(Frames& frames, const render::FramePacket& packet, const render::RenderSettings& settings, std::vector<double> times) {
-  const auto error =
-      render::measure_rmse(*frames.renderer, sample_of(packet, frames.plan).packet, {settings}, 0.4, [](double) { return true; });
-  return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", error->rmse.front()) : "not known",
-                     quantile(times, 0.5));
+  const auto error = render::rmse_of(*frames.renderer, sample_of(packet, frames.plan).packet, settings);
+  return fmt::format("observed: error {} in {:.3g} ms", error ? fmt::format("{:.2g}/255", *error) : "not known", quantile(times, 0.5));
 }
 
 /// Of the finished picture. Several eyes in one are drawn in one piece.

@@ -144,7 +144,12 @@ std::optional<Failure> PictureView::estimate() {
   if (!pacing.may_estimate() || is_minimised()) return std::nullopt;
   auto packet = this->packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
   if (!packet) return std::nullopt;  // said where it was drawn
-  const auto error = render::estimate_rmse(screen_->renderer(), *packet, pacing.again().settings);
+  const auto estimate = [&]() -> Result<double> {
+    if (!shared_.plan.eye) return render::estimate_rmse(screen_->renderer(), *packet, pacing.again().settings);
+    // beside what a plan expects: the error itself, not the estimate above it
+    return render::rmse_of(screen_->renderer(), *packet, pacing.again().settings);
+  };
+  const auto error = estimate();
   if (!error) return Failure{1, error.error().message};
   pacing.estimated(*error);
   // the estimate drew with the renderer's own images
