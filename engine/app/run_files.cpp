@@ -1,10 +1,18 @@
 #include "engine/app/run_files.h"
 
+#include <cstdlib>
 #include <filesystem>
 
 namespace catena::app {
 
 namespace fs = std::filesystem;
+
+std::string user_folder(const char* variable, const char* under_home) {
+  const char *stated = std::getenv(variable), *home = std::getenv("HOME");
+  if (stated != nullptr && fs::path(stated).is_absolute()) return (fs::path(stated) / "catena").string();
+  if (home != nullptr && fs::path(home).is_absolute()) return (fs::path(home) / under_home / "catena").string();
+  return {};
+}
 
 std::vector<std::string> inputs_of(const scene::Scene& scene) {
   std::vector<std::string> inputs{scene.path};

@@ -11,6 +11,10 @@ namespace catena::app {
 /// The scene file itself and every file that it names: what no output may overwrite.
 std::vector<std::string> inputs_of(const scene::Scene& scene);
 
+/// Where this user's programs keep things of a kind, by the XDG base directories: "$XDG_CACHE_HOME/catena", else "~/.cache/catena"; a
+/// relative one counts as not given. Empty where there is no home.
+std::string user_folder(const char* variable, const char* under_home);
+
 class RunFiles {
  public:
   RunFiles() = default;

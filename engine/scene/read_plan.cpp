@@ -3,6 +3,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/scene/read_parts.h"
+#include "engine/scene/write_values.h"
 
 namespace catena::scene {
 namespace {
@@ -10,8 +11,9 @@ namespace {
 const Table<Plan>& plan_table() {
   static const auto table = [] {
     Table<Plan> t;
-    t.bind(schema::number("error", "1/255", "Of the picture: root mean square over the covered pixels, against the converged one.").positive(),
-           &Plan::error);
+    t.bind(
+        schema::number("error", "1/255", "Of the picture: root mean square over the covered pixels, against the converged one.").positive(),
+        &Plan::error);
     t.bind(schema::number("time", "ms", "Of a picture; without `error`.").positive(), &Plan::time);
     t.bind(schema::number("hand_error", "world", "The farthest that a link's proxy may be off its line.").positive(), &Plan::hand_error);
     t.bind(schema::number("hand_time", "us", "Of a tick; without `hand_error`.").positive(), &Plan::hand_time);
@@ -52,12 +54,15 @@ Result<Plan> parse_plan(std::string_view words) {
     const auto value = key.size() < part.size() ? parse_double(part.substr(key.size() + 1)) : std::nullopt;
     if (at == nullptr) return Error{begin + in_quotes(key) + " is not known; error, time, hand_error or hand_time was expected"};
     if (*at) return Error{begin + in_quotes(key) + " is there twice; once was expected"};
-    if (!value || !std::isfinite(*value) || !(*value > 0)) return Error{begin + in_quotes(key) + ": expected " + std::string(key) + "=NUMBER, above 0"};
+    if (!value || !std::isfinite(*value) || !(*value > 0))
+      return Error{begin + in_quotes(key) + ": expected " + std::string(key) + "=NUMBER, above 0"};
     *at = *value;
   }
   if (const std::string fault = fault_of(plan); !fault.empty()) return Error{begin + fault};
   return plan;
 }
+
+std::string text_of(const Plan& plan) { return plan_table().write({}, plan); }
 
 Part plan_part() {
   return {{"plan", "What error or what time is wanted; the settings follow from curves that are measured on this machine.",

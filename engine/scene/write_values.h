@@ -29,6 +29,7 @@ std::string text_of(const std::vector<TransferFunction::OpacityPoint>& table);  
 std::string text_of(const std::vector<TransferFunction::ExtinctionPoint>& table);  ///< "extinction": [[value, sigma], ...]
 std::string text_of(const std::vector<TransferFunction::GradientPoint>& table);    ///< "gradient_opacity": [[gradient, factor], ...]
 std::string text_of(const Camera& camera);
+std::string text_of(const Plan& plan);
 std::string text_of(const ClipPlane& plane);  ///< an item of "clip": {"plane": {"point", "normal"}}
 std::string text_of(const Background& background);
 std::string text_of(const Light& light);

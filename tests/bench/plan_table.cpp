@@ -176,7 +176,7 @@ void hand_rows(const Case& c, scene::Scene scene) {
   const field::VectorFieldPtr field = tradeoff::field_of(subject.scene, own.node).vector;
   const Vec3 seed = *get(json::get_optional_vec3(own.node, "seed"));
   const auto line =
-      get(flow::trace({field.get(), false, 0}, seed, {.length = 2 * link.length, .tolerance = 1e-13, .hermite_tolerance = 1e-13}));
+      get(flow::trace({field.get(), false, 0}, seed, {.length = 10.2 * link.length, .tolerance = 1e-13, .hermite_tolerance = 1e-13}));
   const flow::NearestOnCurve nearest(line);
   std::vector<haptics::Program> programs;
   tradeoff::Curve times;

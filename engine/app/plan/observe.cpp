@@ -10,7 +10,7 @@
 namespace catena::app::plan {
 namespace {
 
-constexpr double kTolerance = 1e-13, kLongest = 100;  // L
+constexpr double kTolerance = 1e-13, kTraced = 10.2, kLongest = 100;  // L
 
 }  // namespace
 
@@ -53,7 +53,8 @@ std::optional<double> HandObserver::error(scene::Scene& scene) const {
       if (!field || !seed || !*seed || !min_speed) continue;
       const json::Node* kind = link.node.find("kind");
       flow::TraceOptions options;
-      options.length = std::min(1.1 * track.way + 0.02 * field->length(), kLongest * field->length());
+      // what is traced once may be held anywhere along it
+      options.length = std::clamp(1.1 * track.way, kTraced * field->length(), kLongest * field->length());
       options.tolerance = options.hermite_tolerance = kTolerance;
       const auto line = flow::trace({field.get(), kind != nullptr && kind->string == "line", *min_speed}, **seed, options);
       if (!line) continue;

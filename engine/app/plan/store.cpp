@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/app/run_files.h"
 #include "engine/app/tradeoff/report/report.h"
 #include "engine/base/hash.h"
 #include "engine/base/json_edit.h"
@@ -24,14 +25,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostPoints = 1000, kMostCurves = 100, kEnd = 65536;
 constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 20;
 constexpr const char* kKey = "key";
-
-/// XDG base directories: a relative one counts as not given.
-std::string cache_folder() {
-  const char *cache = std::getenv("XDG_CACHE_HOME"), *home = std::getenv("HOME");
-  if (cache != nullptr && fs::path(cache).is_absolute()) return (fs::path(cache) / "catena/plans").string();
-  if (home != nullptr && fs::path(home).is_absolute()) return (fs::path(home) / ".cache/catena/plans").string();
-  return {};
-}
 
 bool is_sane(double value) { return std::isnan(value) || (std::isfinite(value) && value >= 0); }
 
@@ -104,7 +97,9 @@ CurveKey& CurveKey::add(const scene::Scene& scene, std::string_view text) {
 
 std::string CurveKey::text() const { return fmt::format("{:016x}", hash_); }
 
-CurveStore::CurveStore() : CurveStore(cache_folder()) {}
+CurveStore::CurveStore() : CurveStore(user_folder("XDG_CACHE_HOME", ".cache")) {
+  if (!folder_.empty()) folder_ += "/plans";
+}
 
 std::optional<std::vector<Curve>> CurveStore::find(const std::string& key, const std::function<bool(const std::vector<Curve>&)>& fits,
                                                    std::string& told) const {

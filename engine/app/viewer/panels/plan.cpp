@@ -4,6 +4,7 @@
 
 #include "engine/app/viewer/panels/edit_items.h"
 #include "engine/app/viewer/panels/panel.h"
+#include "engine/scene/write_values.h"
 #include "render/quality/quality.h"
 
 namespace catena::app {
@@ -56,9 +57,9 @@ void draw_plan(PanelContext& context) {
   sliding = ImGui::IsItemActive();
   if (sliding) {
     const scene::Plan wanted = live.at(place);
-    ImGui::TextDisabled("%s", LivePlan::text_of(wanted).c_str());
+    ImGui::TextDisabled("%s", scene::text_of(wanted).c_str());
   }
-  if (ImGui::IsItemDeactivatedAfterEdit()) context.edits.set("/plan", LivePlan::text_of(live.at(place)), "plan");
+  if (ImGui::IsItemDeactivatedAfterEdit()) context.edits.set("/plan", scene::text_of(live.at(place)), "plan");
   if (eye) draw_eye(context);
   if (hand) draw_hand(context);
   if (live.quality_stated) ImGui::TextDisabled("the picture's quality is stated");

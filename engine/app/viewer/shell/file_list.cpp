@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "engine/app/run_files.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -146,13 +147,7 @@ std::string stem_of_path(const std::string& path) {
   return name.empty() ? "catena" : name;
 }
 
-/// XDG base directories: a relative one counts as not given.
-std::string state_folder() {
-  const char *state = std::getenv("XDG_STATE_HOME"), *home = std::getenv("HOME");
-  if (state != nullptr && std::filesystem::path(state).is_absolute()) return (std::filesystem::path(state) / "catena").string();
-  if (home != nullptr && std::filesystem::path(home).is_absolute()) return (std::filesystem::path(home) / ".local/state/catena").string();
-  return {};
-}
+std::string state_folder() { return user_folder("XDG_STATE_HOME", ".local/state"); }
 
 namespace {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/base/json_edit.h"
 #include "render/quality/quality.h"
 
 namespace catena::app {
@@ -67,18 +66,6 @@ double LivePlan::place() const {
   if (eye && !quality_stated) return place_of(eye->stops(), eye->expected_error());
   if (hand && !hand->is_empty()) return place_of(hand->stops(), hand->expected_error());
   return 1;
-}
-
-std::string LivePlan::text_of(const scene::Plan& plan) {
-  std::string text;
-  const auto add = [&](const char* key, const std::optional<double>& value) {
-    if (value) text += (text.empty() ? "\"" : ", \"") + std::string(key) + "\": " + json::number_text(*value);
-  };
-  add("error", plan.error);
-  add("time", plan.time);
-  add("hand_error", plan.hand_error);
-  add("hand_time", plan.hand_time);
-  return "{" + text + "}";
 }
 
 }  // namespace catena::app

@@ -31,8 +31,6 @@ struct LivePlan {
   /// What a place of the slider wants, 0 fast to 1 exact; and the place of what is wanted now.
   scene::Plan at(double place) const;
   double place() const;
-  /// The same as the text of "plan" has it.
-  static std::string text_of(const scene::Plan& plan);
 };
 
 }  // namespace catena::app
