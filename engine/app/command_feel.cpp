@@ -128,7 +128,8 @@ Outcome feel(const FeelOptions& options) {
   // the plan stands before the first tick, and is part of the text that is recorded
   CATENA_TRY(std::string text, plan::text_of(scene));
   CATENA_TRY(const std::optional<plan::HandPlan> plan,
-             plan::plan_links(scene, wanted, hand.settings.rate_hz, options.fields, [](const std::string& said) { print_out(printable(said) + "\n"); }));
+             plan::plan_links(scene, wanted, hand.settings.rate_hz, options.fields,
+                              [](const std::string& said) { print_out(printable(said) + "\n"); }));
   if (plan) {
     CATENA_TRY(text, plan->apply(text, options.scene));
   }
@@ -178,7 +179,8 @@ void add_feel(CLI::App& program, Work& chosen) {
       ->check(number_between(haptics::ServoOptions::kMinRateHz, haptics::ServoOptions::kMaxRateHz));
   command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
   command->add_option("--record", options->record, "every tick, .catlog (replay --log, export, info read it)");
-  command->add_option("--plan", options->plan, "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
+  command->add_option("--plan", options->plan,
+                      "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
   command->add_option("--forces", options->forces, "on: the device may push. Off at first, for a simulated device too")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();

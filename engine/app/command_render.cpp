@@ -28,8 +28,9 @@ void add_render(CLI::App& program, Work& chosen) {
       ->check(CLI::Range(8, 16384));
   command->add_option("--quality", options->quality,
                       "draft, balanced, reference, time=MS, error=E (RMSE, 1/255) or step=VOXELS (default: the scene's, or balanced)");
-  command->add_option("--plan", options->plan,
-                      "error=E (RMSE, 1/255) or time=MS, and hand_error=E (world units) or hand_time=US (a tick): the settings by measured curves");
+  command->add_option(
+      "--plan", options->plan,
+      "error=E (RMSE, 1/255) or time=MS, and hand_error=E (world units) or hand_time=US (a tick): the settings by measured curves");
   add_stereo_options(*command, options->stereo);
   command->add_option("--frames", options->frames, "how many frames to draw and time (default: 1; with --camera its duration times --fps)")
       ->check(CLI::Range(1, kMaxFrames));

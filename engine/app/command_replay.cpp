@@ -133,7 +133,8 @@ void add_replay(CLI::App& program, Work& chosen) {
   command->add_option("--widgets", options->widgets,
                       "modes and poses of the widgets, CSV: t, NAME_mode, NAME_handle, NAME_held, NAME_x,y,z ..");
   command->add_option("--stats", options->stats, "figures, JSON");
-  command->add_option("--plan", options->plan, "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
+  command->add_option("--plan", options->plan,
+                      "hand_error=E (world units) or hand_time=US (a tick): links that say no setting get theirs by it");
   command->add_option("--field", options->fields, "replace a field: NAME=FILE[:GRID]")->allow_extra_args(false);
   command->callback(
       [&chosen, options] { chosen = [options] { return options->log.empty() ? replay_scene(*options) : replay_log_file(*options); }; });

@@ -118,7 +118,7 @@ Outcome draw_timed(Renderer& renderer, const FramePacket& packet, const RenderSe
 
 /// The packed picture of several eyes, in one piece: one band.
 Result<BandTimes> draw_packed(Renderer& renderer, const FramePacket& packet, const RenderSettings& given, const BandWants& wants,
-                           const std::function<Outcome(const Band&)>& take) {
+                              const std::function<Outcome(const Band&)>& take) {
   CATENA_ASSERT(!wants.depth && !wants.ids);
   RenderSettings settings = given;
   settings.float_picture = wants.floats;
@@ -137,7 +137,7 @@ Result<BandTimes> draw_packed(Renderer& renderer, const FramePacket& packet, con
 }  // namespace
 
 Result<BandTimes> draw_bands(Renderer& renderer, const FramePacket& whole, const RenderSettings& given, const TilePlan& plan,
-                          const BandWants& wants, const std::function<Outcome(const Band&)>& take) {
+                             const BandWants& wants, const std::function<Outcome(const Band&)>& take) {
   if (!whole.eyes.empty() && whole.packing != Packing::single) {
     CATENA_ASSERT(plan.count() == 1 && plan.antialias == 1);
     return draw_packed(renderer, whole, given, wants, take);

@@ -38,6 +38,6 @@ struct BandTimes {
 /// is also asked, with a band of height 0, after every tile: an error ends the work. Without `take`
 /// nothing is read back.
 Result<BandTimes> draw_bands(Renderer& renderer, const FramePacket& packet, const RenderSettings& settings, const TilePlan& plan,
-                          const BandWants& wants, const std::function<Outcome(const Band&)>& take);
+                             const BandWants& wants, const std::function<Outcome(const Band&)>& take);
 
 }  // namespace catena::render

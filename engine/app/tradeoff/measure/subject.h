@@ -76,8 +76,8 @@ struct Subject {
   std::vector<std::string> left_out;  ///< what was not measured, and why: a sentence each
 };
 
-/// Program, motion and rate of a scene that is prepared; fits an unstated workspace. A scene without a chain gets none of it, and a sentence
-/// in left_out.
+/// Program, motion and rate of a scene that is prepared; fits an unstated workspace. A scene without a chain gets none of it, and a
+/// sentence in left_out.
 Outcome add_hand(Subject& subject, const std::string& probe_csv);
 
 }  // namespace catena::app::tradeoff

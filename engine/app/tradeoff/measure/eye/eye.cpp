@@ -76,8 +76,8 @@ Result<PictureFloor> picture_floor(render::Renderer& renderer, const render::Fra
   }
   const double at_2h = render::measure_error(pictures[1], pictures[0]).rmse, at_4h = render::measure_error(pictures[2], pictures[0]).rmse;
   const Extrapolated e = from_differences(at_2h, at_4h);
-  return PictureFloor{
-      e.error, fmt::format("from the pictures of every 2nd voxel (off by {:.3g}) and every 4th ({:.3g}); {}", at_2h, at_4h, order_words(e))};
+  return PictureFloor{e.error, fmt::format("from the pictures of every 2nd voxel (off by {:.3g}) and every 4th ({:.3g}); {}", at_2h, at_4h,
+                                           order_words(e))};
 }
 
 bool draws_grids(const render::FramePacket& packet) {
