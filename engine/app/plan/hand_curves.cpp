@@ -26,7 +26,11 @@ bool agrees(const StreamlineSetting& setting, const json::Node& link) {
 /// its values are kept, would be further settings of the same points: they begin here and in streamline_settings.
 std::vector<StreamlineSetting> open_settings(const json::Node& link) {
   std::vector<StreamlineSetting> open = tradeoff::streamline_settings(link);
-  std::erase_if(open, [&](const StreamlineSetting& setting) { return !agrees(setting, link); });
+  // fixed steps have no tolerance: they err by the hand's speed and way, of which a curve knows one
+  const bool asks_for_method = link.find("method") != nullptr;
+  std::erase_if(open, [&](const StreamlineSetting& setting) {
+    return !agrees(setting, link) || (!asks_for_method && !setting.selected && !setting.tolerance);
+  });
   if (open.size() < 2) open.clear();
   return open;
 }
