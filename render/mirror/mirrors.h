@@ -37,6 +37,8 @@ class Mirrors {
   /// Of their images.
   std::uint64_t bytes() const;
   double build_ms() const { return build_ms_; }
+  /// Bytes of the budget that a grid may take now.
+  std::uint64_t left() const;
   /// Of the grids that are mirrored now, older grids first.
   std::vector<MirrorCoarsening> coarsenings() const;
 
@@ -47,7 +49,6 @@ class Mirrors {
     std::uint64_t used = 0;
     MirrorCoarsening coarsening;
   };
-  std::uint64_t left() const;
   Outcome build(Entry& entry, const field::ScalarGrid& grid, const MirrorOptions& options);
 
   vk::Device& device_;

@@ -120,7 +120,7 @@ bool RaycastPass::prepare_fast(Frame& frame) {
     exact_pass_.reset();
     frame.mirrors.drop_unused(*item.grid);
   }
-  if (prepared) prepared = fast_pass_->prepare(item, settings);
+  if (prepared) prepared = fast_pass_->prepare(item, settings, frame.mirrors.left());
   if (prepared) return true;
   fast_pass_.reset();
   refused_.reason = fmt::format("the grid \"{}\" is drawn by exact rays, slower: {}", item.grid->name(), prepared.error().message);

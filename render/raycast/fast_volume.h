@@ -20,8 +20,8 @@ namespace catena::render {
 class FastVolumeRaycast {
  public:
   static Result<FastVolumeRaycast> create(vk::Device& device);
-  /// Packs the volume, if it is new.
-  Outcome prepare(const VolumeItem& item, const FastSettings& settings) { return look_.prepare(item, settings); }
+  /// Packs the volume, if it is new. `left`: bytes of the device that it may take beside what it has.
+  Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) { return look_.prepare(item, settings, left); }
   /// What is packed is too large to be held beside a mirror of its grid.
   bool is_large() const { return look_.as_bricks(); }
   /// Draws into `target` (cleared first; of the picture's size), or into half() where the settings end there and `target` is null;

@@ -20,7 +20,7 @@ bool PackedLook::can_pack(const vk::Device& device, const field::ScalarGrid& gri
   return can_be_packed(device, grid) || can_be_packed_as_bricks(grid);
 }
 
-Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings) {
+Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left) {
   const std::int64_t start = now_ns();
   const bool other_grid = !table_ || version_ != item.grid->version();
   const bool other_look = other_grid || !same_look(item_, item);
@@ -37,7 +37,8 @@ Outcome PackedLook::prepare(const VolumeItem& item, const FastSettings& settings
   active_ = active;
   version_ = item.grid->version();
   ++looks_;
-  CATENA_CHECK(whole ? pack_whole(gradients, other_range) : pack_bricks(other_range, settings.most_bytes));
+  const std::uint64_t room = left + (bricks_ ? bricks_->atlas.bytes() : 0);
+  CATENA_CHECK(whole ? pack_whole(gradients, other_range) : pack_bricks(other_range, std::min(settings.most_bytes, room - room / 16)));
   build_ms_ += ms_since(start);
   return Done{};
 }

@@ -18,8 +18,8 @@ class PackedLook {
   explicit PackedLook(vk::Device& device) : device_(&device) {}
   /// Whether the grid of a volume can be packed in one of the two ways.
   static bool can_pack(const vk::Device& device, const field::ScalarGrid& grid);
-  /// An error where it takes more than `settings.most_bytes`; nothing here counts then.
-  Outcome prepare(const VolumeItem& item, const FastSettings& settings);
+  /// An error where it takes more than `settings.most_bytes`, or than `left` bytes beside what it has; nothing here counts then.
+  Outcome prepare(const VolumeItem& item, const FastSettings& settings, std::uint64_t left);
 
   const VolumeItem& item() const { return item_; }
   /// Counts what is packed and how it looks.

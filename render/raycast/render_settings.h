@@ -1,6 +1,7 @@
 /// How well and how fast: what renderer and passes are told beside the packet.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,7 +20,8 @@ struct FastSettings {
   bool smooth_gradients = false;  ///< shading by central differences, as the exact raycast has it, for 4 bytes a voxel more
   double termination = 1.0 / 512;
   bool skip = true;
-  std::uint64_t most_bytes = std::uint64_t(1) << 30;  ///< on the device, for packed words and gradients; what needs more is drawn exactly
+  /// On the device, for packed words and gradients; the budget's rest, where that is less. What needs more is drawn exactly.
+  std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
   /// The last step to every pixel is interpolation alone.
   bool ends_at_half() const { return spacing > 1 && refine_full_255 < 0; }
   bool operator==(const FastSettings&) const = default;

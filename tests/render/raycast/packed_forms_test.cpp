@@ -114,5 +114,34 @@ TEST_F(Bricks, ThatDoNotFitAreDrawnExactlyAndSaid) {
   EXPECT_EQ(max_difference(found, draw(packet)), 0);
 }
 
+TEST_F(Bricks, HaveGradientsAsFineAsTheDeviceHasRoomFor) {
+  // noise: a gradient a voxel says more than one of every second
+  std::uint32_t state = 1;
+  const GridPtr whole = long_grid();
+  const auto noise = make_grid({std::int32_t(whole->index_box().hi.x) + 1, 40, 36}, [&](const Vec3& p) {
+    state = state * 1664525u + 1013904223u;
+    return 0.85 * wave(p) + 0.15 * double(state >> 8) / (1 << 24);
+  });
+  FramePacket packet = looking();
+  packet.volumes = {volume_item(noise, {{0, 0}, {0.2, 0}, {1, 0.3}})};
+  packet.volumes[0].shade = true;
+  const Picture exact = draw(packet, reference_settings());
+  const Picture fine = draw(packet, fast(0.5, true), "fine");
+  const std::uint64_t fine_bytes = renderer_->stats().gpu_bytes;
+  EXPECT_LT(covered_rmse(fine, exact), 2.0);
+
+  vk::DeviceOptions options;
+  options.validation = true;
+  options.choose = "cpu";
+  options.memory_budget_bytes = fine_bytes * 3 / 4;
+  auto renderer = Renderer::create(options);
+  ASSERT_TRUE(renderer) << renderer.error().message;
+  renderer_ = std::move(*renderer);
+  const Picture coarse = draw(packet, fast(0.5, true), "coarse");
+  EXPECT_TRUE(renderer_->draws_fast(packet)) << renderer_->stats().notes[0];
+  EXPECT_LE(renderer_->device().counters().peak, options.memory_budget_bytes);
+  EXPECT_GT(covered_rmse(coarse, exact), covered_rmse(fine, exact));
+}
+
 }  // namespace packed_forms_test
 }  // namespace catena::test
