@@ -43,12 +43,14 @@ struct LightItem {
   Vec3 direction{0.0, 0.0, 1.0};
   Color color{1, 1, 1};  ///< times the intensity
   bool with_camera = false;
+  bool operator==(const LightItem&) const = default;
 };
 
 /// Depth cue: at view depth `end` and beyond, `most` of a colour is the fog's; nothing of it at `start`.
 struct FogItem {
   Color color;
   double start = 0, end = 1, most = 0.8;
+  bool operator==(const FogItem&) const = default;
 };
 
 /// What an id of the picture stands for.
@@ -117,6 +119,7 @@ struct IsosurfaceItem {
   std::uint32_t id = 0;
   bool clipped = true;
   std::optional<ColorSource> color_by{};
+  bool operator==(const IsosurfaceItem&) const = default;
 };
 
 /// Triangles as they are: what the hand feels. Made once a mesh, shared by frames.

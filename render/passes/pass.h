@@ -109,6 +109,8 @@ class RayProbe {
   virtual bool has_refused(const FramePacket& packet) const = 0;
   /// Of the last picture only the tiles were marched that something opaque had come to or left.
   virtual bool has_kept() const = 0;
+  /// Those tiles, R8_UINT; null: there are none, or all of the picture was marched.
+  virtual vk::Image* changed_tiles() = 0;
 
  protected:
   ~RayProbe() = default;

@@ -58,7 +58,11 @@ class RaycastPass final : public Pass, public RayProbe {
 
   RayProbe* probe() override { return this; }
   Outcome record_probe(vk::Commands& commands, Frame& frame, std::uint32_t spacing, vk::Image& target) override;
-  bool has_kept() const override { return fast_ && fast_pass_->has_kept(); }
+  bool has_kept() const override { return fast_ ? fast_pass_->has_kept() : any_ && !projected_ && exact_pass_->has_kept(); }
+  vk::Image* changed_tiles() override {
+    if (!has_kept()) return nullptr;
+    return fast_ ? fast_pass_->changed_tiles() : exact_pass_->changed_tiles();
+  }
   bool has_refused(const FramePacket& packet) const override {
     return !refused_.reason.empty() && packet.volumes.size() == 1 && packet.volumes.front().grid->version() == refused_.version;
   }
@@ -186,6 +190,7 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
   const VkRect2D whole{{0, 0}, {frame.packet.width, frame.packet.height}};
   const VkRect2D area = frame.layers.empty() ? covered_area(grids_, frame.rays.camera) : whole;
   if (fast_) {
+    if (exact_pass_) exact_pass_->forget_target();
     const bool half = ends_at_half(frame);
     CATENA_CHECK(fast_pass_->record(commands, frame.rays, *frame.settings.fast, area, targets.picture.info().extent,
                                     half ? nullptr : &targets.volume, opaque, targets.none, frame.settings.keep));
@@ -196,6 +201,9 @@ Outcome RaycastPass::record(vk::Commands& commands, Frame& frame) {
     return Done{};
   }
   if (fast_pass_) fast_pass_->forget_target();
+  if (any_ && !projected_)
+    return exact_pass_->record_into(commands, frame.rays, ray_settings(frame), area, ray_scene(frame), targets.volume, frame.settings.keep);
+  if (exact_pass_) exact_pass_->forget_target();
   targets.begin(commands, target::volume, target::volume);
   CATENA_CHECK(record_exact(commands, frame, frame.rays, area));
   commands.end_pass();
@@ -238,8 +246,13 @@ bool draws_rays(const FramePacket& packet) {
 }
 
 bool same_rays(const FramePacket& a, const FramePacket& b) {
+  const auto surfaces = [](const FramePacket& packet) {
+    std::vector<IsosurfaceItem> list;
+    std::ranges::copy_if(packet.isosurfaces, std::back_inserter(list), is_translucent);
+    return list;
+  };
   return a.view == b.view && a.eyes.empty() && b.eyes.empty() && a.width == b.width && a.height == b.height && a.volumes == b.volumes &&
-         a.clip == b.clip;
+         surfaces(a) == surfaces(b) && a.clip == b.clip && a.lights == b.lights && a.fog == b.fog && !has_layers(a) && !has_layers(b);
 }
 
 const PassEntry kRaycastPass{"raycast", [](const Frame& frame) { return draws_rays(frame.packet) || !frame.layers.empty(); },

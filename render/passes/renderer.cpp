@@ -375,6 +375,23 @@ Result<IdPicture> Renderer::read_ids() {
   return picture;
 }
 
+Result<MarchedTiles> Renderer::marched_tiles() {
+  Parts& p = *parts_;
+  constexpr std::uint32_t kTile = 16;
+  MarchedTiles tiles;
+  tiles.all = tiles.marched = (p.view_width + kTile - 1) / kTile * ((p.view_height + kTile - 1) / kTile);
+  for (Pass* pass : p.active()) {
+    RayProbe* rays = pass->probe();
+    if (!rays || !rays->has_kept()) continue;
+    tiles.marched = 0;
+    if (vk::Image* changed = rays->changed_tiles()) {
+      CATENA_TRY(const auto marks, p.kept_or_dropped(bytes_of<std::uint8_t>(*p.device, *changed, tiles.all)));
+      tiles.marched = std::uint32_t(std::ranges::count(marks, std::uint8_t(1)));
+    }
+  }
+  return tiles;
+}
+
 Result<Picked> Renderer::pick(std::uint32_t x, std::uint32_t y) {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0 && x < p.view_width && y < p.view_height);

@@ -52,7 +52,7 @@ bool draws_rays(const FramePacket& packet);
 /// What of the packet rays cannot draw together: the sentence that draw() would fail with, for who asks before there is a device.
 Outcome check_rays(const FramePacket& packet);
 
-/// Whether the fast raycast meets the same in both: what is opaque may differ (RenderSettings::keep).
+/// Whether rays meet the same in both, and what they have met can be kept: what is opaque may differ (RenderSettings::keep).
 bool same_rays(const FramePacket& a, const FramePacket& b);
 
 /// The nearest opaque object of every pixel, 0: none.
@@ -65,6 +65,10 @@ struct IdPicture {
 struct DepthPicture {
   std::uint32_t width = 0, height = 0;
   std::vector<float> depth;
+};
+
+struct MarchedTiles {
+  std::uint32_t marched = 0, all = 0;
 };
 
 /// What one pixel shows, of the first eye: the id of the nearest opaque object (0: none) and its view depth (infinite: none).
@@ -98,6 +102,9 @@ class Renderer {
   Result<DepthPicture> read_depth();
   /// The ids of the last picture.
   Result<IdPicture> read_ids();
+  /// Of the last picture's tiles of 16 x 16 pixels the number whose rays were marched, and of all: with RenderSettings::keep those that
+  /// something opaque has come to or left.
+  Result<MarchedTiles> marched_tiles();
   /// Depth and id of one pixel of the last picture: two texels come back, not the images. A pixel beyond the picture is a bug.
   Result<Picked> pick(std::uint32_t x, std::uint32_t y);
   /// Pixels of one view of the last picture; 0 before the first.

@@ -140,6 +140,11 @@ std::optional<RefinementStep> Refinement::next(bool changed) {
   return step(stop_after(*shown_));
 }
 
+std::optional<double> Refinement::expected_better_ms() const {
+  if (!shown_ || *shown_ + 1 == rungs_.size()) return std::nullopt;
+  return times_.expected_ms(stop_after(*shown_));
+}
+
 void Refinement::drawn(double ms) {
   CATENA_ASSERT(asked_);
   asked_ = false;

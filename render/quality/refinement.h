@@ -64,6 +64,8 @@ class Refinement {
   Refinement(double budget_ms, const LadderKind& kind);
   /// The picture to draw now; nothing where the last one is finished and nothing has `changed` (camera, scene, size) since.
   std::optional<RefinementStep> next(bool changed);
+  /// What next(false) would take; nothing where it has nothing.
+  std::optional<double> expected_better_ms() const;
   /// What that picture took.
   void drawn(double ms);
 

@@ -246,22 +246,14 @@ Outcome FastVolumeRaycast::interpolate(vk::Commands& commands, vk::Image& half, 
   return Done{};
 }
 
-bool FastVolumeRaycast::Kept::is(const Kept& other) const {
-  shared::FrameData a = frame, b = other.frame;
-  // what only triangles ask for
-  a.depth_near = b.depth_near = a.depth_far = b.depth_far = 0;
-  return std::memcmp(&a, &b, sizeof(a)) == 0 && settings == other.settings && look == other.look && target == other.target &&
-         target_image == other.target_image && std::memcmp(&area, &other.area, sizeof(area)) == 0 && opaque == other.opaque;
-}
-
 Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const FastSettings& settings, const VkRect2D& area,
                                   const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none,
                                   bool keep) {
   CATENA_ASSERT(settings.spacing == 1 || settings.spacing == 2 || settings.spacing == 4);
   CATENA_ASSERT(target || (settings.ends_at_half() && !opaque_depth));
   CATENA_TRY(const shared::FrameData frame, write_frame(rays, settings));
-  const Kept now{frame, settings, look_.version(), target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr};
-  const bool still = has_kept_ = keep && target && kept_ && kept_->is(now);
+  const Kept now{settings, {frame, look_.version(), target, target ? target->handle() : VK_NULL_HANDLE, area, opaque_depth != nullptr}};
+  const bool still = has_kept_ = keep && target && kept_ && kept_->settings == settings && kept_->picture.is(now.picture);
   kept_.reset();
   commands.use(no_tiles_, vk::kShaderRead);
   if (opaque_depth) {

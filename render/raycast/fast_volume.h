@@ -32,6 +32,8 @@ class FastVolumeRaycast {
                  const VkExtent3D& picture, vk::Image* target, const vk::Image* opaque_depth, const vk::Image& none, bool keep = false);
   /// Whether the last call left most of it as it was.
   bool has_kept() const { return has_kept_; }
+  /// The tiles that the last call has marched again, where it has kept the others; null: it has not, or nothing was opaque.
+  vk::Image* changed_tiles() { return has_kept_ && kept_->picture.opaque ? &opaque_->changed() : nullptr; }
   /// Something else has drawn into the target.
   void forget_target() { kept_.reset(); }
   /// Draws the rays of every `spacing`-th pixel alone into `target` (kVolumeFormat).
@@ -71,16 +73,9 @@ class FastVolumeRaycast {
   };
   Outcome draw(vk::Commands& commands, Level& level, const Draw& draw);
   Outcome interpolate(vk::Commands& commands, vk::Image& half, vk::Image& target, const VkRect2D& area, bool keep);
-  /// What a picture of rays follows from, beside what is opaque.
   struct Kept {
-    shared::FrameData frame;
     FastSettings settings;
-    std::uint64_t look = 0;
-    const vk::Image* target = nullptr;
-    VkImage target_image = VK_NULL_HANDLE;
-    VkRect2D area{};
-    bool opaque = false;
-    bool is(const Kept& other) const;
+    StillPicture picture;
   };
 
   vk::Device* device_;

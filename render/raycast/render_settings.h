@@ -42,8 +42,8 @@ struct RenderSettings {
   bool jitter = false;
   /// Draws a lone volume by the fast raycast, if it can; what is above then holds for everything else.
   std::optional<FastSettings> fast;
-  /// While nothing but opaque things moves, the fast raycast marches only the tiles near them again. The picture is the same to the bit,
-  /// but what it took says nothing.
+  /// While nothing but opaque things moves, only the rays of the tiles under them (fast ones: near them) are marched again. The picture is
+  /// the same to the bit, but what it took says nothing.
   bool keep = false;
 };
 RenderSettings draft_settings();      ///< every 4th pixel at step 2; where the fast raycast cannot: step 2, jittered

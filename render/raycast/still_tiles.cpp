@@ -1,5 +1,7 @@
 #include "render/raycast/still_tiles.h"
 
+#include <cstring>
+
 namespace catena::render {
 
 namespace {
@@ -19,10 +21,19 @@ constexpr VkFormat kSignFormat = VK_FORMAT_R32G32_UINT;
 
 /// An image of one texel for so many pixels each way.
 Outcome fit_tiles(vk::Device& device, vk::Image& image, VkFormat format, const VkExtent3D& picture, std::uint32_t pixels) {
-  return vk::fit_image(device, image, format, (picture.width + pixels - 1) / pixels, (picture.height + pixels - 1) / pixels);
+  constexpr VkImageUsageFlags usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+  return vk::fit_image(device, image, format, (picture.width + pixels - 1) / pixels, (picture.height + pixels - 1) / pixels, usage);
 }
 
 }  // namespace
+
+bool StillPicture::is(const StillPicture& other) const {
+  shared::FrameData a = frame, b = other.frame;
+  // what only triangles ask for
+  a.depth_near = b.depth_near = a.depth_far = b.depth_far = 0;
+  return std::memcmp(&a, &b, sizeof(a)) == 0 && look == other.look && target == other.target && target_image == other.target_image &&
+         std::memcmp(&area, &other.area, sizeof(area)) == 0 && opaque == other.opaque;
+}
 
 Outcome StillTiles::look(vk::Commands& commands, const vk::Image& opaque_depth) {
   if (!look_) {
@@ -72,11 +83,12 @@ Outcome StillTiles::find(vk::Commands& commands, int reach, vk::Image& before, v
 }
 
 Outcome StillTiles::find_changed(vk::Commands& commands, int reach) {
-  CATENA_ASSERT(reach > 0 && signs_[0] && signs_[1]);
+  CATENA_ASSERT(signs_[0] && signs_[1]);
   const VkExtent3D& blocks = opaque_.info().extent;
   const VkExtent3D picture{kStillBlock * blocks.width, kStillBlock * blocks.height, 1};
-  CATENA_CHECK(fit_tiles(*device_, near_, VK_FORMAT_R8_UINT, picture, kStillTile));
   CATENA_CHECK(fit_tiles(*device_, changed_, VK_FORMAT_R8_UINT, picture, kStillTile));
+  if (reach == 0) return find(commands, 0, signs_[1 - newest_], signs_[newest_], changed_);
+  CATENA_CHECK(fit_tiles(*device_, near_, VK_FORMAT_R8_UINT, picture, kStillTile));
   CATENA_CHECK(find(commands, 0, signs_[1 - newest_], signs_[newest_], near_));
   return find(commands, reach, near_, near_, changed_);
 }

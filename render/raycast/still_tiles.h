@@ -7,15 +7,28 @@
 
 #include "render/vk/commands.h"
 #include "render/vk/pipeline.h"
+#include "shaders/shared/frame.h"
 
 namespace catena::render {
+
+/// What a picture of rays follows from, beside what is opaque and how it is marched.
+struct StillPicture {
+  shared::FrameData frame;
+  std::uint64_t look = 0;  ///< counts what volumes and surfaces look like
+  const vk::Image* target = nullptr;
+  VkImage target_image = VK_NULL_HANDLE;
+  VkRect2D area{};
+  bool opaque = false;  ///< something is
+  /// Whether the other one comes out the same where nothing opaque has changed.
+  bool is(const StillPicture& other) const;
+};
 
 class StillTiles {
  public:
   explicit StillTiles(vk::Device& device) : device_(&device) {}
   /// Looks at a picture's opaque depth: fills opaque(), and knows what was seen the last time.
   Outcome look(vk::Commands& commands, const vk::Image& opaque_depth);
-  /// After look(): fills changed(), which holds the tiles that are at most `reach` tiles from one that has changed.
+  /// After look(): fills changed(), which holds the tiles that are at most `reach` tiles from one that has changed (0: these alone).
   Outcome find_changed(vk::Commands& commands, int reach);
   /// R8_UINT, by 4 x 4 pixels: 1 where something opaque is seen.
   vk::Image& opaque() { return opaque_; }

@@ -23,7 +23,11 @@ constexpr std::uint32_t kVolumeBlendLayersShader[] = {
 constexpr std::uint32_t kVolumeLayersShader[] = {
 #include "spirv/layers.frag.inc"
 };
-constexpr std::uint32_t kLayers = 27;  // bindings of their colours; those of their depths follow
+constexpr std::uint32_t kVolumeTilesShader[] = {
+#include "spirv/still_tiles.vert.inc"
+};
+constexpr std::uint32_t kLayers = 27;                         // bindings of their colours; those of their depths follow
+constexpr std::uint32_t kChanged = kLayers + 2 * MAX_LAYERS;  // as in still_tiles.vert
 
 /// Below this share of active bricks a ray asks the brick map before it samples; above, asking costs more than it saves.
 constexpr double kSkipBelow = 0.95;
@@ -48,8 +52,9 @@ Result<const vk::Pipeline*> VolumeRaycast::pipeline(const Kind& kind) {
   vk::Pipeline& pipeline = pipelines_[kind];
   if (pipeline) return &pipeline;
   vk::GraphicsInfo info;
-  info.vertex = kVolumeVertexShader;
+  info.vertex = kind.tiles ? vk::Spirv(kVolumeTilesShader) : vk::Spirv(kVolumeVertexShader);
   info.slots = {{0, vk::Resource::uniform}, {2, vk::Resource::texture}};
+  if (kind.tiles) info.slots.push_back({kChanged, vk::Resource::texture});
   if (!kind.layers_alone()) info.slots.push_back({1, vk::Resource::buffer});
   add_grid_slots(info.slots, kind.grid_slots());
   if (kind.layers > 0)
@@ -131,12 +136,15 @@ Outcome VolumeRaycast::prepare(std::span<const Mirrored<VolumeItem>> volumes, st
   }
   surfaces_.resize(surfaces.size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    looks_ += surfaces_[i].state.mirror != surfaces[i].mirror;
     CATENA_CHECK(surfaces_[i].state.update(*device_, surfaces[i].mirror, surfaces[i].item->level));
     surfaces_[i].item = *surfaces[i].item;
   }
   CATENA_TRY(const bool recoloured, update_colors(volumes, surfaces));
   CATENA_ASSERT(volumes_.size() + surfaces_.size() + colors_.size() <= MAX_GRIDS);
-  return changed || recoloured ? upload_tables() : Done{};
+  if (!changed && !recoloured) return Done{};
+  ++looks_;
+  return upload_tables();
 }
 
 shared::GridData VolumeRaycast::volume_data(const CameraRays& rays, const Volume& volume) const {
@@ -153,11 +161,12 @@ shared::GridData VolumeRaycast::volume_data(const CameraRays& rays, const Volume
   return grid;
 }
 
-std::vector<vk::Binding> VolumeRaycast::bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) const {
+std::vector<vk::Binding> VolumeRaycast::bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) {
   std::vector<vk::Binding> list{{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
                                 {2, vk::Resource::texture, nullptr, scene.opaque_depth ? scene.opaque_depth : scene.none, nullptr}};
   if (!kind.layers_alone()) list.push_back({1, vk::Resource::buffer, &tables_, nullptr, nullptr});
   add_grid_bindings(list, bound, kind.grid_slots(), linear_);
+  if (kind.tiles) list.push_back({kChanged, vk::Resource::texture, nullptr, &opaque_->changed(), nullptr});
   if (kind.layers == 0) return list;
   for (std::uint32_t i = 0; i < MAX_LAYERS; ++i) {
     const Layer& layer = scene.layers[std::min<std::size_t>(i, scene.layers.size() - 1)];
@@ -167,19 +176,21 @@ std::vector<vk::Binding> VolumeRaycast::bindings(const Kind& kind, std::span<con
   return list;
 }
 
-Outcome VolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
-                              const RayScene& scene) {
+VolumeRaycast::Ready VolumeRaycast::ready(const CameraRays& rays, const RaySettings& settings, const RayScene& scene) const {
   // volumes, surfaces, the grids that colour them
-  shared::FrameData data = rays.frame();
+  Ready out{{.opaque = scene.opaque_depth != nullptr,
+             .volumes = std::uint32_t(volumes_.size()),
+             .surfaces = std::uint32_t(surfaces_.size()),
+             .layers = std::uint32_t(scene.layers.size()),
+             .jitter = settings.jitter,
+             .colors = std::uint32_t(colors_.size()),
+             .fog = rays.fog && rays.fog->most > 0},
+            rays.frame(),
+            {}};
+  shared::FrameData& data = out.frame;
+  std::vector<BoundGrid>& bound = out.grids;
+  Kind& kind = out.kind;
   data.termination = float(settings.termination);
-  std::vector<BoundGrid> bound;
-  Kind kind{.opaque = scene.opaque_depth != nullptr,
-            .volumes = std::uint32_t(volumes_.size()),
-            .surfaces = std::uint32_t(surfaces_.size()),
-            .layers = std::uint32_t(scene.layers.size()),
-            .jitter = settings.jitter,
-            .colors = std::uint32_t(colors_.size()),
-            .fog = rays.fog && rays.fog->most > 0};
   double edge = 0;
   for (const Volume& volume : volumes_) {
     data.grids[bound.size()] = volume_data(rays, volume);
@@ -200,13 +211,50 @@ Outcome VolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, co
     bound.push_back(colors.grid.bound());
   }
   data.step_world = float(settings.step_voxels * edge);
-  CATENA_CHECK(vk::write_uniform(*device_, uniform_, data));
-
   for (std::size_t i = 0; i < bound.size(); ++i) kind.flags |= bound[i].flags() << (4 * i);
-  CATENA_TRY(const vk::Pipeline* pipe, pipeline(kind));
+  return out;
+}
+
+Outcome VolumeRaycast::draw(vk::Commands& commands, const Ready& ready, const VkRect2D& area, const RayScene& scene) {
+  CATENA_CHECK(vk::write_uniform(*device_, uniform_, ready.frame));
+  CATENA_TRY(const vk::Pipeline* pipe, pipeline(ready.kind));
   commands.scissor(area);
-  commands.bind(*pipe, bindings(kind, bound, scene));
-  commands.draw_triangle();
+  commands.bind(*pipe, bindings(ready.kind, ready.grids, scene));
+  if (!ready.kind.tiles) {
+    commands.draw_triangle();
+    return Done{};
+  }
+  const VkExtent3D& tiles = opaque_->changed().info().extent;
+  commands.draw(6, tiles.width * tiles.height);
+  return Done{};
+}
+
+Outcome VolumeRaycast::record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                              const RayScene& scene) {
+  return draw(commands, ready(rays, settings, scene), area, scene);
+}
+
+Outcome VolumeRaycast::record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                                   const RayScene& scene, vk::Image& target, bool keep) {
+  Ready now = ready(rays, settings, scene);
+  const Kept next{now.kind, {now.frame, looks_, &target, target.handle(), area, scene.opaque_depth != nullptr}};
+  // what layers show is not known from their depth
+  const bool still = has_kept_ = keep && scene.layers.empty() && kept_ && kept_->kind == next.kind && kept_->picture.is(next.picture);
+  kept_.reset();
+  if (scene.opaque_depth) {
+    if (!opaque_) opaque_.emplace(*device_);
+    CATENA_CHECK(opaque_->look(commands, *scene.opaque_depth));
+    if (still) CATENA_CHECK(opaque_->find_changed(commands, 0));
+  }
+  if (!still || scene.opaque_depth) {
+    now.kind.tiles = still;
+    vk::ColorTarget color{&target, std::array<float, 4>{0, 0, 0, 0}};
+    if (still) color.clear.reset();
+    commands.begin_pass({&color, 1}, {});
+    CATENA_CHECK(draw(commands, now, area, scene));
+    commands.end_pass();
+  }
+  kept_ = next;
   return Done{};
 }
 

@@ -4,9 +4,11 @@
 #pragma once
 #include <compare>
 #include <map>
+#include <optional>
 
 #include "render/raycast/bound_grids.h"
 #include "render/raycast/render_settings.h"
+#include "render/raycast/still_tiles.h"
 
 namespace catena::render {
 
@@ -14,8 +16,18 @@ class VolumeRaycast {
  public:
   static Result<VolumeRaycast> create(vk::Device& device);
   Outcome prepare(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
-  /// Within a pass over the volume target.
+  /// Within a pass over a target of any size: a picture's rays, or some of them.
   Outcome record(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area, const RayScene& scene);
+  /// Into `target` of the picture's size, not within a pass. `keep`: what it holds since the last call stays where it would come out the
+  /// same, to the bit (still_tiles.h).
+  Outcome record_into(vk::Commands& commands, const CameraRays& rays, const RaySettings& settings, const VkRect2D& area,
+                      const RayScene& scene, vk::Image& target, bool keep);
+  /// Whether the last record_into() left most of it as it was.
+  bool has_kept() const { return has_kept_; }
+  /// Something else has drawn into the target.
+  void forget_target() { kept_.reset(); }
+  /// Tiles that record_into() has marched again, where it has kept the others; null: it has not, or nothing was opaque.
+  vk::Image* changed_tiles() { return has_kept_ && kept_->picture.opaque ? &opaque_->changed() : nullptr; }
 
  private:
   struct Volume {
@@ -38,17 +50,30 @@ class VolumeRaycast {
   /// What a pipeline is made for.
   struct Kind {
     std::uint32_t flags = 0, opaque = 0, volumes = 0, surfaces = 0, layers = 0, modes = 0, color_grids = 0, jitter = 0, colors = 0, fog = 0;
+    bool tiles = false;  ///< only those that have changed
     auto operator<=>(const Kind&) const = default;
     bool single() const { return volumes == 1 && surfaces == 0 && layers == 0 && colors == 0; }
     bool layers_alone() const { return volumes == 0 && surfaces == 0; }
     std::uint32_t grid_slots() const { return layers_alone() ? 0 : single() ? 1 : layers > 0 ? MAX_GRIDS_WITH_LAYERS : MAX_GRIDS; }
   };
+  /// What is to be drawn, and how.
+  struct Ready {
+    Kind kind;
+    shared::FrameData frame;
+    std::vector<BoundGrid> grids;
+  };
+  struct Kept {
+    Kind kind;
+    StillPicture picture;
+  };
   VolumeRaycast() = default;
+  Ready ready(const CameraRays& rays, const RaySettings& settings, const RayScene& scene) const;
+  Outcome draw(vk::Commands& commands, const Ready& ready, const VkRect2D& area, const RayScene& scene);
   Result<bool> update_volume(Volume& volume, const Mirrored<VolumeItem>& next);
   Result<bool> update_colors(std::span<const Mirrored<VolumeItem>> volumes, std::span<const Mirrored<IsosurfaceItem>> surfaces);
   Outcome upload_tables();
   shared::GridData volume_data(const CameraRays& rays, const Volume& volume) const;
-  std::vector<vk::Binding> bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene) const;
+  std::vector<vk::Binding> bindings(const Kind& kind, std::span<const BoundGrid> bound, const RayScene& scene);
   Result<const vk::Pipeline*> pipeline(const Kind& kind);
 
   vk::Device* device_ = nullptr;
@@ -58,6 +83,10 @@ class VolumeRaycast {
   std::vector<Surface> surfaces_;
   std::vector<Colors> colors_;
   vk::Buffer tables_, uniform_;
+  std::optional<StillTiles> opaque_;
+  std::uint64_t looks_ = 0;  ///< counts what prepare() has found new
+  std::optional<Kept> kept_;
+  bool has_kept_ = false;
 };
 
 }  // namespace catena::render

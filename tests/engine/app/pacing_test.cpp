@@ -141,6 +141,32 @@ TEST(Pacing, APictureThatIsKeptIsAsGoodAsTheLastAndItsTimeTeachesNothing) {
   EXPECT_LE(time_of(p.moving(kFast), 400), 50);
 }
 
+TEST(Pacing, WhatIsKeptFarTooLateIsNotKeptAgainBeforeSomethingRests) {
+  Pacing p = pacing("time=50");
+  settle(p, kExact, 400);
+  rest(p, kExact, 400);
+  p.kept();
+  p.drawn(100);
+  EXPECT_TRUE(p.may_keep());
+  p.kept();
+  p.drawn(160);  // nearly all of the picture was under what moved
+  EXPECT_FALSE(p.may_keep());
+  p.drawn(time_of(p.moving(kExact), 400));
+  EXPECT_FALSE(p.may_keep());
+  p.still(kExact);
+  EXPECT_TRUE(p.may_keep());
+}
+
+TEST(Pacing, BetterPicturesComeBetweenKeptOnesUnlessTheHandsWouldStandForLong) {
+  for (const auto& [ms, may] : {std::pair{100.0, true}, {100000.0, false}}) {
+    Pacing p = pacing("time=50");
+    settle(p, kExact, ms);
+    EXPECT_EQ(p.may_improve(), may) << ms;
+    rest(p, kExact, ms);
+    EXPECT_TRUE(p.may_improve()) << "nothing better is to come";
+  }
+}
+
 TEST(Pacing, ASceneWithoutRaysIsDrawnOnceMoreAtMost) {
   Pacing p = pacing("time=50");
   settle(p, kNoRays, 1);

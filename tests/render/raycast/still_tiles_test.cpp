@@ -57,6 +57,104 @@ TEST_F(StillTiles, AMovingCursorLeavesTheRestAsItIsToTheBit) {
   }
 }
 
+/// The tiles of 16 x 16 pixels whose ids differ between two pictures, and those `reach` tiles around.
+std::uint32_t tiles_near(const IdPicture& a, const IdPicture& b, int reach) {
+  const int across = int(a.width + 15) / 16, down = int(a.height + 15) / 16;
+  std::vector<std::uint8_t> changed(std::size_t(across) * std::size_t(down));
+  for (std::uint32_t y = 0; y < a.height; ++y)
+    for (std::uint32_t x = 0; x < a.width; ++x)
+      if (a.ids[std::size_t(y) * a.width + x] != 0 || b.ids[std::size_t(y) * a.width + x] != 0)
+        changed[std::size_t(y / 16) * std::size_t(across) + x / 16] = 1;
+  std::uint32_t count = 0;
+  for (int y = 0; y < down; ++y)
+    for (int x = 0; x < across; ++x) {
+      bool near = false;
+      for (int j = std::max(0, y - reach); j <= std::min(down - 1, y + reach); ++j)
+        for (int i = std::max(0, x - reach); i <= std::min(across - 1, x + reach); ++i)
+          near = near || changed[std::size_t(j) * std::size_t(across) + std::size_t(i)];
+      count += near;
+    }
+  return count;
+}
+
+TEST_F(StillTiles, ExactRaysAreMarchedUnderTheCursorsOldAndNewOutlineAlone) {
+  packet_.cursors[0].id = 1;
+  packet_.width = 240;
+  packet_.height = 180;
+  const auto other = make_grid({24, 24, 24}, [](const Vec3& p) { return 0.04 * p.x; });
+  for (const bool several : {false, true}) {
+    if (several) {
+      packet_.volumes.push_back(volume_item(other, {{0, 0}, {1, 0.05}}));
+      IsosurfaceItem surface;
+      surface.grid = packet_.volumes[0].grid;
+      surface.level = 0.7;
+      surface.opacity = 0.4f;
+      packet_.isosurfaces = {surface};
+      packet_.lights = {{{1, 1, 1}, {1, 1, 1}, false}};
+      packet_.fog = FogItem{{0.5f, 0.5f, 0.5f}, 100, 300, 0.5};
+    }
+    RenderSettings settings;
+    settings.keep = true;
+    IdPicture before;
+    for (int k = 0; k < 3; ++k) {
+      packet_.cursors[0].probe = Vec3(5 + 7 * k, 5.3 * k - 3, 40 - 4.1 * k);
+      const Picture found = draw(packet_, settings);
+      ASSERT_EQ(max_difference(found, fresh(settings)), 0) << several << k;
+      const MarchedTiles tiles = renderer_->marched_tiles().value();
+      const IdPicture now = renderer_->read_ids().value();
+      EXPECT_EQ(tiles.all, 15u * 12);
+      if (k == 0)
+        EXPECT_EQ(tiles.marched, tiles.all);
+      else
+        EXPECT_LE(tiles.marched, tiles_near(before, now, 0)) << several << k;
+      EXPECT_GT(tiles.marched, 0u);
+      before = now;
+    }
+    draw(packet_, settings);
+    EXPECT_EQ(renderer_->marched_tiles().value().marched, 0u) << "nothing has moved";
+    packet_.cursors[0].probe.z += 0.01;
+    packet_.lights.push_back({{0, 1, 1}, {0.5f, 0.5f, 0.5f}, false});
+    EXPECT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    EXPECT_FALSE(renderer_->stats().rays_kept) << "the light";
+  }
+}
+
+TEST(SameRays, DifferByWhatRaysMeetAndNotByWhatIsOpaque) {
+  const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return 0.1 * p.x; });
+  FramePacket first = packet_of({30, -20, 10}, {4, 4, 4});
+  first.volumes = {volume_item(grid, {{0, 0}, {1, 0.1}})};
+  IsosurfaceItem surface;
+  surface.grid = grid;
+  surface.level = 0.3;
+  first.isosurfaces = {surface, surface};
+  first.isosurfaces[1].opacity = 0.5f;
+  const auto same = [&](const std::function<void(FramePacket&)>& change) {
+    FramePacket other = first;
+    change(other);
+    return same_rays(first, other);
+  };
+  EXPECT_TRUE(same([](FramePacket& p) { p.cursors.resize(1); }));
+  EXPECT_TRUE(same([](FramePacket& p) { p.isosurfaces[0].level = 0.4; }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.isosurfaces[1].level = 0.4; }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.lights.resize(1); }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.fog = FogItem{}; }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.clip = {{{4, 4, 4}, {1, 0, 0}}}; }));
+  EXPECT_FALSE(same([](FramePacket& p) { p.view.position.x += 1; }));
+}
+
+TEST_F(StillTiles, FastRaysAreMarchedAsNearToTheOutlineAsTheyAreInterpolated) {
+  packet_.cursors[0].id = 1;
+  for (const auto& [settings, reach] : {std::pair{keeping(1, 0, -1), 1}, {keeping(2, 0, 3), 3}, {keeping(4, 1, 3), 6}}) {
+    draw(packet_, settings);
+    const IdPicture before = renderer_->read_ids().value();
+    packet_.cursors[0].probe = packet_.cursors[0].probe + Vec3(7, 5.3, -4.1);
+    draw(packet_, settings);
+    const MarchedTiles tiles = renderer_->marched_tiles().value();
+    EXPECT_LE(tiles.marched, tiles_near(before, renderer_->read_ids().value(), reach)) << reach;
+    EXPECT_LT(tiles.marched, tiles.all) << reach;
+  }
+}
+
 TEST_F(StillTiles, WhatElseChangesIsDrawnWhole) {
   const RenderSettings settings = keeping(2, 0, 3);
   draw(packet_, settings);

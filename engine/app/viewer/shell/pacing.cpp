@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace catena::app {
 namespace {
 
-constexpr double kFinerBelow = 0.7;  // of the budget: more pixels again only with some room, or their number would come and go
+constexpr double kKeptBudgets = 3;       // that a picture may take whose rays are kept, as good as it is
+constexpr double kStandingBudgets = 20;  // the same of exact rays, that is to be better than the last one
+constexpr double kFinerBelow = 0.7;      // of the budget: more pixels again only with some room, or their number would come and go
 
 bool is_goal(const Quality& quality) { return quality.goal.has_value(); }
 
@@ -52,6 +56,7 @@ NextPicture Pacing::moving(const SceneKind& kind) {
 
 std::optional<NextPicture> Pacing::still(const SceneKind& kind) {
   follow(kind);
+  kept_late_ = false;
   if (finished_) return std::nullopt;
   const std::uint32_t scale = current_.scale;
   if (!is_goal(quality_) || !kind.rays) {
@@ -77,10 +82,13 @@ std::optional<NextPicture> Pacing::still(const SceneKind& kind) {
 NextPicture Pacing::kept() {
   // what it takes says nothing of its setting
   asked_ = false;
+  is_kept_ = true;
   NextPicture next = current_;
   next.settings.keep = true;
   return next;
 }
+
+bool Pacing::may_improve() const { return kind_.fast || refinement_.expected_better_ms().value_or(0) <= kStandingBudgets * budget_ms_; }
 
 NextPicture Pacing::best(const SceneKind& kind) {
   while (still(kind)) {
@@ -91,6 +99,7 @@ NextPicture Pacing::best(const SceneKind& kind) {
 
 void Pacing::drawn(double ms) {
   shown_ms_ = ms;
+  if (std::exchange(is_kept_, false) && ms > kKeptBudgets * budget_ms_) kept_late_ = true;
   if (asked_) refinement_.drawn(ms * current_.scale * current_.scale);
   asked_ = false;
 }

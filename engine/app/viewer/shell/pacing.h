@@ -44,6 +44,10 @@ class Pacing {
   std::optional<NextPicture> still(const SceneKind& kind);
   /// The picture after nothing but opaque things has moved: as good as the last one, what has not changed of it is kept.
   NextPicture kept();
+  /// Whether still() may come between pictures that are kept: exact rays only where the hand's picture does not stand for long.
+  bool may_improve() const;
+  /// Not where the last one that was kept came far too late, because much had moved; until something rests.
+  bool may_keep() const { return !kept_late_; }
   /// The picture that still() would end with.
   NextPicture best(const SceneKind& kind);
   /// The last one.
@@ -78,6 +82,8 @@ class Pacing {
   bool asked_ = false;      ///< the refinement waits for a time
   bool by_moving_ = false;  ///< current_ is from moving()
   bool finished_ = false;
+  bool is_kept_ = false;  ///< the last picture is from kept()
+  bool kept_late_ = false;
   double shown_ms_ = 0;
   std::optional<double> rmse_;
 };

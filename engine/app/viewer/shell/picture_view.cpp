@@ -74,6 +74,11 @@ Result<render::FramePacket> PictureView::packet(std::uint32_t width, std::uint32
   return packet;
 }
 
+/// Interlaced eyes belong to the window's own pixels.
+std::uint32_t PictureView::scale_of(const NextPicture& next) const {
+  return render::is_interlaced(render::packing_of(shared_.scene.scene().stereo)) ? 1 : next.scale;
+}
+
 std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file) {
   auto ahead = std::exchange(ahead_, std::nullopt);
   if (is_minimised()) return std::nullopt;
@@ -84,7 +89,7 @@ std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file)
     width = pixels_[2] - pixels_[0];
     height = pixels_[3] - pixels_[1];
   }
-  const std::uint32_t scale = render::is_interlaced(render::packing_of(shared_.scene.scene().stereo)) ? 1 : next.scale;
+  const std::uint32_t scale = scale_of(next);
   std::int64_t start = now_ns();
   auto packet = ahead && !for_file ? Result<render::FramePacket>(std::move(*ahead)) : this->packet(width / scale, height / scale);
   if (!packet) {
@@ -132,9 +137,12 @@ void PictureView::tell_notes() const {
 
 NextPicture PictureView::followed() {
   Pacing& pacing = shared_.pacing;
-  if (!shown_ || !kind_.fast || pacing.again().scale != 1) return moving();
-  auto packet = this->packet(pixels_[2] - pixels_[0], pixels_[3] - pixels_[1]);
+  if (!shown_ || !kind_.rays || !pacing.may_keep()) return moving();
+  const std::uint32_t scale = scale_of(pacing.again());
+  auto packet = this->packet((pixels_[2] - pixels_[0]) / scale, (pixels_[3] - pixels_[1]) / scale);
   if (!packet || !render::same_rays(*packet, *shown_)) return moving();
+  // opaque surfaces are looked for anew in every picture
+  if (!kind_.fast && std::ranges::any_of(packet->isosurfaces, [](const auto& item) { return item.opacity >= 1; })) return moving();
   ahead_ = std::move(*packet);
   return pacing.kept();
 }

@@ -69,6 +69,7 @@ class PictureView {
   std::optional<Failure> write_last(const std::function<void()>& make_panels);
 
  private:
+  std::uint32_t scale_of(const NextPicture& next) const;
   Result<render::FramePacket> packet(std::uint32_t width, std::uint32_t height) const;
   std::optional<PickedPlace> picked_at(double window_x, double window_y) const;
   void tell_notes() const;

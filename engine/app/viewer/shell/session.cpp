@@ -226,7 +226,7 @@ std::optional<NextPicture> Session::next_picture(bool moved, bool hand_moved) {
   const NextPicture next = picture_.followed();
   if (!next.settings.keep) last_change_ns_ = now_ns();
   // better ones come while a hand is at work, too
-  if (next.settings.keep && rest_s >= kRestS)
+  if (next.settings.keep && rest_s >= kRestS && shared_.pacing.may_improve())
     if (auto better = picture_.still()) return better;
   return next;
 }
