@@ -10,6 +10,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/threads.h"
+#include "render/mirror/brick_slots.h"
 #include "render/mirror/half.h"
 #include "render/vk/commands.h"
 
@@ -17,7 +18,6 @@ namespace catena::render {
 namespace {
 
 using field::Index3;
-constexpr std::uint32_t kSlotsAnAxis = 255;
 constexpr std::uint64_t kCellMapBytes = 128;  // a brick, cell_map.h
 
 /// Writes values as texels of the mirror's format. What is not finite becomes the least value (its cells are masked); what lies
@@ -308,16 +308,10 @@ class MirrorBuilder {
       }
       linear[i] = slot;
     }
-    const auto total = double(brick_of_slot_.size());
-    const std::uint32_t most = std::min(kSlotsAnAxis, device_.info().limits.maxImageDimension3D / kApron);
-    slots_[0] = std::min(most, std::uint32_t(std::ceil(std::cbrt(total))));
-    slots_[1] = std::min(most, std::uint32_t(std::ceil(std::sqrt(total / slots_[0]))));
-    slots_[2] = std::uint32_t(std::ceil(total / (double(slots_[0]) * slots_[1])));
-    if (slots_[2] > most)
-      return Error{fmt::format("the grid \"{}\" has {} leaves to draw, expected at most {} on this device", grid_.name(),
-                               brick_of_slot_.size(), std::uint64_t(most) * most * most)};
-    for (std::size_t i = 0; i < count; ++i)
-      mirror_.slots[i] = linear[i] % slots_[0] | linear[i] / slots_[0] % slots_[1] << 8 | linear[i] / slots_[0] / slots_[1] << 16;
+    const auto slots = brick_slots(device_, brick_of_slot_.size(), kApron);
+    if (!slots) return Error{fmt::format("the grid \"{}\" has {}", grid_.name(), slots.error().message)};
+    slots_ = slots->an_axis;
+    for (std::size_t i = 0; i < count; ++i) mirror_.slots[i] = slots->word(linear[i]);
     return Done{};
   }
 

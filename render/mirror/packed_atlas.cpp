@@ -9,6 +9,7 @@
 
 #include "engine/base/threads.h"
 #include "render/mirror/brick_map.h"
+#include "render/mirror/brick_slots.h"
 #include "render/mirror/gradient_volume.h"
 #include "render/vk/commands.h"
 
@@ -21,7 +22,7 @@ using field::Index3;
 constexpr double kMostBricks = 1 << 24;
 constexpr std::size_t kWordsX = kBrick, kWordsY = kApron, kWordsZ = kApron;
 constexpr double kRough = 0.01;
-constexpr std::uint32_t kAtlasSlots = 255, kWithoutSlot = 1u << 31;
+constexpr std::uint32_t kWithoutSlot = 1u << 31;
 
 /// The voxels of a brick, and of `margin` layers around it, that the grid has.
 struct BrickBlock {
@@ -329,20 +330,14 @@ Result<PackedAtlas> make_packed_atlas(vk::Device& device, const field::ScalarGri
   if (bytes > most_bytes) return too_many_bytes(bytes, most_bytes);
 
   SlotPlan plan;
-  const std::uint32_t most = std::min(kAtlasSlots, device.info().limits.maxImageDimension3D / std::uint32_t(kApron));
-  const double total = std::max(1.0, double(atlas.kept));
-  plan.slots[0] = std::min<std::size_t>(most, std::size_t(std::ceil(std::cbrt(total))));
-  plan.slots[1] = std::min<std::size_t>(most, std::size_t(std::ceil(std::sqrt(total / double(plan.slots[0])))));
-  plan.slots[2] = std::size_t(std::ceil(total / double(plan.slots[0] * plan.slots[1])));
-  if (plan.slots[2] > most)
-    return Error{fmt::format("it has {} bricks to keep, at most {} fit", atlas.kept, std::uint64_t(most) * most * most)};
+  const auto slots = brick_slots(device, atlas.kept, kApron);
+  if (!slots) return Error{"it has to keep " + slots.error().message};
+  std::copy(slots->an_axis.begin(), slots->an_axis.end(), plan.slots.begin());
   atlas.slots.assign(keep.size(), PackedAtlas::kNotKept);
   for (std::size_t i = 0; i < keep.size(); ++i) {
     if (!keep[i]) continue;
-    const std::size_t slot = plan.brick_of_slot.size();
+    atlas.slots[i] = slots->word(plan.brick_of_slot.size());
     plan.brick_of_slot.push_back(i);
-    atlas.slots[i] =
-        std::uint32_t(slot % plan.slots[0] | slot / plan.slots[0] % plan.slots[1] << 8 | slot / plan.slots[0] / plan.slots[1] << 16);
   }
   CATENA_CHECK(upload_words(device, {grid, scan}, plan, atlas));
   if (gradients) CATENA_CHECK(upload_gradients(device, {grid, scan}, plan, atlas));
