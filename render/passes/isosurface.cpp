@@ -3,6 +3,7 @@
 
 #include "render/mirror/cell_map.h"
 #include "render/passes/passes.h"
+#include "render/passes/still_surfaces.h"
 #include "render/raycast/bound_grids.h"
 #include "render/vk/commands.h"
 
@@ -37,10 +38,12 @@ class IsosurfacePass final : public Pass {
     CATENA_TRY(self->linear_, vk::Sampler::create(device, vk::Filter::linear));
     return std::unique_ptr<Pass>(std::move(self));
   }
-  PassUse use(const Frame&) const override { return {0, target::opaque}; }
+  PassUse use(const Frame& frame) const override { return {0, target::opaque, frame.settings.keep}; }
   Outcome prepare(Frame& frame) override;
   Bounds bounds() const override;
   Outcome record(vk::Commands& commands, Frame& frame) override;
+  bool finds_surfaces() const override { return true; }
+  bool has_kept() const override { return keeps_ && still_.has_kept(); }
 
  private:
   struct Surface {
@@ -55,7 +58,12 @@ class IsosurfacePass final : public Pass {
 
   vk::Sampler linear_;
   std::map<std::pair<std::uint32_t, bool>, vk::Pipeline> pipelines_;
+  Outcome draw(vk::Commands& commands, Frame& frame);
+
   std::vector<Surface> surfaces_;
+  StillSurfaces still_;
+  std::uint64_t version_ = 0;  ///< counts what prepare() has found new
+  bool keeps_ = false;
 };
 
 Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::uint32_t flags, bool has_cells) {
@@ -95,6 +103,7 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
     const bool same = surface.state.map.image && surface.state.mirror == mirror && surface.state.level == float(item.level);
     CATENA_CHECK(surface.state.update(frame.device, std::move(mirror), item.level));
     surface.item = item;
+    version_ += !same;
     if (!same) CATENA_CHECK(surface.make_cells(frame.device));
   }
   while (surfaces_.size() > count) surfaces_.pop_back();
@@ -108,6 +117,24 @@ Bounds IsosurfacePass::bounds() const {
 }
 
 Outcome IsosurfacePass::record(vk::Commands& commands, Frame& frame) {
+  keeps_ = false;
+  if (!frame.settings.keep) return draw(commands, frame);
+  keeps_ = bool(still_.fit(frame.device, {frame.packet.width, frame.packet.height, 1}));
+  if (keeps_) {
+    StillSurfaces::Look look{{}, version_};
+    for (const Surface& surface : surfaces_) {
+      look.surfaces.push_back(frame.rays.frame());
+      look.surfaces.back().grids[0] = surface_data(frame.rays, surface.state, surface.item);
+    }
+    CATENA_CHECK(still_.update(commands, std::move(look), [&] { return draw(commands, frame); }));
+  }
+  frame.targets.begin(commands, target::opaque, target::opaque & ~frame.written);
+  CATENA_CHECK(keeps_ ? still_.draw(frame.device, commands, frame.rays.frame()) : draw(commands, frame));
+  commands.end_pass();
+  return Done{};
+}
+
+Outcome IsosurfacePass::draw(vk::Commands& commands, Frame& frame) {
   for (Surface& surface : surfaces_) {
     const GridMirror& mirror = *surface.state.mirror;
     const VkRect2D area = surface_area(surface.cells, mirror, mirror.source(*surface.item.grid).mapping(), frame.rays.camera);

@@ -129,6 +129,10 @@ class Pass {
   virtual double build_ms() const { return 0; }
   /// Of images of grids' voxels, beside the mirrors.
   virtual std::uint64_t grid_bytes() const { return 0; }
+  /// The last picture's part was taken from the one before (RenderSettings::keep).
+  virtual bool has_kept() const { return false; }
+  /// Its rays end on surfaces of grids: depths count from these where nothing else casts rays.
+  virtual bool finds_surfaces() const { return false; }
   /// Null: it casts no rays that others are blended with.
   virtual RayProbe* probe() { return nullptr; }
   /// What the last picture lacks, or was drawn otherwise than asked, and why, one sentence; empty: nothing.

@@ -175,17 +175,18 @@ Outcome Renderer::Parts::prepare(Frame& frame) {
     CATENA_CHECK(passes[i]->prepare(frame));
   }
   mirrors->drop_unused();
-  Bounds bounds, of_rays;
+  Bounds bounds, of_rays, of_surfaces;
   TargetSet needed = target::picture;
   for (Pass* pass : active()) {
     bounds.add(pass->bounds());
     if (pass->probe()) of_rays.add(pass->bounds());
+    if (pass->finds_surfaces()) of_surfaces.add(pass->bounds());
     const TargetSet writes = pass->use(frame).writes;
     frame.written |= writes;
     needed |= writes;
   }
   frame.written = 0;
-  frame.rays = CameraRays::make(frame.packet, bounds, of_rays);
+  frame.rays = CameraRays::make(frame.packet, bounds, of_rays.empty() ? of_surfaces : of_rays);
   return targets.ensure(*device, frame.packet.width, frame.packet.height, needed);
 }
 
@@ -501,6 +502,7 @@ RenderStats Renderer::stats() const {
     stats.mirror_bytes += pass->grid_bytes();
     if (std::string note = pass->note(); !note.empty()) stats.notes.push_back(std::move(note));
     if (pass->probe()) stats.rays_kept = pass->probe()->has_kept();
+    if (!pass->probe() && pass->has_kept()) stats.surfaces_kept = true;
   }
   stats.validation_messages = device.messages().count();
   return stats;

@@ -42,6 +42,7 @@ struct RenderStats {
   std::uint64_t mirror_bytes = 0;                   ///< of images of grids' voxels, held now
   double mirror_ms = 0;                             ///< spent on building and uploading mirrors so far
   bool rays_kept = false;                           ///< RenderSettings::keep has spared the last picture most of its rays
+  bool surfaces_kept = false;                       ///< the same of all opaque isosurfaces
   std::vector<std::string> notes;         ///< what the last picture lacks, or was drawn otherwise than asked, and why, a sentence each
   std::uint64_t validation_messages = 0;  ///< warnings and errors of the validation layer so far
 };

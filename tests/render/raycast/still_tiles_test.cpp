@@ -119,6 +119,43 @@ TEST_F(StillTiles, ExactRaysAreMarchedUnderTheCursorsOldAndNewOutlineAlone) {
   }
 }
 
+TEST_F(StillTiles, OpaqueSurfacesAreFoundOnceAndSeenAmongWhatMoves) {
+  packet_.width = 240;
+  packet_.height = 180;
+  IsosurfaceItem surface;
+  surface.grid = packet_.volumes[0].grid;
+  surface.level = 0.9;
+  surface.color = {0.9f, 0.5f, 0.2f};
+  surface.id = 3;
+  packet_.isosurfaces = {surface, surface};
+  packet_.isosurfaces[1].level = 0.2;
+  packet_.isosurfaces[1].color = {0.2f, 0.5f, 0.9f};
+  packet_.cursors[0].size = 8;
+  packet_.cursors[0].id = 4;
+  RenderSettings settings;
+  settings.keep = true;
+  for (const bool alone : {true, false}) {
+    if (alone) packet_.volumes.clear();
+    for (int k = 0; k < 4; ++k) {
+      // in front, between and behind
+      packet_.cursors[0].probe = Vec3(60 - 15 * k, 20, 22);
+      const Picture found = draw(packet_, settings, k == 3 ? "last" : "");
+      EXPECT_EQ(renderer_->stats().surfaces_kept, k > 0) << alone << k;
+      ASSERT_EQ(max_difference(found, fresh(settings)), 0) << alone << k;
+      EXPECT_EQ(renderer_->read_ids().value().ids, other_->read_ids().value().ids);
+      EXPECT_EQ(renderer_->read_depth().value().depth, other_->read_depth().value().depth);
+    }
+    packet_.isosurfaces[0].level -= 0.1;
+    EXPECT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    EXPECT_FALSE(renderer_->stats().surfaces_kept) << "another level";
+    packet_.view.position.x += 1;
+    EXPECT_EQ(max_difference(draw(packet_, settings), fresh(settings)), 0);
+    EXPECT_FALSE(renderer_->stats().surfaces_kept) << "another eye";
+    packet_.volumes = {volume_item(surface.grid, {{0, 0}, {0.5, 0}, {1, 0.3}})};
+    packet_.lights = {{{1, 1, 1}, {1, 1, 1}, false}};
+  }
+}
+
 TEST(SameRays, DifferByWhatRaysMeetAndNotByWhatIsOpaque) {
   const auto grid = make_grid({8, 8, 8}, [](const Vec3& p) { return 0.1 * p.x; });
   FramePacket first = packet_of({30, -20, 10}, {4, 4, 4});

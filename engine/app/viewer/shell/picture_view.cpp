@@ -141,8 +141,6 @@ NextPicture PictureView::followed() {
   const std::uint32_t scale = scale_of(pacing.again());
   auto packet = this->packet((pixels_[2] - pixels_[0]) / scale, (pixels_[3] - pixels_[1]) / scale);
   if (!packet || !render::same_rays(*packet, *shown_)) return moving();
-  // opaque surfaces are looked for anew in every picture
-  if (!kind_.fast && std::ranges::any_of(packet->isosurfaces, [](const auto& item) { return item.opacity >= 1; })) return moving();
   ahead_ = std::move(*packet);
   return pacing.kept();
 }
