@@ -47,7 +47,7 @@ Outcome StillTiles::look(vk::Commands& commands, const vk::Image& opaque_depth) 
   const VkExtent3D& picture = opaque_depth.info().extent;
   newest_ = 1 - newest_;
   CATENA_CHECK(fit_tiles(*device_, opaque_, VK_FORMAT_R8_UINT, picture, kStillBlock));
-  CATENA_CHECK(fit_tiles(*device_, signs_[newest_], kSignFormat, picture, kStillBlock));
+  for (vk::Image& signs : signs_) CATENA_CHECK(fit_tiles(*device_, signs, kSignFormat, picture, kStillBlock));
   const std::array<float, 4> empty{0, 0, 0, 0};
   const vk::ColorTarget targets[] = {{&opaque_, empty}, {&signs_[newest_], empty}};
   commands.begin_pass(targets, {});
