@@ -7,6 +7,7 @@
 
 #include "engine/base/threads.h"
 #include "render/mirror/brick_map.h"
+#include "render/mirror/cubic_cells.h"
 #include "render/mirror/half.h"
 #include "render/vk/commands.h"
 
@@ -15,6 +16,8 @@ namespace {
 
 constexpr int kCellBrick = 4, kBlocks = kBrick / 2;
 constexpr std::size_t kVoxels = std::size_t(kApron) * kApron * kApron;
+constexpr std::size_t kCubicVoxels = std::size_t(kCubicReach) * kCubicReach * kCubicReach;
+constexpr float kCubicRounding = 1e-5f;  // of the brick's range: more than the shader's
 
 /// Where the corners of a brick of 8^3 cells lie, nine bits a row of voxels; `slack` widens the level.
 struct Rows {
@@ -54,7 +57,7 @@ class CellMapBuilder {
   void build(CellMap& map) const {
     const auto [bx, by, bz] = mirror_.bricks;
     parallel_for(std::size_t(by) * bz, 1, [&, bx = bx, by = by](std::size_t begin, std::size_t end) {
-      std::vector<float> values(kVoxels);
+      std::vector<float> values(mirror_.cubic ? kCubicVoxels : kVoxels);
       std::vector<std::uint8_t> valid(mirror_.masked ? kVoxels : 0);
       for (std::size_t line = begin; line < end; ++line)
         for (int x = 0; x < bx; ++x) brick(map, {x, int(line % by), int(line / by)}, values, valid);
@@ -67,12 +70,19 @@ class CellMapBuilder {
     if (range.empty() || range.least - slack_ > level_ || range.greatest + slack_ < level_) return;
     const field::Index3 first{kBrick * at.x, kBrick * at.y, kBrick * at.z};
     const field::Index3 origin{mirror_.origin.x + first.x, mirror_.origin.y + first.y, mirror_.origin.z + first.z};
-    grid_.read_block(origin, {kApron, kApron, kApron}, values);
+    if (mirror_.cubic)
+      grid_.read_block({origin.x - 1, origin.y - 1, origin.z - 1}, {kCubicReach, kCubicReach, kCubicReach}, values);
+    else
+      grid_.read_block(origin, {kApron, kApron, kApron}, values);
     if (halves_)
       for (float& v : values) v = mirror_.offset + mirror_.scale * float_from_half(half_from_float((v - mirror_.offset) / mirror_.scale));
     if (!valid.empty()) grid_.read_cell_valid(origin, {kApron, kApron, kApron}, valid);
     Rows rows;
-    rows.compare(values, level_, slack_);
+    std::array<std::uint8_t, kBrick * kBrick> cubic_rows{};
+    if (mirror_.cubic)
+      cubic_rows = cubic_cells_with(values, level_, slack_ + kCubicRounding * (range.greatest - range.least));
+    else
+      rows.compare(values, level_, slack_);
     // the domain's cells of this brick
     std::array<int, 3> lo{}, hi{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -83,7 +93,7 @@ class CellMapBuilder {
     const std::uint32_t in_x = hi[0] > lo[0] ? (0xffu >> (kBrick - hi[0])) & (0xffu << lo[0]) : 0u;
     for (int z = lo[2]; z < hi[2]; ++z)
       for (int y = lo[1]; y < hi[1]; ++y) {
-        std::uint32_t cells = rows.crossed(y, z) & in_x;
+        std::uint32_t cells = (mirror_.cubic ? cubic_rows[y + kBrick * z] : rows.crossed(y, z)) & in_x;
         if (!valid.empty() && cells) cells &= valid_cells(values, valid, y, z);
         for (int x = 0; cells; ++x, cells >>= 2) {
           const std::size_t block = map.block_index(kBlocks * at.x + x, kBlocks * at.y + y / 2, kBlocks * at.z + z / 2);
@@ -92,11 +102,12 @@ class CellMapBuilder {
       }
   }
 
-  static std::uint32_t valid_cells(const std::vector<float>& values, const std::vector<std::uint8_t>& valid, int y, int z) {
+  /// What is not finite is masked; where ghosts stand in its place the cells say so themselves.
+  std::uint32_t valid_cells(const std::vector<float>& values, const std::vector<std::uint8_t>& valid, int y, int z) const {
     std::uint32_t cells = 0;
     for (int x = 0; x < kBrick; ++x) {
       bool is_valid = valid[(std::size_t(z) * kApron + y) * kApron + x] != 0;
-      for (int c = 0; c < 8 && is_valid; ++c)
+      for (int c = 0; c < 8 && is_valid && !mirror_.cubic; ++c)
         is_valid = std::isfinite(values[(std::size_t(z + (c >> 2)) * kApron + y + (c >> 1 & 1)) * kApron + x + (c & 1)]);
       cells |= std::uint32_t(is_valid) << x;
     }

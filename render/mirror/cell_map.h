@@ -4,8 +4,8 @@
 ///   bits 8..15: 0 where the brick of 4^3 cells around the block has such a cell, else the largest coordinate difference, in bricks and
 ///   at most 255, to the nearest brick that has one
 /// A cell holds the level if it is valid and its corners, as the mirror's texels give them back, lie on both sides (value >= level
-/// is above). Where texels are scaled halves the test is a little wider than their rounding. Made anew for another level.
-/// Read by shaders/lib/surface.glsl. Local positions as in grid_mirror.h.
+/// is above); of a cubic grid, if its control points do (cubic_cells.h). Where texels are scaled halves the test is a little wider than
+/// their rounding. Made anew for another level. Read by shaders/lib/surface.glsl. Local positions as in grid_mirror.h.
 #pragma once
 #include "engine/field/grid.h"
 #include "render/mirror/grid_mirror.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -47,6 +48,11 @@ struct Encoder {
 
 Encoder choose_encoder(const field::ScalarGrid& grid, bool float32) {
   double least = grid.stats().min, greatest = grid.stats().max;
+  if (grid.interpolation() == field::Interpolation::cubic) {  // ghosts lie within one range of the data beyond its own
+    const double span = greatest - least;
+    least = std::max(least - span, -double{FLT_MAX});
+    greatest = std::min(greatest + span, double{FLT_MAX});
+  }
   const Vec3 voxels = grid.index_box().hi - grid.index_box().lo + Vec3(1.0);
   const float background = grid.background();
   const bool inactive_inside = double(grid.stats().active_voxels) < voxels.x * voxels.y * voxels.z;
@@ -92,32 +98,37 @@ struct Block {
   }
   std::size_t at(int x, int y, int z) const { return (std::size_t(z) * voxels.y + y) * voxels.x + x; }
 
-  /// Over the corners of valid cells with base in [x0, x1) x [0, ny) x [0, nz).
-  BrickRange range(int x0, int x1, int ny, int nz) const {
+  /// Over the corners of valid cells with base from `first` to before `end`, and what lies within `reach` of the corners.
+  BrickRange range(const Index3& first, const Index3& end, int reach) const {
     float least = std::numeric_limits<float>::infinity(), greatest = -least;
-    if (valid.empty()) {
-      for (int z = 0; z <= nz; ++z)
-        for (int y = 0; y <= ny; ++y)
-          for (int x = x0; x <= x1; ++x) {
+    const auto take = [&](const Index3& from, const Index3& to) {
+      for (int z = from.z; z <= to.z; ++z)
+        for (int y = from.y; y <= to.y; ++y)
+          for (int x = from.x; x <= to.x; ++x) {
             const float v = values[at(x, y, z)];
             least = std::min(least, v);
             greatest = std::max(greatest, v);
           }
+    };
+    if (valid.empty()) {
+      take({first.x - reach, first.y - reach, first.z - reach}, {end.x + reach, end.y + reach, end.z + reach});
     } else {
-      for (int z = 0; z < nz; ++z)
-        for (int y = 0; y < ny; ++y)
-          for (int x = x0; x < x1; ++x) {
-            if (!valid[at(x, y, z)]) continue;
-            for (int c = 0; c < 8; ++c) {
-              const float v = values[at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))];
-              least = std::min(least, v);
-              greatest = std::max(greatest, v);
-            }
-          }
+      for (int z = first.z; z < end.z; ++z)
+        for (int y = first.y; y < end.y; ++y)
+          for (int x = first.x; x < end.x; ++x)
+            if (valid[at(x, y, z)]) take({x - reach, y - reach, z - reach}, {x + 1 + reach, y + 1 + reach, z + 1 + reach});
     }
     return least <= greatest ? BrickRange{least, greatest} : BrickRange{};
   }
 };
+
+/// What a cubic may make of samples in a range.
+BrickRange widened(const BrickRange& r) {
+  if (r.empty() || r.least == r.greatest) return r;
+  const double beyond = field::kCubicOvershoot * (double(r.greatest) - r.least);
+  const auto outwards = [](double v, float to) { return std::nextafter(float(std::clamp(v, -double{FLT_MAX}, double{FLT_MAX})), to); };
+  return {outwards(r.least - beyond, -FLT_MAX), outwards(r.greatest + beyond, FLT_MAX)};
+}
 
 class MirrorBuilder {
  public:
@@ -133,7 +144,7 @@ class MirrorBuilder {
     if (mirror_.nearest) {
       CATENA_TRY(mirror_.one, vk::Sampler::create(device_, vk::Filter::nearest));
     }
-    for (BrickRange& range : mirror_.ranges) range = encoder_.stored(range);
+    for (BrickRange& range : mirror_.ranges) range = mirror_.cubic ? widened(encoder_.stored(range)) : encoder_.stored(range);
     return std::move(mirror_);
   }
 
@@ -144,7 +155,9 @@ class MirrorBuilder {
   std::optional<Bytes> bytes() {
     if (!ask()) return std::nullopt;
     if (!plan()) return Bytes{};
-    std::array<std::uint32_t, 3> values{std::uint32_t(size_.x), std::uint32_t(size_.y), std::uint32_t(size_.z)}, mask = values;
+    std::array<std::uint32_t, 3> values{std::uint32_t(size_.x + 2 * pad_), std::uint32_t(size_.y + 2 * pad_),
+                                        std::uint32_t(size_.z + 2 * pad_)},
+        mask = values;
     if (mirror_.atlas) {
       if (!assign_slots()) return std::nullopt;
       for (int a = 0; a < 3; ++a) {
@@ -152,7 +165,7 @@ class MirrorBuilder {
         mask[a] = slots_[a] * kBrick;
       }
     } else {
-      place(lo_);
+      place(padded_lo());
     }
     const auto value_bytes = vk::image_bytes(device_, vk::volume_info(value_format(), values[0], values[1], values[2]));
     const auto mask_bytes = vk::image_bytes(device_, vk::volume_info(VK_FORMAT_R8_UINT, mask[0], mask[1], mask[2]));
@@ -184,10 +197,15 @@ class MirrorBuilder {
     mirror_.drawable = true;
     mirror_.nearest = grid_.interpolation() == field::Interpolation::nearest;
     mirror_.masked = grid_.has_mask() || grid_.stats().nan_count > 0 || !std::isfinite(grid_.background());
+    mirror_.cubic = grid_.interpolation() == field::Interpolation::cubic;
+    pad_ = mirror_.cubic ? 1 : 0;
+    if (mirror_.cubic) return true;
     if (options_.layout != MirrorLayout::dense) plan_atlas();
     mirror_.atlas = options_.layout == MirrorLayout::atlas || (options_.layout == MirrorLayout::automatic && atlas_pays());
     return true;
   }
+
+  Index3 padded_lo() const { return {lo_.x - pad_, lo_.y - pad_, lo_.z - pad_}; }
 
   /// The first index of a brick, counted from the leaf that holds the box's corner.
   Index3 leaf(int x, int y, int z) const { return {leaves_lo_.x + kBrick * x, leaves_lo_.y + kBrick * y, leaves_lo_.z + kBrick * z}; }
@@ -258,10 +276,10 @@ class MirrorBuilder {
 
   /// Rows of bricks, in parallel; the mask is uploaded from a copy kept while the values go up.
   Outcome build_dense() {
-    place(lo_);
-    const auto nx = std::uint32_t(size_.x), ny = std::uint32_t(size_.y), nz = std::uint32_t(size_.z);
+    const Index3 lo = padded_lo();
+    place(lo);
+    const auto nx = std::uint32_t(size_.x + 2 * pad_), ny = std::uint32_t(size_.y + 2 * pad_), nz = std::uint32_t(size_.z + 2 * pad_);
     CATENA_CHECK(create_images(nx, ny, nz, nx, ny, nz));
-    const auto [bx, by, bz] = mirror_.bricks;
     std::vector<std::uint8_t> mask(mirror_.masked ? std::size_t(nx) * ny * nz : 0);
     const std::size_t texel = encoder_.texel();
     CATENA_CHECK(vk::upload_planes(device_, mirror_.values, kBrick, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
@@ -270,18 +288,18 @@ class MirrorBuilder {
         Block block;
         for (std::size_t task = begin; task < end; ++task) {
           const int y0 = kBrick * int(task % rows), z0 = int(first) + kBrick * int(task / rows);
-          const int height = std::min(kApron, int(ny) - y0), depth = std::min(kApron, int(nz) - z0);
-          block.read(grid_, {lo_.x, lo_.y + y0, lo_.z + z0}, {size_.x, height, depth}, mirror_.masked);
+          // with what the brick's last cells reach, and a padded one's first ones
+          const int before_y = std::min(pad_, y0), before_z = std::min(pad_, z0);
+          const int height = std::min(kApron + pad_, int(ny) - y0), depth = std::min(kApron + pad_, int(nz) - z0);
+          block.read(grid_, {lo.x, lo.y + y0 - before_y, lo.z + z0 - before_z}, {int(nx), height + before_y, depth + before_z},
+                     mirror_.masked);
           for (int z = 0; z < std::min(kBrick, depth); ++z)
             for (int y = 0; y < std::min(kBrick, height); ++y) {
-              const std::size_t row = (std::size_t(z0 + z) * ny + y0 + y) * nx;
-              encoder_.write(&block.values[block.at(0, y, z)], nx, out + (row - std::size_t(first) * ny * nx) * texel);
-              if (!mask.empty()) std::copy_n(&block.valid[block.at(0, y, z)], nx, &mask[row]);
+              const std::size_t row = (std::size_t(z0 + z) * ny + y0 + y) * nx, from = block.at(0, y + before_y, z + before_z);
+              encoder_.write(&block.values[from], nx, out + (row - std::size_t(first) * ny * nx) * texel);
+              if (!mask.empty()) std::copy_n(&block.valid[from], nx, &mask[row]);
             }
-          if (height < 2 || depth < 2) continue;
-          for (int x = 0; x < bx; ++x)
-            mirror_.ranges[mirror_.brick_index(x, y0 / kBrick, z0 / kBrick)] =
-                block.range(kBrick * x, std::min(kBrick * (x + 1), int(nx) - 1), height - 1, depth - 1);
+          find_ranges(block, y0, z0, before_y, before_z);
         }
       });
     }));
@@ -289,6 +307,19 @@ class MirrorBuilder {
     return vk::upload_planes(device_, mirror_.mask, 1, [&](std::uint32_t first, std::uint32_t count, std::byte* out) {
       std::memcpy(out, mask.data() + std::size_t(first) * nx * ny, std::size_t(count) * nx * ny);
     });
+  }
+
+  /// Of a row of bricks along x from y0, z0 in the image, which are before_y, before_z in the block.
+  void find_ranges(const Block& block, int y0, int z0, int before_y, int before_z) {
+    const int cells_y = std::min(kBrick, int(mirror_.box_hi.y) - y0), cells_z = std::min(kBrick, int(mirror_.box_hi.z) - z0);
+    if (cells_y < 1 || cells_z < 1) return;
+    const auto cells_x = int(mirror_.box_hi.x);
+    // the padding's cells are none: in the first bricks they are passed over
+    const int first_y = before_y + std::max(0, pad_ - y0), first_z = before_z + std::max(0, pad_ - z0);
+    for (int x = 0; x < mirror_.bricks[0]; ++x)
+      mirror_.ranges[mirror_.brick_index(x, y0 / kBrick, z0 / kBrick)] =
+          block.range({std::max(pad_, kBrick * x), first_y, first_z},
+                      {std::min(kBrick * (x + 1), cells_x), before_y + cells_y, before_z + cells_z}, pad_);
   }
 
   /// Gives every brick a slot; constant ones of one value share theirs.
@@ -366,15 +397,7 @@ class MirrorBuilder {
     const int x0 = first(lo_.x, origin.x), y0 = first(lo_.y, origin.y), z0 = first(lo_.z, origin.z);
     const int x1 = last(hi_.x, origin.x), y1 = last(hi_.y, origin.y), z1 = last(hi_.z, origin.z);
     if (x0 >= x1 || y0 >= y1 || z0 >= z1) return {};
-    Block part;
-    part.voxels = {x1 - x0 + 1, y1 - y0 + 1, z1 - z0 + 1};
-    for (int z = z0; z <= z1; ++z)
-      for (int y = y0; y <= y1; ++y)
-        for (int x = x0; x <= x1; ++x) {
-          part.values.push_back(block.values[block.at(x, y, z)]);
-          if (!block.valid.empty()) part.valid.push_back(block.valid[block.at(x, y, z)]);
-        }
-    return part.range(0, x1 - x0, y1 - y0, z1 - z0);
+    return block.range({x0, y0, z0}, {x1, y1, z1}, 0);
   }
 
   vk::Device& device_;
@@ -383,6 +406,7 @@ class MirrorBuilder {
   const Encoder encoder_;
   GridMirror mirror_;
   Index3 lo_, hi_, size_, leaves_lo_;
+  int pad_ = 0;  ///< voxels each side, of a cubic grid
   std::vector<std::uint8_t> is_constant_;
   std::vector<float> constant_value_;
   std::size_t stored_ = 0;

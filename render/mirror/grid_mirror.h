@@ -1,5 +1,6 @@
 /// A scalar grid on the GPU, made from its NanoVDB truth, keyed by (grid version, texel format), never changed, thrown away at will.
-///   dense: one 3D image over the index box
+///   dense: one 3D image over the index box; of a cubic grid (field::Interpolation) always this, padded by one voxel each side, with the
+///   grid's ghosts in place of missing samples, so that the 4^3 samples of every valid cell are in the image
 ///   atlas: the 8^3 leaves as 9^3 bricks (apron +1) in one 3D image; constant leaves of one value share a brick
 /// Positions are *local*: local = index - origin, voxel centres at whole numbers; the domain is box_lo..box_hi.
 /// value = offset + scale * texel. R32F: 0 and 1, exact. R16F: 0 and a power of two (texels round as halves do), unless the
@@ -7,7 +8,8 @@
 /// A cell that the grid's `valid` mask excludes, or with a corner that is not finite, is 0 in the mask image and drawn by nobody.
 /// A grid that does not fit is mirrored at 1/factor of its resolution: the mirror is then of `coarse`, a grid of its own with its own
 /// transform, and all of the above is about that one; only the part of it within `domain` is drawn.
-/// Min and max are kept a brick of 8^3 cells, on the host, over the corners of the brick's valid cells (least > greatest: none).
+/// Min and max are kept a brick of 8^3 cells, on the host, over the corners of the brick's valid cells (least > greatest: none); of a
+/// cubic grid over their 4^3 samples, widened by what a cubic may go beyond them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -40,6 +42,7 @@ struct GridMirror {
   bool atlas = false;
   bool masked = false;                   ///< there is a mask image
   bool nearest = false;                  ///< the value of the nearest voxel centre counts (field::Interpolation)
+  bool cubic = false;                    ///< the cubic of 4^3 samples counts
   field::Index3 origin;                  ///< index = origin + local
   Vec3 box_lo{0.0}, box_hi{0.0};         ///< the domain, local
   std::array<std::int32_t, 3> bricks{};  ///< an axis

@@ -144,7 +144,7 @@ Outcome IsosurfacePass::draw(vk::Commands& commands, Frame& frame) {
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound = surface.state.bound();
     const bool has_cells = frame.settings.skip && surface.cell_map;
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound.flags(), has_cells));
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags({&bound, 1}), has_cells));
     // without the map of cells its binding is never read; the map of bricks has the right type
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
                                       {1, vk::Resource::texture, nullptr, has_cells ? &surface.cell_map : &bound.map->image, nullptr}};

@@ -107,7 +107,7 @@ Outcome SliceDrawer::draw(vk::Commands& commands, const CameraRays& rays, Slice&
 
   // draw
   const BoundGrid bound{slice.mirror_, &slice.map_, false, true};
-  CATENA_TRY(const vk::Pipeline* pipe, pipeline(bound.flags(), peel.mode, peel.opaque_depth != nullptr));
+  CATENA_TRY(const vk::Pipeline* pipe, pipeline(grid_flags({&bound, 1}), peel.mode, peel.opaque_depth != nullptr));
   std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &slice.frame_data_, nullptr, nullptr},
                                     {kSlice, vk::Resource::uniform, &slice.slice_data_, nullptr, nullptr},
                                     {kColors, vk::Resource::buffer, &slice.colors_, nullptr, nullptr},

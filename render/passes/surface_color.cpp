@@ -93,7 +93,7 @@ Outcome SurfaceColorPass::record(vk::Commands& commands, Frame& frame) {
     data.grids[1] = color_data(frame.rays, surface.colors, 0);
     CATENA_CHECK(vk::write_uniform(frame.device, surface.uniform, data));
     const BoundGrid bound[] = {{surface.mirror, &surface.map, true, false}, surface.colors.bound()};
-    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, bound[0].flags() | bound[1].flags() << 4));
+    CATENA_TRY(const vk::Pipeline* pipe, pipeline(frame.device, grid_flags(bound)));
     std::vector<vk::Binding> bindings{{0, vk::Resource::uniform, &surface.uniform, nullptr, nullptr},
                                       {1, vk::Resource::buffer, &surface.table, nullptr, nullptr},
                                       {2, vk::Resource::texture, nullptr, &frame.targets.opaque_depth, nullptr},

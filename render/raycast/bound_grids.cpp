@@ -10,8 +10,15 @@ constexpr std::uint32_t kValues = 3, kMaps = kValues + MAX_GRIDS, kMasks = kMaps
 
 }  // namespace
 
-std::uint32_t BoundGrid::flags() const {
-  return (mirror->atlas ? 1u : 0u) | (mirror->masked ? 2u : 0u) | (shaded ? 4u : 0u) | (skips ? 8u : 0u);
+std::uint32_t grid_flags(std::span<const BoundGrid> grids) {
+  static_assert(3 * MAX_GRIDS + 2 * MAX_VOLUMES <= 32);
+  std::uint32_t flags = 0;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    const BoundGrid& g = grids[i];
+    flags |= ((g.mirror->atlas ? 1u : 0u) | (g.mirror->masked ? 2u : 0u) | (g.mirror->cubic ? 4u : 0u)) << (3 * i);
+    if (i < MAX_VOLUMES) flags |= ((g.shaded ? 1u : 0u) | (g.skips ? 2u : 0u)) << (3 * MAX_GRIDS + 2 * i);
+  }
+  return flags;
 }
 
 void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count) {

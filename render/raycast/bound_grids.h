@@ -1,5 +1,5 @@
 /// Mirrored grids as the shaders of rays get them: how one is bound (shaders/lib/grids.glsl: value image, brick map and mask at three
-/// bindings, four flag bits), one with a level, and one that colours what another one shapes.
+/// bindings, flag bits), one with a level, and one that colours what another one shapes.
 #pragma once
 #include <memory>
 #include <span>
@@ -16,10 +16,12 @@ namespace catena::render {
 struct BoundGrid {
   std::shared_ptr<const GridMirror> mirror;
   const BrickMap* map = nullptr;
-  bool shaded = false;
-  bool skips = false;
-  std::uint32_t flags() const;
+  bool shaded = false;  ///< of a volume
+  bool skips = false;   ///< of a volume
 };
+
+/// The constant GRID_FLAGS; volumes are the first grids.
+std::uint32_t grid_flags(std::span<const BoundGrid> grids);
 
 /// The pipeline's slots for `count` grids, and what to push for them: grid i, or the first one where there are fewer.
 void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count);

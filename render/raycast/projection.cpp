@@ -77,14 +77,14 @@ Outcome ProjectionRaycast::record(vk::Commands& commands, const CameraRays& rays
 
   const BoundGrid bound{mirror_, &map_, false, false};
   const std::uint32_t kind = item_.projection == Projection::maximum ? 1 : item_.projection == Projection::minimum ? 2 : 3;
-  vk::Pipeline& pipeline = pipelines_[{bound.flags(), scene.opaque_depth != nullptr, kind}];
+  vk::Pipeline& pipeline = pipelines_[{grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind}];
   if (!pipeline) {
     vk::GraphicsInfo info;
     info.vertex = kProjectionVertexShader;
     info.fragment = kProjectionFragmentShader;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer}, {2, vk::Resource::texture}};
     add_grid_slots(info.slots, 1);
-    info.constants = {bound.flags(), scene.opaque_depth != nullptr, kind};
+    info.constants = {grid_flags({&bound, 1}), scene.opaque_depth != nullptr, kind};
     info.colors = {kVolumeFormat};
     CATENA_TRY(pipeline, vk::Pipeline::create(*device_, info));
   }

@@ -211,7 +211,7 @@ VolumeRaycast::Ready VolumeRaycast::ready(const CameraRays& rays, const RaySetti
     bound.push_back(colors.grid.bound());
   }
   data.step_world = float(settings.step_voxels * edge);
-  for (std::size_t i = 0; i < bound.size(); ++i) kind.flags |= bound[i].flags() << (4 * i);
+  kind.flags = grid_flags(bound);
   return out;
 }
 

@@ -64,12 +64,13 @@ layout(binding = 26) uniform utexture3D mask_7;
 #define SWITCH_GRID(i, CALL) return CALL(0);
 #endif
 
-// four bits a grid
+// three bits a grid, then two a volume (grids 0..3)
 layout(constant_id = 0) const uint GRID_FLAGS = 0;
-bool grid_is_atlas(int i) { return (GRID_FLAGS >> (4 * i) & 1u) != 0u; }
-bool grid_is_masked(int i) { return (GRID_FLAGS >> (4 * i) & 2u) != 0u; }
-bool grid_is_shaded(int i) { return (GRID_FLAGS >> (4 * i) & 4u) != 0u; }
-bool grid_skips(int i) { return (GRID_FLAGS >> (4 * i) & 8u) != 0u; }
+bool grid_is_atlas(int i) { return (GRID_FLAGS >> (3 * i) & 1u) != 0u; }
+bool grid_is_masked(int i) { return (GRID_FLAGS >> (3 * i) & 2u) != 0u; }
+bool grid_is_cubic(int i) { return (GRID_FLAGS >> (3 * i) & 4u) != 0u; }
+bool volume_is_shaded(int i) { return (GRID_FLAGS >> (24 + 2 * i) & 1u) != 0u; }
+bool volume_skips(int i) { return (GRID_FLAGS >> (24 + 2 * i) & 2u) != 0u; }
 
 float filtered_texel(int i, vec3 uvw) {
 #define FILTERED(n) textureLod(values_##n, uvw, 0.0).r
@@ -97,8 +98,11 @@ bool is_plain(uint word) { return word >> 31 != 0u; }
 // The cell that holds a local position of the domain.
 ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }
 
-// The texel value at a local position of the domain: trilinear, or of the nearest voxel centre.
+#include "shaders/lib/cubic.glsl"
+
+// The texel value at a local position of the domain: trilinear, cubic, or of the nearest voxel centre.
 float sample_texel(int i, vec3 p) {
+  if (grid_is_cubic(i)) return cubic_value(fetch_cubic_at(i, p));
   float t;
   p = mix(p, floor(p + 0.5), frame.grids[i].nearest);
   if (grid_is_atlas(i)) {
@@ -145,9 +149,14 @@ float central_difference(int i, vec3 p, vec3 step) {
   return abs(high - low) > 1e-6 * (abs(low) + abs(high)) ? (high - low) / moved : 0.0;
 }
 
-// The gradient by central differences of one voxel, in world axes, up to the texels' scale (which is positive); 0 where the nearest voxel
-// counts.
+// The gradient by central differences of one voxel, or the cubic's own, in world axes, up to the texels' scale (which is positive); 0
+// where the nearest voxel counts.
 vec3 world_gradient(int i, vec3 p) {
+  if (grid_is_cubic(i)) {
+    vec3 gradient;
+    cubic_value(fetch_cubic_at(i, p), gradient);
+    return frame.grids[i].world_gradient * gradient;
+  }
   return (1.0 - frame.grids[i].nearest) * frame.grids[i].world_gradient * vec3(central_difference(i, p, vec3(1.0, 0.0, 0.0)), central_difference(i, p, vec3(0.0, 1.0, 0.0)),
                                               central_difference(i, p, vec3(0.0, 0.0, 1.0)));
 }

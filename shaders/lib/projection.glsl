@@ -1,10 +1,12 @@
 // Where the nearest voxel counts the weights of the corners are whole, and what stands at the four places is compared.
 // In a trilinear cell the value along a ray is a cubic: its greatest value lies at an end of the segment or at a root of the derivative.
+// In a cubic cell it is of ninth degree: a cubic through each four of ten places says where to look, and the cell itself is asked there.
 // Bricks of which no value can be better than the best so far are passed over: bits 24..31 of a brick's word are 0 where it has no
 // valid cell, else 1 + n, and no value in it is better than factor_lo + n factor_per_gradient. A minimum is the maximum of -value.
 float signed_value(float v) { return KIND == 2u ? -v : v; }
 
 float in_cell(vec4 lo, vec4 hi, vec3 place) {
+  if (grid_is_cubic(0)) return cubic_value(place);
   const vec3 f = corner_weights(0, place);
   const vec4 z = mix(lo, hi, f.z);
   const vec2 y = mix(z.xy, z.zw, f.y);
@@ -28,6 +30,24 @@ float greatest_between(vec4 lo, vec4 hi, vec3 a, vec3 b) {
   return best;
 }
 
+// The same of a cubic cell; `best` where it cannot hold more.
+float greatest_of_cubic(ivec3 cell, vec3 a, vec3 b, float best) {
+  fetch_cubic(0, cell);
+  const float offset = signed_value(frame.grids[0].value_offset), scale = signed_value(frame.grids[0].value_scale);
+  vec4 low = vec4(NO_DEPTH), high = vec4(-NO_DEPTH);
+  for (int row = 0; row < 16; ++row) {
+    cubic_rows[row] = offset + scale * cubic_rows[row];
+    low = min(low, cubic_rows[row]);
+    high = max(high, cubic_rows[row]);
+  }
+  const float least = min(min(low.x, low.y), min(low.z, low.w)), greatest = max(max(high.x, high.y), max(high.z, high.w));
+  if (greatest + CUBIC_OVERSHOOT * (greatest - least) > best) {
+    for (int part = 0; part < 3; ++part)
+      best = max(best, greatest_between(vec4(0.0), vec4(0.0), mix(a, b, float(part) / 3.0), mix(a, b, float(part + 1) / 3.0)));
+  }
+  return best;
+}
+
 float extreme(LocalRay ray, vec2 interval) {
   const vec3 inverse = safe_inverse(ray.direction);
   const bvec3 forward = forward_of(ray.direction);
@@ -44,15 +64,17 @@ float extreme(LocalRay ray, vec2 interval) {
     const vec3 leave = (mix(vec3(lo), vec3(hi), forward) - ray.origin) * inverse;
     const float out_at = min(min(leave.x, leave.y), leave.z);
     if (!pass && cell_is_valid(0, cell)) {
-      vec4 low, high;
-      cell_corners(0, cell, low, high);
-      low = KIND == 2u ? -low : low;
-      high = KIND == 2u ? -high : high;
-      const vec4 most = max(low, high);
-      if (max(max(most.x, most.y), max(most.z, most.w)) > best) {
-        const vec3 a = clamp(ray.origin + t * ray.direction - vec3(cell), 0.0, 1.0);
-        const vec3 b = clamp(ray.origin + clamp(out_at, t, interval.y) * ray.direction - vec3(cell), 0.0, 1.0);
-        best = max(best, greatest_between(low, high, a, b));
+      const vec3 a = clamp(ray.origin + t * ray.direction - vec3(cell), 0.0, 1.0);
+      const vec3 b = clamp(ray.origin + clamp(out_at, t, interval.y) * ray.direction - vec3(cell), 0.0, 1.0);
+      if (grid_is_cubic(0)) {
+        best = greatest_of_cubic(cell, a, b, best);
+      } else {
+        vec4 low, high;
+        cell_corners(0, cell, low, high);
+        low = KIND == 2u ? -low : low;
+        high = KIND == 2u ? -high : high;
+        const vec4 most = max(low, high);
+        if (max(max(most.x, most.y), max(most.z, most.w)) > best) best = max(best, greatest_between(low, high, a, b));
       }
     }
     // the cell behind the face through which the ray leaves

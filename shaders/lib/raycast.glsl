@@ -62,7 +62,7 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
     const vec3 p = clamp(rays[i].origin + t * rays[i].direction, frame.grids[i].lo, frame.grids[i].hi);
     int distance = 0;
     bool seen = true;
-    if (grid_skips(i)) {
+    if (volume_skips(i)) {
       const ivec3 brick = cell_of(i, p) >> 3;
       const uint word = brick_word(i, brick);
       distance = FOG != 0u && is_plain(word) ? 0 : leap_distance(word);  // fog colours what is plain
@@ -77,10 +77,10 @@ void add_volume(int i, float t, float h, inout vec3 emitted, inout float sigma_s
         vec4 c = transfer(i, sample_value(i, p));
         if (c.a > 0.0) {
           vec3 gradient = vec3(0.0);
-          if (grid_is_shaded(i) || has_factor(i)) gradient = world_gradient(i, p);
+          if (volume_is_shaded(i) || has_factor(i)) gradient = world_gradient(i, p);
           if (has_factor(i)) c.a *= gradient_factor(i, length(gradient) * frame.grids[i].value_scale);
           c.rgb = own_or_other(i, t, c.rgb);
-          if (grid_is_shaded(i)) c.rgb = lit(c.rgb, gradient, eye_direction);
+          if (volume_is_shaded(i)) c.rgb = lit(c.rgb, gradient, eye_direction);
           if (FOG != 0u) c.rgb = fogged(c.rgb, t);
           emitted += c.a * c.rgb;
           sigma_sum += c.a;

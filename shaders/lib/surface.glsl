@@ -165,14 +165,44 @@ bool next_by_corners(int i, inout Walk walk, Way way, float to) {
     const ivec3 cell = walk.cell ^ way.turned;
     const int distance = empty_distance(brick_word(i, cell >> 3));
     if (distance == 0) {
-      vec4 lo, hi;
-      level_corners(i, cell, lo, hi);
-      found = holds_level(lo, hi) && cell_is_valid(i, cell);
+      if (grid_is_cubic(i)) {
+        found = cell_is_valid(i, cell);  // corners do not tell
+      } else {
+        vec4 lo, hi;
+        level_corners(i, cell, lo, hi);
+        found = holds_level(lo, hi) && cell_is_valid(i, cell);
+      }
     }
     if (!found) leave_box(walk, way, distance > 0 ? (walk.cell | 7) + (8 * distance - 7) : walk.cell + 1);
   }
   return found;
 }
+
+bool next_cell(int i, inout Walk walk, Way way, float to) {
+#ifdef SURFACE_CELLS
+  if (HAS_CELLS != 0u) return next_in_map(walk, way, to);
+#endif
+  return next_by_corners(i, walk, way, to);
+}
+
+// The ray's piece in the walk's cell: where it begins and ends, within the cell and in depth.
+struct Piece {
+  vec3 a, b;
+  float from, to;
+};
+
+Piece piece_of(Walk walk, Way way, float to) {
+  const vec3 leave = exits(way, walk.cell + 1);
+  const float out_at = least_of(leave), end = clamp(out_at, walk.t, to);
+  const bool leaves = end == max(out_at, walk.t);  // else it ends within the cell
+  const bvec3 left = leaves ? axis_of(leave, out_at) : bvec3(false);
+  const vec3 a = mix(clamp(way.origin + walk.t * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(0.0), walk.entered);
+  const vec3 b = mix(clamp(way.origin + end * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(1.0), left);
+  const bvec3 turned = lessThan(way.turned, ivec3(0));
+  return Piece(mix(a, 1.0 - a, turned), mix(b, 1.0 - b, turned), walk.t, end);
+}
+
+#include "shaders/lib/cubic_surface.glsl"
 
 // The first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH if there is none. An inner loop walks to the
 // next cell whose corners lie on both sides, the outer one asks its cubic for a root, which is solved for when all is found: on a
@@ -180,31 +210,21 @@ bool next_by_corners(int i, inout Walk walk, Way way, float to) {
 float first_crossing(int i, LocalRay ray, float from, float to) {
   const Way way = make_way(i, ray);
   Walk walk = Walk(cell_of(i, ray.origin + from * ray.direction) ^ way.turned, from, bvec3(false));
+  if (grid_is_cubic(i)) return first_cubic_crossing(i, walk, way, to);
   bool found = false;
   vec4 cubic = vec4(0.0);
   Bracket bracket = Bracket(0.0, 0.0, 0.0, 1.0);
-  vec2 piece = vec2(from);
+  vec2 depths = vec2(from);
   while (!found && walk.t < to) {
-#ifdef SURFACE_CELLS
-    const bool holds = HAS_CELLS != 0u ? next_in_map(walk, way, to) : next_by_corners(i, walk, way, to);
-#else
-    const bool holds = next_by_corners(i, walk, way, to);
-#endif
-    if (holds) {
+    if (next_cell(i, walk, way, to)) {
       vec4 lo, hi;
       level_corners(i, walk.cell ^ way.turned, lo, hi);
-      const vec3 leave = exits(way, walk.cell + 1);
-      const float out_at = least_of(leave), end = clamp(out_at, walk.t, to);
-      const bool leaves = end == max(out_at, walk.t);  // else it ends within the cell
-      const bvec3 left = leaves ? axis_of(leave, out_at) : bvec3(false);
-      const vec3 a = mix(clamp(way.origin + walk.t * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(0.0), walk.entered);
-      const vec3 b = mix(clamp(way.origin + end * way.direction - vec3(walk.cell), 0.0, 1.0), vec3(1.0), left);
-      const bvec3 turned = lessThan(way.turned, ivec3(0));
-      cubic = cell_cubic(lo, hi, mix(a, 1.0 - a, turned), mix(b, 1.0 - b, turned));
+      const Piece piece = piece_of(walk, way, to);
+      cubic = cell_cubic(lo, hi, piece.a, piece.b);
       found = first_bracket(cubic, bracket);
-      piece = vec2(walk.t, end);
+      depths = vec2(piece.from, piece.to);
       leave_box(walk, way, walk.cell + 1);
     }
   }
-  return found ? mix(piece.x, piece.y, root_in(cubic, bracket)) : NO_DEPTH;
+  return found ? mix(depths.x, depths.y, root_in(cubic, bracket)) : NO_DEPTH;
 }

@@ -41,14 +41,19 @@ bool value_at(vec3 p, out float value, out vec3 gradient) {
   const ivec3 cell = cell_of(0, p);
   if (empty_distance(brick_word(0, cell >> 3)) > 0) return false;
   if (grid_is_masked(0) && !cell_is_valid(0, cell)) return false;
-  vec4 lo, hi;
-  cell_corners(0, cell, lo, hi);
-  const vec3 f = corner_weights(0, clamp(p - vec3(cell), 0.0, 1.0));
-  const vec4 z = mix(lo, hi, f.z), along_z = hi - lo;
-  const vec2 y = mix(z.xy, z.zw, f.y), along_y = z.zw - z.xy;
-  const vec2 zy = mix(along_z.xy, along_z.zw, f.y);
-  value = mix(y.x, y.y, f.x);
-  gradient = (1.0 - frame.grids[0].nearest) * vec3(y.y - y.x, mix(along_y.x, along_y.y, f.x), mix(zy.x, zy.y, f.x));
+  if (grid_is_cubic(0)) {
+    value = frame.grids[0].value_offset + frame.grids[0].value_scale * cubic_value(fetch_cubic_at(0, p), gradient);
+    gradient *= frame.grids[0].value_scale;
+  } else {
+    vec4 lo, hi;
+    cell_corners(0, cell, lo, hi);
+    const vec3 f = corner_weights(0, clamp(p - vec3(cell), 0.0, 1.0));
+    const vec4 z = mix(lo, hi, f.z), along_z = hi - lo;
+    const vec2 y = mix(z.xy, z.zw, f.y), along_y = z.zw - z.xy;
+    const vec2 zy = mix(along_z.xy, along_z.zw, f.y);
+    value = mix(y.x, y.y, f.x);
+    gradient = (1.0 - frame.grids[0].nearest) * vec3(y.y - y.x, mix(along_y.x, along_y.y, f.x), mix(zy.x, zy.y, f.x));
+  }
   return !(abs(value - slice.hidden) < 0.5);
 }
 

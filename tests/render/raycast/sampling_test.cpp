@@ -26,7 +26,7 @@ class Sampling : public DeviceFixture {
     info.shader = words;
     info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::buffer},   {2, vk::Resource::buffer},
                   {3, vk::Resource::sampled}, {11, vk::Resource::texture}, {19, vk::Resource::texture}};
-    info.constants = {(mirror.atlas ? 1u : 0u) | (mirror.masked ? 2u : 0u)};
+    info.constants = {(mirror.atlas ? 1u : 0u) | (mirror.masked ? 2u : 0u) | (mirror.cubic ? 4u : 0u)};
     auto pipeline = vk::Pipeline::create(*device_, info);
     EXPECT_TRUE(pipeline);
     auto map = make_brick_map(*device_, mirror, [](const BrickRange&) { return true; });
@@ -65,6 +65,7 @@ class Sampling : public DeviceFixture {
     auto mirror = make_grid_mirror(*device_, grid, options);
     ASSERT_TRUE(mirror);
     ASSERT_EQ(mirror->atlas, options.layout == MirrorLayout::atlas);
+    ASSERT_EQ(mirror->cubic, grid.interpolation() == field::Interpolation::cubic);
     std::mt19937 random(7);
     std::vector<glm::vec3> local;
     std::vector<Vec3> world;
@@ -140,6 +141,55 @@ TEST_F(Sampling, MaskedCells) {
   const auto grid = make_grid({40, 40, 40}, wavy, {}, [](const Vec3& p) { return norm(p - Vec3(17, 20, 22)) < 19; });
   for (const MirrorLayout layout : {MirrorLayout::dense, MirrorLayout::atlas})
     expect_close(*grid, {true, layout}, [&](double) { return 1e-3; });
+}
+
+TEST_F(Sampling, CubicIsThatOfTheFieldPaddedAndMasked) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const auto rough = [&](const Vec3&) { return uniform(random); };
+  for (const field::Index3& size : {field::Index3{21, 9, 26}, field::Index3{2, 2, 2}, field::Index3{16, 17, 18}}) {
+    const auto whole = make_grid(size, rough)->cubic(),
+               holed = make_grid(size, rough, {}, [&](const Vec3&p) { return p.x < 12 || uniform(random) < 0.97; })->cubic();
+    ASSERT_TRUE(whole && holed);
+    for (const MirrorLayout layout : {MirrorLayout::automatic, MirrorLayout::dense}) {
+      expect_close(**whole, {true, layout}, [](double) { return 3e-6; });
+      expect_close(**whole, {false, layout}, [](double) { return 2e-3; });
+      expect_close(**holed, {true, layout}, [](double) { return 3e-6; });
+    }
+  }
+}
+
+TEST_F(Sampling, CubicOfEqualSamplesIsThem) {
+  const auto grid = make_grid({9, 9, 9}, [](const Vec3&) { return 0.1f; })->cubic();
+  ASSERT_TRUE(grid);
+  expect_close(**grid, {true, MirrorLayout::dense}, [](double) { return 1e-30; });
+}
+
+/// The range of a brick holds every value that its cells can take.
+TEST_F(Sampling, RangesOfCubicBricksHoldWhatGoesBeyondTheSamples) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double masked : {0.0, 0.02}) {
+    const auto grid = make_grid(
+                          {27, 18, 33}, [&](const Vec3&) { return uniform(random) < 0.5 ? 0.0 : 1.0; }, {},
+                          [&](const Vec3&) { return uniform(random) >= masked; })
+                          ->cubic();
+    ASSERT_TRUE(grid);
+    const auto mirror = make_grid_mirror(*device_, **grid, {true, MirrorLayout::automatic});
+    ASSERT_TRUE(mirror && mirror->cubic && !mirror->atlas);
+    ASSERT_EQ(mirror->bricks, (std::array<std::int32_t, 3>{4, 3, 5}));
+    field::Cursor cursor;
+    int beyond = 0;
+    for (int trial = 0; trial < 100000; ++trial) {
+      const Vec3 local = mirror->box_lo + (mirror->box_hi - mirror->box_lo) * Vec3(uniform(random), uniform(random), uniform(random));
+      const auto s = (*grid)->sample(local + Vec3(mirror->origin.x, mirror->origin.y, mirror->origin.z), cursor);
+      if (!s.inside) continue;
+      const BrickRange& r = mirror->ranges[mirror->brick_index(int(local.x) / kBrick, int(local.y) / kBrick, int(local.z) / kBrick)];
+      ASSERT_TRUE(r.least <= s.value && s.value <= r.greatest);
+      if (s.value < 0 || s.value > 1) ++beyond;
+    }
+    EXPECT_GT(beyond, 10000);
+  }
 }
 
 }  // namespace sampling_test

@@ -1,0 +1,93 @@
+// The first crossing of a level along a ray where the cell is cubic. Along the ray the value is then a polynomial of ninth degree: it is
+// taken at ten places, a cubic laid through each four of them, and what that cubic says of a root is asked of the polynomial itself.
+// Missed is what rises above the level and sinks again between two of ten places by less than the cubic errs there.
+// Watertight: the value with which the ray leaves a cell is the one with which it enters the next.
+#define CUBIC_PARTS 3
+
+// Fetches the cell, counted from the level; false where it cannot hold it.
+bool fetch_level_cubic(int i, ivec3 cell) {
+  fetch_cubic(i, cell);
+  const float base = frame.grids[i].value_offset - frame.grids[i].level, scale = frame.grids[i].value_scale;
+  vec4 low = vec4(NO_DEPTH), high = vec4(-NO_DEPTH);
+  for (int row = 0; row < 16; ++row) {
+    cubic_rows[row] = base + scale * cubic_rows[row];
+    low = min(low, cubic_rows[row]);
+    high = max(high, cubic_rows[row]);
+  }
+  const float least = min(min(low.x, low.y), min(low.z, low.w)), greatest = max(max(high.x, high.y), max(high.z, high.w));
+  const float beyond = CUBIC_OVERSHOOT * (greatest - least);
+  return least - beyond < 0.0 && greatest + beyond >= 0.0;
+}
+
+float along_cubic(Piece piece, float u) { return cubic_value(mix(piece.a, piece.b, u)); }
+
+// The coefficients of the cubic through values at 0, 1/3, 2/3 and 1.
+vec4 cubic_through(vec4 v) {
+  return vec4(v.x, (-5.0 * v.x + 18.0 * v.y - 9.0 * v.z + 2.0 * v.w) / 6.0, (2.0 * v.x - 9.0 * v.y + 18.0 * v.z - 5.0 * v.w) / 6.0, v.w);
+}
+
+bool differ(float a, float b) { return (a >= 0.0) != (b >= 0.0); }
+
+// The first change of sign of the fetched cell along a piece whose first value is `value`, which becomes its last one.
+bool first_change(Piece piece, inout float value, out Bracket change) {
+  bool found = false;
+  change = Bracket(0.0, 0.0, 0.0, 1.0);
+  for (int part = 0; part < CUBIC_PARTS && !found; ++part) {
+    const float begin = float(part) / float(CUBIC_PARTS), extent = 1.0 / float(CUBIC_PARTS), third = extent / 3.0;
+    const vec4 v = vec4(value, along_cubic(piece, begin + third), along_cubic(piece, begin + 2.0 * third), along_cubic(piece, begin + extent));
+    Bracket near;
+    if (first_bracket(cubic_through(v), near)) {
+      change = Bracket(begin + extent * near.a, begin + extent * near.b, v.x, v.w);
+      if (near.a > 0.0) change.fa = along_cubic(piece, change.a);
+      if (near.b < 1.0) change.fb = along_cubic(piece, change.b);
+      found = differ(change.fa, change.fb);
+    }
+    if (!found && (differ(v.x, v.y) || differ(v.y, v.z) || differ(v.z, v.w))) {
+      found = true;
+      change = Bracket(begin + 2.0 * third, begin + extent, v.z, v.w);
+      if (differ(v.y, v.z)) change = Bracket(begin + third, begin + 2.0 * third, v.y, v.z);
+      if (differ(v.x, v.y)) change = Bracket(begin, begin + third, v.x, v.y);
+    }
+    value = v.w;
+  }
+  return found;
+}
+
+// Where the fetched cell is zero, by false position with halved ends (the Illinois rule).
+float cubic_root(Piece piece, Bracket change) {
+  float a = change.a, b = change.b, fa = change.fa, fb = change.fb, u = a, moved = 1.0;
+  for (int k = 0; k < 24 && moved > 1e-7; ++k) {
+    const float next = fb == fa ? 0.5 * (a + b) : clamp(a - fa * (b - a) / (fb - fa), min(a, b), max(a, b));
+    const float f = along_cubic(piece, next);
+    moved = abs(next - u);
+    u = next;
+    if (differ(f, fb)) {
+      a = b;
+      fa = fb;
+    } else {
+      fa *= 0.5;
+    }
+    b = next;
+    fb = f;
+  }
+  return u;
+}
+
+float first_cubic_crossing(int i, Walk walk, Way way, float to) {
+  bool found = false;
+  Piece piece = Piece(vec3(0.0), vec3(0.0), -NO_DEPTH, -NO_DEPTH);
+  Bracket change = Bracket(0.0, 0.0, 0.0, 1.0);
+  float value = 0.0;  // where the ray left the cell before
+  while (!found && walk.t < to) {
+    if (next_cell(i, walk, way, to)) {
+      if (fetch_level_cubic(i, walk.cell ^ way.turned)) {
+        const bool goes_on = walk.t == piece.to;
+        piece = piece_of(walk, way, to);
+        if (!goes_on) value = along_cubic(piece, 0.0);
+        found = first_change(piece, value, change);
+      }
+      leave_box(walk, way, walk.cell + 1);
+    }
+  }
+  return found ? mix(piece.from, piece.to, cubic_root(piece, change)) : NO_DEPTH;
+}
