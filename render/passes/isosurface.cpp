@@ -49,7 +49,7 @@ class IsosurfacePass final : public Pass {
   struct Surface {
     SurfaceState state;
     CellMap cells;       // without its texels: they are in the image
-    vk::Image cell_map;  // none: it would be too large
+    vk::Image cell_map;  // none: it would be too large, or the state has it
     IsosurfaceItem item;
     vk::Buffer uniform;
     Outcome make_cells(vk::Device& device);
@@ -83,8 +83,12 @@ Result<const vk::Pipeline*> IsosurfacePass::pipeline(vk::Device& device, std::ui
 }
 
 Outcome IsosurfacePass::Surface::make_cells(vk::Device& device) {
-  cells = make_cell_map(state.mirror->source(*item.grid), *state.mirror, state.level);
   cell_map = {};
+  if (state.mirror->cubic) {
+    cells = state.cells;
+    return Done{};
+  }
+  cells = make_cell_map(state.mirror->source(*item.grid), *state.mirror, state.level);
   if (!cells.texels.empty()) {
     CATENA_TRY(cell_map, upload_cell_map(device, cells));
   }
@@ -101,7 +105,7 @@ Outcome IsosurfacePass::prepare(Frame& frame) {
     if (count == surfaces_.size()) surfaces_.emplace_back();
     Surface& surface = surfaces_[count++];
     const bool same = surface.state.map.image && surface.state.mirror == mirror && surface.state.level == float(item.level);
-    CATENA_CHECK(surface.state.update(frame.device, std::move(mirror), item.level));
+    CATENA_CHECK(surface.state.update(frame.device, *item.grid, std::move(mirror), item.level));
     surface.item = item;
     version_ += !same;
     if (!same) CATENA_CHECK(surface.make_cells(frame.device));

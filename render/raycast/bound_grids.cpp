@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace catena::render {
 namespace {
@@ -19,6 +20,12 @@ std::uint32_t grid_flags(std::span<const BoundGrid> grids) {
     if (i < MAX_VOLUMES) flags |= ((g.shaded ? 1u : 0u) | (g.skips ? 2u : 0u)) << (3 * MAX_GRIDS + 2 * i);
   }
   return flags;
+}
+
+bool any_cubic(std::uint32_t grid_flags) {
+  bool any = false;
+  for (std::uint32_t i = 0; i < MAX_GRIDS; ++i) any = any || (grid_flags >> (3 * i) & 4u) != 0;
+  return any;
 }
 
 void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count) {
@@ -41,11 +48,19 @@ void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const Bound
   }
 }
 
-Outcome SurfaceState::update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, double next_level) {
+Outcome SurfaceState::update(vk::Device& device, const field::ScalarGrid& grid, std::shared_ptr<const GridMirror> next_mirror,
+                             double next_level) {
   const auto rounded = float(next_level);
   if (mirror == next_mirror && level == rounded && map.image) return Done{};
   mirror = std::move(next_mirror);
   level = rounded;
+  if (mirror->cubic) {
+    map = {};
+    cells = make_cell_map(mirror->source(grid), *mirror, level, std::numeric_limits<std::uint64_t>::max());
+    CATENA_TRY(map.image, upload_cell_map(device, cells));
+    cells.texels = {};
+    return Done{};
+  }
   CATENA_TRY(map, make_brick_map(device, *mirror, [this](const BrickRange& r) { return r.least <= level && level <= r.greatest; }));
   return Done{};
 }

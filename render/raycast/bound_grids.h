@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/mirror/brick_map.h"
+#include "render/mirror/cell_map.h"
 #include "render/raycast/camera_rays.h"
 #include "render/raycast/transfer_tables.h"
 #include "render/vk/commands.h"
@@ -22,19 +23,22 @@ struct BoundGrid {
 
 /// The constant GRID_FLAGS; volumes are the first grids.
 std::uint32_t grid_flags(std::span<const BoundGrid> grids);
+bool any_cubic(std::uint32_t grid_flags);
 
 /// The pipeline's slots for `count` grids, and what to push for them: grid i, or the first one where there are fewer.
 void add_grid_slots(std::vector<vk::Slot>& slots, std::uint32_t count);
 void add_grid_bindings(std::vector<vk::Binding>& bindings, std::span<const BoundGrid> grids, std::uint32_t count,
                        const vk::Sampler& linear);
 
-/// A level of a mirrored grid, ready to be bound: bricks without the level are inactive.
+/// A level of a mirrored grid, ready to be bound: bricks without the level are inactive. Of a cubic grid the map is that of its cells
+/// (render/mirror/cell_map.h): its corners do not tell which of them hold the level.
 struct SurfaceState {
   std::shared_ptr<const GridMirror> mirror;
   float level = 0;
   BrickMap map;
-  /// Rebuilds the map when the mirror or the level is another one.
-  Outcome update(vk::Device& device, std::shared_ptr<const GridMirror> next_mirror, double next_level);
+  CellMap cells;  ///< of a cubic grid, without texels: they are in the map
+  /// Rebuilds the map when the mirror or the level is another one. `grid`: that was mirrored.
+  Outcome update(vk::Device& device, const field::ScalarGrid& grid, std::shared_ptr<const GridMirror> next_mirror, double next_level);
   BoundGrid bound() const { return {mirror, &map, true, true}; }
 };
 /// The ray's numbers, level, colour and opacity.

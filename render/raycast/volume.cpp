@@ -16,9 +16,14 @@ constexpr std::uint32_t kVolumeFragmentShader[] = {
 constexpr std::uint32_t kVolumeBlendShader[] = {
 #include "spirv/blend.frag.inc"
 };
-
+constexpr std::uint32_t kVolumeBlendCubicShader[] = {
+#include "spirv/blend_cubic.frag.inc"
+};
 constexpr std::uint32_t kVolumeBlendLayersShader[] = {
 #include "spirv/blend_layers.frag.inc"
+};
+constexpr std::uint32_t kVolumeBlendLayersCubicShader[] = {
+#include "spirv/blend_layers_cubic.frag.inc"
 };
 constexpr std::uint32_t kVolumeLayersShader[] = {
 #include "spirv/layers.frag.inc"
@@ -64,8 +69,10 @@ Result<const vk::Pipeline*> VolumeRaycast::pipeline(const Kind& kind) {
     info.fragment = kVolumeLayersShader;
     info.constants = {kind.opaque, kind.layers};
   } else {
+    const bool cubic = any_cubic(kind.flags);
     info.fragment = kind.single()     ? vk::Spirv(kVolumeFragmentShader)
-                    : kind.layers > 0 ? vk::Spirv(kVolumeBlendLayersShader)
+                    : kind.layers > 0 ? cubic ? vk::Spirv(kVolumeBlendLayersCubicShader) : vk::Spirv(kVolumeBlendLayersShader)
+                    : cubic ? vk::Spirv(kVolumeBlendCubicShader)
                                       : vk::Spirv(kVolumeBlendShader);
     info.constants = {kind.flags, kind.opaque,      kind.volumes, kind.surfaces, kind.layers,
                       kind.modes, kind.color_grids, kind.jitter,  kind.colors,   kind.fog};
@@ -137,7 +144,7 @@ Outcome VolumeRaycast::prepare(std::span<const Mirrored<VolumeItem>> volumes, st
   surfaces_.resize(surfaces.size());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     looks_ += surfaces_[i].state.mirror != surfaces[i].mirror;
-    CATENA_CHECK(surfaces_[i].state.update(*device_, surfaces[i].mirror, surfaces[i].item->level));
+    CATENA_CHECK(surfaces_[i].state.update(*device_, *surfaces[i].item->grid, surfaces[i].mirror, surfaces[i].item->level));
     surfaces_[i].item = *surfaces[i].item;
   }
   CATENA_TRY(const bool recoloured, update_colors(volumes, surfaces));

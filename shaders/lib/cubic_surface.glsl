@@ -4,19 +4,11 @@
 // Watertight: the value with which the ray leaves a cell is the one with which it enters the next.
 #define CUBIC_PARTS 3
 
-// Fetches the cell, counted from the level; false where it cannot hold it.
-bool fetch_level_cubic(int i, ivec3 cell) {
+// Fetches the cell, its values counted from the level.
+void fetch_level_cubic(int i, ivec3 cell) {
   fetch_cubic(i, cell);
   const float base = frame.grids[i].value_offset - frame.grids[i].level, scale = frame.grids[i].value_scale;
-  vec4 low = vec4(NO_DEPTH), high = vec4(-NO_DEPTH);
-  for (int row = 0; row < 16; ++row) {
-    cubic_rows[row] = base + scale * cubic_rows[row];
-    low = min(low, cubic_rows[row]);
-    high = max(high, cubic_rows[row]);
-  }
-  const float least = min(min(low.x, low.y), min(low.z, low.w)), greatest = max(max(high.x, high.y), max(high.z, high.w));
-  const float beyond = CUBIC_OVERSHOOT * (greatest - least);
-  return least - beyond < 0.0 && greatest + beyond >= 0.0;
+  for (int row = 0; row < 16; ++row) cubic_rows[row] = base + scale * cubic_rows[row];
 }
 
 float along_cubic(Piece piece, float u) { return cubic_value(mix(piece.a, piece.b, u)); }
@@ -79,13 +71,12 @@ float first_cubic_crossing(int i, Walk walk, Way way, float to) {
   Bracket change = Bracket(0.0, 0.0, 0.0, 1.0);
   float value = 0.0;  // where the ray left the cell before
   while (!found && walk.t < to) {
-    if (next_cell(i, walk, way, to)) {
-      if (fetch_level_cubic(i, walk.cell ^ way.turned)) {
-        const bool goes_on = walk.t == piece.to;
-        piece = piece_of(walk, way, to);
-        if (!goes_on) value = along_cubic(piece, 0.0);
-        found = first_change(piece, value, change);
-      }
+    if (next_in_map(i, walk, way, to)) {
+      fetch_level_cubic(i, walk.cell ^ way.turned);
+      const bool goes_on = walk.t == piece.to;
+      piece = piece_of(walk, way, to);
+      if (!goes_on) value = along_cubic(piece, 0.0);
+      found = first_change(piece, value, change);
       leave_box(walk, way, walk.cell + 1);
     }
   }

@@ -1,4 +1,5 @@
 // Grids as textures: dense or brick atlas (render/mirror), with their masks and brick maps. GRID_COUNT of them are bound.
+// An includer that defines NO_CUBIC leaves cubic grids to another shader: what is never run takes drivers their time all the same.
 // Lavapipe cannot index an array of textures, hence the switches; they fold away where the index is a constant.
 #define BRICK 8
 #define APRON 9
@@ -98,11 +99,15 @@ bool is_plain(uint word) { return word >> 31 != 0u; }
 // The cell that holds a local position of the domain.
 ivec3 cell_of(int i, vec3 p) { return ivec3(clamp(floor(p), frame.grids[i].lo, frame.grids[i].hi - 1.0)); }
 
+#ifndef NO_CUBIC
 #include "shaders/lib/cubic.glsl"
+#endif
 
 // The texel value at a local position of the domain: trilinear, cubic, or of the nearest voxel centre.
 float sample_texel(int i, vec3 p) {
+#ifndef NO_CUBIC
   if (grid_is_cubic(i)) return cubic_value(fetch_cubic_at(i, p));
+#endif
   float t;
   p = mix(p, floor(p + 0.5), frame.grids[i].nearest);
   if (grid_is_atlas(i)) {
@@ -152,11 +157,13 @@ float central_difference(int i, vec3 p, vec3 step) {
 // The gradient by central differences of one voxel, or the cubic's own, in world axes, up to the texels' scale (which is positive); 0
 // where the nearest voxel counts.
 vec3 world_gradient(int i, vec3 p) {
+#ifndef NO_CUBIC
   if (grid_is_cubic(i)) {
     vec3 gradient;
     cubic_value(fetch_cubic_at(i, p), gradient);
     return frame.grids[i].world_gradient * gradient;
   }
+#endif
   return (1.0 - frame.grids[i].nearest) * frame.grids[i].world_gradient * vec3(central_difference(i, p, vec3(1.0, 0.0, 0.0)), central_difference(i, p, vec3(0.0, 1.0, 0.0)),
                                               central_difference(i, p, vec3(0.0, 0.0, 1.0)));
 }

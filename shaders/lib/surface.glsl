@@ -137,13 +137,22 @@ void level_corners(int i, ivec3 cell, out vec4 lo, out vec4 hi) {
 }
 
 #ifdef SURFACE_CELLS
-// Walks to the next cell that holds the level, by render/mirror/cell_map.h.
 layout(binding = 1) uniform utexture3D cell_map;
-bool next_in_map(inout Walk walk, Way way, float to) {
+uint block_of(int i, ivec3 cell) {
+  if (grid_is_cubic(i)) return brick_word(i, cell >> 1);  // its map is that of its cells
+  return texelFetch(cell_map, cell >> 1, 0).r;
+}
+#else
+const uint HAS_CELLS = 0;
+uint block_of(int i, ivec3 cell) { return brick_word(i, cell >> 1); }
+#endif
+
+// Walks to the next cell that holds the level, by render/mirror/cell_map.h.
+bool next_in_map(int i, inout Walk walk, Way way, float to) {
   bool found = false;
   while (!found && walk.t < to) {
     const ivec3 cell = walk.cell ^ way.turned, odd = cell & 1;
-    const uint block = texelFetch(cell_map, cell >> 1, 0).r;
+    const uint block = block_of(i, cell);
     found = (block >> (odd.x + 2 * odd.y + 4 * odd.z) & 1u) != 0u;
     if (!found) {
       // out of the bricks without, the block without, or the cell
@@ -154,9 +163,6 @@ bool next_in_map(inout Walk walk, Way way, float to) {
   }
   return found;
 }
-#else
-bool next_in_map(inout Walk walk, Way way, float to) { return false; }
-#endif
 
 // The same by the bricks' ranges and the corners themselves.
 bool next_by_corners(int i, inout Walk walk, Way way, float to) {
@@ -165,24 +171,13 @@ bool next_by_corners(int i, inout Walk walk, Way way, float to) {
     const ivec3 cell = walk.cell ^ way.turned;
     const int distance = empty_distance(brick_word(i, cell >> 3));
     if (distance == 0) {
-      if (grid_is_cubic(i)) {
-        found = cell_is_valid(i, cell);  // corners do not tell
-      } else {
-        vec4 lo, hi;
-        level_corners(i, cell, lo, hi);
-        found = holds_level(lo, hi) && cell_is_valid(i, cell);
-      }
+      vec4 lo, hi;
+      level_corners(i, cell, lo, hi);
+      found = holds_level(lo, hi) && cell_is_valid(i, cell);
     }
     if (!found) leave_box(walk, way, distance > 0 ? (walk.cell | 7) + (8 * distance - 7) : walk.cell + 1);
   }
   return found;
-}
-
-bool next_cell(int i, inout Walk walk, Way way, float to) {
-#ifdef SURFACE_CELLS
-  if (HAS_CELLS != 0u) return next_in_map(walk, way, to);
-#endif
-  return next_by_corners(i, walk, way, to);
 }
 
 // The ray's piece in the walk's cell: where it begins and ends, within the cell and in depth.
@@ -202,7 +197,9 @@ Piece piece_of(Walk walk, Way way, float to) {
   return Piece(mix(a, 1.0 - a, turned), mix(b, 1.0 - b, turned), walk.t, end);
 }
 
+#ifndef NO_CUBIC
 #include "shaders/lib/cubic_surface.glsl"
+#endif
 
 // The first depth in [from, to] at which the ray crosses the level of grid i; NO_DEPTH if there is none. An inner loop walks to the
 // next cell whose corners lie on both sides, the outer one asks its cubic for a root, which is solved for when all is found: on a
@@ -210,13 +207,15 @@ Piece piece_of(Walk walk, Way way, float to) {
 float first_crossing(int i, LocalRay ray, float from, float to) {
   const Way way = make_way(i, ray);
   Walk walk = Walk(cell_of(i, ray.origin + from * ray.direction) ^ way.turned, from, bvec3(false));
+#ifndef NO_CUBIC
   if (grid_is_cubic(i)) return first_cubic_crossing(i, walk, way, to);
+#endif
   bool found = false;
   vec4 cubic = vec4(0.0);
   Bracket bracket = Bracket(0.0, 0.0, 0.0, 1.0);
   vec2 depths = vec2(from);
   while (!found && walk.t < to) {
-    if (next_cell(i, walk, way, to)) {
+    if (HAS_CELLS != 0u ? next_in_map(i, walk, way, to) : next_by_corners(i, walk, way, to)) {
       vec4 lo, hi;
       level_corners(i, walk.cell ^ way.turned, lo, hi);
       const Piece piece = piece_of(walk, way, to);

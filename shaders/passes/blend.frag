@@ -4,5 +4,6 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // Several volumes and translucent isosurfaces together.
 #include "shaders/shared/frame.h"
+#define NO_CUBIC
 #define GRID_COUNT MAX_GRIDS
 #include "shaders/lib/blend.glsl"

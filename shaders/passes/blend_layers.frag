@@ -4,6 +4,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 // As blend.frag, with translucent layers between them. Fewer grids: a device promises 32 pushed descriptors.
 #include "shaders/shared/frame.h"
+#define NO_CUBIC
 #define GRID_COUNT MAX_GRIDS_WITH_LAYERS
 layout(constant_id = 4) const int LAYERS = 1;
 #include "shaders/lib/layers.glsl"

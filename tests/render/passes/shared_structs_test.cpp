@@ -21,8 +21,8 @@ using namespace catena::render::shared;
   ++compared
 
 TEST(SharedStructs, FrameAndGridData) {
-  for (const char* shader : {"blend.frag", "blend_layers.frag", "volume.frag", "projection.frag", "surface_color.frag", "isosurface.frag",
-                             "slice.frag", "sample.comp"}) {
+  for (const char* shader : {"blend.frag", "blend_cubic.frag", "blend_layers.frag", "blend_layers_cubic.frag", "volume.frag",
+                             "projection.frag", "surface_color.frag", "isosurface.frag", "slice.frag", "sample.comp"}) {
     auto all = struct_offsets(shader_words(shader));
     std::size_t compared = 0;
     {

@@ -1,0 +1,8 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// As blend.frag, where some grid is cubic.
+#include "shaders/shared/frame.h"
+#define GRID_COUNT MAX_GRIDS
+#include "shaders/lib/blend.glsl"

@@ -1,0 +1,11 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// As blend_layers.frag, where some grid is cubic.
+#include "shaders/shared/frame.h"
+#define GRID_COUNT MAX_GRIDS_WITH_LAYERS
+layout(constant_id = 4) const int LAYERS = 1;
+#include "shaders/lib/layers.glsl"
+#define HAS_LAYERS
+#include "shaders/lib/blend.glsl"
