@@ -48,11 +48,6 @@ struct Encoder {
 
 Encoder choose_encoder(const field::ScalarGrid& grid, bool float32) {
   double least = grid.stats().min, greatest = grid.stats().max;
-  if (grid.interpolation() == field::Interpolation::cubic) {  // ghosts lie within one range of the data beyond its own
-    const double span = greatest - least;
-    least = std::max(least - span, -double{FLT_MAX});
-    greatest = std::min(greatest + span, double{FLT_MAX});
-  }
   const Vec3 voxels = grid.index_box().hi - grid.index_box().lo + Vec3(1.0);
   const float background = grid.background();
   const bool inactive_inside = double(grid.stats().active_voxels) < voxels.x * voxels.y * voxels.z;
@@ -62,6 +57,11 @@ Encoder choose_encoder(const field::ScalarGrid& grid, bool float32) {
   }
   if (!(least <= greatest)) least = greatest = 0;
   Encoder e{float32, 0, 1, float(least), float(greatest)};
+  if (grid.interpolation() == field::Interpolation::cubic) {  // ghosts lie within one range of the data beyond its own
+    const double span = grid.stats().max - grid.stats().min;
+    e.least = float(std::max(std::min(least, grid.stats().min - span), -double{FLT_MAX}));
+    e.greatest = float(std::min(std::max(greatest, grid.stats().max + span), double{FLT_MAX}));
+  }
   if (float32) return e;
   const double largest = std::max(std::fabs(least), std::fabs(greatest)), range = greatest - least;
   if (range < 0.5 * largest && range > 0) {

@@ -1,0 +1,94 @@
+/// What the tests of pictures of cubic grids share: rough grids, and the field itself along a pixel's ray.
+#pragma once
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "render/frame/camera.h"
+#include "tests/render/support/frames.h"
+
+namespace catena::test::cubic_rays {
+
+inline GridPtr smooth(const GridPtr& grid) {
+  auto made = grid->cubic();
+  EXPECT_TRUE(made);
+  return made ? *made : nullptr;
+}
+
+/// Noise and waves in 0..1; `waves` is the share of these.
+inline GridPtr noisy(const field::Index3& n, unsigned seed, double waves, const field::Mapping& mapping = {}, double masked = 0) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::function<bool(const Vec3&)> valid;
+  if (masked > 0) valid = [&](const Vec3&) { return uniform(random) >= masked; };
+  return smooth(make_grid(
+      n,
+      [&](const Vec3& p) {
+        const double wave = std::sin(0.4 * p.x) * std::sin(0.5 * p.y + 1) * std::sin(0.45 * p.z + 2 + 0.1 * p.x);
+        return waves * (0.5 + 0.5 * wave) + (1 - waves) * uniform(random);
+      },
+      mapping, valid));
+}
+
+inline field::Mapping sheared() { return field::Mapping::from_linear(Mat3(0.8, 0.3, 0.1, -0.4, 1.1, 0.2, 0.1, 0.05, 1.7), {-300, 40, 3}); }
+
+inline Vec3 middle_of(const field::ScalarGrid& grid) {
+  return grid.mapping().world_from_index(0.5 * (grid.index_box().lo + grid.index_box().hi));
+}
+
+inline render::FramePacket seen(const field::ScalarGrid& grid, double distance, double fovy_deg = 30) {
+  return packet_of(middle_of(grid) + distance * direction(Vec3(1, -0.7, 0.6)), middle_of(grid), fovy_deg);
+}
+
+inline render::IsosurfaceItem surface_of(GridPtr grid, double level) {
+  render::IsosurfaceItem item;
+  item.grid = std::move(grid);
+  item.level = level;
+  item.color = {0.8f, 0.6f, 0.4f};
+  return item;
+}
+
+/// A pixel's ray by its depth, in the world, and where it is in the box of a grid.
+struct PixelRay {
+  Vec3 origin, direction;
+  double from = 0, to = HUGE_VAL, voxels = 1;  ///< voxels a unit of depth
+
+  PixelRay(const field::ScalarGrid& grid, const render::Camera& camera, std::uint32_t x, std::uint32_t y) {
+    const render::Ray ray = render::ray_through(camera, x + 0.5, y + 0.5);
+    direction = ray.direction / dot(ray.direction, -camera.back);
+    origin = ray.origin - dot(ray.origin - camera.position, -camera.back) * direction;
+    const Vec3 d = grid.mapping().index_from_world_linear * direction, o = grid.mapping().index_from_world(origin);
+    voxels = norm(d);
+    for (int a = 0; a < 3; ++a) {
+      const double s = (grid.index_box().lo[a] - o[a]) / d[a], t = (grid.index_box().hi[a] - o[a]) / d[a];
+      from = std::max(from, std::min(s, t));
+      to = std::min(to, std::max(s, t));
+    }
+  }
+  Vec3 at(double t) const { return origin + t * direction; }
+};
+
+/// The first root of the field's own values, looked for in steps and bisected; HUGE_VAL where there is none.
+inline double first_root(const field::ScalarGrid& grid, double level, const PixelRay& ray, double step_voxels, field::Cursor& cursor) {
+  double before = ray.from;
+  std::optional<bool> was;
+  const int count = std::max(1, int(std::ceil((ray.to - ray.from) * ray.voxels / step_voxels)));
+  for (int k = 0; k <= count; ++k) {
+    double t = ray.from + (ray.to - ray.from) * k / count;
+    const field::ScalarSample s = grid.sample(ray.at(t), cursor);
+    const bool above = s.value >= level;
+    if (s.inside && was && *was != above) {
+      double low = before, high = t;
+      for (int n = 0; n < 50; ++n) {
+        const double half = 0.5 * (low + high);
+        ((grid.sample(ray.at(half), cursor).value >= level) == *was ? low : high) = half;
+      }
+      return high;
+    }
+    was = s.inside ? std::optional(above) : std::nullopt;
+    before = t;
+  }
+  return HUGE_VAL;
+}
+
+}  // namespace catena::test::cubic_rays
