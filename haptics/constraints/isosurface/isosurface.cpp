@@ -16,6 +16,7 @@ constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no h
 constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
 constexpr int kQuick = 200;          // fetches before a formula asks for the descent
 constexpr int kQuickOfGrids = 60;    // likewise: a cubic grid's cost more, and walls may be the reason
+constexpr double kSomeWay = 1e-6;    // of L: nearer, in a tick
 constexpr int kOntoLinear = 5;       // Newton steps
 constexpr int kThrownQuick = 20;     // of those, in a tick with less work
 constexpr int kQuickRefusals = 8;    // in a row, likewise
@@ -250,7 +251,8 @@ class LevelSurface final : public Surface {
     if (walk.status != Status::boundary && walk.status != Status::budget) return false;
     const AtWall found = onto_level(field_, probe, goal(quick_of_grid()), cell.base, cell.f);
     if (!found.found || norm(probe - found.at.p) > norm(probe - at.p) + kOnLevel * field_.length()) return false;
-    if (walk.status == Status::budget && !(norm(found.at.p - at.p) > kOnLevel * field_.length())) return false;
+    // a walk that goes on in the next tick has come some way
+    if (walk.status == Status::budget && !(norm(probe - at.p) - norm(probe - found.at.p) > kSomeWay * field_.length())) return false;
     memory_.at = found.at;
     memory_.curvature = Curvature{};
     memory_.normal = found.at.n;
