@@ -11,7 +11,7 @@
 namespace catena::app {
 namespace {
 
-constexpr int kTicks = 1500, kRepeats = 5;
+constexpr int kTicks = 1500, kWalks = 5;
 
 /// Slowly on a closed curve about the middle of a box.
 std::vector<haptics::ProbeSample> closed_walk(const Vec3& middle, const Vec3& half) {
@@ -31,7 +31,7 @@ struct Walked {
 Walked walk_through(const haptics::Program& program, const std::vector<haptics::ProbeSample>& walk) {
   Walked walked{0, std::vector<double>(program.links.size()), std::vector<double>(program.links.size())};
   exchange::HapticState out;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+  for (int repeat = 0; repeat < kWalks; ++repeat) {
     auto state = std::make_unique<haptics::ChainState>();
     auto scratch = std::make_unique<haptics::ChainScratch>();
     const std::int64_t start = now_ns();
