@@ -54,17 +54,14 @@ struct GhostLimits<nanovdb::Vec3f> {
   }
 };
 
-double as_double(float v) { return v; }
-Vec3 as_double(const nanovdb::Vec3f& v) { return {v[0], v[1], v[2]}; }
-
 /// A block and three voxels about it: values, and which of them are present.
 template <class T>
 class Neighbourhood {
  public:
   explicit Neighbourhood(const GridStorage<T>& storage) : values_(*storage.values) {
     if (storage.valid_voxels) valid_.emplace(*storage.valid_voxels);
-    hi_ = {storage.last.x + storage.step.x, storage.last.y + storage.step.y, storage.last.z + storage.step.z};
     lo_ = coord(storage.lo);
+    hi_ = coord(storage.hi());
   }
 
   bool some_present = false, some_missing = false;  ///< of what was looked at
@@ -117,9 +114,9 @@ template <class T>
 class GhostMaker {
  public:
   GhostMaker(const GridStorage<T>& storage, const GridStats& stats) : storage_(storage), directions_(storage.step), limits_(stats) {
-    const Index3 &lo = storage.lo, &last = storage.last, &step = storage.step;
+    const Index3 &lo = storage.lo, hi = storage.hi(), &step = storage.step;
     first_ = {lo.x - step.x, lo.y - step.y, lo.z - step.z};
-    final_ = {last.x + 2 * step.x, last.y + 2 * step.y, last.z + 2 * step.z};
+    final_ = {hi.x + step.x, hi.y + step.y, hi.z + step.z};
     for (int a = 0; a < 3; ++a) blocks_[a] = (final_[a] >> 3) - (first_[a] >> 3) + 1;
   }
   double blocks() const { return static_cast<double>(blocks_[0]) * blocks_[1] * blocks_[2]; }
@@ -166,9 +163,8 @@ class GhostMaker {
     return true;
   }
   bool within_box(const Coord& block) const {
-    const Index3 &lo = storage_.lo, &last = storage_.last, &step = storage_.step;
-    return block[0] >= lo.x && block[1] >= lo.y && block[2] >= lo.z && block[0] + 7 <= last.x + step.x && block[1] + 7 <= last.y + step.y &&
-           block[2] + 7 <= last.z + step.z;
+    const Index3 &lo = storage_.lo, hi = storage_.hi();
+    return block[0] >= lo.x && block[1] >= lo.y && block[2] >= lo.z && block[0] + 7 <= hi.x && block[1] + 7 <= hi.y && block[2] + 7 <= hi.z;
   }
   bool is_needed(Neighbourhood<T>& window, const Coord& block) const {
     if (!storage_.may_be_invalid) return !within_box(block);
@@ -182,14 +178,14 @@ class GhostMaker {
   bool continued(const Neighbourhood<T>& window, int at, T& ghost) const {
     for (int axes = 1; axes <= 3; ++axes) {
       int longest = 0, rows = 0;
-      decltype(as_double(T())) sum(0.0);
+      decltype(corner_of(T())) sum(0.0);
       for (const Coord& way : directions_.by_axes[axes]) {
         const int step = window_at(way[0], way[1], way[2]);
         int length = 0;
         while (length < kReach && window.present(at + (length + 1) * step)) ++length;
         if (length == 0 || length < longest) continue;
         if (length > longest) longest = length, rows = 0, sum = decltype(sum)(0.0);
-        const auto s = [&](int n) { return as_double(window.value(at + n * step)); };
+        const auto s = [&](int n) { return corner_of(window.value(at + n * step)); };
         sum += length == 3 ? 3.0 * (s(1) - s(2)) + s(3) : length == 2 ? 2.0 * s(1) - s(2) : s(1);
         ++rows;
       }

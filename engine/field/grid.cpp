@@ -9,31 +9,50 @@
 namespace catena::field {
 namespace {
 
-constexpr auto scalar_corner = [](float v) -> double { return v; };
-constexpr auto finite_scalar_corner = [](double v) { return std::isfinite(v); };
+bool is_finite_corner(double v) { return std::isfinite(v); }
+bool is_finite_corner(const Vec3& v) { return is_finite(v); }
+constexpr auto to_corner = [](const auto& value) { return corner_of(value); };
+constexpr auto finite_corner = [](const auto& corner) { return is_finite_corner(corner); };
 
-ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const Index3& base, Cursor& cursor) {
-  ScalarWalk& walk = walk_of<ScalarWalk>(cursor, &grid, grid.version(), storage);
+template <class Grid>
+struct WalksOf;
+template <>
+struct WalksOf<ScalarGrid> {
+  using Linear = ScalarWalk;
+  using Cubic = CubicWalk<float, double>;
+};
+template <>
+struct WalksOf<VectorGrid> {
+  using Linear = VectorWalk;
+  using Cubic = CubicWalk<nanovdb::Vec3f, Vec3>;
+};
+
+/// The corners alone: what every way of reading a grid knows of a cell.
+template <class Grid>
+typename WalksOf<Grid>::Linear& linear_walk(const Grid& grid, const typename Grid::Storage& storage, const Index3& base, Cursor& cursor) {
+  auto& walk = walk_of<typename WalksOf<Grid>::Linear>(cursor, &grid, grid.version(), storage);
   if (!walk.filled || !(walk.base == base)) [[unlikely]]
-    fetch(walk, storage, base, scalar_corner, finite_scalar_corner);
+    fetch(walk, storage, base, to_corner, finite_corner);
   return walk;
 }
 
-using CubicScalarWalk = CubicWalk<float, double>;
-CubicScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const ScalarGrid::Ghosts& ghosts, const Index3& base,
-                         Cursor& cursor) {
-  CubicScalarWalk& walk = walk_of<CubicScalarWalk>(cursor, &grid, grid.version(), storage, *ghosts.grid);
+/// And the samples about a cell that is valid.
+template <class Grid>
+typename WalksOf<Grid>::Cubic& cubic_walk(const Grid& grid, const typename Grid::Storage& storage, const typename Grid::Ghosts& ghosts,
+                                          const Index3& base, Cursor& cursor) {
+  auto& walk = walk_of<typename WalksOf<Grid>::Cubic>(cursor, &grid, grid.version(), storage, *ghosts.grid);
   if (!walk.filled || !(walk.base == base)) [[unlikely]] {
-    fetch(walk, storage, base, scalar_corner, finite_scalar_corner);
+    fetch(walk, storage, base, to_corner, finite_corner);
     if (walk.valid) fetch_samples(walk, storage, base);
   }
   return walk;
 }
 
-/// What every walk knows, cubic or not: the corners.
-ScalarWalk& walk_to(const ScalarGrid& grid, const ScalarGrid::Storage& storage, const ScalarGrid::Ghosts* ghosts, const Index3& base,
-                    Cursor& cursor) {
-  return ghosts ? walk_to(grid, storage, *ghosts, base, cursor) : walk_to(grid, storage, base, cursor);
+/// A cursor keeps to one of them; `ghosts`: null where the grid is not cubic.
+template <class Grid>
+typename WalksOf<Grid>::Linear& walk_to(const Grid& grid, const typename Grid::Storage& storage, const typename Grid::Ghosts* ghosts,
+                                        const Index3& base, Cursor& cursor) {
+  return ghosts ? cubic_walk(grid, storage, *ghosts, base, cursor) : linear_walk(grid, storage, base, cursor);
 }
 
 }  // namespace
@@ -64,7 +83,7 @@ ScalarSample ScalarGrid::sample(const Vec3& world, Cursor& cursor) const noexcep
   if (!is_finite(index)) return s;
   const Index3 base = storage_->base_of(index);
   if (ghosts_) {
-    const CubicScalarWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+    const auto& walk = cubic_walk(*this, *storage_, *ghosts_, base, cursor);
     if (walk.valid) {
       const auto cubic = field::cubic<1>(walk.samples, place_in_cell(index, base));
       s.value = cubic.value[0];
@@ -89,13 +108,12 @@ ScalarSample ScalarGrid::sample(const Vec3& world, Cursor& cursor) const noexcep
 Reason ScalarGrid::why_outside(const Vec3& world, Cursor& cursor) const noexcept {
   const Vec3 index = mapping().index_from_world(world);
   if (!is_finite(index)) return Reason::not_finite;
-  return reason_outside(walk_to(*this, *storage_, ghosts_.get(), storage_->base_of(index), cursor), index_box(), index,
-                        finite_scalar_corner);
+  return reason_outside(walk_to(*this, *storage_, ghosts_.get(), storage_->base_of(index), cursor), index_box(), index, finite_corner);
 }
 
 const CubicSamples<1>* ScalarGrid::samples(const Index3& base, Cursor& cursor) const noexcept {
   if (!ghosts_ || !storage_->legal(base)) return nullptr;
-  const CubicScalarWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+  const auto& walk = cubic_walk(*this, *storage_, *ghosts_, base, cursor);
   return walk.valid ? &walk.samples : nullptr;
 }
 
@@ -151,13 +169,13 @@ void ScalarGrid::read_block(const Index3& origin, const Index3& size, std::span<
 
 void ScalarGrid::read_cell_valid(const Index3& origin, const Index3& size, std::span<std::uint8_t> out) const {
   CATENA_ASSERT(out.size() >= static_cast<std::size_t>(size.x) * size.y * size.z);
-  Cursor cursor;
+  Cursor cursor;  // of corners alone, whatever the grid is read by
   std::size_t n = 0;
   for (std::int32_t z = origin.z; z < origin.z + size.z; ++z)
     for (std::int32_t y = origin.y; y < origin.y + size.y; ++y)
       for (std::int32_t x = origin.x; x < origin.x + size.x; ++x, ++n) {
         const Index3 base{x, y, z};
-        out[n] = storage_->legal(base) && (!storage_->may_be_invalid || walk_to(*this, *storage_, ghosts_.get(), base, cursor).valid);
+        out[n] = storage_->legal(base) && (!storage_->may_be_invalid || linear_walk(*this, *storage_, base, cursor).valid);
       }
 }
 
@@ -167,37 +185,6 @@ bool ScalarGrid::constant_block(const Index3& origin, float& value) const {
   value = accessor.getValue(coord(origin));
   return true;
 }
-
-namespace {
-
-constexpr auto vector_corner = [](const nanovdb::Vec3f& v) { return Vec3(v[0], v[1], v[2]); };
-constexpr auto finite_vector_corner = [](const Vec3& v) { return is_finite(v); };
-
-VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const Index3& base, Cursor& cursor) {
-  VectorWalk& walk = walk_of<VectorWalk>(cursor, &grid, grid.version(), storage);
-  if (!walk.filled || !(walk.base == base)) [[unlikely]]
-    fetch(walk, storage, base, vector_corner, finite_vector_corner);
-  return walk;
-}
-
-using CubicVectorWalk = CubicWalk<nanovdb::Vec3f, Vec3>;
-CubicVectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const VectorGrid::Ghosts& ghosts, const Index3& base,
-                         Cursor& cursor) {
-  CubicVectorWalk& walk = walk_of<CubicVectorWalk>(cursor, &grid, grid.version(), storage, *ghosts.grid);
-  if (!walk.filled || !(walk.base == base)) [[unlikely]] {
-    fetch(walk, storage, base, vector_corner, finite_vector_corner);
-    if (walk.valid) fetch_samples(walk, storage, base);
-  }
-  return walk;
-}
-
-/// What every walk knows, cubic or not: the corners.
-VectorWalk& walk_to(const VectorGrid& grid, const VectorGrid::Storage& storage, const VectorGrid::Ghosts* ghosts, const Index3& base,
-                    Cursor& cursor) {
-  return ghosts ? walk_to(grid, storage, *ghosts, base, cursor) : walk_to(grid, storage, base, cursor);
-}
-
-}  // namespace
 
 VectorGrid::VectorGrid(std::string name, const Mapping& mapping, const Box& index_box, std::shared_ptr<const Storage> storage,
                        const GridStats& stats, std::shared_ptr<const Ghosts> ghosts)
@@ -221,7 +208,7 @@ std::shared_ptr<const VectorGrid> VectorGrid::linear() const {
 
 const CubicSamples<3>* VectorGrid::samples(const Index3& base, Cursor& cursor) const noexcept {
   if (!ghosts_ || !storage_->legal(base)) return nullptr;
-  const CubicVectorWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+  const auto& walk = cubic_walk(*this, *storage_, *ghosts_, base, cursor);
   return walk.valid ? &walk.samples : nullptr;
 }
 
@@ -231,7 +218,7 @@ VectorSample VectorGrid::sample(const Vec3& world, Cursor& cursor) const noexcep
   if (!is_finite(index)) return s;
   const Index3 base = storage_->base_of(index);
   if (ghosts_) {
-    const CubicVectorWalk& walk = walk_to(*this, *storage_, *ghosts_, base, cursor);
+    const auto& walk = cubic_walk(*this, *storage_, *ghosts_, base, cursor);
     if (walk.valid) {
       s.value = cubic_vector(walk.samples, place_in_cell(index, base));
       s.inside = index_box().contains(index, domain_slack);
@@ -257,8 +244,7 @@ LineSample VectorGrid::sample_line(const Vec3& world, Cursor& cursor) const noex
 Reason VectorGrid::why_outside(const Vec3& world, Cursor& cursor) const noexcept {
   const Vec3 index = mapping().index_from_world(world);
   if (!is_finite(index)) return Reason::not_finite;
-  return reason_outside(walk_to(*this, *storage_, ghosts_.get(), storage_->base_of(index), cursor), index_box(), index,
-                        finite_vector_corner);
+  return reason_outside(walk_to(*this, *storage_, ghosts_.get(), storage_->base_of(index), cursor), index_box(), index, finite_corner);
 }
 
 VectorCell VectorGrid::cell(const Index3& base, Cursor& cursor) const noexcept {

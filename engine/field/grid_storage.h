@@ -32,6 +32,7 @@ struct GridStorage {
     step = {first.x < final_voxel.x, first.y < final_voxel.y, first.z < final_voxel.z};
     last = {final_voxel.x - step.x, final_voxel.y - step.y, final_voxel.z - step.z};
   }
+  Index3 hi() const { return {last.x + step.x, last.y + step.y, last.z + step.z}; }  ///< the last voxel
   bool legal(const Index3& b) const { return b.x >= lo.x && b.y >= lo.y && b.z >= lo.z && b.x <= last.x && b.y <= last.y && b.z <= last.z; }
   Index3 clamp(const Index3& b) const {
     return {std::min(std::max(b.x, lo.x), last.x), std::min(std::max(b.y, lo.y), last.y), std::min(std::max(b.z, lo.z), last.z)};
@@ -47,6 +48,10 @@ struct GridStorage {
     return {axis(index.x, lo.x, last.x), axis(index.y, lo.y, last.y), axis(index.z, lo.z, last.z)};
   }
 };
+
+/// A stored value as cells have it.
+inline double corner_of(float v) { return v; }
+inline Vec3 corner_of(const nanovdb::Vec3f& v) { return {v[0], v[1], v[2]}; }
 
 struct ScalarGrid::Storage : GridStorage<float> {};
 struct VectorGrid::Storage : GridStorage<nanovdb::Vec3f> {};

@@ -42,8 +42,8 @@ using exchange::Status;
 
 inline constexpr int kEvaluationCap = 257;  ///< field fetches a link and tick, for every method
 /// All that takes time in a link's tick goes into one counter, in units of about 20 ns: a field fetch counts kFetchWork (of a cell that
-/// may lie anywhere in a grid, kCellWork more, of a cubic one kCubicWork), and every evaluation of a cell's polynomial, node of a search, knot or face that is
-/// visited 1. A constraint stops before kWorkCap, with BUDGET, and goes on in the next tick.
+/// may lie anywhere in a grid, kCellWork more, of a cubic one kCubicWork), and every evaluation of a cell's polynomial, node of a search,
+/// knot or face that is visited 1. A constraint stops before kWorkCap, with BUDGET, and goes on in the next tick.
 inline constexpr int kWorkCap = 4096, kFetchWork = 7, kCellWork = 8, kCubicWork = 16;
 inline constexpr int kLastStep = 256;  ///< of the cap: for what is begun before it is used up
 /// Of max_force: what a proxy's slip may add to the force in one tick, so that with its probe's motion it stays below 5 %.

@@ -49,8 +49,7 @@ struct Rows {
 
 class CellMapBuilder {
  public:
-  CellMapBuilder(const field::ScalarGrid& grid, const GridMirror& mirror, float level)
-      : grid_(grid), cells_(grid.interpolated(field::Interpolation::linear)), mirror_(mirror), level_(level) {
+  CellMapBuilder(const field::ScalarGrid& grid, const GridMirror& mirror, float level) : grid_(grid), mirror_(mirror), level_(level) {
     halves_ = mirror.values.info().format == VK_FORMAT_R16_SFLOAT;
     if (halves_ && mirror.offset != 0) slack_ = 1e-6f * (std::fabs(mirror.offset) + std::fabs(mirror.scale));
   }
@@ -77,7 +76,7 @@ class CellMapBuilder {
       grid_.read_block(origin, {kApron, kApron, kApron}, values);
     if (halves_)
       for (float& v : values) v = mirror_.offset + mirror_.scale * float_from_half(half_from_float((v - mirror_.offset) / mirror_.scale));
-    if (!valid.empty()) cells_->read_cell_valid(origin, {kApron, kApron, kApron}, valid);
+    if (!valid.empty()) grid_.read_cell_valid(origin, {kApron, kApron, kApron}, valid);
     Rows rows;
     std::array<std::uint8_t, kBrick * kBrick> cubic_rows{};
     if (mirror_.cubic)
@@ -116,7 +115,6 @@ class CellMapBuilder {
   }
 
   const field::ScalarGrid& grid_;
-  const std::shared_ptr<const field::ScalarGrid> cells_;  ///< linear: to ask a cubic cell for its validity costs 4^3 samples
   const GridMirror& mirror_;
   float level_, slack_ = 0;
   bool halves_ = false;

@@ -81,15 +81,14 @@ struct Block {
   std::vector<float> values;
   std::vector<std::uint8_t> valid;  ///< by voxel of the block (the cell based there); empty: all valid
 
-  /// `cells`: the same grid, asked for nothing but its cells' validity.
-  void read(const field::ScalarGrid& grid, const field::ScalarGrid& cells, const Index3& origin, const Index3& size, bool masked) {
+  void read(const field::ScalarGrid& grid, const Index3& origin, const Index3& size, bool masked) {
     voxels = size;
     const std::size_t count = std::size_t(size.x) * size.y * size.z;
     values.resize(count);
     grid.read_block(origin, size, values);
     if (!masked) return;
     valid.resize(count);
-    cells.read_cell_valid(origin, size, valid);
+    grid.read_cell_valid(origin, size, valid);
     for (int z = 0; z + 1 < size.z; ++z)
       for (int y = 0; y + 1 < size.y; ++y)
         for (int x = 0; x + 1 < size.x; ++x) {
@@ -141,11 +140,7 @@ BrickRange widened(const BrickRange& r) {
 class MirrorBuilder {
  public:
   MirrorBuilder(vk::Device& device, const field::ScalarGrid& grid, const MirrorOptions& options)
-      : device_(device),
-        grid_(grid),
-        options_(options),
-        cells_(grid.interpolated(field::Interpolation::linear)),
-        encoder_(choose_encoder(grid, options.float32)) {}
+      : device_(device), grid_(grid), options_(options), encoder_(choose_encoder(grid, options.float32)) {}
 
   Result<GridMirror> build() {
     CATENA_CHECK(ask());
@@ -303,7 +298,7 @@ class MirrorBuilder {
           // with what the brick's last cells reach, and a padded one's first ones
           const int before_y = std::min(pad_, y0), before_z = std::min(pad_, z0);
           const int height = std::min(kApron + pad_, int(ny) - y0), depth = std::min(kApron + pad_, int(nz) - z0);
-          block.read(grid_, *cells_, {lo.x, lo.y + y0 - before_y, lo.z + z0 - before_z}, {int(nx), height + before_y, depth + before_z},
+          block.read(grid_, {lo.x, lo.y + y0 - before_y, lo.z + z0 - before_z}, {int(nx), height + before_y, depth + before_z},
                      mirror_.masked);
           for (int z = 0; z < std::min(kBrick, depth); ++z)
             for (int y = 0; y < std::min(kBrick, height); ++y) {
@@ -378,7 +373,7 @@ class MirrorBuilder {
               const int x = int(brick % std::size_t(bx)), y = int(brick / std::size_t(bx) % std::size_t(by)),
                         z = int(brick / std::size_t(bx) / std::size_t(by));
               const Index3 origin = leaf(x, y, z);
-              block.read(grid_, *cells_, origin, {kApron, kApron, kApron}, mirror_.masked);
+              block.read(grid_, origin, {kApron, kApron, kApron}, mirror_.masked);
               mirror_.ranges[brick] = clipped_range(block, origin);
               const std::size_t ox = slot % sx * kApron, oy = slot / sx % sy * kApron, oz = (slot - begin_slot) / sx / sy * kApron;
               for (int k = 0; k < kApron; ++k)
@@ -415,7 +410,6 @@ class MirrorBuilder {
   vk::Device& device_;
   const field::ScalarGrid& grid_;
   const MirrorOptions options_;
-  const std::shared_ptr<const field::ScalarGrid> cells_;  ///< linear: to ask a cubic cell for its validity costs 4^3 samples
   const Encoder encoder_;
   GridMirror mirror_;
   Index3 lo_, hi_, size_, leaves_lo_;

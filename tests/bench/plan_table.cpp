@@ -108,7 +108,7 @@ void eye_rows(const Case& c, scene::Scene& scene) {
   const render::FramePacket packet = get(render::make_frame(scene, 400, 300));
   render::FramePacket clear = packet;
   clear.background[3] = 0;
-  const plan::EyeCurve curve = get(plan::measure_eye(*renderer, packet, [](double) {}));
+  const plan::EyeCurve curve = get(plan::measure_eye(*renderer, packet, get(plan::kind_of(*renderer, packet)), [](double) {}));
   const double told = tradeoff::least_told(curve.curve);
   need(renderer->draw(packet, render::balanced_settings()));
   const auto sweep = all_settings(renderer->draws_fast(packet), packet.volumes.front().shade);

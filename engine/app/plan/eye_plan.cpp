@@ -31,12 +31,12 @@ render::FramePacket small(render::FramePacket packet) {
   return packet;
 }
 
-render::LadderKind kind_of(render::Renderer& renderer, const render::FramePacket& packet) {
-  return {renderer.draws_fast(packet),
-          std::any_of(packet.volumes.begin(), packet.volumes.end(), [](const auto& item) { return item.shade; })};
-}
-
 }  // namespace
+
+Result<render::LadderKind> kind_of(render::Renderer& renderer, const render::FramePacket& packet) {
+  CATENA_CHECK(renderer.draw(packet, render::balanced_settings()));
+  return render::LadderKind{renderer.draws_fast(packet), std::ranges::any_of(packet.volumes, &render::VolumeItem::shade)};
+}
 
 std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind) {
   std::vector<render::RenderSettings> all;
@@ -49,7 +49,8 @@ std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind)
   return all;
 }
 
-Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const std::function<void(double)>& at) {
+Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const render::LadderKind& kind,
+                             const std::function<void(double)>& at) {
   EyeCurve made;
   Curve& curve = made.curve;
   curve.id = "eye-plan";
@@ -63,9 +64,7 @@ Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePack
   curve.floor = floor.error;
   curve.floor_from = floor.from;
   at(0.1);
-  // the first picture says what can draw it
-  CATENA_CHECK(renderer.draw(packet, render::balanced_settings()));
-  const std::vector<render::RenderSettings> all = eye_settings(kind_of(renderer, packet));
+  const std::vector<render::RenderSettings> all = eye_settings(kind);
   const double enough = std::max(render::kLeastTold, std::isfinite(curve.floor) ? 0.5 * curve.floor : 0);
   const std::int64_t start = now_ns();
   const auto share = [&](std::size_t done) { return double(done) / double(all.size()); };

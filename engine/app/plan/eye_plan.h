@@ -17,6 +17,8 @@
 
 namespace catena::app::plan {
 
+/// What can draw the packet: known once it was drawn, which this does.
+Result<render::LadderKind> kind_of(render::Renderer& renderer, const render::FramePacket& packet);
 /// The ladder of refinement.h up to the reference: what a plan may choose from.
 std::vector<render::RenderSettings> eye_settings(const render::LadderKind& kind);
 
@@ -28,7 +30,8 @@ struct EyeCurve {
 
 /// Measures the picture with settings from the cheapest on, until nothing more exact can be told from the truth. `at`: the share that is
 /// done, 0 to 1.
-Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const std::function<void(double)>& at);
+Result<EyeCurve> measure_eye(render::Renderer& renderer, const render::FramePacket& packet, const render::LadderKind& kind,
+                             const std::function<void(double)>& at);
 /// Of a kept curve; nothing where one of its points is no setting of this program.
 std::optional<EyeCurve> eye_curve(const Curve& curve, const render::LadderKind& kind);
 

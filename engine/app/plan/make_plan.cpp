@@ -48,9 +48,7 @@ Result<EyePlan> make_eye_plan(render::Renderer& renderer, const render::FramePac
   const render::View& v = packet.eyes.empty() ? packet.view : packet.eyes.front();
   for (const Vec3& p : {v.position, v.target, v.up}) key.add(p.x).add(p.y).add(p.z);
   key.add(v.fovy_deg).add(v.orthographic ? v.height : 0);
-  // what can draw it is known once something was drawn
-  CATENA_CHECK(renderer.draw(packet, render::balanced_settings()));
-  const render::LadderKind kind{renderer.draws_fast(packet), std::ranges::any_of(packet.volumes, &render::VolumeItem::shade)};
+  CATENA_TRY(const render::LadderKind kind, kind_of(renderer, packet));
   std::optional<EyeCurve> curve;
   std::string told;
   store.find(
@@ -63,7 +61,7 @@ Result<EyePlan> make_eye_plan(render::Renderer& renderer, const render::FramePac
   if (!told.empty()) tell(told);
   if (!curve) {
     Progress progress("plan: measuring the picture", 1);
-    CATENA_TRY(curve, measure_eye(renderer, packet, [&](double done) { progress.at(done); }));
+    CATENA_TRY(curve, measure_eye(renderer, packet, kind, [&](double done) { progress.at(done); }));
     keep(store, key.text(), work.scene.path, {curve->curve}, tell);
   }
   // of the whole picture

@@ -16,8 +16,6 @@ constexpr double kThrown = 0.02;     // of L: a longer step of the probe is no h
 constexpr int kThrownWork = 1536;    // of such a tick, and of those that finish what it began
 constexpr int kQuick = 200;          // fetches before a formula asks for the descent
 constexpr int kQuickOfGrids = 60;    // likewise: a cubic grid's cost more, and walls may be the reason
-constexpr double kSomeWay = 1e-6;    // of L: nearer, in a tick
-constexpr int kOntoLinear = 5;       // Newton steps
 constexpr int kThrownQuick = 20;     // of those, in a tick with less work
 constexpr int kQuickRefusals = 8;    // in a row, likewise
 constexpr int kSight = 16;           // fetches on the line of sight
@@ -216,48 +214,16 @@ class LevelSurface final : public Surface {
     return hold_formula(best, again, probe, other);
   }
 
-  /// Of a cubic grid: the place's cell, and on the level as its trilinear polynomial has it, or as near as the cell reaches.
-  CellPoint on_linear_level(const Vec3& place) noexcept {
-    const field::Mapping& mapping = field_.grid()->mapping();
-    CellPoint at = cell_point(*field_.grid(), place);
-    field_.count_fetch();
-    const field::ScalarCell cell = field_.grid()->cell(at.base, field_.cursor());
-    for (int k = 0; k < kOntoLinear; ++k) {
-      double value;
-      Vec3 slope;
-      cell.value_and_gradient(at.f, value, slope);
-      ++field_.steps();
-      slope = mapping.world_gradient(slope);
-      const double square = dot(slope, slope);
-      if (!(square > 0) || !std::isfinite(value)) break;
-      at.f = glm::clamp(at.f - mapping.index_from_world_linear * (slope * ((value - field_.level()) / square)), Vec3(0.0), Vec3(1.0));
-    }
-    return at;
-  }
-
-  /// On a cubic grid: along the trilinear cells of the same samples, whose surface lies near, to where walls hold that, at most as far as
-  /// this tick may; from there onto the cubic's own. False: no wall holds it, or what is found is no nearer.
+  /// Where walls of a cubic grid hold it. False: none does, or what is found there is no nearer.
   bool hold_along(const LevelPoint& at, const Vec3& probe, Hold& hold) noexcept {
-    if (field_.grid() == nullptr || !usable(at) || field_.spent(2 * kForLevel)) return false;
-    LevelField linear = field_.by_cells();
-    linear.keep(2 * kForLevel);
-    CellPoint cell = on_linear_level(at.p);
-    TravelLimit limit{memory_.at.p, travel_, false, {}, Vec3(0.0)};
-    WalkResult walk = walk_cells(linear, frames_, probe, cell, &limit);
-    if (limit.passed_by(world_of(*field_.grid(), cell))) {
-      cell = limit.last;
-      walk.status = Status::budget;
-    }
-    if (walk.status != Status::boundary && walk.status != Status::budget) return false;
-    const AtWall found = onto_level(field_, probe, goal(quick_of_grid()), cell.base, cell.f);
-    if (!found.found || norm(probe - found.at.p) > norm(probe - at.p) + kOnLevel * field_.length()) return false;
-    // a walk that goes on in the next tick has come some way
-    if (walk.status == Status::budget && !(norm(probe - at.p) - norm(probe - found.at.p) > kSomeWay * field_.length())) return false;
+    if (field_.grid() == nullptr || !usable(at) || field_.spent(kForWalls)) return false;
+    const AtWall found = closest_at_walls(field_, frames_, probe, goal(quick_of_grid()), at, {memory_.at.p, travel_});
+    if (!found.found) return false;
     memory_.at = found.at;
     memory_.curvature = Curvature{};
     memory_.normal = found.at.n;
-    memory_.walled = walk.status == Status::boundary;
-    hold = {true, found.at.p, std::fabs(found.at.distance), walk.status, walk.reason};
+    memory_.walled = found.status == Status::boundary;
+    hold = {true, found.at.p, std::fabs(found.at.distance), found.status, found.reason};
     return true;
   }
 

@@ -8,16 +8,37 @@ namespace {
 
 constexpr double kBefore = 1e-9;      // voxels: where the wall of an invalid cell is held
 constexpr double kLevelSlack = 1e-9;  // of L: as good as on the level
+constexpr double kSomeWay = 1e-6;     // of L: nearer, in a tick
+constexpr int kOntoLinear = 5;        // Newton steps
 constexpr int kKept = 4;              // fetches, to look at what was found
 
-}  // namespace
+/// The place's cell, and on the level as its trilinear polynomial has it, or as near as the cell reaches.
+CellPoint on_linear_level(LevelField& field, const Vec3& place) noexcept {
+  const field::Mapping& mapping = field.grid()->mapping();
+  CellPoint at = cell_point(*field.grid(), place);
+  field.count_fetch();
+  const field::ScalarCell cell = field.grid()->cell(at.base, field.cursor());
+  for (int k = 0; k < kOntoLinear; ++k) {
+    double value;
+    Vec3 slope;
+    cell.value_and_gradient(at.f, value, slope);
+    ++field.steps();
+    slope = mapping.world_gradient(slope);
+    const double square = dot(slope, slope);
+    if (!(square > 0) || !std::isfinite(value)) break;
+    at.f = glm::clamp(at.f - mapping.index_from_world_linear * (slope * ((value - field.level()) / square)), Vec3(0.0), Vec3(1.0));
+  }
+  return at;
+}
 
-AtWall onto_level(LevelField& field, const Vec3& probe, const ClosestGoal& goal, const field::Index3& base, const Vec3& f) noexcept {
+/// From a place that the walk ended in onto the cubic's level; `found` where it is met near by.
+AtWall onto_level(LevelField& field, const Vec3& probe, const ClosestGoal& goal, const CellPoint& walked) noexcept {
+  const Vec3& f = walked.f;
   const double slack = kLevelSlack * field.length();
   const field::ScalarGrid& grid = *field.grid();
   const field::Mapping& mapping = grid.mapping();
   const field::Box& box = grid.index_box();
-  const Vec3 place = Vec3(base.x, base.y, base.z) + f;
+  const Vec3 corner(walked.base.x, walked.base.y, walked.base.z), place = corner + f;
   Vec3 index = place;
   unsigned held = 0;
   for (int a = 0; a < 3; ++a) {
@@ -25,7 +46,7 @@ AtWall onto_level(LevelField& field, const Vec3& probe, const ClosestGoal& goal,
     // on the side of the cell that the walk was in
     const bool end = place[a] <= box.lo[a] || place[a] >= box.hi[a];
     if (!end) index[a] += f[a] == 0 ? kBefore : -kBefore;
-    Vec3 beyond = Vec3(base.x, base.y, base.z) + glm::clamp(f, Vec3(1e-3), Vec3(1 - 1e-3));
+    Vec3 beyond = corner + glm::clamp(f, Vec3(1e-3), Vec3(1 - 1e-3));
     beyond[a] = place[a] + (f[a] == 0 ? -0.5 : 0.5);
     field.count_fetch();
     if (end || grid.why_outside(mapping.world_from_index(beyond), field.cursor()) != Reason::none) held |= 1u << a;
@@ -49,6 +70,30 @@ AtWall onto_level(LevelField& field, const Vec3& probe, const ClosestGoal& goal,
   }
   const LevelPoint free = field.at(at.p);
   return {free.valid && !free.plateau && std::fabs(free.distance) <= slack, free};
+}
+
+}  // namespace
+
+AtWall closest_at_walls(LevelField& field, const PieceFrames& frames, const Vec3& probe, const ClosestGoal& goal, const LevelPoint& at,
+                        const WayAllowed& way) noexcept {
+  LevelField linear = field.by_cells();
+  linear.keep(kForWalls);
+  CellPoint cell = on_linear_level(field, at.p);
+  TravelLimit limit{way.from, way.room, false, {}, Vec3(0.0)};
+  WalkResult walk = walk_cells(linear, frames, probe, cell, &limit);
+  if (limit.passed_by(world_of(*field.grid(), cell))) {
+    cell = limit.last;
+    walk.status = Status::budget;
+  }
+  if (walk.status != Status::boundary && walk.status != Status::budget) return {};
+  AtWall found = onto_level(field, probe, goal, cell);
+  const double before = norm(probe - at.p), now = norm(probe - found.at.p);
+  if (!found.found || now > before + kLevelSlack * field.length()) return {};
+  // a walk that goes on in the next tick has come some way
+  if (walk.status == Status::budget && !(before - now > kSomeWay * field.length())) return {};
+  found.status = walk.status;
+  found.reason = walk.reason;
+  return found;
 }
 
 }  // namespace catena::haptics

@@ -11,16 +11,6 @@ std::shared_ptr<const field::ScalarGrid> cubic_of(const std::shared_ptr<const fi
   return *made;
 }
 
-struct Judged {
-  double off_level, tangential;  ///< of L
-};
-Judged judge(const field::ScalarField& f, double level, const Vec3& probe, const Vec3& proxy) {
-  field::Cursor cursor;
-  const auto s = f.sample(proxy, cursor);
-  const Vec3 n = direction(s.gradient), e = probe - proxy;
-  return {std::fabs(s.value - level) / norm(s.gradient) / f.length(), norm(e - n * dot(n, e)) / f.length()};
-}
-
 struct Case {
   const char* name;
   double level;

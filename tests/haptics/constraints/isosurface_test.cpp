@@ -6,17 +6,6 @@ namespace isosurface_test {
 
 constexpr double kOffAnalytic = 1e-11, kOffSampled = 1e-9, kTangential = 1e-6;  // of L
 
-struct Judged {
-  double off_level, tangential;
-};
-
-Judged judge(const field::ScalarField& f, double level, const Vec3& probe, const Vec3& proxy) {
-  field::Cursor cursor;
-  const auto s = f.sample(proxy, cursor);
-  const Vec3 n = direction(s.gradient), e = probe - proxy;
-  return {std::fabs(s.value - level) / norm(s.gradient) / f.length(), norm(e - n * dot(n, e)) / f.length()};
-}
-
 struct Tally {
   int runs = 0, bad = 0;
   double worst_off = 0, worst_tangential = 0;

@@ -92,6 +92,18 @@ inline ConstraintPtr isosurface(field::ScalarFieldPtr f, double level, const std
   return build(std::string(R"({"name": "a", "type": "isosurface", "field": "f", "level": )") + number + more + "}", fields);
 }
 
+/// How well a proxy lies on a level, and closest to the probe, by the field's own samples.
+struct Judged {
+  double off_level, tangential;  ///< of L
+};
+
+inline Judged judge(const field::ScalarField& f, double level, const Vec3& probe, const Vec3& proxy) {
+  field::Cursor cursor;
+  const auto s = f.sample(proxy, cursor);
+  const Vec3 n = direction(s.gradient), e = probe - proxy;
+  return {std::fabs(s.value - level) / norm(s.gradient) / f.length(), norm(e - n * dot(n, e)) / f.length()};
+}
+
 /// One link, as the tick drives it.
 struct Rig {
   explicit Rig(ConstraintPtr c) : constraint(std::move(c)) {}

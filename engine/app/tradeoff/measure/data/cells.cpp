@@ -5,45 +5,22 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <random>
 
 #include "engine/app/tradeoff/measure/choice.h"
+#include "engine/app/tradeoff/measure/fetches.h"
 #include "engine/app/tradeoff/measure/floor.h"
 #include "engine/app/tradeoff/measure/registry.h"
-#include "engine/app/tradeoff/measure/timing.h"
-#include "engine/base/clock.h"
 
 namespace catena::app::tradeoff {
 namespace {
-
-/// Places in the world along random straight walks of a tenth of a voxel a step; many cells, each fetched some ten times.
-std::vector<Vec3> hand_places(const field::Field& field) {
-  std::mt19937 random(17);
-  const auto unit = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
-  const field::Box& box = field.index_box();
-  std::vector<Vec3> places;
-  while (places.size() < 100000) {
-    Vec3 p = box.lo + Vec3(unit(), unit(), unit()) * (box.hi - box.lo);
-    const Vec3 step = 0.1 * direction(Vec3(unit() - 0.5, unit() - 0.5, unit() - 0.5));
-    for (int k = 0; k < 200 && box.contains(p); ++k, p += step) places.push_back(field.mapping().world_from_index(p));
-  }
-  return places;
-}
 
 double one_number(double v) { return v; }
 double one_number(const Vec3& v) { return v.x; }
 
 template <class FieldPtr>
 Repeat fetches(const FieldPtr& field, const std::vector<Vec3>& places) {
-  return [&field = *field, &places]() -> Result<double> {
-    field::Cursor cursor;
-    const std::int64_t start = processor_ns();
-    double sum = 0;
-    for (const Vec3& p : places) sum += one_number(field.sample(p, cursor).value);
-    volatile double keep = sum;
-    (void)keep;
-    return static_cast<double>(processor_ns() - start) / static_cast<double>(places.size());
-  };
+  return fetch_times(
+      places, [&field = *field, cursor = field::Cursor{}](const Vec3& p) mutable { return one_number(field.sample(p, cursor).value); });
 }
 
 field::AnyField any(std::shared_ptr<const field::ScalarGrid> grid) { return {std::move(grid), nullptr}; }
@@ -54,7 +31,8 @@ template <class Grid>
 Outcome add_cells(Subject& subject, const Grid& grid, Curve& curve) {
   const std::shared_ptr<const Grid> linear = grid.linear();
   CATENA_TRY(const auto cubic, grid.cubic());
-  const std::vector<Vec3> places = hand_places(grid);
+  std::vector<Vec3> places = straight_walks(grid.index_box());
+  for (Vec3& p : places) p = grid.mapping().world_from_index(p);
   for (const auto& [word, one] : {std::pair<const char*, const std::shared_ptr<const Grid>&>{"linear", linear}, {"cubic", cubic}}) {
     const auto floor = interpolation_floor(any(one));
     Point p{word, fmt::format("\"interpolation\": \"{}\"", word), "", kNotMeasured, kNotMeasured, {}, kNotMeasured, {}};
@@ -93,9 +71,9 @@ Result<std::vector<Curve>> measure_cells(Subject& subject) {
     curve.id = "data-cells-" + name;
     curve.title = "How \"" + name + "\" is read between its voxels";
     curve.what =
-        "Linear cells of eight samples, or cubic ones of 64. Every 4th and every 2nd voxel, read in either way, are held against the "
-        "voxels "
-        "left out; the error between the voxels that there are follows from the observed order. One fetch is value and gradient.";
+        "Linear cells of eight samples, or cubic ones of 64. Every 4th and every 2nd voxel, read in either way, are held against "
+        "the voxels left out; the error between the voxels that there are follows from the observed order. One fetch is value and "
+        "gradient.";
     curve.error_name = "error of interpolation / range (RMS)";
     curve.time_name = "ns a fetch";
     curve.bytes_name = "bytes of the grid";

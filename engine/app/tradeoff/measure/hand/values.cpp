@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <random>
 
+#include "engine/app/tradeoff/measure/fetches.h"
 #include "engine/app/tradeoff/measure/floor.h"
 #include "engine/app/tradeoff/measure/hand/replay_link.h"
 #include "engine/app/tradeoff/measure/registry.h"
-#include "engine/base/clock.h"
 #include "render/mirror/half.h"
 
 namespace catena::app::tradeoff {
@@ -44,32 +43,9 @@ struct Block {
   }
 };
 
-/// Places along random straight walks, as a hand's fetches lie: steps of a tenth of a voxel.
-std::vector<Vec3> walk(const field::Index3& n) {
-  std::mt19937 random(7);
-  const auto unit = [&] { return static_cast<double>(random() >> 8) / 16777216.0; };
-  std::vector<Vec3> places;
-  while (places.size() < 100000) {
-    Vec3 p(unit() * (n.x - 1), unit() * (n.y - 1), unit() * (n.z - 1));
-    const Vec3 step = 0.1 * direction(Vec3(unit() - 0.5, unit() - 0.5, unit() - 0.5));
-    for (int k = 0; k < 200; ++k, p += step) {
-      if (p.x < 0 || p.y < 0 || p.z < 0 || !(p.x < n.x - 1) || !(p.y < n.y - 1) || !(p.z < n.z - 1)) break;
-      places.push_back(p);
-    }
-  }
-  return places;
-}
-
 template <class B>
 Repeat fetches_of(const B& block, const std::vector<Vec3>& places) {
-  return [&]() -> Result<double> {
-    const std::int64_t start = processor_ns();
-    double sum = 0;
-    for (const Vec3& p : places) sum += block.at(p);
-    volatile double keep = sum;
-    (void)keep;
-    return static_cast<double>(processor_ns() - start) / static_cast<double>(places.size());
-  };
+  return fetch_times(places, [&block](const Vec3& p) { return block.at(p); });
 }
 
 Result<Curve> measure_grid(Subject& subject, const std::string& name, const field::ScalarGrid& grid) {
@@ -107,7 +83,8 @@ Result<Curve> measure_grid(Subject& subject, const std::string& name, const fiel
     curve.floor_from =
         fmt::format("of linear interpolation between the samples, from every 2nd and 4th voxel, observed order {:.1f}", floor->at_h.order);
   }
-  const std::vector<Vec3> places = walk(n);
+  // not on the last voxels themselves: a cell begins at each place
+  const std::vector<Vec3> places = straight_walks({Vec3(0.0), Vec3(n.x - 1, n.y - 1, n.z - 1) - 1e-9});
   const auto add = [&](const char* setting, double size, const auto& block) {
     Point p{setting, "", "", 0, kNotMeasured, {}, size * static_cast<double>(floats.values.size()), {0}};
     double squares = 0;
