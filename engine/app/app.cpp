@@ -91,9 +91,13 @@ int parse_and_work(int argc, char** argv) {
   add_tradeoff(program, chosen);
   add_feel(program, chosen);
   add_devices(program, chosen);
+  add_study(program, chosen);
   add_view(program, chosen, view_exit_code);
   add_memory_limit(program);
-  for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) refuse_empty_numbers(*command);
+  for (CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; })) {
+    refuse_empty_numbers(*command);
+    for (CLI::App* part : command->get_subcommands([](const CLI::App*) { return true; })) refuse_empty_numbers(*part);
+  }
 
   try {
     program.parse(argc, argv);

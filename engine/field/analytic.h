@@ -1,8 +1,9 @@
 /// Fields by formula, with exact gradients: the closed forms that every algorithm is tested against, and demo data.
-/// Names: circle saddle node rankine lamb-oseen hill abc helix uniform (vectors);
+/// Names: circle saddle node rankine lamb-oseen hill abc helix uniform vortices (vectors);
 ///        sphere plane torus constant linear gaussian marschner-lobb tanh (scalars);
 ///        left-ventricle with the parts density, transmural (scalars) and fibre (vector, a line field).
 #pragma once
+#include <array>
 #include <limits>
 #include <span>
 #include <string>
@@ -19,6 +20,9 @@ struct AnalyticParameters {
   double scale = 1;               ///< multiplies values
   Vec3 direction{1.0, 0.0, 0.0};  ///< `uniform`
   std::string part;               ///< `left-ventricle`: density (default), transmural or fibre
+  Vec3 center{0.0};               ///< world place of the formula's origin; its box goes with it
+  int seed = 1;                   ///< `vortices`
+  int dimensions = 3;             ///< `vortices`: 2 or 3
   bool operator==(const AnalyticParameters&) const = default;
 };
 
@@ -42,6 +46,23 @@ struct VectorFormula {
 
 std::span<const ScalarFormula> scalar_formulas();
 std::span<const VectorFormula> vector_formulas();
+
+/// Rotations drawn by a seed, in a uniform stream (analytic_vortices.cpp).
+class Vortices {
+ public:
+  Vortices(int seed, int dimensions);
+  Vec3 value(const Vec3& p) const noexcept;
+
+ private:
+  static constexpr int kCount = 14;
+  struct Vortex {
+    Vec3 centre{0.0}, rate{0.0};
+    double inverse_radius2 = 1;
+  };
+  std::array<Vortex, kCount> vortices_;
+  Vec3 stream_{0.0};
+  bool flat_;
+};
 
 /// The left ventricle: see analytic_formulas.cpp.
 double ventricle_density(const Vec3& p, Vec3& gradient);

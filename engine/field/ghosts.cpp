@@ -7,6 +7,7 @@
 
 #include "engine/base/memory_limit.h"
 #include "engine/base/threads.h"
+#include "engine/field/dense.h"
 #include "engine/field/grid_make.h"
 
 namespace catena::field {

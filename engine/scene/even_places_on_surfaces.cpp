@@ -3,6 +3,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "engine/base/random.h"
 #include "engine/base/threads.h"
 #include "engine/geometry/bounds.h"
 #include "engine/scene/even_places.h"
@@ -22,14 +23,6 @@ struct Candidate {
   std::uint64_t order;
   Vec3 p;
 };
-
-/// Mixes the bits of a number (splitmix64, by S. Vigna).
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 /// Those that keep their distance, in cubes of one spacing.
 class Chosen {
@@ -119,7 +112,8 @@ class LevelCells {
 
   void add_places(const std::array<int, 3>& cell, std::vector<Candidate>& candidates) {
     const Vec3 at(cell[0], cell[1], cell[2]);
-    refine(at + 0.5, Vec3(1.0), mixed(mixed(mixed(std::uint64_t(cell[0])) + std::uint64_t(cell[1])) + std::uint64_t(cell[2])), candidates);
+    refine(at + 0.5, Vec3(1.0),
+           mixed_bits(mixed_bits(mixed_bits(std::uint64_t(cell[0])) + std::uint64_t(cell[1])) + std::uint64_t(cell[2])), candidates);
   }
 
  private:
@@ -162,8 +156,8 @@ class LevelCells {
     Vec3 half = size, aside(0.0);
     half[longest] *= 0.5;
     aside[longest] = 0.5 * half[longest];
-    refine(centre - aside, half, mixed(order), candidates);
-    refine(centre + aside, half, mixed(order + 1), candidates);
+    refine(centre - aside, half, mixed_bits(order), candidates);
+    refine(centre + aside, half, mixed_bits(order + 1), candidates);
   }
 
   /// By Newton's steps along the gradient, no further than `reach`.
@@ -239,9 +233,9 @@ EvenPlaces even_places_on_mesh(const mesh::TriangleMesh& mesh, double spacing, s
     const auto c = corners(f);
     // of very small triangles as many as their area asks for, so that what is kept does not grow with the mesh
     const double share = kFinest * 0.5 * norm(cross(c[1] - c[0], c[2] - c[0])) / (step * step);
-    if (share < 1 && static_cast<double>(mixed(f)) > share * 0x1p64) continue;
+    if (share < 1 && static_cast<double>(mixed_bits(f)) > share * 0x1p64) continue;
     std::uint64_t number = 0;
-    each_place(c, step, [&](const Vec3& p) { candidates.push_back({mixed(mixed(f + 1) + number++), p}); });
+    each_place(c, step, [&](const Vec3& p) { candidates.push_back({mixed_bits(mixed_bits(f + 1) + number++), p}); });
   }
   return chosen_of(std::move(candidates), spacing, most);
 }

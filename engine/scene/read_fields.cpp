@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using field::LoadRequest;
 
+constexpr int kMostSeed = 2'000'000'000;
 constexpr int kMaxNodes = 1024;  // an axis, of a sampled analytic field
 
 std::string field_fault(const std::string& path) { return file_fault(path, field::is_field_file(path), field::field_file_words(), true); }
@@ -167,6 +168,9 @@ Keys formula_keys() {
       schema::word("analytic", std::move(names), "Which formula.").required(),
       schema::number("scale", "", "Multiplies the values.").ranged("not 0").by_default("1"),
       schema::direction("direction", "Of `uniform` only.").by_default("[1, 0, 0]"),
+      schema::vec3("center", "world", "Where the formula's origin lies.").by_default("[0, 0, 0]"),
+      schema::integer("seed", "", "Of `vortices` only: which of them.", 0, kMostSeed).by_default("1"),
+      schema::integer("dimensions", "", "Of `vortices` only: 2: in the plane of x and y, the same at every z.", 2, 3).by_default("3"),
       schema::text("part",
                    "A grid of what `generate` writes, where it writes several: of `left-ventricle`, `density`, `transmural` or `fibre`."),
       schema::text("grid", "Another word for `part`."),
@@ -196,6 +200,14 @@ Outcome read_analytic_source(const json::Node& node, FieldSource& source) {
     if (norm(source.parameters.direction) == 0)
       return json::error_at(*direction_node, "\"direction\" is zero; a vector other than [0, 0, 0] was expected");
   }
+
+  CATENA_TRY(source.parameters.center, json::get_vec3(node, "center", Vec3(0.0)));
+  for (const char* key : {"seed", "dimensions"})
+    if (const json::Node* own = node.find(key); own != nullptr && source.analytic != "vortices")
+      return json::error_at(
+          *own, in_quotes(key) + " does not belong to " + in_quotes(source.analytic) + "; it was expected for \"vortices\" only");
+  CATENA_TRY(source.parameters.seed, json::get_integer(node, "seed", 1, 0, kMostSeed));
+  CATENA_TRY(source.parameters.dimensions, json::get_integer(node, "dimensions", 3, 2, 3));
 
   // a part is a grid of what `generate` writes
   const json::Node* part = node.find("part");

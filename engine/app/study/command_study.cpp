@@ -1,0 +1,18 @@
+/// catena study simulate|merge|scene|keys: an experiment described by a file (docs/study.md). One file a subcommand.
+#include <CLI/CLI.hpp>
+
+#include "engine/app/study/study_command.h"
+
+namespace catena::app {
+
+void add_study(CLI::App& program, Work& chosen) {
+  CLI::App* command =
+      program.add_subcommand("study", "an experiment with subjects, described by a file: its trials, its data, its statistics");
+  command->require_subcommand(1);
+  add_study_simulate(*command, chosen);
+  add_study_merge(*command, chosen);
+  add_study_scene(*command, chosen);
+  add_study_keys(*command, chosen);
+}
+
+}  // namespace catena::app

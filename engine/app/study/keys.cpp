@@ -1,0 +1,41 @@
+/// catena study keys [PART], study schema: what a study file may say.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "engine/app/study/study_command.h"
+#include "engine/base/text.h"
+#include "engine/schema/documents.h"
+#include "engine/study/study.h"
+
+namespace catena::app {
+
+namespace {
+
+Outcome print_study_keys(const std::string& part) {
+  const std::vector<schema::Component> all = study::study_components();
+  std::vector<std::string_view> names;
+  bool found = false;
+  for (const schema::Component& component : all) {
+    names.push_back(component.name);
+    if (!part.empty() && component.name != part) continue;
+    found = true;
+    fmt::print("{}\n", component.help);
+    for (const auto& [name, table] : schema::markdown_tables(component)) fmt::print("\n{}\n{}\n", name, table);
+  }
+  if (found) return Done{};
+  return Error{"study keys: " + in_quotes(part) + " is no part of a study; one of " + joined(names) + " was expected" +
+               suggestion(part, names)};
+}
+
+}  // namespace
+
+void add_study_keys(CLI::App& study, Work& chosen) {
+  auto part = std::make_shared<std::string>();
+  CLI::App* command = study.add_subcommand("keys", "list what a study file may say");
+  command->add_option("PART", *part, "only this: study, tasks, conditions, operator or questionnaire");
+  command->callback([&chosen, part] { chosen = [part] { return print_study_keys(*part); }; });
+}
+
+}  // namespace catena::app

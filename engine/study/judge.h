@@ -1,0 +1,58 @@
+/// Says when a trial starts and ends, and measures it: fed with the device's position, tick by tick, by simulate and run alike. It is the
+/// drawn cursor, never a proxy: of that, a guided path would be exact by construction.
+///   start    the clock starts where the cursor leaves the ball of radius `start` about the start, in which it must have been
+///   end      circle or plane: where it is crossed, found between two ticks on the straight line; end: within `reach` of it; or the limit
+///   error    advection: from the path's end to the place of the crossing (at the limit: to the cursor); tracing: the mean over all ticks
+///            of the clock of the distance to the closest place of the path
+/// In 2D tasks everything is measured in the picture plane.
+/// Positions in world units. `tick` allocates nothing and may run on the haptic thread.
+#pragma once
+#include <string>
+
+#include "engine/study/stimulus.h"
+
+namespace catena::study {
+
+struct Measured {
+  bool by_target = false;  ///< else by the limit
+  double time_s = 0;       ///< of the clock
+  double error_mm = 0;
+  double travelled_mm = 0;  ///< by the cursor
+  double peak_force_n = 0;  ///< while the clock ran
+  Vec3 end_mm{0.0};         ///< the crossing, or the last cursor; world axes
+};
+
+class Judge {
+ public:
+  enum class Phase { waiting, ready, running, ended };  ///< for the cursor at the start; at the start; the clock runs; over
+
+  /// `task` outlives it.
+  Judge(const Task& task, const Stimulus& stimulus);
+
+  /// `t_s` rises. After the end it does nothing.
+  Phase tick(double t_s, const Vec3& cursor, double force_n) noexcept;
+  Phase phase() const { return phase_; }
+  double running_s() const { return phase_ == Phase::running ? last_s_ - start_s_ : 0; }
+  /// Once it has ended.
+  const Measured& measured() const { return measured_; }
+  /// From the cursor to the path, world units.
+  double off_path(const Vec3& cursor) const noexcept;
+
+ private:
+  Vec3 flat(const Vec3& p) const noexcept;
+  /// Where the way from the last cursor to this one crosses the target: 0..1; negative: it does not.
+  double crossing(const Vec3& from, const Vec3& to) const noexcept;
+  void end(double t_s, const Vec3& at, bool by_target) noexcept;
+
+  const Task& task_;
+  std::vector<Vec3> path_;
+  Vec3 start_, end_;
+  double radius_ = 0, start_radius_ = 0, reach_ = 0;
+  Phase phase_ = Phase::waiting;
+  double start_s_ = 0, last_s_ = 0, off_sum_ = 0;
+  std::uint64_t ticks_ = 0;
+  Vec3 last_{0.0};
+  Measured measured_;
+};
+
+}  // namespace catena::study

@@ -1,0 +1,212 @@
+#include "engine/study/stimulus.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/random.h"
+#include "engine/base/text.h"
+#include "engine/flow/curve.h"
+#include "engine/scene/scene.h"
+#include "engine/study/trial_scene.h"
+
+namespace catena::study {
+namespace {
+
+constexpr int kFields = 200;             ///< asked one after the other for a start
+constexpr int kLineChoices = 6;          ///< a global line begins at the place, of so many, that is farthest from the others
+constexpr double kTolerance = 1e-9;      ///< of traces, L
+constexpr double kHidingRadiusMm = 1.5;  ///< a global line hides what is so near to it in the picture
+constexpr double kFlat = 1e-6;           ///< of the path's length: how far a 2D path may leave the picture plane
+constexpr int kStride = 8;               ///< of the path's corners that are looked at for what hides them
+
+double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
+
+double distance_to(const std::vector<std::vector<Vec3>>& lines, const Vec3& p) {
+  double least2 = std::numeric_limits<double>::infinity();
+  for (const auto& line : lines)
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const Vec3 way = line[i] - line[i - 1];
+      const double length2 = dot(way, way), u = length2 > 0 ? std::clamp(dot(p - line[i - 1], way) / length2, 0.0, 1.0) : 0;
+      const Vec3 off = p - line[i - 1] - u * way;
+      least2 = std::min(least2, dot(off, off));
+    }
+  return std::sqrt(least2);
+}
+
+/// What is drawn by chance in one field.
+class Draw {
+ public:
+  Draw(const Task& task, const field::VectorField& field, int seed)
+      : task_(task), rules_(task.rules), field_(field), box_(field.world_bounds()), random_(mixed_bits(static_cast<std::uint64_t>(seed))) {
+    stimulus_.seed = seed;
+    stimulus_.length = task.world(rules_.path_mm);
+    stimulus_.line_length = task.world(rules_.line_mm);
+    draw_lines();
+  }
+
+  std::optional<Stimulus> stimulus() {
+    std::optional<Stimulus> best;
+    for (int k = 0; k < rules_.candidates; ++k) {
+      const Vec3 start = place(rules_.region);
+      if (distance_to(lines_, start) < task_.world(rules_.clearance_mm) || !take_path(start) || !path_is_allowed()) continue;
+      stimulus_.hidden = task_.dimensions == 3 ? hidden() : 0;
+      if (!best || stimulus_.hidden < best->hidden) best = stimulus_;
+      if (best->hidden == 0) break;
+    }
+    return best;
+  }
+
+ private:
+  Vec3 place(double share) {
+    const Vec3 middle = box_.centre();
+    Vec3 p(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double half = 0.5 * share * (box_.hi[axis] - box_.lo[axis]);
+      p[axis] = random_.between(middle[axis] - half, middle[axis] + half);
+    }
+    return task_.dimensions == 3 ? p : p - task_.view * dot(p - task_.plane, task_.view);
+  }
+
+  flow::CurvePtr traced(const Vec3& seed, double length) const {
+    flow::TraceOptions options;
+    options.length = length;
+    options.tolerance = kTolerance;
+    options.hermite_tolerance = kTolerance;
+    auto curve = flow::trace({.field = &field_}, seed, options);
+    return curve ? *curve : nullptr;
+  }
+
+  void draw_lines() {
+    const double step = task_.world(2);
+    for (int k = 0; k < rules_.lines; ++k) {
+      std::optional<Vec3> seed;
+      double farthest = -1;
+      for (int choice = 0; choice < kLineChoices; ++choice) {
+        const Vec3 p = place(1);
+        const double distance = distance_to(lines_, p);
+        if (distance > farthest) farthest = distance, seed = p;
+      }
+      const flow::CurvePtr curve = seed ? traced(*seed, stimulus_.line_length) : nullptr;
+      if (!curve) continue;
+      const double s0 = curve->knots().front().s, s1 = curve->knots().back().s;
+      const int pieces = std::max(1, static_cast<int>(std::ceil((s1 - s0) / step)));
+      std::vector<Vec3>& line = lines_.emplace_back();
+      for (int i = 0; i <= pieces; ++i) line.push_back(curve->position(s0 + (s1 - s0) * i / pieces));
+      stimulus_.lines.push_back(*seed);
+    }
+  }
+
+  /// Downstream from the start, all of it within the box.
+  bool take_path(const Vec3& start) {
+    const double length = stimulus_.length;
+    const flow::CurvePtr curve = traced(start, 1.001 * length);
+    if (!curve || curve->closed() || curve->knots().back().s < length) return false;
+    stimulus_.path.clear();
+    for (int i = 0; i < kPathPoints; ++i) {
+      const Vec3 p = curve->position(length * i / (kPathPoints - 1));
+      for (int axis = 0; axis < 3; ++axis)
+        if (!(p[axis] >= box_.lo[axis] && p[axis] <= box_.hi[axis])) return false;
+      stimulus_.path.push_back(p);
+    }
+    stimulus_.start = stimulus_.path.front();
+    stimulus_.middle = stimulus_.path[(kPathPoints - 1) / 2];
+    stimulus_.end = stimulus_.path.back();
+    stimulus_.radius = norm(stimulus_.end - stimulus_.start);
+    return true;
+  }
+
+  Vec3 tangent(std::size_t i) const {
+    const std::vector<Vec3>& path = stimulus_.path;
+    return direction(path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]);
+  }
+
+  bool path_is_allowed() const {
+    const std::vector<Vec3>& path = stimulus_.path;
+    const std::size_t last = path.size() - 1;
+    const double turn = std::cos(rules_.turn_deg * std::numbers::pi / 180);
+    if (rules_.turn_deg > 0 && std::min(dot(tangent(0), tangent(last)), dot(tangent(0), tangent(last / 2))) > turn) return false;
+    if (task_.dimensions == 2) {
+      for (const Vec3& p : path)
+        if (std::fabs(dot(p - task_.plane, task_.view)) > kFlat * stimulus_.length) return false;
+    } else {
+      double seen = 0;
+      for (std::size_t i = 1; i < path.size(); ++i) {
+        const Vec3 way = path[i] - path[i - 1];
+        seen += norm(way - task_.view * dot(way, task_.view));
+      }
+      if (seen < rules_.parallel * stimulus_.length) return false;
+    }
+    if (task_.target == Target::circle)
+      return first_crosses([&](const Vec3& p) { return norm(p - stimulus_.start); }, stimulus_.radius) &&
+             dot(tangent(last), direction(stimulus_.end - stimulus_.start)) >= sine(rules_.crossing_deg);
+    if (task_.target == Target::plane)
+      return first_crosses([&](const Vec3& p) { return -p.z; }, -stimulus_.end.z) && -tangent(last).z >= sine(rules_.crossing_deg);
+    return true;
+  }
+
+  template <class Measure>
+  bool first_crosses(Measure&& measure, double at_end) const {
+    for (std::size_t i = 0; i + 1 < stimulus_.path.size(); ++i)
+      if (measure(stimulus_.path[i]) >= at_end) return false;
+    return true;
+  }
+
+  double hidden() const {
+    const double radius = task_.world(kHidingRadiusMm);
+    int behind = 0, looked_at = 0;
+    for (std::size_t i = 0; i < stimulus_.path.size(); i += kStride) {
+      const Vec3& p = stimulus_.path[i];
+      const Vec3 ray = task_.orthographic ? task_.view : direction(p - task_.eye);
+      const double depth = dot(p - task_.eye, ray) - 2 * radius;
+      ++looked_at;
+      behind += std::ranges::any_of(lines_, [&](const std::vector<Vec3>& line) {
+        return std::ranges::any_of(line, [&](const Vec3& q) {
+          const Vec3 off = q - p;
+          const double along = dot(off, ray);
+          return dot(q - task_.eye, ray) < depth && dot(off, off) - along * along < radius * radius;
+        });
+      });
+    }
+    return static_cast<double>(behind) / looked_at;
+  }
+
+  const Task& task_;
+  const StimulusRules& rules_;
+  const field::VectorField& field_;
+  Bounds box_;
+  Random random_;
+  std::vector<std::vector<Vec3>> lines_;
+  Stimulus stimulus_;
+};
+
+}  // namespace
+
+Result<field::AnyField> StimulusMaker::field_of(int task, int seed) {
+  const Task& of = study_.tasks[static_cast<std::size_t>(task)];
+  std::string text = field_scene(study_, of, seed);
+  Kept& kept = kept_[static_cast<std::size_t>(task)];
+  if (kept.text != text) {
+    CATENA_TRY(scene::Scene scene, scene::parse_scene(text, study_.path));
+    CATENA_TRY(kept.field, scene::use_field(scene, of.field, of.where));
+    kept.text = std::move(text);
+  }
+  if (!kept.field.vector)
+    return json::error_at(json::member_or(of.where, "field"), "field " + in_quotes(of.field) + " is scalar; a vector field was expected");
+  return kept.field;
+}
+
+Result<Stimulus> StimulusMaker::make(int task, int seed) {
+  const Task& of = study_.tasks[static_cast<std::size_t>(task)];
+  for (int k = 0; k < kFields; ++k) {
+    const int at = static_cast<int>((static_cast<unsigned>(seed) + static_cast<unsigned>(k)) & 0x3fffffffu);
+    CATENA_TRY(const field::AnyField field, field_of(task, at));
+    if (auto found = Draw(of, *field.vector, at).stimulus()) return *found;
+  }
+  return json::error_at(json::member_or(of.where, "stimulus"),
+                        fmt::format("task {}: no start under these rules was found in {} fields; rules that more paths meet were expected",
+                                    in_quotes(of.name), kFields));
+}
+
+}  // namespace catena::study

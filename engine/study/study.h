@@ -1,0 +1,119 @@
+/// A study: the experiment of the paper's section 7, described by one JSON file (docs/study.md) so that another is made without code.
+/// Its tasks are done in every condition on the same stimuli; tasks differ in what is seen and asked, conditions in what is felt.
+///
+/// Lengths of the file that end in _mm are millimetres of the hand; scenes have world units, mm = 1000 * metres_per_unit of them.
+/// Errors are one line, FILE:LINE: what; what was expected. Read once, then asked on any thread.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/json.h"
+#include "engine/base/result.h"
+#include "engine/base/vec.h"
+#include "engine/schema/key.h"
+
+namespace catena::study {
+
+/// Advection: where does the flow lead? The path is not shown. Tracing: a path that is shown is followed to its end.
+enum class TaskKind { advection, tracing };
+const char* kind_word(TaskKind kind);
+
+/// What ends a trial: the circle about the start that the path first crosses at its end, the ground plane through the end, or the end.
+enum class Target { circle, plane, end };
+
+/// How the places of a trial are found in its field; stimulus.h has the rules.
+struct StimulusRules {
+  double path_mm = 100;      ///< length of every correct path
+  double clearance_mm = 4;   ///< the start is at least this far from every global streamline
+  int lines = 12;            ///< global streamlines
+  double line_mm = 150;      ///< the longest that one is, each way
+  double parallel = 0.8;     ///< of a 3D path at least this share of its length is seen in the picture plane
+  double crossing_deg = 30;  ///< advection: the path meets its target at no flatter angle
+  double turn_deg = 0;       ///< the path's tangent turns at least this much between its ends or its middle
+  int candidates = 64;       ///< starts tried in a field, before the next field is
+  double region = 0.5;       ///< share of the field's box, about its middle, in which starts lie
+};
+
+struct Limits {
+  double told_s = 10;                               ///< what the subject is told; not enforced
+  double ends_s = 30;                               ///< here a trial ends
+  double reject_error_mm = 30, reject_time_s = 10;  ///< analyse: trials beyond are left out
+};
+
+struct Task {
+  std::string name;
+  TaskKind kind = TaskKind::tracing;
+  int dimensions = 2;
+  Target target = Target::end;
+  StimulusRules rules;
+  Limits limits;
+  double start_mm = 4;       ///< the clock starts when the cursor leaves this ball (2D: circle) about the start
+  double reach_mm = 4;       ///< tracing: so near, the end is reached
+  double indicator_mm = 20;  ///< advection: length of the local indicator, as the operator model sees it
+  std::string field;         ///< of `scene`: the one that the path follows
+  json::Node scene;          ///< the template of a trial's scene (trial_scene.h)
+  json::Node where;
+
+  // of the scene
+  double metres_per_unit = 1;
+  Vec3 eye{0.0};              ///< world
+  Vec3 view{0.0, 0.0, -1.0};  ///< unit, into the picture: the depth
+  Vec3 plane{0.0};            ///< a place of the picture plane: what the camera looks at; 2D tasks lie in that plane
+  bool orthographic = false;
+
+  double world(double mm) const { return 1e-3 * mm / metres_per_unit; }
+  double mm(double world_length) const { return 1e3 * metres_per_unit * world_length; }
+};
+
+struct Condition {
+  std::string name;
+  std::vector<json::Node> chains;  ///< a task's, in the order of the tasks
+};
+
+/// A model of a subject (operator.h). It stands in for nobody: what it gives tells about the model.
+struct OperatorModel {
+  double speed_mm_per_s = 55;
+  double speed_spread_subject = 0.36, speed_spread_trial = 0.27;  ///< of the speed's logarithm; together 0.45
+  double motor_noise = 0.25;                                      ///< standard deviation of the velocity, times the speed
+  double motor_noise_s = 0.1;                                     ///< how long it lasts: correlation time
+  double lateral_noise_mm = 1.2;                                  ///< of what is seen, in the picture plane, each way
+  double depth_noise_mm = 8;                                      ///< and along the view
+  double depth_bias_mm = 5;                                       ///< standard deviation over subjects of a constant one
+  double seeing_noise_s = 0.5;                                    ///< correlation time of both noises
+  double tremor_mm = 0.3;                                         ///< root mean square, each axis
+  double tremor_lo_hz = 8, tremor_hi_hz = 10.6;
+  double delay_s = 0.2;             ///< from what is seen to what the hand does
+  double correction_per_s = 2.5;    ///< how fast a deviation that is seen is taken back
+  double stiffness_n_per_mm = 0.5;  ///< of the hand about where it wants to be
+  double damping_ns_per_m = 5;
+  double yield_n = 3;  ///< the hand gives way to a greater force
+};
+
+struct Question {
+  std::string name, question;
+  std::vector<std::string> answers;  ///< to choose from; empty: any text
+};
+
+struct Study {
+  std::string path, text;  ///< as it was read, verbatim
+  json::Node document;     ///< all of it; "compare" and "findings" are read by what analyses
+  std::string name;
+  int seed = 1;
+  int subjects = 20;  ///< that the design was made for
+  int trials = 10;    ///< of every task in every condition: so many stimuli
+  int training = 1;   ///< before them, of every task in every condition; not analysed
+  std::vector<Task> tasks;
+  std::vector<Condition> conditions;  ///< the first is the baseline
+  OperatorModel model;
+  std::string instructions;  ///< a text file, its path as the program opens it; empty: none
+  std::vector<Question> questions;
+};
+
+Result<Study> read_study(const std::string& path);
+Result<Study> parse_study(std::string_view text, const std::string& path);
+
+/// The keys of the file, for its schema and docs/study.md.
+std::vector<schema::Component> study_components();
+
+}  // namespace catena::study

@@ -1,0 +1,110 @@
+#include "engine/study/trial_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/base/text.h"
+#include "engine/scene/write_values.h"
+
+namespace catena::study {
+namespace {
+
+/// What strings stand for, as JSON text.
+using Values = std::vector<std::pair<std::string_view, std::string>>;
+
+Values values_of(const Task& task, const Stimulus& s) {
+  using scene::text_of;
+  return {{"$seed", std::to_string(s.seed)},
+          {"$start", text_of(s.start)},
+          {"$middle", text_of(s.middle)},
+          {"$end", text_of(s.end)},
+          {"$path", text_of(s.path)},
+          {"$length", text_of(s.length)},
+          {"$half_length", text_of(0.5 * s.length)},
+          {"$lines", text_of(s.lines)},
+          {"$line_length", text_of(s.line_length)},
+          {"$radius", text_of(s.radius)},
+          {"$ground", text_of(s.end.z)},
+          {"$indicator", text_of(task.world(task.indicator_mm))}};
+}
+
+bool stands_for_a_value(const json::Node& node) { return node.kind == json::Kind::string && node.string.starts_with("$"); }
+
+/// The node's own bytes of the study file with the values in it.
+void append_with_values(std::string& out, const std::string& text, const json::Node& node, const Values& values, std::size_t& at) {
+  if (stands_for_a_value(node)) {
+    const auto found = std::ranges::find(values, node.string, &Values::value_type::first);
+    if (found != values.end()) {
+      out.append(text, at, node.begin - at).append(found->second);
+      at = node.end;
+    }
+  }
+  for (const json::Node& item : node.items) append_with_values(out, text, item, values, at);
+  for (const auto& [key, member] : node.members) append_with_values(out, text, member, values, at);
+}
+
+std::string with_values(const std::string& text, const json::Node& node, const Values& values) {
+  std::string out;
+  std::size_t at = node.begin;
+  append_with_values(out, text, node, values, at);
+  return out.append(text, at, node.end - at);
+}
+
+/// Line ends until the next text stands on `line`.
+void go_to_line(std::string& out, int line) {
+  const auto now = 1 + std::count(out.begin(), out.end(), '\n');
+  if (now < line) out.append(static_cast<std::size_t>(line - now), '\n');
+}
+
+}  // namespace
+
+Outcome check_values(const json::Node& node) {
+  if (stands_for_a_value(node)) {
+    std::vector<std::string_view> names;
+    static const Values known = values_of({}, {});
+    for (const auto& [name, value] : known) names.push_back(name);
+    if (std::ranges::count(names, node.string) == 0)
+      return json::error_at(
+          node, in_quotes(node.string) + " stands for nothing; one of " + joined(names) + " was expected" + suggestion(node.string, names));
+  }
+  for (const json::Node& item : node.items) CATENA_CHECK(check_values(item));
+  for (const auto& [key, member] : node.members) CATENA_CHECK(check_values(member));
+  return Done{};
+}
+
+std::string trial_scene(const Study& study, const Trial& trial, const Stimulus& stimulus) {
+  const auto task_index = static_cast<std::size_t>(trial.task), condition = static_cast<std::size_t>(trial.condition);
+  const Task& task = study.tasks[task_index];
+  const json::Node& chain = study.conditions[condition].chains[task_index];
+  const Values values = values_of(task, stimulus);
+  const std::string links = with_values(study.text, chain, values);
+  // the template without its braces; both parts on the lines where they are in the study file, the earlier one first
+  std::string parts = with_values(study.text, task.scene, values);
+  parts = parts.substr(1, parts.size() - 2);
+  const char* between = task.scene.members.empty() ? "" : ",";
+  std::string out = "{";
+  if (chain.begin < task.scene.begin) {
+    go_to_line(out, chain.line);
+    out += "\"chain\": " + links + between;
+    go_to_line(out, task.scene.line);
+    return out + parts + "}";
+  }
+  go_to_line(out, task.scene.line);
+  out += parts;
+  // a comment at the template's end must not take the rest
+  if (parts.find("//") != std::string::npos) out += '\n';
+  out += between;
+  go_to_line(out, chain.line);
+  return out + " \"chain\": " + links + "}";
+}
+
+std::string field_scene(const Study& study, const Task& task, int seed) {
+  Stimulus stimulus;
+  stimulus.seed = seed;
+  const json::Node& fields = *task.scene.find("fields");
+  std::string out = "{";
+  go_to_line(out, fields.line);
+  return out + "\"fields\": " + with_values(study.text, fields, values_of(task, stimulus)) + "}";
+}
+
+}  // namespace catena::study

@@ -1,0 +1,248 @@
+#include "engine/study/trial_table.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "engine/base/numbers.h"
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+
+namespace catena::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kHeader =
+    "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,error_mm,travelled_mm,peak_force_n,end_x_mm,"
+    "end_y_mm,end_z_mm\n";
+constexpr std::size_t kColumns = 18;
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(trim(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+Error fault_at(const std::string& file, int line, const std::string& what) {
+  return Error{one_line(fmt::format("{}:{}: {}", file, line, what))};
+}
+
+Result<Row> parse_row(std::string_view line, const std::string& file, int number) {
+  const std::vector<std::string_view> cells = cells_of(line);
+  if (cells.size() != kColumns) return fault_at(file, number, fmt::format("{} cells; {} were expected", cells.size(), kColumns));
+  Row row;
+  std::optional<std::size_t> bad;
+  const auto whole = [&](std::size_t column, int& out) {
+    const auto value = parse_integer(cells[column]);
+    if (!value || *value < 0 || *value > std::numeric_limits<int>::max()) return void(bad = bad.value_or(column));
+    out = static_cast<int>(*value);
+  };
+  const auto real = [&](std::size_t column, double& out) {
+    const auto value = parse_double(cells[column]);
+    if (!value || !std::isfinite(*value)) return void(bad = bad.value_or(column));
+    out = *value;
+  };
+  const auto either = [&](std::size_t column, std::string_view no, std::string_view yes, bool& out) {
+    if (cells[column] != no && cells[column] != yes) return void(bad = bad.value_or(column));
+    out = cells[column] == yes;
+  };
+  const auto word = [&](std::size_t column, std::string& out) {
+    if (cells[column].empty()) return void(bad = bad.value_or(column));
+    out = std::string(cells[column]);
+  };
+  bool tracing = false;
+  whole(0, row.subject), whole(1, row.index), whole(2, row.block);
+  word(3, row.task);
+  either(4, "advection", "tracing", tracing);
+  row.kind = kind_word(tracing ? TaskKind::tracing : TaskKind::advection);
+  whole(5, row.dimensions);
+  word(6, row.condition);
+  whole(7, row.stimulus), whole(8, row.seed);
+  either(9, "0", "1", row.training);
+  either(10, "limit", "target", row.by_target);
+  real(11, row.time_s), real(12, row.error_mm), real(13, row.travelled_mm), real(14, row.peak_force_n);
+  for (int axis = 0; axis < 3; ++axis) real(static_cast<std::size_t>(15 + axis), row.end_mm[axis]);
+  if (bad)
+    return fault_at(file, number,
+                    in_quotes(cells[*bad]) + " is no " + std::string(cells_of(kHeader)[*bad]) + "; a value of that column was expected");
+  return row;
+}
+
+Error system_error(const std::string& path, const char* what) { return Error{fmt::format("{}: {}: {}", path, what, std::strerror(errno))}; }
+
+std::string text_of_rows(const std::vector<Row>& rows) {
+  std::string text(kHeader);
+  for (const Row& row : rows) text += row_text(row);
+  return text;
+}
+
+}  // namespace
+
+Row row_of(const Study& study, const Trial& trial, const Measured& measured) {
+  const Task& task = study.tasks[static_cast<std::size_t>(trial.task)];
+  return {.subject = trial.subject,
+          .index = trial.index,
+          .block = trial.block,
+          .task = task.name,
+          .kind = kind_word(task.kind),
+          .dimensions = task.dimensions,
+          .condition = study.conditions[static_cast<std::size_t>(trial.condition)].name,
+          .stimulus = trial.stimulus,
+          .seed = trial.seed,
+          .training = trial.training,
+          .by_target = measured.by_target,
+          .time_s = measured.time_s,
+          .error_mm = measured.error_mm,
+          .travelled_mm = measured.travelled_mm,
+          .peak_force_n = measured.peak_force_n,
+          .end_mm = measured.end_mm};
+}
+
+std::string table_header() { return std::string(kHeader); }
+
+std::string row_text(const Row& row) {
+  std::string text = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.subject, row.index, row.block, row.task, row.kind, row.dimensions,
+                                 row.condition, row.stimulus, row.seed, row.training ? 1 : 0, row.by_target ? "target" : "limit");
+  for (const double value : {row.time_s, row.error_mm, row.travelled_mm, row.peak_force_n, row.end_mm.x, row.end_mm.y, row.end_mm.z}) {
+    text += ',';
+    append_text(text, value);
+  }
+  return text + "\n";
+}
+
+Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& file, bool torn_end, std::size_t* whole) {
+  std::vector<Row> rows;
+  std::size_t at = 0;
+  int number = 0;
+  if (whole != nullptr) *whole = 0;
+  while (at < text.size()) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string_view::npos && torn_end) break;
+    std::string_view line = text.substr(at, end == std::string_view::npos ? end : end - at);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    ++number;
+    if (number == 1) {
+      if (cells_of(line) != cells_of(trim(kHeader)))
+        return fault_at(file, 1, "the header is another; " + std::string(trim(kHeader)) + " was expected");
+    } else if (!trim(line).empty()) {
+      CATENA_TRY(Row row, parse_row(line, file, number));
+      rows.push_back(std::move(row));
+    }
+    at = end == std::string_view::npos ? text.size() : end + 1;
+    if (whole != nullptr) *whole = at;
+  }
+  if (number == 0 && !torn_end) return fault_at(file, 1, "the file is empty; a header was expected");
+  return rows;
+}
+
+std::string subject_file(const std::string& folder, int subject) {
+  return (fs::path(folder) / "subjects" / fmt::format("{:03}.csv", subject)).string();
+}
+
+Result<DataFolder> DataFolder::open(const std::string& path, const Study& study) {
+  std::error_code code;
+  fs::create_directories(fs::path(path) / "subjects", code);
+  if (code) return Error{fmt::format("{}: cannot make the folder: {}", path, code.message())};
+  const std::string copy = (fs::path(path) / "study.json").string();
+  if (fs::exists(copy, code)) {
+    CATENA_TRY(const std::string old, read_text(copy, "the study of this data folder", kMaxJsonBytes));
+    if (old != study.text)
+      return Error{
+          fmt::format("{}: holds data of another study ({} differs from {}); another folder was expected", path, copy, study.path)};
+  } else {
+    CATENA_TRY(OutputFile file, OutputFile::open(copy));
+    file.write(study.text);
+    file.sync();
+    CATENA_CHECK(file.commit());
+  }
+  return DataFolder(path);
+}
+
+Result<std::vector<Row>> DataFolder::rows(int subject) const {
+  const std::string path = subject_file(path_, subject);
+  std::error_code code;
+  if (!fs::exists(path, code)) return std::vector<Row>{};
+  CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
+  std::size_t whole = 0;
+  CATENA_TRY(std::vector<Row> rows, parse_rows(text, path, true, &whole));
+  if (whole < text.size() && ::truncate(path.c_str(), static_cast<off_t>(whole)) != 0)
+    return system_error(path, "cannot cut off its torn last line");
+  return rows;
+}
+
+Outcome DataFolder::append(const Row& row) const {
+  const std::string path = subject_file(path_, row.subject);
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (file < 0) return system_error(path, "cannot write");
+  const off_t size = ::lseek(file, 0, SEEK_END);
+  const std::string text = (size == 0 ? table_header() : "") + row_text(row);
+  // one write: a line is there whole, or torn by the end of the program or the machine, which rows() repairs
+  const bool written = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fdatasync(file) == 0;
+  Outcome done = written ? Outcome(Done{}) : Outcome(system_error(path, "cannot write"));
+  if (!written && size >= 0) static_cast<void>(::ftruncate(file, size) == 0);
+  ::close(file);
+  return done;
+}
+
+Outcome DataFolder::write_subject(int subject, const std::vector<Row>& rows) const {
+  CATENA_TRY(OutputFile file, OutputFile::open(subject_file(path_, subject)));
+  file.write(text_of_rows(rows));
+  file.sync();
+  return file.commit();
+}
+
+Result<std::vector<int>> DataFolder::subjects() const {
+  std::vector<int> numbers;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(path_) / "subjects", code))
+    if (const auto number = parse_integer(entry.path().stem().string()); number && entry.path().extension() == ".csv")
+      numbers.push_back(static_cast<int>(*number));
+  if (code) return Error{fmt::format("{}: cannot read the folder: {}", path_, code.message())};
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+Outcome DataFolder::write_table() const {
+  CATENA_TRY(const std::vector<int> numbers, subjects());
+  std::vector<Row> all;
+  for (const int subject : numbers) {
+    CATENA_TRY(const std::vector<Row> some, rows(subject));
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  CATENA_TRY(OutputFile file, OutputFile::open((fs::path(path_) / "trials.csv").string()));
+  file.write(text_of_rows(all));
+  return file.commit();
+}
+
+Result<std::vector<Row>> read_table(const std::string& folder) {
+  const std::string table = (fs::path(folder) / "trials.csv").string();
+  std::error_code code;
+  if (fs::exists(table, code)) {
+    CATENA_TRY(const std::string text, read_text(table, "a table of trials"));
+    return parse_rows(text, table);
+  }
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / "subjects", code))
+    if (entry.path().extension() == ".csv") files.push_back(entry.path().string());
+  if (files.empty()) return Error{folder + ": no trials.csv and no subjects/*.csv; a data folder of a study was expected"};
+  std::sort(files.begin(), files.end());
+  std::vector<Row> all;
+  for (const std::string& file : files) {
+    CATENA_TRY(const std::string text, read_text(file, "a table of trials"));
+    CATENA_TRY(const std::vector<Row> some, parse_rows(text, file, true));
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+}  // namespace catena::study

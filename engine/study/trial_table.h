@@ -1,0 +1,66 @@
+/// The rows of finished trials, and the folder that holds them:
+///   DIR/study.json        the study file, verbatim: another one is refused
+///   DIR/subjects/007.csv  a subject's rows in the order of the session, a header first; each is appended whole and synced, and a torn last
+///                         line is dropped when the file is read, so that whatever ends the program costs the trial at hand alone
+///   DIR/trials.csv        all subjects' rows by their numbers
+/// Doubles in the fewest digits that read back.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/study/judge.h"
+#include "engine/study/session.h"
+
+namespace catena::study {
+
+struct Row {
+  int subject = 1, index = 0, block = 0;
+  std::string task, kind;  ///< "advection", "tracing"
+  int dimensions = 2;
+  std::string condition;
+  int stimulus = 0, seed = 0;
+  bool training = false;
+  bool by_target = true;
+  double time_s = 0, error_mm = 0, travelled_mm = 0, peak_force_n = 0;
+  Vec3 end_mm{0.0};
+  bool operator==(const Row&) const = default;
+};
+
+Row row_of(const Study& study, const Trial& trial, const Measured& measured);
+
+/// "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
+std::string table_header();
+std::string row_text(const Row& row);  ///< with its line end
+/// `torn_end`: a last line without its end is left out rather than an error; `whole` gets the bytes before it.
+Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false, std::size_t* whole = nullptr);
+
+/// "DIR/subjects/007.csv"
+std::string subject_file(const std::string& folder, int subject);
+
+/// A data folder that is written to.
+class DataFolder {
+ public:
+  /// Makes it where it is missing. An error where it holds another study.
+  static Result<DataFolder> open(const std::string& path, const Study& study);
+
+  const std::string& path() const { return path_; }
+  /// The finished trials of a subject; a torn end is cut off the file.
+  Result<std::vector<Row>> rows(int subject) const;
+  /// Appends one and waits until it is on the disk.
+  Outcome append(const Row& row) const;
+  /// All of a subject's rows at once, whole or not at all.
+  Outcome write_subject(int subject, const std::vector<Row>& rows) const;
+  /// The numbers of the subjects that have a file, rising.
+  Result<std::vector<int>> subjects() const;
+  /// Writes trials.csv of all of them.
+  Outcome write_table() const;
+
+ private:
+  explicit DataFolder(std::string path) : path_(std::move(path)) {}
+  std::string path_;
+};
+
+/// The rows of DIR/trials.csv, or of DIR/subjects/*.csv where that is missing.
+Result<std::vector<Row>> read_table(const std::string& folder);
+
+}  // namespace catena::study
