@@ -59,6 +59,15 @@ void Judge::end(double t_s, const Vec3& at, bool by_target) noexcept {
   measured_.end_mm = {task_.mm(at.x), task_.mm(at.y), task_.mm(at.z)};
 }
 
+Measured Judge::given_up() const noexcept {
+  Measured out = measured_;
+  out.by_target = false;
+  out.time_s = task_.limits.ends_s;
+  out.error_mm = task_.mm(task_.kind == TaskKind::advection ? norm(last_ - end_) : off_path(last_));
+  out.end_mm = {task_.mm(last_.x), task_.mm(last_.y), task_.mm(last_.z)};
+  return out;
+}
+
 Judge::Phase Judge::tick(double t_s, const Vec3& cursor, double force_n) noexcept {
   if (phase_ == Phase::ended || !is_finite(cursor)) return phase_;
   const Vec3 now = flat(cursor), before = last_;

@@ -35,6 +35,8 @@ class Judge {
   double running_s() const { return phase_ == Phase::running ? last_s_ - start_s_ : 0; }
   /// Once it has ended.
   const Measured& measured() const { return measured_; }
+  /// Of a trial that is given up though its clock has not come to the limit: as at the limit, with the cursor as it is.
+  Measured given_up() const noexcept;
   /// From the cursor to the path, world units.
   double off_path(const Vec3& cursor) const noexcept;
 

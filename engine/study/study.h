@@ -50,7 +50,7 @@ struct Task {
   Limits limits;
   double start_mm = 4;       ///< the clock starts when the cursor leaves this ball (2D: circle) about the start
   double reach_mm = 4;       ///< tracing: so near, the end is reached
-  double indicator_mm = 20;  ///< advection: length of the local indicator, as the operator model sees it
+  double indicator_mm = 40;  ///< advection: length of the local indicator, as the operator model sees it
   std::string field;         ///< of `scene`: the one that the path follows
   json::Node scene;          ///< the template of a trial's scene (trial_scene.h)
   json::Node where;
@@ -86,7 +86,7 @@ struct OperatorModel {
   double delay_s = 0.2;             ///< from what is seen to what the hand does
   double correction_per_s = 2.5;    ///< how fast a deviation that is seen is taken back
   double stiffness_n_per_mm = 0.5;  ///< of the hand about where it wants to be
-  double damping_ns_per_m = 5;
+  double damping_ns_per_m = 15;
   double yield_n = 3;  ///< the hand gives way to a greater force
 };
 

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kHeader =
     "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,error_mm,travelled_mm,peak_force_n,end_x_mm,"
-    "end_y_mm,end_z_mm\n";
+    "end_y_mm,end_z_mm";
 constexpr std::size_t kColumns = 18;
 
 std::vector<std::string_view> cells_of(std::string_view line) {
@@ -81,7 +81,7 @@ Result<Row> parse_row(std::string_view line, const std::string& file, int number
 Error system_error(const std::string& path, const char* what) { return Error{fmt::format("{}: {}: {}", path, what, std::strerror(errno))}; }
 
 std::string text_of_rows(const std::vector<Row>& rows) {
-  std::string text(kHeader);
+  std::string text = table_header();
   for (const Row& row : rows) text += row_text(row);
   return text;
 }
@@ -108,7 +108,7 @@ Row row_of(const Study& study, const Trial& trial, const Measured& measured) {
           .end_mm = measured.end_mm};
 }
 
-std::string table_header() { return std::string(kHeader); }
+std::string table_header() { return fmt::format("{}\n", kHeader); }
 
 std::string row_text(const Row& row) {
   std::string text = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.subject, row.index, row.block, row.task, row.kind, row.dimensions,
@@ -132,8 +132,7 @@ Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& fi
     if (line.ends_with('\r')) line.remove_suffix(1);
     ++number;
     if (number == 1) {
-      if (cells_of(line) != cells_of(trim(kHeader)))
-        return fault_at(file, 1, "the header is another; " + std::string(trim(kHeader)) + " was expected");
+      if (cells_of(line) != cells_of(kHeader)) return fault_at(file, 1, "the header is another; " + std::string(kHeader) + " was expected");
     } else if (!trim(line).empty()) {
       CATENA_TRY(Row row, parse_row(line, file, number));
       rows.push_back(std::move(row));
@@ -148,6 +147,17 @@ Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& fi
 std::string subject_file(const std::string& folder, int subject) {
   return (fs::path(folder) / "subjects" / fmt::format("{:03}.csv", subject)).string();
 }
+
+std::string recordings_folder(const std::string& folder) { return (fs::path(folder) / "recordings").string(); }
+
+Outcome make_recordings_folder(const std::string& folder) {
+  std::error_code code;
+  fs::create_directories(recordings_folder(folder), code);
+  if (code) return Error{fmt::format("{}: cannot make the folder: {}", recordings_folder(folder), code.message())};
+  return Done{};
+}
+
+std::string recording_name(const Trial& trial) { return fmt::format("{:03}-{:03}.catlog", trial.subject, trial.index); }
 
 Result<DataFolder> DataFolder::open(const std::string& path, const Study& study) {
   std::error_code code;

@@ -2,6 +2,7 @@
 ///   DIR/study.json        the study file, verbatim: another one is refused
 ///   DIR/subjects/007.csv  a subject's rows in the order of the session, a header first; each is appended whole and synced, and a torn last
 ///                         line is dropped when the file is read, so that whatever ends the program costs the trial at hand alone
+///   DIR/recordings/       every tick of a trial, where that was asked for
 ///   DIR/trials.csv        all subjects' rows by their numbers
 /// Doubles in the fewest digits that read back.
 #pragma once
@@ -36,6 +37,11 @@ Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& fi
 
 /// "DIR/subjects/007.csv"
 std::string subject_file(const std::string& folder, int subject);
+
+/// "DIR/recordings", and in it "007-012.catlog": subject and index.
+std::string recordings_folder(const std::string& folder);
+Outcome make_recordings_folder(const std::string& folder);
+std::string recording_name(const Trial& trial);
 
 /// A data folder that is written to.
 class DataFolder {

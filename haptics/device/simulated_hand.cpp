@@ -96,12 +96,23 @@ SimulatedHand::SimulatedHand(std::vector<Waypoint> path, const HandParameters& p
                                  .friction_n = p.friction_n,
                                  .encoder_step_m = p.encoder_step_m,
                                  .delay_s = p.delay_s}};
+  start_s_ = path_.front().t_s;
+  path_.reserve(2);  // for want()
   mass_ = {path_.front().position_m, p.velocity_m_per_s};
   const double periods = p.delay_s / p.period_s + 1e-9;
   delay_ticks_ = static_cast<std::uint64_t>(periods);
   const double rest_s = std::fmax(0.0, p.delay_s - static_cast<double>(delay_ticks_) * p.period_s);
   before_ = part(rest_s > 1e-6 * p.period_s ? rest_s : 0);
   after_ = part(p.period_s - before_.step.step_s * before_.steps);
+}
+
+void SimulatedHand::want(const Vec3& position_m) noexcept {
+  // a path of two: where it wanted to be at the tick that was read last, and at the next
+  path_.resize(2, path_.front());
+  const double next_s = start_s_ + static_cast<double>(ticks_) * parameters_.period_s;
+  path_.front() = {next_s - parameters_.period_s, path_.back().position_m, path_.back().buttons};
+  path_.back() = {next_s, position_m, path_.front().buttons};
+  segment_ = 0;
 }
 
 SimulatedHand::Part SimulatedHand::part(double length_s) const {
@@ -142,14 +153,14 @@ void SimulatedHand::advance_part(const Part& part, const Vec3& force_n, double& 
 }
 
 DeviceInput SimulatedHand::read() noexcept {
-  const double start_s = path_.front().t_s, period_s = parameters_.period_s;
+  const double period_s = parameters_.period_s;
   if (ticks_ > 0) {
-    double t = start_s + static_cast<double>(ticks_ - 1) * period_s;
+    double t = start_s_ + static_cast<double>(ticks_ - 1) * period_s;
     advance_part(before_, written(delay_ticks_ + 2), t);
     advance_part(after_, written(delay_ticks_ + 1), t);
   }
   Vec3 velocity;
-  wish(start_s + static_cast<double>(ticks_) * period_s, velocity);
+  wish(start_s_ + static_cast<double>(ticks_) * period_s, velocity);
   written_[ticks_ % written_.size()] = Vec3(0.0);
   ++ticks_;
   DeviceInput input;

@@ -97,6 +97,10 @@ class SimulatedHand final : public Device {
   /// `path` has at least one waypoint, t rising; it starts there. Between them the wish moves linearly, after the last it rests.
   SimulatedHand(std::vector<Waypoint> path, const HandParameters& parameters);
 
+  /// The hand wants to be there at the next tick, and gets there evenly from where it wanted to be at the last: instead of a path, once a
+  /// tick from the first one on. Haptic thread.
+  void want(const Vec3& position_m) noexcept;
+
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
   DeviceInput read() noexcept override;
   void write(const DeviceOutput& output) noexcept override;
@@ -115,6 +119,7 @@ class SimulatedHand final : public Device {
   const Vec3& written(std::uint64_t ticks_ago) const noexcept;
 
   std::vector<Waypoint> path_;
+  double start_s_ = 0;
   HandParameters parameters_;
   DeviceCapabilities capabilities_;
   std::uint64_t delay_ticks_ = 0;  ///< whole ones

@@ -7,6 +7,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/result.h"
 #include "engine/base/threads.h"
+#include "haptics/servo/step.h"
 #include "haptics/servo/watchdog.h"
 
 namespace catena::haptics {
@@ -155,14 +156,7 @@ void Servo::one_tick(double t_s, const Beat& beat, exchange::HapticState& out) n
     scratch_ = ChainScratch{};
     if (sink_ != nullptr) sink_->begin(state_);
   }
-  // device metres -> world: origin + R p / S; a recorded path is in the world already, and so is its orientation
-  const Mat3& to_world = program_->workspace_rotation;
-  ProbeSample probe;
-  probe.buttons = input.buttons;
-  probe.t_s = input.recorded ? input.t_s : t_s;
-  probe.position =
-      input.recorded ? input.position_m : program_->workspace_origin + to_world * input.position_m * (1 / program_->metres_per_unit);
-  probe.orientation = input.recorded ? input.orientation : glm::quat_cast(to_world) * input.orientation;
+  ProbeSample probe = probe_of(*program_, input, t_s);
   probe.forces_on = input.forces_on && forces();
 
   // the tick that finds the watchdog's flag is without force; the one after it may drive the device again
@@ -178,9 +172,7 @@ void Servo::one_tick(double t_s, const Beat& beat, exchange::HapticState& out) n
   stalled_within_ = watchdog_ && computed - began > watchdog_->limit_ns();
   if (stalled_within_) watchdog_->stalled();
 
-  // v * R = R^T v: back to the device's axes
-  const bool live = out.force_state != ForceState::off && out.force_state != ForceState::stopped;
-  device_.write({.force_n = out.force_n * to_world, .torque_nm = out.torque_nm * to_world, .live = live});
+  device_.write(output_of(*program_, out));
   const std::int64_t ended = now_ns();
   hash_.add(out);
 

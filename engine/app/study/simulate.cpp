@@ -1,10 +1,162 @@
-/// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--record]
-#include <CLI/CLI.hpp>
+/// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--record]: the sessions of model subjects, on all cores.
+/// Training trials are left out: the model does not learn. What a folder holds already is kept, so that a run that was ended goes on.
+#include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+
+#include "engine/app/run_files.h"
 #include "engine/app/study/study_command.h"
+#include "engine/base/clock.h"
+#include "engine/base/numbers.h"
+#include "engine/base/text.h"
+#include "engine/base/threads.h"
+#include "engine/study/simulated_trial.h"
+#include "engine/study/trial_table.h"
+#include "haptics/servo/log/writer.h"
 
 namespace catena::app {
 
-void add_study_simulate(CLI::App&, Work&) {}
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateOptions {
+  std::string study, output, shard;
+  int subjects = 0;
+  bool record = false;
+};
+
+/// Every N-th subject, from the I-th on.
+struct Shard {
+  int index = 1, count = 1;
+};
+
+Result<Shard> read_shard(const std::string& text) {
+  if (text.empty()) return Shard{};
+  const std::size_t slash = text.find('/');
+  const auto index = parse_integer(text.substr(0, slash)), count = parse_integer(slash == std::string::npos ? "" : text.substr(slash + 1));
+  if (!index || !count || *index < 1 || *index > *count || *count > study::kMaxSubject)
+    return Error{"--shard " + in_quotes(text) + ": no I/N; a share such as 1/4, 2/4, 3/4 or 4/4 was expected"};
+  return Shard{static_cast<int>(*index), static_cast<int>(*count)};
+}
+
+/// The recordings of one subject, a trial after the other.
+class Recordings {
+ public:
+  Recordings(const study::Study& study, std::string folder) : study_(study), folder_(std::move(folder)) {}
+
+  Result<haptics::TickSink*> begin(const study::Trial& trial, const std::string& text, const haptics::Program& program) {
+    haptics::log::LogHeader header;
+    header.scene_path = study_.path;
+    header.scene_text = text;
+    header.device = "simulated hand";
+    header.catena_version = kCatenaVersion;
+    header.rate_hz = study::kSimulatedRateHz;
+    CATENA_TRY(writer_, haptics::log::LogWriter::open((fs::path(folder_) / study::recording_name(trial)).string(), std::move(header)));
+    writer_->add_program(program);
+    return writer_.get();
+  }
+  Outcome end() {
+    if (!writer_) return Done{};
+    const auto writer = std::move(writer_);
+    return writer->finish();
+  }
+
+ private:
+  const study::Study& study_;
+  std::string folder_;
+  std::unique_ptr<haptics::log::LogWriter> writer_;
+};
+
+/// The trials that count, and those of them that a folder lacks.
+struct Session {
+  std::vector<study::Trial> trials;
+  std::size_t done = 0;
+};
+
+Result<Session> session_in(const study::Study& study, const study::DataFolder& data, int subject) {
+  Session session;
+  for (const study::Trial& trial : study::session_of(study, subject))
+    if (!trial.training) session.trials.push_back(trial);
+  CATENA_TRY(const std::vector<study::Row> rows, data.rows(subject));
+  session.done = rows.size();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (i >= session.trials.size() || rows[i].index != session.trials[i].index || rows[i].seed != session.trials[i].seed)
+      return Error{fmt::format("{}:{}: is no trial of a simulated session; data of `study simulate` were expected",
+                               study::subject_file(data.path(), subject), i + 2)};
+  return session;
+}
+
+Outcome simulate_subject(const study::Study& study, const study::DataFolder& data, const Session& session, bool record,
+                         const std::function<void()>& on_trial) {
+  Recordings recordings(study, study::recordings_folder(data.path()));
+  study::TrialSimulator::Recorder recorder;
+  if (record)
+    recorder = [&](const study::Trial& trial, const std::string& text, const haptics::Program& program) {
+      return recordings.begin(trial, text, program);
+    };
+  study::TrialSimulator simulator(study, recorder);
+  for (std::size_t i = session.done; i < session.trials.size(); ++i) {
+    CATENA_TRY(const study::Measured measured, simulator.run(session.trials[i]));
+    CATENA_CHECK(recordings.end());
+    CATENA_CHECK(data.append(study::row_of(study, session.trials[i], measured)));
+    on_trial();
+  }
+  return Done{};
+}
+
+Outcome simulate(const SimulateOptions& options) {
+  CATENA_TRY(const study::Study study, study::read_study(options.study));
+  CATENA_TRY(const Shard shard, read_shard(options.shard));
+  CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study));
+  if (options.record) CATENA_CHECK(study::make_recordings_folder(data.path()));
+  const int subjects = options.subjects > 0 ? options.subjects : study.subjects;
+  std::vector<Session> sessions;
+  std::size_t todo = 0, all = 0;
+  for (int subject = shard.index; subject <= subjects; subject += shard.count) {
+    CATENA_TRY(Session session, session_in(study, data, subject));
+    all += session.trials.size();
+    todo += session.trials.size() - session.done;
+    sessions.push_back(std::move(session));
+  }
+
+  const std::int64_t began = now_ns();
+  Progress progress("simulate", static_cast<double>(todo));
+  std::mutex guard;
+  std::size_t done = 0;
+  std::optional<std::pair<std::size_t, Error>> fault;  // of the first subject that has one
+  parallel_for(sessions.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Outcome outcome = simulate_subject(study, data, sessions[i], options.record, [&] {
+        const std::lock_guard lock(guard);
+        progress.at(static_cast<double>(++done));
+      });
+      const std::lock_guard lock(guard);
+      if (!outcome && (!fault || i < fault->first)) fault.emplace(i, outcome.error());
+    }
+  });
+  if (fault) return fault->second;
+  CATENA_CHECK(data.write_table());
+  fmt::print("{}: {} subjects of a model, {} trials, {} of them now in {:.1f} s\n", printable(options.output), sessions.size(), all, todo,
+             1e-3 * ms_since(began));
+  return Done{};
+}
+
+}  // namespace
+
+void add_study_simulate(CLI::App& study, Work& chosen) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command = study.add_subcommand("simulate", "the study with a model in the place of its subjects");
+  command->add_option("STUDY", options->study, "the study file (.json)")->required();
+  command->add_option("--subjects", options->subjects, "how many; default: those of the design")->check(CLI::Range(1, study::kMaxSubject));
+  command->add_option("-o,--output", options->output, "the data folder; what it holds of this study is kept")->required();
+  command->add_option("--shard", options->shard,
+                      "I/N: every N-th subject from the I-th on, for a cluster's job array; study merge joins them");
+  command->add_flag("--record", options->record, "every tick of every trial, DIR/recordings/SUBJECT-TRIAL.catlog");
+  command->callback([&chosen, options] { chosen = [options] { return simulate(*options); }; });
+}
 
 }  // namespace catena::app

@@ -1,0 +1,42 @@
+/// A servo's tick without its thread and its clock: read the device, run the tick, write the force. And how the hand's metres lie in a
+/// program's world, for both.
+///   world = origin + R device / S,   device = R^T (world - origin) S,   S metres per unit
+/// Haptic thread: no allocation, lock or throw.
+#pragma once
+#include <memory>
+
+#include "haptics/chain/tick.h"
+#include "haptics/device/device.h"
+#include "haptics/servo/servo.h"
+
+namespace catena::haptics {
+
+Vec3 world_from_device(const Program& program, const Vec3& device_m) noexcept;
+Vec3 device_from_world(const Program& program, const Vec3& world) noexcept;
+/// What the device says, in the program's world. The condition is the caller's.
+ProbeSample probe_of(const Program& program, const DeviceInput& input, double t_s) noexcept;
+/// What the tick answers, in the device's axes.
+DeviceOutput output_of(const Program& program, const exchange::HapticState& state) noexcept;
+
+/// Ticks one after the other, as fast as they are asked for, at even times from 0: the same device and program give the same bits.
+class Stepper {
+ public:
+  /// All outlive it. `sink` gets every tick.
+  Stepper(Device& device, const Program& program, double rate_hz, TickSink* sink = nullptr);
+
+  /// One tick; what it says stays until the next.
+  const exchange::HapticState& step() noexcept;
+  double t_s() const noexcept { return static_cast<double>(ticks_) / rate_hz_; }  ///< of the next tick
+
+ private:
+  Device& device_;
+  const Program& program_;
+  double rate_hz_;
+  TickSink* sink_;
+  std::uint64_t ticks_ = 0;
+  std::unique_ptr<ChainState> state_ = std::make_unique<ChainState>();
+  std::unique_ptr<ChainScratch> scratch_ = std::make_unique<ChainScratch>();
+  exchange::HapticState out_;
+};
+
+}  // namespace catena::haptics
