@@ -211,6 +211,7 @@ void carry_over(Scene& old, Scene& fresh) {
   cursor.size = said.size;
   cursor.ghost = said.ghost;
   cursor.drop_line = said.drop_line;
+  cursor.crosshair = said.crosshair;
 }
 
 }  // namespace catena::scene

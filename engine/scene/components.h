@@ -276,6 +276,7 @@ struct Cursor {
   bool visible = false;
   bool ghost = true;           ///< shines through what hides it
   bool drop_line = false;      ///< a line leads down to the floor of what is drawn
+  bool crosshair = false;      ///< three rods that cross at the hand, and nothing that says what is felt
   bool pseudo_haptic = false;  ///< nothing pushes the hand: lag and colour show the force
 };
 

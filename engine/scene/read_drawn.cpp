@@ -140,8 +140,14 @@ const Table<Cursor>& cursor_table() {
              cursor.visible = cursor.visible || probe;
              return Done{};
            });
-    t.bind(schema::number("size", "world", "Radius of its ball.").positive().by_default("fitted"), &Cursor::size);
+    t.bind(schema::number("size", "world", "Radius of its ball; half the length of the rods.").positive().by_default("fitted"),
+           &Cursor::size);
     t.bind(schema::boolean("ghost", "Hand, proxies and force shine through what hides them."), &Cursor::ghost);
+    t.bind(
+        schema::word("shape", {"ball", "crosshair"},
+                     "`crosshair`: three thin rods cross where the hand is; proxies and force are not shown, so that the picture does not "
+                     "tell what is felt."),
+        &Cursor::crosshair);
     t.bind(schema::boolean("drop_line",
                            "A thin line from the hand down to the floor of the domain, with a small cross where it meets it, says how deep "
                            "the hand is."),

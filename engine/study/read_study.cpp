@@ -36,7 +36,8 @@ const StudyTable<StimulusRules>& stimulus_table() {
                 &T::crossing_deg)
           .bind(number("turn_deg", "degrees", "The path turns at least this much from its start to its middle or its end.").within(0, 180),
                 &T::turn_deg)
-          .bind(integer("candidates", "", "Starts that are tried in a field, before the next field is.", 1, 10000), &T::candidates)
+          .bind(number("bend_mm", "mm", "The path's radius of curvature is nowhere smaller.").not_negative(), &T::bend_mm)
+          .bind(integer("candidates", "", "Starts that are tried in a field, before another field is.", 1, 10000), &T::candidates)
           .bind(number("region", "", "Share of the field's box, about its middle, in which starts lie.").limited({0.0, 1.0, true}),
                 &T::region);
   return table;

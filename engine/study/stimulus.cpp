@@ -16,10 +16,14 @@ namespace {
 
 constexpr int kFields = 200;             ///< asked one after the other for a start
 constexpr int kLineChoices = 6;          ///< a global line begins at the place, of so many, that is farthest from the others
-constexpr double kTolerance = 1e-9;      ///< of traces, L
+constexpr double kPathTolerance = 1e-9;  ///< of the trace, L
+constexpr double kLineTolerance = 1e-6;  ///< of lines, and of paths that are tried
 constexpr double kHidingRadiusMm = 1.5;  ///< a global line hides what is so near to it in the picture
 constexpr double kFlat = 1e-6;           ///< of the path's length: how far a 2D path may leave the picture plane
 constexpr int kStride = 8;               ///< of the path's corners that are looked at for what hides them
+
+/// Of another field: below 2^30.
+int next_seed(int seed) { return static_cast<int>(mixed_bits(static_cast<std::uint64_t>(seed)) >> 34); }
 
 double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180); }
 
@@ -39,18 +43,26 @@ double distance_to(const std::vector<std::vector<Vec3>>& lines, const Vec3& p) {
 class Draw {
  public:
   Draw(const Task& task, const field::VectorField& field, int seed)
-      : task_(task), rules_(task.rules), field_(field), box_(field.world_bounds()), random_(mixed_bits(static_cast<std::uint64_t>(seed))) {
+      : task_(task),
+        rules_(task.rules),
+        field_(field),
+        box_(field.world_bounds()),
+        random_(mixed_bits(static_cast<std::uint64_t>(seed))),
+        line_random_(~mixed_bits(static_cast<std::uint64_t>(seed))) {
     stimulus_.seed = seed;
     stimulus_.length = task.world(rules_.path_mm);
     stimulus_.line_length = task.world(rules_.line_mm);
-    draw_lines();
   }
 
   std::optional<Stimulus> stimulus() {
     std::optional<Stimulus> best;
     for (int k = 0; k < rules_.candidates; ++k) {
-      const Vec3 start = place(rules_.region);
-      if (distance_to(lines_, start) < task_.world(rules_.clearance_mm) || !take_path(start) || !path_is_allowed()) continue;
+      const Vec3 start = place(rules_.region, random_);
+      if (!take_path(start, kLineTolerance) || !path_is_allowed()) continue;
+      if (stimulus_.lines.empty()) draw_lines();
+      if (distance_to(lines_, start) < task_.world(rules_.clearance_mm)) continue;
+      // what is kept is traced well
+      if (!take_path(start, kPathTolerance) || !path_is_allowed()) continue;
       stimulus_.hidden = task_.dimensions == 3 ? hidden() : 0;
       if (!best || stimulus_.hidden < best->hidden) best = stimulus_;
       if (best->hidden == 0) break;
@@ -59,21 +71,21 @@ class Draw {
   }
 
  private:
-  Vec3 place(double share) {
+  Vec3 place(double share, Random& random) const {
     const Vec3 middle = box_.centre();
     Vec3 p(0.0);
     for (int axis = 0; axis < 3; ++axis) {
       const double half = 0.5 * share * (box_.hi[axis] - box_.lo[axis]);
-      p[axis] = random_.between(middle[axis] - half, middle[axis] + half);
+      p[axis] = random.between(middle[axis] - half, middle[axis] + half);
     }
     return task_.dimensions == 3 ? p : p - task_.view * dot(p - task_.plane, task_.view);
   }
 
-  flow::CurvePtr traced(const Vec3& seed, double length) const {
+  flow::CurvePtr traced(const Vec3& seed, double length, double tolerance) const {
     flow::TraceOptions options;
     options.length = length;
-    options.tolerance = kTolerance;
-    options.hermite_tolerance = kTolerance;
+    options.tolerance = tolerance;
+    options.hermite_tolerance = tolerance;
     auto curve = flow::trace({.field = &field_}, seed, options);
     return curve ? *curve : nullptr;
   }
@@ -84,11 +96,11 @@ class Draw {
       std::optional<Vec3> seed;
       double farthest = -1;
       for (int choice = 0; choice < kLineChoices; ++choice) {
-        const Vec3 p = place(1);
+        const Vec3 p = place(1, line_random_);
         const double distance = distance_to(lines_, p);
         if (distance > farthest) farthest = distance, seed = p;
       }
-      const flow::CurvePtr curve = seed ? traced(*seed, stimulus_.line_length) : nullptr;
+      const flow::CurvePtr curve = seed ? traced(*seed, stimulus_.line_length, kLineTolerance) : nullptr;
       if (!curve) continue;
       const double s0 = curve->knots().front().s, s1 = curve->knots().back().s;
       const int pieces = std::max(1, static_cast<int>(std::ceil((s1 - s0) / step)));
@@ -99,9 +111,9 @@ class Draw {
   }
 
   /// Downstream from the start, all of it within the box.
-  bool take_path(const Vec3& start) {
+  bool take_path(const Vec3& start, double tolerance) {
     const double length = stimulus_.length;
-    const flow::CurvePtr curve = traced(start, 1.001 * length);
+    const flow::CurvePtr curve = traced(start, 1.001 * length, tolerance);
     if (!curve || curve->closed() || curve->knots().back().s < length) return false;
     stimulus_.path.clear();
     for (int i = 0; i < kPathPoints; ++i) {
@@ -127,6 +139,11 @@ class Draw {
     const std::size_t last = path.size() - 1;
     const double turn = std::cos(rules_.turn_deg * std::numbers::pi / 180);
     if (rules_.turn_deg > 0 && std::min(dot(tangent(0), tangent(last)), dot(tangent(0), tangent(last / 2))) > turn) return false;
+    for (std::size_t i = 1; i < last; ++i) {
+      // a corner of angle a between pieces of length h: a / h is the curvature
+      const Vec3 before = path[i] - path[i - 1], after = path[i + 1] - path[i];
+      if (norm(direction(after) - direction(before)) * task_.world(rules_.bend_mm) > norm(before)) return false;
+    }
     if (task_.dimensions == 2) {
       for (const Vec3& p : path)
         if (std::fabs(dot(p - task_.plane, task_.view)) > kFlat * stimulus_.length) return false;
@@ -176,7 +193,7 @@ class Draw {
   const StimulusRules& rules_;
   const field::VectorField& field_;
   Bounds box_;
-  Random random_;
+  Random random_, line_random_;
   std::vector<std::vector<Vec3>> lines_;
   Stimulus stimulus_;
 };
@@ -199,8 +216,7 @@ Result<field::AnyField> StimulusMaker::field_of(int task, int seed) {
 
 Result<Stimulus> StimulusMaker::make(int task, int seed) {
   const Task& of = study_.tasks[static_cast<std::size_t>(task)];
-  for (int k = 0; k < kFields; ++k) {
-    const int at = static_cast<int>((static_cast<unsigned>(seed) + static_cast<unsigned>(k)) & 0x3fffffffu);
+  for (int k = 0, at = seed; k < kFields; ++k, at = next_seed(at)) {
     CATENA_TRY(const field::AnyField field, field_of(task, at));
     if (auto found = Draw(of, *field.vector, at).stimulus()) return *found;
   }

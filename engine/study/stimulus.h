@@ -2,12 +2,13 @@
 ///   global lines   `lines` streamlines through places drawn in the field's box
 ///   start          drawn in the middle `region` of the box (2D: of the picture plane); at least `clearance` from every global line
 ///   path           the streamline from there, downstream; its length is the same in all trials
+///   bends          of radius `bend` at least: it keeps away from critical points
 ///   2D             the path lies in the picture plane
 ///   3D             at least `parallel` of its length is seen in the picture plane; of the starts that are allowed the one whose path is
 ///                  hidden least by global lines
 ///   circle         of advection: about the start, through the path's end; the path does not meet it before
 ///   plane          of advection: level, through the path's end, below all of the path before
-/// and meets either at `crossing` or steeper. Where a field has no such start among `candidates`, that of the next seed is asked.
+/// and meets either at `crossing` or steeper. Where a field has no such start among `candidates`, that of another seed is asked.
 /// The same bits on one type of machine. Off the tick; any thread.
 #pragma once
 #include <memory>
@@ -19,7 +20,7 @@
 namespace catena::study {
 
 struct Stimulus {
-  int seed = 0;                            ///< of the field: the trial's, or the first after it whose field has a start
+  int seed = 0;                            ///< of the field: the trial's, or the first of those that follow from it whose field has a start
   Vec3 start{0.0}, middle{0.0}, end{0.0};  ///< world, of the path
   std::vector<Vec3> path;                  ///< evenly by length, from start to end
   double length = 0;                       ///< of the path, world

@@ -31,6 +31,7 @@ struct StimulusRules {
   double parallel = 0.8;     ///< of a 3D path at least this share of its length is seen in the picture plane
   double crossing_deg = 30;  ///< advection: the path meets its target at no flatter angle
   double turn_deg = 0;       ///< the path's tangent turns at least this much between its ends or its middle
+  double bend_mm = 3;        ///< the path bends with no smaller radius
   int candidates = 64;       ///< starts tried in a field, before the next field is
   double region = 0.5;       ///< share of the field's box, about its middle, in which starts lie
 };

@@ -114,6 +114,7 @@ void extract_cursors(const scene::Scene& scene, FramePacket& packet) {
         cursor.probe, cursor.proxies, cursor.active, cursor.force_n, cursor.size, cursor.leaving, packet.add_object("cursor", "")};
     if (cursor.pseudo_haptic) item.strain = strain_of(scene, cursor);
     item.ghost = cursor.ghost;
+    item.crosshair = cursor.crosshair;
     if (cursor.drop_line) item.foot = item.probe;  // extract_feet lowers it
     item.active.resize(item.proxies.size(), true);
     item.leaving.resize(item.proxies.size(), 0.0);

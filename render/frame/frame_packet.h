@@ -222,6 +222,7 @@ struct CursorItem {
   /// colour and width say the force, 0..1 of the largest. None: as it is.
   std::optional<double> strain{};
   bool ghost = true;           ///< it shines through what hides it
+  bool crosshair = false;      ///< three rods along the axes, twice `size` long; no proxies, no force
   std::optional<Vec3> foot{};  ///< a thin line leads from the probe to here, to a cross at right angles to it
   bool operator==(const CursorItem&) const = default;
 };

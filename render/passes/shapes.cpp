@@ -367,11 +367,22 @@ void add_drop_line(Shape& shape, const CursorItem& cursor) {
   for (const Vec3& arm : {one, other}) add_cylinder(shape, *cursor.foot - reach * arm, *cursor.foot + reach * arm, radius, grey);
 }
 
+/// Along the world's axes; dark and thin, to be seen on light and on lines.
+void add_crosshair(Shape& shape, const CursorItem& cursor) {
+  const Color dark{0.05f, 0.05f, 0.08f};
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 arm(0.0);
+    arm[axis] = cursor.size;
+    add_cylinder(shape, cursor.probe - arm, cursor.probe + arm, 0.06 * cursor.size, dark);
+  }
+}
+
 }  // namespace
 
 void add_cursor(Shape& shape, const CursorItem& cursor) {
   if (!(cursor.size > 0) || !is_finite(cursor.probe)) return;
   if (cursor.foot) add_drop_line(shape, cursor);
+  if (cursor.crosshair) return add_crosshair(shape, cursor);
   if (cursor.strain) return add_pseudo_haptic(shape, cursor);
   const Color white{0.95f, 0.95f, 0.95f};
   add_ball(shape, cursor.probe, cursor.size, white);

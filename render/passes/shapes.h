@@ -65,7 +65,7 @@ Color leaving_color(double leaving);
 /// from where the hand is held where the picture stands for a device (CursorItem::strain).
 /// A link that the hand is leaving: its cylinder takes leaving_color and gets thicker; one that has let go: three rings of
 /// leaving_color(1) around the place where it would hold. With a foot: a grey line of 0.15 size from the probe to there, and a cross of
-/// 1.5 size to each side, in the plane across the line.
+/// 1.5 size to each side, in the plane across the line. A crosshair is three rods and nothing else.
 void add_cursor(Shape& shape, const CursorItem& cursor);
 /// 2.5 glyph radii a newton, between 2 (anything felt can be seen) and 16 radii; 0 without a force.
 double cursor_arrow_length(double force_n, double size);

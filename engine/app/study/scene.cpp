@@ -2,13 +2,13 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <algorithm>
 #include <memory>
 
 #include "engine/app/run_files.h"
 #include "engine/app/study/study_command.h"
-#include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/scene/document.h"
 #include "engine/study/trial_scene.h"
 
 namespace catena::app {
@@ -34,10 +34,11 @@ Outcome write_trial_scene(const StudySceneOptions& options) {
   study::StimulusMaker maker(study);
   CATENA_TRY(const study::Stimulus stimulus, maker.make(trial.task, trial.seed));
   const std::string text = study::trial_scene(study, trial, stimulus);
-  CATENA_TRY(OutputFile out, OutputFile::open(options.output));
-  // its lines are those of the study file: the empty ones before are left out
-  out.write("{" + text.substr(std::min(text.find_first_not_of("{\n"), text.size() - 1)) + "\n");
-  CATENA_CHECK(out.commit());
+  CATENA_CHECK(scene::parse_scene(text, options.study));  // mistakes have the study's lines
+  // without the empty lines before, and with names of files that are right where it goes
+  CATENA_TRY(scene::Document document,
+             scene::Document::make("{" + text.substr(std::min(text.find_first_not_of("{\n"), text.size() - 1)) + "\n", options.study));
+  CATENA_CHECK(document.save(options.output));
   const study::Task& task = study.tasks[static_cast<std::size_t>(trial.task)];
   fmt::print("{}: subject {}, trial {}: {}, {}{}, seed {}\n", printable(options.output), trial.subject, trial.index, printable(task.name),
              printable(study.conditions[static_cast<std::size_t>(trial.condition)].name), trial.training ? ", training" : "",

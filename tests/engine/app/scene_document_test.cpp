@@ -1,5 +1,6 @@
-// docs/scene.md says what the readers read: every table of keys between "<!-- keys: NAME -->" and "<!-- end -->" is the one that the
-// components' own descriptions make, and none is missing. CATENA_WRITE_DOCUMENTS=1 in the environment writes them anew (./run docs).
+// docs/scene.md and docs/study.md say what the readers read: every table of keys between "<!-- keys: NAME -->" and "<!-- end -->" is the
+// one that the components' own descriptions make, and none is missing. CATENA_WRITE_DOCUMENTS=1 in the environment writes them anew (./run
+// docs).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include "engine/app/scene_schema.h"
 #include "engine/schema/documents.h"
+#include "engine/study/study.h"
 #include "tests/support/support.h"
 
 namespace scene_document_test {
@@ -29,26 +31,30 @@ std::string with_tables(const std::string& text, const std::map<std::string, std
     if (end == std::string::npos) return text;
     const std::string name = text.substr(name_at, name_end - name_at);
     const auto table = tables.find(name);
-    EXPECT_NE(table, tables.end()) << "docs/scene.md has a table \"" << name << "\", which no part of a scene has";
+    EXPECT_NE(table, tables.end()) << "the document has a table \"" << name << "\", which nothing has";
     named.insert(name);
     out += text.substr(at, name_end + kBegun.size() - at) + "\n" + (table == tables.end() ? "" : table->second) + "\n";
     at = end;
   }
 }
 
-TEST(SceneDocument, SaysWhatTheReadersRead) {
+void check_document(const std::string& document, const std::vector<schema::Component>& components) {
   std::map<std::string, std::string> tables;
-  for (const schema::Component& component : app::scene_description())
+  for (const schema::Component& component : components)
     for (auto& [name, table] : schema::markdown_tables(component)) tables.emplace(name, table);
-  const std::string path = test::source_dir() + "/docs/scene.md", text = test::read_file(path);
+  const std::string path = test::source_dir() + "/" + document, text = test::read_file(path);
   std::set<std::string> named, shown;
   const std::string right = with_tables(text, tables, named);
   for (const std::string& name : named) shown.insert(tables[name]);
-  for (const auto& [name, table] : tables) EXPECT_TRUE(shown.contains(table)) << "docs/scene.md has no table \"" << name << "\"";
+  for (const auto& [name, table] : tables) EXPECT_TRUE(shown.contains(table)) << document << " has no table \"" << name << "\"";
   if (std::getenv("CATENA_WRITE_DOCUMENTS") != nullptr)
     test::write_file(path, right);
   else
-    EXPECT_TRUE(text == right) << "docs/scene.md is not current; ./run docs writes it";
+    EXPECT_TRUE(text == right) << document << " is not current; ./run docs writes it";
 }
+
+TEST(SceneDocument, SaysWhatTheReadersRead) { check_document("docs/scene.md", app::scene_description()); }
+
+TEST(SceneDocument, SaysWhatAStudyMaySay) { check_document("docs/study.md", study::study_components()); }
 
 }  // namespace scene_document_test

@@ -1,0 +1,144 @@
+// `catena study` from the outside: simulate, shard, merge, go on after a kill, a study of one's own, and mistakes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace study_test {
+
+using namespace catena;
+namespace fs = std::filesystem;
+
+/// The paper's study with so few trials that a session takes no time.
+std::string short_study(const test::TemporaryFolder& folder) {
+  std::string text = test::read_file(test::source_dir() + "/assets/studies/proxy-chain.json");
+  const auto replace = [&](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
+  replace("\"trials\": 10", "\"trials\": 2");
+  const std::string path = folder / "short.json";
+  test::write_file(path, text);
+  return path;
+}
+
+test::ProgramResult study(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "study");
+  return test::run_catena(arguments);
+}
+
+TEST(Study, ShardsAreTheWholeToTheBit) {
+  const test::TemporaryFolder folder;
+  const std::string path = short_study(folder);
+  const auto whole = study({"simulate", path, "--subjects", "2", "-o", folder / "whole"});
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_NE(whole.out.find("2 subjects of a model, 32 trials"), std::string::npos) << whole.out;
+  for (const char* shard : {"1/2", "2/2"}) {
+    const auto part = study({"simulate", path, "--subjects", "2", "-o", folder / ("part" + std::string(1, shard[0])), "--shard", shard});
+    ASSERT_EQ(part.exit_code, 0) << part.err;
+  }
+  const auto merged = study({"merge", folder / "part2", folder / "part1", "-o", folder / "merged"});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  const std::string table = test::read_file(folder / "whole/trials.csv");
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 33);
+  EXPECT_EQ(table, test::read_file(folder / "merged/trials.csv"));
+  EXPECT_EQ(test::read_file(folder / "whole/subjects/002.csv"), test::read_file(folder / "merged/subjects/002.csv"));
+  EXPECT_EQ(test::read_file(folder / "merged/study.json"), test::read_file(path));
+  // the same again changes nothing; folders that disagree are refused
+  EXPECT_EQ(study({"merge", folder / "part2", folder / "part1", "-o", folder / "merged"}).exit_code, 0);
+  std::string other = test::read_file(folder / "part1/subjects/001.csv");
+  other.replace(other.rfind(",target,"), 8, ",limit,");
+  fs::create_directories(folder / "bad/subjects");
+  test::write_file(folder / "bad/study.json", test::read_file(path));
+  test::write_file(folder / "bad/subjects/001.csv", other);
+  const auto refused = study({"merge", folder / "part1", folder / "bad", "-o", folder / "never"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("subject 1 has other trials"), std::string::npos) << refused.err;
+  EXPECT_FALSE(test::exists(folder / "never"));
+}
+
+TEST(Study, GoesOnWhereItWasEnded) {
+  const test::TemporaryFolder folder;
+  const std::string path = short_study(folder);
+  ASSERT_EQ(study({"simulate", path, "--subjects", "1", "-o", folder / "a"}).exit_code, 0);
+  const std::string whole = test::read_file(folder / "a/subjects/001.csv");
+  // as a kill leaves it: nine trials and a piece of the tenth
+  std::size_t at = 0;
+  for (int line = 0; line < 10; ++line) at = whole.find('\n', at) + 1;
+  fs::create_directories(folder / "b/subjects");
+  test::write_file(folder / "b/study.json", test::read_file(path));
+  test::write_file(folder / "b/subjects/001.csv", whole.substr(0, at + 17));
+  const auto on = study({"simulate", path, "--subjects", "1", "-o", folder / "b"});
+  ASSERT_EQ(on.exit_code, 0) << on.err;
+  EXPECT_NE(on.out.find("16 trials, 7 of them now"), std::string::npos) << on.out;
+  EXPECT_EQ(test::read_file(folder / "b/subjects/001.csv"), whole);
+}
+
+TEST(Study, AStudyOfOnesOwnRunsWithoutCode) {
+  const test::TemporaryFolder folder;
+  fs::copy_file(test::source_dir() + "/assets/studies/friction.json", folder / "friction.json");
+  const auto missing = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.err.find("flow.vdb"), std::string::npos) << missing.err;
+  ASSERT_EQ(test::run_catena({"generate", "abc", "-o", folder / "flow.vdb", "--resolution", "32"}).exit_code, 0);
+  const auto run = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const test::Table table = test::Table::read(folder / "d/trials.csv");
+  ASSERT_EQ(table.rows(), 18u);
+  std::map<std::string, double> force;
+  for (std::size_t i = 0; i < table.rows(); ++i) force[table.word(i, "condition")] += table.number(i, "peak_force_n");
+  ASSERT_EQ(force.size(), 3u);
+  EXPECT_EQ(force["none"], 0);
+  EXPECT_GT(force["drag"], 1);
+  EXPECT_GT(force["across"], 0.1);
+}
+
+TEST(Study, ATrialIsAScene) {
+  const test::TemporaryFolder folder;
+  const std::string path = test::source_dir() + "/assets/studies/proxy-chain.json";
+  for (const char* trial : {"0", "30", "55", "80"}) {
+    const auto made = study({"scene", path, "--subject", "3", "--trial", trial, "-o", folder / "t.json"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const auto info = test::run_catena({"info", folder / "t.json"});
+    EXPECT_EQ(info.exit_code, 0) << info.err;
+    EXPECT_NE(info.out.find("field flow: vector vortices"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("1 world unit is 0.05 m"), std::string::npos) << info.out;
+  }
+  EXPECT_EQ(study({"scene", path, "--trial", "96", "-o", folder / "u.json"}).exit_code, 2);
+  EXPECT_FALSE(test::exists(folder / "u.json"));
+}
+
+TEST(Study, ARecordedTrialIsReplayedToTheBit) {
+  const test::TemporaryFolder folder;
+  std::string text = test::read_file(short_study(folder));
+  text.replace(text.find("\"trials\": 2"), 11, "\"trials\": 1");
+  test::write_file(folder / "one.json", text);
+  ASSERT_EQ(study({"simulate", folder / "one.json", "--subjects", "1", "-o", folder / "d", "--record"}).exit_code, 0);
+  const test::Table table = test::Table::read(folder / "d/trials.csv");
+  for (std::size_t i = 0; i < table.rows(); i += 3) {
+    const std::string name = fmt::format("d/recordings/001-{:03}.catlog", static_cast<int>(table.number(i, "index")));
+    const auto again = test::run_catena({"replay", "--log", folder / name});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+  }
+}
+
+TEST(Study, MistakesAreOneLine) {
+  const test::TemporaryFolder folder;
+  const std::string path = short_study(folder);
+  const std::vector<std::vector<std::string>> mistakes = {
+      {"simulate", folder / "none.json", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "0", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "1", "--shard", "3/2", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "1", "--shard", "half", "-o", folder / "d"},
+      {"merge", folder / "nothing", "-o", folder / "d"},
+      {"keys", "taks"},
+      {},
+  };
+  for (const auto& mistake : mistakes) {
+    const auto run = study(mistake);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(test::exists(folder / "d")) << run.err;
+  }
+}
+
+}  // namespace study_test

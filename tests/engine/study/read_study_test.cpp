@@ -1,0 +1,111 @@
+// The study file: what it says, and what is said of mistakes in it, with the line of the mistake.
+#include <gtest/gtest.h>
+
+#include "engine/scene/scene.h"
+#include "engine/study/trial_scene.h"
+#include "haptics/extract/extract.h"
+#include "tests/engine/study/study_rig.h"
+
+namespace read_study_test {
+
+using namespace catena;
+using study_rig::small_text;
+
+TEST(ReadStudy, ThePapersDesign) {
+  const study::Study& study = study_rig::paper();
+  ASSERT_EQ(study.tasks.size(), 4u);
+  ASSERT_EQ(study.conditions.size(), 2u);
+  EXPECT_EQ(study.conditions[0].name, "iso");
+  EXPECT_EQ(study.subjects * static_cast<int>(study.tasks.size() * study.conditions.size()) * study.trials, 1600);
+  int rejected_at_s = 0;
+  for (const study::Task& task : study.tasks) {
+    EXPECT_EQ(task.limits.ends_s, 30);
+    EXPECT_EQ(task.limits.told_s, 10);
+    EXPECT_EQ(task.limits.reject_error_mm, task.dimensions == 2 ? 30 : 100);
+    EXPECT_EQ(task.rules.path_mm, 100);
+    rejected_at_s += static_cast<int>(task.limits.reject_time_s);
+    EXPECT_NEAR(task.mm(task.world(37)), 37, 1e-12);
+  }
+  EXPECT_EQ(rejected_at_s, 10 + 15 + 12 + 17);
+  EXPECT_EQ(study.tasks[0].target, study::Target::circle);
+  EXPECT_EQ(study.tasks[2].target, study::Target::plane);
+  EXPECT_EQ(study.tasks[0].view, Vec3(0, 0, -1));
+  // the speed's spread as it was measured, split over subjects and trials
+  EXPECT_NEAR(std::hypot(study.model.speed_spread_subject, study.model.speed_spread_trial), 0.45, 1e-12);
+}
+
+struct Mistake {
+  const char *from, *to, *says;
+};
+
+TEST(ReadStudy, MistakesAreOneLineWithTheirPlace) {
+  const Mistake mistakes[] = {
+      {R"("trials": 3)", R"("trials": 0)", "small.json:2:"},
+      {R"("training": 1)", R"("trainings": 1)", "did you mean \"training\""},
+      {R"("name": "small")", R"("seed": 4)", "\"name\""},
+      {R"("dimensions": 2, "field")", R"("dimensions": 4, "field")", "small.json:4:"},
+      {R"("kind": "tracing")", R"("kind": "racing")", "small.json:4:"},
+      {R"("kind": "tracing")", R"("kind": "tracing", "target": "circle")", "path's end was expected"},
+      {R"("kind": "tracing")", R"("kind": "advection", "target": "end")", "was expected"},
+      {R"("field": "flow",)", R"("field": "flows",)", "small.json:4:"},
+      {R"("$seed")", R"("$sead")", "small.json:6: \"$sead\" stands for nothing"},
+      {R"("target": [0, 0, 0])", R"("target": [0, 0, 8])", "small.json:7:"},
+      {R"("metres_per_unit": 0.05)", R"("metres_per_unit": -1)", "small.json:8:"},
+      {R"("workspace": {"metres_per_unit": 0.05})", R"("jitter": true)", "no \"workspace\""},
+      {R"("chain": []})", R"("chains": []})", "small.json:11:"},
+      {R"("chain": []})", R"("chain": {"trance": []}})", "did you mean \"trace\""},
+      {R"("name": "held")", R"("name": "free")", "small.json:12: there are two of the name \"free\""},
+      {R"("dimensions": 2, "field")", R"("dimensions": 2, "stimulus": {"path_mm": 0}, "field")", "\"path_mm\""},
+      {R"("training": 1,)", R"("training": 1, "operator": {"yield_n": "3"},)", "\"yield_n\""},
+      {R"("training": 1,)", R"("training": 1, "questionnaire": [{"name": "q"}],)", "\"question\""},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const auto read = study::parse_study(small_text(mistake.from, mistake.to), "small.json");
+    ASSERT_FALSE(read) << mistake.to;
+    const std::string& said = read.error().message;
+    EXPECT_NE(said.find(mistake.says), std::string::npos) << mistake.to << "\n" << said;
+    EXPECT_TRUE(said.starts_with("small.json:")) << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  }
+}
+
+/// A mistake in a template or a chain shows when a trial is made: it is told with the line of the study file.
+TEST(ReadStudy, MistakesOfScenesAndChainsHaveTheLineOfTheStudyFile) {
+  const auto said = [](const char* from, const char* to, int condition) -> std::string {
+    const study::Study study = study::parse_study(small_text(from, to), "small.json").value();
+    study::Trial trial;
+    trial.condition = condition;
+    study::Stimulus stimulus;
+    stimulus.path = {Vec3(0.0), Vec3(1.0)};
+    auto scene = scene::parse_scene(study::trial_scene(study, trial, stimulus), study.path);
+    if (!scene) return scene.error().message;
+    const auto program = haptics::extract_program(*scene);
+    return program ? "" : program.error().message;
+  };
+  EXPECT_EQ(said(R"("training": 1)", R"("training": 1)", 1), "");
+  EXPECT_TRUE(said(R"("analytic": "vortices")", R"("analytic": "vortexes")", 0).starts_with("small.json:6:"));
+  EXPECT_TRUE(said(R"("up": [0, 1, 0])", R"("up": [0, 1])", 0).starts_with("small.json:7:"));
+  EXPECT_TRUE(said(R"("type": "streamline")", R"("type": "streamlime")", 1).starts_with("small.json:13:"));
+  EXPECT_TRUE(said(R"("seed": "$start")", R"("seed": "$radius")", 1).starts_with("small.json:13:"));
+}
+
+TEST(ReadStudy, AChainMayStandBeforeTheTasksAndCommentsAnywhere) {
+  const study::Study study = study::parse_study(R"({ "name": "turned",
+  "conditions": [{"name": "a", "chain": [  // links
+      {"name": "hold", "type": "point", "position": "$end"}]}],
+  "tasks": [{"name": "t", "kind": "tracing", "dimensions": 3, "field": "f", "scene": {
+    "fields": {"f": {"analytic": "helix"}}, "camera": {"position": [0, -8, 0], "target": [0, 0, 0]},
+    "workspace": {"metres_per_unit": 1}  // the end
+  }}]})",
+                                                "turned.json")
+                                 .value();
+  study::Stimulus stimulus;
+  stimulus.end = Vec3(1, 2, 3);
+  const std::string text = study::trial_scene(study, {}, stimulus);
+  EXPECT_NE(text.find(R"("position": [1, 2, 3])"), std::string::npos) << text;
+  auto scene = scene::parse_scene(text, study.path);
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(haptics::extract_program(*scene).value()->links.size(), 1u);
+}
+
+}  // namespace read_study_test

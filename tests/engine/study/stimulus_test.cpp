@@ -1,0 +1,194 @@
+// The paper's rules for stimuli over 200 seeds a task, looked at another way than they are made: with Runge and Kutta's method at small
+// fixed steps here, from the field of the trial's own scene.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "engine/scene/scene.h"
+#include "engine/study/session.h"
+#include "engine/study/trial_scene.h"
+#include "tests/engine/study/study_rig.h"
+
+namespace stimulus_test {
+
+using namespace catena;
+
+constexpr int kSeeds = 200;
+constexpr std::size_t kFine = 1500;  ///< steps, three times as fine as the path that is made
+
+field::AnyField field_of(const study::Task& task, int seed) {
+  auto scene = scene::parse_scene(study::field_scene(study_rig::paper(), task, seed), "field.json");
+  return scene::use_field(*scene, task.field, task.where).value();
+}
+
+/// By arc length, at a fixed step; `way` 1 downstream, -1 upstream.
+std::vector<Vec3> walk(const field::VectorField& field, Vec3 p, double length, int steps, double way = 1) {
+  field::Cursor cursor;
+  const auto rate = [&](const Vec3& at) { return way * direction(field.sample(at, cursor).value); };
+  const double h = length / steps;
+  std::vector<Vec3> out{p};
+  for (int i = 0; i < steps; ++i) {
+    const Vec3 a = rate(p), b = rate(p + 0.5 * h * a), c = rate(p + 0.5 * h * b), d = rate(p + h * c);
+    p += h / 6 * (a + 2.0 * b + 2.0 * c + d);
+    out.push_back(p);
+  }
+  return out;
+}
+
+double distance_to(const std::vector<Vec3>& line, const Vec3& p) {
+  double least = 1e300;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Vec3 way = line[i] - line[i - 1];
+    const double u = std::clamp(dot(p - line[i - 1], way) / dot(way, way), 0.0, 1.0);
+    least = std::min(least, norm(p - line[i - 1] - u * way));
+  }
+  return least;
+}
+
+/// Of one task: stimuli of 200 seeds, made once.
+const std::vector<study::Stimulus>& stimuli(std::size_t task) {
+  static std::array<std::vector<study::Stimulus>, 4> made;
+  if (made[task].empty()) {
+    study::StimulusMaker maker(study_rig::paper());
+    for (int seed = 0; seed < kSeeds; ++seed) made[task].push_back(maker.make(static_cast<int>(task), 1000 * seed).value());
+  }
+  return made[task];
+}
+
+class Rules : public testing::TestWithParam<std::size_t> {
+ protected:
+  const study::Task& task() const { return study_rig::paper().tasks[GetParam()]; }
+};
+
+TEST_P(Rules, EveryPathIsAStreamlineOfTheSameLength) {
+  const double length = task().world(100);
+  for (const study::Stimulus& s : stimuli(GetParam())) {
+    const field::AnyField field = field_of(task(), s.seed);
+    const std::vector<Vec3> path = walk(*field.vector, s.start, length, 512);
+    ASSERT_EQ(s.path.size(), static_cast<std::size_t>(study::kPathPoints));
+    for (std::size_t i = 0; i < s.path.size(); ++i) ASSERT_LT(norm(s.path[i] - path[i]), 1e-5) << s.seed << " at " << i;
+    EXPECT_EQ(s.start, s.path.front());
+    EXPECT_EQ(s.end, s.path.back());
+    EXPECT_LT(norm(s.middle - path[256]), 1e-5);
+    for (const Vec3& p : s.path) ASSERT_LE(max_abs(p), 2);
+    for (std::size_t i = 4; i + 4 < path.size(); i += 4) {
+      // the circle through three places
+      const Vec3 a = path[i - 4] - path[i], b = path[i + 4] - path[i];
+      const double bend = 2 * norm(cross(a, b)) / (norm(a) * norm(b) * norm(b - a));
+      ASSERT_LT(bend * task().world(task().rules.bend_mm), 1.02) << s.seed << " at " << i;
+    }
+    EXPECT_LE(max_abs(s.start), 1 + 1e-12) << "in the middle half of the box";
+  }
+}
+
+TEST_P(Rules, TheStartIsNotOnAGlobalStreamline) {
+  for (std::size_t k = 0; k < kSeeds; k += 4) {
+    const study::Stimulus& s = stimuli(GetParam())[k];
+    const field::AnyField field = field_of(task(), s.seed);
+    EXPECT_EQ(s.lines.size(), static_cast<std::size_t>(task().rules.lines));
+    for (const Vec3& seed : s.lines)
+      for (const double way : {1.0, -1.0}) {
+        const double off = distance_to(walk(*field.vector, seed, s.line_length, 150, way), s.start);
+        ASSERT_GT(task().mm(off), task().rules.clearance_mm - 0.05) << s.seed;
+      }
+  }
+}
+
+TEST_P(Rules, ATargetIsMetAtThePathsEndFirstAndNotTooFlat) {
+  if (task().kind != study::TaskKind::advection) GTEST_SKIP();
+  const double crossing = std::sin(task().rules.crossing_deg * std::numbers::pi / 180);
+  for (const study::Stimulus& s : stimuli(GetParam())) {
+    const field::AnyField field = field_of(task(), s.seed);
+    const std::vector<Vec3> path = walk(*field.vector, s.start, s.length, kFine);
+    const Vec3 along = direction(path[kFine] - path[kFine - 1]);
+    for (std::size_t i = 0; i + 1 < kFine; ++i) {
+      if (task().target == study::Target::circle)
+        ASSERT_LT(norm(path[i] - s.start), s.radius) << s.seed << " at " << i;
+      else
+        ASSERT_GT(path[i].z, s.end.z) << s.seed << " at " << i;
+    }
+    EXPECT_NEAR(s.radius, norm(path[kFine] - path[0]), 1e-6);
+    const double steep = task().target == study::Target::circle ? dot(along, direction(path[kFine] - path[0])) : -along.z;
+    EXPECT_GT(steep, crossing - 5e-3) << s.seed;
+  }
+}
+
+TEST_P(Rules, PathsLieInThePicturePlaneOrMostlyAlongIt) {
+  for (const study::Stimulus& s : stimuli(GetParam())) {
+    double seen = 0;
+    for (std::size_t i = 1; i < s.path.size(); ++i) {
+      const Vec3 way = s.path[i] - s.path[i - 1];
+      const double depth = dot(way, task().view);
+      ASSERT_TRUE(task().dimensions == 3 || std::fabs(s.path[i].z) < 1e-12);
+      seen += std::sqrt(std::max(0.0, dot(way, way) - depth * depth));
+    }
+    EXPECT_GE(seen / s.length, task().dimensions == 2 ? 1 - 1e-4 : task().rules.parallel - 1e-4) << s.seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tasks, Rules, testing::Values(0, 1, 2, 3), [](const auto& of) { return study_rig::paper().tasks[of.param].name; });
+
+/// The share of the path that a line hides, by the angle between two rays from the eye.
+double hidden(const study::Task& task, const study::Stimulus& s, const std::vector<std::vector<Vec3>>& lines) {
+  int behind = 0, all = 0;
+  for (std::size_t i = 0; i < s.path.size(); i += 16, ++all) {
+    const Vec3 to_path = s.path[i] - task.eye;
+    bool is_hidden = false;
+    for (const auto& line : lines)
+      for (const Vec3& q : line) {
+        const Vec3 to_line = q - task.eye;
+        const double off = norm(cross(direction(to_path), to_line));
+        is_hidden = is_hidden || (norm(to_line) < norm(to_path) - 0.06 && off < task.world(1.5));
+      }
+    behind += is_hidden;
+  }
+  return static_cast<double>(behind) / all;
+}
+
+TEST(Stimulus, LessIsHiddenWhereMoreStartsAreTried) {
+  study::Study study = study_rig::paper();
+  const study::Task& task = study.tasks[3];
+  study::Study hasty = study;
+  hasty.tasks[3].rules.candidates = 8;  // enough for a start, not for a choice
+  study::StimulusMaker careful_maker(study), hasty_maker(hasty);
+  double careful_sum = 0, hasty_sum = 0;
+  for (int seed = 0; seed < 40; ++seed) {
+    const auto careful = careful_maker.make(3, 50 * seed), quick = hasty_maker.make(3, 50 * seed);
+    ASSERT_TRUE(careful && quick);
+    const field::AnyField field = field_of(task, careful->seed);
+    std::vector<std::vector<Vec3>> lines;
+    for (const Vec3& place : careful->lines)
+      for (const double way : {1.0, -1.0}) lines.push_back(walk(*field.vector, place, careful->line_length, 150, way));
+    EXPECT_NEAR(careful->hidden, hidden(task, *careful, lines), 0.1) << careful->seed;
+    careful_sum += careful->hidden;
+    hasty_sum += quick->hidden;
+    EXPECT_TRUE(careful->seed != quick->seed || careful->hidden <= quick->hidden) << careful->seed;
+  }
+  EXPECT_LT(careful_sum, 0.5 * hasty_sum + 1e-9);
+}
+
+TEST(Stimulus, IsTheSameAgainAndFollowsTheSeed) {
+  study::StimulusMaker maker(study_rig::paper()), other(study_rig::paper());
+  const auto a = maker.make(2, 5), b = maker.make(2, 6), again = other.make(2, 5);
+  EXPECT_EQ(a->path, again->path);
+  EXPECT_NE(a->start, b->start);
+}
+
+TEST(Stimulus, RulesThatNothingMeetsAreAnErrorWithTheirLine) {
+  const study::Study study =
+      study::parse_study(study_rig::small_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")", R"("analytic": "node")"),
+                         "small.json")
+          .value();
+  study::Study long_path = study;
+  long_path.tasks[0].rules.path_mm = 1000;
+  const auto made = study::StimulusMaker(long_path).make(0, 1);
+  ASSERT_FALSE(made);
+  EXPECT_TRUE(made.error().message.starts_with("small.json:4: task \"trace\": no start")) << made.error().message;
+  const study::Study scalar =
+      study::parse_study(study_rig::small_text(R"("analytic": "vortices", "dimensions": 2, "seed": "$seed")", R"("analytic": "sphere")"),
+                         "small.json")
+          .value();
+  EXPECT_NE(study::StimulusMaker(scalar).make(0, 1).error().message.find("scalar"), std::string::npos);
+}
+
+}  // namespace stimulus_test
