@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using field::LoadRequest;
 
-constexpr int kMostSeed = 2'000'000'000;
+constexpr int kMostSeed = (1 << 30) - 1;
 constexpr int kMaxNodes = 1024;  // an axis, of a sampled analytic field
 
 std::string field_fault(const std::string& path) { return file_fault(path, field::is_field_file(path), field::field_file_words(), true); }

@@ -1,6 +1,7 @@
 #include "engine/study/simulated_trial.h"
 
 #include <algorithm>
+#include <set>
 
 #include "engine/scene/document.h"
 #include "engine/study/operator.h"
@@ -35,36 +36,48 @@ Result<const Stimulus*> TrialSimulator::stimulus_of(const Trial& trial) {
   return &kept_.emplace_back(trial.task, trial.seed, std::move(made)).stimulus;
 }
 
-Result<Measured> TrialSimulator::run(const Trial& trial) {
+Result<TrialSimulator::Stage> TrialSimulator::stage_of(const Trial& trial) {
   const Task& task = study_.tasks[static_cast<std::size_t>(trial.task)];
-  CATENA_TRY(const Stimulus* stimulus, stimulus_of(trial));
-  const std::string text = trial_scene(study_, trial, *stimulus);
-  CATENA_TRY(scene::Scene scene, scene::parse_scene(text, study_.path));
+  Stage stage;
+  CATENA_TRY(stage.stimulus, stimulus_of(trial));
+  stage.text = trial_scene(study_, trial, *stage.stimulus);
+  CATENA_TRY(scene::Scene scene, scene::parse_scene(stage.text, study_.path));
   if (last_) scene::carry_over(*last_, scene);
   if (!scene.coupling.ramp_s) scene.coupling.ramp_s = kRampS;
-  CATENA_TRY(const field::AnyField field, scene::use_field(scene, task.field, task.where));
-
-  const haptics::HandParameters parameters = hand_of(study_.model, 1 / kSimulatedRateHz);
+  CATENA_TRY(stage.field, scene::use_field(scene, task.field, task.where));
   haptics::DeviceSettings settings;
   settings.rate_hz = kSimulatedRateHz;
-  const haptics::Limits limits = haptics::limits_for(haptics::SimulatedHand({{}}, parameters).capabilities(), settings);
-  CATENA_TRY(const std::shared_ptr<const haptics::Program> program, haptics::extract_program(scene, limits));
+  const haptics::SimulatedHand device({{}}, hand_of(study_.model, 1 / kSimulatedRateHz));
+  CATENA_TRY(stage.program, haptics::extract_program(scene, haptics::limits_for(device.capabilities(), settings)));
   last_.emplace(std::move(scene));
+  return stage;
+}
 
+Outcome TrialSimulator::check() {
+  std::set<std::pair<int, int>> checked;
+  for (const Trial& trial : session_of(study_, 1))
+    if (checked.emplace(trial.task, trial.condition).second) CATENA_CHECK(stage_of(trial));
+  return Done{};
+}
+
+Result<Measured> TrialSimulator::run(const Trial& trial) {
+  const Task& task = study_.tasks[static_cast<std::size_t>(trial.task)];
+  CATENA_TRY(const Stage stage, stage_of(trial));
   haptics::TickSink* sink = nullptr;
   if (recorder_) {
-    CATENA_TRY(sink, recorder_(trial, text, *program));
+    CATENA_TRY(sink, recorder_(trial, stage.text, *stage.program));
   }
-  haptics::SimulatedHand hand({{.position_m = haptics::device_from_world(*program, stimulus->start)}}, parameters);
-  Operator subject(study_, task, *stimulus, *field.vector, subject_model(study_, trial.subject), operator_seed(study_, trial),
+  const haptics::HandParameters parameters = hand_of(study_.model, 1 / kSimulatedRateHz);
+  haptics::SimulatedHand hand({{.position_m = haptics::device_from_world(*stage.program, stage.stimulus->start)}}, parameters);
+  Operator subject(study_, task, *stage.stimulus, *stage.field.vector, subject_model(study_, trial.subject), operator_seed(study_, trial),
                    parameters.period_s);
-  haptics::Stepper stepper(hand, *program, kSimulatedRateHz, sink);
-  Judge judge(task, *stimulus);
+  haptics::Stepper stepper(hand, *stage.program, kSimulatedRateHz, sink);
+  Judge judge(task, *stage.stimulus);
   while (stepper.t_s() < task.limits.ends_s + kPatienceS) {
     const double t_s = stepper.t_s();
     const exchange::HapticState& state = stepper.step();
     if (judge.tick(t_s, state.probe, norm(state.force_n)) == Judge::Phase::ended) return judge.measured();
-    hand.want(haptics::device_from_world(*program, subject.next(state.probe)));
+    hand.want(haptics::device_from_world(*stage.program, subject.next(state.probe)));
   }
   return judge.given_up();
 }

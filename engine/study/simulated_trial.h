@@ -26,8 +26,18 @@ class TrialSimulator {
 
   /// An error where the trial's scene, field or chain cannot be read.
   Result<Measured> run(const Trial& trial);
+  /// Whether every task can be done in every condition: of the first trials of a session everything is made, and nothing is done.
+  Outcome check();
 
  private:
+  /// All that the hand of a trial meets.
+  struct Stage {
+    const Stimulus* stimulus;
+    std::string text;
+    field::AnyField field;
+    std::shared_ptr<const haptics::Program> program;
+  };
+  Result<Stage> stage_of(const Trial& trial);
   Result<const Stimulus*> stimulus_of(const Trial& trial);
 
   const Study& study_;

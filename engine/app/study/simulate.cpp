@@ -111,6 +111,7 @@ Outcome simulate_subject(const study::Study& study, const study::DataFolder& dat
 Outcome simulate(const SimulateOptions& options) {
   CATENA_TRY(const study::Study study, study::read_study(options.study));
   CATENA_TRY(const Shard shard, read_shard(options.shard));
+  CATENA_CHECK(study::TrialSimulator(study).check());
   CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study));
   if (options.record) CATENA_CHECK(study::make_recordings_folder(data.path()));
   const int subjects = options.subjects > 0 ? options.subjects : study.subjects;
@@ -140,8 +141,8 @@ Outcome simulate(const SimulateOptions& options) {
   });
   if (fault) return fault->second;
   CATENA_CHECK(data.write_table());
-  fmt::print("{}: {} subjects of a model, {} trials, {} of them now in {:.1f} s\n", printable(options.output), sessions.size(), all, todo,
-             1e-3 * ms_since(began));
+  fmt::print("{}: {} subject{} of a model, {} trials, {} of them now in {:.1f} s\n", printable(options.output), sessions.size(),
+             sessions.size() == 1 ? "" : "s", all, todo, 1e-3 * ms_since(began));
   return Done{};
 }
 

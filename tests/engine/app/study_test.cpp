@@ -79,6 +79,7 @@ TEST(Study, AStudyOfOnesOwnRunsWithoutCode) {
   const auto missing = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.err.find("flow.vdb"), std::string::npos) << missing.err;
+  EXPECT_FALSE(test::exists(folder / "d")) << "nothing half-written";
   ASSERT_EQ(test::run_catena({"generate", "abc", "-o", folder / "flow.vdb", "--resolution", "32"}).exit_code, 0);
   const auto run = study({"simulate", folder / "friction.json", "--subjects", "1", "-o", folder / "d"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
