@@ -7,6 +7,9 @@ namespace catena::app {
 
 /// Terminal, border, grid and key of pictures of so many pixels.
 std::string plot_head(int width, int height);
+/// gnuplot's tics of a logarithmic axis from `lo` to `hi`, `axis` x or y: of less than three decades with numbers between the powers of
+/// ten, so that the shortest axis has some.
+std::string log_tics(char axis, double lo, double hi);
 /// "#rrggbb"; after the last one the first follows again.
 std::string plot_color(int i);
 /// In single quotes, as gnuplot has them.

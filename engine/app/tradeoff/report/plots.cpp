@@ -79,7 +79,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
                 "using 1:2 with points pt 6 ps 2.2 lw 2 lc rgb 'black' title 'chosen'");
     const std::string file = fmt::format("{}{}.svg", prefix, script.files.size());
     script.text +=
-        drawn.blocks +
+        drawn.blocks + log_tics('x', lo, hi) + log_tics('y', 0.7 * least, 3 * most) +
         fmt::format("set output '{}'\nset xlabel {}\nset ylabel {}\nset xrange [{}:{}]\nset yrange [{}:{}]\nplot {}\nunset output\n", file,
                     quoted(*name), quoted(curve.error_name), to_text(lo), to_text(hi), to_text(0.7 * least), to_text(3 * most),
                     drawn.items);
