@@ -74,9 +74,9 @@ inline Result<Size> parse_size(const std::string& text, int most = kMaxPixels) {
   return Error{"--size " + text + ": expected WIDTHxHEIGHT, each 1 to " + std::to_string(most) + ", such as 1024x768"};
 }
 
-/// "--stereo MODE", "--eye-separation S" and "--zero-parallax F": over what the scene says.
+/// "--stereo MODE", "--eye-separation S", "--zero-parallax F" and "--screen NAME": over what the scene says.
 struct StereoChoice {
-  std::string mode;
+  std::string mode, screen;
   std::optional<double> separation, zero_parallax;
 
   Outcome apply(scene::Stereo& stereo) const {
@@ -94,6 +94,16 @@ struct StereoChoice {
       if (!(*zero_parallax > 0) || !std::isfinite(*zero_parallax))
         return Error{"--zero-parallax: expected a finite number above 0, world units"};
       stereo.zero_parallax = zero_parallax;
+    }
+    if (!screen.empty()) {
+      std::vector<std::string_view> names;
+      for (const scene::DisplayScreen& one : stereo.screens) {
+        if (one.name == screen) stereo.through = names.size();
+        names.push_back(one.name);
+      }
+      if (!stereo.through)
+        return Error{"--screen " + screen + ": expected one of the scene's screens: " + (names.empty() ? "it has none" : joined(names)) +
+                     suggestion(screen, names)};
     }
     return Done{};
   }
@@ -116,6 +126,8 @@ inline void add_stereo_options(CLI::App& command, StereoChoice& choice) {
                      "between the eyes, world units (default: the scene's, or a 30th of --zero-parallax)");
   command.add_option("--zero-parallax", choice.zero_parallax,
                      "distance from the eyes to where both see the same, world units (default: the scene's, or the camera's target)");
+  command.add_option("--screen", choice.screen,
+                     "the picture is what the eye sees through this one of the scene's \"screens\"; the camera's position is the head");
 }
 
 }  // namespace catena::app

@@ -8,6 +8,7 @@ find_package(glm REQUIRED)
 find_package(glfw3 CONFIG REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(glslang CONFIG REQUIRED)
+find_package(Boost REQUIRED)  # headers: Boost.Math
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
 pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)

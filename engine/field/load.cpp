@@ -9,6 +9,7 @@
 
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
+#include "engine/field/level.h"
 
 namespace catena::field {
 namespace {
@@ -125,12 +126,14 @@ Result<AnyField> load(const LoadRequest& request) {
     }
     if (field && !has_finite_box(*field->get()))
       return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
-    if (!field || request.interpolation == Interpolation::linear) return field;
-    if (request.interpolation == Interpolation::cubic) return smooth(std::move(*field), request.path);
-    if (field->vector)
+    if (!field) return field;
+    const bool nearest = request.interpolation == Interpolation::nearest;
+    if (nearest && field->vector)
       return Error{fmt::format("{}: the grid \"{}\" holds vectors, expected numbers for the interpolation \"nearest\"", request.path,
                                field->get()->name())};
-    if (const ScalarGrid* grid = field->scalar->grid()) field->scalar = grid->interpolated(request.interpolation);
+    if (const ScalarGrid* grid = nearest ? field->scalar->grid() : nullptr) field->scalar = grid->interpolated(request.interpolation);
+    if (request.level > 0) field = at_level(request.path, std::move(*field), request.level);
+    if (field && request.interpolation == Interpolation::cubic) return smooth(std::move(*field), request.path);
     return field;
   });
 }

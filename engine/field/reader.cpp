@@ -6,11 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <thread>
 
 #include "engine/base/helper_process.h"
 #include "engine/base/text.h"
@@ -106,11 +108,21 @@ Error end_of(const ReadRequest& request, const HelperEnd& end) {
   return Error{fmt::format("{}: the file is damaged (its reader gave up with code {}), {}", path, end.code, wanted(path))};
 }
 
+/// Where a mapping that could be written to is still being taken down, the system is busy: a second is waited for that at most.
+bool seal(const Descriptor& file) {
+  constexpr int kTries = 100;
+  for (int tries = 0; tries < kTries; ++tries) {
+    if (::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) == 0) return true;
+    if (errno != EBUSY) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
 /// The reader has ended: nobody can change the file any more once it is sealed.
 Result<ReaderAnswer> take_answer(const std::string& path, const Descriptor& file) {
   struct stat status {};
-  if (::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL) != 0 || ::fstat(file.get(), &status) != 0)
-    return damaged_answer(path, "the memory cannot be sealed");
+  if (!seal(file) || ::fstat(file.get(), &status) != 0) return damaged_answer(path, "the memory cannot be sealed");
   const auto bytes = static_cast<std::uint64_t>(status.st_size);
   ExchangeHead head;
   if (bytes < sizeof head) return damaged_answer(path, "the head is missing");

@@ -34,27 +34,21 @@ const NanoMask* mask_of(const AnyField& field) {
 
 }  // namespace
 
-Result<VoxelBox> VoxelBox::of(const std::string& path, const AnyField& field, const std::string& name, const Units& units) {
+VoxelBox::VoxelBox(const AnyField& field, const std::string& box_name, const Units& box_units)
+    : name(box_name),
+      units(box_units),
+      mapping(field.get()->mapping()),
+      components(field.vector ? 3 : 1),
+      masked(mask_of(field) != nullptr),
+      field_(field) {
   CATENA_ASSERT(field.get()->is_grid());
-  const Box& whole = field.get()->index_box();
-  VoxelBox box;
-  box.name = name;
-  box.units = units;
-  box.components = field.vector ? 3 : 1;
-  box.masked = mask_of(field) != nullptr;
-  box.field_ = field;
-  const Vec3 count = whole.hi - whole.lo + Vec3(1.0);
-  CATENA_CHECK(
-      ask_for_memory(fmt::format("{}: the whole box of the grid, {:.0f} x {:.0f} x {:.0f} voxels,", path, count.x, count.y, count.z),
-                     count.x * count.y * count.z * (box.components * static_cast<double>(sizeof(float)) + (box.masked ? 1 : 0))));
   const auto index = [](const Vec3& v) {
     return Index3{static_cast<std::int32_t>(v.x), static_cast<std::int32_t>(v.y), static_cast<std::int32_t>(v.z)};
   };
-  box.lowest_ = index(whole.lo);
-  box.size = index(count);
-  box.mapping = field.get()->mapping();
-  box.mapping.origin = box.mapping.world_from_index(whole.lo);
-  return box;
+  const Box& whole = field.get()->index_box();
+  lowest_ = index(whole.lo);
+  size = index(whole.hi - whole.lo + Vec3(1.0));
+  mapping.origin = mapping.world_from_index(whole.lo);
 }
 
 void VoxelBox::read_values(std::int32_t z, std::span<float> out) const {
@@ -99,7 +93,10 @@ Outcome write_field(const std::string& path, const AnyField& field, const std::s
   const Writer* writer = writer_of(path);
   if (writer == nullptr) return Error{path + ": expected an output that ends in " + written_endings()};
   if (writer->write == nullptr) return write_vdb(path, {{field, name}});
-  CATENA_TRY(const VoxelBox box, VoxelBox::of(path, field, name, units));
+  const VoxelBox box(field, name, units);
+  // who reads the file has to hold it
+  CATENA_CHECK(ask_for_memory(fmt::format("{}: the whole box of the grid, {} x {} x {} voxels,", path, box.size.x, box.size.y, box.size.z),
+                              box.voxels() * (box.components * static_cast<double>(sizeof(float)) + (box.masked ? 1 : 0))));
   return writer->write(path, box);
 }
 

@@ -11,8 +11,7 @@ namespace catena::field {
 
 class VoxelBox {
  public:
-  /// An error where the box does not fit into the memory that is allowed: who reads the file has to hold it.
-  static Result<VoxelBox> of(const std::string& path, const AnyField& field, const std::string& name, const Units& units);
+  VoxelBox(const AnyField& field, const std::string& name, const Units& units);
 
   std::string name;
   Units units;

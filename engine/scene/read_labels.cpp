@@ -4,6 +4,7 @@
 
 #include "engine/base/numbers.h"
 #include "engine/field/label_surface.h"
+#include "engine/field/level.h"
 #include "engine/scene/read_parts.h"
 
 namespace catena::scene {
@@ -87,6 +88,9 @@ Keys map_keys() {
                        "What lies between voxel centres: a mix of the eight nearest; the value of the nearest, as of a label map; or the "
                        "cubic of the 64 nearest, which is smooth (C1), nearer to smooth data, and takes longer.")
               .by_default("`linear`; with `labels` `nearest`"),
+          schema::integer("level_of_detail", "", "Every 2nd, 4th or 8th voxel of each axis, for the eye and the hand alike: 1, 2 or 3.", 0,
+                          field::kMostLevels)
+              .by_default("0: all of them"),
           schema::object("labels", labels_keys(), "Of a label map: names and colours of the numbers in its voxels.").by_default("none")};
 }
 
@@ -97,6 +101,7 @@ Outcome read_map(const std::string& scene_path, const json::Node& node, FieldSou
   field::Interpolation interpolation = labels != nullptr ? field::Interpolation::nearest : field::Interpolation::linear;
   CATENA_CHECK(schema::read_value(*schema::find(keys, "interpolation"), node, interpolation));
   source.file->interpolation = interpolation;
+  CATENA_CHECK(schema::read_value(*schema::find(keys, "level_of_detail"), node, source.file->level));
   return Done{};
 }
 

@@ -46,6 +46,7 @@ Part clip_part();
 Part camera_part();
 Part lights_part();
 Part stereo_part();
+Part screens_part();
 Part background_part();
 Part quality_part();
 Part jitter_part();

@@ -30,7 +30,7 @@ const std::vector<Part>& parts() {
                                      bounding_box_part(), axes_part(),
                                      ground_part(),       fog_part(),
                                      lights_part(),       unit_length_part(),
-                                     plan_part()};
+                                     plan_part(),         screens_part()};
   return all;
 }
 

@@ -3,6 +3,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "engine/base/vec.h"
 
 namespace catena::scene {
 
@@ -32,13 +35,22 @@ std::string stereo_words();
 /// Whether the mode takes two eyes and no other number.
 bool needs_a_pair(StereoMode mode);
 
-/// The eyes of the picture. Lengths in world units.
+/// A flat display that shows what lies behind it as a window does. World units.
+struct DisplayScreen {
+  std::string name;
+  Vec3 lower_left{0.0}, lower_right{0.0}, upper_left{0.0};  ///< corners, as one sees them who stands before it
+};
+inline constexpr std::size_t kMaxScreens = 64;
+
+/// The eyes of the picture, and the screens that they may look through. Lengths in world units.
 struct Stereo {
   StereoMode mode = StereoMode::mono;
   std::optional<double> separation;     ///< of neighbouring eyes; none: a 30th of the zero-parallax distance
   std::optional<double> zero_parallax;  ///< distance from the eyes to where both see the same; none: to the camera's target
   int views = 2;                        ///< for the modes that take any number
   bool swap = false;                    ///< the right eye's picture in the left eye's place
+  std::vector<DisplayScreen> screens;
+  std::optional<std::size_t> through;  ///< which of them the picture is of: the camera's position is the head, beside which the eyes are
 };
 inline constexpr int kMaxStereoViews = 64;
 inline constexpr double kMaxStereoSeparation = 1e15;  ///< world units

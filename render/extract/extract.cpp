@@ -187,7 +187,7 @@ Bounds packet_bounds(const FramePacket& packet) {
 }
 
 void set_view(const scene::Scene& scene, const View& view, FramePacket& packet) {
-  packet.view = view;
+  packet.view = through_screen(view, scene.stereo);
   const Bounds drawn = drawn_bounds(packet);
   set_box_lines(scene, drawn.empty() ? packet_bounds(packet) : drawn, packet);
   set_fog(scene, packet_bounds(packet), packet);
@@ -232,7 +232,7 @@ Result<FramePacket> extract_frame(const scene::Scene& scene, std::uint32_t width
   extract_cursors(scene, packet);
   CATENA_CHECK(extract_indicators(scene, packet));
   extract_overlay(scene, packet);
-  packet.view = view_of(scene, packet);
+  packet.view = through_screen(view_of(scene, packet), scene.stereo);
   // the box, its axes and the ground stay where the data are while the hand goes elsewhere
   const Bounds drawn = drawn_bounds(packet);
   extract_feet(scene, drawn, packet);

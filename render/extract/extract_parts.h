@@ -122,7 +122,10 @@ Packing packing_of(const scene::Stereo& stereo);
 std::size_t views_of(const scene::Stereo& stereo);
 /// Eyes that no picture has both of, for they are too far apart: one sentence.
 Outcome check_eyes(const FramePacket& packet, const scene::Stereo& stereo);
-/// Sets `eyes` and `packing` from the packet's view, width and height.
+/// The view from the same place through the screen that the picture is of; as it is where it is of none, or the place is not before it.
+View through_screen(const View& view, const scene::Stereo& stereo);
+/// Sets `eyes` and `packing` from the packet's view, width and height. Through a screen the eyes stand beside each other along it, and see
+/// one frame there.
 void set_eyes(FramePacket& packet, const scene::Stereo& stereo);
 
 /// Meshes and slices of the scene as plain data. A vector field is shown by its magnitude: on slices by a grid of the magnitudes at the

@@ -46,6 +46,41 @@ std::size_t views_of(const scene::Stereo& stereo) {
   return scene::needs_a_pair(stereo.mode) ? 2 : static_cast<std::size_t>(stereo.views);
 }
 
+namespace {
+
+Result<View> seen_through(const scene::Stereo& stereo, const Vec3& eye) {
+  const scene::DisplayScreen& screen = stereo.screens[*stereo.through];
+  return screen_view({screen.lower_left, screen.lower_right, screen.upper_left}, eye);
+}
+
+std::vector<View> eyes_before_screen(const View& head, const scene::Stereo& stereo, std::size_t views) {
+  const scene::DisplayScreen& screen = stereo.screens[*stereo.through];
+  const Vec3 right = direction(screen.lower_right - screen.lower_left);
+  const double separation = stereo.separation.value_or(kSeparationShare * norm(head.target - head.position));
+  std::vector<View> all;
+  for (std::size_t k = 0; k < views; ++k) {
+    const double offset = (double(k) - 0.5 * double(views - 1)) * separation;
+    auto eye = seen_through(stereo, head.position + offset * right);
+    all.push_back(eye ? *eye : head);
+  }
+  return all;
+}
+
+}  // namespace
+
+View through_screen(const View& view, const scene::Stereo& stereo) {
+  if (!stereo.through) return view;
+  auto seen = seen_through(stereo, view.position);
+  return seen ? *seen : view;
+}
+
+Outcome check_head(const FramePacket& packet, const scene::Stereo& stereo) {
+  if (!stereo.through) return Done{};
+  const auto seen = seen_through(stereo, packet.view.position);
+  if (seen) return Done{};
+  return Error{"screen \"" + stereo.screens[*stereo.through].name + "\": " + seen.error().message};
+}
+
 Outcome check_eyes(const FramePacket& packet, const scene::Stereo& stereo) {
   constexpr double kMaxApart = 1e15;  // world units: a float of the picture still tells them apart
   const auto too_far = [&](const View& eye) {
@@ -66,7 +101,8 @@ void set_eyes(FramePacket& packet, const scene::Stereo& stereo) {
   settings.views = std::max<std::size_t>(2, views_of(stereo));
   settings.separation = stereo.separation;
   settings.zero_parallax = stereo.zero_parallax;
-  packet.eyes = eyes(packet.view, frustum_aspect(packet.view, packet.width, packet.height), settings);
+  packet.eyes = stereo.through ? eyes_before_screen(packet.view, stereo, settings.views)
+                               : eyes(packet.view, frustum_aspect(packet.view, packet.width, packet.height), settings);
   if (stereo.swap != (stereo.mode == StereoMode::cross_eyed)) std::reverse(packet.eyes.begin(), packet.eyes.end());
   if (stereo.mode == StereoMode::left || stereo.mode == StereoMode::right)
     packet.eyes = {stereo.mode == StereoMode::left ? packet.eyes.front() : packet.eyes.back()};

@@ -128,9 +128,15 @@ Result<std::vector<VkPhysicalDevice>> physical_devices(VkInstance instance) {
 
 Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
   std::unique_ptr<Device> self(new Device);
-  CATENA_TRY(self->instance_, Instance::create(options.validation, options.surface));
+  self->maker_ = options.maker;
+  CATENA_TRY(self->instance_, Instance::create(options.validation, options.surface, options.maker));
   const char* environment = std::getenv("CATENA_DEVICE");
-  CATENA_CHECK(self->choose_physical(!options.choose.empty() ? options.choose : environment ? environment : ""));
+  if (options.maker.physical) {
+    CATENA_CHECK(self->take_physical());
+  } else {
+    CATENA_CHECK(self->choose_physical(!options.choose.empty() ? options.choose : environment ? environment : ""));
+  }
+  self->describe_physical();
   CATENA_CHECK(self->create_device());
   self->info_.memory_budget = options.memory_budget_bytes > 0 ? options.memory_budget_bytes : self->default_budget();
   self->fail_ = options.fail;
@@ -176,9 +182,21 @@ Outcome Device::choose_physical(const std::string& choice) {
     return Error{choice.empty() ? fmt::format("no usable Vulkan device: {}", seen)
                                 : fmt::format("no usable Vulkan device matches CATENA_DEVICE \"{}\", expected cpu, gpu or a part of: {}",
                                               choice, seen)};
-  queue_family_ = *find_queue(physical_, instance_->surface());
+  return Done{};
+}
 
-  // describe it
+/// The one that the maker chose.
+Outcome Device::take_physical() {
+  CATENA_VK(maker_.physical(instance_->handle(), &physical_), "choose the device that was asked for");
+  VkPhysicalDeviceProperties properties{};
+  vkGetPhysicalDeviceProperties(physical_, &properties);
+  const std::string missing = lacks(physical_, properties, instance_->surface());
+  if (!missing.empty()) return Error{fmt::format("the device {} that was chosen lacks {}", properties.deviceName, missing)};
+  return Done{};
+}
+
+void Device::describe_physical() {
+  queue_family_ = maker_.queue_family ? *maker_.queue_family : *find_queue(physical_, instance_->surface());
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
   VkPhysicalDeviceProperties2 properties{};
@@ -194,7 +212,6 @@ Outcome Device::choose_physical(const std::string& choice) {
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
       info_.memory_bytes = std::max<std::uint64_t>(info_.memory_bytes, memory.memoryHeaps[i].size);
-  return Done{};
 }
 
 Outcome Device::create_device() {
@@ -223,7 +240,8 @@ Outcome Device::create_device() {
   info.pQueueCreateInfos = &queue;
   info.enabledExtensionCount = std::uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
-  CATENA_VK(vkCreateDevice(physical_, &info, nullptr, &device_), "create the device " + info_.name);
+  CATENA_VK(maker_.device ? maker_.device(physical_, info, &device_) : vkCreateDevice(physical_, &info, nullptr, &device_),
+            "create the device " + info_.name);
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   push_descriptors_ = reinterpret_cast<PFN_vkCmdPushDescriptorSetKHR>(vkGetDeviceProcAddr(device_, "vkCmdPushDescriptorSetKHR"));
   if (!push_descriptors_) return Error{"the driver of " + info_.name + " has no vkCmdPushDescriptorSetKHR"};
@@ -247,12 +265,15 @@ Outcome Device::create_device() {
 Device::~Device() {
   if (device_) {
     // wait for everything; whatever the answer is, nothing runs after it
-    (void)vkDeviceWaitIdle(device_);
+    {
+      const auto turn = queue_turn();
+      (void)vkDeviceWaitIdle(device_);
+    }
     passed_ = std::numeric_limits<std::uint64_t>::max();
     collect();
     if (timeline_) vkDestroySemaphore(device_, timeline_, nullptr);
     if (pool_) vkDestroyCommandPool(device_, pool_, nullptr);
-    vkDestroyDevice(device_, nullptr);
+    if (!maker_.keeps_them) vkDestroyDevice(device_, nullptr);
   }
 }
 
@@ -281,7 +302,10 @@ Result<std::uint64_t> Device::submit(VkCommandBuffer commands, VkSemaphore wait_
   info.signalSemaphoreInfoCount = signal ? 2 : 1;
   info.pSignalSemaphoreInfos = signals;
   VkResult result = lost_ ? VK_ERROR_DEVICE_LOST : pretended(DriverCall::submit);
-  if (result == VK_SUCCESS) result = vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE);
+  if (result == VK_SUCCESS) {
+    const auto turn = queue_turn();
+    result = vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE);
+  }
   if (result != VK_SUCCESS) return failed(result, "submit work to " + info_.name);
   ++counters_.submissions;
   return ++submitted_;

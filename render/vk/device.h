@@ -8,6 +8,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,6 +45,7 @@ struct DeviceOptions {
   bool validation = false;
   std::string choose;      ///< cpu, gpu or a part of a name; empty: CATENA_DEVICE, else the best one
   SurfaceFactory surface;  ///< empty: headless
+  VulkanMaker maker{};     ///< empty: Catena makes all of it
   /// Of device memory, all that Catena allocates on this device. 0: nine tenths of what the driver offers now
   /// (VK_EXT_memory_budget), or eight tenths of the largest heap where it does not say.
   std::uint64_t memory_budget_bytes = 0;
@@ -82,6 +84,10 @@ class Device {
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
+  /// Held while the queue is used: others may use it, too (VulkanMaker).
+  [[nodiscard]] std::unique_lock<std::mutex> queue_turn() const {
+    return maker_.queue_lock != nullptr ? std::unique_lock(*maker_.queue_lock) : std::unique_lock<std::mutex>();
+  }
   VkCommandPool command_pool() const { return pool_; }
   VkSurfaceKHR surface() const { return instance_->surface(); }
   const DeviceInfo& info() const { return info_; }
@@ -109,6 +115,8 @@ class Device {
  private:
   Device() = default;
   Outcome choose_physical(const std::string& choice);
+  Outcome take_physical();
+  void describe_physical();
   std::uint64_t default_budget() const;
   Error failed(VkResult result, const std::string& what);
   Outcome create_device();
@@ -118,6 +126,7 @@ class Device {
     std::uint64_t value;
     std::function<void()> destroy;
   };
+  VulkanMaker maker_;
   std::unique_ptr<Instance> instance_;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;

@@ -100,7 +100,7 @@ std::vector<std::string> Messages::texts() const {
   return texts_;
 }
 
-Result<std::unique_ptr<Instance>> Instance::create(bool validation, const SurfaceFactory& surface) {
+Result<std::unique_ptr<Instance>> Instance::create(bool validation, const SurfaceFactory& surface, const VulkanMaker& maker) {
   std::unique_ptr<Instance> self(new Instance);
 
   // version
@@ -142,7 +142,9 @@ Result<std::unique_ptr<Instance>> Instance::create(bool validation, const Surfac
   info.ppEnabledLayerNames = layers.data();
   info.enabledExtensionCount = std::uint32_t(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
-  CATENA_VK(vkCreateInstance(&info, nullptr, &self->instance_), "create an instance");
+  self->owned_ = !maker.keeps_them;
+  CATENA_VK(maker.instance ? maker.instance(info, &self->instance_) : vkCreateInstance(&info, nullptr, &self->instance_),
+            "create an instance");
 
   if (validation) {
     const auto create =
@@ -161,7 +163,7 @@ Instance::~Instance() {
         reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
     if (destroy) destroy(instance_, messenger_, nullptr);
   }
-  if (instance_) vkDestroyInstance(instance_, nullptr);
+  if (instance_ && owned_) vkDestroyInstance(instance_, nullptr);
 }
 
 }  // namespace catena::render::vk

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,24 @@ struct SurfaceFactory {
   explicit operator bool() const { return static_cast<bool>(create); }
 };
 
+/// Who makes the Vulkan objects in our place, and whose queue it is: a headset's runtime, or a program that draws with a device of its own
+/// beside ours. What a function is not given for, Catena does itself. What they are told of extensions, layers and features is needed:
+/// they may add to it. Frame thread.
+struct VulkanMaker {
+  /// As vkCreateInstance.
+  std::function<VkResult(const VkInstanceCreateInfo& wanted, VkInstance* made)> instance;
+  /// Of the instance; it still has to have what Catena needs.
+  std::function<VkResult(VkInstance instance, VkPhysicalDevice* chosen)> physical;
+  /// As vkCreateDevice: one queue that draws and computes.
+  std::function<VkResult(VkPhysicalDevice physical, const VkDeviceCreateInfo& wanted, VkDevice* made)> device;
+  /// Of the queue, its first one is used; none: the first family that draws and computes.
+  std::optional<std::uint32_t> queue_family;
+  /// Held around every use of the queue, where others use it too; it outlives the device.
+  std::mutex* queue_lock = nullptr;
+  /// Whether instance and device stay theirs: Catena does not destroy them.
+  bool keeps_them = false;
+};
+
 /// Warnings and errors so far; the driver may report from any thread.
 class Messages {
  public:
@@ -48,7 +67,7 @@ class Messages {
 
 class Instance {
  public:
-  static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface);
+  static Result<std::unique_ptr<Instance>> create(bool validation, const SurfaceFactory& surface, const VulkanMaker& maker = {});
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;
@@ -60,6 +79,7 @@ class Instance {
  private:
   Instance() = default;
   VkInstance instance_ = VK_NULL_HANDLE;
+  bool owned_ = true;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
   Messages messages_;

@@ -60,7 +60,10 @@ Result<std::unique_ptr<Swapchain>> Swapchain::create(Device& device, std::uint32
 Swapchain::~Swapchain() { destroy(); }
 
 void Swapchain::destroy() {
-  (void)vkDeviceWaitIdle(device_->handle());
+  {
+    const auto turn = device_->queue_turn();
+    (void)vkDeviceWaitIdle(device_->handle());
+  }
   for (VkSemaphore s : finished_) vkDestroySemaphore(device_->handle(), s, nullptr);
   finished_.clear();
   images_.clear();
@@ -152,7 +155,10 @@ Result<bool> Swapchain::show(const Image& source, std::uint32_t index, bool opti
   info.swapchainCount = 1;
   info.pSwapchains = &swapchain_;
   info.pImageIndices = &index;
-  const VkResult shown = vkQueuePresentKHR(device_->queue(), &info);
+  const VkResult shown = [&] {
+    const auto turn = device_->queue_turn();
+    return vkQueuePresentKHR(device_->queue(), &info);
+  }();
   CATENA_CHECK(device_->wait(value));
   if (shown == VK_ERROR_OUT_OF_DATE_KHR) return false;
   if (shown != VK_SUCCESS && shown != VK_SUBOPTIMAL_KHR) return vulkan_error(shown, "show the picture");

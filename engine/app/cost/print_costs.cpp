@@ -3,7 +3,6 @@
 #include "engine/app/command.h"
 #include "engine/app/cost/cost.h"
 #include "engine/base/json_text.h"
-#include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "haptics/extract/extract.h"
 #include "render/extract/extract.h"
@@ -22,7 +21,7 @@ std::string time_text(const std::optional<double>& ms) {
                               : fmt::format("{:.0f} ns", 1e6 * *ms);
 }
 
-std::string json_number(const std::optional<double>& value) { return value ? to_text(*value) : "null"; }
+std::string number_or_null(const std::optional<double>& value) { return value ? json_number(*value) : "null"; }
 
 void print_table(const CostTable& table, bool measure) {
   fmt::print("{:8}{:20}{:44}{:>12}{:>12}", "", "", "", "bytes", "expected");
@@ -40,7 +39,8 @@ void print_json(const std::string& path, const CostTable& table) {
     rows += fmt::format(
         "{}{{\"part\":{},\"name\":{},\"work\":{},\"expected_bytes\":{},\"expected_ms\":{},\"measured_bytes\":{},\"measured_ms\":{}}}",
         rows.empty() ? "" : ",", json_string(row.part), json_string(printable(row.name)), json_string(printable(row.work)),
-        json_number(row.expected.bytes), json_number(row.expected.ms), json_number(row.measured.bytes), json_number(row.measured.ms));
+        number_or_null(row.expected.bytes), number_or_null(row.expected.ms), number_or_null(row.measured.bytes),
+        number_or_null(row.measured.ms));
   fmt::print("{{\"kind\":\"cost\",\"file\":{},\"rows\":[{}]}}\n", json_string(printable(path)), rows);
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/app/plan/cells.h"
 #include "engine/app/plan/hand_plan.h"
 #include "engine/app/tradeoff/measure/hand/replay_link.h"
 #include "engine/app/tradeoff/measure/hand/streamline.h"
@@ -22,8 +23,7 @@ bool agrees(const StreamlineSetting& setting, const json::Node& link) {
   return tolerance == nullptr || !setting.tolerance || std::fabs(*setting.tolerance - tolerance->number) <= 1e-9 * tolerance->number;
 }
 
-/// Where there is a choice. A link on the seed of a widget has no line before it is felt. How a field is interpolated, and in which format
-/// its values are kept, would be further settings of the same points: they begin here and in streamline_settings.
+/// Where there is a choice. A link on the seed of a widget has no line before it is felt.
 std::vector<StreamlineSetting> open_settings(const json::Node& link) {
   std::vector<StreamlineSetting> open = tradeoff::streamline_settings(link);
   // fixed steps have no tolerance: they err by the hand's speed and way, of which a curve knows one
@@ -48,6 +48,32 @@ std::vector<tradeoff::LinkOf> open_links(const scene::Scene& scene) {
   return links;
 }
 
+/// The source of the link's field where it may become cubic: a line field's axes stay linear.
+scene::FieldSource* open_source(scene::Scene& scene, const json::Node& link) {
+  const json::Node *name = link.find("field"), *kind = link.find("kind");
+  if (name == nullptr || (kind != nullptr && kind->string == "line")) return nullptr;
+  const scene::Entity field = scene::find_named<scene::FieldSource>(scene, name->string);
+  if (!field) return nullptr;
+  scene::FieldSource& source = scene.world.get<scene::FieldSource>(field);
+  return leaves_cells_open(source) ? &source : nullptr;
+}
+
+std::string cubic_curve_id(const std::string& link) { return "hand-cubic-streamline-" + link; }
+
+/// The curve of a link once more, with cubic cells: only where both floors are known are they compared.
+void add_cubic(tradeoff::Subject& subject, const tradeoff::LinkOf& link, std::vector<Curve>& curves) {
+  scene::FieldSource* source = open_source(subject.scene, link.node);
+  if (source == nullptr || !(curves.back().floor > 0)) return;
+  const scene::FieldSource linear = *source;
+  if (!make_cubic(*source)) return;
+  auto curve = tradeoff::measure_followed(subject, link);
+  *source = linear;
+  if (!curve || !(curve->floor > 0)) return;
+  curve->id = cubic_curve_id(link.name);
+  curve->title += ", cubic cells";
+  curves.push_back(std::move(*curve));
+}
+
 }  // namespace
 
 Result<std::vector<Curve>> measure_hand(tradeoff::Subject& subject) {
@@ -60,6 +86,7 @@ Result<std::vector<Curve>> measure_hand(tradeoff::Subject& subject) {
       continue;
     }
     curves.push_back(std::move(*curve));
+    add_cubic(subject, link, curves);
     chosen.push_back(link.name);
   }
   haptics::Program bare = tradeoff::without_widgets(*subject.program), rest = bare;
@@ -89,12 +116,17 @@ std::optional<HandCurves> hand_curves(scene::Scene& scene, const std::vector<Cur
       has_rest = true;
       continue;
     }
-    const auto link =
-        std::find_if(links.begin(), links.end(), [&](const auto& l) { return tradeoff::streamline_curve_id(l.name) == curve.id; });
+    const auto id_is = [&](const std::string& id) { return id == curve.id; };
+    const auto link = std::find_if(links.begin(), links.end(), [&](const auto& l) {
+      return id_is(tradeoff::streamline_curve_id(l.name)) || id_is(cubic_curve_id(l.name));
+    });
     if (link == links.end()) return std::nullopt;
+    const bool cubic = id_is(cubic_curve_id(link->name));
+    if (cubic && open_source(scene, link->node) == nullptr) return std::nullopt;
     const field::AnyField field = tradeoff::field_of(scene, link->node);
     if (!field.vector) return std::nullopt;
-    LinkCurve one{link->name, field.vector->length(), 1e-3 * rate_hz, curve, {}};
+    CATENA_ASSERT(link->node.find("field") != nullptr);
+    LinkCurve one{link->name, link->node.find("field")->string, cubic, field.vector->length(), 1e-3 * rate_hz, curve, {}};
     one.curve.points.clear();
     const std::vector<StreamlineSetting> open = open_settings(link->node);
     for (const tradeoff::Point& point : curve.points) {

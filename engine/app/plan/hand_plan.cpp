@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "engine/app/plan/cells.h"
 #include "engine/app/tradeoff/measure/choice.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
@@ -15,6 +16,7 @@ namespace catena::app::plan {
 namespace {
 
 constexpr const char* kKeys[] = {"follow", "method", "tolerance"};
+constexpr double kWorthIt = 0.5;  ///< of what linear cells leave open, cubic ones leave less
 
 /// The links of a scene's text by their names: "/chain/2".
 Result<std::map<std::string, std::string>> places_of_links(const json::Node& root) {
@@ -33,6 +35,19 @@ void add_member(json::Node& object, const std::string& key, json::Node value) {
   object.members.emplace_back(key, std::move(value));
 }
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// What the fields that `wanted` picks leave open becomes cubic; linear where there is no memory for it.
+template <class Wanted>
+void make_open_ones_cubic(scene::Scene& scene, const Wanted& wanted) {
+  scene.world.each<scene::FieldSource>([&](scene::Entity entity, scene::FieldSource& source) {
+    if (!leaves_cells_open(source) || !wanted(scene.world.get<scene::Name>(entity).value)) return;
+    if (const Outcome made = make_cubic(source); !made) scene.notes.push_back(made.error().message);
+  });
+}
+
 /// Whether the scene has come to say itself what the plan would.
 bool is_pinned(const json::Node& link, const LinkKeys& keys) {
   return std::any_of(keys.begin(), keys.end(), [&](const auto& key) { return link.find(key.first) != nullptr; });
@@ -42,18 +57,44 @@ bool is_pinned(const json::Node& link, const LinkKeys& keys) {
 
 HandPlan::HandPlan(HandCurves curves, const scene::Plan& wanted) : curves_(std::move(curves)) { want(wanted); }
 
-double HandPlan::pick(double error, std::vector<PlannedLink>& out) const {
-  out.clear();
-  double ns = curves_.rest_ns;
+std::vector<std::string> HandPlan::cubic_for(double error) const {
+  struct Floors {
+    double linear = 0, cubic = 0;
+    bool both = false;
+  };
+  std::map<std::string, Floors> fields;
   for (const LinkCurve& link : curves_.links) {
+    Floors& floors = fields[link.field];
+    double& worst = link.cubic ? floors.cubic : floors.linear;
+    worst = std::max(worst, tradeoff::least_told(link.curve) * link.length);
+    floors.both = floors.both || link.cubic;
+  }
+  std::vector<std::string> cubic;
+  for (const auto& [field, floors] : fields)
+    if (floors.both && error < floors.linear && floors.cubic < kWorthIt * floors.linear) cubic.push_back(field);
+  return cubic;
+}
+
+HandPlan::Choice HandPlan::pick(double error) const {
+  Choice choice;
+  choice.cubic = cubic_for(error);
+  choice.ns = curves_.rest_ns;
+  for (const LinkCurve& link : curves_.links) {
+    if (link.cubic != contains(choice.cubic, link.field)) continue;
     const tradeoff::Picked picked = tradeoff::pick(link.curve, {error / link.length, {}});
     if (picked.point < 0) continue;
     const tradeoff::Point& point = link.curve.points[static_cast<std::size_t>(picked.point)];
-    out.push_back({link.link, point.setting, link.keys[static_cast<std::size_t>(picked.point)], point.error * link.length,
-                   tradeoff::least_told(link.curve) * link.length, picked.floored, picked.reached});
-    ns += std::max(0.0, point.time.median / link.ticks_a_ms - curves_.bare_ns);
+    choice.links.push_back({link.link, point.setting, link.keys[static_cast<std::size_t>(picked.point)], point.error * link.length,
+                            tradeoff::least_told(link.curve) * link.length, picked.floored, picked.reached});
+    choice.ns += std::max(0.0, point.time.median / link.ticks_a_ms - curves_.bare_ns);
   }
-  return ns;
+  return choice;
+}
+
+void HandPlan::take(Choice choice) {
+  links_ = std::move(choice.links);
+  cubic_ = std::move(choice.cubic);
+  ns_ = choice.ns;
 }
 
 std::vector<double> HandPlan::stops() const {
@@ -63,9 +104,8 @@ std::vector<double> HandPlan::stops() const {
       if (std::isfinite(point.error)) errors.insert(std::max(point.error, tradeoff::least_told(link.curve)) * link.length);
   std::vector<double> stops;
   double last = -1;
-  std::vector<PlannedLink> links;
   for (const double error : errors) {
-    const double ns = pick(error, links);
+    const double ns = pick(error).ns;
     if (ns == last) continue;
     stops.push_back(error);
     last = ns;
@@ -81,7 +121,7 @@ void HandPlan::want(const scene::Plan& wanted) {
     return;
   }
   if (wanted.hand_error) {
-    ns_ = pick(*wanted.hand_error, links_);
+    take(pick(*wanted.hand_error));
     for (const PlannedLink& link : links_) reached_ = reached_ && link.reached;
     return;
   }
@@ -90,13 +130,12 @@ void HandPlan::want(const scene::Plan& wanted) {
   const double most = 1e3 * wanted.hand_time.value_or(0);
   double quickest = 0, least = -1;
   for (const double error : errors) {
-    std::vector<PlannedLink> links;
-    const double ns = pick(error, links);
-    if (ns <= most) least = error;  // they fall
-    if (quickest == 0 || ns < quickest) quickest = ns, reached_ = reached_ && ns <= most, links_ = std::move(links), ns_ = ns;
+    Choice choice = pick(error);
+    if (choice.ns <= most) least = error;  // they fall
+    if (quickest == 0 || choice.ns < quickest) quickest = choice.ns, take(std::move(choice));
   }
   reached_ = least >= 0;
-  if (reached_) ns_ = pick(least, links_);
+  if (reached_) take(pick(least));
 }
 
 double HandPlan::expected_error() const {
@@ -112,6 +151,7 @@ void HandPlan::apply(scene::Scene& scene) const {
       for (const auto& [key, text] : planned.keys)
         if (auto value = json::parse(text, scene.path)) add_member(link.node, key, std::move(*value));
     });
+  make_open_ones_cubic(scene, [&](const std::string& field) { return contains(cubic_, field); });
 }
 
 Result<std::string> HandPlan::apply(const std::string& text, const std::string& file) const {
@@ -126,6 +166,11 @@ Result<std::string> HandPlan::apply(const std::string& text, const std::string& 
       CATENA_TRY(out, json::set_value(out, file, place->second + "/" + key, value));
     }
   }
+  for (const std::string& field : cubic_) {
+    const json::Node* stated = json::find_value(root, place_of_field(field));
+    if (stated == nullptr || stated->find(kCellsKey) != nullptr) continue;
+    CATENA_TRY(out, json::set_value(out, file, place_of_field(field) + "/" + kCellsKey, "\"cubic\""));
+  }
   return out;
 }
 
@@ -133,6 +178,7 @@ std::string HandPlan::sentence() const {
   std::string text = fmt::format("plan {}={}:", wanted_.hand_error ? "hand_error" : "hand_time",
                                  to_text(wanted_.hand_error ? *wanted_.hand_error : wanted_.hand_time.value_or(0)));
   for (const PlannedLink& link : links_) text += fmt::format("{} {} {}", &link == links_.data() ? "" : ",", link.link, link.setting);
+  for (const std::string& field : cubic_) text += fmt::format(", field {} cubic", field);
   text += fmt::format("; expected: error {:.2g} in {:.3g} us a tick", expected_error(), expected_us());
   for (const PlannedLink& link : links_)
     if (wanted_.hand_error && link.floored)
@@ -154,6 +200,11 @@ Outcome take_recorded(const std::string& recorded_text, scene::Scene& scene) {
         if (const json::Node* value = from->find(key)) add_member(link.node, key, *value);
     });
   }
+  make_open_ones_cubic(scene, [&](const std::string& name) {
+    const json::Node* field = json::find_value(root, place_of_field(name));
+    const json::Node* cells = field != nullptr ? field->find(kCellsKey) : nullptr;
+    return cells != nullptr && cells->string == "cubic";
+  });
   return Done{};
 }
 

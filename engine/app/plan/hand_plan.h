@@ -3,6 +3,8 @@
 ///   hand_time=T   the least error of the worst link for which the whole tick takes T microseconds at most
 /// Errors are the greatest distance of a link's proxy from the converged line, world units; the time of a tick is that of the tick without
 /// these links, and what each of them adds. A link that says how it is followed ("follow", "method", "tolerance") keeps what it says.
+/// Below the error that linear cells leave in the data, a sampled field that does not state its "interpolation" becomes cubic where that
+/// is known to leave less than half of it: for all links of the field, and for the eye.
 /// The plan is made before the first tick and written into the links as if the scene had said it: the program, a recording and its replay
 /// know nothing of curves and clocks. Off the tick.
 #pragma once
@@ -21,9 +23,11 @@ namespace catena::app::plan {
 /// Keys of a link as JSON text: {"method", "\"dp54\""}.
 using LinkKeys = std::vector<std::pair<std::string, std::string>>;
 
-/// A link that leaves its setting open, and what is known of each.
+/// A link that leaves its setting open, and what is known of each; once with linear cells and, where the field leaves that open, once more
+/// with cubic ones.
 struct LinkCurve {
-  std::string link;
+  std::string link, field;
+  bool cubic = false;
   double length = 1;           ///< L of its field, world units: the curve's errors are shares of it
   double ticks_a_ms = 1;       ///< the curve's times are of a millisecond
   Curve curve;                 ///< only what agrees with what the link says
@@ -52,6 +56,8 @@ class HandPlan {
 
   bool is_empty() const { return links_.empty(); }
   const std::vector<PlannedLink>& links() const { return links_; }
+  /// The fields that become cubic.
+  const std::vector<std::string>& cubic_fields() const { return cubic_; }
   double expected_error() const;  ///< of the worst link, world units
   double expected_us() const { return 1e-3 * ns_; }
   bool reached() const { return reached_; }
@@ -61,7 +67,7 @@ class HandPlan {
   /// From the fastest to the most exact: the errors at which what is chosen changes, falling.
   std::vector<double> stops() const;
 
-  /// Into the links of a scene that was just read; into its text. A link that has come to say it itself keeps what it says.
+  /// Into the links and fields of a scene that was just read; into its text. What has come to say it itself keeps what it says.
   void apply(scene::Scene& scene) const;
   Result<std::string> apply(const std::string& text, const std::string& file) const;
 
@@ -69,17 +75,25 @@ class HandPlan {
   std::string sentence() const;
 
  private:
-  /// For the error: what each link gets, and what the tick takes.
-  double pick(double error, std::vector<PlannedLink>& out) const;
+  struct Choice {
+    std::vector<PlannedLink> links;
+    std::vector<std::string> cubic;  ///< fields
+    double ns = 0;                   ///< of the tick
+  };
+  /// For the error.
+  Choice pick(double error) const;
+  std::vector<std::string> cubic_for(double error) const;
+  void take(Choice choice);
 
   HandCurves curves_;
   scene::Plan wanted_;
   std::vector<PlannedLink> links_;
+  std::vector<std::string> cubic_;
   double ns_ = 0;
   bool reached_ = true;
 };
 
-/// What the recording's text says of how links are followed, for a scene from outside whose plan leaves it open.
+/// What the recording's text says of how links are followed and fields are read, for a scene from outside whose plan leaves it open.
 Outcome take_recorded(const std::string& recorded_text, scene::Scene& scene);
 
 /// Measures the links that leave their setting open. `left_out` gets a sentence for each that cannot be measured.

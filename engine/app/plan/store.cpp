@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "engine/app/report/machine.h"
 #include "engine/app/run_files.h"
 #include "engine/app/tradeoff/report/report.h"
 #include "engine/base/hash.h"
@@ -42,7 +43,7 @@ bool is_sane(const Curve& curve) {
 
 CurveKey::CurveKey(std::string_view sense) : hash_(Fnv1a{}.value) {
   add(sense);
-  for (const auto& [name, value] : tradeoff::about_this_machine())
+  for (const auto& [name, value] : about_this_machine())
     if (name != "date") add(value);
   add_file("/proc/self/exe");
   const char* threads = std::getenv("LP_NUM_THREADS");
@@ -129,7 +130,7 @@ Outcome CurveStore::keep(const std::string& key, const std::string& source, cons
   fs::create_directories(folder_, code);
   tradeoff::Report report;
   report.source = fs::path(source).filename().string();
-  report.about = tradeoff::about_this_machine();
+  report.about = about_this_machine();
   report.about.emplace_back(kKey, key);
   report.curves = curves;
   CATENA_TRY(OutputFile file, OutputFile::open(path_of(key)));

@@ -61,6 +61,7 @@ class Frames {
     if (!base_view_ || (!options_.play && steps_.empty())) base_view_ = packet.view, base_bounds_ = render::packet_bounds(packet);
     const render::View view = motion_.at(*base_view_, base_bounds_, static_cast<double>(size_.width) / size_.height, frame);
     render::set_view(scene_, view, packet);
+    CATENA_CHECK(render::check_head(packet, scene_.stereo));
     return packet;
   }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "engine/app/command.h"
+#include "engine/app/report/machine.h"
 #include "engine/app/run_files.h"
 #include "engine/app/tradeoff/measure/choice.h"
 #include "engine/app/tradeoff/measure/eye/eye.h"
@@ -44,7 +45,7 @@ Result<Report> measure(const MeasureOptions& options) {
   const auto all = tradeoff::measurements();
   Report report;
   report.source = std::filesystem::path(options.source).filename().string();
-  report.about = tradeoff::about_this_machine();
+  report.about = about_this_machine();
   const bool sees = std::any_of(all.begin(), all.end(), [&](const auto& m) { return wanted(m) && std::string_view(m.part) == "eye"; });
   Progress progress("tradeoff", static_cast<double>(all.size()) + 3);
   double done = 0;

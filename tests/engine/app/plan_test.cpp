@@ -163,6 +163,50 @@ TEST(PlanOfTheHand, GoesIntoTheTextAndLeavesWhatIsStated) {
   EXPECT_EQ(*text, R"({"chain": [{"name": "b", "method": "dp54"}, {"name": "c"}, {"name": "a", "method": "rk2"}]})");
 }
 
+/// Two links on one field, with linear cells and with cubic ones, and one on another field that states its cells.
+HandCurves with_cells() {
+  HandCurves curves = two_links();
+  for (LinkCurve& linear : curves.links) linear.field = "flow", linear.curve.floor = 1e-4;
+  for (std::size_t i = 0; i < 2; ++i) {
+    LinkCurve cubic = curves.links[i];
+    cubic.cubic = true;
+    cubic.curve.floor = 1e-6;
+    for (Point& p : cubic.curve.points) p.time.median *= 3;
+    curves.links.push_back(cubic);
+  }
+  LinkCurve other = curves.links[0];
+  other.link = "c", other.field = "stated";
+  curves.links.push_back(other);
+  return curves;
+}
+
+TEST(PlanOfTheHand, CellsAreCubicOnlyBelowWhatLinearOnesHold) {
+  EXPECT_TRUE(HandPlan(with_cells(), wants("hand_error=1e-3")).cubic_fields().empty());
+  const HandPlan fine(with_cells(), wants("hand_error=1e-5"));
+  EXPECT_EQ(fine.cubic_fields(), std::vector<std::string>{"flow"});
+  ASSERT_EQ(fine.links().size(), 3u);
+  EXPECT_FALSE(fine.links()[0].floored);  // 1e-6 L is below it
+  EXPECT_TRUE(fine.links()[2].floored);   // the stated field's cells stay
+  EXPECT_NE(fine.sentence().find("field flow cubic"), std::string::npos) << fine.sentence();
+  // where cubic cells are no better: noise
+  HandCurves noisy = with_cells();
+  for (LinkCurve& link : noisy.links)
+    if (link.cubic) link.curve.floor = 0.8e-4;
+  EXPECT_TRUE(HandPlan(noisy, wants("hand_error=1e-5")).cubic_fields().empty());
+  // a time that linear cells keep and cubic ones do not
+  EXPECT_TRUE(HandPlan(with_cells(), wants("hand_time=2.0")).cubic_fields().empty());
+  EXPECT_FALSE(HandPlan(with_cells(), wants("hand_time=20")).cubic_fields().empty());
+}
+
+TEST(PlanOfTheHand, CellsGoIntoTheTextUnlessTheyAreStated) {
+  const HandPlan plan(with_cells(), wants("hand_error=1e-5"));
+  const auto open = plan.apply(R"({"fields": {"flow": {"file": "a.vdb"}}})", "s.json");
+  ASSERT_TRUE(open) << open.error().message;
+  EXPECT_EQ(*open, R"({"fields": {"flow": {"file": "a.vdb", "interpolation": "cubic"}}})");
+  const std::string stated = R"({"fields": {"flow": {"file": "a.vdb", "interpolation": "linear"}}})";
+  EXPECT_EQ(*plan.apply(stated, "s.json"), stated);
+}
+
 TEST(PlanSlider, GoesFromTheFastestToTheMostExact) {
   app::LivePlan live;
   live.eye.emplace(eye(), wants("error=2"));
@@ -350,6 +394,40 @@ TEST_F(PlanProgram, ARecordingRepeatsToTheBitWhateverTheCacheSays) {
   repeats({"replay", "--log", log});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "cache"));  // nothing is measured
   EXPECT_EQ(test::run_catena({"replay", "--log", log, "--plan", "hand_error=1"}).exit_code, 2);
+}
+
+TEST_F(PlanProgram, ASampledFieldBecomesCubicWhereThatIsNearerToTheTruth) {
+  ASSERT_EQ(test::run_catena({"generate", "lamb-oseen", "--resolution", "25", "-o", folder_ / "g.vdb"}).exit_code, 0);
+  const auto scene_with = [&](const char* name, const std::string& field) {
+    test::write_file(folder_ / name, R"({"fields": {"flow": )" + field + R"(}, "workspace": {"metres_per_unit": 0.05},
+      "chain": [{"name": "curve", "type": "streamline", "field": "flow", "seed": [0.6, 0, 0]}], "plan": {"hand_error": 1e-4}})");
+    return folder_ / name;
+  };
+  const auto last_proxy = [&](const std::string& scene) {
+    const auto run = test::run_catena({"replay", scene, "--probe", folder_ / "p.csv", "-o", folder_ / "out.csv"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const test::Table table = test::Table::read(folder_ / "out.csv");
+    const auto last = [&](const char* column) { return table.number(table.rows() - 1, column); };
+    return std::pair(run.out, Vec3{last("curve_x"), last("curve_y"), last("curve_z")});
+  };
+  const auto [exact, truth] = last_proxy(scene_with("exact.json", R"({"analytic": "lamb-oseen"})"));
+  const auto [stated, linear] = last_proxy(scene_with("stated.json", R"({"file": "g.vdb", "interpolation": "linear"})"));
+  const std::string open = scene_with("open.json", R"({"file": "g.vdb"})");
+  const auto [planned, cubic] = last_proxy(open);
+  EXPECT_EQ(exact.find("cubic"), std::string::npos) << exact;
+  EXPECT_EQ(stated.find("cubic"), std::string::npos) << stated;
+  EXPECT_NE(planned.find("field flow cubic"), std::string::npos) << planned;
+  EXPECT_LT(norm(cubic - truth), 0.2 * norm(linear - truth));
+  // before the first tick, and in the recording
+  const std::string log = folder_ / "r.catlog";
+  const auto felt = test::run_catena({"feel", open, "--device", "simulated", "--seconds", "0.2", "--realtime", "off", "--record", log});
+  ASSERT_EQ(felt.exit_code, 0) << felt.err;
+  std::filesystem::remove_all(folder_ / "cache");
+  for (const auto& words : {std::vector<std::string>{"replay", "--log", log}, {"replay", open, "--log", log}}) {
+    const auto again = test::run_catena(words);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.out.find("all equal to the bit"), std::string::npos) << again.out;
+  }
 }
 
 TEST_F(PlanProgram, BadWishesAreOneLine) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/field/level.h"
+
 namespace catena::app::tradeoff {
 
 namespace {
@@ -96,44 +98,18 @@ std::optional<Levels<Grid>> levels_of(const Grid& grid, double most) {
   return levels;
 }
 
-double square(double a, double b) { return (a - b) * (a - b); }
-double square(const Vec3& a, const Vec3& b) { return dot(a - b, a - b); }
-
-/// Root mean square of coarse - fine at the voxels of `fine`; both have values there.
-template <class Grid>
-double seen_error(const Grid& fine, const Grid& coarse) {
-  field::Cursor at_fine, at_coarse;
-  const field::Box& box = fine.index_box();
-  double sum = 0, count = 0;
-  // every voxel of small grids, a lattice with an odd step of large ones
-  const double voxels = (box.hi.x - box.lo.x + 1) * (box.hi.y - box.lo.y + 1) * (box.hi.z - box.lo.z + 1);
-  const int step = std::max(1, static_cast<int>(std::cbrt(voxels / 4e6)) * 2 - 1);
-  for (double z = box.lo.z; z <= box.hi.z; z += step)
-    for (double y = box.lo.y; y <= box.hi.y; y += step)
-      for (double x = box.lo.x; x <= box.hi.x; x += step) {
-        const Vec3 p = fine.mapping().world_from_index({x, y, z});
-        const auto a = fine.sample(p, at_fine), b = coarse.sample(p, at_coarse);
-        if (!a.inside || !b.inside) continue;
-        const double e = square(a.value, b.value);
-        if (!std::isfinite(e)) continue;
-        sum += e;
-        ++count;
-      }
-  return count > 0 ? std::sqrt(sum / count) : 0;
-}
-
 template <class Grid>
 std::optional<InterpolationFloor> floor_of(const Grid& grid, double scale) {
   const auto levels = make_levels(grid);
   if (!levels) return std::nullopt;
   InterpolationFloor f;
-  f.at_2h = seen_error(*levels->at[0], *levels->at[1]);
-  f.at_4h = seen_error(*levels->at[1], *levels->at[2]);
+  f.at_2h = field::difference(*levels->at[0], *levels->at[1]).rms;
+  f.at_4h = field::difference(*levels->at[1], *levels->at[2]).rms;
   f.at_h = from_errors(f.at_2h, f.at_4h);
   if (grid.interpolation() == field::Interpolation::cubic) {
     // the leading part of its error goes as t (1 - t) (1 - 2 t) h^3: seen at the quarters of cells, 0 midway, where h^4 is seen. The error
     // lies between what either leads to: their geometric mean
-    f.at_4h = seen_error(*levels->at[0], *levels->at[2]);
+    f.at_4h = field::difference(*levels->at[0], *levels->at[2]).rms;
     const double order = std::min(f.at_h.order, 3.0);
     f.at_h.error = std::sqrt(f.at_h.error * f.at_4h / std::exp2(2 * order));
     f.at_h.order = order;

@@ -4,33 +4,11 @@
 #include <cmath>
 
 #include "engine/app/command.h"
+#include "engine/app/report/page.h"
 #include "engine/app/tradeoff/report/report.h"
-#include "engine/base/appended.h"
-#include "engine/base/text.h"
 
 namespace catena::app::tradeoff {
 namespace {
-
-std::string escaped(const std::string& text) { return xml_text(one_line(text)); }
-
-// gnuplot writes black in two ways: both become the page's ink
-constexpr const char* kHead = R"html(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>What it costs, what it buys</title><style>
-:root { color-scheme: light dark; --ink: #1c2024; --paper: #ffffff; --soft: #f1f3f5; --line: #ced4da; --good: #e3f6e8; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e4e7ea; --paper: #15181b; --soft: #22272c; --line: #454d55; --good: #163a22; } }
-body { color: var(--ink); background: var(--paper); font: 16px/1.5 sans-serif; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; }
-h1, h2, h3 { line-height: 1.2; } h2 { margin-top: 3rem; border-bottom: 1px solid var(--line); } h3 { margin-top: 2.5rem; }
-table { border-collapse: collapse; font-size: 0.88rem; } th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid var(--line); vertical-align: top; }
-td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; } code { background: var(--soft); padding: 0 0.25rem; }
-tr.chosen { background: var(--good); } .why { background: var(--good); padding: 0.5rem 0.8rem; } .plots { display: flex; flex-wrap: wrap; gap: 1rem; }
-.plots svg { width: 34rem; max-width: 100%; height: auto; } .wide { overflow-x: auto; } .note { font-size: 0.88rem; }
-svg :is([fill="black"], [fill="rgb(0,0,0)"], [fill="rgb(  0,   0,   0)"]) { fill: var(--ink); }
-svg :is([stroke="black"], [stroke="rgb(  0,   0,   0)"]) { stroke: var(--ink); }
-svg :is([color="black"], [color="rgb(  0,   0,   0)"]) { color: var(--ink); }
-td code, td:first-child { white-space: nowrap; }
-details { margin: 0.6rem 0; }
-</style></head><body>
-)html";
 
 std::string time_text(const Timing& t) {
   return std::isfinite(t.median) ? fmt::format("{:.4g} <small>({:.4g} .. {:.4g})</small>", t.median, t.low, t.high) : "-";
@@ -85,9 +63,7 @@ std::string section(const Curve& c, const Curve* other, const std::vector<std::s
     text += fmt::format("<p class=\"why\"><b>Choose: {}.</b> {}</p>\n", escaped(c.points[c.chosen].setting), escaped(c.why));
   else if (!c.why.empty())
     text += "<p class=\"why\">" + escaped(c.why) + "</p>\n";
-  text += "<div class=\"plots\">";
-  for (const std::string& plot : plots) text += plot;
-  text += "</div>\n" + points_table(c, other) + "<p class=\"note\">";
+  text += plots_row(plots) + points_table(c, other) + "<p class=\"note\">";
   if (std::isfinite(c.floor))
     text += fmt::format("The dashed line, {}: {}, {}. ", escaped(c.floor_name), short_number(c.floor), escaped(c.floor_from));
   else if (!c.floor_from.empty())
@@ -132,14 +108,8 @@ std::string about_table(const Report& report, const Report* other) {
 
 }  // namespace
 
-std::string short_number(double value) {
-  if (!std::isfinite(value)) return "-";
-  const bool plain = std::fabs(value) >= 1000 && std::fabs(value) < 1e7;
-  return plain ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
-}
-
 std::string to_html(const Report& report, const Report* other, const std::vector<std::vector<std::string>>& plots) {
-  std::string text = kHead;
+  std::string text = page_head("What it costs, what it buys");
   text += fmt::format("<h1>{}: what it costs, what it buys</h1>\n", escaped(report.source));
   text +=
       "<p>Every setting below was measured on this scene and this machine. Lower is more exact, further left is cheaper. The dashed line "
@@ -167,7 +137,7 @@ std::string to_html(const Report& report, const Report* other, const std::vector
   if (other != nullptr && other->source != report.source)
     text +=
         "<p>The other report is of another scene, " + escaped(other->source) + ": only settings of the same name stand side by side.</p>\n";
-  return text + "</body></html>\n";
+  return text + page_end();
 }
 
 }  // namespace catena::app::tradeoff

@@ -4,11 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "engine/app/report/folder.h"
 #include "engine/app/tradeoff/report/report.h"
-#include "engine/app/tradeoff/results.h"
 #include "engine/base/json.h"
 #include "engine/base/json_text.h"
-#include "engine/base/numbers.h"
 #include "engine/base/text.h"
 
 namespace catena::app::tradeoff {
@@ -17,20 +16,12 @@ namespace {
 constexpr const char* kMark = "catena_tradeoff";
 constexpr int kFormat = 1;
 
-std::string number(double value) { return std::isfinite(value) ? to_text(value) : "null"; }
-
-template <class Items, class Print>
-std::string list(const Items& items, const Print& print) {
-  std::string text;
-  for (const auto& item : items) text += (text.empty() ? "" : ", ") + print(item);
-  return "[" + text + "]";
-}
-
 std::string json_of(const Point& p) {
   return fmt::format(
       R"({{"setting": {}, "write": {}, "series": {}, "error": {}, "work": {}, "time": {{"median": {}, "low": {}, "high": {}, "repeats": {}}}, "bytes": {}, "offered": {}, "more": {}}})",
-      json_string(p.setting), json_string(p.write), json_string(p.series), number(p.error), number(p.work), number(p.time.median),
-      number(p.time.low), number(p.time.high), p.time.repeats, number(p.bytes), p.offered, list(p.more, number));
+      json_string(p.setting), json_string(p.write), json_string(p.series), json_number(p.error), json_number(p.work),
+      json_number(p.time.median), json_number(p.time.low), json_number(p.time.high), p.time.repeats, json_number(p.bytes), p.offered,
+      json_list(p.more, json_number));
 }
 
 constexpr const char* kCosts[] = {"time", "work", "bytes"};
@@ -58,13 +49,13 @@ std::string json_of(const Curve& c) {
     text += (text.size() > 3 ? ",\n   \"" : "\"") + std::string(key) + "\": " + value;
   };
   for (const auto& [key, word] : words_of(c)) add(key, json_string(*word));
-  add("more", list(c.more, json_string));
-  add("floor", number(c.floor));
-  add("reference_error", number(c.reference_error));
+  add("more", json_list(c.more, json_string));
+  add("floor", json_number(c.floor));
+  add("reference_error", json_number(c.reference_error));
   add("cost", json_string(kCosts[static_cast<int>(c.cost)]));
   add("current", std::to_string(c.current));
   add("chosen", std::to_string(c.chosen));
-  add("front", list(c.front, [](int i) { return std::to_string(i); }));
+  add("front", json_list(c.front, [](int i) { return std::to_string(i); }));
   std::string points;
   for (const Point& p : c.points) points += (points.empty() ? "\n     " : ",\n     ") + json_of(p);
   add("points", "[" + points + "]");
@@ -148,7 +139,7 @@ std::string to_json(const Report& report) {
   std::string about;
   for (const auto& [key, value] : report.about) about += (about.empty() ? "" : ", ") + json_string(key) + ": " + json_string(value);
   return fmt::format("{{\"{}\": {},\n \"source\": {},\n \"about\": {{{}}},\n \"left_out\": {},\n \"curves\": [{}]}}\n", kMark, kFormat,
-                     json_string(report.source), about, list(report.left_out, json_string), curves);
+                     json_string(report.source), about, json_list(report.left_out, json_string), curves);
 }
 
 bool is_report(const std::string& path) {

@@ -4,22 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/app/report/plot.h"
 #include "engine/app/tradeoff/report/report.h"
 #include "engine/base/numbers.h"
-#include "engine/base/text.h"
 
 namespace catena::app::tradeoff {
 namespace {
-
-/// Middle tones that are read on white and on black.
-constexpr const char* kColors[] = {"#2a7de1", "#d9480f", "#2b9a4b", "#9c36b5", "#b8860b", "#0c8599", "#c2255c", "#868e96"};
-
-/// In single quotes, as gnuplot has them.
-std::string quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : one_line(text)) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
 
 std::vector<std::string> series_of(const Curve& c) {
   std::vector<std::string> all;
@@ -42,23 +32,11 @@ std::string rows(const Curve& c, Cost cost, double least, const std::string& ser
   return text;
 }
 
-struct Drawn {
-  std::string data, what;  ///< blocks, and the items of "plot"
-};
-
-void add(Drawn& drawn, const std::string& name, const std::string& data, const std::string& style) {
-  if (data.empty()) return;
-  drawn.data += name + " << EOD\n" + data + "EOD\n";
-  drawn.what += (drawn.what.empty() ? "" : ", ") + name + " " + style;
-}
-
 }  // namespace
 
 PlotScript plot_script(const Curve& curve, const Curve* other, const std::string& prefix) {
   PlotScript script;
-  script.text =
-      "set terminal svg size 560,420 dynamic noenhanced font 'sans-serif,13'\nset border lc rgb 'black'\nset format '%g'\n"
-      "set grid lc rgb '#888888' lw 0.5\nset key outside bottom center horizontal samplen 1.5 maxcols 3\nset logscale xy\n";
+  script.text = plot_head(560, 420) + "set logscale xy\n";
   double least = std::numeric_limits<double>::infinity(), most = 0;
   for (const Curve* c : {&curve, other})
     if (c != nullptr)
@@ -72,7 +50,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
   for (const auto& [cost, name] :
        {std::pair{Cost::time, &curve.time_name}, {Cost::work, &curve.work_name}, {Cost::bytes, &curve.bytes_name}}) {
     if (name->empty()) continue;
-    Drawn drawn;
+    PlotData drawn;
     int k = 0;
     double lo = std::numeric_limits<double>::infinity(), hi = 0;
     for (const Curve* c : {&curve, other}) {
@@ -81,31 +59,30 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
         if (cost_of(p, cost) > 0 && std::isfinite(p.error)) lo = std::min(lo, cost_of(p, cost)), hi = std::max(hi, cost_of(p, cost));
       int color = 0;
       for (const std::string& series : series_of(*c)) {
-        const std::string look =
-            fmt::format("using 1:2:3:4 with xerrorlines lw 1.6 {} pt {} ps 0.5 lc rgb '{}' title {}", c == other ? "dt 3" : "dt 1",
-                        c == other ? 6 : 7, kColors[static_cast<std::size_t>(color++) % std::size(kColors)],
-                        quoted((series.empty() ? "measured" : series) + (c == other ? " (other)" : "")));
-        add(drawn, fmt::format("$s{}", k++), rows(*c, cost, least, series), look);
+        const std::string look = fmt::format("using 1:2:3:4 with xerrorlines lw 1.6 {} pt {} ps 0.5 lc rgb '{}' title {}",
+                                             c == other ? "dt 3" : "dt 1", c == other ? 6 : 7, plot_color(color++),
+                                             quoted((series.empty() ? "measured" : series) + (c == other ? " (other)" : "")));
+        drawn.add(fmt::format("$s{}", k++), rows(*c, cost, least, series), look);
       }
     }
-    if (drawn.what.empty() || !(hi > 0)) continue;
+    if (drawn.items.empty() || !(hi > 0)) continue;
     lo *= 0.7, hi *= 1.4;
     const auto level = [&](const char* block, double value, const std::string& look) {
-      if (value > 0) add(drawn, block, fmt::format("{0} {2}\n{1} {2}\n", to_text(lo), to_text(hi), to_text(value)), look);
+      if (value > 0) drawn.add(block, fmt::format("{0} {2}\n{1} {2}\n", to_text(lo), to_text(hi), to_text(value)), look);
     };
     level("$floor", curve.floor, "with lines lw 2 dt 2 lc rgb '#888888' title " + quoted(curve.floor_name));
     level("$reference", curve.reference_error, "with lines lw 1.2 dt 4 lc rgb '#888888' title 'error of the reference'");
     if (curve.current >= 0)
-      add(drawn, "$now", rows(curve, cost, least, {}, curve.current),
-          "using 1:2 with points pt 4 ps 1.7 lw 1.5 lc rgb 'black' title 'now'");
+      drawn.add("$now", rows(curve, cost, least, {}, curve.current), "using 1:2 with points pt 4 ps 1.7 lw 1.5 lc rgb 'black' title 'now'");
     if (curve.chosen >= 0)
-      add(drawn, "$chosen", rows(curve, cost, least, {}, curve.chosen),
-          "using 1:2 with points pt 6 ps 2.2 lw 2 lc rgb 'black' title 'chosen'");
+      drawn.add("$chosen", rows(curve, cost, least, {}, curve.chosen),
+                "using 1:2 with points pt 6 ps 2.2 lw 2 lc rgb 'black' title 'chosen'");
     const std::string file = fmt::format("{}{}.svg", prefix, script.files.size());
     script.text +=
-        drawn.data +
+        drawn.blocks + log_tics('x', lo, hi) + log_tics('y', 0.7 * least, 3 * most) +
         fmt::format("set output '{}'\nset xlabel {}\nset ylabel {}\nset xrange [{}:{}]\nset yrange [{}:{}]\nplot {}\nunset output\n", file,
-                    quoted(*name), quoted(curve.error_name), to_text(lo), to_text(hi), to_text(0.7 * least), to_text(3 * most), drawn.what);
+                    quoted(*name), quoted(curve.error_name), to_text(lo), to_text(hi), to_text(0.7 * least), to_text(3 * most),
+                    drawn.items);
     script.files.push_back(file);
   }
   return script;

@@ -17,9 +17,6 @@ struct Report {
   std::vector<std::string> left_out;  ///< a sentence each
 };
 
-/// Version, build, processor, cores, and the UTC date; the rest is added by who knows it.
-std::vector<std::pair<std::string, std::string>> about_this_machine();
-
 std::string to_json(const Report& report);
 /// Error: FILE:LINE: what; what was expected.
 Result<Report> read_report(const std::string& path);
@@ -41,8 +38,5 @@ struct PlotScript {
   std::vector<std::string> files;
 };
 PlotScript plot_script(const Curve& curve, const Curve* other, const std::string& prefix);
-
-/// "1.2e-06", "0", "-" for what was not measured.
-std::string short_number(double value);
 
 }  // namespace catena::app::tradeoff

@@ -1,3 +1,5 @@
+#include "engine/app/report/machine.h"
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -6,9 +8,8 @@
 #include <thread>
 
 #include "engine/app/command.h"
-#include "engine/app/tradeoff/report/report.h"
 
-namespace catena::app::tradeoff {
+namespace catena::app {
 namespace {
 
 /// As the kernel calls it; "unknown" where it does not say.
@@ -47,4 +48,4 @@ std::vector<std::pair<std::string, std::string>> about_this_machine() {
           {"date", today()}};
 }
 
-}  // namespace catena::app::tradeoff
+}  // namespace catena::app

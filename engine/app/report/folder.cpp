@@ -1,0 +1,139 @@
+#include "engine/app/report/folder.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "engine/base/numbers.h"
+#include "engine/base/output_file.h"
+#include "engine/base/text.h"
+
+namespace catena::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kMissing = 127;
+
+/// gnuplot's exit code, its messages thrown away; kMissing where there is no such program.
+int run_gnuplot(const std::string& folder, const std::string& script) {
+  const pid_t child = ::fork();
+  if (child < 0) return kMissing;
+  if (child == 0) {
+    const int nowhere = ::open("/dev/null", O_RDWR);
+    ::dup2(nowhere, STDIN_FILENO);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+    if (::chdir(folder.c_str()) == 0) ::execlp("gnuplot", "gnuplot", script.c_str(), static_cast<char*>(nullptr));
+    ::_exit(kMissing);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return kMissing;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+}  // namespace
+
+CsvTable& CsvTable::add(std::string_view word) {
+  if (!first_) text_ += ',';
+  first_ = false;
+  text_ += word;
+  return *this;
+}
+
+CsvTable& CsvTable::add(double number) { return add(to_text(number)); }
+
+void CsvTable::end_row() {
+  text_ += '\n';
+  first_ = true;
+}
+
+ResultFolder::ResultFolder(std::string path, std::string staging, bool created)
+    : path_(std::move(path)), staging_(std::move(staging)), created_(created) {}
+
+ResultFolder::ResultFolder(ResultFolder&& other) noexcept
+    : path_(std::move(other.path_)), staging_(std::move(other.staging_)), created_(other.created_), names_(std::move(other.names_)) {
+  other.staging_.clear();
+  other.created_ = false;
+}
+
+ResultFolder::~ResultFolder() {
+  std::error_code ignored;
+  if (!staging_.empty()) fs::remove_all(staging_, ignored);
+  if (created_) fs::remove(path_, ignored);  // only while it is empty
+}
+
+Result<ResultFolder> ResultFolder::open(const std::string& path) {
+  std::error_code code;
+  if (path.empty()) return Error{"the output's name is empty: expected a folder"};
+  if (fs::exists(path, code) && !fs::is_directory(path, code)) return Error{path + ": is a file: expected a folder to write into"};
+  const bool created = !fs::exists(path, code);
+  if (created && !fs::create_directories(path, code) && code) return Error{path + ": cannot create the folder: " + code.message()};
+  const std::string staged = path + "/tables", staging = part_name(staged);
+  remove_stale_parts(staged);
+  ResultFolder folder(path, {}, created);
+  if (::mkdir(staging.c_str(), 0777) != 0) return Error{path + ": cannot write into the folder: " + std::strerror(errno)};
+  folder.staging_ = staging;
+  return folder;
+}
+
+Outcome ResultFolder::add(const std::string& name, std::string_view text) {
+  CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/" + name));
+  file.write(text);
+  CATENA_CHECK(file.commit());
+  names_.push_back(name);
+  return Done{};
+}
+
+Outcome ResultFolder::plot(const std::string& script, const std::vector<std::string>& plots) {
+  const int code = run_gnuplot(staging_, script);
+  if (code != 0) {
+    fmt::print("no plots: gnuplot {}; the tables are complete, `gnuplot {}` in {} draws them\n",
+               code == kMissing ? "is not installed" : "failed", script, printable(path_));
+    return Done{};
+  }
+  for (const std::string& name : plots) {
+    if (!fs::exists(staging_ + "/" + name)) return Error{path_ + "/" + name + ": gnuplot did not draw it"};
+    names_.push_back(name);
+  }
+  return Done{};
+}
+
+Result<std::vector<std::string>> ResultFolder::draw(const std::string& script, const std::vector<std::string>& pictures) {
+  std::vector<std::string> drawn;
+  if (pictures.empty()) return drawn;
+  CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/draw.gp"));
+  file.write(script);
+  CATENA_CHECK(file.commit());
+  if (run_gnuplot(staging_, "draw.gp") != 0) return drawn;
+  for (const std::string& name : pictures) {
+    CATENA_TRY(const std::string text, read_text(staging_ + "/" + name, "a picture of gnuplot's"));
+    // without the lines before the picture, which a page may not have within it
+    const auto begin = text.find("<svg");
+    if (begin != std::string::npos) drawn.push_back(text.substr(begin));
+  }
+  return drawn;
+}
+
+Outcome ResultFolder::commit() {
+  for (const std::string& name : names_) {
+    std::error_code code;
+    if (fs::is_directory(path_ + "/" + name, code)) return Error{path_ + "/" + name + ": is a folder: expected a file name to write to"};
+  }
+  for (const std::string& name : names_) {
+    std::error_code code;
+    fs::rename(staging_ + "/" + name, path_ + "/" + name, code);
+    if (code) return Error{path_ + "/" + name + ": cannot write: " + code.message()};
+  }
+  created_ = false;
+  return Done{};
+}
+
+}  // namespace catena::app

@@ -1,0 +1,52 @@
+/// Where the tables, plots and the page of a run go: a folder that gets all of them or none.
+/// They are made in a folder beside their places, DIR/tables.part<pid>-<random> (engine/base/output_file.h), and renamed at the end.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace catena::app {
+
+/// A CSV in the making: words and numbers that read back exactly.
+class CsvTable {
+ public:
+  explicit CsvTable(const std::string& header) : text_(header + "\n") {}
+  CsvTable& add(std::string_view word);
+  CsvTable& add(double number);
+  void end_row();
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  bool first_ = true;
+};
+
+class ResultFolder {
+ public:
+  /// Creates the folder where it is missing.
+  static Result<ResultFolder> open(const std::string& path);
+  ~ResultFolder();
+  ResultFolder(ResultFolder&& other) noexcept;
+  ResultFolder& operator=(ResultFolder&&) = delete;
+
+  Outcome add(const std::string& name, std::string_view text);
+  /// Runs the program gnuplot on a script that was added, then adds the plots that it names. Where gnuplot is missing or fails
+  /// there are none; says so in a line.
+  Outcome plot(const std::string& script, const std::vector<std::string>& plots);
+  /// Draws pictures of text (SVG) with gnuplot for a page, and keeps neither the script nor them as files. Empty where gnuplot is missing
+  /// or fails.
+  Result<std::vector<std::string>> draw(const std::string& script, const std::vector<std::string>& pictures);
+  /// Everything to its place.
+  Outcome commit();
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  ResultFolder(std::string path, std::string staging, bool created);
+  std::string path_, staging_;
+  bool created_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace catena::app

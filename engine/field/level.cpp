@@ -1,0 +1,179 @@
+#include "engine/field/level.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#include "engine/field/dense.h"
+#include "engine/field/write_box.h"
+
+namespace catena::field {
+namespace {
+
+constexpr double kDifferenceVoxels = 4e6;
+
+double square(double a, double b) { return (a - b) * (a - b); }
+double square(const Vec3& a, const Vec3& b) { return dot(a - b, a - b); }
+
+template <class Grid>
+Difference difference_of(const Grid& fine, const Grid& coarse) {
+  Cursor at_fine, at_coarse;
+  const Box& box = fine.index_box();
+  const Vec3 count = box.hi - box.lo + Vec3(1.0);
+  // an odd step, so that it does not fall on the coarse grid's own nodes
+  const int step = std::max(1, static_cast<int>(std::cbrt(count.x * count.y * count.z / kDifferenceVoxels)) * 2 - 1);
+  Difference d;
+  double sum = 0, voxels = 0;
+  for (double z = box.lo.z; z <= box.hi.z; z += step)
+    for (double y = box.lo.y; y <= box.hi.y; y += step)
+      for (double x = box.lo.x; x <= box.hi.x; x += step) {
+        const Vec3 p = fine.mapping().world_from_index({x, y, z});
+        const auto a = fine.sample(p, at_fine), b = coarse.sample(p, at_coarse);
+        if (!a.inside || !b.inside) continue;
+        const double e = square(a.value, b.value);
+        if (!std::isfinite(e)) continue;
+        sum += e;
+        d.most = std::max(d.most, std::sqrt(e));
+        ++voxels;
+      }
+  if (voxels > 0) d.rms = std::sqrt(sum / voxels);
+  return d;
+}
+
+/// Nodes of an axis that are left of `n`.
+int left_of(int n, int factor) { return n == 1 ? 1 : (n - 1) / factor + 1; }
+
+/// The layers of the whole that are in use, the oldest first: asked for with z rising.
+class Layers {
+ public:
+  explicit Layers(const VoxelBox& box) : box_(box) {}
+
+  void want(int lo, int hi) {
+    while (first_ < lo && !layers_.empty()) layers_.pop_front(), ++first_;
+    if (layers_.empty()) first_ = lo;
+    while (first_ + static_cast<int>(layers_.size()) <= hi) {
+      const int z = first_ + static_cast<int>(layers_.size());
+      Layer& layer = layers_.emplace_back();
+      layer.values.resize(box_.layer_voxels() * static_cast<std::size_t>(box_.components));
+      box_.read_values(z, layer.values);
+      if (!box_.masked) continue;
+      layer.valid.resize(box_.layer_voxels());
+      box_.read_valid(z, layer.valid);
+    }
+  }
+  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(box_.size.x) + x; }
+  float value(int x, int y, int z, int component = 0) const {
+    return of(z).values[at(x, y) * static_cast<std::size_t>(box_.components) + component];
+  }
+  bool valid(int x, int y, int z) const { return !box_.masked || of(z).valid[at(x, y)] != 0; }
+
+ private:
+  struct Layer {
+    std::vector<float> values;
+    std::vector<std::uint8_t> valid;
+  };
+  const Layer& of(int z) const { return layers_[static_cast<std::size_t>(z - first_)]; }
+
+  const VoxelBox& box_;
+  std::deque<Layer> layers_;
+  int first_ = 0;
+};
+
+/// How far the tent about a node reaches on either side.
+int reach(int node, int n, int factor) { return n == 1 ? 0 : std::min({factor - 1, node, n - 1 - node}); }
+
+float tent(const Layers& layers, const Index3& size, const Index3& at, int factor) {
+  const int rx = reach(at.x, size.x, factor), ry = reach(at.y, size.y, factor), rz = reach(at.z, size.z, factor);
+  double sum = 0;
+  for (int k = -rz; k <= rz; ++k)
+    for (int j = -ry; j <= ry; ++j)
+      for (int i = -rx; i <= rx; ++i) {
+        const float v = layers.value(at.x + i, at.y + j, at.z + k);
+        if (!std::isfinite(v) || !layers.valid(at.x + i, at.y + j, at.z + k)) return layers.value(at.x, at.y, at.z);
+        sum += double(rx + 1 - std::abs(i)) * (ry + 1 - std::abs(j)) * (rz + 1 - std::abs(k)) * v;
+      }
+  const double weights = double(rx + 1) * (ry + 1) * (rz + 1);
+  return static_cast<float>(sum / (weights * weights));
+}
+
+template <class Grid>
+Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const AnyField& field, int factor, bool averaged) {
+  const VoxelBox box(field, field.get()->name(), {});
+  const Index3 n = box.size;
+  DenseSource source;
+  source.size = {left_of(n.x, factor), left_of(n.y, factor), left_of(n.z, factor)};
+  source.masked = box.masked;
+  CATENA_CHECK(ask_for_dense(path, source.size, box.components, box.masked));
+  Layers layers(box);
+  const auto step = [&](int nodes) { return nodes == 1 ? 1 : factor; };
+  source.read = [&](int first, int count, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
+    std::size_t i = 0, v = 0;
+    for (int z = first; z < first + count; ++z) {
+      const int fine_z = z * step(n.z), rz = averaged ? reach(fine_z, n.z, factor) : 0;
+      layers.want(fine_z - rz, fine_z + rz);
+      for (int y = 0; y < source.size.y; ++y)
+        for (int x = 0; x < source.size.x; ++x) {
+          const Index3 at{x * step(n.x), y * step(n.y), fine_z};
+          if (averaged) {
+            values[i++] = tent(layers, n, at, factor);
+          } else {
+            for (int c = 0; c < box.components; ++c) values[i++] = layers.value(at.x, at.y, at.z, c);
+          }
+          if (box.masked) valid[v++] = layers.valid(at.x, at.y, at.z);
+        }
+    }
+    return Done{};
+  };
+  Mapping mapping = box.mapping;
+  const Vec3 steps(step(n.x), step(n.y), step(n.z));
+  for (int axis = 0; axis < 3; ++axis) mapping.world_from_index_linear[axis] *= steps[axis];
+  mapping = Mapping::from_linear(mapping.world_from_index_linear, box.mapping.origin);
+  return make_dense<Grid>(box.name, mapping, source, path + ": ", true);
+}
+
+}  // namespace
+
+Difference difference(const ScalarGrid& fine, const ScalarGrid& coarse) { return difference_of(fine, coarse); }
+Difference difference(const VectorGrid& fine, const VectorGrid& coarse) { return difference_of(fine, coarse); }
+
+Result<AnyField> at_level(const std::string& path, AnyField field, int level) {
+  CATENA_ASSERT(field.get()->is_grid() && level >= 1 && level <= kMostLevels);
+  const int factor = 1 << level;
+  const Box& whole = field.get()->index_box();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double nodes = whole.hi[axis] - whole.lo[axis] + 1;
+    if (nodes > 1 && nodes <= factor)
+      return Error{fmt::format("{}: {:.0f} voxels along {} are too few for level of detail {}; 1, or more than {} were expected", path,
+                               nodes, "xyz"[axis], level, factor)};
+  }
+  Difference off;
+  double scale = 0;
+  if (const ScalarGrid* fine = field.scalar ? field.scalar->grid() : nullptr) {
+    const bool nearest = fine->interpolation() == Interpolation::nearest;
+    CATENA_TRY(const auto linear, at_level_of<ScalarGrid>(path, field, factor, !nearest));
+    const auto coarse = nearest ? linear->interpolated(Interpolation::nearest) : linear;
+    off = difference(*fine, *coarse);
+    scale = fine->max_value() - fine->min_value();
+    field.scalar = coarse;
+  } else {
+    CATENA_TRY(const auto coarse, at_level_of<VectorGrid>(path, field, factor, false));
+    off = difference(*field.vector->grid(), *coarse);
+    scale = field.vector->grid()->stats().max;
+    field.vector = coarse;
+  }
+  const Box& now = field.get()->index_box();
+  const auto size = [](const Box& b) {
+    const Vec3 n = b.hi - b.lo + Vec3(1.0);
+    return fmt::format("{:.0f} x {:.0f} x {:.0f}", n.x, n.y, n.z);
+  };
+  std::string note =
+      fmt::format("level of detail {}: {} of {} voxels; it differs from the data by {:.2g} (root mean square; {:.2g} at most", level,
+                  size(now), size(whole), off.rms, off.most);
+  if (scale > 0) note += fmt::format("; their values span {:.2g}", scale);
+  field.notes.push_back(note + ")");
+  return field;
+}
+
+}  // namespace catena::field
