@@ -5,6 +5,7 @@
 
 #include "haptics/chain/tick.h"
 #include "haptics/device/simulated_hand.h"
+#include "haptics/servo/step.h"
 
 namespace catena::test {
 
@@ -15,8 +16,7 @@ struct ClosedLoop {
 
   const exchange::HapticState& step() {
     const haptics::DeviceInput input = hand.read();
-    const double s = program->metres_per_unit;
-    const Vec3 probe = program->workspace_origin + program->workspace_rotation * input.position_m * (1 / s);
+    const Vec3 probe = haptics::world_from_device(*program, input.position_m);
     haptics::tick(*program, {static_cast<double>(ticks) * period_s, probe, input.buttons, kNoRotation, condition, forces_on}, *state,
                   *scratch, out);
     // energy that has left towards the hand, and what the mechanism's damping has taken, true positions

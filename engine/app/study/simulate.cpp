@@ -1,5 +1,6 @@
-/// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--record]: the sessions of model subjects, on all cores.
-/// Training trials are left out: the model does not learn. What a folder holds already is kept, so that a run that was ended goes on.
+/// catena study simulate STUDY.json --subjects N -o DIR [--shard I/N] [--model NAME=NUMBER] [--record]: the sessions of model subjects, on
+/// all cores. Training trials are left out: the model does not learn. What a folder holds already is kept, so that a run that was ended
+/// goes on.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +11,7 @@
 #include "engine/app/run_files.h"
 #include "engine/app/study/study_command.h"
 #include "engine/base/clock.h"
+#include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
@@ -25,9 +27,22 @@ namespace fs = std::filesystem;
 
 struct SimulateOptions {
   std::string study, output, shard;
+  std::vector<std::string> model;
   int subjects = 0;
   bool record = false;
 };
+
+/// The study with other numbers in its "operator": NAME=NUMBER, in its text, so that the data folder holds what was simulated.
+Result<study::Study> study_with_model(const SimulateOptions& options) {
+  CATENA_TRY(std::string text, read_text(options.study, "a study file (JSON)", kMaxJsonBytes));
+  for (const std::string& one : options.model) {
+    const std::size_t equals = one.find('=');
+    const auto value = parse_double(equals == std::string::npos ? "" : one.substr(equals + 1));
+    if (!value) return Error{"--model " + in_quotes(one) + ": no NAME=NUMBER; such as depth_noise_mm=4 was expected"};
+    CATENA_TRY(text, json::set_value(text, options.study, "/operator/" + json::pointer_step(one.substr(0, equals)), to_text(*value)));
+  }
+  return study::parse_study(text, options.study);
+}
 
 /// Every N-th subject, from the I-th on.
 struct Shard {
@@ -109,7 +124,7 @@ Outcome simulate_subject(const study::Study& study, const study::DataFolder& dat
 }
 
 Outcome simulate(const SimulateOptions& options) {
-  CATENA_TRY(const study::Study study, study::read_study(options.study));
+  CATENA_TRY(const study::Study study, study_with_model(options));
   CATENA_TRY(const Shard shard, read_shard(options.shard));
   CATENA_CHECK(study::TrialSimulator(study).check());
   CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study));
@@ -156,6 +171,8 @@ void add_study_simulate(CLI::App& study, Work& chosen) {
   command->add_option("-o,--output", options->output, "the data folder; what it holds of this study is kept")->required();
   command->add_option("--shard", options->shard,
                       "I/N: every N-th subject from the I-th on, for a cluster's job array; study merge joins them");
+  command->add_option("--model", options->model, "NAME=NUMBER: another number of the file's \"operator\", for instance depth_noise_mm=4")
+      ->allow_extra_args(false);
   command->add_flag("--record", options->record, "every tick of every trial, DIR/recordings/SUBJECT-TRIAL.catlog");
   command->callback([&chosen, options] { chosen = [options] { return simulate(*options); }; });
 }

@@ -122,6 +122,20 @@ TEST(Study, ARecordedTrialIsReplayedToTheBit) {
   }
 }
 
+TEST(Study, AnotherModelIsAnotherStudy) {
+  const test::TemporaryFolder folder;
+  const std::string path = short_study(folder);
+  const auto calm =
+      study({"simulate", path, "--subjects", "1", "-o", folder / "d", "--model", "depth_noise_mm=0", "--model", "tremor_mm=0.1"});
+  ASSERT_EQ(calm.exit_code, 0) << calm.err;
+  const std::string kept = test::read_file(folder / "d/study.json");
+  EXPECT_NE(kept.find("\"depth_noise_mm\": 0,"), std::string::npos);
+  EXPECT_NE(kept.find("\"tremor_mm\": 0.1,"), std::string::npos);
+  const auto other = study({"simulate", path, "--subjects", "1", "-o", folder / "d"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_NE(other.err.find("another study"), std::string::npos) << other.err;
+}
+
 TEST(Study, MistakesAreOneLine) {
   const test::TemporaryFolder folder;
   const std::string path = short_study(folder);
@@ -130,6 +144,9 @@ TEST(Study, MistakesAreOneLine) {
       {"simulate", path, "--subjects", "0", "-o", folder / "d"},
       {"simulate", path, "--subjects", "1", "--shard", "3/2", "-o", folder / "d"},
       {"simulate", path, "--subjects", "1", "--shard", "half", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "1", "--model", "tremor_mm", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "1", "--model", "tremor=1", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "1", "--model", "tremor_mm=-1", "-o", folder / "d"},
       {"merge", folder / "nothing", "-o", folder / "d"},
       {"keys", "taks"},
       {},
