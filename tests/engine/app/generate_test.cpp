@@ -34,7 +34,7 @@ TEST(Generate, LeftVentricleHasItsPartsAndAMask) {
 TEST(Generate, EveryNameOfTheContractWorks) {
   const test::TemporaryFolder folder;
   for (const char* name : {"circle", "saddle", "node", "rankine", "lamb-oseen", "hill", "abc", "helix", "uniform", "sphere", "plane",
-                           "torus", "constant", "linear", "gaussian", "marschner-lobb", "tanh", "left-ventricle"}) {
+                           "torus", "constant", "linear", "gaussian", "marschner-lobb", "tanh", "left-ventricle", "vortices"}) {
     const std::string out = folder / (std::string(name) + ".vdb");
     const auto run = test::run_catena({"generate", name, "-o", out, "--resolution", "9"});
     EXPECT_EQ(run.exit_code, 0) << name << ": " << run.err;

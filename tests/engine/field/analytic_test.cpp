@@ -183,7 +183,7 @@ TEST(Analytic, NothingBadComesOutOfBadPoints) {
 }
 
 TEST(Analytic, NamesDomainAndErrors) {
-  EXPECT_EQ(analytic_names().size(), 18u);
+  EXPECT_EQ(analytic_names().size(), 19u);
   EXPECT_TRUE(is_analytic("lamb-oseen"));
   EXPECT_FALSE(is_analytic("Circle"));
   for (const auto name : analytic_names()) EXPECT_DOUBLE_EQ(make_analytic(name).value().get()->length(), 4);

@@ -89,6 +89,20 @@ TEST(ReadStudy, MistakesOfScenesAndChainsHaveTheLineOfTheStudyFile) {
   EXPECT_TRUE(said(R"("seed": "$start")", R"("seed": "$radius")", 1).starts_with("small.json:13:"));
 }
 
+TEST(ReadStudy, WhatBelongsToVorticesIsRefusedOfOtherFormulas) {
+  const auto said = [](const std::string& keys) {
+    const auto scene = scene::parse_scene("{\"fields\": {\n\"f\": {\"analytic\": " + keys + "}}}", "s.json");
+    return scene ? std::string() : scene.error().message;
+  };
+  EXPECT_EQ(said(R"("vortices", "seed": 5, "dimensions": 2, "center": [1, 2, 3])"), "");
+  EXPECT_EQ(said(R"("circle", "center": [1, 2, 3])"), "");
+  EXPECT_TRUE(said(R"("circle", "seed": 5)").starts_with("s.json:2: \"seed\" does not belong to \"circle\""));
+  EXPECT_TRUE(said(R"("hill", "dimensions": 2)").starts_with("s.json:2: \"dimensions\""));
+  EXPECT_TRUE(said(R"("vortices", "dimensions": 4)").starts_with("s.json:2:"));
+  EXPECT_TRUE(said(R"("vortices", "seed": -1)").starts_with("s.json:2:"));
+  EXPECT_TRUE(said(R"("circle", "center": [1, 2])").starts_with("s.json:2:"));
+}
+
 TEST(ReadStudy, AChainMayStandBeforeTheTasksAndCommentsAnywhere) {
   const study::Study study = study::parse_study(R"({ "name": "turned",
   "conditions": [{"name": "a", "chain": [  // links
