@@ -257,6 +257,30 @@ TEST(Shapes, ADropLineEndsInACross) {
   EXPECT_EQ(none.vertices.size(), plain.vertices.size());
 }
 
+TEST(Shapes, ACrosshairIsThreeRodsAndTellsNothingOfWhatIsFelt) {
+  CursorItem item = cursor();
+  item.crosshair = true;
+  Shape held, free;
+  add_cursor(held, item);
+  item.proxies.clear();
+  item.active.clear();
+  item.force_n = Vec3(0.0);
+  item.strain = 0.7;
+  add_cursor(free, item);
+  expect_closed(held);
+  expect_outward(held);
+  ASSERT_EQ(held.vertices.size(), free.vertices.size());
+  Vec3 longest(0.0);
+  for (std::size_t i = 0; i < held.vertices.size(); ++i) {
+    const Vec3 p = held.vertices[i].position;
+    EXPECT_EQ(p, free.vertices[i].position);
+    for (int axis = 0; axis < 3; ++axis) longest[axis] = std::max(longest[axis], std::fabs(p[axis]));
+    const double off = std::min({std::hypot(p.x, p.y), std::hypot(p.y, p.z), std::hypot(p.z, p.x)});
+    EXPECT_NEAR(off, 0, 0.0061) << "on one of the rods";
+  }
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(longest[axis], 0.1, 1e-12);
+}
+
 TEST(Shapes, WithoutADeviceThePictureShowsTheForce) {
   CursorItem item = cursor();
   item.active = {true, true};
