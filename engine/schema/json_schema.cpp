@@ -77,10 +77,13 @@ std::string body(const Key& key) {
     case Form::null:
       return R"("type": "null")";
     case Form::object: {
+      // without keys: whatever another room reads there
+      if (key.inner->empty()) return R"("type": "object")";
       const std::string whole = object_schema(*key.inner);
       return whole.substr(1, whole.size() - 2);
     }
     case Form::any_of: {
+      if (key.choices.empty()) return R"("type": ["array", "object"])";
       std::string all;
       for (const Key& choice : key.choices) all += (all.empty() ? "" : ", ") + json_schema(choice);
       return "\"anyOf\": [" + all + "]";

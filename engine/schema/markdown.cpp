@@ -41,6 +41,7 @@ std::string form_words(const Key& key) {
     case Form::any_of:
       break;
   }
+  if (key.choices.empty()) return "array or object";
   std::string all;
   for (std::size_t i = 0; i < key.choices.size(); ++i)
     all += (i == 0 ? "" : i + 1 == key.choices.size() ? " or " : ", ") + type_words(key.choices[i]);

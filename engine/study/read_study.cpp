@@ -35,8 +35,7 @@ Outcome read_chains(const json::Node& object, const std::vector<Task>& tasks, Co
 
 schema::Keys condition_keys() {
   return {schema::identifier("name", "Its name, in the tables.").required(),
-          schema::any_of("chain", {schema::object("", {}, ""), schema::texts("", "")},
-                         "The links that are felt (scene.md, `chain`): an array for all tasks, or an object with one for each.")
+          array_or_object("chain", "The links that are felt (scene.md, `chain`): an array for all tasks, or an object with one for each.")
               .required()};
 }
 

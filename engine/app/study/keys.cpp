@@ -1,4 +1,4 @@
-/// catena study keys [PART], study schema: what a study file may say.
+/// catena study keys [PART | --schema]: what a study file may say.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -29,13 +29,34 @@ Outcome print_study_keys(const std::string& part) {
                suggestion(part, names)};
 }
 
+/// For an editor: what stands at the top of the file beside its parts.
+std::string study_schema() {
+  std::vector<schema::Component> parts;
+  for (const schema::Component& component : study::study_components()) {
+    if (component.name != "study") {
+      parts.push_back(component);
+      continue;
+    }
+    for (const schema::Key& key : component.keys) parts.push_back({key.name, key.help, schema::Component::Shape::value, {key}});
+  }
+  return schema::json_schema(parts, "a study of Catena");
+}
+
 }  // namespace
 
 void add_study_keys(CLI::App& study, Work& chosen) {
   auto part = std::make_shared<std::string>();
+  auto is_schema = std::make_shared<bool>(false);
   CLI::App* command = study.add_subcommand("keys", "list what a study file may say");
   command->add_option("PART", *part, "only this: study, tasks, conditions, operator or questionnaire");
-  command->callback([&chosen, part] { chosen = [part] { return print_study_keys(*part); }; });
+  command->add_flag("--schema", *is_schema, "print the JSON Schema of studies instead, for an editor");
+  command->callback([&chosen, part, is_schema] {
+    chosen = [part, is_schema]() -> Outcome {
+      if (!*is_schema) return print_study_keys(*part);
+      fmt::print("{}", study_schema());
+      return Done{};
+    };
+  });
 }
 
 }  // namespace catena::app

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "engine/base/json.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
@@ -91,6 +92,22 @@ TEST(Study, AStudyOfOnesOwnRunsWithoutCode) {
   EXPECT_EQ(force["none"], 0);
   EXPECT_GT(force["drag"], 1);
   EXPECT_GT(force["across"], 0.1);
+}
+
+TEST(Study, ItsSchemaKnowsTheKeysOfTheStudiesOfAssets) {
+  const auto printed = study({"keys", "--schema"});
+  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  const auto schema = json::parse(printed.out, "schema");
+  ASSERT_TRUE(schema) << schema.error().message;
+  const json::Node& properties = *schema->find("properties");
+  for (const char* name : {"proxy-chain", "friction"}) {
+    const auto file = json::read(test::source_dir() + "/assets/studies/" + name + ".json");
+    ASSERT_TRUE(file);
+    for (const auto& [key, value] : file->members)
+      if (key != "compare" && key != "findings") EXPECT_NE(properties.find(key), nullptr) << key;
+    const json::Node& task = *properties.find("tasks")->find("items")->find("properties");
+    for (const auto& [key, value] : file->find("tasks")->items[0].members) EXPECT_NE(task.find(key), nullptr) << key;
+  }
 }
 
 TEST(Study, ATrialIsAScene) {
