@@ -261,6 +261,7 @@ struct Indicator {
   double length = 0;  ///< world units; 0: a tenth of L
   double radius = 0;  ///< 0: fitted
   Color color{1.0f, 0.85f, 0.1f};
+  bool ahead = false;  ///< the piece begins at the cursor; else the cursor is its middle
 };
 
 /// The cursor: what the hand holds, as the last tick left it. Written by the cursor system, drawn as a glyph.

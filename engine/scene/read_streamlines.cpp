@@ -74,6 +74,7 @@ const Table<Indicator>& indicator_table() {
     t.bind(schema::number("length", "world", "Of the piece.").positive().by_default("0.1 L"), &Indicator::length);
     t.bind(schema::number("radius", "world", "Of its tube.").positive().by_default("0.004 diagonals of the domain"), &Indicator::radius);
     t.bind(schema::color("color", "Its colour."), &Indicator::color);
+    t.bind(schema::boolean("ahead", "It begins at the cursor and goes with the flow; false: the cursor is its middle."), &Indicator::ahead);
     return t;
   }();
   return table;

@@ -235,13 +235,19 @@ Outcome extract_indicators(const scene::Scene& scene, FramePacket& packet) {
     const double radius = indicator.radius > 0 ? indicator.radius : kIndicatorShare * domain_diagonal(*any.vector);
     for (const CursorItem& cursor : packet.cursors) {
       flow::TraceOptions options;
-      options.length = 0.5 * length;
+      options.length = indicator.ahead ? length : 0.5 * length;
       options.tolerance = 1e-7;
       options.hermite_tolerance = 1e-6;
       const auto curve = flow::trace({any.vector.get()}, cursor.probe, options);
       if (!curve) continue;
       const flow::Knot& end = (*curve)->closed() ? (*curve)->knots().front() : (*curve)->knots().back();
-      IndicatorItem item{{flatten(**curve, {radius}), radius, indicator.color, {}},
+      const bool cut = indicator.ahead && !(*curve)->closed();
+      std::vector<Vec3> points;
+      if (cut) points.push_back(cursor.probe);
+      for (const FlatPoint& place : flatten_places(**curve, {radius}))
+        if (!cut || place.s > 0) points.push_back(place.p);
+      if (points.size() < 2) continue;
+      IndicatorItem item{{std::move(points), radius, indicator.color, {}},
                          {end.p, end.p + (kArrowLength * radius) * end.t, kArrowRadius * radius, indicator.color}};
       item.tube.id = packet.add_object("indicator", "");
       packet.indicators.push_back(std::move(item));

@@ -264,6 +264,17 @@ TEST(Extract, TheIndicatorFollowsTheProbe) {
   EXPECT_TRUE(packet_of(scene).indicators.empty()) << "no line goes through the axis";
 }
 
+TEST(Extract, AnIndicatorAheadBeginsAtTheProbe) {
+  scene::Scene scene = scene_of("{\"fields\": {" + kCircle +
+                                R"(}, "cursor": {"probe": [1, 0, 0.5]}, "indicator": {"field": "v", "length": 0.4, "ahead": true}})");
+  const FramePacket packet = packet_of(scene);
+  ASSERT_EQ(packet.indicators.size(), 1u);
+  const IndicatorItem& item = packet.indicators[0];
+  EXPECT_LT(norm(item.tube.points.front() - Vec3(1, 0, 0.5)), 1e-9);
+  // anticlockwise about the axis, 0.4 along the unit circle
+  EXPECT_LT(norm(item.arrow.base - Vec3(std::cos(0.4), std::sin(0.4), 0.5)), 1e-6);
+}
+
 TEST(Extract, LinksAreNotDrawnByThemselves) {
   scene::Scene scene =
       scene_of("{\"fields\": {" + kCircle + R"(}, "chain": [{"name": "c", "type": "streamline", "field": "v", "seed": [1, 0, 0]}]})");
