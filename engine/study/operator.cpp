@@ -79,7 +79,7 @@ Vec3 Operator::velocity_along_path(const Vec3& seen, double speed) noexcept {
 }
 
 Vec3 Operator::velocity_along_flow(const Vec3& seen, const Vec3& error, double speed) noexcept {
-  const double tip = 0.5 * task_.world(task_.indicator_mm);
+  const double tip = task_.world(task_.indicator_mm);
   const Vec3 here = direction(field_.sample(seen, cursor_).value);
   const Vec3 way = tip * direction(field_.sample(seen + 0.5 * tip * here, cursor_).value);
   return speed * direction(way + error);

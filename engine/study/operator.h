@@ -6,7 +6,7 @@
 ///           time, the bias is drawn once a subject
 ///   tracing     x' = v T + g e:  T the path's tangent where the cursor will be after the delay, e from the cursor as it is seen to the
 ///               closest place of the path; within v / g of the end it goes to the end, at speed g times the distance
-///   advection   x' = v h:  h the direction from the cursor to the indicator's tip as it is seen: half an indicator downstream, plus n
+///   advection   x' = v h:  h the direction from the cursor to the indicator's tip as it is seen: its length downstream, plus n
 ///   hand    x' += v times a noise of the motor (one process an axis); v is drawn lognormally, once a subject and once a trial; after a
 ///           pause of 0.6 s it is reached within 0.2 s. To x comes a tremor: three sines an axis of frequencies and phases drawn once
 ///           a trial. The hand holds the device by a spring about x and gives way: |x - cursor| <= yield / stiffness

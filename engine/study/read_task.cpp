@@ -116,7 +116,8 @@ const StudyTable<Task>& task_table() {
     t.bind(number("start_mm", "mm", "The clock starts when the cursor leaves this ball about the start; 2D: this circle.").positive(),
            &T::start_mm);
     t.bind(number("reach_mm", "mm", "Tracing: so near, the end is reached.").positive(), &T::reach_mm);
-    t.bind(number("indicator_mm", "mm", "Advection: length of the local indicator.").positive(), &T::indicator_mm);
+    t.bind(number("indicator_mm", "mm", "Advection: length of the local indicator, from the cursor downstream.").positive(),
+           &T::indicator_mm);
     t.hand(schema::object("scene", {}, "A scene (scene.md) without a chain, in which strings stand for values of the trial.").required(),
            [](const None&, const json::Node& object, T& task) -> Outcome {
              const json::Node* scene = object.find("scene");

@@ -51,7 +51,7 @@ struct Task {
   Limits limits;
   double start_mm = 4;       ///< the clock starts when the cursor leaves this ball (2D: circle) about the start
   double reach_mm = 4;       ///< tracing: so near, the end is reached
-  double indicator_mm = 40;  ///< advection: length of the local indicator, as the operator model sees it
+  double indicator_mm = 20;  ///< advection: length of the local indicator, as the operator model sees it
   std::string field;         ///< of `scene`: the one that the path follows
   json::Node scene;          ///< the template of a trial's scene (trial_scene.h)
   json::Node where;
