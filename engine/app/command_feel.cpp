@@ -123,7 +123,7 @@ Outcome feel(const FeelOptions& options) {
   files.writes("--stats", options.stats);
   files.writes("--record", options.record);
   CATENA_CHECK(files.check());
-  CATENA_TRY(const scene::Plan wanted, plan::wanted_plan(scene, options.plan));
+  CATENA_TRY(const scene::Plan wanted, plan::wanted_hand_plan(scene, options.plan));
   CATENA_TRY(OpenHand hand, open_hand(scene, options.device, options.rate_hz, options.firmware));
   // the plan stands before the first tick, and is part of the text that is recorded
   CATENA_TRY(std::string text, plan::text_of(scene));

@@ -34,7 +34,7 @@ Result<haptics::Limits> device_limits(const scene::Scene& scene, const std::stri
 
 /// Before anything is felt: from here on the links say how they are followed.
 Result<std::optional<plan::HandPlan>> plan_the_hand(scene::Scene& scene, const ReplayOptions& options) {
-  CATENA_TRY(const scene::Plan wanted, plan::wanted_plan(scene, options.plan));
+  CATENA_TRY(const scene::Plan wanted, plan::wanted_hand_plan(scene, options.plan));
   double rate_hz = 1000;
   if (scene.device) {
     CATENA_TRY(const haptics::DeviceSettings settings, haptics::read_device_settings(*scene.device, scene.path));

@@ -48,6 +48,8 @@ struct DenseFile {
   std::shared_ptr<const Rounding> rounding{};  ///< what reading the numbers has rounded so far; none: nothing is told of it
 };
 Result<AnyField> load_dense(const DenseFile& file);
+/// The same grid read by its cubic cells. What is no grid of its own values (points, meshes) is as it was.
+Result<AnyField> smooth(AnyField field, const std::string& path);
 /// Of a format that holds one grid: what there is once it is loaded.
 Result<std::vector<GridInfo>> describe_loaded(const std::string& path);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/field/dense.h"
+#include "engine/field/formats.h"
 #include "engine/field/write_box.h"
 
 namespace catena::field {
@@ -42,8 +43,11 @@ Difference difference_of(const Grid& fine, const Grid& coarse) {
   return d;
 }
 
+constexpr int kFlat = 2;  // nodes of an axis that stays: an image is kept as two layers
+
+int step_of(int n, int factor) { return n <= kFlat ? 1 : factor; }
 /// Nodes of an axis that are left of `n`.
-int left_of(int n, int factor) { return n == 1 ? 1 : (n - 1) / factor + 1; }
+int left_of(int n, int factor) { return (n - 1) / step_of(n, factor) + 1; }
 
 /// The layers of the whole that are in use, the oldest first: asked for with z rising.
 class Layers {
@@ -82,20 +86,24 @@ class Layers {
 };
 
 /// How far the tent about a node reaches on either side.
-int reach(int node, int n, int factor) { return n == 1 ? 0 : std::min({factor - 1, node, n - 1 - node}); }
+int reach(int node, int n, int factor) { return n <= kFlat ? 0 : std::min({factor - 1, node, n - 1 - node}); }
 
 float tent(const Layers& layers, const Index3& size, const Index3& at, int factor) {
   const int rx = reach(at.x, size.x, factor), ry = reach(at.y, size.y, factor), rz = reach(at.z, size.z, factor);
-  double sum = 0;
+  const auto has = [&](int i, int j, int k) {
+    return layers.valid(at.x + i, at.y + j, at.z + k) && std::isfinite(layers.value(at.x + i, at.y + j, at.z + k));
+  };
+  if (!has(0, 0, 0)) return layers.value(at.x, at.y, at.z);
+  double sum = 0, weights = 0;
   for (int k = -rz; k <= rz; ++k)
     for (int j = -ry; j <= ry; ++j)
       for (int i = -rx; i <= rx; ++i) {
-        const float v = layers.value(at.x + i, at.y + j, at.z + k);
-        if (!std::isfinite(v) || !layers.valid(at.x + i, at.y + j, at.z + k)) return layers.value(at.x, at.y, at.z);
-        sum += double(rx + 1 - std::abs(i)) * (ry + 1 - std::abs(j)) * (rz + 1 - std::abs(k)) * v;
+        if (!has(i, j, k) || !has(-i, -j, -k)) continue;
+        const double weight = double(rx + 1 - std::abs(i)) * (ry + 1 - std::abs(j)) * (rz + 1 - std::abs(k));
+        sum += weight * layers.value(at.x + i, at.y + j, at.z + k);
+        weights += weight;
       }
-  const double weights = double(rx + 1) * (ry + 1) * (rz + 1);
-  return static_cast<float>(sum / (weights * weights));
+  return static_cast<float>(sum / weights);
 }
 
 template <class Grid>
@@ -107,7 +115,7 @@ Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const A
   source.masked = box.masked;
   CATENA_CHECK(ask_for_dense(path, source.size, box.components, box.masked));
   Layers layers(box);
-  const auto step = [&](int nodes) { return nodes == 1 ? 1 : factor; };
+  const auto step = [&](int nodes) { return step_of(nodes, factor); };
   source.read = [&](int first, int count, std::span<float> values, std::span<std::uint8_t> valid) -> Outcome {
     std::size_t i = 0, v = 0;
     for (int z = first; z < first + count; ++z) {
@@ -130,7 +138,8 @@ Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const A
   const Vec3 steps(step(n.x), step(n.y), step(n.z));
   for (int axis = 0; axis < 3; ++axis) mapping.world_from_index_linear[axis] *= steps[axis];
   mapping = Mapping::from_linear(mapping.world_from_index_linear, box.mapping.origin);
-  return make_dense<Grid>(box.name, mapping, source, path + ": ", true);
+  const std::string prefix = fmt::format("{}: at this level of detail the grid \"{}\" ", path, box.name);
+  return make_dense<Grid>(box.name, mapping, source, prefix, true);
 }
 
 }  // namespace
@@ -138,32 +147,32 @@ Result<std::shared_ptr<const Grid>> at_level_of(const std::string& path, const A
 Difference difference(const ScalarGrid& fine, const ScalarGrid& coarse) { return difference_of(fine, coarse); }
 Difference difference(const VectorGrid& fine, const VectorGrid& coarse) { return difference_of(fine, coarse); }
 
-Result<AnyField> at_level(const std::string& path, AnyField field, int level) {
+Result<AnyField> at_level(const std::string& path, AnyField field, int level, bool cubic) {
   CATENA_ASSERT(field.get()->is_grid() && level >= 1 && level <= kMostLevels);
   const int factor = 1 << level;
   const Box& whole = field.get()->index_box();
   for (int axis = 0; axis < 3; ++axis) {
     const double nodes = whole.hi[axis] - whole.lo[axis] + 1;
-    if (nodes > 1 && nodes <= factor)
-      return Error{fmt::format("{}: {:.0f} voxels along {} are too few for level of detail {}; 1, or more than {} were expected", path,
-                               nodes, "xyz"[axis], level, factor)};
+    if (nodes > kFlat && nodes <= factor)
+      return Error{fmt::format("{}: {:.0f} voxels along {} are too few for level of detail {}; more than {} were expected", path, nodes,
+                               "xyz"[axis], level, factor)};
   }
-  Difference off;
-  double scale = 0;
-  if (const ScalarGrid* fine = field.scalar ? field.scalar->grid() : nullptr) {
-    const bool nearest = fine->interpolation() == Interpolation::nearest;
-    CATENA_TRY(const auto linear, at_level_of<ScalarGrid>(path, field, factor, !nearest));
-    const auto coarse = nearest ? linear->interpolated(Interpolation::nearest) : linear;
-    off = difference(*fine, *coarse);
-    scale = fine->max_value() - fine->min_value();
-    field.scalar = coarse;
+  AnyField coarse = field;
+  const ScalarGrid* numbers = field.scalar ? field.scalar->grid() : nullptr;
+  if (numbers != nullptr) {
+    const bool nearest = numbers->interpolation() == Interpolation::nearest;
+    CATENA_TRY(const auto made, at_level_of<ScalarGrid>(path, field, factor, !nearest));
+    coarse.scalar = nearest ? made->interpolated(Interpolation::nearest) : made;
   } else {
-    CATENA_TRY(const auto coarse, at_level_of<VectorGrid>(path, field, factor, false));
-    off = difference(*field.vector->grid(), *coarse);
-    scale = field.vector->grid()->stats().max;
-    field.vector = coarse;
+    CATENA_TRY(coarse.vector, at_level_of<VectorGrid>(path, field, factor, false));
   }
-  const Box& now = field.get()->index_box();
+  if (cubic) {
+    CATENA_TRY(coarse, smooth(std::move(coarse), path));
+  }
+  const Difference off =
+      numbers != nullptr ? difference(*numbers, *coarse.scalar->grid()) : difference(*field.vector->grid(), *coarse.vector->grid());
+  const double scale = numbers != nullptr ? numbers->max_value() - numbers->min_value() : field.vector->grid()->stats().max;
+  const Box& now = coarse.get()->index_box();
   const auto size = [](const Box& b) {
     const Vec3 n = b.hi - b.lo + Vec3(1.0);
     return fmt::format("{:.0f} x {:.0f} x {:.0f}", n.x, n.y, n.z);
@@ -172,8 +181,8 @@ Result<AnyField> at_level(const std::string& path, AnyField field, int level) {
       fmt::format("level of detail {}: {} of {} voxels; it differs from the data by {:.2g} (root mean square; {:.2g} at most", level,
                   size(now), size(whole), off.rms, off.most);
   if (scale > 0) note += fmt::format("; their values span {:.2g}", scale);
-  field.notes.push_back(note + ")");
-  return field;
+  coarse.notes.push_back(note + ")");
+  return coarse;
 }
 
 }  // namespace catena::field

@@ -14,22 +14,6 @@
 namespace catena::field {
 namespace {
 
-/// The same grid read by its cubic cells. What is no grid of its own values (points, meshes) is as it was.
-Result<AnyField> smooth(AnyField field, const std::string& path) {
-  const auto told = [&](const Error& e) { return Error{fmt::format("{}: {}", path, e.message)}; };
-  if (field.scalar && field.scalar->grid()) {
-    auto made = field.scalar->grid()->cubic();
-    if (!made) return told(made.error());
-    field.scalar = *made;
-  }
-  if (field.vector && field.vector->grid()) {
-    auto made = field.vector->grid()->cubic();
-    if (!made) return told(made.error());
-    field.vector = *made;
-  }
-  return field;
-}
-
 std::atomic<std::uint64_t> files{0}, grids{0}, masks{0};
 
 /// Nothing that a library throws leaves this room.
@@ -58,6 +42,21 @@ Error unknown_kind(const std::string& path) {
 }
 
 }  // namespace
+
+Result<AnyField> smooth(AnyField field, const std::string& path) {
+  const auto told = [&](const Error& e) { return Error{fmt::format("{}: {}", path, e.message)}; };
+  if (field.scalar && field.scalar->grid()) {
+    auto made = field.scalar->grid()->cubic();
+    if (!made) return told(made.error());
+    field.scalar = *made;
+  }
+  if (field.vector && field.vector->grid()) {
+    auto made = field.vector->grid()->cubic();
+    if (!made) return told(made.error());
+    field.vector = *made;
+  }
+  return field;
+}
 
 Result<AnyField> load_dense(const DenseFile& file) {
   AnyField field;
@@ -132,8 +131,8 @@ Result<AnyField> load(const LoadRequest& request) {
       return Error{fmt::format("{}: the grid \"{}\" holds vectors, expected numbers for the interpolation \"nearest\"", request.path,
                                field->get()->name())};
     if (const ScalarGrid* grid = nearest ? field->scalar->grid() : nullptr) field->scalar = grid->interpolated(request.interpolation);
-    if (request.level > 0) field = at_level(request.path, std::move(*field), request.level);
-    if (field && request.interpolation == Interpolation::cubic) return smooth(std::move(*field), request.path);
+    if (request.level > 0) return at_level(request.path, std::move(*field), request.level, request.interpolation == Interpolation::cubic);
+    if (request.interpolation == Interpolation::cubic) return smooth(std::move(*field), request.path);
     return field;
   });
 }

@@ -3,6 +3,7 @@
 #include "engine/app/command.h"
 #include "engine/app/cost/cost.h"
 #include "engine/base/clock.h"
+#include "engine/field/kept.h"
 
 namespace catena::app {
 namespace {
@@ -24,6 +25,7 @@ std::optional<double> expected_ms(const scene::FieldSource& source) {
 
 /// Loads a field of a scene of which nothing is loaded, and samples it where it is drawn from a grid.
 Result<Cost> load_once(const std::string& path, const std::string& name, bool sampled) {
+  field::forget_kept();  // a series keeps its steps
   const std::int64_t opened = now_ns();
   CATENA_TRY(scene::Scene fresh, open_scene(path));
   const scene::Entity e = scene::find_field(fresh, name);

@@ -33,6 +33,14 @@ Result<scene::Plan> wanted_plan(const scene::Scene& scene, const std::string& wo
   return wanted;
 }
 
+Result<scene::Plan> wanted_hand_plan(const scene::Scene& scene, const std::string& words) {
+  CATENA_TRY(const scene::Plan wanted, wanted_plan(scene, words));
+  if (words.empty()) return wanted;
+  CATENA_TRY(const scene::Plan said, scene::parse_plan(words));
+  if (said.of_eye()) return Error{one_line("--plan " + words + ": nothing is drawn here; hand_error=E or hand_time=US was expected")};
+  return wanted;
+}
+
 Result<std::string> text_of(const scene::Scene& scene) {
   if (!is_scene_file(scene.path)) return std::string();
   return read_text(scene.path, "a scene file (JSON)", kMaxJsonBytes);

@@ -17,6 +17,8 @@ using Tell = std::function<void(const std::string& line)>;
 
 /// The scene's wishes; of an eye or a hand that the words of --plan speak of, theirs. An Error: the words are none.
 Result<scene::Plan> wanted_plan(const scene::Scene& scene, const std::string& words);
+/// Of a command that draws nothing: words that speak of the eye are an Error.
+Result<scene::Plan> wanted_hand_plan(const scene::Scene& scene, const std::string& words);
 
 /// The scene file's text; empty of a data file.
 Result<std::string> text_of(const scene::Scene& scene);

@@ -439,6 +439,9 @@ TEST_F(PlanProgram, BadWishesAreOneLine) {
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
     EXPECT_FALSE(test::exists(folder_ / "out.csv"));
   }
+  const auto eye = replay({"--plan", "error=2"});
+  EXPECT_EQ(eye.exit_code, 2);
+  EXPECT_NE(eye.err.find("nothing is drawn here"), std::string::npos) << eye.err;
   for (const char* plan : {R"({"erorr": 2})", R"({"error": 2, "time": 3})", "{}", R"({"error": 0})", "3", R"({"hand_time": "x"})"}) {
     scene("", std::string(", \"plan\": ") + plan);
     const auto run = replay({});

@@ -45,7 +45,7 @@ TEST(Level, ALinearFieldStaysWhatItIs) {
     }
 }
 
-TEST(Level, ANodeIsTheTentOverItsNeighboursAndItselfBesideHoles) {
+TEST(Level, ANodeIsTheTentOverPairsThatHaveValues) {
   const test::Block block = test::random_block({9, 9, 9}, 5);
   std::vector<std::uint8_t> valid(block.values.size(), 1);
   valid[(4 * 9 + 4) * 9 + 5] = 0;
@@ -62,7 +62,9 @@ TEST(Level, ANodeIsTheTentOverItsNeighboursAndItselfBesideHoles) {
   };
   EXPECT_NEAR(node(1, 1, 1), tent(1, 1, 1), 1e-6);
   EXPECT_NEAR(node(1, 3, 2), tent(1, 3, 2), 1e-6);
-  EXPECT_FLOAT_EQ(node(2, 2, 2), static_cast<float>(block.at(4, 4, 4)));  // beside the hole
+  // beside the hole, without it and the place opposite
+  const double pair = 2 * 2 * (block.at(5, 4, 4) + block.at(3, 4, 4));
+  EXPECT_NEAR(node(2, 2, 2), (64 * tent(2, 2, 2) - pair) / (64 - 8), 1e-6);
   EXPECT_FLOAT_EQ(node(0, 0, 4), static_cast<float>(block.at(0, 0, 8)));  // corners
 }
 
@@ -103,8 +105,28 @@ TEST(Level, VectorsAndLabelsAreThoseOfTheNodes) {
 }
 
 TEST(Level, ImagesOfOneLayerKeepIt) {
-  const AnyField coarse = at(scalar_of({9, 9, 1}, {}, [](const Vec3& p) { return p.x + p.y; }), 1);
-  EXPECT_EQ(coarse.scalar->index_box().hi.z - coarse.scalar->index_box().lo.z, 0);
+  for (const int layers : {1, 2}) {
+    const AnyField coarse = at(scalar_of({9, 9, layers}, {}, [](const Vec3& p) { return p.x + p.y; }), 1);
+    EXPECT_EQ(coarse.scalar->index_box().hi.z - coarse.scalar->index_box().lo.z, layers - 1);
+    EXPECT_EQ(coarse.scalar->index_box().hi.x - coarse.scalar->index_box().lo.x, 4);
+  }
+}
+
+TEST(Level, ALinearFieldWithHolesStaysWhatItIs) {
+  test::Random random(3);
+  std::vector<std::uint8_t> valid;
+  for (int k = 0; k < 17 * 17 * 17; ++k) valid.push_back(random.between(0, 1) > 0.1);
+  const AnyField coarse = at(scalar_of(
+                                 {17, 17, 17}, {}, [](const Vec3& p) { return 2 * p.x - p.y + 0.5 * p.z; }, valid),
+                             2);
+  std::vector<float> got(125);
+  coarse.scalar->grid()->read_block({0, 0, 0}, {5, 5, 5}, got);
+  for (int z = 0; z < 5; ++z)
+    for (int y = 0; y < 5; ++y)
+      for (int x = 0; x < 5; ++x)
+        if (valid[static_cast<std::size_t>((4 * z * 17 + 4 * y) * 17 + 4 * x)] != 0) {
+          EXPECT_NEAR(got[static_cast<std::size_t>((z * 5 + y) * 5 + x)], 4 * (2 * x - y + 0.5 * z), 1e-4);
+        }
 }
 
 TEST(Level, SaysWhatItDiffersBy) {
@@ -122,7 +144,7 @@ TEST(Level, SaysWhatItDiffersBy) {
 TEST(Level, ShortAxesAreRefused) {
   const auto refused = at_level("f.vdb", scalar_of({40, 8, 40}, {}, [](const Vec3& p) { return p.x; }), 3);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().message, "f.vdb: 8 voxels along y are too few for level of detail 3; 1, or more than 8 were expected");
+  EXPECT_EQ(refused.error().message, "f.vdb: 8 voxels along y are too few for level of detail 3; more than 8 were expected");
 }
 
 }  // namespace level_test

@@ -57,10 +57,15 @@ std::string points_table(const Curve& c, const Curve* other) {
   return text + "</table></div>\n";
 }
 
+/// Whether what is chosen is what the scene has, or can be written into it.
+bool can_be_had(const Curve& c) { return c.chosen >= 0 && (c.chosen == c.current || !c.points[c.chosen].write.empty()); }
+
 std::string section(const Curve& c, const Curve* other, const std::vector<std::string>& plots) {
   std::string text = fmt::format("<h3 id=\"{0}\">{1}</h3>\n<p>{2}</p>\n", escaped(c.id), escaped(c.title), escaped(c.what));
   if (c.chosen >= 0)
-    text += fmt::format("<p class=\"why\"><b>Choose: {}.</b> {}</p>\n", escaped(c.points[c.chosen].setting), escaped(c.why));
+    text +=
+        fmt::format("<p class=\"why\"><b>{}: {}.</b> {}</p>\n", can_be_had(c) ? "Choose" : "What would do, though no setting asks for it",
+                    escaped(c.points[c.chosen].setting), escaped(c.why));
   else if (!c.why.empty())
     text += "<p class=\"why\">" + escaped(c.why) + "</p>\n";
   text += plots_row(plots) + points_table(c, other) + "<p class=\"note\">";
@@ -79,7 +84,7 @@ std::string summary(const Report& report) {
       "<div class=\"wide\"><table><tr><th>what</th><th>now</th><th>Catena would choose</th><th class=\"n\">error</th><th class=\"n\">the "
       "data's own</th><th class=\"n\">cost</th></tr>\n";
   for (const Curve& c : report.curves) {
-    if (c.chosen < 0) continue;
+    if (!can_be_had(c)) continue;
     const Point& p = c.points[c.chosen];
     const std::string& unit = c.cost == Cost::time ? c.time_name : c.cost == Cost::work ? c.work_name : c.bytes_name;
     text += fmt::format(
@@ -117,7 +122,11 @@ std::string to_html(const Report& report, const Report* other, const std::vector
       "leave open: below it, exactness shows nothing that was measured. <b>(now)</b> is what the scene has, <b>(chosen)</b> what Catena "
       "would take. Times are medians of "
       "repeats in turns; in brackets and as bars their quartiles.</p>\n";
-  text += about_table(report, other) + "<h2>In short</h2>\n" + summary(report);
+  text += about_table(report, other);
+  if (other != nullptr && other->source != report.source)
+    text += "<p class=\"why\">The other report is of another scene, " + escaped(other->source) +
+            ": only settings of the same name stand side by side.</p>\n";
+  text += "<h2>In short</h2>\n" + summary(report);
   bool drawn = false;
   for (const auto& [part, heading] : {std::pair{"data", "The data"}, {"hand", "The hand"}, {"eye", "The eye"}}) {
     bool begun = false;
@@ -134,9 +143,6 @@ std::string to_html(const Report& report, const Report* other, const std::vector
   if (!drawn) text += "<li>Plots: gnuplot is not installed, or there is no curve to draw; the tables are complete.</li>\n";
   for (const std::string& sentence : report.left_out) text += "<li>" + escaped(sentence) + "</li>\n";
   if (!report.left_out.empty() || !drawn) text += "</ul>\n";
-  if (other != nullptr && other->source != report.source)
-    text +=
-        "<p>The other report is of another scene, " + escaped(other->source) + ": only settings of the same name stand side by side.</p>\n";
   return text + page_end();
 }
 

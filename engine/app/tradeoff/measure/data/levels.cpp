@@ -60,7 +60,7 @@ Result<std::vector<Curve>> measure_levels(Subject& subject) {
     curve.what =
         "Interpolation from every 4th and every 2nd voxel is held against the voxels left out; the error between the voxels that "
         "there are follows from the observed order.";
-    curve.error_name = "error of interpolation / range (RMS)";
+    curve.error_name = grid.vector ? "error of interpolation / twice the greatest length (RMS)" : "error of interpolation / range (RMS)";
     curve.bytes_name = "bytes of the values";
     curve.cost = Cost::bytes;
     const Vec3 n = grid.get()->index_box().hi - grid.get()->index_box().lo + Vec3(1.0);
@@ -78,8 +78,11 @@ Result<std::vector<Curve>> measure_levels(Subject& subject) {
         floor->at_h.settled ? "" : "; the error does not fall with the spacing: the data are not smooth at their own spacing, or noisy");
     if (source.drawn.get() == grid.get() && source.loaded.get() != nullptr && !source.loaded.get()->is_grid())
       curve.floor_from += fmt::format("; by the formula itself it is {:.3g}", true_error(grid, source.loaded) / floor->scale);
+    const field::Interpolation cells = grid.scalar ? grid.scalar->interpolation() : grid.vector->grid()->interpolation();
     curve.why = fmt::format(
-        "Between its voxels the grid is off by {:.2g} of the range: nothing that is drawn or felt of it can be more exact.", curve.floor);
+        "Between its voxels the grid, read by {} cells, is off by {:.2g} of the range: nothing that is drawn or felt of it so can be more "
+        "exact.",
+        cells == field::Interpolation::cubic ? "cubic" : "linear", curve.floor);
     curves.push_back(std::move(curve));
   });
   return curves;
