@@ -176,8 +176,9 @@ Result<std::string> json_of_log(const std::string& path) {
     if (std::isfinite(t_s)) last_s = t_s;
   }
   JsonObject out;
-  out.add("kind", "recording").add("file", path).add("scene", header.scene_path).raw("fields", list_of(fields));
-  out.add("version", header.catena_version).add("started_unix_s", static_cast<std::int64_t>(header.started_unix_ns / 1'000'000'000));
+  out.add("kind", "recording").add("file", path).add("scene", header.scene_path).add("about", header.about);
+  out.raw("fields", list_of(fields)).add("version", header.catena_version);
+  out.add("started_unix_s", static_cast<std::int64_t>(header.started_unix_ns / 1'000'000'000));
   out.add("device", header.device).add("rate_hz", header.rate_hz).add("ticks", ticks).add("seconds", last_s - first_s);
   return out.raw("gaps", list_of(gaps)).add("ending", std::string(reader.ending())).text();
 }

@@ -227,6 +227,7 @@ Outcome describe_log(const std::string& path) {
   const log::LogHeader& header = reader.header();
   const auto seconds = static_cast<std::time_t>(header.started_unix_ns / 1'000'000'000);
   fmt::print("{}: recording of {}\n", printable(path), header.scene_path.empty() ? "a scene without a name" : printable(header.scene_path));
+  if (!header.about.empty()) fmt::print("  about        {}\n", printable(header.about));
   for (const std::string& field : header.fields) fmt::print("  field        {}\n", printable(field));
   fmt::print("  recorded     {:%Y-%m-%d %H:%M:%S} UTC by catena {}\n", fmt::gmtime(seconds), printable(header.catena_version));
   fmt::print("  device       {} at {} Hz\n", printable(header.device), to_text(header.rate_hz));

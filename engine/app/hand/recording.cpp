@@ -12,6 +12,7 @@ Result<Recording> Recording::open(const std::string& path, RecordedScene scene, 
   header.scene_path = std::move(scene.path);
   header.scene_text = scene.text;
   header.fields = std::move(scene.fields);
+  header.about = std::move(scene.about);
   header.device = hand.device->capabilities().name;
   header.catena_version = kCatenaVersion;
   header.rate_hz = hand.settings.rate_hz;

@@ -15,6 +15,7 @@ struct RecordedScene {
   std::string text;                 ///< as it is now, saved or not
   std::vector<std::string> fields;  ///< --field options
   std::vector<std::string> inputs;  ///< files that it names: not to be overwritten
+  std::string about{};              ///< what is recorded: LogHeader::about
 };
 
 class Recording {

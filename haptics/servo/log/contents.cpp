@@ -122,6 +122,7 @@ std::string to_bytes(const LogHeader& h) {
   out.put_string(h.catena_version);
   out.put(h.rate_hz);
   out.put(h.started_unix_ns);
+  if (!h.about.empty()) out.put_string(h.about);
   return std::move(out.bytes());
 }
 
@@ -135,6 +136,7 @@ std::optional<LogHeader> header_from(std::string_view bytes) {
   h.catena_version = in.get_string();
   h.rate_hz = in.get<double>();
   h.started_unix_ns = in.get<std::int64_t>();
+  if (!in.finished()) h.about = in.get_string();
   if (!in.finished()) return std::nullopt;
   return h;
 }

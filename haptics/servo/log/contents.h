@@ -17,6 +17,7 @@ struct LogHeader {
   std::string catena_version;
   double rate_hz = 1000;
   std::int64_t started_unix_ns = 0;  ///< 0: filled in by the writer
+  std::string about{};               ///< what it was recorded for, one line; empty: nothing is known
 };
 
 /// All of a program that its scene's text does not say, or that the program may have got elsewhere (a fitted workspace, a ramp).

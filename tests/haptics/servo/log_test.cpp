@@ -59,7 +59,7 @@ TEST(Log, HoldsEveryBitOfEveryTick) {
   const auto path = test::hostile_path(900);
   std::uint64_t hash = 0;
   {
-    auto writer = LogWriter::open(folder / "l.catlog", {"s.json", "/w", "scene", {"f=g"}, "falcon", "0.1.0", 2000, 77});
+    auto writer = LogWriter::open(folder / "l.catlog", {"s.json", "/w", "scene", {"f=g"}, "falcon", "0.1.0", 2000, 77, "a trial"});
     ASSERT_TRUE(writer) << writer.error().message;
     hash = test::record(**writer, changes, path);
     const Outcome done = (*writer)->finish();
@@ -77,6 +77,7 @@ TEST(Log, HoldsEveryBitOfEveryTick) {
   EXPECT_EQ(reader->header().device, "falcon");
   EXPECT_EQ(reader->header().rate_hz, 2000);
   EXPECT_EQ(reader->header().started_unix_ns, 77);
+  EXPECT_EQ(reader->header().about, "a trial");
   test::drive(changes, path, [&](const ProbeSample& input, const exchange::HapticState& output) {
     LogEvent event = reader->next();
     if (output.tick == 1 || output.tick == 301) {
