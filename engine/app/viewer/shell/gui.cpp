@@ -17,7 +17,6 @@ namespace catena::app {
 
 namespace {
 
-constexpr float kFontPixels = 15;
 constexpr int kSettling = 3;  // frames until what was opened has the keyboard
 
 void choose_style(float scale) {
@@ -54,7 +53,8 @@ struct Gui::Parts {
   }
 };
 
-Gui::Gui(Window& window) : parts_(std::make_unique<Parts>(Parts{.window = &window, .font = nullptr})) {
+Gui::Gui(Window& window, const std::vector<float>& text_pixels)
+    : parts_(std::make_unique<Parts>(Parts{.window = &window, .font = nullptr})) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -69,8 +69,12 @@ Gui::Gui(Window& window) : parts_(std::make_unique<Parts>(Parts{.window = &windo
   // letters beyond ASCII that units and names use
   static const ImWchar kRanges[] = {0x20, 0x17f, 0x370, 0x3ff, 0x2010, 0x2027, 0x2070, 0x209f, 0x2190, 0x2193, 0x2200, 0x22ff, 0};
   const auto font = render::find_font("DejaVu Sans", false);
-  const float pixels = std::max(8.0f, kFontPixels * scale);
-  if (!font || io.Fonts->AddFontFromFileTTF(font->path.c_str(), pixels, nullptr, kRanges) == nullptr) io.Fonts->AddFontDefault();
+  std::vector<float> heights{kTextPixels};
+  heights.insert(heights.end(), text_pixels.begin(), text_pixels.end());
+  for (const float height : heights) {
+    const float pixels = std::max(8.0f, height * scale);
+    if (!font || io.Fonts->AddFontFromFileTTF(font->path.c_str(), pixels, nullptr, kRanges) == nullptr) io.Fonts->AddFontDefault();
+  }
   unsigned char* rgba = nullptr;
   int width = 0, height = 0;
   io.Fonts->GetTexDataAsRGBA32(&rgba, &width, &height);

@@ -13,8 +13,11 @@ namespace catena::app {
 
 class Gui {
  public:
-  /// Without an installed font ImGui's own is taken.
-  explicit Gui(Window& window);
+  static constexpr float kTextPixels = 15;  ///< height of the panels' text
+
+  /// `text_pixels`: of further heights of text beside that; ImGui has them in its list of fonts, in this order. Without an installed font
+  /// ImGui's own is taken.
+  explicit Gui(Window& window, const std::vector<float>& text_pixels = {});
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;

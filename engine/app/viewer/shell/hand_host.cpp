@@ -90,7 +90,7 @@ void HandHost::use(OpenHand hand, const scene::Scene& scene, const Vec3& probe) 
 void HandHost::make_servo() {
   haptics::ServoOptions servo;
   servo.rate_hz = hand_.settings.rate_hz;
-  servo.forces = is_mouse() || hand_.device->capabilities().max_force_n <= 0;
+  servo.forces = options_.forces || is_mouse() || hand_.device->capabilities().max_force_n <= 0;
   servo.realtime = options_.realtime;
   if (is_mouse()) servo.realtime.lock_memory = false;  // nothing pushes: a page fault does no harm
   servo.sink = recording_.sink();
@@ -144,10 +144,10 @@ Outcome HandHost::switch_device(scene::Scene& scene, const std::string& name, co
   return recorded;
 }
 
-Outcome HandHost::record(const std::string& path, RecordedScene scene) {
+Outcome HandHost::record(const std::string& path, RecordedScene scene, const Around& around) {
   CATENA_CHECK(stop_recording());
   CATENA_TRY(recording_, Recording::open(path, std::move(scene), hand_, *program_));
-  if (servo_->set_sink(recording_.sink())) return Done{};
+  if (servo_->set_sink(around ? around(recording_.sink()) : recording_.sink())) return Done{};
   CATENA_CHECK(stop_recording());
   return Error{path + ": the servo does not answer; nothing is recorded"};
 }
@@ -217,8 +217,9 @@ void HandHost::set_forces(bool on) {
 }
 
 void HandHost::say_forces() const {
-  print_now(STDOUT_FILENO, fmt::format("{}: forces {} (F turns them {})\n", printable(hand_.device->capabilities().name),
-                                       servo_->forces() ? "on" : "off", servo_->forces() ? "off" : "on"));
+  const bool on = servo_->forces();
+  const std::string how = options_.forces ? "" : fmt::format(" (F turns them {})", on ? "off" : "on");
+  print_now(STDOUT_FILENO, fmt::format("{}: forces {}{}\n", printable(hand_.device->capabilities().name), on ? "on" : "off", how));
 }
 
 }  // namespace catena::app

@@ -2,6 +2,7 @@
 /// the program that the servo runs. The device may be another one, the program newer, a recording may begin and end, all while the servo
 /// runs. The frame never waits for the servo, nor the servo for the frame. Frame thread.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,7 @@ class HandHost {
     std::string record;                 ///< .catlog of every tick; empty: none
     std::vector<std::string> fields;    ///< --field options, for the recording
     haptics::RealtimeOptions realtime;  ///< of the servo
+    bool forces = false;                ///< the device may push from the first tick on, and no key changes that
   };
 
   explicit HandHost(Options options) : options_(std::move(options)) {}
@@ -54,8 +56,10 @@ class HandHost {
   /// Another device from now on, by its name; its forces are off. An error leaves the one that there is. Ends a recording.
   Outcome switch_device(scene::Scene& scene, const std::string& name, const Bounds& bounds);
 
+  /// What the servo gets in place of a recording's sink, and hands every tick on to it.
+  using Around = std::function<haptics::TickSink*(haptics::TickSink*)>;
   /// Every tick from the next one on. An error: nothing is recorded.
-  Outcome record(const std::string& path, RecordedScene scene);
+  Outcome record(const std::string& path, RecordedScene scene, const Around& around = {});
   Outcome stop_recording();
 
   /// The newest state into the scene's cursor and widgets, if there is one; true where it would change the picture.
