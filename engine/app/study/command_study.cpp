@@ -10,6 +10,7 @@ void add_study(CLI::App& program, Work& chosen) {
       program.add_subcommand("study", "an experiment with subjects, described by a file: its trials, its data, its statistics");
   command->require_subcommand(1);
   add_study_simulate(*command, chosen);
+  add_study_run(*command, chosen);
   add_study_merge(*command, chosen);
   add_study_scene(*command, chosen);
   add_study_keys(*command, chosen);

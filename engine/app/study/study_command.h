@@ -5,6 +5,7 @@
 namespace catena::app {
 
 void add_study_simulate(CLI::App& study, Work& chosen);
+void add_study_run(CLI::App& study, Work& chosen);
 void add_study_merge(CLI::App& study, Work& chosen);
 void add_study_scene(CLI::App& study, Work& chosen);
 void add_study_keys(CLI::App& study, Work& chosen);

@@ -61,7 +61,7 @@ Outcome HandHost::open_device(const scene::Scene& scene) {
   if (name.empty()) name = "mouse";
   auto opened = open(scene, name);
   if (!opened) {
-    if (!haptics::is_hardware(haptics::device_type_of(name))) return opened.error();
+    if (!options_.or_mouse || !haptics::is_hardware(haptics::device_type_of(name))) return opened.error();
     const std::string why = opened.error().message;
     name = "mouse";
     opened = open(scene, name);

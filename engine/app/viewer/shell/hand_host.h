@@ -27,6 +27,7 @@ class HandHost {
     std::vector<std::string> fields;    ///< --field options, for the recording
     haptics::RealtimeOptions realtime;  ///< of the servo
     bool forces = false;                ///< the device may push from the first tick on, and no key changes that
+    bool or_mouse = true;               ///< the mouse steps in for a device that is not plugged in
   };
 
   explicit HandHost(Options options) : options_(std::move(options)) {}

@@ -1,0 +1,43 @@
+/// The instructions of a study: a text file that anybody can write and translate. Pure functions, any thread.
+///
+///   # introduction                 a line "# NAME" begins the pages of a moment: "introduction", "before TASK" (a task of the study,
+///   before Welcome                        its first trial), "end" (after the questionnaire); a moment without pages is passed over
+///
+///   You will see ...
+///   ---                            a line of at least three hyphens ends a page
+///   The hand                       the first line of a page is its heading
+///   ...
+/// Lines that follow each other are one paragraph, whatever their length; a blank line ends it. A line that begins with "- " begins one,
+/// too.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace catena::app {
+
+struct Page {
+  std::string heading;
+  std::vector<std::string> paragraphs;
+  bool operator==(const Page&) const = default;
+};
+
+struct Instructions {
+  struct Before {
+    std::string task;
+    std::vector<Page> pages;
+  };
+  std::vector<Page> introduction, end;
+  std::vector<Before> before;
+
+  /// None where the file says nothing of this task.
+  const std::vector<Page>& before_task(const std::string& task) const;
+};
+
+/// `tasks`: the study's. The error names file and line: a moment that is none, a page without a heading, text before the first moment.
+Result<Instructions> parse_instructions(std::string_view text, const std::string& file, const std::vector<std::string>& tasks);
+Result<Instructions> read_instructions(const std::string& path, const std::vector<std::string>& tasks);
+
+}  // namespace catena::app

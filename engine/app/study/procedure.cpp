@@ -1,0 +1,181 @@
+#include "engine/app/study/procedure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace catena::app {
+
+namespace {
+
+void append_utf8(std::string& to, std::uint32_t c) {
+  const auto put = [&](std::uint32_t byte) { to += static_cast<char>(byte); };
+  if (c < 0x80) {
+    put(c);
+  } else if (c < 0x800) {
+    put(0xc0 | c >> 6);
+    put(0x80 | (c & 0x3f));
+  } else if (c < 0x10000) {
+    put(0xe0 | c >> 12);
+    put(0x80 | (c >> 6 & 0x3f));
+    put(0x80 | (c & 0x3f));
+  } else {
+    put(0xf0 | c >> 18);
+    put(0x80 | (c >> 12 & 0x3f));
+    put(0x80 | (c >> 6 & 0x3f));
+    put(0x80 | (c & 0x3f));
+  }
+}
+
+void remove_character(std::string& from) {
+  while (!from.empty() && (static_cast<unsigned char>(from.back()) & 0xc0) == 0x80) from.pop_back();
+  if (!from.empty()) from.pop_back();
+}
+
+std::string trial_count(std::size_t n) { return fmt::format("{} trial{}", n, n == 1 ? "" : "s"); }
+
+Page pause_page() { return {"Pause", {"Rest as long as you like. The next trial waits."}}; }
+
+}  // namespace
+
+Procedure::Procedure(const study::Study& study, const Instructions& instructions, std::vector<study::Trial> trials, std::size_t finished,
+                     std::size_t answered)
+    : study_(study), trials_(std::move(trials)) {
+  if (finished > 0 || answered > 0)
+    add_pages({{"Welcome back", {fmt::format("{} of {} trials are done. The session goes on where it ended.", finished, trials_.size())}}});
+  else
+    add_pages(instructions.introduction);
+  add_trials(instructions, finished);
+  for (std::size_t i = answered; i < questions(); ++i) steps_.push_back({Step::Kind::question, i});
+  if (instructions.end.empty())
+    add_pages({{"The end", {"Thank you."}}});
+  else
+    add_pages(instructions.end);
+}
+
+void Procedure::add_pages(const std::vector<Page>& pages) {
+  for (const Page& page : pages) {
+    steps_.push_back({Step::Kind::page, pages_.size()});
+    pages_.push_back(page);
+  }
+}
+
+void Procedure::add_trials(const Instructions& instructions, std::size_t finished) {
+  const auto others = [&](std::size_t from) {
+    std::size_t n = 0;
+    for (const study::Trial& first = trials_[from]; from + n < trials_.size(); ++n)
+      if (const study::Trial& one = trials_[from + n]; one.block != first.block || one.training != first.training) break;
+    return trial_count(n);
+  };
+  for (std::size_t i = finished; i < trials_.size(); ++i) {
+    const study::Trial& trial = trials_[i];
+    const study::Trial* const before = i > 0 ? &trials_[i - 1] : nullptr;
+    const bool first = i == finished, new_block = before == nullptr || before->block != trial.block;
+    if (new_block && !first)
+      add_pages(
+          {{"Pause", {fmt::format("Part {} of {} is done. Rest as long as you like.", before->block + 1, trials_.back().block + 1)}}});
+    if (first || (new_block && before->task != trial.task))
+      add_pages(instructions.before_task(study_.tasks[static_cast<std::size_t>(trial.task)].name));
+    if (trial.training && (first || new_block || !before->training))
+      add_pages({{"Training", {fmt::format("First {} to try it. They do not count.", others(i))}}});
+    if (!trial.training && before != nullptr && before->training && !new_block)
+      add_pages({{"Now it counts", {fmt::format("The training is over. Next: {}.", others(i))}}});
+    steps_.push_back({Step::Kind::trial, i});
+  }
+}
+
+Procedure::Stage Procedure::stage() const {
+  if (pause_) return Stage::page;
+  if (at_ == steps_.size()) return Stage::over;
+  switch (steps_[at_].kind) {
+    case Step::Kind::page:
+      return Stage::page;
+    case Step::Kind::trial:
+      return running_ ? Stage::running : Stage::ready;
+    case Step::Kind::question:
+      break;
+  }
+  return Stage::question;
+}
+
+const Page& Procedure::page() const { return pause_ ? *pause_ : pages_[steps_[at_].number]; }
+std::size_t Procedure::trial() const { return steps_[at_].number; }
+const study::Question& Procedure::question() const { return study_.questions[steps_[at_].number]; }
+std::size_t Procedure::question_number() const { return steps_[at_].number; }
+
+std::optional<std::size_t> Procedure::trial_ahead() const {
+  const auto next = std::find_if(steps_.begin() + static_cast<std::ptrdiff_t>(at_), steps_.end(),
+                                 [](const Step& step) { return step.kind == Step::Kind::trial; });
+  return next == steps_.end() ? std::nullopt : std::optional(next->number);
+}
+
+void Procedure::go_on() {
+  ++at_;
+  running_ = false;
+  entry_.clear();
+}
+
+void Procedure::take(const Stroke& stroke, bool at_start) {
+  using What = Stroke::What;
+  const bool on = stroke.what == What::space || stroke.what == What::enter;
+  switch (stage()) {
+    case Stage::page:
+      if (!on) return;
+      if (!std::exchange(pause_, std::nullopt)) go_on();
+      return;
+    case Stage::ready:
+      if (on && at_start) running_ = true;
+      if (stroke.what == What::character && (stroke.character == 'p' || stroke.character == 'P')) pause_ = pause_page();
+      return;
+    case Stage::question:
+      return answer(stroke);
+    case Stage::running:
+    case Stage::over:
+      return;
+  }
+}
+
+void Procedure::answer(const Stroke& stroke) {
+  const std::vector<std::string>& choices = question().answers;
+  switch (stroke.what) {
+    case Stroke::What::backspace:
+      return choices.empty() ? remove_character(entry_) : entry_.clear();
+    case Stroke::What::character: {
+      const std::uint32_t c = stroke.character;
+      if (!choices.empty() && c >= '1' && c - '1' < std::min(kMaxAnswers, choices.size())) entry_ = choices[c - '1'];
+      if (choices.empty() && c >= 0x20 && c != 0x7f && c <= 0x10ffff && entry_.size() + 4 <= kMaxAnswer) append_utf8(entry_, c);
+      return;
+    }
+    case Stroke::What::enter:
+      if (!choices.empty() && entry_.empty()) return;
+      answer_ = Answer{question().name, entry_};
+      return go_on();
+    case Stroke::What::space:
+      return;  // comes as a character, too
+  }
+}
+
+std::string Procedure::words() const {
+  std::size_t trials = trials_.size(), answered = questions();
+  for (std::size_t i = at_; i < steps_.size(); ++i) {
+    trials -= steps_[i].kind == Step::Kind::trial;
+    answered -= steps_[i].kind == Step::Kind::question;
+  }
+  return fmt::format("{} of {} trials and {} of {} questions are done{}", trials, trials_.size(), answered, questions(),
+                     at_ == steps_.size() ? "" : "; the same command goes on");
+}
+
+void Procedure::ended() {
+  if (stage() == Stage::running) go_on();
+}
+
+void Procedure::cut_off(const std::string& why) {
+  if (stage() != Stage::running) return;
+  running_ = false;
+  pause_ = Page{"Once more", {why, "This trial begins again."}};
+}
+
+std::optional<Procedure::Answer> Procedure::take_answer() { return std::exchange(answer_, std::nullopt); }
+
+}  // namespace catena::app

@@ -1,0 +1,66 @@
+/// SubjectFolder is what a session of one subject leaves on the disk, and what an earlier one that was cut off at any moment has left:
+///   DIR/subjects/007.csv               the finished trials (engine/study/trial_table.h)
+///   DIR/recordings/007-012.catlog      every tick of trial 12: whole, or not there
+///   DIR/questionnaire/007.csv          a row `question,answer` for each answer, the question by its name; whole rows, as the trials'
+///   DIR/.lock                          held while a session runs: a folder has one at a time
+/// A recording gets its name before its trial's row is written, so that every row has its recording. Numbers stand for subjects, never
+/// names. Frame thread.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/study/trial_table.h"
+
+namespace catena::app {
+
+/// A lock on a folder, by flock(2) on its file ".lock": it goes with its process, however that ends.
+class FolderLock {
+ public:
+  /// An error where another process has it.
+  static Result<FolderLock> take(const std::string& folder);
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&&) = delete;
+
+ private:
+  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
+  int descriptor_;
+};
+
+class SubjectFolder {
+ public:
+  /// Makes what is missing. An error where another study is in the folder, another process, or another session of this subject.
+  static Result<SubjectFolder> open(const std::string& path, const study::Study& study, int subject);
+
+  const std::vector<study::Trial>& trials() const { return trials_; }
+  std::size_t finished() const { return finished_; }  ///< of the trials, when it was opened
+  std::size_t answered() const { return answered_; }  ///< of the questions
+
+  /// Where the recording of a trial is written until it is whole.
+  std::string unfinished_recording(const study::Trial& trial) const;
+  /// The trial is finished: the recording at `unfinished` gets its name, and the row is on the disk.
+  Outcome keep(const study::Trial& trial, const study::Measured& measured, const std::string& unfinished) const;
+  /// One more answer is on the disk.
+  Outcome keep_answer(const std::string& question, const std::string& answer) const;
+
+ private:
+  SubjectFolder(const study::Study& study, int subject, study::DataFolder folder, FolderLock lock)
+      : study_(&study), subject_(subject), folder_(std::move(folder)), lock_(std::move(lock)) {}
+  std::string file(const std::string& kind, const std::string& name) const;
+  std::string recording(const study::Trial& trial) const;
+  Outcome look_for_trials();
+  Outcome look_for_answers();
+
+  const study::Study* study_;
+  int subject_;
+  study::DataFolder folder_;
+  FolderLock lock_;
+  std::vector<study::Trial> trials_;
+  std::size_t finished_ = 0, answered_ = 0;
+};
+
+/// One line that says what is recorded, as JSON: {"study": "...", "subject": 7, "trial": 12, "task": "...", "condition": "...", "stimulus":
+/// 4, "seed": 99, "training": false}
+std::string about_trial(const study::Study& study, const study::Trial& trial);
+
+}  // namespace catena::app
