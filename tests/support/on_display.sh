@@ -3,7 +3,7 @@
 screen=$1
 shift
 number=$(mktemp)
-Xvfb -displayfd 3 -screen 0 "$screen" -nolisten tcp -noreset 3> "$number" 2> /dev/null &
+Xvfb -displayfd 3 -screen 0 "$screen" -nolisten tcp -noreset $CATENA_XVFB 3> "$number" 2> /dev/null &
 server=$!
 for i in $(seq 200); do test -s "$number" && break; sleep 0.05; done
 DISPLAY=:$(cat "$number") "$@"

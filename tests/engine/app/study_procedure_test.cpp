@@ -1,0 +1,307 @@
+// What a subject goes through, without a window: instructions, the procedure, what is kept on the disk.
+#include "engine/app/study/procedure.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "engine/app/study/subject_folder.h"
+#include "engine/app/study/tick_tap.h"
+#include "tests/support/support.h"
+
+namespace catena::app {
+namespace study_procedure_test {
+
+using Stage = Procedure::Stage;
+
+constexpr const char* kInstructions =
+    "# introduction\n\nWelcome\none\ntwo\n\n- a point\n- another\n---\nThe hand\n"
+    "# before trace\nTrace\n# end\nThanks\n";
+
+Instructions instructions() {
+  auto parsed = parse_instructions(kInstructions, "i.txt", {"trace", "flow"});
+  EXPECT_TRUE(parsed) << parsed.error().message;
+  return parsed ? *parsed : Instructions{};
+}
+
+study::Study small_study() {
+  study::Study study;
+  study.tasks.resize(2);
+  study.tasks[0].name = "trace";
+  study.tasks[1].name = "flow";
+  study.conditions.resize(2);
+  study.questions = {{"hard", "Was it hard?", {"no", "a little", "very"}}, {"how", "How?", {}}};
+  return study;
+}
+
+/// Two blocks, each of one training trial and two that count.
+std::vector<study::Trial> six_trials() {
+  std::vector<study::Trial> trials;
+  for (int i = 0; i < 6; ++i) trials.push_back({.index = i, .block = i / 3, .task = i / 3, .training = i % 3 == 0});
+  return trials;
+}
+
+const Stroke kSpace{Stroke::What::space}, kEnter{Stroke::What::enter}, kBackspace{Stroke::What::backspace};
+
+Stroke letter(char32_t c) { return {Stroke::What::character, c}; }
+
+/// Goes on with space until the next trial is ready or no page is left; the headings on the way.
+std::vector<std::string> pages_passed(Procedure& procedure) {
+  std::vector<std::string> headings;
+  while (procedure.stage() == Stage::page) {
+    headings.push_back(procedure.page().heading);
+    procedure.take(kSpace, false);
+  }
+  return headings;
+}
+
+TEST(StudyInstructions, PagesHaveAHeadingAndParagraphs) {
+  const Instructions all = instructions();
+  ASSERT_EQ(all.introduction.size(), 2u);
+  EXPECT_EQ(all.introduction[0], (Page{"Welcome", {"one two", "- a point", "- another"}}));
+  EXPECT_EQ(all.introduction[1], (Page{"The hand", {}}));
+  EXPECT_EQ(all.before_task("trace").size(), 1u);
+  EXPECT_TRUE(all.before_task("flow").empty());
+  EXPECT_EQ(all.end.size(), 1u);
+}
+
+TEST(StudyInstructions, WhatIsWrongIsSaidWithItsLine) {
+  const auto error = [](const std::string& text) {
+    const auto parsed = parse_instructions(text, "i.txt", {"trace"});
+    return parsed ? std::string("nothing") : parsed.error().message;
+  };
+  EXPECT_EQ(error("hello\n").find("i.txt:1: text before the first moment"), 0u);
+  EXPECT_NE(error("# introduction\nA\n# before tracee\nB\n")
+                .find("i.txt:3: there is no moment \"before tracee\" (did you mean \"before trace\"?)"),
+            std::string::npos);
+  EXPECT_EQ(error("# end\n---\nA\n").find("i.txt:2: a page without text"), 0u);
+  EXPECT_EQ(error("# end\nA\n---\n").find("i.txt:3: a page without text"), 0u);
+  EXPECT_EQ(error("# end\nA\n# end\nB\n").find("i.txt:3: the moment \"end\" stands here again"), 0u);
+}
+
+TEST(StudyProcedure, GoesFromTheFirstPageToTheLast) {
+  const study::Study study = small_study();
+  Procedure procedure(study, instructions(), six_trials());
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(pages_passed(procedure), (Words{"Welcome", "The hand", "Trace", "Training"}));
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (i == 1 || i == 4) {
+      EXPECT_EQ(pages_passed(procedure), Words{"Now it counts"}) << i;
+    }
+    // the second task has no page of its own
+    if (i == 3) {
+      EXPECT_EQ(pages_passed(procedure), (Words{"Pause", "Training"}));
+    }
+    ASSERT_EQ(procedure.stage(), Stage::ready) << i;
+    EXPECT_EQ(procedure.trial(), i);
+    procedure.take(kSpace, false);
+    EXPECT_EQ(procedure.stage(), Stage::ready) << "the cursor is not at the start";
+    procedure.take(i % 2 == 0 ? kSpace : kEnter, true);
+    ASSERT_EQ(procedure.stage(), Stage::running);
+    procedure.take(kSpace, true);
+    procedure.take(letter('p'), true);
+    EXPECT_EQ(procedure.stage(), Stage::running) << "no key counts";
+    procedure.ended();
+  }
+  ASSERT_EQ(procedure.stage(), Stage::question);
+  procedure.take(kEnter, false);
+  EXPECT_EQ(procedure.question().name, "hard") << "nothing was chosen";
+  for (const char key : {'4', '0', 'x', '2', '3'}) procedure.take(letter(key), false);
+  EXPECT_EQ(procedure.entry(), "very");
+  procedure.take(kEnter, false);
+  const auto hard = procedure.take_answer();
+  ASSERT_TRUE(hard);
+  EXPECT_EQ(hard->question + "=" + hard->answer, "hard=very");
+  EXPECT_FALSE(procedure.take_answer()) << "once";
+  for (const char32_t c : {U'a', U' ', U'\u00e9', U'b'}) procedure.take(letter(c), false);
+  procedure.take(kSpace, false);
+  procedure.take(kBackspace, false);
+  procedure.take(kBackspace, false);
+  EXPECT_EQ(procedure.entry(), "a ") << "a whole letter goes, and space is text";
+  procedure.take(kEnter, false);
+  EXPECT_EQ(procedure.take_answer()->answer, "a ");
+  EXPECT_EQ(pages_passed(procedure), Words{"Thanks"});
+  EXPECT_EQ(procedure.stage(), Stage::over);
+  EXPECT_EQ(procedure.words(), "6 of 6 trials and 2 of 2 questions are done");
+}
+
+TEST(StudyProcedure, APauseAndATrialThatIsCutOffComeBackToTheSameTrial) {
+  const study::Study study = small_study();
+  Procedure procedure(study, {}, six_trials());
+  pages_passed(procedure);
+  procedure.take(letter('P'), true);
+  EXPECT_EQ(procedure.page().heading, "Pause");
+  EXPECT_EQ(procedure.trial_ahead(), 0u);
+  procedure.take(kSpace, true);
+  ASSERT_EQ(procedure.stage(), Stage::ready);
+  procedure.take(kSpace, true);
+  procedure.cut_off("Why");
+  ASSERT_EQ(procedure.stage(), Stage::page);
+  EXPECT_EQ(procedure.page().paragraphs.front(), "Why");
+  procedure.ended();
+  procedure.take(kSpace, true);
+  EXPECT_EQ(procedure.stage(), Stage::ready);
+  EXPECT_EQ(procedure.trial(), 0u) << "it was not done";
+}
+
+TEST(StudyProcedure, GoesOnAfterAnyNumberOfTrialsAndAnswers) {
+  const study::Study study = small_study();
+  for (std::size_t finished = 0; finished <= 6; ++finished)
+    for (std::size_t answered = 0; answered <= (finished == 6 ? 2u : 0u); ++answered) {
+      Procedure procedure(study, instructions(), six_trials(), finished, answered);
+      std::vector<std::size_t> trials;
+      std::vector<std::string> headings, questions;
+      for (int guard = 0; procedure.stage() != Stage::over && guard < 100; ++guard) {
+        const auto passed = pages_passed(procedure);
+        headings.insert(headings.end(), passed.begin(), passed.end());
+        if (procedure.stage() == Stage::ready) {
+          trials.push_back(procedure.trial());
+          procedure.take(kSpace, true);
+          procedure.ended();
+        } else if (procedure.stage() == Stage::question) {
+          questions.push_back(procedure.question().name);
+          procedure.take(letter('1'), false);
+          procedure.take(kEnter, false);
+        }
+      }
+      ASSERT_EQ(trials.size(), 6 - finished);
+      for (std::size_t k = 0; k < trials.size(); ++k) EXPECT_EQ(trials[k], finished + k);
+      EXPECT_EQ(questions.size(), 2 - answered);
+      EXPECT_EQ(headings.front(), finished + answered > 0 ? "Welcome back" : "Welcome");
+      // who comes back is told the task again
+      EXPECT_EQ(std::ranges::count(headings, "Trace"), finished < 3 ? 1 : 0) << finished;
+      EXPECT_EQ(std::ranges::count(headings, "Thanks"), 1);
+    }
+}
+
+// ---- the folder ----
+
+constexpr const char* kStudy = R"({
+  "name": "small", "seed": 3, "trials": 2, "training": 0,
+  "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 20, "lines": 0},
+    "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": 5}},
+              "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
+  "conditions": [{"name": "free", "chain": []}, {"name": "held", "chain": [{"name": "hold", "type": "drag", "threshold": 0.01}]}],
+  "questionnaire": [{"name": "hard", "question": "Was it hard, or \"hard\"?"}, {"name": "how", "question": "How?"}]
+})";
+
+class StudyFolder : public testing::Test {
+ protected:
+  StudyFolder() {
+    test::write_file(folder_ / "study.json", kStudy);
+    auto read = study::read_study(folder_ / "study.json");
+    EXPECT_TRUE(read) << read.error().message;
+    if (read) study_ = std::move(*read);
+  }
+  Result<SubjectFolder> open(int subject = 7) { return SubjectFolder::open(folder_ / "data", study_, subject); }
+  std::string read(const std::string& name) const { return test::read_file(folder_ / ("data/" + name)); }
+
+  test::TemporaryFolder folder_;
+  study::Study study_;
+};
+
+TEST_F(StudyFolder, OneSessionAtATimeWritesToIt) {
+  {
+    auto first = open();
+    ASSERT_TRUE(first) << first.error().message;
+    const auto second = open(8);
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().message, folder_ / "data: another session writes to it; its end was expected, or another folder");
+  }
+  EXPECT_TRUE(open(8)) << "the lock has gone with its holder";
+}
+
+TEST_F(StudyFolder, ARowComesWithItsRecordingAndTheNextSessionGoesOnBehindIt) {
+  {
+    auto folder = open();
+    ASSERT_TRUE(folder) << folder.error().message;
+    ASSERT_EQ(folder->trials().size(), 4u);
+    const std::string unfinished = folder->unfinished_recording(folder->trials()[0]);
+    test::write_file(unfinished, "ticks");
+    study::Measured measured;
+    measured.time_s = 1.25;
+    ASSERT_TRUE(folder->keep(folder->trials()[0], measured, unfinished));
+    EXPECT_FALSE(test::exists(unfinished));
+    EXPECT_EQ(read("recordings/007-000.catlog"), "ticks");
+    // without its recording there is no row
+    EXPECT_FALSE(folder->keep(folder->trials()[1], measured, unfinished));
+  }
+  auto again = open();
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->finished(), 1u);
+  const std::string rows = read("subjects/007.csv");
+  EXPECT_EQ(std::ranges::count(rows, '\n'), 2) << rows;
+}
+
+TEST_F(StudyFolder, AnswersSurviveACutAtAnyByte) {
+  {
+    auto folder = open();
+    ASSERT_TRUE(folder && folder->keep_answer("hard", "a \"bit\", yes\n") && folder->keep_answer("how", "so"));
+  }
+  const std::string whole = read("questionnaire/007.csv"), one = "question,answer\nhard,\"a \"\"bit\"\", yes \"\n";
+  EXPECT_EQ(whole, one + "how,so\n");
+  for (std::size_t bytes = 0; bytes <= whole.size(); ++bytes) {
+    test::write_file(folder_ / "data/questionnaire/007.csv", whole.substr(0, bytes));
+    auto folder = open();
+    ASSERT_TRUE(folder) << bytes << " " << folder.error().message;
+    ASSERT_EQ(folder->answered(), bytes == whole.size() ? 2u : bytes >= one.size() ? 1u : 0u) << bytes;
+    if (folder->answered() == 0) {
+      ASSERT_TRUE(folder->keep_answer("hard", "a \"bit\", yes\n"));
+    }
+    if (folder->answered() <= 1) {
+      ASSERT_TRUE(folder->keep_answer("how", "so"));
+    }
+    ASSERT_EQ(read("questionnaire/007.csv"), whole) << bytes;
+  }
+}
+
+TEST_F(StudyFolder, AnotherSessionsRowsAndAnswersAreRefused) {
+  ASSERT_TRUE(open());
+  test::write_file(folder_ / "data/questionnaire/007.csv", "question,answer\nother,1\n");
+  const auto answers = open();
+  ASSERT_FALSE(answers);
+  EXPECT_NE(answers.error().message.find("007.csv:2: this is not the answer to question 1"), std::string::npos) << answers.error().message;
+  std::filesystem::remove(folder_ / "data/questionnaire/007.csv");
+  study::Trial second = study::session_of(study_, 7)[1];
+  second.index = 1;
+  test::write_file(folder_ / "data/subjects/007.csv", study::table_header() + study::row_text(study::row_of(study_, second, {})));
+  const auto rows = open();
+  ASSERT_FALSE(rows);
+  EXPECT_NE(rows.error().message.find("007.csv:2: this is not trial 0"), std::string::npos) << rows.error().message;
+}
+
+TEST(StudyTickTap, HandsOnEveryTickAndSaysWhatItLost) {
+  struct Counting final : haptics::TickSink {
+    void put(const haptics::ProbeSample&, const exchange::HapticState&) noexcept override { ++count; }
+    int count = 0;
+  } next;
+  TickTap tap(100);
+  tap.begin(&next);
+  exchange::HapticState state;
+  for (std::uint64_t k = 1; k <= 50; ++k) {
+    state.tick = k;
+    state.program_epoch = 9;
+    state.t_s = 0.001 * static_cast<double>(k);
+    state.probe = Vec3(static_cast<double>(k), 0, 0);
+    state.condition = k == 50 ? exchange::Condition::no_device : exchange::Condition::normal;
+    tap.put({}, state);
+  }
+  for (int k = 1; k <= 50; ++k) {
+    const auto tick = tap.take();
+    ASSERT_TRUE(tick) << k;
+    EXPECT_EQ(tick->epoch, 9u);
+    EXPECT_EQ(tick->probe.x, k);
+    EXPECT_EQ(tick->good, k != 50);
+  }
+  EXPECT_FALSE(tap.take());
+  EXPECT_EQ(next.count, 50);
+  EXPECT_FALSE(tap.has_lost());
+  for (int k = 0; k < 1000; ++k) tap.put({}, state);
+  EXPECT_TRUE(tap.has_lost());
+  EXPECT_EQ(next.count, 1050) << "the recording loses nothing by it";
+  tap.begin(nullptr);
+  EXPECT_FALSE(tap.has_lost() || tap.take());
+}
+
+}  // namespace study_procedure_test
+}  // namespace catena::app
