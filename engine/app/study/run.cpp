@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/app/options.h"
-#include "engine/app/run_files.h"
 #include "engine/app/study/live_session.h"
 #include "engine/app/study/study_command.h"
 #include "engine/app/viewer/study/study_window.h"

@@ -10,6 +10,7 @@
 
 #include "engine/app/run_files.h"
 #include "engine/app/study/study_command.h"
+#include "engine/app/study/subject_folder.h"
 #include "engine/base/clock.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
@@ -70,6 +71,7 @@ class Recordings {
     header.device = "simulated hand";
     header.catena_version = kCatenaVersion;
     header.rate_hz = study::kSimulatedRateHz;
+    header.about = about_trial(study_, trial);
     CATENA_TRY(writer_, haptics::log::LogWriter::open((fs::path(folder_) / study::recording_name(trial)).string(), std::move(header)));
     writer_->add_program(program);
     return writer_.get();

@@ -75,23 +75,21 @@ Result<SubjectFolder> SubjectFolder::open(const std::string& path, const study::
   CATENA_TRY(study::DataFolder folder, study::DataFolder::open(path, study));
   CATENA_TRY(FolderLock lock, FolderLock::take(path));
   SubjectFolder result(study, subject, std::move(folder), std::move(lock));
-  for (const char* kind : {"recordings", "questionnaire"}) {
-    std::error_code code;
-    std::filesystem::create_directories(path + "/" + kind, code);
-    if (code) return Error{path + "/" + kind + ": cannot be made: " + code.message()};
-  }
+  CATENA_CHECK(study::make_recordings_folder(path));
+  const std::string answers = std::filesystem::path(result.answers_file()).parent_path();
+  std::error_code code;
+  std::filesystem::create_directories(answers, code);
+  if (code) return Error{answers + ": cannot make the folder: " + code.message()};
   result.trials_ = study::session_of(study, subject);
   CATENA_CHECK(result.look_for_trials());
   CATENA_CHECK(result.look_for_answers());
   return result;
 }
 
-std::string SubjectFolder::file(const std::string& kind, const std::string& name) const {
-  return fmt::format("{}/{}/{:03}{}", folder_.path(), kind, subject_, name);
-}
+std::string SubjectFolder::answers_file() const { return fmt::format("{}/questionnaire/{:03}.csv", folder_.path(), subject_); }
 
 std::string SubjectFolder::recording(const study::Trial& trial) const {
-  return file("recordings", fmt::format("-{:03}.catlog", trial.index));
+  return study::recordings_folder(folder_.path()) + "/" + study::recording_name(trial);
 }
 
 std::string SubjectFolder::unfinished_recording(const study::Trial& trial) const {
@@ -117,7 +115,7 @@ Outcome SubjectFolder::look_for_trials() {
 }
 
 Outcome SubjectFolder::look_for_answers() {
-  const std::string path = file("questionnaire", ".csv");
+  const std::string path = answers_file();
   std::error_code code;
   if (!std::filesystem::exists(path, code)) return Done{};
   CATENA_TRY(const std::string text, read_text(path, "a table of answers"));
@@ -138,12 +136,12 @@ Outcome SubjectFolder::look_for_answers() {
 Outcome SubjectFolder::keep(const study::Trial& trial, const study::Measured& measured, const std::string& unfinished) const {
   const std::string place = recording(trial);
   if (std::rename(unfinished.c_str(), place.c_str()) != 0) return cannot(place, "write");
-  sync_folder(folder_.path() + "/recordings");
+  sync_folder(study::recordings_folder(folder_.path()));
   return folder_.append(study::row_of(*study_, trial, measured));
 }
 
 Outcome SubjectFolder::keep_answer(const std::string& question, const std::string& answer) const {
-  const std::string path = file("questionnaire", ".csv");
+  const std::string path = answers_file();
   std::error_code code;
   const bool begins = std::filesystem::file_size(path, code) == 0 || code;
   return append_whole(path, (begins ? std::string(kAnswersHeader) : "") + cell(question) + "," + cell(answer) + "\n");

@@ -46,7 +46,7 @@ class SubjectFolder {
  private:
   SubjectFolder(const study::Study& study, int subject, study::DataFolder folder, FolderLock lock)
       : study_(&study), subject_(subject), folder_(std::move(folder)), lock_(std::move(lock)) {}
-  std::string file(const std::string& kind, const std::string& name) const;
+  std::string answers_file() const;
   std::string recording(const study::Trial& trial) const;
   Outcome look_for_trials();
   Outcome look_for_answers();

@@ -30,7 +30,7 @@ constexpr const char* kShort = R"({
   "name": "short", "seed": 3, "trials": 4, "training": 0,
   "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "limits": {"ends_s": 0.05},
     "stimulus": {"path_mm": 20, "lines": 0, "region": 1e-9},
-    "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": 5}}, "cursor": {"crosshair": true},
+    "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": 5}}, "cursor": {"shape": "crosshair"},
               "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
   "conditions": [{"name": "free", "chain": []},
                  {"name": "held", "chain": [{"name": "line", "type": "streamline", "field": "flow", "seed": "$start"}]}],

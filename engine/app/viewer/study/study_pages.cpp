@@ -144,10 +144,13 @@ void draw_question(const StudyView& view, const Area& area, const char* name) {
   });
 }
 
-/// At the bottom of the picture, which stays free.
-void draw_line(const std::string& words, const Area& area, const char* name) {
+/// At an edge of the picture, which stays free.
+enum class Edge { top, bottom };
+void draw_line(const std::string& words, const Area& area, const char* name, Edge edge = Edge::bottom) {
   const Fonts fonts = fonts_for(area);
-  ImGui::SetNextWindowPos({static_cast<float>(area.x + 0.5 * area.width), static_cast<float>(area.y + area.height) - 8}, 0, {0.5f, 1});
+  const double share = edge == Edge::top ? 0.02 : 0.98;
+  const ImVec2 at(static_cast<float>(area.x + 0.5 * area.width), static_cast<float>(area.y + share * area.height));
+  ImGui::SetNextWindowPos(at, 0, {0.5f, static_cast<float>(edge)});
   ImGui::SetNextWindowBgAlpha(0.7f);
   if (ImGui::Begin(name, nullptr, kStill | ImGuiWindowFlags_AlwaysAutoResize)) write(fonts.small, kInk, words);
   ImGui::End();
@@ -176,6 +179,7 @@ void draw_study(const StudyView& view, const std::vector<Area>& areas) {
       case Procedure::Stage::over:
         break;
     }
+    if (!view.device.empty()) draw_line(view.device, areas[i], (name + "device").c_str(), Edge::top);
   }
 }
 

@@ -1,6 +1,7 @@
 /// What a study shows over the picture: pages, questions, and one line while a trial waits. Nothing of it tells a trial's condition.
 /// Frame thread, between Gui::begin and end.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "engine/app/study/procedure.h"
@@ -15,6 +16,7 @@ struct StudyView {
   const Procedure& procedure;
   bool at_start = false;     ///< the cursor is where the trial that is ready begins
   bool wants_start = false;  ///< the trial runs, and the cursor has to come back to its start
+  std::string device{};      ///< what the device asks of the person; empty: nothing
 };
 
 /// The same in each area: eyes that have a part of the window for themselves have a page each.

@@ -171,7 +171,8 @@ std::optional<NextPicture> StudyWindow::next_picture(bool moved, bool hand_moved
 
 void StudyWindow::draw_pages() {
   if (shared_.hand.is_mouse() && shows_picture()) gui_.hide_pointer();
-  const StudyView view{session_.procedure(), session_.is_at_start(shared_.hand), session_.wants_start()};
+  const StudyView view{session_.procedure(), session_.is_at_start(shared_.hand), session_.wants_start(),
+                       shared_.hand.hand().device->status_text()};
   draw_study(view, areas_of(shared_.scene.scene().stereo, shared_.state.area));
 }
 
