@@ -23,6 +23,43 @@ namespace study_live_test {
 using Stage = Procedure::Stage;
 namespace fs = std::filesystem;
 
+// ---- what is felt before a trial ----
+
+TEST(StudySession, BeforeATrialBeginsNothingTellsItsCondition) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "study.json", R"({
+    "name": "two links", "trials": 1, "training": 0,
+    "tasks": [{"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow", "stimulus": {"path_mm": 20, "lines": 0},
+      "scene": {"fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": "$seed"}},
+                "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
+    "conditions": [{"name": "free", "chain": [{"name": "floor", "type": "plane", "point": "$start", "normal": [0, 0, 1]}]},
+                   {"name": "held", "chain": [{"name": "line", "type": "streamline", "field": "flow", "seed": "$start"},
+                                              {"name": "floor", "type": "plane", "point": "$start", "normal": [0, 0, 1]}]}]
+  })");
+  const auto study = study::read_study(folder / "study.json");
+  ASSERT_TRUE(study) << study.error().message;
+  std::vector<json::Node> before;
+  std::vector<std::size_t> links;
+  for (const study::Trial& trial : study::session_of(*study, 1)) {
+    LiveTrial live(*study);
+    auto host = live.open(trial, {});
+    ASSERT_TRUE(host) << host.error().message;
+    const auto text = json::parse(host->document().text(), "scene");
+    ASSERT_TRUE(text);
+    before.push_back(*text);
+    EXPECT_EQ(host->scene().world.count<scene::Link>(), 1u) << "what both feel";
+    EXPECT_EQ(host->scene().world.count<scene::StreamlineSet>(), 1u) << "the ball at the start";
+    EXPECT_TRUE(live.is_at_start(live.start()));
+    EXPECT_FALSE(live.is_at_start(live.start() + Vec3(0.1, 0, 0)));
+    ASSERT_TRUE(host->undo());
+    EXPECT_EQ(host->scene().world.count<scene::StreamlineSet>(), 0u);
+    links.push_back(host->scene().world.count<scene::Link>());
+  }
+  ASSERT_EQ(before.size(), 2u);
+  EXPECT_TRUE(json::same_value(before[0], before[1]));
+  EXPECT_NE(links[0], links[1]);
+}
+
 // ---- killed and gone on with ----
 
 /// All trials start in the middle and end soon after the hand has left the start.
