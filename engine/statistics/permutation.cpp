@@ -57,7 +57,7 @@ double drawn_share(std::span<const double> values, double bound, std::uint64_t s
 }  // namespace
 
 Result<SignFlipTest> sign_flip_test(std::span<const double> differences, std::uint64_t seed) {
-  constexpr int kDraws = 100'000;
+  constexpr int kDraws = 10'000;
   CATENA_CHECK(check_values(differences, 2));
   double size = 0;
   for (const double d : differences) size += std::fabs(d);

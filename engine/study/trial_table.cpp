@@ -255,4 +255,9 @@ Result<std::vector<Row>> read_table(const std::string& folder) {
   return all;
 }
 
+bool is_simulated(const std::string& folder) {
+  std::error_code code;
+  return fs::exists(fs::path(folder) / "simulated.json", code);
+}
+
 }  // namespace catena::study

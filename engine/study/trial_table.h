@@ -69,4 +69,7 @@ class DataFolder {
 /// The rows of DIR/trials.csv, or of DIR/subjects/*.csv where that is missing.
 Result<std::vector<Row>> read_table(const std::string& folder);
 
+/// Whether a model of a person did some of the trials: the folder then holds simulated.json.
+bool is_simulated(const std::string& folder);
+
 }  // namespace catena::study

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -53,6 +54,11 @@ CsvTable& CsvTable::add(double number) { return add(to_text(number)); }
 void CsvTable::end_row() {
   text_ += '\n';
   first_ = true;
+}
+
+std::string csv_words(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ';');
+  return one_line(text);
 }
 
 ResultFolder::ResultFolder(std::string path, std::string staging, bool created)

@@ -23,6 +23,9 @@ class CsvTable {
   bool first_ = true;
 };
 
+/// Text as a cell: a table of Catena's knows no quotes, so commas become semicolons.
+std::string csv_words(std::string text);
+
 class ResultFolder {
  public:
   /// Creates the folder where it is missing.

@@ -42,7 +42,7 @@ std::string plot_color(int i) {
   return colors[static_cast<std::size_t>(i) % std::size(colors)];
 }
 
-std::string quoted(const std::string& text) {
+std::string plot_text(const std::string& text) {
   std::string out = "'";
   for (const char c : one_line(text)) out += c == '\'' ? std::string("''") : std::string(1, c);
   return out + "'";

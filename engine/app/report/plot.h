@@ -13,7 +13,7 @@ std::string log_tics(char axis, double lo, double hi);
 /// "#rrggbb"; after the last one the first follows again.
 std::string plot_color(int i);
 /// In single quotes, as gnuplot has them.
-std::string quoted(const std::string& text);
+std::string plot_text(const std::string& text);
 
 /// The data of one plot and what is drawn of them.
 struct PlotData {

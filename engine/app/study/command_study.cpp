@@ -14,6 +14,8 @@ void add_study(CLI::App& program, Work& chosen) {
   add_study_merge(*command, chosen);
   add_study_scene(*command, chosen);
   add_study_keys(*command, chosen);
+  add_study_analyse(*command, chosen);
+  add_study_power(*command, chosen);
 }
 
 }  // namespace catena::app

@@ -9,5 +9,7 @@ void add_study_run(CLI::App& study, Work& chosen);
 void add_study_merge(CLI::App& study, Work& chosen);
 void add_study_scene(CLI::App& study, Work& chosen);
 void add_study_keys(CLI::App& study, Work& chosen);
+void add_study_analyse(CLI::App& study, Work& chosen);
+void add_study_power(CLI::App& study, Work& chosen);
 
 }  // namespace catena::app

@@ -138,7 +138,7 @@ TEST(SignFlips, AreDrawnWhereTheyAreTooMany) {
   for (std::size_t i = 0; i < 17; ++i) d[i] = -1;
   const auto drawn = sign_flip_test(d);
   EXPECT_FALSE(drawn->exact);
-  EXPECT_NEAR(drawn->p, 0.03283912, 4 * std::sqrt(0.0328 * 0.9672 / 100'000));
+  EXPECT_NEAR(drawn->p, 0.03283912, 4 * std::sqrt(0.0328 * 0.9672 / 10'000));
   EXPECT_EQ(drawn->p, sign_flip_test(d)->p);
   EXPECT_NE(drawn->p, sign_flip_test(d, 2)->p);
 }

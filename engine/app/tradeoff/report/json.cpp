@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -174,17 +173,12 @@ const Curve* curve_of(const Report* report, const std::string& id) {
 }
 
 std::string to_csv(const Curve& c) {
-  // a table of Catena's knows no quotes
-  const auto cell = [](std::string word) {
-    std::replace(word.begin(), word.end(), ',', ';');
-    return one_line(word);
-  };
   std::string header = "setting,series,error,work,time_median,time_low,time_high,repeats,bytes,front,chosen";
-  for (const std::string& name : c.more) header += "," + cell(name);
+  for (const std::string& name : c.more) header += "," + csv_words(name);
   CsvTable table(header);
   for (std::size_t i = 0; i < c.points.size(); ++i) {
     const Point& p = c.points[i];
-    table.add(cell(p.setting)).add(cell(p.series)).add(p.error).add(p.work).add(p.time.median).add(p.time.low).add(p.time.high);
+    table.add(csv_words(p.setting)).add(csv_words(p.series)).add(p.error).add(p.work).add(p.time.median).add(p.time.low).add(p.time.high);
     table.add(p.time.repeats).add(p.bytes);
     table.add(on_front(c, static_cast<int>(i)) ? 1 : 0).add(static_cast<int>(i) == c.chosen ? 1 : 0);
     for (const double value : p.more) table.add(value);

@@ -61,7 +61,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
       for (const std::string& series : series_of(*c)) {
         const std::string look = fmt::format("using 1:2:3:4 with xerrorlines lw 1.6 {} pt {} ps 0.5 lc rgb '{}' title {}",
                                              c == other ? "dt 3" : "dt 1", c == other ? 6 : 7, plot_color(color++),
-                                             quoted((series.empty() ? "measured" : series) + (c == other ? " (other)" : "")));
+                                             plot_text((series.empty() ? "measured" : series) + (c == other ? " (other)" : "")));
         drawn.add(fmt::format("$s{}", k++), rows(*c, cost, least, series), look);
       }
     }
@@ -70,7 +70,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
     const auto level = [&](const char* block, double value, const std::string& look) {
       if (value > 0) drawn.add(block, fmt::format("{0} {2}\n{1} {2}\n", to_text(lo), to_text(hi), to_text(value)), look);
     };
-    level("$floor", curve.floor, "with lines lw 2 dt 2 lc rgb '#888888' title " + quoted(curve.floor_name));
+    level("$floor", curve.floor, "with lines lw 2 dt 2 lc rgb '#888888' title " + plot_text(curve.floor_name));
     level("$reference", curve.reference_error, "with lines lw 1.2 dt 4 lc rgb '#888888' title 'error of the reference'");
     if (curve.current >= 0)
       drawn.add("$now", rows(curve, cost, least, {}, curve.current), "using 1:2 with points pt 4 ps 1.7 lw 1.5 lc rgb 'black' title 'now'");
@@ -81,7 +81,7 @@ PlotScript plot_script(const Curve& curve, const Curve* other, const std::string
     script.text +=
         drawn.blocks + log_tics('x', lo, hi) + log_tics('y', 0.7 * least, 3 * most) +
         fmt::format("set output '{}'\nset xlabel {}\nset ylabel {}\nset xrange [{}:{}]\nset yrange [{}:{}]\nplot {}\nunset output\n", file,
-                    quoted(*name), quoted(curve.error_name), to_text(lo), to_text(hi), to_text(0.7 * least), to_text(3 * most),
+                    plot_text(*name), plot_text(curve.error_name), to_text(lo), to_text(hi), to_text(0.7 * least), to_text(3 * most),
                     drawn.items);
     script.files.push_back(file);
   }

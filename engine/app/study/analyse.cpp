@@ -1,0 +1,93 @@
+/// catena study analyse DIR -o OUT: what the trials of a data folder say, as tables, JSON and a page.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "engine/app/report/folder.h"
+#include "engine/app/run_files.h"
+#include "engine/app/study/analyse/analysis.h"
+#include "engine/app/study/study_command.h"
+#include "engine/base/text.h"
+
+namespace catena::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AnalyseOptions {
+  std::string data, output;
+};
+
+/// All trials as one table again.
+std::string trials_csv(const std::vector<study::Row>& rows) {
+  std::string text = study::table_header();
+  for (const study::Row& row : rows) text += study::row_text(row);
+  return text;
+}
+
+Result<std::vector<std::string>> draw(ResultFolder& folder, const analysis::Plots& plots) { return folder.draw(plots.script, plots.files); }
+
+Outcome analyse_folder(const AnalyseOptions& options) {
+  const std::string data = options.data;
+  CATENA_TRY(const study::Study study, study::read_study((fs::path(data) / "study.json").string()));
+  CATENA_TRY(const study::Inquiry inquiry, study::read_inquiry(study));
+  Progress progress("study analyse", 4);
+  CATENA_TRY(const std::vector<study::Row> rows, study::read_table(data));
+  if (rows.empty()) return Error{one_line(data + ": there are no trials; at least one was expected")};
+  progress.at(1);
+  CATENA_TRY(const analysis::Analysis result, analysis::analyse(study, inquiry, rows, data));
+  progress.at(2);
+  const analysis::Source source{fs::path(data).lexically_normal().string(), study::is_simulated(data)};
+
+  const std::vector<std::pair<std::string, std::string>> files{{"trials.csv", trials_csv(rows)},
+                                                               {"subjects.csv", analysis::subjects_csv(study, result)},
+                                                               {"means.csv", analysis::means_csv(study, result)},
+                                                               {"tests.csv", analysis::tests_csv(study, result)},
+                                                               {"correlations.csv", analysis::correlations_csv(study, result)},
+                                                               {"slopes.csv", analysis::slopes_csv(study, result)},
+                                                               {"rejections.csv", analysis::rejections_csv(study, result)},
+                                                               {"findings.csv", analysis::findings_csv(inquiry, result)},
+                                                               {"results.json", analysis::to_json(study, inquiry, result, source)}};
+  RunFiles checked;
+  checked.reads_folder(data);
+  if (fs::is_directory(options.output)) {
+    for (const auto& [name, text] : files) checked.writes("-o", options.output + "/" + name);
+    checked.writes("-o", options.output + "/report.html");
+    CATENA_CHECK(checked.check());
+  }
+  CATENA_TRY(ResultFolder folder, ResultFolder::open(options.output));
+  analysis::Drawn drawn;
+  CATENA_TRY(drawn.means, draw(folder, analysis::means_plots(study, result)));
+  CATENA_TRY(drawn.correlations, draw(folder, analysis::correlation_plots(study, result)));
+  CATENA_TRY(drawn.trade, draw(folder, analysis::trade_plots(study, result)));
+  progress.at(3);
+  CATENA_CHECK(folder.add("report.html", analysis::to_html(study, inquiry, result, source, drawn)));
+  for (const auto& [name, text] : files) CATENA_CHECK(folder.add(name, text));
+  CATENA_CHECK(folder.commit());
+
+  const analysis::Rejections all = result.all_rejected();
+  fmt::print("{} subjects, {} trials, {} left out\n", result.subjects.size(), all.trials, all.rejected());
+  for (std::size_t i = 0; i < inquiry.findings.size(); ++i)
+    fmt::print("{}: {}\n", analysis::verdict_word(result.findings[i].verdict), printable(inquiry.findings[i].paper));
+  if (source.simulated) fmt::print("{}\n", analysis::kModelSentence);
+  fmt::print("{}:", printable(options.output));
+  for (const std::string& name : folder.names()) fmt::print(" {}", name);
+  fmt::print("\n");
+  return Done{};
+}
+
+}  // namespace
+
+void add_study_analyse(CLI::App& study, Work& chosen) {
+  auto options = std::make_shared<AnalyseOptions>();
+  CLI::App* command =
+      study.add_subcommand("analyse", "what the trials of a data folder say: tests, intervals, plots, each of the paper's findings");
+  command->add_option("DIR", options->data, "the data folder: study.json and its trials")->required();
+  command->add_option("-o,--output", options->output, "a folder for the page, the tables and the JSON")->required();
+  command->callback([&chosen, options] { chosen = [options] { return analyse_folder(*options); }; });
+}
+
+}  // namespace catena::app

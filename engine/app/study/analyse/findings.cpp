@@ -1,0 +1,215 @@
+/// Each finding of the study file, held against what these data say. A finding over several tasks or conditions is supported where all of
+/// them support it; the numbers of each are given.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/app/study/analyse/analysis.h"
+#include "engine/statistics/distributions.h"
+
+namespace catena::app::analysis {
+namespace {
+
+using study::Asks;
+using study::Expect;
+using study::Finding;
+
+/// What the parts of a finding say, gathered.
+struct Parts {
+  int all = 0, borne_out = 0, untested = 0;
+  std::string numbers;
+
+  void add(std::optional<bool> says, const std::string& text) {
+    ++all;
+    if (!says)
+      ++untested;
+    else if (*says)
+      ++borne_out;
+    numbers += (numbers.empty() ? "" : "; ") + text;
+  }
+  Judged judged() const {
+    if (all == 0 || untested > 0) return {Verdict::not_testable, numbers.empty() ? "there is nothing to compare" : numbers};
+    const std::string count = all > 1 ? fmt::format("{} of {}: ", borne_out, all) : "";
+    return {borne_out == all ? Verdict::supported : Verdict::not_supported, count + numbers};
+  }
+};
+
+template <class Items, class Same>
+const typename Items::value_type* find_item(const Items& items, const Same& same) {
+  const auto at = std::find_if(items.begin(), items.end(), same);
+  return at == items.end() ? nullptr : &*at;
+}
+
+Quantity quantity_of(const Finding& f) {
+  const bool time = f.measure == study::Measure::time;
+  return f.of_deviations ? (time ? Quantity::time_deviation : Quantity::error_deviation) : (time ? Quantity::time : Quantity::error);
+}
+
+/// Significant, and the first mean on that side of the second.
+std::optional<bool> first_is(const Paired& paired, Expect expect) {
+  if (!paired.test) return std::nullopt;
+  return paired.corrected < kAlpha && (expect == Expect::lower) == (paired.test->difference < 0);
+}
+
+struct Judge {
+  const Study& study;
+  const Analysis& analysis;
+
+  const std::string& task_name(int task) const { return study.tasks[static_cast<std::size_t>(task)].name; }
+
+  Judged difference(const Finding& f) const {
+    Parts parts;
+    for (const int t : f.tasks)
+      for (const int c : f.conditions) {
+        const Paired* p = find_item(analysis.conditions, [&](const Paired& x) {
+          return x.quantity == quantity_of(f) && x.second == Place{t, c};
+        });
+        // the condition lower: the baseline, which is first, higher
+        parts.add(first_is(*p, f.expect == Expect::lower ? Expect::higher : Expect::lower), task_name(t) + ": " + paired_text(study, *p));
+      }
+    return parts.judged();
+  }
+
+  Judged intervals(const Finding& f) const {
+    Parts parts;
+    const auto mean_of = [&](const Place& place) {
+      return find_item(analysis.means, [&](const Mean& x) { return x.quantity == quantity_of(f) && x.place == place; });
+    };
+    const auto words = [&](const Place& place) {
+      const Mean& m = *mean_of(place);
+      const std::string& name = study.conditions[static_cast<std::size_t>(place.condition)].name;
+      return m.of ? fmt::format("{} {:.3g} to {:.3g} {}", name, m.of->low(), m.of->high(), unit_of(m.quantity)) : name + ": " + m.why_not;
+    };
+    for (const int t : f.tasks)
+      for (const int c : f.conditions) {
+        const Mean& m = *mean_of({t, c});
+        const std::string text = fmt::format("{}: {}, {}", task_name(t), words({t, 0}), words({t, c}));
+        if (!m.overlaps)
+          parts.add(std::nullopt, text);
+        else
+          parts.add(*m.overlaps == (f.expect == Expect::overlap), text + (*m.overlaps ? " (overlap)" : " (apart)"));
+      }
+    return parts.judged();
+  }
+
+  Judged tasks(const Finding& f) const {
+    Parts parts;
+    for (const int c : f.conditions) {
+      const Paired* p = find_item(analysis.tasks, [&](const Paired& x) {
+        return x.quantity == quantity_of(f) && x.first == Place{f.tasks[0], c} && x.second == Place{f.tasks[1], c};
+      });
+      parts.add(first_is(*p, f.expect), study.conditions[static_cast<std::size_t>(c)].name + ": " + paired_text(study, *p));
+    }
+    return parts.judged();
+  }
+
+  Judged correlation(const Finding& f) const {
+    Parts parts;
+    for (const int t : f.tasks)
+      for (const int c : f.conditions) {
+        const Correlated& x = *find_item(analysis.correlations, [&](const Correlated& y) { return y.place == Place{t, c}; });
+        if (!x.of) {
+          parts.add(std::nullopt, place_text(study, x.place) + ": " + x.why_not);
+          continue;
+        }
+        parts.add(x.corrected < kAlpha && (x.of->r < 0) == (f.expect == Expect::negative),
+                  fmt::format("{}: r = {:.3f} ({:.2f} to {:.2f}), p = {} (corrected {})", place_text(study, x.place), x.of->r, x.of->low,
+                              x.of->high, p_text(x.of->p), p_text(x.corrected)));
+      }
+    return parts.judged();
+  }
+
+  Judged weaker(const Finding& f) const {
+    Parts parts;
+    for (const int t : f.tasks)
+      for (const int c : f.conditions) {
+        const Change& x = *find_item(analysis.changes, [&](const Change& y) { return y.place == Place{t, c}; });
+        if (!x.of) {
+          parts.add(std::nullopt, place_text(study, x.place) + ": " + x.why_not);
+          continue;
+        }
+        parts.add(x.corrected < kAlpha && std::fabs(x.of->second) < std::fabs(x.of->first),
+                  fmt::format("{}: r = {:.3f}, baseline {:.3f}, z = {:.2f}, p = {} (corrected {})", place_text(study, x.place),
+                              x.of->second, x.of->first, x.of->z, p_text(x.of->p), p_text(x.corrected)));
+      }
+    return parts.judged();
+  }
+
+  /// Gains of a task over those of every other one, paired over the subjects; a family of its own.
+  Judged largest(const Finding& f) const {
+    Parts parts;
+    const Quantity q = quantity_of(f);
+    for (const int c : f.conditions) {
+      std::vector<std::string> texts;
+      std::vector<std::optional<statistics::PairedTest>> tests;
+      std::vector<double> p;
+      for (int other = 0; other < static_cast<int>(study.tasks.size()); ++other) {
+        if (other == f.tasks[0]) continue;
+        std::vector<double> mine, others;
+        for (std::size_t s = 0; s < analysis.subjects.size(); ++s) {
+          const double a = analysis.value(s, {f.tasks[0], 0}, q) - analysis.value(s, {f.tasks[0], c}, q);
+          const double b = analysis.value(s, {other, 0}, q) - analysis.value(s, {other, c}, q);
+          if (std::isfinite(a) && std::isfinite(b)) mine.push_back(a), others.push_back(b);
+        }
+        const auto test = statistics::paired_test(mine, others, kConfidence);
+        tests.push_back(test ? std::optional(*test) : std::nullopt);
+        if (test) p.push_back(test->p);
+        texts.push_back(test ? fmt::format("gain over that of {}: {:.3g} {} ({:.3g} to {:.3g}), p = {}", task_name(other), test->difference,
+                                           unit_of(q), test->low, test->high, p_text(test->p))
+                             : task_name(other) + ": " + test.error().message);
+      }
+      const std::vector<double> corrected = statistics::holm(p);
+      for (std::size_t i = 0, k = 0; i < tests.size(); ++i) {
+        if (!tests[i]) {
+          parts.add(std::nullopt, texts[i]);
+          continue;
+        }
+        parts.add(corrected[k] < kAlpha && tests[i]->difference > 0, fmt::format("{} (corrected {})", texts[i], p_text(corrected[k])));
+        ++k;
+      }
+    }
+    return parts.judged();
+  }
+
+  Judged rejections(const Finding& f) const {
+    const Rejections all = analysis.all_rejected();
+    if (all.trials == 0) return {Verdict::not_testable, "there are no trials"};
+    const statistics::Interval share = statistics::share_interval(all.rejected(), all.trials, kConfidence);
+    const double theirs = static_cast<double>(f.rejected) / f.trials;
+    return {share.contains(theirs) ? Verdict::supported : Verdict::not_supported,
+            fmt::format("{} of {} were left out, {:.1f} % ({:.1f} to {:.1f}); the paper's share is {:.1f} %", all.rejected(), all.trials,
+                        100.0 * all.rejected() / all.trials, 100 * share.low, 100 * share.high, 100 * theirs)};
+  }
+
+  Judged of(const Finding& f) const {
+    switch (f.asks) {
+      case Asks::difference:
+        return difference(f);
+      case Asks::intervals:
+        return intervals(f);
+      case Asks::tasks:
+        return tasks(f);
+      case Asks::correlation:
+        return correlation(f);
+      case Asks::weaker:
+        return weaker(f);
+      case Asks::largest:
+        return largest(f);
+      case Asks::rejections:
+        return rejections(f);
+      case Asks::none:
+        break;
+    }
+    return {Verdict::not_testable, f.why};
+  }
+};
+
+}  // namespace
+
+void judge_findings(const Study& study, const study::Inquiry& inquiry, Analysis& analysis) {
+  const Judge judge{study, analysis};
+  for (const Finding& finding : inquiry.findings) analysis.findings.push_back(judge.of(finding));
+}
+
+}  // namespace catena::app::analysis
