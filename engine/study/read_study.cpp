@@ -5,6 +5,7 @@
 
 #include "engine/base/text.h"
 #include "engine/schema/table.h"
+#include "engine/study/inquiry.h"
 #include "engine/study/study.h"
 #include "engine/study/trial_scene.h"
 
@@ -103,11 +104,14 @@ const StudyTable<Study>& study_table() {
 
 std::vector<schema::Component> study_components() {
   using Shape = schema::Component::Shape;
-  return {{"study", "What concerns all of it, at the top of the file.", Shape::object, study_table().keys()},
-          {"tasks", "What is seen and asked.", Shape::list, task_table().keys()},
-          {"conditions", "What is felt. The first is the one that the others are compared with.", Shape::list, condition_keys()},
-          {"operator", "The model of a subject for `study simulate`.", Shape::object, operator_table().keys()},
-          {"questionnaire", "What is asked at the end of a session.", Shape::list, question_keys()}};
+  std::vector<schema::Component> all{
+      {"study", "What concerns all of it, at the top of the file.", Shape::object, study_table().keys()},
+      {"tasks", "What is seen and asked.", Shape::list, task_table().keys()},
+      {"conditions", "What is felt. The first is the one that the others are compared with.", Shape::list, condition_keys()},
+      {"operator", "The model of a subject for `study simulate`.", Shape::object, operator_table().keys()},
+      {"questionnaire", "What is asked at the end of a session.", Shape::list, question_keys()}};
+  for (schema::Component& component : inquiry_components()) all.push_back(std::move(component));
+  return all;
 }
 
 Result<Study> parse_study(std::string_view text, const std::string& path) {

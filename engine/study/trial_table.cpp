@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
@@ -80,6 +81,8 @@ Result<Row> parse_row(std::string_view line, const std::string& file, int number
 
 Error system_error(const std::string& path, const char* what) { return Error{fmt::format("{}: {}: {}", path, what, std::strerror(errno))}; }
 
+std::string mark_of(const std::string& folder) { return (fs::path(folder) / "simulated.json").string(); }
+
 std::string text_of_rows(const std::vector<Row>& rows) {
   std::string text = table_header();
   for (const Row& row : rows) text += row_text(row);
@@ -122,6 +125,8 @@ std::string row_text(const Row& row) {
 
 Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& file, bool torn_end, std::size_t* whole) {
   std::vector<Row> rows;
+  const auto lines = static_cast<double>(std::count(text.begin(), text.end(), '\n'));
+  CATENA_CHECK(ask_for_text_memory(one_line(fmt::format("{}: a table of {} rows", file, lines)), lines * 2 * sizeof(Row)));
   std::size_t at = 0;
   int number = 0;
   if (whole != nullptr) *whole = 0;
@@ -255,9 +260,16 @@ Result<std::vector<Row>> read_table(const std::string& folder) {
   return all;
 }
 
+Outcome DataFolder::mark_simulated() const {
+  if (is_simulated(path_)) return Done{};
+  CATENA_TRY(OutputFile file, OutputFile::open(mark_of(path_)));
+  file.write("{\"simulated\": true, \"by\": \"the operator model of study.json; it stands in for nobody\"}\n");
+  return file.commit();
+}
+
 bool is_simulated(const std::string& folder) {
   std::error_code code;
-  return fs::exists(fs::path(folder) / "simulated.json", code);
+  return fs::exists(mark_of(folder), code);
 }
 
 }  // namespace catena::study

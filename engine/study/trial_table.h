@@ -4,6 +4,7 @@
 ///                         line is dropped when the file is read, so that whatever ends the program costs the trial at hand alone
 ///   DIR/recordings/       every tick of a trial, where that was asked for
 ///   DIR/trials.csv        all subjects' rows by their numbers
+///   DIR/simulated.json    there where a model of a person did trials: whoever reads them must know
 /// Doubles in the fewest digits that read back.
 #pragma once
 #include <string>
@@ -58,6 +59,8 @@ class DataFolder {
   Outcome write_subject(int subject, const std::vector<Row>& rows) const;
   /// The numbers of the subjects that have a file, rising.
   Result<std::vector<int>> subjects() const;
+  /// Says that a model of a person does trials here: DIR/simulated.json.
+  Outcome mark_simulated() const;
   /// Writes trials.csv of all of them.
   Outcome write_table() const;
 
@@ -69,7 +72,7 @@ class DataFolder {
 /// The rows of DIR/trials.csv, or of DIR/subjects/*.csv where that is missing.
 Result<std::vector<Row>> read_table(const std::string& folder);
 
-/// Whether a model of a person did some of the trials: the folder then holds simulated.json.
+/// Whether a model of a person did some of the trials (DataFolder::mark_simulated).
 bool is_simulated(const std::string& folder);
 
 }  // namespace catena::study

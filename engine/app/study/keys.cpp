@@ -48,7 +48,7 @@ void add_study_keys(CLI::App& study, Work& chosen) {
   auto part = std::make_shared<std::string>();
   auto is_schema = std::make_shared<bool>(false);
   CLI::App* command = study.add_subcommand("keys", "list what a study file may say");
-  command->add_option("PART", *part, "only this: study, tasks, conditions, operator or questionnaire");
+  command->add_option("PART", *part, "only this: study, tasks, conditions, operator, questionnaire, compare or findings");
   command->add_flag("--schema", *is_schema, "print the JSON Schema of studies instead, for an editor");
   command->callback([&chosen, part, is_schema] {
     chosen = [part, is_schema]() -> Outcome {

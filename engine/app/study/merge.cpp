@@ -50,6 +50,7 @@ Outcome merge(const MergeOptions& options) {
     if (there.empty()) CATENA_CHECK(data.write_subject(number, from.second));
     trials += from.second.size();
   }
+  if (std::any_of(options.folders.begin(), options.folders.end(), study::is_simulated)) CATENA_CHECK(data.mark_simulated());
   CATENA_CHECK(data.write_table());
   fmt::print("{}: {} subjects, {} trials\n", printable(options.output), subjects.size(), trials);
   return Done{};

@@ -130,6 +130,7 @@ Outcome simulate(const SimulateOptions& options) {
   CATENA_TRY(const Shard shard, read_shard(options.shard));
   CATENA_CHECK(study::TrialSimulator(study).check());
   CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study));
+  CATENA_CHECK(data.mark_simulated());
   if (options.record) CATENA_CHECK(study::make_recordings_folder(data.path()));
   const int subjects = options.subjects > 0 ? options.subjects : study.subjects;
   std::vector<Session> sessions;

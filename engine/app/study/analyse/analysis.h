@@ -90,7 +90,9 @@ const char* verdict_word(Verdict verdict);
 
 struct Judged {
   Verdict verdict = Verdict::not_testable;
-  std::string numbers;  ///< what these data say, in words and numbers
+  std::string count;                 ///< "3 of 4", where it has several parts
+  std::vector<std::string> numbers;  ///< what these data say of each part, in words and numbers
+  std::string text() const;          ///< all of it
 };
 
 struct Analysis {
@@ -168,8 +170,12 @@ inline constexpr const char* kModelSentence =
 
 /// "0.0381", "5.3e-04", "< 1e-15", "-".
 std::string p_text(double p);
+/// "p = 0.0381 (corrected 0.11)", "p < 1e-15 (corrected 2.1e-14)".
+std::string p_words(double p, double corrected);
 /// "tracing_3d, iso"
 std::string place_text(const Study& study, const Place& place);
+/// "iso - aniso"; of two tasks "tracing_3d - tracing_2d"
+std::string difference_text(const Study& study, const Paired& paired);
 /// "iso - aniso = 3.21 mm (2.90 to 3.52), t(19) = 7.38, p = 5.3e-04 (corrected 0.0085), d_z = 1.65"; or why there is none
 std::string paired_text(const Study& study, const Paired& paired);
 

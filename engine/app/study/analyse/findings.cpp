@@ -18,7 +18,7 @@ using study::Finding;
 /// What the parts of a finding say, gathered.
 struct Parts {
   int all = 0, borne_out = 0, untested = 0;
-  std::string numbers;
+  std::vector<std::string> numbers;
 
   void add(std::optional<bool> says, const std::string& text) {
     ++all;
@@ -26,12 +26,13 @@ struct Parts {
       ++untested;
     else if (*says)
       ++borne_out;
-    numbers += (numbers.empty() ? "" : "; ") + text;
+    numbers.push_back(text);
   }
   Judged judged() const {
-    if (all == 0 || untested > 0) return {Verdict::not_testable, numbers.empty() ? "there is nothing to compare" : numbers};
-    const std::string count = all > 1 ? fmt::format("{} of {}: ", borne_out, all) : "";
-    return {borne_out == all ? Verdict::supported : Verdict::not_supported, count + numbers};
+    if (all == 0) return {Verdict::not_testable, {}, {"there is nothing to compare"}};
+    if (untested > 0) return {Verdict::not_testable, {}, numbers};
+    return {borne_out == all ? Verdict::supported : Verdict::not_supported, all > 1 ? fmt::format("{} of {}", borne_out, all) : "",
+            numbers};
   }
 };
 
@@ -114,8 +115,8 @@ struct Judge {
           continue;
         }
         parts.add(x.corrected < kAlpha && (x.of->r < 0) == (f.expect == Expect::negative),
-                  fmt::format("{}: r = {:.3f} ({:.2f} to {:.2f}), p = {} (corrected {})", place_text(study, x.place), x.of->r, x.of->low,
-                              x.of->high, p_text(x.of->p), p_text(x.corrected)));
+                  fmt::format("{}: r = {:.3f} ({:.2f} to {:.2f}), {}", place_text(study, x.place), x.of->r, x.of->low, x.of->high,
+                              p_words(x.of->p, x.corrected)));
       }
     return parts.judged();
   }
@@ -130,8 +131,8 @@ struct Judge {
           continue;
         }
         parts.add(x.corrected < kAlpha && std::fabs(x.of->second) < std::fabs(x.of->first),
-                  fmt::format("{}: r = {:.3f}, baseline {:.3f}, z = {:.2f}, p = {} (corrected {})", place_text(study, x.place),
-                              x.of->second, x.of->first, x.of->z, p_text(x.of->p), p_text(x.corrected)));
+                  fmt::format("{}: r = {:.3f}, baseline {:.3f}, z = {:.2f}, {}", place_text(study, x.place), x.of->second, x.of->first,
+                              x.of->z, p_words(x.of->p, x.corrected)));
       }
     return parts.judged();
   }
@@ -141,31 +142,31 @@ struct Judge {
     Parts parts;
     const Quantity q = quantity_of(f);
     for (const int c : f.conditions) {
-      std::vector<std::string> texts;
-      std::vector<std::optional<statistics::PairedTest>> tests;
+      std::vector<Result<statistics::PairedTest>> tests;
+      std::vector<int> others;
       std::vector<double> p;
       for (int other = 0; other < static_cast<int>(study.tasks.size()); ++other) {
         if (other == f.tasks[0]) continue;
-        std::vector<double> mine, others;
+        std::vector<double> mine, theirs;
         for (std::size_t s = 0; s < analysis.subjects.size(); ++s) {
           const double a = analysis.value(s, {f.tasks[0], 0}, q) - analysis.value(s, {f.tasks[0], c}, q);
           const double b = analysis.value(s, {other, 0}, q) - analysis.value(s, {other, c}, q);
-          if (std::isfinite(a) && std::isfinite(b)) mine.push_back(a), others.push_back(b);
+          if (std::isfinite(a) && std::isfinite(b)) mine.push_back(a), theirs.push_back(b);
         }
-        const auto test = statistics::paired_test(mine, others, kConfidence);
-        tests.push_back(test ? std::optional(*test) : std::nullopt);
-        if (test) p.push_back(test->p);
-        texts.push_back(test ? fmt::format("gain over that of {}: {:.3g} {} ({:.3g} to {:.3g}), p = {}", task_name(other), test->difference,
-                                           unit_of(q), test->low, test->high, p_text(test->p))
-                             : task_name(other) + ": " + test.error().message);
+        others.push_back(other);
+        tests.push_back(statistics::paired_test(mine, theirs, kConfidence));
+        if (tests.back()) p.push_back(tests.back()->p);
       }
       const std::vector<double> corrected = statistics::holm(p);
       for (std::size_t i = 0, k = 0; i < tests.size(); ++i) {
+        const std::string name = "gain over that of " + task_name(others[i]) + ": ";
         if (!tests[i]) {
-          parts.add(std::nullopt, texts[i]);
+          parts.add(std::nullopt, name + tests[i].error().message);
           continue;
         }
-        parts.add(corrected[k] < kAlpha && tests[i]->difference > 0, fmt::format("{} (corrected {})", texts[i], p_text(corrected[k])));
+        const statistics::PairedTest& t = *tests[i];
+        parts.add(corrected[k] < kAlpha && t.difference > 0, fmt::format("{}{:.3g} {} ({:.3g} to {:.3g}), {}", name, t.difference,
+                                                                         unit_of(q), t.low, t.high, p_words(t.p, corrected[k])));
         ++k;
       }
     }
@@ -174,12 +175,13 @@ struct Judge {
 
   Judged rejections(const Finding& f) const {
     const Rejections all = analysis.all_rejected();
-    if (all.trials == 0) return {Verdict::not_testable, "there are no trials"};
+    if (all.trials == 0) return {Verdict::not_testable, {}, {"there are no trials"}};
     const statistics::Interval share = statistics::share_interval(all.rejected(), all.trials, kConfidence);
     const double theirs = static_cast<double>(f.rejected) / f.trials;
     return {share.contains(theirs) ? Verdict::supported : Verdict::not_supported,
-            fmt::format("{} of {} were left out, {:.1f} % ({:.1f} to {:.1f}); the paper's share is {:.1f} %", all.rejected(), all.trials,
-                        100.0 * all.rejected() / all.trials, 100 * share.low, 100 * share.high, 100 * theirs)};
+            {},
+            {fmt::format("{} of {} were left out, {:.1f} % ({:.1f} to {:.1f}); the paper's share is {:.1f} %", all.rejected(), all.trials,
+                         100.0 * all.rejected() / all.trials, 100 * share.low, 100 * share.high, 100 * theirs)}};
   }
 
   Judged of(const Finding& f) const {
@@ -201,7 +203,7 @@ struct Judge {
       case Asks::none:
         break;
     }
-    return {Verdict::not_testable, f.why};
+    return {Verdict::not_testable, {}, {f.why}};
   }
 };
 

@@ -33,6 +33,13 @@ std::string numbers_words(const std::vector<int>& numbers) {
   return text;
 }
 
+/// A line a part.
+std::string parts_cell(const Judged& judged) {
+  std::string text = "<td class=\"told\">" + (judged.count.empty() ? "" : escaped(judged.count) + "<br>");
+  for (std::size_t i = 0; i < judged.numbers.size(); ++i) text += (i > 0 ? "<br>" : "") + escaped(judged.numbers[i]);
+  return text + "</td>";
+}
+
 std::string findings_table(const study::Inquiry& inquiry, const Analysis& analysis) {
   std::string text = table_head({"the paper", "its numbers", "these data", "numbers of these data"});
   for (std::size_t i = 0; i < inquiry.findings.size(); ++i) {
@@ -40,7 +47,7 @@ std::string findings_table(const study::Inquiry& inquiry, const Analysis& analys
     const Judged& judged = analysis.findings[i];
     text += fmt::format("<tr{}><td class=\"says\">{}</td>{}<td><b>{}</b></td>{}</tr>\n",
                         judged.verdict == Verdict::supported ? " class=\"chosen\"" : "", escaped(f.paper), cell(f.reported),
-                        verdict_word(judged.verdict), cell(judged.numbers));
+                        verdict_word(judged.verdict), parts_cell(judged));
   }
   return text + kTableEnd + csv_note("findings.csv");
 }
@@ -64,14 +71,18 @@ std::string means_table(const Study& study, const Analysis& analysis) {
   return text + kTableEnd + csv_note("means.csv");
 }
 
-std::string tests_table(const Study& study, const std::vector<Paired>& tests, bool with_measure) {
-  std::string text = table_head({"first", "second", with_measure ? "measure" : "", " first", " second", " difference", " 95 % interval",
-                                 " t(df)", " p", " corrected", " sign flips", " d_z", " 95 % interval", "left out"});
+std::string tests_table(const Study& study, const std::vector<Paired>& tests, const std::string& measure) {
+  std::string text = table_head({"", "first - second", measure, " first", " second", " difference", " 95 % interval", " t(df)", " p",
+                                 " corrected", " sign flips", " d_z", " 95 % interval", "left out"});
   for (const Paired& p : tests) {
     text += p.test && p.corrected < kAlpha ? "<tr class=\"chosen\">" : "<tr>";
     const std::string unit = unit_of(p.quantity);
-    text += cell(place_text(study, p.first)) + cell(place_text(study, p.second)) +
-            cell(with_measure ? quantity_name(p.quantity) + (unit.empty() ? "" : ", " + unit) : "");
+    const bool tasks = p.first.task != p.second.task;
+    text += cell(tasks ? study.conditions[static_cast<std::size_t>(p.first.condition)].name
+                       : study.tasks[static_cast<std::size_t>(p.first.task)].name);
+    text += "<td class=\"whole\">" + escaped(difference_text(study, p)) + "</td>";
+    text +=
+        "<td class=\"whole\">" + (measure.empty() ? "" : escaped(quantity_name(p.quantity) + (unit.empty() ? "" : ", " + unit))) + "</td>";
     if (p.test) {
       const statistics::PairedTest& t = *p.test;
       text += number_cell(p.of_first.mean) + number_cell(p.of_second.mean) + number_cell(t.difference) + interval_cell(t.low, t.high) +
@@ -148,7 +159,8 @@ std::string summary(const Study& study, const Analysis& analysis, const Source& 
   row("trials", fmt::format("{}, of which {} ({:.1f} %) were left out; training, {}, is not counted", all.trials, all.rejected(),
                             all.trials > 0 ? 100.0 * all.rejected() / all.trials : 0.0, analysis.training));
   row("findings", fmt::format("{} supported, {} not supported, {} not testable", counts[0], counts[1], counts[2]));
-  for (const auto& [key, value] : about_this_machine()) row(key.c_str(), value);
+  for (const auto& [key, value] : about_this_machine())
+    if (key == "version" || key == "date") row(key.c_str(), value);
   return text + "</table>\n";
 }
 
@@ -170,7 +182,9 @@ constexpr const char* kHow =
     "of "
     "Raghunathan, Rosenthal and Rubin (1996).</li>\n</ul>\n";
 
-constexpr const char* kPageStyle = "<style>td.says { min-width: 18rem; white-space: normal; }</style>\n";
+constexpr const char* kPageStyle =
+    "<style>td.says { min-width: 16rem; white-space: normal !important; } td.told { min-width: 38rem; } td.whole { white-space: nowrap; "
+    "}</style>\n";
 
 }  // namespace
 
@@ -189,9 +203,9 @@ std::string to_html(const Study& study, const study::Inquiry& inquiry, const Ana
               drawn.means) +
       means_table(study, analysis);
   text += section("Conditions: paired tests", "Means and standard deviations of every subject in one condition against another, paired.") +
-          tests_table(study, analysis.conditions, true) + csv_note("tests.csv");
+          tests_table(study, analysis.conditions, "measure") + csv_note("tests.csv");
   if (!analysis.tasks.empty())
-    text += section("Tasks", "One task against another, paired.") + tests_table(study, analysis.tasks, true) + csv_note("tests.csv");
+    text += section("Tasks", "One task against another, paired.") + tests_table(study, analysis.tasks, "measure") + csv_note("tests.csv");
   text += section("Error and time", "A point is a subject: its mean error over its mean time, as in the paper's Figure 11.",
                   drawn.correlations) +
           correlations_table(study, analysis);
@@ -200,7 +214,7 @@ std::string to_html(const Study& study, const study::Inquiry& inquiry, const Ana
               "Within a subject: the slope of log error on log time over its trials. -1 says that half the time doubles the error, 0 that "
               "haste costs nothing.",
               drawn.trade) +
-      tests_table(study, analysis.trade, false) + csv_note("slopes.csv");
+      tests_table(study, analysis.trade, "") + csv_note("slopes.csv");
   text +=
       section("Trials that were left out", "Beyond the study's limits: " + limits_words(study) + "; or not finished within the trial.") +
       rejections_table(study, analysis);

@@ -14,7 +14,7 @@ namespace {
 constexpr int kShapes[] = {7, 9, 5, 13, 11, 15};  ///< of gnuplot's points: filled ones
 
 std::string look(int condition) {
-  return fmt::format("pt {} ps 1.1 lw 2 lc rgb '{}'", kShapes[static_cast<std::size_t>(condition) % std::size(kShapes)],
+  return fmt::format("pt {} ps 0.7 lw 1.6 lc rgb '{}'", kShapes[static_cast<std::size_t>(condition) % std::size(kShapes)],
                      plot_color(condition));
 }
 
@@ -107,7 +107,7 @@ Plots correlation_plots(const Study& study, const Analysis& analysis) {
 }
 
 Plots trade_plots(const Study& study, const Analysis& analysis) {
-  Plots plots{plot_head(640, 340), {}};
+  Plots plots{plot_head(560, 380), {}};
   add_means_plot(study, analysis, Quantity::slope, all_tasks(study, 0), "the trade: slopes of the subjects",
                  "slope of log error on log time", "trade.svg", plots);
   return plots;

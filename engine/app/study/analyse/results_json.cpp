@@ -89,7 +89,7 @@ std::string json_of_finding(const study::Finding& f, const Judged& judged) {
       .word("reported", f.reported)
       .word("test", study::asks_word(f.asks))
       .word("verdict", verdict_word(judged.verdict))
-      .word("numbers", judged.numbers)
+      .word("numbers", judged.text())
       .text();
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "engine/app/study/analyse/analysis.h"
+#include "engine/base/memory_limit.h"
 #include "engine/base/text.h"
 
 namespace catena::app::analysis {
@@ -112,7 +113,11 @@ Outcome sum_up_subjects(const Study& study, const std::vector<study::Row>& rows,
   analysis.subjects.erase(std::unique(analysis.subjects.begin(), analysis.subjects.end()), analysis.subjects.end());
 
   const std::size_t places = analysis.tasks_count * analysis.conditions_count;
-  analysis.cells.resize(analysis.subjects.size() * places);
+  const std::size_t count = analysis.subjects.size() * places;
+  CATENA_CHECK(
+      ask_for_text_memory(one_line(fmt::format("{}: {} subjects in {} tasks and conditions", where, analysis.subjects.size(), places)),
+                          static_cast<double>(count) * (sizeof(Cell) + sizeof(Kept))));
+  analysis.cells.resize(count);
   analysis.rejections.resize(places);
   std::vector<Kept> kept(analysis.cells.size());
   for (const study::Row& row : rows) {

@@ -139,7 +139,7 @@ std::string findings_csv(const study::Inquiry& inquiry, const Analysis& analysis
   for (std::size_t i = 0; i < inquiry.findings.size(); ++i) {
     const study::Finding& f = inquiry.findings[i];
     table.add(verdict_word(analysis.findings[i].verdict)).add(study::asks_word(f.asks));
-    table.add(csv_words(f.paper)).add(csv_words(f.reported)).add(csv_words(analysis.findings[i].numbers));
+    table.add(csv_words(f.paper)).add(csv_words(f.reported)).add(csv_words(analysis.findings[i].text()));
     table.end_row();
   }
   return table.text();

@@ -1,0 +1,377 @@
+/// `catena study analyse` and `study power`: what is planted is found as often as the power says, and what is not, as seldom as alpha says;
+/// each kind of finding; subjects with gaps; hostile rows; the command from the outside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+#include "engine/app/study/analyse/analysis.h"
+#include "engine/base/json.h"
+#include "engine/statistics/distributions.h"
+#include "engine/statistics/power.h"
+#include "tests/support/program.h"
+#include "tests/support/support.h"
+
+namespace study_analyse_test {
+
+using namespace catena;
+using namespace catena::app::analysis;
+using study::Row;
+
+/// Two tasks in two conditions, with findings of all kinds.
+const std::string kStudy = R"({
+  "name": "two tasks", "subjects": 20, "trials": 10, "training": 0,
+  "tasks": [
+    {"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow",
+     "limits": {"reject_error_mm": 30, "reject_time_s": 12},
+     "scene": {
+       "fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": "$seed"}},
+       "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]},
+       "workspace": {"metres_per_unit": 0.05}}},
+    {"name": "follow", "kind": "advection", "dimensions": 3, "field": "flow",
+     "limits": {"reject_error_mm": 100, "reject_time_s": 15},
+     "scene": {
+       "fields": {"flow": {"analytic": "vortices", "dimensions": 3, "seed": "$seed"}},
+       "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]},
+       "workspace": {"metres_per_unit": 0.05}}}],
+  "conditions": [{"name": "free", "chain": []}, {"name": "held", "chain": []}],
+  "compare": [{"tasks": ["follow", "trace"]}],
+  "findings": [
+    {"paper": "held is more accurate", "test": "difference", "measure": "error", "tasks": ["trace"]},
+    {"paper": "held is steadier", "test": "difference", "measure": "error", "of": "deviation", "tasks": ["trace"]},
+    {"paper": "the times' intervals overlap", "test": "intervals", "measure": "time", "expect": "overlap"},
+    {"paper": "to follow is less accurate", "test": "tasks", "measure": "error", "tasks": ["follow", "trace"], "expect": "higher"},
+    {"paper": "haste costs accuracy", "test": "correlation", "tasks": ["trace"], "conditions": ["free"]},
+    {"paper": "less so when held", "test": "weaker", "tasks": ["trace"]},
+    {"paper": "the gain is largest when tracing", "test": "largest", "measure": "error", "tasks": ["trace"]},
+    {"paper": "3 of 400 were rejected", "test": "rejections", "rejected": 3, "trials": 400},
+    {"paper": "they liked it", "test": "none", "why": "nobody was asked"}]
+})";
+
+struct Made {
+  Study study = study::parse_study(kStudy, "two.json").value();
+  study::Inquiry inquiry = study::read_inquiry(study).value();
+};
+const Made& made() {
+  static const Made m;
+  return m;
+}
+
+/// What a table is made with: of the errors of `trace`, in units of the standard deviation of the differences of means.
+struct Planted {
+  double effect = 0;  ///< d_z of free - held
+  double haste = 0;   ///< correlation of error and time over subjects, negative where haste costs; of `free` alone
+  int subjects = 20, trials = 10;
+};
+
+std::vector<Row> table(std::mt19937_64& random, const Planted& planted) {
+  std::normal_distribution<double> normal;
+  constexpr double spread = 1, noise = 1;
+  // the differences of means over `trials` have this deviation
+  const double deviation = std::sqrt(spread * spread + 2 * noise * noise / planted.trials);
+  std::vector<Row> rows;
+  for (int subject = 1; subject <= planted.subjects; ++subject) {
+    int index = 0;
+    for (const char* task : {"trace", "follow"}) {
+      const bool trace = std::string(task) == "trace";
+      const double level = normal(random), pace = normal(random);
+      const double gain = (trace ? planted.effect * deviation : 0) + spread * normal(random), later = 0.5 * normal(random);
+      for (int condition = 0; condition < 2; ++condition)
+        for (int k = 0; k < planted.trials; ++k) {
+          const double haste = condition == 0 && trace ? planted.haste * pace : 0;
+          Row row{.subject = subject,
+                  .index = index,
+                  .block = trace ? 0 : 1,
+                  .task = task,
+                  .kind = trace ? "tracing" : "advection",
+                  .dimensions = trace ? 2 : 3,
+                  .condition = condition == 0 ? "free" : "held",
+                  .stimulus = k,
+                  .seed = k};
+          row.error_mm = 14 + (trace ? 0 : 20) + level + haste - (condition == 1 ? gain : 0) + noise * normal(random);
+          row.time_s = 6 + 0.8 * pace + (condition == 1 ? later : 0) + 0.3 * normal(random);
+          rows.push_back(row);
+          ++index;
+        }
+    }
+  }
+  return rows;
+}
+
+Analysis analysed(const std::vector<Row>& rows) { return analyse(made().study, made().inquiry, rows, "data").value(); }
+
+const Paired& difference(const Analysis& a, Quantity q, int task) {
+  for (const Paired& p : a.conditions)
+    if (p.quantity == q && p.first.task == task) return p;
+  throw std::logic_error("no such test");
+}
+
+const Judged& finding(const Analysis& a, const std::string& paper) {
+  for (std::size_t i = 0; i < a.findings.size(); ++i)
+    if (made().inquiry.findings[i].paper == paper) return a.findings[i];
+  throw std::logic_error(paper);
+}
+
+/// 400 tables, or so many as CATENA_STUDY_TABLES says.
+int table_count() {
+  const char* text = std::getenv("CATENA_STUDY_TABLES");
+  return text != nullptr ? std::atoi(text) : 400;
+}
+
+TEST(StudyRecovery, APlantedDifferenceIsFoundAtTheStatedPower) {
+  const double power = statistics::paired_power(0.5, 20, 0.05);
+  EXPECT_NEAR(power, 0.5645, 1e-4);
+  std::mt19937_64 random(11);
+  const int tables = table_count();
+  int found = 0, by_flips = 0, supported = 0, elsewhere = 0;
+  for (int i = 0; i < tables; ++i) {
+    const Analysis a = analysed(table(random, {.effect = 0.5}));
+    EXPECT_EQ(a.all_rejected().rejected(), 0);
+    const Paired& p = difference(a, Quantity::error, 0);
+    found += p.test->p < 0.05 ? 1 : 0;
+    by_flips += p.flips->p < 0.05 ? 1 : 0;
+    supported += finding(a, "held is more accurate").verdict == Verdict::supported ? 1 : 0;
+    elsewhere += difference(a, Quantity::error, 1).test->p < 0.05 ? 1 : 0;
+  }
+  const auto share = statistics::share_interval(found, tables, 0.99), false_share = statistics::share_interval(elsewhere, tables, 0.99);
+  std::printf("planted d_z 0.5: found in %d of %d tables (power %.4f), by sign flips in %d, after correction in %d; nothing planted: %d\n",
+              found, tables, power, by_flips, supported, elsewhere);
+  EXPECT_TRUE(share.contains(power)) << found;
+  EXPECT_TRUE(false_share.contains(0.05)) << elsewhere;
+  // the correction for eight tests costs power, but what it leaves was found before it, too
+  EXPECT_LT(supported, found);
+  EXPECT_GT(supported, 0.15 * tables);
+  EXPECT_TRUE(statistics::share_interval(by_flips, tables, 0.999).contains(power)) << by_flips;
+}
+
+TEST(StudyRecovery, WhereNothingIsPlantedAlphaIsKept) {
+  std::mt19937_64 random(12);
+  const int tables = table_count();
+  int tests = 0, found = 0, by_flips = 0, families = 0, correlations = 0, trades = 0;
+  for (int i = 0; i < tables; ++i) {
+    const Analysis a = analysed(table(random, {}));
+    bool any = false;
+    for (const Paired& p : a.conditions) {
+      ++tests;
+      found += p.test->p < 0.05 ? 1 : 0;
+      by_flips += p.flips->p < 0.05 ? 1 : 0;
+      any = any || p.corrected < 0.05;
+    }
+    families += any ? 1 : 0;
+    for (const Correlated& c : a.correlations) correlations += c.of->p < 0.05 ? 1 : 0;
+    for (const Paired& p : a.trade) trades += p.test->p < 0.05 ? 1 : 0;
+  }
+  std::printf(
+      "nothing planted: %d of %d tests below 0.05, %d by sign flips; %d of %d families after correction; %d of %d correlations; %d of %d "
+      "trades\n",
+      found, tests, by_flips, families, tables, correlations, 4 * tables, trades, 2 * tables);
+  EXPECT_TRUE(statistics::share_interval(found, tests, 0.99).contains(0.05)) << found;
+  EXPECT_TRUE(statistics::share_interval(by_flips, tests, 0.99).contains(0.05)) << by_flips;
+  EXPECT_LE(statistics::share_interval(families, tables, 0.99).low, 0.05) << families;
+  EXPECT_TRUE(statistics::share_interval(correlations, 4 * tables, 0.99).contains(0.05)) << correlations;
+  EXPECT_TRUE(statistics::share_interval(trades, 2 * tables, 0.99).contains(0.05)) << trades;
+}
+
+TEST(StudyFindings, AreJudgedByTheirTests) {
+  std::mt19937_64 random(5);
+  const Analysis clear = analysed(table(random, {.effect = 3, .haste = -3}));
+  for (const char* paper : {"held is more accurate", "the times' intervals overlap", "to follow is less accurate", "haste costs accuracy",
+                            "less so when held", "the gain is largest when tracing"})
+    EXPECT_EQ(finding(clear, paper).verdict, Verdict::supported) << paper << ": " << finding(clear, paper).text();
+  EXPECT_EQ(finding(clear, "held is steadier").verdict, Verdict::not_supported);
+  EXPECT_EQ(finding(clear, "3 of 400 were rejected").verdict, Verdict::supported);
+  EXPECT_EQ(finding(clear, "they liked it").verdict, Verdict::not_testable);
+  EXPECT_EQ(finding(clear, "they liked it").text(), "nobody was asked");
+  EXPECT_TRUE(finding(clear, "the times' intervals overlap").text().starts_with("2 of 2: trace: free "));
+
+  // the other way round, and without any
+  const Analysis turned = analysed(table(random, {.effect = -3, .haste = 3})), none = analysed(table(random, {}));
+  for (const Analysis* a : {&turned, &none})
+    for (const char* paper : {"held is more accurate", "haste costs accuracy", "the gain is largest when tracing"})
+      EXPECT_EQ(finding(*a, paper).verdict, Verdict::not_supported) << paper;
+  // one subject: nothing can be said
+  const Analysis one = analysed(table(random, {.effect = 3, .subjects = 1}));
+  for (const char* paper : {"held is more accurate", "to follow is less accurate", "haste costs accuracy", "less so when held",
+                            "the gain is largest when tracing", "the times' intervals overlap"})
+    EXPECT_EQ(finding(one, paper).verdict, Verdict::not_testable) << paper;
+  EXPECT_NE(finding(one, "held is more accurate").text().find("at least 2 values are needed, there is 1"), std::string::npos);
+}
+
+TEST(StudyRejections, AreCountedOnceByTheirReasonAndKeptOut) {
+  std::mt19937_64 random(6);
+  std::vector<Row> rows = table(random, {});
+  rows[0].error_mm = 31, rows[1].time_s = 12.5, rows[2].error_mm = 40, rows[2].time_s = 13, rows[3].by_target = false, rows[3].time_s = 30;
+  rows[4].training = true, rows[4].error_mm = 1e6;
+  rows[5].error_mm = 30, rows[6].time_s = 12;  // within the limits, which belong to them
+  const Analysis a = analysed(rows);
+  const Rejections& r = a.rejected({0, 0});
+  EXPECT_EQ(r.trials, 199);
+  EXPECT_EQ(r.error, 1);
+  EXPECT_EQ(r.time, 1);
+  EXPECT_EQ(r.both, 1);
+  EXPECT_EQ(r.unfinished, 1);
+  EXPECT_EQ(a.training, 1);
+  EXPECT_EQ(a.cell(0, {0, 0}).kept, 5);
+  EXPECT_LT(a.value(0, {0, 0}, Quantity::error), 30);
+}
+
+TEST(StudyGaps, SubjectsAreLeftOutByName) {
+  std::mt19937_64 random(7);
+  std::vector<Row> rows = table(random, {.subjects = 12});
+  for (Row& row : rows) {
+    if (row.subject == 4 && row.task == "trace" && row.condition == "held") row.error_mm = 99;  // all rejected
+    row.subject *= 10;
+  }
+  std::erase_if(rows, [](const Row& row) { return row.subject == 70 && row.task == "follow"; });
+  const Analysis a = analysed(rows);
+  EXPECT_EQ(difference(a, Quantity::error, 0).left_out, std::vector<int>{40});
+  EXPECT_EQ(difference(a, Quantity::error, 0).test->n, 11);
+  EXPECT_EQ(difference(a, Quantity::time_deviation, 1).left_out, std::vector<int>{70});
+  EXPECT_EQ(a.tasks.front().left_out, std::vector<int>{70});       // free
+  EXPECT_EQ(a.tasks.back().left_out, (std::vector<int>{40, 70}));  // held
+  ASSERT_EQ(a.gaps.size(), 3u);
+  EXPECT_EQ(a.gaps[0], "subject 40: no kept trial of trace, held (10 done)");
+  EXPECT_EQ(a.gaps[1], "subject 70: no kept trial of follow, free (0 done)");
+  EXPECT_NE(tests_csv(made().study, a).find(",40 70,"), std::string::npos);
+}
+
+TEST(StudyRows, OfAnotherDesignAreRefusedInALine) {
+  std::mt19937_64 random(8);
+  const std::vector<Row> good = table(random, {.subjects = 2});
+  const auto says = [&](const auto& change, const std::string& words) {
+    std::vector<Row> rows = good;
+    change(rows[7]);
+    const auto result = analyse(made().study, made().inquiry, rows, "DIR");
+    ASSERT_FALSE(result) << words;
+    EXPECT_TRUE(result.error().message.starts_with("DIR: subject ")) << result.error().message;
+    EXPECT_NE(result.error().message.find(words), std::string::npos) << result.error().message;
+    EXPECT_EQ(result.error().message.find('\n'), std::string::npos);
+  };
+  says([](Row& row) { row.task = "tracce"; }, "no task \"tracce\" (did you mean \"trace\"?); trace or follow was expected");
+  says([](Row& row) { row.condition = "x\ny"; }, "no condition");
+  says([](Row& row) { row.dimensions = 3; }, "\"tracing\" in 3D; tracing in 2D was expected of the task \"trace\"");
+  says([](Row& row) { row.error_mm = -1; }, "a negative error or time");
+  says([](Row& row) { row.index = 6; }, "is there twice");
+}
+
+TEST(StudyInquiry, MistakesInTheFileAreNamedByLine) {
+  const auto says = [&](const std::string& from, const std::string& to, const std::string& words) {
+    std::string text = kStudy;
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+    const auto study = study::parse_study(text, "s.json");
+    ASSERT_TRUE(study) << study.error().message;
+    const auto inquiry = study::read_inquiry(*study);
+    ASSERT_FALSE(inquiry) << to;
+    EXPECT_TRUE(inquiry.error().message.starts_with("s.json:")) << inquiry.error().message;
+    EXPECT_NE(inquiry.error().message.find(words), std::string::npos) << inquiry.error().message;
+  };
+  says("\"test\": \"weaker\"", "\"test\": \"weakest\"", "weaker");
+  says("\"rejected\": 3, \"trials\": 400", "\"rejected\": 3, \"trials\": 2", "is no share");
+  says("\"why\": \"nobody was asked\"", "\"reported\": \"\"", "\"why\" is missing");
+  says("\"tasks\": [\"trace\"], \"conditions\": [\"free\"]", "\"tasks\": [\"trac\"]", "did you mean \"trace\"?");
+  says("[\"follow\", \"trace\"], \"expect\"", "[\"trace\", \"follow\"], \"expect\"", "no pair that \"compare\" has");
+  says("\"expect\": \"overlap\"", "\"expect\": \"lower\"", "apart or overlap was expected");
+  says("\"test\": \"none\", ", "\"test\": \"none\", \"tasks\": [\"trace\"], ", "means nothing to the test \"none\"");
+  says("\"of\": \"deviation\", ", "\"of\": \"deviation\", \"conditions\": [\"free\"], ", "names the first condition");
+  says("{\"tasks\": [\"follow\", \"trace\"]}", "{\"tasks\": [\"follow\"]}", "names no two tasks");
+  says("{\"tasks\": [\"follow\", \"trace\"]}", "{\"tasks\": [\"follow\", \"follow\"]}", "stands twice");
+}
+
+/// A data folder as `study run` leaves it.
+void write_data(const std::string& folder, const std::vector<Row>& rows) {
+  std::filesystem::create_directories(folder);
+  test::write_file(folder + "/study.json", kStudy);
+  std::string text = study::table_header();
+  for (const Row& row : rows) text += study::row_text(row);
+  test::write_file(folder + "/trials.csv", text);
+}
+
+TEST(StudyAnalyse, WritesTablesAndAPageThatStandsAlone) {
+  test::TemporaryFolder folder;
+  std::mt19937_64 random(9);
+  std::vector<Row> rows = table(random, {.effect = 3, .haste = -3});
+  std::erase_if(rows, [](const Row& row) { return row.subject == 5 && row.task == "follow"; });
+  write_data(folder / "data", rows);
+  const auto run = test::run_catena({"study", "analyse", folder / "data", "-o", folder / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("20 subjects, 780 trials, 0 left out"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("supported: held is more accurate"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("model"), std::string::npos) << run.out;
+
+  const test::Table tests = test::Table::read(folder / "out/tests.csv");
+  EXPECT_EQ(tests.rows(), 12u);
+  EXPECT_EQ(tests.word(0, "family"), "conditions");
+  EXPECT_EQ(tests.number(0, "n"), 20);
+  EXPECT_NEAR(tests.number(0, "d_z"), tests.number(0, "t") / std::sqrt(20), 1e-12);
+  EXPECT_EQ(tests.word(4, "left_out"), "5");
+  EXPECT_EQ(test::Table::read(folder / "out/subjects.csv").rows(), 80u);
+  EXPECT_EQ(test::read_file(folder / "out/trials.csv"), test::read_file(folder / "data/trials.csv"));
+  const std::string json = test::read_file(folder / "out/results.json");
+  ASSERT_TRUE(json::parse(json, "results.json"));
+  EXPECT_NE(json.find("\"simulated\": false"), std::string::npos);
+
+  const std::string page = test::read_file(folder / "out/report.html");
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  for (const char* away : {"src=", "href=\"http", "url(", "@import"}) EXPECT_EQ(page.find(away), std::string::npos) << away;
+  EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
+  EXPECT_NE(page.find("subject 5: no kept trial of follow, free"), std::string::npos);
+  EXPECT_NE(page.find("3 of 400 were rejected"), std::string::npos);
+
+  // the same data again: the same tables to the bit; and of a model: it is said wherever the results are
+  test::write_file(folder / "data/simulated.json", "{}");
+  const auto again = test::run_catena({"study", "analyse", folder / "data", "-o", folder / "again"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  for (const char* name : {"tests.csv", "means.csv", "correlations.csv", "slopes.csv", "rejections.csv", "findings.csv", "subjects.csv"})
+    EXPECT_EQ(test::read_file(folder / ("out/" + std::string(name))), test::read_file(folder / ("again/" + std::string(name)))) << name;
+  for (const std::string& text : {again.out, test::read_file(folder / "again/report.html"), test::read_file(folder / "again/results.json")})
+    EXPECT_NE(text.find("cannot stand in for people"), std::string::npos);
+}
+
+TEST(StudyAnalyse, BadInputIsALineAndLeavesNothing) {
+  test::TemporaryFolder folder;
+  std::mt19937_64 random(10);
+  const std::vector<Row> rows = table(random, {.subjects = 2, .trials = 2});
+  const auto refused = [&](const std::string& data, const std::string& out, const std::string& words) {
+    const auto run = test::run_catena({"study", "analyse", data, "-o", out});
+    EXPECT_EQ(run.exit_code, 2) << run.out;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  };
+  refused(folder / "nothing", folder / "out", "study.json");
+  write_data(folder / "empty", {});
+  refused(folder / "empty", folder / "out", "there are no trials");
+  write_data(folder / "data", rows);
+  refused(folder / "data", folder / "data", "trials.csv");
+  const std::string text = test::read_file(folder / "data/trials.csv");
+  test::write_file(folder / "data/trials.csv", "subject,time\n1,2\n");
+  refused(folder / "data", folder / "out", "trials.csv:1: ");
+  test::write_file(folder / "data/trials.csv", text + "1,2,3\n");
+  refused(folder / "data", folder / "out", "trials.csv:18: 3 cells");
+  std::string inf = text;
+  inf.replace(inf.find(",target,") + 8, 1, "inf");
+  test::write_file(folder / "data/trials.csv", inf);
+  refused(folder / "data", folder / "out", "trials.csv:2: ");
+  EXPECT_FALSE(test::exists(folder / "out"));
+}
+
+TEST(StudyPower, SaysHowManySubjectsADesignNeeds) {
+  test::TemporaryFolder folder;
+  test::write_file(folder / "study.json", kStudy);
+  const auto run = test::run_catena({"study", "power", folder / "study.json", "--effect", "0.5"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("one test at alpha = 0.05: 34 subjects for a power of 0.8; the design's 20 have 0.565"), std::string::npos)
+      << run.out;
+  EXPECT_NE(run.out.find("the strictest of the 8 tests"), std::string::npos) << run.out;
+  for (const auto& [option, value] :
+       {std::pair{"--effect", "0"}, {"--effect", "nan"}, {"--power", "1"}, {"--alpha", "0"}, {"--power", "0.01"}}) {
+    std::vector<std::string> words{"study", "power", folder / "study.json", option, value};
+    if (std::string(option) != "--effect") words.insert(words.end(), {"--effect", "0.5"});
+    const auto bad = test::run_catena(words);
+    EXPECT_EQ(bad.exit_code, 2) << option << " " << value << bad.out;
+    EXPECT_NE(bad.err.find("expected"), std::string::npos) << bad.err;
+  }
+}
+
+}  // namespace study_analyse_test

@@ -1,0 +1,108 @@
+/// Tables of trials and questions about them out of hostile hands: what is read can be written and read again; else one line.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/study/inquiry.h"
+#include "engine/study/trial_table.h"
+#include "tests/fuzz/mutate.h"
+
+namespace catena {
+namespace trial_table_fuzz_test {
+
+const std::string kRows =
+    study::table_header() +
+    "1,0,0,trace,tracing,2,free,0,17,0,target,4.25,3.5,104.2,1.75,12,-3,0\r\n1,1,0,trace,tracing,2,held,0,17,1,limit,30,1e-3,4,0,0,0,0\n"
+    "12,7,1,follow,advection,3,free,9,2000000000,0,target,0.125,99.5,1e3,10,-1e-300,2,3\n";
+
+const std::string kStudy = R"({"name": "s", "tasks": [
+ {"name": "trace", "kind": "tracing", "dimensions": 2, "field": "f", "scene": {"fields": {"f": {"analytic": "vortices"}},
+  "camera": {"position": [0, 0, 8], "target": [0, 0, 0]}, "workspace": {"metres_per_unit": 0.05}}},
+ {"name": "other", "kind": "tracing", "dimensions": 2, "field": "f", "scene": {"fields": {"f": {"analytic": "vortices"}},
+  "camera": {"position": [0, 0, 8], "target": [0, 0, 0]}, "workspace": {"metres_per_unit": 0.05}}}],
+ "conditions": [{"name": "free", "chain": []}, {"name": "held", "chain": []}], )";
+const std::string kAsked = R"("compare": [{"tasks": ["trace", "other"]}], "findings": [
+ {"paper": "p", "reported": "r", "test": "difference", "measure": "time", "of": "deviation", "expect": "higher", "conditions": ["held"]},
+ {"paper": "p", "test": "tasks", "tasks": ["trace", "other"]}, {"paper": "p", "test": "largest", "tasks": ["trace"]},
+ {"paper": "p", "test": "rejections", "rejected": 3, "trials": 9}, {"paper": "p", "test": "none", "why": "w"}]})";
+
+void check_message(const std::string& message, const char* file, const std::string& text) {
+  EXPECT_TRUE(message.starts_with(file)) << message << "\nfor\n" << text;
+  EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message << "\nfor\n" << text;
+  EXPECT_LT(message.size(), 600u) << message;
+}
+
+bool check(const std::string& text) {
+  const auto rows = study::parse_rows(text, "t.csv");
+  if (!rows) {
+    check_message(rows.error().message, "t.csv:", text);
+    return false;
+  }
+  std::string again = study::table_header();
+  for (const study::Row& row : *rows) {
+    EXPECT_TRUE(std::isfinite(row.time_s) && std::isfinite(row.error_mm) && row.subject >= 0 && !row.task.empty()) << text;
+    again += study::row_text(row);
+  }
+  const auto back = study::parse_rows(again, "t.csv");
+  EXPECT_TRUE(back && *back == *rows) << text;
+  return true;
+}
+
+bool check_inquiry(const std::string& text) {
+  const auto study = study::parse_study(text, "s.json");
+  if (!study) return false;
+  const auto inquiry = study::read_inquiry(*study);
+  if (!inquiry) {
+    check_message(inquiry.error().message, "s.json:", text);
+    return false;
+  }
+  for (const study::Finding& f : inquiry->findings)
+    for (const int task : f.tasks) EXPECT_TRUE(task >= 0 && task < 2) << text;
+  return true;
+}
+
+TEST(TrialTableFuzz, TheSeedsAreValid) {
+  EXPECT_TRUE(check(kRows));
+  EXPECT_EQ(study::parse_rows(kRows, "t.csv")->size(), 3u);
+  EXPECT_TRUE(check_inquiry(kStudy + kAsked));
+}
+
+TEST(TrialTableFuzz, EveryTruncationAndEveryByteTurned) {
+  for (std::size_t n = 0; n < kRows.size(); ++n) {
+    check(kRows.substr(0, n));
+    std::string text = kRows;
+    text[n] = static_cast<char>(text[n] ^ 0x81);
+    check(text);
+  }
+}
+
+TEST(TrialTableFuzz, Mutations) {
+  test::Inputs inputs(10000, 29);
+  std::uint64_t read = 0;
+  const std::string header = study::table_header(), rows = kRows.substr(header.size());
+  while (inputs.next() && !HasFailure()) {
+    // mostly of the rows: a broken header hides them
+    const std::string text = inputs.random.below(8) == 0 ? test::mutate(kRows, inputs.random) : header + test::mutate(rows, inputs.random);
+    read += check(text) ? 1 : 0;
+  }
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, inputs.count());
+}
+
+TEST(TrialTableFuzz, MutationsOfWhatIsAsked) {
+  test::Inputs inputs(2000, 30);
+  std::uint64_t read = 0;
+  while (inputs.next() && !HasFailure()) read += check_inquiry(kStudy + test::mutate(kAsked, inputs.random)) ? 1 : 0;
+  EXPECT_GT(read, 0u);
+  EXPECT_LT(read, inputs.count());
+}
+
+TEST(TrialTableFuzz, LongTexts) {
+  EXPECT_FALSE(check(study::table_header() + std::string(1000000, ',')));
+  EXPECT_FALSE(check(std::string(1000000, ',')));
+  EXPECT_FALSE(check(study::table_header() + std::string(1000000, '9')));
+  EXPECT_TRUE(check(study::table_header() + std::string(100000, '\n')));
+}
+
+}  // namespace trial_table_fuzz_test
+}  // namespace catena
