@@ -57,7 +57,6 @@ double drawn_share(std::span<const double> values, double bound, std::uint64_t s
 }  // namespace
 
 Result<SignFlipTest> sign_flip_test(std::span<const double> differences, std::uint64_t seed) {
-  constexpr int kDraws = 10'000;
   CATENA_CHECK(check_values(differences, 2));
   double size = 0;
   for (const double d : differences) size += std::fabs(d);
@@ -67,7 +66,8 @@ Result<SignFlipTest> sign_flip_test(std::span<const double> differences, std::ui
   if (bound <= 0) return SignFlipTest{1, true, std::ldexp(1.0, static_cast<int>(differences.size()))};
   if (differences.size() <= kMaxExactFlips)
     return SignFlipTest{exact_share(differences, bound), true, std::ldexp(1.0, static_cast<int>(differences.size()))};
-  return SignFlipTest{drawn_share(differences, bound, seed, kDraws), false, kDraws};
+  const int draws = static_cast<int>(std::clamp<std::size_t>(20'000'000 / differences.size(), 100, 10'000));
+  return SignFlipTest{drawn_share(differences, bound, seed, draws), false, static_cast<double>(draws)};
 }
 
 }  // namespace catena::statistics

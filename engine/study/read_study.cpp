@@ -138,6 +138,7 @@ Result<Study> parse_study(std::string_view text, const std::string& path) {
     CATENA_CHECK(operator_table().read(kNone, *model, study.model));
   }
   CATENA_CHECK(read_items(root, "questionnaire", 0, study.questions, read_question));
+  CATENA_CHECK(read_inquiry(study));  // a mistake there is told before the first subject comes
   return study;
 }
 

@@ -50,12 +50,11 @@ bool check(const std::string& text) {
 
 bool check_inquiry(const std::string& text) {
   const auto study = study::parse_study(text, "s.json");
-  if (!study) return false;
-  const auto inquiry = study::read_inquiry(*study);
-  if (!inquiry) {
-    check_message(inquiry.error().message, "s.json:", text);
+  if (!study) {
+    check_message(study.error().message, "s.json:", text);
     return false;
   }
+  const auto inquiry = study::read_inquiry(*study);
   for (const study::Finding& f : inquiry->findings)
     for (const int task : f.tasks) EXPECT_TRUE(task >= 0 && task < 2) << text;
   return true;

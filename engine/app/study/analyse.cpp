@@ -40,7 +40,8 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   progress.at(1);
   CATENA_TRY(const analysis::Analysis result, analysis::analyse(study, inquiry, rows, data));
   progress.at(2);
-  const analysis::Source source{fs::path(data).lexically_normal().string(), study::is_simulated(data)};
+  std::error_code code;
+  const analysis::Source source{fs::weakly_canonical(data, code).filename().string(), study::is_simulated(data)};
 
   const std::vector<std::pair<std::string, std::string>> files{{"trials.csv", trials_csv(rows)},
                                                                {"subjects.csv", analysis::subjects_csv(study, result)},

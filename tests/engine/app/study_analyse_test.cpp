@@ -8,6 +8,7 @@
 
 #include "engine/app/study/analyse/analysis.h"
 #include "engine/base/json.h"
+#include "engine/base/memory_limit.h"
 #include "engine/statistics/distributions.h"
 #include "engine/statistics/power.h"
 #include "tests/support/program.h"
@@ -45,7 +46,7 @@ const std::string kStudy = R"({
     {"paper": "haste costs accuracy", "test": "correlation", "tasks": ["trace"], "conditions": ["free"]},
     {"paper": "less so when held", "test": "weaker", "tasks": ["trace"]},
     {"paper": "the gain is largest when tracing", "test": "largest", "measure": "error", "tasks": ["trace"]},
-    {"paper": "3 of 400 were rejected", "test": "rejections", "rejected": 3, "trials": 400},
+    {"paper": "1 of 400 was rejected", "test": "rejections", "rejected": 1, "trials": 400},
     {"paper": "they liked it", "test": "none", "why": "nobody was asked"}]
 })";
 
@@ -180,7 +181,7 @@ TEST(StudyFindings, AreJudgedByTheirTests) {
                             "less so when held", "the gain is largest when tracing"})
     EXPECT_EQ(finding(clear, paper).verdict, Verdict::supported) << paper << ": " << finding(clear, paper).text();
   EXPECT_EQ(finding(clear, "held is steadier").verdict, Verdict::not_supported);
-  EXPECT_EQ(finding(clear, "3 of 400 were rejected").verdict, Verdict::supported);
+  EXPECT_EQ(finding(clear, "1 of 400 was rejected").verdict, Verdict::supported);
   EXPECT_EQ(finding(clear, "they liked it").verdict, Verdict::not_testable);
   EXPECT_EQ(finding(clear, "they liked it").text(), "nobody was asked");
   EXPECT_TRUE(finding(clear, "the times' intervals overlap").text().starts_with("2 of 2: trace: free "));
@@ -255,20 +256,26 @@ TEST(StudyRows, OfAnotherDesignAreRefusedInALine) {
   says([](Row& row) { row.index = 6; }, "is there twice");
 }
 
+TEST(StudyRows, OfAHugeTableAreRefusedWhereMemoryIsShort) {
+  set_memory_limit(std::uint64_t{2} << 20);
+  const auto rows = study::parse_rows(study::table_header() + std::string(100'000, '\n'), "DIR/trials.csv");
+  set_memory_limit(std::nullopt);
+  ASSERT_FALSE(rows);
+  EXPECT_TRUE(rows.error().message.starts_with("DIR/trials.csv: a table of 100001 rows needs ")) << rows.error().message;
+}
+
 TEST(StudyInquiry, MistakesInTheFileAreNamedByLine) {
   const auto says = [&](const std::string& from, const std::string& to, const std::string& words) {
     std::string text = kStudy;
     ASSERT_NE(text.find(from), std::string::npos) << from;
     text.replace(text.find(from), from.size(), to);
     const auto study = study::parse_study(text, "s.json");
-    ASSERT_TRUE(study) << study.error().message;
-    const auto inquiry = study::read_inquiry(*study);
-    ASSERT_FALSE(inquiry) << to;
-    EXPECT_TRUE(inquiry.error().message.starts_with("s.json:")) << inquiry.error().message;
-    EXPECT_NE(inquiry.error().message.find(words), std::string::npos) << inquiry.error().message;
+    ASSERT_FALSE(study) << to;
+    EXPECT_TRUE(study.error().message.starts_with("s.json:")) << study.error().message;
+    EXPECT_NE(study.error().message.find(words), std::string::npos) << study.error().message;
   };
   says("\"test\": \"weaker\"", "\"test\": \"weakest\"", "weaker");
-  says("\"rejected\": 3, \"trials\": 400", "\"rejected\": 3, \"trials\": 2", "is no share");
+  says("\"rejected\": 1, \"trials\": 400", "\"rejected\": 3, \"trials\": 2", "is no share");
   says("\"why\": \"nobody was asked\"", "\"reported\": \"\"", "\"why\" is missing");
   says("\"tasks\": [\"trace\"], \"conditions\": [\"free\"]", "\"tasks\": [\"trac\"]", "did you mean \"trace\"?");
   says("[\"follow\", \"trace\"], \"expect\"", "[\"trace\", \"follow\"], \"expect\"", "no pair that \"compare\" has");
@@ -317,7 +324,7 @@ TEST(StudyAnalyse, WritesTablesAndAPageThatStandsAlone) {
   for (const char* away : {"src=", "href=\"http", "url(", "@import"}) EXPECT_EQ(page.find(away), std::string::npos) << away;
   EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
   EXPECT_NE(page.find("subject 5: no kept trial of follow, free"), std::string::npos);
-  EXPECT_NE(page.find("3 of 400 were rejected"), std::string::npos);
+  EXPECT_NE(page.find("1 of 400 was rejected"), std::string::npos);
 
   // the same data again: the same tables to the bit; and of a model: it is said wherever the results are
   test::write_file(folder / "data/simulated.json", "{}");

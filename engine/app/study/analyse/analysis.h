@@ -135,7 +135,7 @@ void correct(std::vector<Paired>& family);
 
 /// Where the trials come from, as far as the data folder says.
 struct Source {
-  std::string folder;      ///< as it was named
+  std::string folder;      ///< the folder's name, without what it lies in
   bool simulated = false;  ///< by a model
 };
 
