@@ -1,178 +1,18 @@
-/// `catena study analyse` and `study power`: what is planted is found as often as the power says, and what is not, as seldom as alpha says;
-/// each kind of finding; subjects with gaps; hostile rows; the command from the outside.
+/// `catena study analyse` and `study power`: each kind of finding, what is left out and why, subjects with gaps, hostile rows, mistakes in
+/// what is asked, and the commands from the outside.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
-#include <random>
 
-#include "engine/app/study/analyse/analysis.h"
 #include "engine/base/json.h"
 #include "engine/base/memory_limit.h"
-#include "engine/statistics/distributions.h"
-#include "engine/statistics/power.h"
+#include "tests/engine/app/study_tables.h"
 #include "tests/support/program.h"
 #include "tests/support/support.h"
 
 namespace study_analyse_test {
 
-using namespace catena;
-using namespace catena::app::analysis;
-using study::Row;
-
-/// Two tasks in two conditions, with findings of all kinds.
-const std::string kStudy = R"({
-  "name": "two tasks", "subjects": 20, "trials": 10, "training": 0,
-  "tasks": [
-    {"name": "trace", "kind": "tracing", "dimensions": 2, "field": "flow",
-     "limits": {"reject_error_mm": 30, "reject_time_s": 12},
-     "scene": {
-       "fields": {"flow": {"analytic": "vortices", "dimensions": 2, "seed": "$seed"}},
-       "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]},
-       "workspace": {"metres_per_unit": 0.05}}},
-    {"name": "follow", "kind": "advection", "dimensions": 3, "field": "flow",
-     "limits": {"reject_error_mm": 100, "reject_time_s": 15},
-     "scene": {
-       "fields": {"flow": {"analytic": "vortices", "dimensions": 3, "seed": "$seed"}},
-       "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]},
-       "workspace": {"metres_per_unit": 0.05}}}],
-  "conditions": [{"name": "free", "chain": []}, {"name": "held", "chain": []}],
-  "compare": [{"tasks": ["follow", "trace"]}],
-  "findings": [
-    {"paper": "held is more accurate", "test": "difference", "measure": "error", "tasks": ["trace"]},
-    {"paper": "held is steadier", "test": "difference", "measure": "error", "of": "deviation", "tasks": ["trace"]},
-    {"paper": "the times' intervals overlap", "test": "intervals", "measure": "time", "expect": "overlap"},
-    {"paper": "to follow is less accurate", "test": "tasks", "measure": "error", "tasks": ["follow", "trace"], "expect": "higher"},
-    {"paper": "haste costs accuracy", "test": "correlation", "tasks": ["trace"], "conditions": ["free"]},
-    {"paper": "less so when held", "test": "weaker", "tasks": ["trace"]},
-    {"paper": "the gain is largest when tracing", "test": "largest", "measure": "error", "tasks": ["trace"]},
-    {"paper": "1 of 400 was rejected", "test": "rejections", "rejected": 1, "trials": 400},
-    {"paper": "they liked it", "test": "none", "why": "nobody was asked"}]
-})";
-
-struct Made {
-  Study study = study::parse_study(kStudy, "two.json").value();
-  study::Inquiry inquiry = study::read_inquiry(study).value();
-};
-const Made& made() {
-  static const Made m;
-  return m;
-}
-
-/// What a table is made with: of the errors of `trace`, in units of the standard deviation of the differences of means.
-struct Planted {
-  double effect = 0;  ///< d_z of free - held
-  double haste = 0;   ///< correlation of error and time over subjects, negative where haste costs; of `free` alone
-  int subjects = 20, trials = 10;
-};
-
-std::vector<Row> table(std::mt19937_64& random, const Planted& planted) {
-  std::normal_distribution<double> normal;
-  constexpr double spread = 1, noise = 1;
-  // the differences of means over `trials` have this deviation
-  const double deviation = std::sqrt(spread * spread + 2 * noise * noise / planted.trials);
-  std::vector<Row> rows;
-  for (int subject = 1; subject <= planted.subjects; ++subject) {
-    int index = 0;
-    for (const char* task : {"trace", "follow"}) {
-      const bool trace = std::string(task) == "trace";
-      const double level = normal(random), pace = normal(random);
-      const double gain = (trace ? planted.effect * deviation : 0) + spread * normal(random), later = 0.5 * normal(random);
-      for (int condition = 0; condition < 2; ++condition)
-        for (int k = 0; k < planted.trials; ++k) {
-          const double haste = condition == 0 && trace ? planted.haste * pace : 0;
-          Row row{.subject = subject,
-                  .index = index,
-                  .block = trace ? 0 : 1,
-                  .task = task,
-                  .kind = trace ? "tracing" : "advection",
-                  .dimensions = trace ? 2 : 3,
-                  .condition = condition == 0 ? "free" : "held",
-                  .stimulus = k,
-                  .seed = k};
-          row.error_mm = 14 + (trace ? 0 : 20) + level + haste - (condition == 1 ? gain : 0) + noise * normal(random);
-          row.time_s = 6 + 0.8 * pace + (condition == 1 ? later : 0) + 0.3 * normal(random);
-          rows.push_back(row);
-          ++index;
-        }
-    }
-  }
-  return rows;
-}
-
-Analysis analysed(const std::vector<Row>& rows) { return analyse(made().study, made().inquiry, rows, "data").value(); }
-
-const Paired& difference(const Analysis& a, Quantity q, int task) {
-  for (const Paired& p : a.conditions)
-    if (p.quantity == q && p.first.task == task) return p;
-  throw std::logic_error("no such test");
-}
-
-const Judged& finding(const Analysis& a, const std::string& paper) {
-  for (std::size_t i = 0; i < a.findings.size(); ++i)
-    if (made().inquiry.findings[i].paper == paper) return a.findings[i];
-  throw std::logic_error(paper);
-}
-
-/// 400 tables, or so many as CATENA_STUDY_TABLES says.
-int table_count() {
-  const char* text = std::getenv("CATENA_STUDY_TABLES");
-  return text != nullptr ? std::atoi(text) : 400;
-}
-
-TEST(StudyRecovery, APlantedDifferenceIsFoundAtTheStatedPower) {
-  const double power = statistics::paired_power(0.5, 20, 0.05);
-  EXPECT_NEAR(power, 0.5645, 1e-4);
-  std::mt19937_64 random(11);
-  const int tables = table_count();
-  int found = 0, by_flips = 0, supported = 0, elsewhere = 0;
-  for (int i = 0; i < tables; ++i) {
-    const Analysis a = analysed(table(random, {.effect = 0.5}));
-    EXPECT_EQ(a.all_rejected().rejected(), 0);
-    const Paired& p = difference(a, Quantity::error, 0);
-    found += p.test->p < 0.05 ? 1 : 0;
-    by_flips += p.flips->p < 0.05 ? 1 : 0;
-    supported += finding(a, "held is more accurate").verdict == Verdict::supported ? 1 : 0;
-    elsewhere += difference(a, Quantity::error, 1).test->p < 0.05 ? 1 : 0;
-  }
-  const auto share = statistics::share_interval(found, tables, 0.99), false_share = statistics::share_interval(elsewhere, tables, 0.99);
-  std::printf("planted d_z 0.5: found in %d of %d tables (power %.4f), by sign flips in %d, after correction in %d; nothing planted: %d\n",
-              found, tables, power, by_flips, supported, elsewhere);
-  EXPECT_TRUE(share.contains(power)) << found;
-  EXPECT_TRUE(false_share.contains(0.05)) << elsewhere;
-  // the correction for eight tests costs power, but what it leaves was found before it, too
-  EXPECT_LT(supported, found);
-  EXPECT_GT(supported, 0.15 * tables);
-  EXPECT_TRUE(statistics::share_interval(by_flips, tables, 0.999).contains(power)) << by_flips;
-}
-
-TEST(StudyRecovery, WhereNothingIsPlantedAlphaIsKept) {
-  std::mt19937_64 random(12);
-  const int tables = table_count();
-  int tests = 0, found = 0, by_flips = 0, families = 0, correlations = 0, trades = 0;
-  for (int i = 0; i < tables; ++i) {
-    const Analysis a = analysed(table(random, {}));
-    bool any = false;
-    for (const Paired& p : a.conditions) {
-      ++tests;
-      found += p.test->p < 0.05 ? 1 : 0;
-      by_flips += p.flips->p < 0.05 ? 1 : 0;
-      any = any || p.corrected < 0.05;
-    }
-    families += any ? 1 : 0;
-    for (const Correlated& c : a.correlations) correlations += c.of->p < 0.05 ? 1 : 0;
-    for (const Paired& p : a.trade) trades += p.test->p < 0.05 ? 1 : 0;
-  }
-  std::printf(
-      "nothing planted: %d of %d tests below 0.05, %d by sign flips; %d of %d families after correction; %d of %d correlations; %d of %d "
-      "trades\n",
-      found, tests, by_flips, families, tables, correlations, 4 * tables, trades, 2 * tables);
-  EXPECT_TRUE(statistics::share_interval(found, tests, 0.99).contains(0.05)) << found;
-  EXPECT_TRUE(statistics::share_interval(by_flips, tests, 0.99).contains(0.05)) << by_flips;
-  EXPECT_LE(statistics::share_interval(families, tables, 0.99).low, 0.05) << families;
-  EXPECT_TRUE(statistics::share_interval(correlations, 4 * tables, 0.99).contains(0.05)) << correlations;
-  EXPECT_TRUE(statistics::share_interval(trades, 2 * tables, 0.99).contains(0.05)) << trades;
-}
+using namespace study_tables;
 
 TEST(StudyFindings, AreJudgedByTheirTests) {
   std::mt19937_64 random(5);
