@@ -183,7 +183,7 @@ constexpr const char* kHow =
     "Raghunathan, Rosenthal and Rubin (1996).</li>\n</ul>\n";
 
 constexpr const char* kPageStyle =
-    "<style>td.says { min-width: 16rem; white-space: normal !important; } td.told { min-width: 38rem; } td.whole { white-space: nowrap; "
+    "<style>td.says { min-width: 13rem; white-space: normal !important; } td.told { min-width: 45rem; } td.whole { white-space: nowrap; "
     "}</style>\n";
 
 }  // namespace
