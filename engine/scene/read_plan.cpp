@@ -56,7 +56,7 @@ Result<Plan> parse_plan(std::string_view words) {
     if (*at) return Error{begin + in_quotes(key) + " is there twice; once was expected"};
     if (!value || !std::isfinite(*value) || !(*value > 0))
       return Error{begin + in_quotes(key) + ": expected " + std::string(key) + "=NUMBER, above 0"};
-    *at = *value;
+    *at = value.value_or(0);
   }
   if (const std::string fault = fault_of(plan); !fault.empty()) return Error{begin + fault};
   return plan;
