@@ -1,14 +1,13 @@
 #include "engine/study/trial_table.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
 
+#include "engine/base/append_file.h"
 #include "engine/base/memory_limit.h"
 #include "engine/base/numbers.h"
 #include "engine/base/output_file.h"
@@ -83,12 +82,6 @@ Error system_error(const std::string& path, const char* what) { return Error{fmt
 
 std::string mark_of(const std::string& folder) { return (fs::path(folder) / "simulated.json").string(); }
 
-std::string text_of_rows(const std::vector<Row>& rows) {
-  std::string text = table_header();
-  for (const Row& row : rows) text += row_text(row);
-  return text;
-}
-
 }  // namespace
 
 Row row_of(const Study& study, const Trial& trial, const Measured& measured) {
@@ -112,6 +105,12 @@ Row row_of(const Study& study, const Trial& trial, const Measured& measured) {
 }
 
 std::string table_header() { return fmt::format("{}\n", kHeader); }
+
+std::string table_text(const std::vector<Row>& rows) {
+  std::string text = table_header();
+  for (const Row& row : rows) text += row_text(row);
+  return text;
+}
 
 std::string row_text(const Row& row) {
   std::string text = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.subject, row.index, row.block, row.task, row.kind, row.dimensions,
@@ -155,10 +154,10 @@ std::string subject_file(const std::string& folder, int subject) {
 
 std::string recordings_folder(const std::string& folder) { return (fs::path(folder) / "recordings").string(); }
 
-Outcome make_recordings_folder(const std::string& folder) {
+Outcome make_folder(const std::string& path) {
   std::error_code code;
-  fs::create_directories(recordings_folder(folder), code);
-  if (code) return Error{fmt::format("{}: cannot make the folder: {}", recordings_folder(folder), code.message())};
+  fs::create_directories(path, code);
+  if (code) return Error{fmt::format("{}: cannot make the folder: {}", path, code.message())};
   return Done{};
 }
 
@@ -195,23 +194,11 @@ Result<std::vector<Row>> DataFolder::rows(int subject) const {
   return rows;
 }
 
-Outcome DataFolder::append(const Row& row) const {
-  const std::string path = subject_file(path_, row.subject);
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (file < 0) return system_error(path, "cannot write");
-  const off_t size = ::lseek(file, 0, SEEK_END);
-  const std::string text = (size == 0 ? table_header() : "") + row_text(row);
-  // one write: a line is there whole, or torn by the end of the program or the machine, which rows() repairs
-  const bool written = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fdatasync(file) == 0;
-  Outcome done = written ? Outcome(Done{}) : Outcome(system_error(path, "cannot write"));
-  if (!written && size >= 0) static_cast<void>(::ftruncate(file, size) == 0);
-  ::close(file);
-  return done;
-}
+Outcome DataFolder::append(const Row& row) const { return append_whole(subject_file(path_, row.subject), table_header(), row_text(row)); }
 
 Outcome DataFolder::write_subject(int subject, const std::vector<Row>& rows) const {
   CATENA_TRY(OutputFile file, OutputFile::open(subject_file(path_, subject)));
-  file.write(text_of_rows(rows));
+  file.write(table_text(rows));
   file.sync();
   return file.commit();
 }
@@ -235,7 +222,7 @@ Outcome DataFolder::write_table() const {
     all.insert(all.end(), some.begin(), some.end());
   }
   CATENA_TRY(OutputFile file, OutputFile::open((fs::path(path_) / "trials.csv").string()));
-  file.write(text_of_rows(all));
+  file.write(table_text(all));
   return file.commit();
 }
 

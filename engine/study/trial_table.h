@@ -33,6 +33,7 @@ Row row_of(const Study& study, const Trial& trial, const Measured& measured);
 /// "subject,index,block,task,kind,dimensions,condition,stimulus,seed,training,ended,time_s,..."
 std::string table_header();
 std::string row_text(const Row& row);  ///< with its line end
+std::string table_text(const std::vector<Row>& rows);
 /// `torn_end`: a last line without its end is left out rather than an error; `whole` gets the bytes before it.
 Result<std::vector<Row>> parse_rows(std::string_view text, const std::string& file, bool torn_end = false, std::size_t* whole = nullptr);
 
@@ -41,7 +42,8 @@ std::string subject_file(const std::string& folder, int subject);
 
 /// "DIR/recordings", and in it "007-012.catlog": subject and index.
 std::string recordings_folder(const std::string& folder);
-Outcome make_recordings_folder(const std::string& folder);
+/// With those that it lies in.
+Outcome make_folder(const std::string& path);
 std::string recording_name(const Trial& trial);
 
 /// A data folder that is written to.

@@ -52,7 +52,7 @@ std::vector<tradeoff::LinkOf> open_links(const scene::Scene& scene) {
 scene::FieldSource* open_source(scene::Scene& scene, const json::Node& link) {
   const json::Node *name = link.find("field"), *kind = link.find("kind");
   if (name == nullptr || (kind != nullptr && kind->string == "line")) return nullptr;
-  const scene::Entity field = scene::find_named<scene::FieldSource>(scene, name->string);
+  const scene::Entity field = scene::find_field(scene, name->string);
   if (!field) return nullptr;
   scene::FieldSource& source = scene.world.get<scene::FieldSource>(field);
   return leaves_cells_open(source) ? &source : nullptr;

@@ -21,13 +21,6 @@ struct AnalyseOptions {
   std::string data, output;
 };
 
-/// All trials as one table again.
-std::string trials_csv(const std::vector<study::Row>& rows) {
-  std::string text = study::table_header();
-  for (const study::Row& row : rows) text += study::row_text(row);
-  return text;
-}
-
 Result<std::vector<std::string>> draw(ResultFolder& folder, const analysis::Plots& plots) { return folder.draw(plots.script, plots.files); }
 
 Outcome analyse_folder(const AnalyseOptions& options) {
@@ -43,7 +36,7 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   std::error_code code;
   const analysis::Source source{fs::weakly_canonical(data, code).filename().string(), study::is_simulated(data)};
 
-  const std::vector<std::pair<std::string, std::string>> files{{"trials.csv", trials_csv(rows)},
+  const std::vector<std::pair<std::string, std::string>> files{{"trials.csv", study::table_text(rows)},
                                                                {"subjects.csv", analysis::subjects_csv(study, result)},
                                                                {"means.csv", analysis::means_csv(study, result)},
                                                                {"tests.csv", analysis::tests_csv(study, result)},

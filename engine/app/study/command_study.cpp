@@ -1,4 +1,4 @@
-/// catena study run|simulate|merge|scene|keys: an experiment described by a file (docs/study.md). One file a subcommand.
+/// catena study simulate|run|merge|scene|keys|analyse|power: an experiment described by a file (docs/study.md). One file a subcommand.
 #include <CLI/CLI.hpp>
 
 #include "engine/app/study/study_command.h"

@@ -131,7 +131,7 @@ Outcome simulate(const SimulateOptions& options) {
   CATENA_CHECK(study::TrialSimulator(study).check());
   CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study));
   CATENA_CHECK(data.mark_simulated());
-  if (options.record) CATENA_CHECK(study::make_recordings_folder(data.path()));
+  if (options.record) CATENA_CHECK(study::make_folder(study::recordings_folder(data.path())));
   const int subjects = options.subjects > 0 ? options.subjects : study.subjects;
   std::vector<Session> sessions;
   std::size_t todo = 0, all = 0;

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "engine/base/append_file.h"
 #include "engine/base/json_text.h"
 #include "engine/base/output_file.h"
 
@@ -39,17 +40,6 @@ void sync_folder(const std::string& folder) {
   ::close(descriptor);
 }
 
-/// Appends with one write, waits for the disk.
-Outcome append_whole(const std::string& path, std::string_view text) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) return cannot(path, "write");
-  const bool written = ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(descriptor) == 0;
-  const Error why = cannot(path, "write");
-  ::close(descriptor);
-  if (!written) return why;
-  return Done{};
-}
-
 }  // namespace
 
 // ---- the lock ----
@@ -75,11 +65,8 @@ Result<SubjectFolder> SubjectFolder::open(const std::string& path, const study::
   CATENA_TRY(study::DataFolder folder, study::DataFolder::open(path, study));
   CATENA_TRY(FolderLock lock, FolderLock::take(path));
   SubjectFolder result(study, subject, std::move(folder), std::move(lock));
-  CATENA_CHECK(study::make_recordings_folder(path));
-  const std::string answers = std::filesystem::path(result.answers_file()).parent_path();
-  std::error_code code;
-  std::filesystem::create_directories(answers, code);
-  if (code) return Error{answers + ": cannot make the folder: " + code.message()};
+  CATENA_CHECK(study::make_folder(study::recordings_folder(path)));
+  CATENA_CHECK(study::make_folder(std::filesystem::path(result.answers_file()).parent_path()));
   result.trials_ = study::session_of(study, subject);
   CATENA_CHECK(result.look_for_trials());
   CATENA_CHECK(result.look_for_answers());
@@ -141,10 +128,7 @@ Outcome SubjectFolder::keep(const study::Trial& trial, const study::Measured& me
 }
 
 Outcome SubjectFolder::keep_answer(const std::string& question, const std::string& answer) const {
-  const std::string path = answers_file();
-  std::error_code code;
-  const bool begins = std::filesystem::file_size(path, code) == 0 || code;
-  return append_whole(path, (begins ? std::string(kAnswersHeader) : "") + cell(question) + "," + cell(answer) + "\n");
+  return append_whole(answers_file(), kAnswersHeader, cell(question) + "," + cell(answer) + "\n");
 }
 
 std::string about_trial(const study::Study& study, const study::Trial& trial) {

@@ -105,36 +105,33 @@ struct Judge {
     return parts.judged();
   }
 
-  Judged correlation(const Finding& f) const {
+  /// Of each place the one of `items` there: whether it bears the finding out, and what it says.
+  template <class Item, class Holds, class Words>
+  Judged at_places(const Finding& f, const std::vector<Item>& items, const Holds& holds, const Words& words) const {
     Parts parts;
     for (const int t : f.tasks)
       for (const int c : f.conditions) {
-        const Correlated& x = *find_item(analysis.correlations, [&](const Correlated& y) { return y.place == Place{t, c}; });
-        if (!x.of) {
-          parts.add(std::nullopt, place_text(study, x.place) + ": " + x.why_not);
-          continue;
-        }
-        parts.add(x.corrected < kAlpha && (x.of->r < 0) == (f.expect == Expect::negative),
-                  fmt::format("{}: r = {:.3f} ({:.2f} to {:.2f}), {}", place_text(study, x.place), x.of->r, x.of->low, x.of->high,
-                              p_words(x.of->p, x.corrected)));
+        const Item& x = *find_item(items, [&](const Item& y) { return y.place == Place{t, c}; });
+        const std::string at = place_text(study, x.place) + ": ";
+        if (x.of)
+          parts.add(x.corrected < kAlpha && holds(*x.of), at + words(*x.of) + ", " + p_words(x.of->p, x.corrected));
+        else
+          parts.add(std::nullopt, at + x.why_not);
       }
     return parts.judged();
   }
 
+  Judged correlation(const Finding& f) const {
+    return at_places(
+        f, analysis.correlations, [&](const statistics::Correlation& x) { return (x.r < 0) == (f.expect == Expect::negative); },
+        [](const statistics::Correlation& x) { return fmt::format("r = {:.3f} ({:.2f} to {:.2f})", x.r, x.low, x.high); });
+  }
+
   Judged weaker(const Finding& f) const {
-    Parts parts;
-    for (const int t : f.tasks)
-      for (const int c : f.conditions) {
-        const Change& x = *find_item(analysis.changes, [&](const Change& y) { return y.place == Place{t, c}; });
-        if (!x.of) {
-          parts.add(std::nullopt, place_text(study, x.place) + ": " + x.why_not);
-          continue;
-        }
-        parts.add(x.corrected < kAlpha && std::fabs(x.of->second) < std::fabs(x.of->first),
-                  fmt::format("{}: r = {:.3f}, baseline {:.3f}, z = {:.2f}, {}", place_text(study, x.place), x.of->second, x.of->first,
-                              x.of->z, p_words(x.of->p, x.corrected)));
-      }
-    return parts.judged();
+    using Difference = statistics::CorrelationDifference;
+    return at_places(
+        f, analysis.changes, [](const Difference& x) { return std::fabs(x.second) < std::fabs(x.first); },
+        [](const Difference& x) { return fmt::format("r = {:.3f}, baseline {:.3f}, z = {:.2f}", x.second, x.first, x.z); });
   }
 
   /// Gains of a task over those of every other one, paired over the subjects; a family of its own.

@@ -18,10 +18,7 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kRestS = 0.25;       // without a change for so long: the picture may take its time
-constexpr double kEstimateS = 0.6;    // the same, before its error is looked at
-constexpr double kIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
-constexpr double kMinimisedWaitS = 0.1;
+constexpr double kEstimateS = 0.6;  // without a change for so long: the picture's error is looked at
 constexpr double kTitleS = 0.25;
 constexpr double kLiveS = 0.1;  // between interfaces that only follow the hand
 

@@ -14,10 +14,6 @@ namespace catena::app {
 
 namespace {
 
-constexpr double kStudyRestS = 0.25;       // without a change for so long: the picture may take its time
-constexpr double kStudyIdleWaitS = 0.004;  // between looks at the servo's news when nothing else happens
-constexpr double kStudyMinimisedWaitS = 0.1;
-
 using Stage = Procedure::Stage;
 
 Failure failure_of(const Error& error) { return {error.machine ? 1 : 2, error.message}; }
@@ -163,7 +159,7 @@ void StudyWindow::put_hand_under_pointer() {
 std::optional<NextPicture> StudyWindow::next_picture(bool moved, bool hand_moved) {
   if (moved) return picture_.moving();
   if (!shows_picture()) return std::nullopt;
-  if (!hand_moved) return 1e-3 * ms_since(last_change_ns_) >= kStudyRestS ? picture_.still() : std::nullopt;
+  if (!hand_moved) return 1e-3 * ms_since(last_change_ns_) >= kRestS ? picture_.still() : std::nullopt;
   const NextPicture next = picture_.followed();
   if (!next.settings.keep) last_change_ns_ = now_ns();
   return next;
@@ -209,8 +205,7 @@ std::optional<Failure> StudyWindow::run() {
   last_change_ns_ = now_ns();
   bool busy = true, minimised = false;
   while (goes_on()) {
-    if (const Outcome taken = take_input(minimised ? kStudyMinimisedWaitS : busy ? 0 : kStudyIdleWaitS); !taken)
-      return failure_of(taken.error());
+    if (const Outcome taken = take_input(minimised ? kMinimisedWaitS : busy ? 0 : kIdleWaitS); !taken) return failure_of(taken.error());
     if (const Outcome followed = session_.follow(scene, shared_.hand); !followed) return failure_of(followed.error());
     if (const Outcome opened = open_next(); !opened) return failure_of(opened.error());
     hand_moved_ = shared_.hand.take(scene.scene()) || hand_moved_;
