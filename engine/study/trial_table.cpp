@@ -80,6 +80,28 @@ Result<Row> parse_row(std::string_view line, const std::string& file, int number
 
 Error system_error(const std::string& path, const char* what) { return Error{fmt::format("{}: {}: {}", path, what, std::strerror(errno))}; }
 
+std::string table_of(const std::string& folder) { return (fs::path(folder) / "trials.csv").string(); }
+
+/// A subject's rows; of how many bytes of the file's `size`.
+Result<std::vector<Row>> read_subject(const std::string& path, std::size_t& whole, std::size_t& size) {
+  std::error_code code;
+  if (!fs::exists(path, code)) return std::vector<Row>{};
+  CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
+  size = text.size();
+  return parse_rows(text, path, true, &whole);
+}
+
+/// By the subjects' numbers.
+Result<std::vector<Row>> rows_of_subjects(const std::string& folder) {
+  CATENA_TRY(const std::vector<int> numbers, subjects_in(folder));
+  std::vector<Row> all;
+  for (const int subject : numbers) {
+    CATENA_TRY(const std::vector<Row> some, rows_in(folder, subject));
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
 std::string mark_of(const std::string& folder) { return (fs::path(folder) / "simulated.json").string(); }
 
 }  // namespace
@@ -163,10 +185,29 @@ Outcome make_folder(const std::string& path) {
 
 std::string recording_name(const Trial& trial) { return fmt::format("{:03}-{:03}.catlog", trial.subject, trial.index); }
 
+Result<std::vector<int>> subjects_in(const std::string& folder) {
+  std::vector<int> numbers;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / "subjects", code))
+    if (const auto number = parse_integer(entry.path().stem().string());
+        number && entry.path().extension() == ".csv" && *number >= 1 && *number <= kMaxSubject)
+      numbers.push_back(static_cast<int>(*number));
+  if (code && code != std::errc::no_such_file_or_directory)
+    return Error{fmt::format("{}: cannot read the folder: {}", folder, code.message())};
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+Result<std::vector<Row>> rows_in(const std::string& folder, int subject) {
+  std::size_t whole = 0, size = 0;
+  return read_subject(subject_file(folder, subject), whole, size);
+}
+
 Result<DataFolder> DataFolder::open(const std::string& path, const Study& study) {
   std::error_code code;
   fs::create_directories(fs::path(path) / "subjects", code);
   if (code) return Error{fmt::format("{}: cannot make the folder: {}", path, code.message())};
+  CATENA_TRY(FolderLock lock, FolderLock::take(path));
   const std::string copy = (fs::path(path) / "study.json").string();
   if (fs::exists(copy, code)) {
     CATENA_TRY(const std::string old, read_text(copy, "the study of this data folder", kMaxJsonBytes));
@@ -179,17 +220,14 @@ Result<DataFolder> DataFolder::open(const std::string& path, const Study& study)
     file.sync();
     CATENA_CHECK(file.commit());
   }
-  return DataFolder(path);
+  return DataFolder(path, std::move(lock));
 }
 
 Result<std::vector<Row>> DataFolder::rows(int subject) const {
   const std::string path = subject_file(path_, subject);
-  std::error_code code;
-  if (!fs::exists(path, code)) return std::vector<Row>{};
-  CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
-  std::size_t whole = 0;
-  CATENA_TRY(std::vector<Row> rows, parse_rows(text, path, true, &whole));
-  if (whole < text.size() && ::truncate(path.c_str(), static_cast<off_t>(whole)) != 0)
+  std::size_t whole = 0, size = 0;
+  CATENA_TRY(std::vector<Row> rows, read_subject(path, whole, size));
+  if (whole < size && ::truncate(path.c_str(), static_cast<off_t>(whole)) != 0)
     return system_error(path, "cannot cut off its torn last line");
   return rows;
 }
@@ -203,48 +241,25 @@ Outcome DataFolder::write_subject(int subject, const std::vector<Row>& rows) con
   return file.commit();
 }
 
-Result<std::vector<int>> DataFolder::subjects() const {
-  std::vector<int> numbers;
-  std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(path_) / "subjects", code))
-    if (const auto number = parse_integer(entry.path().stem().string()); number && entry.path().extension() == ".csv")
-      numbers.push_back(static_cast<int>(*number));
-  if (code) return Error{fmt::format("{}: cannot read the folder: {}", path_, code.message())};
-  std::sort(numbers.begin(), numbers.end());
-  return numbers;
-}
-
 Outcome DataFolder::write_table() const {
-  CATENA_TRY(const std::vector<int> numbers, subjects());
-  std::vector<Row> all;
-  for (const int subject : numbers) {
-    CATENA_TRY(const std::vector<Row> some, rows(subject));
-    all.insert(all.end(), some.begin(), some.end());
-  }
-  CATENA_TRY(OutputFile file, OutputFile::open((fs::path(path_) / "trials.csv").string()));
+  CATENA_TRY(const std::vector<Row> all, rows_of_subjects(path_));
+  CATENA_TRY(OutputFile file, OutputFile::open(table_of(path_)));
   file.write(table_text(all));
   return file.commit();
 }
 
-Result<std::vector<Row>> read_table(const std::string& folder) {
-  const std::string table = (fs::path(folder) / "trials.csv").string();
+Result<TrialTable> read_table(const std::string& folder) {
+  CATENA_TRY(std::vector<Row> rows, rows_of_subjects(folder));
+  const std::string path = table_of(folder);
   std::error_code code;
-  if (fs::exists(table, code)) {
-    CATENA_TRY(const std::string text, read_text(table, "a table of trials"));
-    return parse_rows(text, table);
+  if (!fs::exists(path, code)) {
+    if (rows.empty()) return Error{folder + ": no trials.csv and no subjects/*.csv; a data folder of a study was expected"};
+    return TrialTable{std::move(rows), false};
   }
-  std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / "subjects", code))
-    if (entry.path().extension() == ".csv") files.push_back(entry.path().string());
-  if (files.empty()) return Error{folder + ": no trials.csv and no subjects/*.csv; a data folder of a study was expected"};
-  std::sort(files.begin(), files.end());
-  std::vector<Row> all;
-  for (const std::string& file : files) {
-    CATENA_TRY(const std::string text, read_text(file, "a table of trials"));
-    CATENA_TRY(const std::vector<Row> some, parse_rows(text, file, true));
-    all.insert(all.end(), some.begin(), some.end());
-  }
-  return all;
+  CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
+  if (!rows.empty()) return TrialTable{rows, text != table_text(rows)};
+  CATENA_TRY(rows, parse_rows(text, path));
+  return TrialTable{std::move(rows), false};
 }
 
 Outcome DataFolder::mark_simulated() const {

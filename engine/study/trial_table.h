@@ -3,13 +3,16 @@
 ///   DIR/subjects/007.csv  a subject's rows in the order of the session, a header first; each is appended whole and synced, and a torn last
 ///                         line is dropped when the file is read, so that whatever ends the program costs the trial at hand alone
 ///   DIR/recordings/       every tick of a trial, where that was asked for
-///   DIR/trials.csv        all subjects' rows by their numbers
+///   DIR/trials.csv        all subjects' rows by their numbers, as they were when a command last ended; alone it is read, too
+///   DIR/questionnaire/    answers (answers.h)
+///   DIR/.lock             held by whoever writes
 ///   DIR/simulated.json    there where a model of a person did trials: whoever reads them must know
 /// Doubles in the fewest digits that read back.
 #pragma once
 #include <string>
 #include <vector>
 
+#include "engine/base/folder_lock.h"
 #include "engine/study/judge.h"
 #include "engine/study/session.h"
 
@@ -46,33 +49,41 @@ std::string recordings_folder(const std::string& folder);
 Outcome make_folder(const std::string& path);
 std::string recording_name(const Trial& trial);
 
-/// A data folder that is written to.
+/// The numbers of the subjects that have a file in a data folder, rising.
+Result<std::vector<int>> subjects_in(const std::string& folder);
+/// The finished trials of a subject, as they are on the disk; none where it has no file. Nothing is written.
+Result<std::vector<Row>> rows_in(const std::string& folder, int subject);
+
+/// A data folder that is written to, by one program at a time: it is locked as long as this lives.
 class DataFolder {
  public:
-  /// Makes it where it is missing. An error where it holds another study.
+  /// Makes it where it is missing. An error where it holds another study, or another program writes to it.
   static Result<DataFolder> open(const std::string& path, const Study& study);
 
   const std::string& path() const { return path_; }
-  /// The finished trials of a subject; a torn end is cut off the file.
+  /// rows_in(), but a torn end is cut off the file, so that rows can be appended.
   Result<std::vector<Row>> rows(int subject) const;
   /// Appends one and waits until it is on the disk.
   Outcome append(const Row& row) const;
   /// All of a subject's rows at once, whole or not at all.
   Outcome write_subject(int subject, const std::vector<Row>& rows) const;
-  /// The numbers of the subjects that have a file, rising.
-  Result<std::vector<int>> subjects() const;
   /// Says that a model of a person does trials here: DIR/simulated.json.
   Outcome mark_simulated() const;
   /// Writes trials.csv of all of them.
   Outcome write_table() const;
 
  private:
-  explicit DataFolder(std::string path) : path_(std::move(path)) {}
+  DataFolder(std::string path, FolderLock lock) : path_(std::move(path)), lock_(std::move(lock)) {}
   std::string path_;
+  FolderLock lock_;
 };
 
-/// The rows of DIR/trials.csv, or of DIR/subjects/*.csv where that is missing.
-Result<std::vector<Row>> read_table(const std::string& folder);
+/// The rows of a data folder: of DIR/subjects/*.csv, or of DIR/trials.csv where there are none of those.
+struct TrialTable {
+  std::vector<Row> rows;
+  bool differs = false;  ///< trials.csv has other rows than the subjects' files, which were taken
+};
+Result<TrialTable> read_table(const std::string& folder);
 
 /// Whether a model of a person did some of the trials (DataFolder::mark_simulated).
 bool is_simulated(const std::string& folder);

@@ -9,6 +9,7 @@
 #include "engine/app/run_files.h"
 #include "engine/app/study/analyse/analysis.h"
 #include "engine/app/study/study_command.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 
 namespace catena::app {
@@ -28,23 +29,28 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   CATENA_TRY(const study::Study study, study::read_study((fs::path(data) / "study.json").string()));
   CATENA_TRY(const study::Inquiry inquiry, study::read_inquiry(study));
   Progress progress("study analyse", 4);
-  CATENA_TRY(const std::vector<study::Row> rows, study::read_table(data));
+  CATENA_TRY(const study::TrialTable table, study::read_table(data));
+  const std::vector<study::Row>& rows = table.rows;
+  if (table.differs) tell_from_catena("note: " + data + "/trials.csv: differs from subjects/*.csv, which are what is analysed");
   if (rows.empty()) return Error{one_line(data + ": there are no trials; at least one was expected")};
   progress.at(1);
   CATENA_TRY(const analysis::Analysis result, analysis::analyse(study, inquiry, rows, data));
+  CATENA_TRY(const std::vector<analysis::Answered> answers, analysis::read_questionnaires(study, data, result.subjects));
   progress.at(2);
   std::error_code code;
   const analysis::Source source{fs::weakly_canonical(data, code).filename().string(), study::is_simulated(data)};
 
-  const std::vector<std::pair<std::string, std::string>> files{{"trials.csv", study::table_text(rows)},
-                                                               {"subjects.csv", analysis::subjects_csv(study, result)},
-                                                               {"means.csv", analysis::means_csv(study, result)},
-                                                               {"tests.csv", analysis::tests_csv(study, result)},
-                                                               {"correlations.csv", analysis::correlations_csv(study, result)},
-                                                               {"slopes.csv", analysis::slopes_csv(study, result)},
-                                                               {"rejections.csv", analysis::rejections_csv(study, result)},
-                                                               {"findings.csv", analysis::findings_csv(inquiry, result)},
-                                                               {"results.json", analysis::to_json(study, inquiry, result, source)}};
+  const std::vector<std::pair<std::string, std::string>> files{
+      {"trials.csv", study::table_text(rows)},
+      {"subjects.csv", analysis::subjects_csv(study, result)},
+      {"means.csv", analysis::means_csv(study, result)},
+      {"tests.csv", analysis::tests_csv(study, result)},
+      {"correlations.csv", analysis::correlations_csv(study, result)},
+      {"slopes.csv", analysis::slopes_csv(study, result)},
+      {"rejections.csv", analysis::rejections_csv(study, result)},
+      {"findings.csv", analysis::findings_csv(inquiry, result)},
+      {"answers.csv", analysis::answers_csv(study, answers)},
+      {"results.json", analysis::to_json(study, inquiry, result, source, answers)}};
   RunFiles checked;
   checked.reads_folder(data);
   if (fs::is_directory(options.output)) {
@@ -58,7 +64,7 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   CATENA_TRY(drawn.correlations, draw(folder, analysis::correlation_plots(study, result)));
   CATENA_TRY(drawn.trade, draw(folder, analysis::trade_plots(study, result)));
   progress.at(3);
-  CATENA_CHECK(folder.add("report.html", analysis::to_html(study, inquiry, result, source, drawn)));
+  CATENA_CHECK(folder.add("report.html", analysis::to_html(study, inquiry, result, source, answers, drawn)));
   for (const auto& [name, text] : files) CATENA_CHECK(folder.add(name, text));
   CATENA_CHECK(folder.commit());
 

@@ -10,6 +10,7 @@
 #include "engine/app/study/study_command.h"
 #include "engine/base/output_file.h"
 #include "engine/base/text.h"
+#include "engine/study/answers.h"
 #include "engine/study/trial_table.h"
 
 namespace catena::app {
@@ -21,6 +22,24 @@ struct MergeOptions {
   std::string output;
 };
 
+/// A subject's questionnaire goes with its trials.
+Outcome bring_answers(const std::string& from, const std::string& to, int subject) {
+  const std::string source = study::answers_file(from, subject), place = study::answers_file(to, subject);
+  std::error_code code;
+  if (!std::filesystem::exists(source, code)) return Done{};
+  CATENA_TRY(const std::string text, read_text(source, "a table of answers"));
+  if (std::filesystem::exists(place, code)) {
+    CATENA_TRY(const std::string there, read_text(place, "a table of answers"));
+    if (there != text) return Error{fmt::format("{}: has other answers than {}; an empty folder was expected", place, source)};
+    return Done{};
+  }
+  CATENA_CHECK(study::make_folder(std::filesystem::path(place).parent_path()));
+  CATENA_TRY(OutputFile file, OutputFile::open(place));
+  file.write(text);
+  file.sync();
+  return file.commit();
+}
+
 Outcome merge(const MergeOptions& options) {
   namespace fs = std::filesystem;
   // all are read before anything is written
@@ -31,10 +50,9 @@ Outcome merge(const MergeOptions& options) {
     CATENA_TRY(study::Study one, study::read_study((fs::path(folder) / "study.json").string()));
     if (study && study->text != one.text) return Error{one.path + ": differs from " + study->path + "; data of one study were expected"};
     if (!study) study.emplace(std::move(one));
-    CATENA_TRY(const study::DataFolder data, study::DataFolder::open(folder, *study));
-    CATENA_TRY(const std::vector<int> numbers, data.subjects());
+    CATENA_TRY(const std::vector<int> numbers, study::subjects_in(folder));
     for (const int number : numbers) {
-      CATENA_TRY(std::vector<study::Row> rows, data.rows(number));
+      CATENA_TRY(std::vector<study::Row> rows, study::rows_in(folder, number));
       const auto [found, is_new] = subjects.try_emplace(number, folder, rows);
       if (!is_new && found->second.second != rows)
         return Error{fmt::format("{}: subject {} has other trials than in {}; each subject in one folder was expected", folder, number,
@@ -48,6 +66,7 @@ Outcome merge(const MergeOptions& options) {
     if (!there.empty() && there != from.second)
       return Error{fmt::format("{}: subject {} is there with other trials; an empty folder was expected", options.output, number)};
     if (there.empty()) CATENA_CHECK(data.write_subject(number, from.second));
+    CATENA_CHECK(bring_answers(from.first, options.output, number));
     trials += from.second.size();
   }
   if (std::any_of(options.folders.begin(), options.folders.end(), study::is_simulated)) CATENA_CHECK(data.mark_simulated());

@@ -86,7 +86,9 @@ Outcome run_study(const StudyRunOptions& options) {
     failure = shown.open();
     if (!failure) failure = shown.run();
   }
+  const Outcome written = folder.write_table();
   if (failure) return Error{failure->message, failure->exit_code == 1};
+  CATENA_CHECK(written);
   print_now(STDOUT_FILENO, fmt::format("subject {}: {}\n", options.subject, procedure.words()));
   return Done{};
 }

@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -14,23 +12,13 @@
 #include "engine/base/append_file.h"
 #include "engine/base/json_text.h"
 #include "engine/base/output_file.h"
+#include "engine/study/answers.h"
 
 namespace catena::app {
 
 namespace {
 
-constexpr std::string_view kAnswersHeader = "question,answer\n";
-
 Error cannot(const std::string& path, const char* what) { return Error{path + ": cannot " + what + ": " + std::strerror(errno)}; }
-
-/// A cell of a table by RFC 4180, without line ends.
-std::string cell(std::string text) {
-  text = one_line(std::move(text));
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 /// The name of a folder is on the disk when the folder is.
 void sync_folder(const std::string& folder) {
@@ -42,38 +30,16 @@ void sync_folder(const std::string& folder) {
 
 }  // namespace
 
-// ---- the lock ----
-
-Result<FolderLock> FolderLock::take(const std::string& folder) {
-  const std::string path = folder + "/.lock";
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-  if (descriptor < 0) return cannot(path, "write");
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return FolderLock(descriptor);
-  ::close(descriptor);
-  return Error{folder + ": another session writes to it; its end was expected, or another folder"};
-}
-
-FolderLock::~FolderLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-// ---- the folder ----
-
 Result<SubjectFolder> SubjectFolder::open(const std::string& path, const study::Study& study, int subject) {
   CATENA_TRY(study::DataFolder folder, study::DataFolder::open(path, study));
-  CATENA_TRY(FolderLock lock, FolderLock::take(path));
-  SubjectFolder result(study, subject, std::move(folder), std::move(lock));
+  SubjectFolder result(study, subject, std::move(folder));
   CATENA_CHECK(study::make_folder(study::recordings_folder(path)));
-  CATENA_CHECK(study::make_folder(std::filesystem::path(result.answers_file()).parent_path()));
+  CATENA_CHECK(study::make_folder(std::filesystem::path(study::answers_file(path, subject)).parent_path()));
   result.trials_ = study::session_of(study, subject);
   CATENA_CHECK(result.look_for_trials());
   CATENA_CHECK(result.look_for_answers());
   return result;
 }
-
-std::string SubjectFolder::answers_file() const { return fmt::format("{}/questionnaire/{:03}.csv", folder_.path(), subject_); }
 
 std::string SubjectFolder::recording(const study::Trial& trial) const {
   return study::recordings_folder(folder_.path()) + "/" + study::recording_name(trial);
@@ -102,21 +68,10 @@ Outcome SubjectFolder::look_for_trials() {
 }
 
 Outcome SubjectFolder::look_for_answers() {
-  const std::string path = answers_file();
-  std::error_code code;
-  if (!std::filesystem::exists(path, code)) return Done{};
-  CATENA_TRY(const std::string text, read_text(path, "a table of answers"));
-  const auto end = text.rfind('\n');
-  const std::string_view whole = std::string_view(text).substr(0, end == std::string::npos ? 0 : end + 1);
-  if (whole.size() != text.size() && ::truncate(path.c_str(), static_cast<off_t>(whole.size())) != 0) return cannot(path, "write");
-  if (whole.empty()) return Done{};
-  if (!whole.starts_with(kAnswersHeader)) return Error{path + ":1: \"question,answer\" was expected"};
-  std::string_view rest = whole.substr(kAnswersHeader.size());
-  for (; !rest.empty(); rest.remove_prefix(rest.find('\n') + 1)) {
-    if (answered_ == study_->questions.size() || !rest.starts_with(cell(study_->questions[answered_].name) + ","))
-      return Error{fmt::format("{}:{}: this is not the answer to question {} of the study", path, answered_ + 2, answered_ + 1)};
-    ++answered_;
-  }
+  const std::string path = study::answers_file(folder_.path(), subject_);
+  CATENA_TRY(const study::Answers answers, study::read_answers(path, *study_));
+  if (answers.torn && ::truncate(path.c_str(), static_cast<off_t>(answers.whole_bytes)) != 0) return cannot(path, "write");
+  answered_ = answers.given.size();
   return Done{};
 }
 
@@ -128,7 +83,7 @@ Outcome SubjectFolder::keep(const study::Trial& trial, const study::Measured& me
 }
 
 Outcome SubjectFolder::keep_answer(const std::string& question, const std::string& answer) const {
-  return append_whole(answers_file(), kAnswersHeader, cell(question) + "," + cell(answer) + "\n");
+  return append_whole(study::answers_file(folder_.path(), subject_), study::answers_header(), study::answer_row(question, answer));
 }
 
 std::string about_trial(const study::Study& study, const study::Trial& trial) {

@@ -1,8 +1,7 @@
 /// SubjectFolder is what a session of one subject leaves on the disk, and what an earlier one that was cut off at any moment has left:
 ///   DIR/subjects/007.csv               the finished trials (engine/study/trial_table.h)
 ///   DIR/recordings/007-012.catlog      every tick of trial 12: whole, or not there
-///   DIR/questionnaire/007.csv          a row `question,answer` for each answer, the question by its name; whole rows, as the trials'
-///   DIR/.lock                          held while a session runs: a folder has one at a time
+///   DIR/questionnaire/007.csv          the answers (engine/study/answers.h)
 /// A recording gets its name before its trial's row is written, so that every row has its recording. Numbers stand for subjects, never
 /// names. Frame thread.
 #pragma once
@@ -12,20 +11,6 @@
 #include "engine/study/trial_table.h"
 
 namespace catena::app {
-
-/// A lock on a folder, by flock(2) on its file ".lock": it goes with its process, however that ends.
-class FolderLock {
- public:
-  /// An error where another process has it.
-  static Result<FolderLock> take(const std::string& folder);
-  ~FolderLock();
-  FolderLock(FolderLock&& other) noexcept;
-  FolderLock& operator=(FolderLock&&) = delete;
-
- private:
-  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
-  int descriptor_;
-};
 
 class SubjectFolder {
  public:
@@ -42,11 +27,12 @@ class SubjectFolder {
   Outcome keep(const study::Trial& trial, const study::Measured& measured, const std::string& unfinished) const;
   /// One more answer is on the disk.
   Outcome keep_answer(const std::string& question, const std::string& answer) const;
+  /// trials.csv has the folder's rows, those of this session too.
+  Outcome write_table() const { return folder_.write_table(); }
 
  private:
-  SubjectFolder(const study::Study& study, int subject, study::DataFolder folder, FolderLock lock)
-      : study_(&study), subject_(subject), folder_(std::move(folder)), lock_(std::move(lock)) {}
-  std::string answers_file() const;
+  SubjectFolder(const study::Study& study, int subject, study::DataFolder folder)
+      : study_(&study), subject_(subject), folder_(std::move(folder)) {}
   std::string recording(const study::Trial& trial) const;
   Outcome look_for_trials();
   Outcome look_for_answers();
@@ -54,7 +40,6 @@ class SubjectFolder {
   const study::Study* study_;
   int subject_;
   study::DataFolder folder_;
-  FolderLock lock_;
   std::vector<study::Trial> trials_;
   std::size_t finished_ = 0, answered_ = 0;
 };

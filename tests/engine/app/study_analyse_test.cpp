@@ -141,6 +141,10 @@ TEST(StudyAnalyse, WritesTablesAndAPageThatStandsAlone) {
   std::vector<Row> rows = table(random, {.effect = 3, .haste = -3});
   std::erase_if(rows, [](const Row& row) { return row.subject == 5 && row.task == "follow"; });
   write_data(folder / "data", rows);
+  std::filesystem::create_directories(folder / "data/questionnaire");
+  for (const auto& [name, text] :
+       {std::pair{"001", "hard,a bit\nhow,\"so, \"\"so\"\" <b>\"\n"}, {"003", "hard,a bit\n"}, {"004", "hard,yes\nho"}})
+    test::write_file(folder / ("data/questionnaire/" + std::string(name) + ".csv"), "question,answer\n" + std::string(text));
   const auto run = test::run_catena({"study", "analyse", folder / "data", "-o", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.out.find("20 subjects, 780 trials, 0 left out"), std::string::npos) << run.out;
@@ -159,7 +163,14 @@ TEST(StudyAnalyse, WritesTablesAndAPageThatStandsAlone) {
   ASSERT_TRUE(json::parse(json, "results.json"));
   EXPECT_NE(json.find("\"simulated\": false"), std::string::npos);
 
+  EXPECT_NE(json.find(R"({"subject": 1, "question": "how", "answer": "so, \"so\" <b>"})"), std::string::npos);
+  EXPECT_EQ(test::read_file(folder / "out/answers.csv"),
+            "subject,question,answer\n1,hard,a bit\n1,how,so; \"so\" <b>\n3,hard,a bit\n4,hard,yes\n");
+
   const std::string page = test::read_file(folder / "out/report.html");
+  for (const char* words : {"Was it &lt;hard&gt;?", "<td>no</td><td class=\"n\">0</td>", "<td>a bit</td><td class=\"n\">2</td>",
+                            "<td>yes</td><td class=\"n\">1</td>", "<li>subject 1: so, &quot;so&quot; &lt;b&gt;</li>"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(page.find("<script"), std::string::npos);
   for (const char* away : {"src=", "href=\"http", "url(", "@import"}) EXPECT_EQ(page.find(away), std::string::npos) << away;
   EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);

@@ -29,6 +29,8 @@ inline const std::string kStudy = R"({
        "camera": {"position": [0, 0, 8], "target": [0, 0, 0], "up": [0, 1, 0]},
        "workspace": {"metres_per_unit": 0.05}}}],
   "conditions": [{"name": "free", "chain": []}, {"name": "held", "chain": []}],
+  "questionnaire": [{"name": "hard", "question": "Was it <hard>?", "answers": ["no", "a bit", "yes"]},
+                    {"name": "how", "question": "How was it?"}],
   "compare": [{"tasks": ["follow", "trace"]}],
   "findings": [
     {"paper": "held is more accurate", "test": "difference", "measure": "error", "tasks": ["trace"]},

@@ -37,6 +37,8 @@ TEST(Study, ShardsAreTheWholeToTheBit) {
     const auto part = study({"simulate", path, "--subjects", "2", "-o", folder / ("part" + std::string(1, shard[0])), "--shard", shard});
     ASSERT_EQ(part.exit_code, 0) << part.err;
   }
+  fs::create_directories(folder / "part2/questionnaire");
+  test::write_file(folder / "part2/questionnaire/002.csv", "question,answer\n");
   const auto merged = study({"merge", folder / "part2", folder / "part1", "-o", folder / "merged"});
   ASSERT_EQ(merged.exit_code, 0) << merged.err;
   const std::string table = test::read_file(folder / "whole/trials.csv");
@@ -44,6 +46,7 @@ TEST(Study, ShardsAreTheWholeToTheBit) {
   EXPECT_EQ(table, test::read_file(folder / "merged/trials.csv"));
   EXPECT_EQ(test::read_file(folder / "whole/subjects/002.csv"), test::read_file(folder / "merged/subjects/002.csv"));
   EXPECT_EQ(test::read_file(folder / "merged/study.json"), test::read_file(path));
+  EXPECT_EQ(test::read_file(folder / "merged/questionnaire/002.csv"), "question,answer\n");
   // the same again changes nothing; folders that disagree are refused
   EXPECT_EQ(study({"merge", folder / "part2", folder / "part1", "-o", folder / "merged"}).exit_code, 0);
   std::string other = test::read_file(folder / "part1/subjects/001.csv");

@@ -76,7 +76,13 @@ TEST(TrialTable, EveryTornEndCostsTheLastLineAtMost) {
 TEST(TrialTable, AFolderHoldsOneStudy) {
   const test::TemporaryFolder folder;
   const study::Study study = study_rig::small();
-  ASSERT_TRUE(study::DataFolder::open(folder / "d", study));
+  {
+    const auto first = study::DataFolder::open(folder / "d", study);
+    ASSERT_TRUE(first);
+    const auto second = study::DataFolder::open(folder / "d", study);
+    ASSERT_FALSE(second) << "two at a time";
+    EXPECT_NE(second.error().message.find("another session writes to it"), std::string::npos);
+  }
   EXPECT_EQ(test::read_file(folder / "d/study.json"), study.text) << "verbatim";
   const study::Study other = study::parse_study(study_rig::small_text("small", "other"), "other.json").value();
   const auto refused = study::DataFolder::open(folder / "d", other);
@@ -85,19 +91,30 @@ TEST(TrialTable, AFolderHoldsOneStudy) {
   EXPECT_EQ(test::read_file(folder / "d/study.json"), study.text);
 }
 
-TEST(TrialTable, IsReadFromAllSubjectsWhereThereIsNoTable) {
+TEST(TrialTable, IsReadFromAllSubjectsAndFromTheTableAlone) {
   const test::TemporaryFolder folder;
   const auto data = study::DataFolder::open(folder / "d", study_rig::small());
   ASSERT_TRUE(data);
-  for (const int subject : {2, 1, 11}) ASSERT_TRUE(data->append(row(subject, 0)));
+  for (const int subject : {2, 1, 1000, 11}) ASSERT_TRUE(data->append(row(subject, 0)));
   const auto loose = study::read_table(folder / "d");
   ASSERT_TRUE(loose);
+  EXPECT_EQ(loose->rows.size(), 4u);
+  EXPECT_EQ(loose->rows.back().subject, 1000) << "by number, not by name";
   ASSERT_TRUE(data->write_table());
+  EXPECT_FALSE(study::read_table(folder / "d")->differs);
+  // a session that came later counts before its rows are in the table, and one that is torn does not hinder
+  ASSERT_TRUE(data->append(row(11, 1)));
+  const std::string torn = test::read_file(study::subject_file(folder / "d", 1)) + "1,1,tra";
+  test::write_file(study::subject_file(folder / "d", 1), torn);
+  const auto newer = study::read_table(folder / "d");
+  ASSERT_TRUE(newer);
+  EXPECT_TRUE(newer->differs);
+  EXPECT_EQ(newer->rows.size(), 5u);
+  EXPECT_EQ(test::read_file(study::subject_file(folder / "d", 1)), torn) << "who reads writes nothing";
   std::filesystem::remove_all(folder / "d/subjects");
   const auto table = study::read_table(folder / "d");
   ASSERT_TRUE(table);
-  EXPECT_EQ(*table, *loose);
-  EXPECT_EQ(table->back().subject, 11);
+  EXPECT_EQ(table->rows, loose->rows);
   EXPECT_FALSE(study::read_table(folder / "nothing"));
 }
 

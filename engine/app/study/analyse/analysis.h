@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 
+#include "engine/app/study/analyse/answers.h"
 #include "engine/statistics/correlation.h"
 #include "engine/statistics/permutation.h"
 #include "engine/statistics/summary.h"
@@ -146,7 +147,8 @@ std::string correlations_csv(const Study& study, const Analysis& analysis);
 std::string slopes_csv(const Study& study, const Analysis& analysis);
 std::string rejections_csv(const Study& study, const Analysis& analysis);
 std::string findings_csv(const study::Inquiry& inquiry, const Analysis& analysis);
-std::string to_json(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source);
+std::string to_json(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source,
+                    const std::vector<Answered>& answers);
 
 /// gnuplot scripts and the pictures that they draw: the means (Figs 9 and 10), error and time of the subjects (Fig. 11), the trade.
 struct Plots {
@@ -161,7 +163,8 @@ Plots trade_plots(const Study& study, const Analysis& analysis);
 struct Drawn {
   std::vector<std::string> means, correlations, trade;
 };
-std::string to_html(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source, const Drawn& drawn);
+std::string to_html(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source,
+                    const std::vector<Answered>& answers, const Drawn& drawn);
 
 /// The sentence that goes with every result of simulated trials.
 inline constexpr const char* kModelSentence =

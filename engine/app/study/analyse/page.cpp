@@ -188,7 +188,8 @@ constexpr const char* kPageStyle =
 
 }  // namespace
 
-std::string to_html(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source, const Drawn& drawn) {
+std::string to_html(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source,
+                    const std::vector<Answered>& answers, const Drawn& drawn) {
   std::string text = page_head(study.name + ": what its trials say") + kPageStyle;
   text += fmt::format("<h1>{}: what its trials say</h1>\n", escaped(study.name));
   if (source.simulated) text += fmt::format("<p class=\"why\"><b>Simulated.</b> {}</p>\n", kModelSentence);
@@ -218,6 +219,7 @@ std::string to_html(const Study& study, const study::Inquiry& inquiry, const Ana
   text +=
       section("Trials that were left out", "Beyond the study's limits: " + limits_words(study) + "; or not finished within the trial.") +
       rejections_table(study, analysis);
+  text += answers_html(study, answers);
   if (!analysis.gaps.empty()) {
     text += "<h2>Missing</h2>\n<ul>\n";
     for (const std::string& gap : analysis.gaps) text += "<li>" + escaped(gap) + "</li>\n";

@@ -95,7 +95,8 @@ std::string json_of_finding(const study::Finding& f, const Judged& judged) {
 
 }  // namespace
 
-std::string to_json(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source) {
+std::string to_json(const Study& study, const study::Inquiry& inquiry, const Analysis& analysis, const Source& source,
+                    const std::vector<Answered>& answers) {
   std::string rejections, findings;
   for (int t = 0; t < static_cast<int>(analysis.tasks_count); ++t)
     for (int c = 0; c < static_cast<int>(analysis.conditions_count); ++c) {
@@ -118,6 +119,7 @@ std::string to_json(const Study& study, const study::Inquiry& inquiry, const Ana
   const auto part = [&](const char* key, const std::string& json) { text += fmt::format(" \"{}\": {},\n", key, json); };
   part("findings", "[" + findings + "]");
   part("rejections", "[" + rejections + "]");
+  part("answers", answers_json(study, answers));
   part("means", lines(analysis.means, plain));
   part("conditions", lines(analysis.conditions, paired));
   part("tasks", lines(analysis.tasks, paired));

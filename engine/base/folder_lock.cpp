@@ -1,0 +1,27 @@
+#include "engine/base/folder_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <utility>
+
+namespace catena {
+
+Result<FolderLock> FolderLock::take(const std::string& folder) {
+  const std::string path = folder + "/.lock";
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor < 0) return Error{path + ": cannot write: " + std::strerror(errno)};
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return FolderLock(descriptor);
+  ::close(descriptor);
+  return Error{folder + ": another session writes to it; its end was expected, or another folder"};
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+}  // namespace catena

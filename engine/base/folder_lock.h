@@ -1,0 +1,23 @@
+/// A folder that one program at a time writes to.
+#pragma once
+#include <string>
+
+#include "engine/base/result.h"
+
+namespace catena {
+
+/// A lock on a folder, by flock(2) on its file ".lock": it goes with its process, however that ends.
+class FolderLock {
+ public:
+  /// An error where another process has it, or this one already: "FOLDER: another session writes to it; ...".
+  static Result<FolderLock> take(const std::string& folder);
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&&) = delete;
+
+ private:
+  explicit FolderLock(int descriptor) : descriptor_(descriptor) {}
+  int descriptor_;
+};
+
+}  // namespace catena
