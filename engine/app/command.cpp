@@ -67,19 +67,19 @@ Progress::~Progress() {
   if (shown_ && terminal_) std::fputs("\n", stderr);
 }
 
-void Progress::at(double done) {
+void Progress::at(double done, std::string_view doing) {
   const std::int64_t now = now_ns();
   if (total_ <= 0 || now - start_ < 1'000'000'000) return;
   const double part = done / total_ < 1 ? done / total_ : 1;
   if (terminal_) {
     if (now - last_ < 200'000'000 && part < 1) return;
-    std::fputs(fmt::format("\r{}: {:3.0f} % ", printable(what_), 100 * part).c_str(), stderr);
+    std::fputs(fmt::format("\r{}: {:3.0f} % {:<16}", printable(what_), 100 * part, doing).c_str(), stderr);
     std::fflush(stderr);
   } else {
     const int quarter = static_cast<int>(4 * part);
     if (quarter <= quarters_) return;
     quarters_ = quarter;
-    tell(fmt::format("{}: {:.0f} %", what_, 100 * part));
+    tell(fmt::format("{}: {:.0f} %{}{}", what_, 100 * part, doing.empty() ? "" : ", ", doing));
   }
   shown_ = true;
   last_ = now;

@@ -57,7 +57,7 @@ class Progress {
  public:
   Progress(std::string what, double total);
   ~Progress();
-  void at(double done);
+  void at(double done, std::string_view doing = {});  ///< `doing`: what comes now
 
  private:
   std::string what_;

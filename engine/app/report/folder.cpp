@@ -61,36 +61,47 @@ std::string csv_words(std::string text) {
   return one_line(text);
 }
 
-ResultFolder::ResultFolder(std::string path, std::string staging, bool created)
-    : path_(std::move(path)), staging_(std::move(staging)), created_(created) {}
-
 ResultFolder::ResultFolder(ResultFolder&& other) noexcept
     : path_(std::move(other.path_)), staging_(std::move(other.staging_)), created_(other.created_), names_(std::move(other.names_)) {
   other.staging_.clear();
   other.created_ = false;
 }
 
-ResultFolder::~ResultFolder() {
+ResultFolder::~ResultFolder() { unstage(); }
+
+void ResultFolder::unstage() {
   std::error_code ignored;
   if (!staging_.empty()) fs::remove_all(staging_, ignored);
   if (created_) fs::remove(path_, ignored);  // only while it is empty
+  staging_.clear();
+  created_ = false;
+}
+
+Outcome ResultFolder::stage() {
+  if (!staging_.empty()) return Done{};
+  std::error_code code;
+  const bool created = !fs::exists(path_, code);
+  if (created && !fs::create_directories(path_, code) && code) return Error{path_ + ": cannot create the folder: " + code.message()};
+  created_ = created;
+  const std::string staged = path_ + "/tables", staging = part_name(staged);
+  remove_stale_parts(staged);
+  if (::mkdir(staging.c_str(), 0777) != 0) return Error{path_ + ": cannot write into the folder: " + std::strerror(errno)};
+  staging_ = staging;
+  return Done{};
 }
 
 Result<ResultFolder> ResultFolder::open(const std::string& path) {
   std::error_code code;
   if (path.empty()) return Error{"the output's name is empty: expected a folder"};
   if (fs::exists(path, code) && !fs::is_directory(path, code)) return Error{path + ": is a file: expected a folder to write into"};
-  const bool created = !fs::exists(path, code);
-  if (created && !fs::create_directories(path, code) && code) return Error{path + ": cannot create the folder: " + code.message()};
-  const std::string staged = path + "/tables", staging = part_name(staged);
-  remove_stale_parts(staged);
-  ResultFolder folder(path, {}, created);
-  if (::mkdir(staging.c_str(), 0777) != 0) return Error{path + ": cannot write into the folder: " + std::strerror(errno)};
-  folder.staging_ = staging;
+  ResultFolder folder(path);
+  CATENA_CHECK(folder.stage());
+  folder.unstage();
   return folder;
 }
 
 Outcome ResultFolder::add(const std::string& name, std::string_view text) {
+  CATENA_CHECK(stage());
   CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/" + name));
   file.write(text);
   CATENA_CHECK(file.commit());
@@ -115,6 +126,7 @@ Outcome ResultFolder::plot(const std::string& script, const std::vector<std::str
 Result<std::vector<std::string>> ResultFolder::draw(const std::string& script, const std::vector<std::string>& pictures) {
   std::vector<std::string> drawn;
   if (pictures.empty()) return drawn;
+  CATENA_CHECK(stage());
   CATENA_TRY(OutputFile file, OutputFile::open(staging_ + "/draw.gp"));
   file.write(script);
   CATENA_CHECK(file.commit());

@@ -28,7 +28,7 @@ std::string csv_words(std::string text);
 
 class ResultFolder {
  public:
-  /// Creates the folder where it is missing.
+  /// An error where it could not be written; what that is tried with is gone again, so that a run that is ended leaves nothing.
   static Result<ResultFolder> open(const std::string& path);
   ~ResultFolder();
   ResultFolder(ResultFolder&& other) noexcept;
@@ -46,9 +46,12 @@ class ResultFolder {
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  ResultFolder(std::string path, std::string staging, bool created);
+  explicit ResultFolder(std::string path) : path_(std::move(path)) {}
+  /// Creates both folders where they are missing.
+  Outcome stage();
+  void unstage();
   std::string path_, staging_;
-  bool created_;
+  bool created_ = false;
   std::vector<std::string> names_;
 };
 

@@ -12,6 +12,7 @@
 #include "engine/app/tradeoff/measure/eye/eye.h"
 #include "engine/app/tradeoff/measure/registry.h"
 #include "engine/app/tradeoff/report/report.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/scene/prepare.h"
 
@@ -23,15 +24,21 @@ using tradeoff::Curve;
 using tradeoff::Report;
 using tradeoff::Subject;
 
+/// No output is one of the inputs.
+Outcome check_files(const MeasureOptions& options, RunFiles files) {
+  files.reads(options.compare);
+  files.reads(options.probe);
+  for (const char* name : {"report.html", "tradeoff.json"}) files.writes("-o", options.output + "/" + name);
+  if (!std::filesystem::is_directory(options.output)) return Done{};
+  return files.check();
+}
+
 /// All that the scene has, in the order of the registry.
 Result<Report> measure(const MeasureOptions& options) {
   CATENA_TRY(scene::Scene scene, open_scene(options.source, options.fields, {}, options.grid));
-  RunFiles files(scene);
-  files.reads(options.compare);
-  files.reads(options.probe);
-  files.writes("-o", options.output + "/report.html");
-  files.writes("-o", options.output + "/tradeoff.json");
-  if (std::filesystem::is_directory(options.output)) CATENA_CHECK(files.check());
+  if (!is_scene_file(options.source))
+    for (const std::string& note : scene.notes) tell_from_catena("note: " + note);
+  CATENA_CHECK(check_files(options, RunFiles(scene)));
   CATENA_CHECK(scene::prepare(scene));
   Subject subject{std::move(scene), tradeoff::effort(options.quick, options.thorough), {}, {}, 1000, {}, {}};
   CATENA_CHECK(tradeoff::add_hand(subject, options.probe));
@@ -62,6 +69,7 @@ Result<Report> measure(const MeasureOptions& options) {
     report.about.emplace_back("hand", fmt::format("{}, {:g} s at {:g} Hz", subject.motion.words, subject.motion.seconds, subject.rate_hz));
   for (const tradeoff::Measurement& m : all) {
     if (wanted(m) && has_part(m)) {
+      progress.at(done, m.name);
       auto curves = m.measure(subject);
       if (!curves) subject.left_out.push_back(std::string(m.name) + ": " + curves.error().message + ".");
       if (curves)
@@ -74,7 +82,9 @@ Result<Report> measure(const MeasureOptions& options) {
     progress.at(++done);
   }
   report.left_out = std::move(subject.left_out);
-  return report;
+  if (!report.curves.empty()) return report;
+  const std::string why = report.left_out.empty() ? "the scene has nothing of that kind." : report.left_out.front();
+  return Error{options.source + ": there is nothing to measure: " + why};
 }
 
 }  // namespace
@@ -92,6 +102,11 @@ Outcome measure_scene(const MeasureOptions& options) {
     CATENA_TRY(other, tradeoff::read_report(options.compare));
   }
   const bool again = tradeoff::is_report(options.source);
+  if (again) {
+    RunFiles files;
+    files.reads(options.source);
+    CATENA_CHECK(check_files(options, std::move(files)));
+  }
   CATENA_TRY(ResultFolder folder, ResultFolder::open(options.output));
   CATENA_TRY(const Report report, again ? tradeoff::read_report(options.source) : measure(options));
   std::vector<std::vector<std::string>> plots;

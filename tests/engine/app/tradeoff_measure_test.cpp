@@ -248,6 +248,30 @@ TEST(TradeoffScene, IsMeasuredAndComparedFromTheOutside) {
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(test::read_file(folder / "again/tradeoff.json"), test::read_file(report));
   EXPECT_NE(test::read_file(folder / "again/report.html").find("the other's time"), std::string::npos);
+  const std::string before = test::read_file(report);
+  const auto onto = test::run_catena({"tradeoff", report, "-o", folder / "out"});
+  EXPECT_EQ(onto.exit_code, 2) << onto.out;
+  EXPECT_EQ(test::read_file(report), before);
+}
+
+TEST(TradeoffScene, OneServoRateIsChosenAndSomethingIsMeasured) {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", kScene);
+  const auto run = test::run_catena({"tradeoff", folder / "s.json", "-o", folder / "out", "--quick", "--only", "servo rate"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::string chosen[2];
+  for (const int k : {0, 1}) {
+    const Table table = Table::read(folder / (k == 0 ? "out/hand-rate-force.csv" : "out/hand-rate-stability.csv"));
+    for (std::size_t row = 0; row < table.rows(); ++row)
+      if (table.word(row, "chosen") == "1") chosen[k] = table.word(row, "setting");
+  }
+  EXPECT_NE(chosen[0], "");
+  EXPECT_EQ(chosen[0], chosen[1]);
+  test::write_file(folder / "eye.json", R"({"fields": {"ball": {"analytic": "sphere"}}, "volumes": [{"field": "ball"}]})");
+  const auto none = test::run_catena({"tradeoff", folder / "eye.json", "-o", folder / "none", "--quick", "--only", "servo rate"});
+  EXPECT_EQ(none.exit_code, 2) << none.out;
+  EXPECT_NE(none.err.find("there is nothing to measure"), std::string::npos) << none.err;
+  EXPECT_FALSE(test::exists(folder / "none"));
 }
 
 TEST(TradeoffScene, PicturesAreMeasuredOfABareFile) {

@@ -129,11 +129,26 @@ Result<Curve> stability_curve(Subject& subject) {
   return curve;
 }
 
+/// One rate for both: the faster of the two that the force and the spring ask for.
+void choose_one_rate(Curve& force, Curve& stability) {
+  for (Curve* curve : {&force, &stability}) {
+    choose(*curve);
+    if (curve->chosen < 0) return;
+  }
+  Curve &slower = force.chosen < stability.chosen ? force : stability, &faster = &slower == &force ? stability : force;
+  if (slower.chosen == faster.chosen) return;
+  slower.why = fmt::format(
+      "Here {} would do; {} needs {}, and a servo has one rate.", slower.points[static_cast<std::size_t>(slower.chosen)].setting,
+      &slower == &force ? "the spring's stability" : "the force", faster.points[static_cast<std::size_t>(faster.chosen)].setting);
+  slower.chosen = faster.chosen;
+}
+
 }  // namespace
 
 Result<std::vector<Curve>> measure_rate(Subject& subject) {
   CATENA_TRY(Curve force, force_curve(subject));
   CATENA_TRY(Curve stability, stability_curve(subject));
+  choose_one_rate(force, stability);
   return std::vector<Curve>{std::move(force), std::move(stability)};
 }
 
