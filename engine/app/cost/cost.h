@@ -3,7 +3,7 @@
 /// Expected times are counts of work times a unit cost, or sums of parts, which are measured here and now:
 ///   a formula on its grid   nodes x what a node of the same formula took on a lattice of 24^3
 ///   a mirror                bytes x what a byte of a mirror of 64^3 took
-///   a grid from a file      what loading it took just now
+///   a file                  what loading it took just now
 ///   a tick                  one without links + what each link adds that is alone in its chain, on a standard walk through the scene
 ///   a frame                 a start + rows x what a row took: of strips of the picture, some of 1 row and some of 8
 /// What has no model has no expected time. Frame thread.
@@ -25,7 +25,7 @@ struct Cost {
 };
 
 struct CostRow {
-  std::string part;  ///< load, mirror, create, tick, frame
+  std::string part;  ///< load, shape, mirror, create, tick, frame
   std::string name, work;
   Cost expected, measured;
 };
@@ -33,6 +33,9 @@ using CostTable = std::vector<CostRow>;
 
 /// The fields that the scene has loaded and sampled, by now: each is loaded again from the file of the scene, measured twice.
 Outcome add_load_costs(const std::string& path, const scene::Scene& scene, bool measure, CostTable& table);
+/// Meshes, curves and tables of points that the scene has loaded, each loaded again as above; and the shapes that a frame draws, traced
+/// lines among them, with the bytes that their places take.
+Outcome add_shape_costs(const scene::Scene& scene, const render::FramePacket& packet, bool measure, CostTable& table);
 /// Links and their fetches on a walk through the box of what is loaded.
 void add_tick_costs(const scene::Scene& scene, const haptics::Program& program, bool measure, CostTable& table);
 /// Mirrors, passes and a picture of the packet at `balanced`, as that quality stands: without the search that `render` makes for its error.

@@ -52,6 +52,7 @@ Outcome print_costs(const std::string& path, bool json, bool measure) {
   CATENA_TRY(const render::FramePacket packet, render::make_frame(scene, kWidth, kHeight));
   CostTable table;
   CATENA_CHECK(add_load_costs(path, scene, measure, table));
+  CATENA_CHECK(add_shape_costs(scene, packet, measure, table));
   if (const Outcome drawn = add_frame_costs(packet, measure, table); !drawn) throw MachineFailure{drawn.error().message};
   table.push_back({"create", "widgets", std::to_string(program->widgets.size()), {}, {}});
   table.push_back({"create", "devices", scene.device ? "1, by view and feel alone" : "0", {}, {}});

@@ -54,6 +54,28 @@ TEST_F(InfoCost, BytesAreThoseThatAreThenHeldAndEveryPartHasItsRow) {
   EXPECT_GT(number(find(found, "frame", "all"), "measured_ms"), 0);
 }
 
+TEST_F(InfoCost, CountsMeshesPointsAndTracedLines) {
+  test::write_file(folder_ / "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  test::write_file(folder_ / "p.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n");
+  const auto found = rows(R"({
+    "fields": {"flow": {"analytic": "circle"}}, "points": [{"name": "dots", "file": "p.csv"}], "meshes": [{"name": "tetra", "file": "m.obj"}],
+    "streamlines": [{"field": "flow", "seeds": [[0.5, 0, 0], [0.7, 0, 0]]}]})",
+                          true);
+  const json::Node* mesh = find(found, "load", "tetra");
+  ASSERT_NE(mesh, nullptr);
+  EXPECT_EQ(mesh->find("work")->string, "4 triangles");
+  EXPECT_GT(number(mesh, "expected_bytes"), 4 * 3 * 4);
+  EXPECT_EQ(number(mesh, "expected_bytes"), number(mesh, "measured_bytes"));
+  EXPECT_GT(number(mesh, "expected_ms"), 0);
+  const json::Node* tubes = find(found, "shape", "tubes");
+  ASSERT_NE(tubes, nullptr);
+  EXPECT_TRUE(tubes->find("work")->string.starts_with("2 of ")) << tubes->find("work")->string;
+  EXPECT_GT(number(tubes, "expected_bytes"), 2 * 20 * 24) << "a circle is more than 20 places";
+  ASSERT_NE(find(found, "shape", "points"), nullptr);
+  EXPECT_EQ(find(found, "shape", "points")->find("work")->string, "1 of 3 balls");
+  EXPECT_EQ(find(found, "shape", "meshes")->find("work")->string, "1 of 4 triangles");
+}
+
 TEST_F(InfoCost, WhatIsHiddenOrUnusedHasNone) {
   const auto found = rows(kScene, false);
   EXPECT_EQ(find(found, "load", "unused"), nullptr);
