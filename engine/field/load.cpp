@@ -9,6 +9,7 @@
 
 #include "engine/base/text.h"
 #include "engine/field/formats.h"
+#include "engine/field/crop.h"
 #include "engine/field/level.h"
 
 namespace catena::field {
@@ -126,6 +127,9 @@ Result<AnyField> load(const LoadRequest& request) {
     if (field && !has_finite_box(*field->get()))
       return Error{fmt::format("{}: the transform puts a corner of the data beyond all numbers, expected a finite box", request.path)};
     if (!field) return field;
+    if (request.crop && !has_ending(request.path, ".vdb")) {  // of a .vdb nothing else was read
+      CATENA_TRY(field, cropped(request.path, *field, *request.crop));
+    }
     const bool nearest = request.interpolation == Interpolation::nearest;
     if (nearest && field->vector)
       return Error{fmt::format("{}: the grid \"{}\" holds vectors, expected numbers for the interpolation \"nearest\"", request.path,

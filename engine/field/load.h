@@ -32,6 +32,7 @@ struct LoadRequest {
   Vec3 spacing{1.0}, origin{0.0};                       ///< .npy, .npz
   std::optional<RawLayout> raw;                         ///< for .raw
   Interpolation interpolation = Interpolation::linear;  ///< of a scalar grid; nearest: of scalar grids only
+  std::optional<Box> crop;                              ///< world: only the voxels that it needs (crop.h)
   std::int32_t level = 0;                               ///< of detail (level.h); 0: as it is in the file
   bool operator==(const LoadRequest&) const = default;
 };

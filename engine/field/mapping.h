@@ -28,6 +28,7 @@ struct Box {
     return p.x >= lo.x - slack && p.y >= lo.y - slack && p.z >= lo.z - slack && p.x <= hi.x + slack && p.y <= hi.y + slack &&
            p.z <= hi.z + slack;
   }
+  bool operator==(const Box&) const = default;
 };
 
 /// Of a box that may lie obliquely in the world: corner i + 2 j + 4 k by index, and what encloses all eight.

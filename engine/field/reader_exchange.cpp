@@ -148,6 +148,10 @@ std::string encode(const ReadRequest& r) {
   e.flag(r.what.valid_required);
   e.number(r.what.step);
   e.flag(r.what.axes_xyz);
+  e.flag(r.what.crop.has_value());
+  const Box crop = r.what.crop.value_or(Box{});
+  e.vector(crop.lo);
+  e.vector(crop.hi);
   e.number(r.memory_bytes);
   e.number(r.cpu_s);
   return e.take();
@@ -165,6 +169,9 @@ Result<ReadRequest> decode_request(std::span<const std::byte> bytes) {
   r.what.valid_required = d.flag();
   r.what.step = d.number<std::int32_t>();
   r.what.axes_xyz = d.flag();
+  const bool has_crop = d.flag();
+  const Vec3 lo = d.vector(), hi = d.vector();
+  if (has_crop) r.what.crop = Box{lo, hi};
   r.memory_bytes = d.number<std::uint64_t>();
   r.cpu_s = d.number<std::uint64_t>();
   if (!d.finished() || mode > static_cast<std::uint8_t>(ReadMode::shape)) return Error{"the request is incomplete"};

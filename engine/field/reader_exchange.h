@@ -16,7 +16,7 @@
 namespace catena::field {
 
 inline constexpr std::uint64_t kExchangeMagic = 0x31615644'6e746143;  // "CatnDVa1"
-inline constexpr std::uint32_t kExchangeVersion = 1;
+inline constexpr std::uint32_t kExchangeVersion = 2;
 inline constexpr std::uint64_t kPieceAlignment = 4096;
 
 struct ExchangeHead {

@@ -83,6 +83,20 @@ Outcome read_labels_table(const std::string& scene_path, const json::Node& node,
 
 }  // namespace
 
+Keys crop_keys() {
+  return {schema::vec3("lo", "world", "Its lowest corner.").required(), schema::vec3("hi", "world", "Its highest corner.").required()};
+}
+
+Outcome read_crop(const json::Node& node, std::optional<field::Box>& crop) {
+  CATENA_CHECK(json::expect_object(node, "crop"));
+  CATENA_CHECK(json::only_keys(node, schema::names_of(crop_keys())));
+  field::Box& box = crop.emplace();
+  CATENA_TRY(box.lo, json::require_vec3(node, "lo"));
+  CATENA_TRY(box.hi, json::require_vec3(node, "hi"));
+  if (box.lo.x < box.hi.x && box.lo.y < box.hi.y && box.lo.z < box.hi.z) return Done{};
+  return json::error_at(*node.find("hi"), "\"hi\" is not above \"lo\"; a corner above it along each axis was expected");
+}
+
 Keys map_keys() {
   return {schema::word("interpolation", {"linear", "nearest", "cubic"},
                        "What lies between voxel centres: a mix of the eight nearest; the value of the nearest, as of a label map; or the "
@@ -91,6 +105,9 @@ Keys map_keys() {
           schema::integer("level_of_detail", "", "Every 2nd, 4th or 8th voxel of each axis, for the eye and the hand alike: 1, 2 or 3.", 0,
                           field::kMostLevels)
               .by_default("0: all of them"),
+          schema::object("crop", crop_keys(),
+                         "The field is the voxels that this box needs, for the eye and the hand alike; of a `.vdb` no others are read.")
+              .by_default("all of them"),
           schema::object("labels", labels_keys(), "Of a label map: names and colours of the numbers in its voxels.").by_default("none")};
 }
 
@@ -102,7 +119,8 @@ Outcome read_map(const std::string& scene_path, const json::Node& node, FieldSou
   CATENA_CHECK(schema::read_value(*schema::find(keys, "interpolation"), node, interpolation));
   source.file->interpolation = interpolation;
   CATENA_CHECK(schema::read_value(*schema::find(keys, "level_of_detail"), node, source.file->level));
-  return Done{};
+  const json::Node* crop = node.find("crop");
+  return crop != nullptr ? read_crop(*crop, source.file->crop) : Done{};
 }
 
 Keys label_keys() {

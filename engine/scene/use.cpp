@@ -11,6 +11,7 @@
 namespace catena::scene {
 namespace {
 
+constexpr double kFarthestDrawn = 1e30;  ///< world coordinates: as those that a scene may write
 constexpr std::size_t kManyCurves = 64;  ///< from here on those that nothing holds are looked for
 
 /// A field without a single value helps nobody.
@@ -80,11 +81,23 @@ Result<field::AnyField> use_field(Scene& scene, const std::string& name, const j
   return use_field(scene, field, where);
 }
 
+/// Of the farthest corner, along an axis.
+static double reach_of(const field::Field& grid) {
+  const Bounds box = field::world_bounds(grid.mapping(), grid.index_box());
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis) most = std::max({most, std::fabs(box.lo[axis]), std::fabs(box.hi[axis])});
+  return most;
+}
+
 Result<field::AnyField> use_drawn_field(Scene& scene, Entity field, const json::Node& where) {
   CATENA_TRY(const field::AnyField loaded, use_field(scene, field, where));
   FieldSource& source = scene.world.get<FieldSource>(field);
   if (source.drawn.get() == nullptr) {
     if (loaded.get()->is_grid()) {
+      if (const double reach = reach_of(*loaded.get()); reach > kFarthestDrawn)
+        return json::error_at(source.where.line > 0 ? source.where : where,
+                              fmt::format("field {}: reaches {:.3g} from the origin, which no picture shows; at most {:g} was expected",
+                                          in_quotes(scene.world.get<Name>(field).value), reach, kFarthestDrawn));
       source.drawn = loaded;
     } else {
       const auto drawn = field::try_sample_on_grid(loaded, source.resolution, source.box[0], source.box[1]);

@@ -14,7 +14,14 @@ struct OpenFile::Archive : openvdb::io::Archive {
     setLibraryVersion(in);
     setDataCompression(in);
   }
-  static void grid(const openvdb::GridBase::Ptr& to, const openvdb::io::GridDescriptor& at, std::istream& in) { readGrid(to, at, in); }
+  /// `box`: nullptr: all voxels.
+  static void grid(const openvdb::GridBase::Ptr& to, const openvdb::io::GridDescriptor& at, std::istream& in,
+                   const openvdb::CoordBBox* box = nullptr) {
+    if (box != nullptr)
+      readGrid(to, at, in, *box);
+    else
+      readGrid(to, at, in);
+  }
   static void metadata(const openvdb::GridBase::Ptr& to, std::istream& in) {
     readGridCompression(in);
     to->readMeta(in);
@@ -84,18 +91,25 @@ const VdbEntry* OpenFile::parent_of(const std::string& unique_name) const {
   return nullptr;
 }
 
-openvdb::GridBase::Ptr OpenFile::read_at(const VdbEntry& entry, bool metadata_only) {
+openvdb::GridBase::Ptr OpenFile::read_metadata(const VdbEntry& entry) {
   if (!openvdb::GridBase::isRegistered(entry.tree_type)) return nullptr;
   stream_.clear();
   stream_.seekg(static_cast<std::streamoff>(entry.at));
   openvdb::io::GridDescriptor descriptor;
   const openvdb::GridBase::Ptr grid = descriptor.read(stream_);
   descriptor.seekToGrid(stream_);
-  if (metadata_only) {
-    Archive::metadata(grid, stream_);
-    return grid;
-  }
-  Archive::grid(grid, descriptor, stream_);
+  Archive::metadata(grid, stream_);
+  return grid;
+}
+
+openvdb::GridBase::Ptr OpenFile::read_at(const VdbEntry& entry, const openvdb::CoordBBox* box) {
+  if (!openvdb::GridBase::isRegistered(entry.tree_type)) return nullptr;
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(entry.at));
+  openvdb::io::GridDescriptor descriptor;
+  const openvdb::GridBase::Ptr grid = descriptor.read(stream_);
+  descriptor.seekToGrid(stream_);
+  Archive::grid(grid, descriptor, stream_, box);
   if (!descriptor.isInstance()) return grid;
   // the tree of another grid, which must have one of its own
   const VdbEntry* parent = parent_of(descriptor.instanceParentName());
@@ -105,14 +119,23 @@ openvdb::GridBase::Ptr OpenFile::read_at(const VdbEntry& entry, bool metadata_on
   const openvdb::GridBase::Ptr owning = owner.read(stream_);
   if (owner.isInstance()) throw std::runtime_error("it shares a tree that is itself shared");
   owner.seekToGrid(stream_);
-  Archive::grid(owning, owner, stream_);
+  Archive::grid(owning, owner, stream_, box);
   grid->setTree(owning->baseTreePtr());
   return grid;
 }
 
-openvdb::GridBase::Ptr OpenFile::read(const VdbEntry& entry) {
-  if (!directory_.streamed) return read_at(entry, false);
-  return streamed_.at(entry.unique_name);
+openvdb::GridBase::Ptr OpenFile::read(const VdbEntry& entry, const Part& part) {
+  if (directory_.streamed) {
+    const openvdb::GridBase::Ptr grid = streamed_.at(entry.unique_name);
+    if (part) grid->clip(part(*grid));
+    return grid;
+  }
+  if (!part) return read_at(entry, nullptr);
+  const openvdb::CoordBBox none;
+  const openvdb::GridBase::Ptr bare = read_at(entry, &none);
+  if (!bare) return bare;
+  const openvdb::CoordBBox box = part(*bare);
+  return read_at(entry, &box);
 }
 
 void OpenFile::words(field::ReadReply& reply) {
@@ -121,7 +144,7 @@ void OpenFile::words(field::ReadReply& reply) {
     if (const auto text = metadata_.getMetadata<openvdb::StringMetadata>("units")) reply.units = text->value().substr(0, kLongest);
     reply.unit_length = unit_of(metadata_, {"unit_length"});
     for (const VdbEntry& entry : entries()) {
-      const openvdb::GridBase::Ptr grid = directory_.streamed ? streamed_.at(entry.unique_name) : read_at(entry, true);
+      const openvdb::GridBase::Ptr grid = directory_.streamed ? streamed_.at(entry.unique_name) : read_metadata(entry);
       if (!grid) continue;
       const bool level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
       reply.words.push_back({entry.name, unit_of(*grid, {"unit", "units"}), unit_of(*grid, {"unit_length"}), level_set});

@@ -4,6 +4,7 @@
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -20,15 +21,19 @@ class OpenFile {
 
   const std::vector<VdbEntry>& entries() const { return directory_.entries; }
   const VdbEntry* find(const std::string& name) const;
-  /// The whole grid; a grid that shares its tree with another gets that tree. Null: of a type that OpenVDB does not know.
-  openvdb::GridBase::Ptr read(const VdbEntry& entry);
+  /// Of a grid with its transform and without values: the voxels that are wanted.
+  using Part = std::function<openvdb::CoordBBox(const openvdb::GridBase&)>;
+  /// The grid; one that shares its tree with another gets that tree. Null: of a type that OpenVDB does not know. Of a part, leaves outside
+  /// of it are not read (a file without offsets is read as a whole), and no voxel outside of it is active.
+  openvdb::GridBase::Ptr read(const VdbEntry& entry, const Part& part = {});
   /// What the file says of units: of itself, and of each grid. Never throws.
   void words(field::ReadReply& reply);
 
  private:
   struct Archive;
   OpenFile(std::span<const std::byte> bytes);
-  openvdb::GridBase::Ptr read_at(const VdbEntry& entry, bool metadata_only);
+  openvdb::GridBase::Ptr read_at(const VdbEntry& entry, const openvdb::CoordBBox* box);
+  openvdb::GridBase::Ptr read_metadata(const VdbEntry& entry);
   const VdbEntry* parent_of(const std::string& unique_name) const;
 
   openvdb::io::StreamMetadata::Ptr about_;  ///< the stream borrows it

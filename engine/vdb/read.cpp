@@ -5,6 +5,7 @@
 #include <new>
 
 #include "engine/base/text.h"
+#include "engine/field/crop.h"
 #include "engine/field/grid_make.h"
 #include "engine/field/nano_stats.h"
 #include "engine/vdb/open_file.h"
@@ -101,7 +102,7 @@ class Answer {
     CATENA_TRY(const VdbEntry* entry, choose(file_, what_));
     reply.name = entry->name;
     const auto about = [&](const Error& e) { return Error{fmt::format("{}: grid \"{}\" {}", what_.path, entry->name, e.message)}; };
-    openvdb::GridBase::Ptr grid = file_.read(*entry);
+    openvdb::GridBase::Ptr grid = file_.read(*entry, part());
     if (!grid) return not_a_field(*entry);
     const auto mapping = mapping_of(*grid);
     if (!mapping) return about(mapping.error());
@@ -117,6 +118,7 @@ class Answer {
     grid.reset();
     const ActiveBox box =
         scalar ? field::active_box(field::nano_grid<float>(*values)) : field::active_box(field::nano_grid<nanovdb::Vec3f>(*values));
+    if (box.empty() && what_.crop) return about(Error{"has no active voxels in \"crop\"; a box that meets the data was expected"});
     if (box.empty()) return about(Error{"has no active voxels, expected a grid with data"});
     if (!is_near(box)) return about(field::too_far(box));
     return load_mask(reply, box);
@@ -132,6 +134,16 @@ class Answer {
 
  private:
   std::uint64_t left() const { return request_.memory_bytes; }
+  /// What "crop" leaves of a grid; all of one whose transform is refused later.
+  OpenFile::Part part() const {
+    if (!what_.crop) return {};
+    return [crop = *what_.crop](const openvdb::GridBase& grid) {
+      const auto mapping = mapping_of(grid);
+      if (!mapping) return openvdb::CoordBBox();
+      const ActiveBox box = field::voxels_for(crop, *mapping);
+      return openvdb::CoordBBox(box.lo[0], box.lo[1], box.lo[2], box.hi[0], box.hi[1], box.hi[2]);
+    };
+  }
   NanoAllocator into(field::Piece& piece) {
     return [this, &piece](std::size_t bytes) { return out_.allocate(bytes, piece); };
   }
@@ -150,7 +162,7 @@ class Answer {
     const std::string word = type_word(*entry);
     if (word != "bool" && word != "mask")
       return Error{fmt::format("{}: the mask \"{}\" is of type {}, expected bool", what_.path, entry->name, word)};
-    const auto grid = file_.read(*entry);
+    const auto grid = file_.read(*entry, part());
     CATENA_TRY(const Mapping own, mapping_of(*grid));
     if (!same_mapping(reply.mapping, own))
       return Error{fmt::format("{}: the mask \"{}\" has another transform than the grid, expected the same (\"valid\": null ignores it)",

@@ -115,6 +115,17 @@ std::string notes_of_data() {
   return result.err.substr(0, result.err.find('\n')).replace(0, result.err.find("d.raw"), "");
 }
 
+std::string voxels_beyond_pictures() {
+  const test::TemporaryFolder folder;
+  std::string values;
+  for (int i = 0; i < 512; ++i) values.push_back(static_cast<char>(i % 7));
+  test::write_file(folder / "d.raw", values);
+  test::write_file(folder / "s.json",
+                   R"({"fields": {"d": {"file": "d.raw", "type": "uint8", "shape": [8, 8, 8], "spacing": [1e30, 1e30, 1e30]}},
+    "volumes": [{"field": "d"}]})");
+  return ran(folder, test::run_catena({"render", folder / "s.json", "-o", folder / "out.png", "--size", "64x48"}));
+}
+
 // ---- 512^3 without a single block of one value ----
 
 const test::TemporaryFolder& dense() {
@@ -185,6 +196,9 @@ Group command_rows() {
        exit + "s.json: the scene has 9 translucent isosurfaces, expected at most 8", nine_translucent_surfaces},
       {"NotesOfData", "A scene whose data hold 0.1 and 1e300, felt: its note",
        "d.raw: values of type float64 are rounded to 32-bit floats (and 1 more)", notes_of_data},
+      {"VoxelsBeyondPictures", "A picture of voxels of 1e30",
+       exit + "s.json:1: field \"d\": reaches 7e+30 from the origin, which no picture shows; at most 1e+30 was expected",
+       voxels_beyond_pictures},
       {"NoTolerance", "A tolerance of 1e-300", "done", no_tolerance},
   };
   rows.push_back({"FullUnderTheHand", "512^3 voxels of noise under the hand, within 700000 KB of addresses", "done", full_under_the_hand});

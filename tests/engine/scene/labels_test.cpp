@@ -114,6 +114,20 @@ TEST_F(LabelScene, WhatCannotBeIsSaidInOneLine) {
   EXPECT_NE(refused(", \"interpolation\": \"near\"", "}}").find("nearest"), std::string::npos);
 }
 
+TEST_F(LabelScene, AFieldCanBeAPartOfItsFile) {
+  auto scene = read(", \"crop\": {\"lo\": [3.5, 2, 2], \"hi\": [9, 9, 9]}", "}, \"volumes\": [{\"field\": \"m\"}]}");
+  ASSERT_TRUE(scene) << scene.error().message;
+  Scene& shown = *scene;
+  ASSERT_TRUE(prepare(shown));
+  const FieldSource& source = shown.world.get<FieldSource>(find_field(shown, "m"));
+  EXPECT_EQ(source.loaded.get(), source.drawn.get()) << "what is felt is what is drawn";
+  EXPECT_EQ(source.loaded.get()->index_box().hi - source.loaded.get()->index_box().lo, Vec3(6, 7, 7));
+  EXPECT_NE(refused(", \"crop\": {\"lo\": [0, 0, 0], \"hi\": [4, 0, 4]}", "}}").find("\"hi\" is not above \"lo\""), std::string::npos);
+  EXPECT_NE(refused(", \"crop\": {\"lo\": [0, 0, 0]}", "}}").find("hi"), std::string::npos);
+  EXPECT_NE(refused(", \"crop\": {\"lo\": [20, 0, 0], \"hi\": [30, 4, 4]}", "}, \"volumes\": [{\"field\": \"m\"}]}").find("no voxels"),
+            std::string::npos);
+}
+
 TEST_F(LabelScene, AnEditKeepsWhatWasMadeWhileTheLabelsStay) {
   const std::string more =
       ", \"a\": {\"label\": 3, \"of\": \"m\"}}, \"isosurfaces\": [{\"field\": \"a\", \"level\": 0.5, \"color\": [1, 0, 0]}]}";
