@@ -84,3 +84,11 @@ if(CATENA_VTK)
 else()
   message(STATUS "Files of VTK, ITK and NumPy's .npz will not be read: libvtk9-dev, libinsighttoolkit5-dev, libgiftiio-dev or libzip-dev is missing")
 endif()
+
+# Headsets: the headers alone, since the loader is opened when one is asked for. Optional.
+find_path(OPENXR_INCLUDE_DIR openxr/openxr_platform.h)
+set(CATENA_XR ON)
+if(NOT OPENXR_INCLUDE_DIR)
+  set(CATENA_XR OFF)
+  message(STATUS "Headsets will not be spoken to: libopenxr-dev is missing")
+endif()

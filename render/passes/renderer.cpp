@@ -277,6 +277,11 @@ Result<Picture> Renderer::read_back() {
   return picture;
 }
 
+vk::Image& Renderer::picture() {
+  CATENA_ASSERT(parts_->drawn != 0);
+  return parts_->shown();
+}
+
 Result<FloatPicture> Renderer::read_back_float() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kFloatPictureFormat);

@@ -26,6 +26,7 @@
 namespace catena::render {
 
 namespace vk {
+class Image;
 class Swapchain;
 }
 
@@ -89,6 +90,8 @@ class Renderer {
   Outcome draw(const FramePacket& packet, const RenderSettings& settings = {});
   /// The last picture, straight alpha.
   Result<Picture> read_back();
+  /// Its image, on the device, for who copies it on: in the layout TRANSFER_SRC, until the next draw.
+  vk::Image& picture();
   /// The same in floats, for settings with `float_picture`.
   Result<FloatPicture> read_back_float();
   /// Pixels that a picture can have, each way, on this device.

@@ -83,7 +83,9 @@ class Device {
 
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
+  VkInstance instance() const { return instance_->handle(); }
   VkQueue queue() const { return queue_; }
+  std::uint32_t queue_family() const { return queue_family_; }
   /// Held while the queue is used: others may use it, too (VulkanMaker).
   [[nodiscard]] std::unique_lock<std::mutex> queue_turn() const {
     return maker_.queue_lock != nullptr ? std::unique_lock(*maker_.queue_lock) : std::unique_lock<std::mutex>();

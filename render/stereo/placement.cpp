@@ -1,0 +1,25 @@
+#include "render/stereo/placement.h"
+
+#include "render/frame/camera.h"
+
+namespace catena::render {
+
+Placement first_placement(const View& view, double distance_m) {
+  // an up along the axis is replaced as the camera does it
+  const Camera axes = make_camera(view, 1, 1, {});
+  const bool level = std::fabs(dot(direction(view.up), axes.back)) < 0.999;
+  const Vec3 up = level ? direction(view.up) : axes.up;
+  const Vec3 back = direction(axes.back - dot(axes.back, up) * up), right = cross(up, back);
+  const double distance = norm(view.position - view.target);
+  Placement placement;
+  placement.world_from_room = Mat3(right, up, back);
+  placement.metres_per_unit = distance_m / (distance > 0 ? distance : 1);
+  placement.world_origin = view.target + back * (distance_m / placement.metres_per_unit);
+  return placement;
+}
+
+Result<View> eye_view(const Placement& placement, const RoomEye& eye) {
+  return headset_view(placement.to_world(eye.position), placement.world_from_room * eye.room_from_eye, eye.tangents);
+}
+
+}  // namespace catena::render

@@ -1,0 +1,114 @@
+#include "render/xr/eye_images.h"
+
+#include <algorithm>
+#include <array>
+
+namespace catena::render::xr {
+
+namespace {
+
+VkImageMemoryBarrier2 moved(VkImage image, const vk::Use& from, const vk::Use& to) {
+  VkImageMemoryBarrier2 barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+  barrier.srcStageMask = from.stage;
+  barrier.srcAccessMask = from.access;
+  barrier.dstStageMask = to.stage;
+  barrier.dstAccessMask = to.access;
+  barrier.oldLayout = from.layout;
+  barrier.newLayout = to.layout;
+  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.image = image;
+  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  return barrier;
+}
+
+void record(VkCommandBuffer commands, const VkImageMemoryBarrier2& barrier) {
+  VkDependencyInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+  info.imageMemoryBarrierCount = 1;
+  info.pImageMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(commands, &info);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<EyeImages>> EyeImages::create(Session& session, ViewSize size) {
+  Instance& instance = session.instance();
+  const Functions& xr = session.xr();
+  std::uint32_t count = 0;
+  CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), 0, &count, nullptr), "list its picture formats");
+  std::vector<std::int64_t> formats(count);
+  CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), count, &count, formats.data()), "list its picture formats");
+  constexpr std::array<std::int64_t, 2> kWanted{VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM};
+  const auto format = std::ranges::find_if(kWanted, [&](std::int64_t f) { return std::ranges::find(formats, f) != formats.end(); });
+  if (format == kWanted.end())
+    return Error{"the headset " + instance.name() + " takes no pictures of 8 bits red, green, blue and alpha, expected R8G8B8A8_SRGB"};
+
+  std::unique_ptr<EyeImages> self(new EyeImages(session, size));
+  XrSwapchainCreateInfo info{};
+  info.type = XR_TYPE_SWAPCHAIN_CREATE_INFO;
+  info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
+  info.format = *format;
+  info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
+  info.width = size.width;
+  info.height = size.height;
+  {
+    const auto turn = session.device().queue_turn();
+    CATENA_XR_CHECK(instance, xr.CreateSwapchain(session.handle(), &info, &self->swapchain_), "make images");
+  }
+  CATENA_XR_CHECK(instance, xr.EnumerateSwapchainImages(self->swapchain_, 0, &count, nullptr), "list its images");
+  XrSwapchainImageVulkan2KHR image{};
+  image.type = XR_TYPE_SWAPCHAIN_IMAGE_VULKAN2_KHR;
+  std::vector<XrSwapchainImageVulkan2KHR> images(count, image);
+  CATENA_XR_CHECK(
+      instance, xr.EnumerateSwapchainImages(self->swapchain_, count, &count, reinterpret_cast<XrSwapchainImageBaseHeader*>(images.data())),
+      "list its images");
+  for (const XrSwapchainImageVulkan2KHR& one : images) self->images_.push_back(one.image);
+  return self;
+}
+
+EyeImages::~EyeImages() {
+  if (!swapchain_) return;
+  (void)session_->device().wait_idle();
+  const auto turn = session_->device().queue_turn();
+  (void)session_->xr().DestroySwapchain(swapchain_);
+}
+
+Outcome EyeImages::take(vk::Image& picture) {
+  Instance& instance = session_->instance();
+  const Functions& xr = session_->xr();
+  std::uint32_t index = 0;
+  {
+    const auto turn = session_->device().queue_turn();
+    CATENA_XR_CHECK(instance, xr.AcquireSwapchainImage(swapchain_, nullptr, &index), "lend an image");
+  }
+  XrSwapchainImageWaitInfo wait{};
+  wait.type = XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO;
+  wait.timeout = XR_INFINITE_DURATION;
+  CATENA_XR_CHECK(instance, xr.WaitSwapchainImage(swapchain_, &wait), "lend an image");
+  if (index >= images_.size()) return instance.failed(XR_ERROR_RUNTIME_FAILURE, "lend an image that it has");
+  const Outcome copied = copy(picture, images_[index]);
+  const auto turn = session_->device().queue_turn();
+  CATENA_XR_CHECK(instance, xr.ReleaseSwapchainImage(swapchain_, nullptr), "take an image back");
+  return copied;
+}
+
+Outcome EyeImages::copy(vk::Image& picture, VkImage to) {
+  const VkExtent3D extent = picture.info().extent;
+  CATENA_ASSERT(extent.width <= size_.width && extent.height <= size_.height);
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(session_->device()));
+  commands.use(picture, vk::kTransferRead);
+  vk::Use before = vk::kColorTarget;  // what the runtime did to it is over, and what it shows does not count
+  before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  record(commands.handle(), moved(to, before, vk::kTransferWrite));
+  VkImageCopy region{};
+  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.extent = extent;
+  vkCmdCopyImage(commands.handle(), picture.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                 &region);
+  record(commands.handle(), moved(to, vk::kTransferWrite, vk::kColorTarget));
+  CATENA_TRY([[maybe_unused]] const std::uint64_t done, commands.submit());
+  return Done{};
+}
+
+}  // namespace catena::render::xr

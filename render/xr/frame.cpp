@@ -1,0 +1,95 @@
+#include "render/xr/frame.h"
+
+#include <cmath>
+
+namespace catena::render::xr {
+
+namespace {
+
+constexpr XrViewStateFlags kTracked = XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
+
+Outcome locate(Session& session, Frame& frame) {
+  XrViewLocateInfo info{};
+  info.type = XR_TYPE_VIEW_LOCATE_INFO;
+  info.viewConfigurationType = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+  info.displayTime = frame.time;
+  info.space = session.space(SpaceKind::local);
+  XrViewState state{};
+  state.type = XR_TYPE_VIEW_STATE;
+  XrView view{};
+  view.type = XR_TYPE_VIEW;
+  frame.views.assign(session.instance().views().size(), view);
+  std::uint32_t count = 0;
+  CATENA_XR_CHECK(session,
+                  session.xr().LocateViews(session.handle(), &info, &state, std::uint32_t(frame.views.size()), &count, frame.views.data()),
+                  "locate the eyes");
+  frame.wants_picture = frame.wants_picture && count == frame.views.size() && (state.viewStateFlags & kTracked) == kTracked;
+  return Done{};
+}
+
+}  // namespace
+
+RoomEye room_eye(const XrView& view) {
+  const auto& [x, y, z, w] = view.pose.orientation;
+  RoomEye eye;
+  eye.position = Vec3(view.pose.position.x, view.pose.position.y, view.pose.position.z);
+  eye.room_from_eye = glm::mat3_cast(normalised(Quat(w, x, y, z)));
+  eye.tangents = {std::tan(double(view.fov.angleLeft)), std::tan(double(view.fov.angleRight)), std::tan(double(view.fov.angleUp)),
+                  std::tan(double(view.fov.angleDown))};
+  return eye;
+}
+
+Result<Frame> begin_frame(Session& session) {
+  const Functions& xr = session.xr();
+  XrFrameWaitInfo wait{};
+  wait.type = XR_TYPE_FRAME_WAIT_INFO;
+  XrFrameState state{};
+  state.type = XR_TYPE_FRAME_STATE;
+  CATENA_XR_CHECK(session, xr.WaitFrame(session.handle(), &wait, &state), "say when the next picture is due");
+  Frame frame;
+  frame.time = state.predictedDisplayTime;
+  frame.period_ns = state.predictedDisplayPeriod;
+  frame.wants_picture = state.shouldRender && is_seen(session.state());
+  XrFrameBeginInfo begin{};
+  begin.type = XR_TYPE_FRAME_BEGIN_INFO;
+  {
+    const auto turn = session.device().queue_turn();
+    CATENA_XR_CHECK(session, xr.BeginFrame(session.handle(), &begin), "begin a picture");
+  }
+  if (const Outcome located = locate(session, frame); !located) {
+    (void)end_frame(session, frame, {});
+    return located.error();
+  }
+  return frame;
+}
+
+Outcome end_frame(Session& session, const Frame& frame, const std::vector<Shown>& shown,
+                  const std::vector<const XrCompositionLayerBaseHeader*>& extra) {
+  std::vector<XrCompositionLayerProjectionView> views(shown.size());
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    views[k].type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
+    views[k].pose = frame.views[k].pose;
+    views[k].fov = frame.views[k].fov;
+    views[k].subImage.swapchain = shown[k].images->handle();
+    views[k].subImage.imageRect.extent = {std::int32_t(shown[k].size.width), std::int32_t(shown[k].size.height)};
+  }
+  XrCompositionLayerProjection projection{};
+  projection.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION;
+  projection.space = session.space(SpaceKind::local);
+  projection.viewCount = std::uint32_t(views.size());
+  projection.views = views.data();
+  std::vector<const XrCompositionLayerBaseHeader*> layers;
+  if (!views.empty()) layers.push_back(reinterpret_cast<const XrCompositionLayerBaseHeader*>(&projection));
+  layers.insert(layers.end(), extra.begin(), extra.end());
+  XrFrameEndInfo end{};
+  end.type = XR_TYPE_FRAME_END_INFO;
+  end.displayTime = frame.time;
+  end.environmentBlendMode = session.instance().blend_mode();
+  end.layerCount = std::uint32_t(layers.size());
+  end.layers = layers.data();
+  const auto turn = session.device().queue_turn();
+  CATENA_XR_CHECK(session, session.xr().EndFrame(session.handle(), &end), "show a picture");
+  return Done{};
+}
+
+}  // namespace catena::render::xr

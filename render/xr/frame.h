@@ -1,0 +1,35 @@
+/// One frame of the headset, from the wait to the end:
+///   wait (the runtime says when its picture will be seen) -> begin -> locate the views at that time -> draw -> end
+/// The poses that were located are those that are submitted, so that the runtime moves the picture by what the head has moved since.
+/// Every frame that was begun is ended, with nothing to show where its picture failed. Frame thread.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "render/stereo/placement.h"
+#include "render/xr/eye_images.h"
+
+namespace catena::render::xr {
+
+struct Frame {
+  XrTime time = 0;             ///< when it will be seen: the runtime's clock, ns
+  std::int64_t period_ns = 0;  ///< between pictures, as predicted
+  bool wants_picture = false;  ///< seen, and the head is tracked
+  std::vector<XrView> views;   ///< as located in the local space, and as submitted
+};
+
+RoomEye room_eye(const XrView& view);
+
+/// What is submitted of one view: the upper left part of its images.
+struct Shown {
+  const EyeImages* images = nullptr;
+  ViewSize size;
+};
+
+/// Of a session that runs. The frame is begun when this returns it.
+Result<Frame> begin_frame(Session& session);
+/// `shown` by view; empty: nothing is shown. `extra`: layers over it.
+Outcome end_frame(Session& session, const Frame& frame, const std::vector<Shown>& shown,
+                  const std::vector<const XrCompositionLayerBaseHeader*>& extra = {});
+
+}  // namespace catena::render::xr

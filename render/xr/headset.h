@@ -1,0 +1,56 @@
+/// The headset as the program sees it: opened before the Vulkan device (its runtime makes that), started on it, and then a frame at a time.
+///   auto headset = Headset::open();  options.maker = (*headset)->maker(lock);  renderer = Renderer::create(options)
+///   (*headset)->start(renderer->device());   while (..) { poll(); if (running()) draw(renderer, packet, settings, placement); }
+/// After an error loss() says what has to be made again: of the session, stop() and start(); of the instance, another Headset and another
+/// renderer, later, since the runtime may be gone for a while. Frame thread.
+#pragma once
+#include <memory>
+#include <mutex>
+
+#include "render/passes/renderer.h"
+#include "render/xr/frame.h"
+
+namespace catena::render::xr {
+
+/// What the frames have been so far.
+struct FrameCounts {
+  std::uint64_t frames = 0;    ///< begun and ended
+  std::uint64_t pictures = 0;  ///< of these, with a picture
+};
+
+class Headset {
+ public:
+  static Result<std::unique_ptr<Headset>> open(const char* library = "libopenxr_loader.so.1");
+  ~Headset() { stop(); }
+
+  const Instance& instance() const { return *instance_; }
+  vk::VulkanMaker maker(std::mutex& queue_lock) { return instance_->maker(queue_lock); }
+
+  /// The device is one that was made by maker().
+  Outcome start(vk::Device& device);
+  void stop();
+  bool started() const { return session_ != nullptr; }
+  Session& session() { return *session_; }
+
+  /// The runtime's events.
+  Outcome poll() { return session_->poll(); }
+  bool running() const { return session_ && session_->running(); }
+  Loss loss() const { return instance_->loss(); }
+
+  /// A frame: waits for its time, draws every view of the packet's scene, and hands them over. The first view is drawn last, so that it is
+  /// the renderer's last picture: for the window. `share`: of the recommended pixels, each way. What is returned is the frame as shown.
+  Result<Frame> draw(Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement, double share = 1);
+  const FrameCounts& counts() const { return counts_; }
+
+ private:
+  explicit Headset(std::unique_ptr<Instance> instance) : instance_(std::move(instance)) {}
+  Result<std::vector<Shown>> draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
+                                        const Placement& placement, double share);
+
+  std::unique_ptr<Instance> instance_;  // first in, last out
+  std::unique_ptr<Session> session_;
+  std::vector<std::unique_ptr<EyeImages>> images_;
+  FrameCounts counts_;
+};
+
+}  // namespace catena::render::xr

@@ -1,0 +1,104 @@
+#include "render/xr/instance.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace catena::render::xr {
+
+namespace {
+
+constexpr XrViewConfigurationType kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
+
+bool is_among(const std::vector<XrExtensionProperties>& all, const char* name) {
+  return std::ranges::any_of(all, [&](const XrExtensionProperties& one) { return std::strcmp(one.extensionName, name) == 0; });
+}
+
+}  // namespace
+
+Error Instance::failed(XrResult result, const std::string& what) {
+  const bool instance = result == XR_ERROR_INSTANCE_LOST || result == XR_ERROR_RUNTIME_FAILURE || result == XR_ERROR_RUNTIME_UNAVAILABLE ||
+                        result == XR_ERROR_HANDLE_INVALID;
+  loss_ = std::max(loss_, instance ? Loss::instance : Loss::session);
+  return xr_error(result, what);
+}
+
+Result<std::unique_ptr<Instance>> Instance::open(const char* library) {
+  std::unique_ptr<Instance> self(new Instance);
+  CATENA_TRY(self->loader_, Loader::open(library));
+  self->functions_ = self->loader_->functions();
+  CATENA_CHECK(self->create());
+  CATENA_CHECK(self->functions_.load(self->instance_));
+  CATENA_CHECK(self->look_at_system());
+  return self;
+}
+
+Instance::~Instance() {
+  if (instance_ && functions_.DestroyInstance) (void)functions_.DestroyInstance(instance_);
+}
+
+Outcome Instance::create() {
+  std::uint32_t count = 0;
+  CATENA_XR_CHECK(*this, functions_.EnumerateInstanceExtensionProperties(nullptr, 0, &count, nullptr), "say what it can do");
+  std::vector<XrExtensionProperties> offered(count, {XR_TYPE_EXTENSION_PROPERTIES, nullptr, {}, 0});
+  CATENA_XR_CHECK(*this, functions_.EnumerateInstanceExtensionProperties(nullptr, count, &count, offered.data()), "say what it can do");
+  if (!is_among(offered, XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME))
+    return Error{"the headset's runtime takes no pictures from Vulkan, expected one with " XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
+
+  std::vector<const char*> wanted{XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
+  const auto take = [&](const char* name) {
+    const bool there = is_among(offered, name);
+    if (there) wanted.push_back(name);
+    return there;
+  };
+  has_.depth = take(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
+  has_.visibility_mask = take(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
+  has_.clock = take(XR_KHR_CONVERT_TIMESPEC_TIME_EXTENSION_NAME);
+
+  XrInstanceCreateInfo info{};
+  info.type = XR_TYPE_INSTANCE_CREATE_INFO;
+  std::strcpy(info.applicationInfo.applicationName, "catena");
+  std::strcpy(info.applicationInfo.engineName, "catena");
+  info.applicationInfo.applicationVersion = info.applicationInfo.engineVersion = 1;
+  info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
+  info.enabledExtensionCount = std::uint32_t(wanted.size());
+  info.enabledExtensionNames = wanted.data();
+  CATENA_XR_CHECK(*this, functions_.CreateInstance(&info, &instance_), "be connected to");
+  return Done{};
+}
+
+Outcome Instance::look_at_system() {
+  XrInstanceProperties runtime{};
+  runtime.type = XR_TYPE_INSTANCE_PROPERTIES;
+  CATENA_XR_CHECK(*this, functions_.GetInstanceProperties(instance_, &runtime), "name its runtime");
+  XrSystemGetInfo wanted{};
+  wanted.type = XR_TYPE_SYSTEM_GET_INFO;
+  wanted.formFactor = XR_FORM_FACTOR_HEAD_MOUNTED_DISPLAY;
+  CATENA_XR_CHECK(*this, functions_.GetSystem(instance_, &wanted, &system_), "be found");
+  XrSystemProperties system{};
+  system.type = XR_TYPE_SYSTEM_PROPERTIES;
+  CATENA_XR_CHECK(*this, functions_.GetSystemProperties(instance_, system_, &system), "describe itself");
+  name_ = std::string(runtime.runtimeName) + ", " + system.systemName;
+
+  std::uint32_t count = 0;
+  CATENA_XR_CHECK(*this, functions_.EnumerateViewConfigurationViews(instance_, system_, kStereo, 0, &count, nullptr), "say its size");
+  XrViewConfigurationView view{};
+  view.type = XR_TYPE_VIEW_CONFIGURATION_VIEW;
+  std::vector<XrViewConfigurationView> views(count, view);
+  CATENA_XR_CHECK(*this, functions_.EnumerateViewConfigurationViews(instance_, system_, kStereo, count, &count, views.data()),
+                  "say its size");
+  for (const XrViewConfigurationView& one : views)
+    views_.push_back({std::clamp(one.recommendedImageRectWidth, 1u, std::max(1u, one.maxImageRectWidth)),
+                      std::clamp(one.recommendedImageRectHeight, 1u, std::max(1u, one.maxImageRectHeight))});
+  if (views_.empty()) return Error{"the headset " + name_ + " has no views, expected two"};
+
+  // opaque where it can be: a see-through display shows black as nothing
+  CATENA_XR_CHECK(*this, functions_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, 0, &count, nullptr), "say how it blends");
+  std::vector<XrEnvironmentBlendMode> modes(count);
+  CATENA_XR_CHECK(*this, functions_.EnumerateEnvironmentBlendModes(instance_, system_, kStereo, count, &count, modes.data()),
+                  "say how it blends");
+  if (modes.empty()) return Error{"the headset " + name_ + " has no blend mode, expected one"};
+  blend_mode_ = std::ranges::find(modes, XR_ENVIRONMENT_BLEND_MODE_OPAQUE) != modes.end() ? XR_ENVIRONMENT_BLEND_MODE_OPAQUE : modes[0];
+  return Done{};
+}
+
+}  // namespace catena::render::xr

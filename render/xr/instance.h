@@ -1,0 +1,75 @@
+/// The connection to a headset's runtime: instance, system (the headset itself), what it offers, and who makes Vulkan's objects for it.
+///   needed:   XR_KHR_vulkan_enable2, two views (or however many the primary stereo configuration has), an opaque or other blend mode
+///   optional: depth layers, visibility masks, clock conversion, eye gaze; used where `has` says so
+/// What cannot be had is one sentence. XR_ERROR_INSTANCE_LOST and a runtime that fails make `loss()` tell so: then everything that hangs
+/// on this instance is to be destroyed, and another one may be opened later. Frame thread.
+#pragma once
+#include <mutex>
+#include <vector>
+
+#include "render/vk/instance.h"
+#include "render/xr/functions.h"
+
+namespace catena::render::xr {
+
+/// What has gone for good and has to be made again.
+enum class Loss { none, session, instance };
+
+/// Of one view, as the headset recommends.
+struct ViewSize {
+  std::uint32_t width = 0, height = 0;
+};
+
+struct Offers {
+  bool depth = false;            ///< XR_KHR_composition_layer_depth
+  bool visibility_mask = false;  ///< XR_KHR_visibility_mask
+  bool clock = false;            ///< XR_KHR_convert_timespec_time
+};
+
+class Instance {
+ public:
+  static Result<std::unique_ptr<Instance>> open(const char* library = "libopenxr_loader.so.1");
+  ~Instance();
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
+
+  XrInstance handle() const { return instance_; }
+  XrSystemId system() const { return system_; }
+  const Functions& xr() const { return functions_; }
+  const Offers& has() const { return has_; }
+  const std::vector<ViewSize>& views() const { return views_; }  ///< at least one
+  XrEnvironmentBlendMode blend_mode() const { return blend_mode_; }
+  /// "RUNTIME, HEADSET".
+  const std::string& name() const { return name_; }
+
+  /// For vk::DeviceOptions: the runtime makes instance and device, Catena owns them. The lock is held around every use of the queue and
+  /// outlives the device; the functions are called while this lives.
+  vk::VulkanMaker maker(std::mutex& queue_lock);
+
+  /// The error of a call, which is remembered where it means a loss.
+  Error failed(XrResult result, const std::string& what);
+  Loss loss() const { return loss_; }
+  /// The session has been made again.
+  void session_is_new() { loss_ = loss_ == Loss::session ? Loss::none : loss_; }
+
+ private:
+  Instance() = default;
+  Outcome create();
+  Outcome look_at_system();
+
+  std::unique_ptr<Loader> loader_;
+  Functions functions_;
+  XrInstance instance_ = XR_NULL_HANDLE;
+  XrSystemId system_ = XR_NULL_SYSTEM_ID;
+  Offers has_;
+  std::vector<ViewSize> views_;
+  XrEnvironmentBlendMode blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
+  std::string name_;
+  Loss loss_ = Loss::none;
+};
+
+}  // namespace catena::render::xr
+
+/// Returns an error from the function around it unless the call succeeds; `instance` remembers losses.
+#define CATENA_XR_CHECK(instance, call, what) \
+  if (const XrResult xr_result = (call); XR_FAILED(xr_result)) return (instance).failed(xr_result, what)

@@ -1,0 +1,71 @@
+/// A session of the headset on a Vulkan device that its runtime made: begun and ended as the runtime's events say (session_state.h), with
+/// the spaces in which heads and hands are located. It is destroyed before the device. Frame thread; the queue's lock is held where the
+/// runtime may use the queue.
+///   local:  origin where the person's head was when the session began or was recentred, y up
+///   stage:  origin on the floor in the middle of the room, where the runtime knows it
+///   head:   fixed to the head
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "render/vk/device.h"
+#include "render/xr/instance.h"
+#include "render/xr/session_state.h"
+
+namespace catena::render::xr {
+
+enum class SpaceKind { local, stage, head };
+
+class Session {
+ public:
+  static Result<std::unique_ptr<Session>> create(Instance& instance, vk::Device& device);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  XrSession handle() const { return session_; }
+  Instance& instance() const { return *instance_; }
+  vk::Device& device() const { return *device_; }
+  const Functions& xr() const { return instance_->xr(); }
+
+  /// Takes all events: begins and ends the session with them. Where the session or the instance is lost, instance().loss() says so.
+  Outcome poll();
+  /// The person wants to leave: the runtime ends the session by its events.
+  Outcome ask_to_leave();
+
+  XrSessionState state() const { return state_; }
+  bool running() const { return running_; }  ///< frames are made
+  bool focused() const { return state_ == XR_SESSION_STATE_FOCUSED; }
+  bool has_left() const { return has_left_; }
+  const std::vector<XrSessionState>& history() const { return history_; }  ///< of states, the latest 256
+  std::uint64_t odd_edges() const { return odd_edges_; }                   ///< state changes that OpenXR does not have
+
+  /// The null handle where the runtime does not have it.
+  XrSpace space(SpaceKind kind) const { return spaces_[static_cast<std::size_t>(kind)]; }
+  /// The origin of the local or stage space has moved: how often so far. What is placed in it may be placed anew.
+  std::uint64_t recentrings() const { return recentrings_; }
+  /// The parts of the lenses that are seen have changed: how often so far.
+  std::uint64_t mask_changes() const { return mask_changes_; }
+  /// The interaction profile has changed: how often so far.
+  std::uint64_t profile_changes() const { return profile_changes_; }
+
+  Error failed(XrResult result, const std::string& what) { return instance_->failed(result, what); }
+
+ private:
+  Session(Instance& instance, vk::Device& device) : instance_(&instance), device_(&device) {}
+  Outcome make_spaces();
+  Outcome enter(XrSessionState state);
+
+  Instance* instance_;
+  vk::Device* device_;
+  XrSession session_ = XR_NULL_HANDLE;
+  std::array<XrSpace, 3> spaces_{};
+  XrSessionState state_ = XR_SESSION_STATE_UNKNOWN;
+  bool running_ = false, has_left_ = false;
+  std::vector<XrSessionState> history_;
+  std::uint64_t odd_edges_ = 0, recentrings_ = 0, mask_changes_ = 0, profile_changes_ = 0;
+};
+
+}  // namespace catena::render::xr

@@ -1,0 +1,56 @@
+#include <string>
+
+#include "render/xr/instance.h"
+
+namespace catena::render::xr {
+
+namespace {
+
+/// Vulkan's own answer where there is one, or else that the runtime refused.
+VkResult answer(Instance& instance, XrResult said, VkResult vulkan, const char* what) {
+  if (XR_SUCCEEDED(said)) return vulkan;
+  (void)instance.failed(said, what);
+  return VK_ERROR_INITIALIZATION_FAILED;
+}
+
+}  // namespace
+
+vk::VulkanMaker Instance::maker(std::mutex& queue_lock) {
+  vk::VulkanMaker maker;
+  maker.instance = [this](const VkInstanceCreateInfo& wanted, VkInstance* made) {
+    // asking is required before an instance is made; 1.3 is what Catena needs, whatever the answer is
+    XrGraphicsRequirementsVulkan2KHR versions{};
+    versions.type = XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN2_KHR;
+    const XrResult asked = functions_.GetVulkanGraphicsRequirements2KHR(instance_, system_, &versions);
+    if (XR_FAILED(asked)) return answer(*this, asked, VK_SUCCESS, "say which Vulkan it takes");
+    if (versions.minApiVersionSupported > XR_MAKE_VERSION(1, 3, 0xffff)) return VK_ERROR_INCOMPATIBLE_DRIVER;
+    XrVulkanInstanceCreateInfoKHR info{};
+    info.type = XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR;
+    info.systemId = system_;
+    info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    info.vulkanCreateInfo = &wanted;
+    VkResult result = VK_SUCCESS;
+    return answer(*this, functions_.CreateVulkanInstanceKHR(instance_, &info, made, &result), result, "make a Vulkan instance");
+  };
+  maker.physical = [this](VkInstance of, VkPhysicalDevice* chosen) {
+    XrVulkanGraphicsDeviceGetInfoKHR info{};
+    info.type = XR_TYPE_VULKAN_GRAPHICS_DEVICE_GET_INFO_KHR;
+    info.systemId = system_;
+    info.vulkanInstance = of;
+    return answer(*this, functions_.GetVulkanGraphicsDevice2KHR(instance_, &info, chosen), VK_SUCCESS, "choose a Vulkan device");
+  };
+  maker.device = [this](VkPhysicalDevice physical, const VkDeviceCreateInfo& wanted, VkDevice* made) {
+    XrVulkanDeviceCreateInfoKHR info{};
+    info.type = XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR;
+    info.systemId = system_;
+    info.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
+    info.vulkanPhysicalDevice = physical;
+    info.vulkanCreateInfo = &wanted;
+    VkResult result = VK_SUCCESS;
+    return answer(*this, functions_.CreateVulkanDeviceKHR(instance_, &info, made, &result), result, "make a Vulkan device");
+  };
+  maker.queue_lock = &queue_lock;
+  return maker;
+}
+
+}  // namespace catena::render::xr

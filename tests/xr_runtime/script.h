@@ -1,0 +1,98 @@
+/// A headset's runtime for tests, loaded by the real loader. What it plays, and what it has seen: plain data in the library, shared with
+/// the tests of one process by catena_xr_stage(). A program of its own is played to by the environment variable CATENA_XR_SCRIPT:
+///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before
+///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, paced (xrWaitFrame sleeps)
+/// Everything is under one lock; the tests write between calls.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#define XR_USE_GRAPHICS_API_VULKAN
+#define XR_USE_TIMESPEC
+#include <openxr/openxr.h>
+#include <openxr/openxr_platform.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace catena::test::xr_runtime {
+
+struct ScriptedFailure {
+  int at = 1;  ///< the call, from 1 on
+  XrResult result = XR_ERROR_RUNTIME_FAILURE;
+};
+
+/// A hand: 0 left, 1 right.
+struct ScriptedHand {
+  bool active = true;
+  XrPosef grip{{0, 0, 0, 1}, {0, 0, 0}}, aim{{0, 0, 0, 1}, {0, 0, 0}};
+  float select = 0, squeeze = 0;
+  XrVector2f stick{0, 0};
+  bool menu = false;
+};
+
+struct Script {
+  std::vector<XrView> views;  ///< in the local space; reset() has two, canted and asymmetric
+  std::uint32_t width = 96, height = 80;
+  std::int64_t period_ns = 11'111'111;
+  bool paced = false;
+  bool focus = true;  ///< after the first frame the session becomes visible and focused by itself
+  bool tracked = true;
+  std::vector<std::int64_t> formats{VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_D32_SFLOAT};
+  std::set<std::string> without;                               ///< extensions and spaces ("stage") that are not offered
+  std::map<std::string, ScriptedFailure> failures;             ///< by function, "xrEndFrame"
+  std::multimap<std::uint64_t, XrSessionState> states;         ///< posted before that frame's wait, whatever the graph says
+  std::multimap<std::uint64_t, XrEventDataBuffer> events;      ///< the same of other events
+  std::function<void(std::uint64_t frame, Script&)> at_frame;  ///< before the wait of each frame
+  ScriptedHand hands[2];
+  std::string profile = "/interaction_profiles/khr/simple_controller";
+  bool keep_pictures = false;
+};
+
+struct KeptPicture {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+  std::vector<float> depth;  ///< of the depth image, where one was submitted
+  float near_z = 0, far_z = 0, min_depth = 0, max_depth = 0;
+  XrPosef pose{};
+  XrFovf fov{};
+};
+
+struct Vibration {
+  int hand = 0;
+  bool stop = false;
+  float amplitude = 0, frequency = 0;
+  std::int64_t duration = 0;
+  std::uint64_t frame = 0;
+};
+
+struct Record {
+  std::map<std::string, std::uint64_t> calls;
+  std::vector<std::string> illegal;  ///< what was refused because its order or its arguments were wrong
+  std::uint64_t frames = 0;          ///< ended
+  std::uint64_t pictures = 0;        ///< with a projection layer
+  std::uint64_t quads = 0, depths = 0;
+  std::uint64_t moved_poses = 0;        ///< submitted views that are not those located for that frame
+  std::vector<KeptPicture> last;        ///< by view, of the last picture; with keep_pictures
+  std::vector<KeptPicture> last_quads;  ///< the same of quad layers
+  std::vector<Vibration> vibrations;
+  std::vector<XrSessionState> states;  ///< posted
+  std::uint64_t objects = 0;           ///< alive now
+};
+
+struct Stage {
+  Script script;
+  Record record;
+};
+
+}  // namespace catena::test::xr_runtime
+
+extern "C" {
+/// Of the library that the loader has loaded; the path is CATENA_XR_RUNTIME_LIBRARY of the build.
+catena::test::xr_runtime::Stage* catena_xr_stage();
+/// Script and record as at first; objects must be gone.
+void catena_xr_reset();
+}
