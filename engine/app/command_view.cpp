@@ -20,7 +20,7 @@ struct ViewArguments {
   std::vector<std::string> fields;
   int frames = 0;
   double seconds = 0, gpu_memory_mb = 0;
-  bool no_panels = false;
+  bool no_panels = false, headset = false;
   RealtimeChoice realtime;
   AnnotateOptions annotate;
   StereoChoice stereo;
@@ -74,6 +74,7 @@ Outcome open_window(const ViewArguments& o, int& exit_code) {
   options.height = size.height;
   options.frames = o.frames;
   options.panels = !o.no_panels;
+  options.headset = o.headset;
   options.screenshot = o.screenshot;
   options.window_screenshot = o.window_screenshot;
   exit_code = view(std::move(options));
@@ -108,6 +109,7 @@ void add_view(CLI::App& program, Work& chosen, int& exit_code) {
   command->add_option("--seconds", options->seconds, "draw all the time, and quit after so long")->check(number_at_least(0));
   command->add_option("--screenshot", options->screenshot, "write the last frame here, .png");
   command->add_option("--window-screenshot", options->window_screenshot, "the same with the panels over it, .png");
+  command->add_flag("--xr", options->headset, "show it in a headset (OpenXR), too: the window mirrors one eye");
   command->add_flag("--no-panels", options->no_panels, "begin without the panels (Tab shows them)");
   command->add_option("--frame-stats", options->frame_stats, "how long the pictures took, histograms, JSON");
   command->add_option("--servo-stats", options->servo_stats, "the servo's ticks, missed deadlines, histograms, JSON");

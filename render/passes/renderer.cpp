@@ -282,6 +282,11 @@ vk::Image& Renderer::picture() {
   return parts_->shown();
 }
 
+std::optional<Renderer::OpaqueDepth> Renderer::opaque_depth() {
+  if ((parts_->drawn & target::opaque_depth) == 0) return std::nullopt;
+  return OpaqueDepth{&parts_->targets.opaque_depth, parts_->reference_depth};
+}
+
 Result<FloatPicture> Renderer::read_back_float() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.drawn != 0 && p.targets.picture.info().format == kFloatPictureFormat);

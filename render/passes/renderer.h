@@ -28,7 +28,7 @@ namespace catena::render {
 namespace vk {
 class Image;
 class Swapchain;
-}
+}  // namespace vk
 
 struct RenderStats {
   std::string device, driver;
@@ -92,6 +92,13 @@ class Renderer {
   Result<Picture> read_back();
   /// Its image, on the device, for who copies it on: in the layout TRANSFER_SRC, until the next draw.
   vk::Image& picture();
+  /// The opaque depth of the last picture in world units along the axis, less `reference`; NO_DEPTH (shaders/shared/frame.h) where nothing
+  /// is. Nothing at all where there is nothing opaque.
+  struct OpaqueDepth {
+    vk::Image* image;
+    double reference;
+  };
+  std::optional<OpaqueDepth> opaque_depth();
   /// The same in floats, for settings with `float_picture`.
   Result<FloatPicture> read_back_float();
   /// Pixels that a picture can have, each way, on this device.

@@ -7,7 +7,7 @@ namespace catena::render::xr {
 
 namespace {
 
-VkImageMemoryBarrier2 moved(VkImage image, const vk::Use& from, const vk::Use& to) {
+VkImageMemoryBarrier2 moved(VkImage image, VkImageAspectFlags aspect, const vk::Use& from, const vk::Use& to) {
   VkImageMemoryBarrier2 barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
   barrier.srcStageMask = from.stage;
@@ -18,7 +18,7 @@ VkImageMemoryBarrier2 moved(VkImage image, const vk::Use& from, const vk::Use& t
   barrier.newLayout = to.layout;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image;
-  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  barrier.subresourceRange = {aspect, 0, 1, 0, 1};
   return barrier;
 }
 
@@ -32,22 +32,26 @@ void record(VkCommandBuffer commands, const VkImageMemoryBarrier2& barrier) {
 
 }  // namespace
 
-Result<std::unique_ptr<EyeImages>> EyeImages::create(Session& session, ViewSize size) {
+Result<std::unique_ptr<EyeImages>> EyeImages::create(Session& session, ViewSize size, Content content) {
   Instance& instance = session.instance();
   const Functions& xr = session.xr();
   std::uint32_t count = 0;
   CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), 0, &count, nullptr), "list its picture formats");
   std::vector<std::int64_t> formats(count);
   CATENA_XR_CHECK(instance, xr.EnumerateSwapchainFormats(session.handle(), count, &count, formats.data()), "list its picture formats");
-  constexpr std::array<std::int64_t, 2> kWanted{VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM};
-  const auto format = std::ranges::find_if(kWanted, [&](std::int64_t f) { return std::ranges::find(formats, f) != formats.end(); });
-  if (format == kWanted.end())
-    return Error{"the headset " + instance.name() + " takes no pictures of 8 bits red, green, blue and alpha, expected R8G8B8A8_SRGB"};
+  const bool depth = content == Content::depth;
+  const std::array<std::int64_t, 2> wanted = depth ? std::array<std::int64_t, 2>{VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT}
+                                                   : std::array<std::int64_t, 2>{VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM};
+  const auto format = std::ranges::find_if(wanted, [&](std::int64_t f) { return std::ranges::find(formats, f) != formats.end(); });
+  if (format == wanted.end())
+    return Error{"the headset " + instance.name() + " takes no " +
+                 (depth ? "depths of 32 bits, expected D32_SFLOAT" : "pictures of 8 bits a colour and alpha, expected R8G8B8A8_SRGB")};
 
-  std::unique_ptr<EyeImages> self(new EyeImages(session, size));
+  std::unique_ptr<EyeImages> self(new EyeImages(session, size, content));
   XrSwapchainCreateInfo info{};
   info.type = XR_TYPE_SWAPCHAIN_CREATE_INFO;
-  info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
+  info.usageFlags = XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
+  info.usageFlags |= depth ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
   info.format = *format;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   info.width = size.width;
@@ -98,15 +102,17 @@ Outcome EyeImages::copy(vk::Image& picture, VkImage to) {
   CATENA_ASSERT(extent.width <= size_.width && extent.height <= size_.height);
   CATENA_TRY(vk::Commands commands, vk::Commands::begin(session_->device()));
   commands.use(picture, vk::kTransferRead);
-  vk::Use before = vk::kColorTarget;  // what the runtime did to it is over, and what it shows does not count
+  vk::Use lent = content_ == Content::depth ? vk::kDepthTarget : vk::kColorTarget;
+  if (content_ == Content::depth) lent.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+  vk::Use before = lent;  // what the runtime did to it is over, and what it shows does not count
   before.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  record(commands.handle(), moved(to, before, vk::kTransferWrite));
+  record(commands.handle(), moved(to, picture.aspect(), before, vk::kTransferWrite));
   VkImageCopy region{};
-  region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+  region.srcSubresource = region.dstSubresource = {picture.aspect(), 0, 0, 1};
   region.extent = extent;
   vkCmdCopyImage(commands.handle(), picture.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                  &region);
-  record(commands.handle(), moved(to, vk::kTransferWrite, vk::kColorTarget));
+  record(commands.handle(), moved(to, picture.aspect(), vk::kTransferWrite, lent));
   CATENA_TRY([[maybe_unused]] const std::uint64_t done, commands.submit());
   return Done{};
 }

@@ -1,7 +1,6 @@
-/// The images of one view that the runtime lends: 8 bits of sRGB, of the size that the headset recommends. Catena's colours are display
-/// values, and are copied as they are: an sRGB image says that its bytes are display values already, so nothing is encoded twice. Where
-/// a runtime has no sRGB format, its plain one gets the same bytes. Images come and go in the layout of a colour attachment.
-/// Frame thread.
+/// Images that the runtime lends, of one view or of a panel. Colours are 8 bits of sRGB: Catena's are display values, and are copied as
+/// they are; an sRGB image says that its bytes are display values already, so nothing is encoded twice. Where a runtime has no sRGB format,
+/// its plain one gets the same bytes. Depths are floats. Images come and go in the layout of an attachment. Frame thread.
 #pragma once
 #include <memory>
 #include <vector>
@@ -11,9 +10,11 @@
 
 namespace catena::render::xr {
 
+enum class Content { color, depth };
+
 class EyeImages {
  public:
-  static Result<std::unique_ptr<EyeImages>> create(Session& session, ViewSize size);
+  static Result<std::unique_ptr<EyeImages>> create(Session& session, ViewSize size, Content content = Content::color);
   ~EyeImages();
   EyeImages(const EyeImages&) = delete;
   EyeImages& operator=(const EyeImages&) = delete;
@@ -21,16 +22,17 @@ class EyeImages {
   XrSwapchain handle() const { return swapchain_; }
   ViewSize size() const { return size_; }
 
-  /// Copies a picture that is at most of this size (RGBA, 8 bits) to the upper left of the next image, and hands that over. The next
-  /// frame's layers show it.
+  /// Copies a picture that is at most of this size (RGBA, 8 bits; of depths: D32) to the upper left of the next image, and hands that
+  /// over. The next frame's layers show it.
   Outcome take(vk::Image& picture);
 
  private:
-  EyeImages(Session& session, ViewSize size) : session_(&session), size_(size) {}
+  EyeImages(Session& session, ViewSize size, Content content) : session_(&session), size_(size), content_(content) {}
   Outcome copy(vk::Image& picture, VkImage to);
 
   Session* session_;
   ViewSize size_;
+  Content content_;
   XrSwapchain swapchain_ = XR_NULL_HANDLE;
   std::vector<VkImage> images_;
 };

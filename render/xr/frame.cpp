@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "render/xr/depth_images.h"
+
 namespace catena::render::xr {
 
 namespace {
@@ -66,12 +68,21 @@ Result<Frame> begin_frame(Session& session) {
 Outcome end_frame(Session& session, const Frame& frame, const std::vector<Shown>& shown,
                   const std::vector<const XrCompositionLayerBaseHeader*>& extra) {
   std::vector<XrCompositionLayerProjectionView> views(shown.size());
+  std::vector<XrCompositionLayerDepthInfoKHR> depths(shown.size());
   for (std::size_t k = 0; k < shown.size(); ++k) {
     views[k].type = XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW;
     views[k].pose = frame.views[k].pose;
     views[k].fov = frame.views[k].fov;
     views[k].subImage.swapchain = shown[k].images->handle();
     views[k].subImage.imageRect.extent = {std::int32_t(shown[k].size.width), std::int32_t(shown[k].size.height)};
+    if (!shown[k].depth) continue;
+    depths[k].type = XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR;
+    depths[k].subImage = views[k].subImage;
+    depths[k].subImage.swapchain = shown[k].depth->handle();
+    depths[k].maxDepth = 1;
+    depths[k].nearZ = DepthImages::kNearM;
+    depths[k].farZ = DepthImages::kFarM;
+    views[k].next = &depths[k];
   }
   XrCompositionLayerProjection projection{};
   projection.type = XR_TYPE_COMPOSITION_LAYER_PROJECTION;

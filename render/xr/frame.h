@@ -24,6 +24,7 @@ RoomEye room_eye(const XrView& view);
 struct Shown {
   const EyeImages* images = nullptr;
   ViewSize size;
+  const EyeImages* depth = nullptr;  ///< null: no depth is submitted
 };
 
 /// Of a session that runs. The frame is begun when this returns it.

@@ -12,30 +12,49 @@ Result<std::unique_ptr<Headset>> Headset::open(const char* library) {
 
 Outcome Headset::start(vk::Device& device) {
   stop();
-  CATENA_TRY(session_, Session::create(*instance_, device));
+  const auto made = [&]() -> Outcome {
+    CATENA_TRY(session_, Session::create(*instance_, device));
+    CATENA_TRY(actions_, Actions::create(*session_));
+    return make_views();
+  }();
+  if (!made) stop();
+  return made;
+}
+
+Outcome Headset::make_views() {
   for (const ViewSize& size : instance_->views()) {
-    auto images = EyeImages::create(*session_, size);
-    if (!images) {
-      stop();
-      return images.error();
-    }
-    images_.push_back(std::move(*images));
+    ViewImages view;
+    CATENA_TRY(view.color, EyeImages::create(*session_, size));
+    view.depth = DepthImages::create(*session_, size);
+    views_.push_back(std::move(view));
+  }
+  // depths that could not be made are done without, but not what was lost on the way
+  if (loss() != Loss::none) return session_->failed(XR_ERROR_SESSION_LOST, "make images");
+  return take_masks();
+}
+
+Outcome Headset::take_masks() {
+  mask_changes_ = session_->mask_changes();
+  for (std::size_t k = 0; k < views_.size(); ++k) {
+    CATENA_TRY(views_[k].hidden, hidden_mesh(*session_, k));
   }
   return Done{};
 }
 
 void Headset::stop() {
-  images_.clear();
+  panel_ = nullptr;
+  views_.clear();
+  actions_.reset();
   session_.reset();
 }
 
 Result<Frame> Headset::draw(Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement,
-                            double share) {
+                            double share, const Aim& aim) {
   CATENA_TRY(Frame frame, begin_frame(*session_));
   ++counts_.frames;
   std::vector<Shown> shown;
   if (frame.wants_picture) {
-    auto drawn = draw_views(frame, renderer, packet, settings, placement, share);
+    auto drawn = draw_views(frame, renderer, packet, settings, placement, share, aim);
     if (!drawn) {
       (void)end_frame(*session_, frame, {});
       return drawn.error();
@@ -43,24 +62,42 @@ Result<Frame> Headset::draw(Renderer& renderer, FramePacket& packet, const Rende
     shown = std::move(*drawn);
     ++counts_.pictures;
   }
-  CATENA_CHECK(end_frame(*session_, frame, shown));
+  std::vector<const XrCompositionLayerBaseHeader*> panels;
+  if (const auto* panel = panel_ && !shown.empty() ? panel_->layer() : nullptr) panels.push_back(panel);
+  CATENA_CHECK(end_frame(*session_, frame, shown, panels));
   return frame;
 }
 
+Outcome Headset::skip_frame() {
+  CATENA_TRY(const Frame frame, begin_frame(*session_));
+  ++counts_.frames;
+  return end_frame(*session_, frame, {});
+}
+
 Result<std::vector<Shown>> Headset::draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                                               const Placement& placement, double share) {
+                                               const Placement& placement, double share, const Aim& aim) {
   const auto scaled = [&](std::uint32_t pixels) { return std::max(1u, std::uint32_t(std::lround(share * pixels))); };
+  if (session_->mask_changes() != mask_changes_) CATENA_CHECK(take_masks());
   std::vector<Shown> shown(frame.views.size());
-  packet.eyes.clear();
-  packet.packing = Packing::single;
   for (std::size_t k = frame.views.size(); k-- > 0;) {
-    const ViewSize size = images_[k]->size();
-    packet.width = scaled(size.width);
-    packet.height = scaled(size.height);
-    CATENA_TRY(packet.view, eye_view(placement, room_eye(frame.views[k])));
-    CATENA_CHECK(renderer.draw(packet, settings));
-    CATENA_CHECK(images_[k]->take(renderer.picture()));
-    shown[k] = {images_[k].get(), {packet.width, packet.height}};
+    ViewImages& view = views_[k];
+    const RoomEye eye = room_eye(frame.views[k]);
+    packet.width = scaled(view.color->size().width);
+    packet.height = scaled(view.color->size().height);
+    CATENA_TRY(const View seen, eye_view(placement, eye));
+    if (aim) aim(seen, packet);
+    packet.view = seen;
+    packet.eyes.clear();
+    packet.packing = Packing::single;
+    if (!view.hidden.empty()) packet.meshes.push_back(mask_item(view.hidden, placement, eye));
+    const Outcome drawn = renderer.draw(packet, settings);
+    if (!view.hidden.empty()) packet.meshes.pop_back();
+    if (!drawn) return drawn.error();
+    CATENA_CHECK(view.color->take(renderer.picture()));
+    shown[k] = {view.color.get(), {packet.width, packet.height}};
+    if (!view.depth || !packet.volumes.empty()) continue;
+    CATENA_TRY(const bool has_depth, view.depth->take(renderer, placement.metres_per_unit));
+    if (has_depth) shown[k].depth = &view.depth->images();
   }
   return shown;
 }

@@ -4,11 +4,17 @@
 /// After an error loss() says what has to be made again: of the session, stop() and start(); of the instance, another Headset and another
 /// renderer, later, since the runtime may be gone for a while. Frame thread.
 #pragma once
+#include <functional>
 #include <memory>
 #include <mutex>
 
 #include "render/passes/renderer.h"
+#include "render/xr/actions.h"
+#include "render/xr/clock.h"
+#include "render/xr/depth_images.h"
 #include "render/xr/frame.h"
+#include "render/xr/quad.h"
+#include "render/xr/visibility_mask.h"
 
 namespace catena::render::xr {
 
@@ -31,6 +37,10 @@ class Headset {
   void stop();
   bool started() const { return session_ != nullptr; }
   Session& session() { return *session_; }
+  /// The hands; while started.
+  Actions& actions() { return *actions_; }
+  /// A panel in the room over the next pictures; null: none. It is destroyed before stop().
+  void show_panel(QuadLayer* panel) { panel_ = panel; }
 
   /// The runtime's events.
   Outcome poll() { return session_->poll(); }
@@ -38,18 +48,34 @@ class Headset {
   Loss loss() const { return instance_->loss(); }
 
   /// A frame: waits for its time, draws every view of the packet's scene, and hands them over. The first view is drawn last, so that it is
-  /// the renderer's last picture: for the window. `share`: of the recommended pixels, each way. What is returned is the frame as shown.
-  Result<Frame> draw(Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement, double share = 1);
+  /// the renderer's last picture: for the window. `share`: of the recommended pixels, each way. `aim` changes what of the packet follows
+  /// from the view. What is returned is the frame as shown.
+  using Aim = std::function<void(const View& view, FramePacket& packet)>;
+  Result<Frame> draw(Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement, double share = 1,
+                     const Aim& aim = {});
+  /// A frame with nothing to show.
+  Outcome skip_frame();
   const FrameCounts& counts() const { return counts_; }
 
  private:
   explicit Headset(std::unique_ptr<Instance> instance) : instance_(std::move(instance)) {}
   Result<std::vector<Shown>> draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
-                                        const Placement& placement, double share);
+                                        const Placement& placement, double share, const Aim& aim);
 
   std::unique_ptr<Instance> instance_;  // first in, last out
   std::unique_ptr<Session> session_;
-  std::vector<std::unique_ptr<EyeImages>> images_;
+  std::unique_ptr<Actions> actions_;
+  /// Of a view; depth: null without.
+  struct ViewImages {
+    std::unique_ptr<EyeImages> color;
+    std::unique_ptr<DepthImages> depth;
+    HiddenMesh hidden;
+  };
+  Outcome make_views();
+  Outcome take_masks();
+  std::vector<ViewImages> views_;
+  std::uint64_t mask_changes_ = 0;  ///< as the masks are
+  QuadLayer* panel_ = nullptr;
   FrameCounts counts_;
 };
 

@@ -23,10 +23,10 @@ XRAPI_ATTR XrResult XRAPI_CALL create_action_set(XrInstance handle, const XrActi
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL destroy_action_set(XrActionSet handle) {
-  ENTER(xrDestroyActionSet);
+  ENTER_TO_DESTROY(xrDestroyActionSet);
   FIND(ActionSetObject, set, handle, action_set);
   world().remove(number(handle));
-  return XR_SUCCESS;
+  return answer;
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL create_action(XrActionSet handle, const XrActionCreateInfo* info, XrAction* made) {

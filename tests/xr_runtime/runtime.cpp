@@ -29,6 +29,7 @@ XrView scripted_view(float x, float turn, float left, float right) {
 Script first_script() {
   Script script;
   script.views = {scripted_view(-0.032f, 0.087f, -0.9f, 0.75f), scripted_view(0.032f, -0.087f, -0.75f, 0.9f)};
+  script.without = {XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
   return script;
 }
 
@@ -90,6 +91,7 @@ void read_environment() {
     if (key == "period_ms") script.period_ns = std::int64_t(1e6 * std::atof(value.c_str()));
     if (key == "state") script.states.emplace(std::strtoull(value.c_str(), nullptr, 10), state_named(value.substr(colon + 1)));
     if (key == "without") script.without.insert(value);
+    if (key == "with") script.without.erase(value);
     if (key == "paced") script.paced = true;
     if (key == "record") {
       record_path() = value;
@@ -176,10 +178,10 @@ XRAPI_ATTR XrResult XRAPI_CALL create_instance(const XrInstanceCreateInfo* info,
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL destroy_instance(XrInstance handle) {
-  ENTER(xrDestroyInstance);
+  ENTER_TO_DESTROY(xrDestroyInstance);
   FIND(InstanceObject, instance, handle, instance);
   world().remove(number(handle));
-  return XR_SUCCESS;
+  return answer;
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL instance_properties(XrInstance handle, XrInstanceProperties* out) {

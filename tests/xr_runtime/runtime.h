@@ -137,6 +137,11 @@ PFN_xrVoidFunction find_action_function(const std::string& name);
   const char* const self = #function;        \
   (void)self;                                \
   if (const auto scripted = enter(self)) return *scripted
+/// Of what destroys: it is done, whatever is answered.
+#define ENTER_TO_DESTROY(function)           \
+  const std::lock_guard guard(world().lock); \
+  const char* const self = #function;        \
+  const XrResult answer = enter(self).value_or(XR_SUCCESS)
 #define FIND(Type, variable, handle, kind)                               \
   Type* const variable = world().find<Type>(number(handle), Kind::kind); \
   if (!variable) return illegal(self, XR_ERROR_HANDLE_INVALID, "no such " #kind)

@@ -1,7 +1,8 @@
 /// A headset's runtime for tests, loaded by the real loader. What it plays, and what it has seen: plain data in the library, shared with
 /// the tests of one process by catena_xr_stage(). A program of its own is played to by the environment variable CATENA_XR_SCRIPT:
 ///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before
-///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, paced (xrWaitFrame sleeps)
+///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, paced (xrWaitFrame
+///   sleeps)
 /// Everything is under one lock; the tests write between calls.
 #pragma once
 #include <vulkan/vulkan.h>
@@ -42,7 +43,8 @@ struct Script {
   bool focus = true;  ///< after the first frame the session becomes visible and focused by itself
   bool tracked = true;
   std::vector<std::int64_t> formats{VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_D32_SFLOAT};
-  std::set<std::string> without;                               ///< extensions and spaces ("stage") that are not offered
+  std::set<std::string> without;                               ///< extensions and spaces ("stage") that are not offered; at first: masks
+  std::vector<XrSessionState> after_end;                       ///< posted after the next xrEndSession
   std::map<std::string, ScriptedFailure> failures;             ///< by function, "xrEndFrame"
   std::multimap<std::uint64_t, XrSessionState> states;         ///< posted before that frame's wait, whatever the graph says
   std::multimap<std::uint64_t, XrEventDataBuffer> events;      ///< the same of other events

@@ -35,7 +35,7 @@ XRAPI_ATTR XrResult XRAPI_CALL create_session(XrInstance handle, const XrSession
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL destroy_session(XrSession handle) {
-  ENTER(xrDestroySession);
+  ENTER_TO_DESTROY(xrDestroySession);
   FIND(SessionObject, session, handle, session);
   auto* instance = world().find<InstanceObject>(session->parent, Kind::instance);
   std::erase_if(instance->events, [&](const XrEventDataBuffer& event) {
@@ -43,7 +43,7 @@ XRAPI_ATTR XrResult XRAPI_CALL destroy_session(XrSession handle) {
            reinterpret_cast<const XrEventDataSessionStateChanged&>(event).session == handle;
   });
   world().remove(number(handle));
-  return XR_SUCCESS;
+  return answer;
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL begin_session(XrSession handle, const XrSessionBeginInfo* info) {
@@ -66,6 +66,7 @@ XRAPI_ATTR XrResult XRAPI_CALL end_session(XrSession handle) {
   session->running = false;
   post_state(number(handle), *session, XR_SESSION_STATE_IDLE);
   if (session->leaves) post_state(number(handle), *session, XR_SESSION_STATE_EXITING);
+  for (const XrSessionState state : std::exchange(world().stage.script.after_end, {})) post_state(number(handle), *session, state);
   return XR_SUCCESS;
 }
 
@@ -99,10 +100,10 @@ XRAPI_ATTR XrResult XRAPI_CALL create_space(XrSession handle, const XrReferenceS
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL destroy_space(XrSpace handle) {
-  ENTER(xrDestroySpace);
+  ENTER_TO_DESTROY(xrDestroySpace);
   FIND(SpaceObject, space, handle, space);
   world().remove(number(handle));
-  return XR_SUCCESS;
+  return answer;
 }
 
 /// Everything is scripted in the local space; the head is between the views.

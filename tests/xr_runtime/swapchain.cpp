@@ -112,10 +112,10 @@ XRAPI_ATTR XrResult XRAPI_CALL create_swapchain(XrSession handle, const XrSwapch
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL destroy_swapchain(XrSwapchain handle) {
-  ENTER(xrDestroySwapchain);
+  ENTER_TO_DESTROY(xrDestroySwapchain);
   FIND(SwapchainObject, swapchain, handle, swapchain);
   world().remove(number(handle));
-  return XR_SUCCESS;
+  return answer;
 }
 
 XRAPI_ATTR XrResult XRAPI_CALL swapchain_images(XrSwapchain handle, std::uint32_t capacity, std::uint32_t* count,

@@ -29,6 +29,7 @@ struct ViewOptions {
   int frames = 0;                ///< quit after so many frames; 0: until the window is closed
   double seconds = 0;            ///< draw all the time and quit after so long; 0: until the window is closed
   bool panels = true;
+  bool headset = false;                                    ///< draw for a headset; the window mirrors one eye
   std::string screenshot;                                  ///< .png of the last picture, written at the end; empty: none
   std::string window_screenshot;                           ///< the same with the interface
   std::function<VkResult(render::vk::DriverCall)> fail{};  ///< tests only (vk::DeviceOptions)

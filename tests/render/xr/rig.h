@@ -76,7 +76,7 @@ class HeadsetFixture : public testing::Test {
   Outcome open() {
     CATENA_TRY(headset_, xr::Headset::open());
     vk::DeviceOptions options;
-    options.validation = true;
+    options.validation = validation_;
     options.maker = headset_->maker(queue_lock_);
     CATENA_TRY(renderer_, Renderer::create(options));
     return headset_->start(renderer_->device());
@@ -92,6 +92,7 @@ class HeadsetFixture : public testing::Test {
   }
 
   Runtime runtime_;
+  bool validation_ = true;
   std::mutex queue_lock_;
   std::unique_ptr<xr::Headset> headset_;
   std::unique_ptr<Renderer> renderer_;

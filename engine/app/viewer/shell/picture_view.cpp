@@ -24,8 +24,19 @@ constexpr int kMaxWaits = 30;
 
 }  // namespace
 
+PictureView::~PictureView() {
+  if (headset_) headset_->leave();
+}
+
 std::optional<Failure> PictureView::open() {
-  auto screen = Screen::open(shared_.window, {shared_.options.gpu_memory, shared_.options.fail});
+  Screen::Options options{shared_.options.gpu_memory, shared_.options.fail};
+  if (shared_.options.headset) {
+    auto headset = HeadsetHost::open();
+    if (!headset) return Failure{1, headset.error().message};
+    headset_ = std::move(*headset);
+    headset_->join(options);
+  }
+  auto screen = Screen::open(shared_.window, std::move(options));
   if (!screen) return Failure{1, screen.error().message};
   screen_ = std::move(*screen);
   const render::vk::DeviceInfo& device = screen_->renderer().device().info();
@@ -79,7 +90,47 @@ std::uint32_t PictureView::scale_of(const NextPicture& next) const {
   return render::is_interlaced(render::packing_of(shared_.scene.scene().stereo)) ? 1 : next.scale;
 }
 
+Result<bool> PictureView::follow_headset() {
+  if (!headset_) return false;
+  CATENA_CHECK(headset_->follow(*screen_, now_ns(), [this](const std::string& line) {
+    shared_.state.say(line, true);
+    tell_from_catena(line);
+  }));
+  return headset_->running();
+}
+
+/// True: the picture is an eye's. What lies at a place of the window's picture cannot be said by it: an eye has its own packet.
+Result<bool> PictureView::draw_in_headset(const NextPicture& next) {
+  const std::int64_t start = now_ns();
+  auto [width, height] = size();
+  CATENA_TRY(render::FramePacket packet, this->packet(width, height));
+  // what belongs to a flat picture stays in the window
+  packet.overlay.texts.clear();
+  packet.overlay.scalar_bars.clear();
+  packet.overlay.orientation_marker.reset();
+  packet.overlay.status.reset();
+  const scene::Scene& scene = std::as_const(shared_.scene).scene();
+  const auto aim = [&](const render::View& view, render::FramePacket& of) { render::set_view(scene, view, of); };
+  CATENA_TRY(const bool drawn, headset_->draw(*screen_, packet, next.settings, 1.0 / next.scale, aim));
+  if (!drawn) return false;
+  const double ms = ms_since(start);
+  shared_.pacing.drawn(ms);
+  kind_ = {render::draws_rays(packet), screen_->renderer().draws_fast(packet),
+           std::ranges::any_of(packet.volumes, &render::VolumeItem::shade)};
+  if (shared_.times.count() == 0) tell_notes();
+  shown_.reset();
+  is_eye_ = picked_stale_ = true;
+  shared_.times.add(ms, now_ns());
+  return true;
+}
+
 std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file) {
+  if (headset_ && headset_->running() && !for_file && !is_minimised()) {
+    const auto drawn = draw_in_headset(next);
+    if (!drawn) return Failure{1, drawn.error().message};
+    if (*drawn || shown_) return std::nullopt;
+  }
+  is_eye_ = false;
   auto ahead = std::exchange(ahead_, std::nullopt);
   if (is_minimised()) return std::nullopt;
   std::uint32_t width = 0, height = 0;
@@ -310,7 +361,9 @@ std::optional<Failure> PictureView::write_last(const std::function<void()>& make
   std::uint32_t width = 0, height = 0;
   screen_->size(width, height);
   const bool whole = pixels_ == std::array<std::uint32_t, 4>{0, 0, width, height};
-  if (!shared_.pacing.finished() || !whole || !screen_->has_picture())
+  // of a headset: what was seen last by the first eye
+  const bool seen = is_eye_ && screen_->has_picture();
+  if (!seen && (!shared_.pacing.finished() || !whole || !screen_->has_picture()))
     if (auto failure = draw(best(), !whole)) return failure;
   auto picture = screen_->renderer().read_back();
   if (!picture) return Failure{1, picture.error().message};

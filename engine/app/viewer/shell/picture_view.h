@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/app/viewer/shell/headset_host.h"
 #include "engine/app/viewer/shell/pick.h"
 #include "engine/app/viewer/shell/shader_reload.h"
 #include "engine/app/viewer/shell/shared.h"
@@ -16,9 +17,14 @@ namespace catena::app {
 class PictureView {
  public:
   PictureView(Shared& shared, std::optional<ShaderReload> reload) : shared_(shared), reload_(std::move(reload)) {}
+  ~PictureView();  ///< what the headset has on the device goes first
 
-  /// What draws it; before the first picture.
+  /// What draws it, and the headset where one is asked for; before the first picture.
   std::optional<Failure> open();
+  /// What the headset has to say. True: it wants a picture at every turn of the loop.
+  Result<bool> follow_headset();
+  /// For the title; empty without one.
+  std::string headset_words() const { return headset_ ? headset_->words() : std::string(); }
   Screen& screen() { return *screen_; }
 
   bool is_minimised() const;
@@ -70,6 +76,7 @@ class PictureView {
 
  private:
   std::uint32_t scale_of(const NextPicture& next) const;
+  Result<bool> draw_in_headset(const NextPicture& next);
   Result<render::FramePacket> packet(std::uint32_t width, std::uint32_t height) const;
   std::optional<PickedPlace> picked_at(double window_x, double window_y) const;
   void tell_notes() const;
@@ -77,6 +84,7 @@ class PictureView {
 
   Shared& shared_;
   std::optional<ShaderReload> reload_;
+  std::unique_ptr<HeadsetHost> headset_;  ///< outlives the device that it made
   std::unique_ptr<Screen> screen_;
   std::array<std::uint32_t, 4> pixels_{};     ///< where the picture lies in the window
   std::optional<render::FramePacket> shown_;  ///< the last picture's
@@ -84,6 +92,7 @@ class PictureView {
   SceneKind kind_;                            ///< the last picture's
   bool picked_stale_ = true;                  ///< the place under the pointer is to be looked at again
   bool damaged_ = false;
+  bool is_eye_ = false;        ///< the last picture is an eye of the headset
   std::optional<bool> asked_;  ///< a file; of the window: true
   int waits_ = 0;              ///< frames, for a picture of every pixel
 };

@@ -12,12 +12,14 @@ Result<std::unique_ptr<Screen>> Screen::open(Window& window, Options options) {
 
 Outcome Screen::make() {
   has_picture_ = is_shown_ = false;
+  if (options_.before_making) options_.before_making();
   swapchain_.reset();
   renderer_.reset();
   render::vk::DeviceOptions device;
   device.surface = window_.surface_factory();
   device.memory_budget_bytes = options_.memory_budget_bytes;
   device.fail = options_.fail;
+  if (options_.maker) device.maker = options_.maker();
   CATENA_TRY(renderer_, render::Renderer::create(device));
   std::uint32_t width = 0, height = 0;
   size(width, height);
@@ -38,6 +40,8 @@ Outcome Screen::recover() {
   ++recoveries_;
   return Done{};
 }
+
+Outcome Screen::make_again() { return renderer_->device().lost() ? recover() : make(); }
 
 Outcome Screen::draw(const render::FramePacket& packet, const render::RenderSettings& settings) {
   auto drawn = renderer_->draw(packet, settings);

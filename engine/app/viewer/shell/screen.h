@@ -18,6 +18,8 @@ class Screen {
   struct Options {
     std::uint64_t memory_budget_bytes = 0;                   ///< of the GPU; 0: what the driver offers
     std::function<VkResult(render::vk::DriverCall)> fail{};  ///< tests only
+    std::function<render::vk::VulkanMaker()> maker{};        ///< of the device, asked whenever one is made; empty: the screen itself
+    std::function<void()> before_making{};                   ///< what hangs on the last device goes now
   };
 
   static Result<std::unique_ptr<Screen>> open(Window& window, Options options);
@@ -33,6 +35,10 @@ class Screen {
   Outcome show(const render::UiItems& ui);
   /// What the picture shows at a pixel; nothing while there is no picture, or beyond it.
   std::optional<render::Picked> pick(double x, double y);
+  /// The renderer has drawn a picture without draw().
+  void has_drawn() { has_picture_ = true; }
+  /// Another device: of another maker, or for one that was lost on the way of who draws without draw().
+  Outcome make_again();
   /// There is a picture to show.
   bool has_picture() const { return has_picture_; }
   /// There is a window's picture: what was shown last.

@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kEstimateS = 0.6;  // without a change for so long: the picture's error is looked at
 constexpr double kTitleS = 0.25;
-constexpr double kLiveS = 0.1;  // between interfaces that only follow the hand
+constexpr double kLiveS = 0.1;     // between interfaces that only follow the hand
+constexpr double kMirrorS = 0.03;  // between the headset's pictures in the window, whose display may be the slower one
 
 double s_since(std::int64_t ns) { return 1e-3 * ms_since(ns); }
 
@@ -200,6 +201,7 @@ void Session::update_title() {
   const scene::StereoMode stereo = shared_.scene.scene().stereo.mode;
   if (stereo != scene::StereoMode::mono) title += fmt::format("  [{}]", scene::stereo_word(stereo));
   if (shared_.controls.hand_mode) title += "  [hand]";
+  if (const std::string headset = picture_.headset_words(); !headset.empty()) title += "  [" + headset + "]";
   title += "  [" + shared_.pacing.words() + "]";
   shared_.window.set_title(title);
   last_title_ns_ = now_ns();
@@ -249,6 +251,9 @@ std::optional<Failure> Session::run() {
     if (news && shared_.plan.observer) shared_.plan.observer->add(shared_.hand.felt());
     live = live || news || files_.is_loading() || shared_.hand.recording().running();
     if (news) keep_widgets();
+    const auto followed = picture_.follow_headset();
+    if (!followed) return Failure{1, followed.error().message};
+    const bool in_headset = *followed;
     minimised = picture_.is_minimised();
     if (minimised) {
       picture_.damage();
@@ -263,7 +268,7 @@ std::optional<Failure> Session::run() {
                        shared_.times.count() == 0;
     if (moved) last_change_ns_ = now_ns();
 
-    auto next = next_picture(moved, news || by_input.hand);
+    auto next = in_headset ? picture_.moving() : next_picture(moved, news || by_input.hand);
     if (!next && s_since(last_change_ns_) >= kEstimateS && std::exchange(wants_error_, false))
       if (auto failure = picture_.estimate()) return failure;
     if (!next && (options.frames > 0 || options.seconds > 0)) next = shared_.pacing.again();
@@ -273,7 +278,10 @@ std::optional<Failure> Session::run() {
 
     // the interface follows the person at once, the hand at a calmer pace
     const bool due = live && s_since(last_show_ns) >= kLiveS;
-    if (next || picture_.is_damaged() || due || unsettled_ > 0 || shared_.window.happened() || gui_.is_busy()) {
+    const bool mirrors = in_headset && s_since(last_show_ns) < kMirrorS && !picture_.is_damaged();
+    if (mirrors) {
+      unsettled_ = 0;
+    } else if (next || picture_.is_damaged() || due || unsettled_ > 0 || shared_.window.happened() || gui_.is_busy()) {
       unsettled_ = std::max(0, unsettled_ - 1);
       if (auto failure = picture_.show(frame.make_panels)) return failure;
       last_show_ns = now_ns();

@@ -1,0 +1,238 @@
+#include "render/xr/actions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace catena::render::xr {
+
+namespace {
+
+/// What is bound on each hand; empty: nothing.
+struct Profile {
+  const char *name, *select, *grab, *stick;
+  const char *left_menu, *right_menu;
+};
+constexpr Profile kProfiles[] = {
+    {"khr/simple_controller", "select/click", "", "", "menu/click", "menu/click"},
+    {"oculus/touch_controller", "trigger/value", "squeeze/value", "thumbstick", "menu/click", "b/click"},
+    {"valve/index_controller", "trigger/value", "squeeze/value", "thumbstick", "b/click", "b/click"},
+    {"htc/vive_controller", "trigger/value", "squeeze/click", "trackpad", "menu/click", "menu/click"},
+    {"microsoft/motion_controller", "trigger/value", "squeeze/click", "thumbstick", "menu/click", "menu/click"},
+};
+constexpr const char* kHandPaths[kHands] = {"/user/hand/left", "/user/hand/right"};
+
+double clamped(float value, double least) { return std::isfinite(value) ? std::clamp(double(value), least, 1.0) : 0.0; }
+
+}  // namespace
+
+Result<XrPath> Actions::path(const char* text) {
+  XrPath made = XR_NULL_PATH;
+  CATENA_XR_CHECK(*session_, session_->xr().StringToPath(session_->instance().handle(), text, &made), "name a control");
+  return made;
+}
+
+Result<XrAction> Actions::action(XrActionType type, const char* name, const char* words) {
+  XrActionCreateInfo info{};
+  info.type = XR_TYPE_ACTION_CREATE_INFO;
+  info.actionType = type;
+  std::strcpy(info.actionName, name);
+  std::strcpy(info.localizedActionName, words);
+  info.countSubactionPaths = std::uint32_t(hands_.size());
+  info.subactionPaths = hands_.data();
+  XrAction made = XR_NULL_HANDLE;
+  CATENA_XR_CHECK(*session_, session_->xr().CreateAction(set_, &info, &made), "make a control");
+  return made;
+}
+
+Result<XrSpace> Actions::pose_space(XrAction pose, std::size_t which) {
+  XrActionSpaceCreateInfo info{};
+  info.type = XR_TYPE_ACTION_SPACE_CREATE_INFO;
+  info.action = pose;
+  info.subactionPath = hands_[which];
+  info.poseInActionSpace.orientation.w = 1;
+  XrSpace made = XR_NULL_HANDLE;
+  CATENA_XR_CHECK(*session_, session_->xr().CreateActionSpace(session_->handle(), &info, &made), "follow a hand");
+  return made;
+}
+
+Result<std::unique_ptr<Actions>> Actions::create(Session& session) {
+  std::unique_ptr<Actions> self(new Actions(session));
+  CATENA_CHECK(self->make());
+  return self;
+}
+
+Actions::~Actions() {
+  for (const auto& spaces : {aim_spaces_, grip_spaces_})
+    for (XrSpace space : spaces)
+      if (space) (void)session_->xr().DestroySpace(space);
+  if (set_) (void)session_->xr().DestroyActionSet(set_);
+}
+
+Outcome Actions::make() {
+  const Functions& xr = session_->xr();
+  XrActionSetCreateInfo info{};
+  info.type = XR_TYPE_ACTION_SET_CREATE_INFO;
+  std::strcpy(info.actionSetName, "hands");
+  std::strcpy(info.localizedActionSetName, "Hands");
+  CATENA_XR_CHECK(*session_, xr.CreateActionSet(session_->instance().handle(), &info, &set_), "make controls");
+  for (std::size_t k = 0; k < kHands; ++k) {
+    CATENA_TRY(hands_[k], path(kHandPaths[k]));
+  }
+  CATENA_TRY(aim_, action(XR_ACTION_TYPE_POSE_INPUT, "aim", "Where the hand points"));
+  CATENA_TRY(grip_, action(XR_ACTION_TYPE_POSE_INPUT, "grip", "Where the hand is"));
+  CATENA_TRY(select_, action(XR_ACTION_TYPE_FLOAT_INPUT, "select", "Select"));
+  CATENA_TRY(grab_, action(XR_ACTION_TYPE_FLOAT_INPUT, "grab", "Grab"));
+  CATENA_TRY(stick_, action(XR_ACTION_TYPE_VECTOR2F_INPUT, "stick", "Turn"));
+  CATENA_TRY(menu_, action(XR_ACTION_TYPE_BOOLEAN_INPUT, "menu", "Panel"));
+  CATENA_TRY(vibration_, action(XR_ACTION_TYPE_VIBRATION_OUTPUT, "vibration", "What is felt"));
+  CATENA_CHECK(suggest());
+  XrSessionActionSetsAttachInfo attach{};
+  attach.type = XR_TYPE_SESSION_ACTION_SETS_ATTACH_INFO;
+  attach.countActionSets = 1;
+  attach.actionSets = &set_;
+  CATENA_XR_CHECK(*session_, xr.AttachSessionActionSets(session_->handle(), &attach), "take controls");
+  for (std::size_t k = 0; k < kHands; ++k) {
+    CATENA_TRY(aim_spaces_[k], pose_space(aim_, k));
+    CATENA_TRY(grip_spaces_[k], pose_space(grip_, k));
+  }
+  return Done{};
+}
+
+/// A runtime need not know every controller: one that it knows is enough.
+Outcome Actions::suggest() {
+  XrResult last = XR_SUCCESS;
+  bool taken = false;
+  for (const Profile& profile : kProfiles) {
+    std::vector<XrActionSuggestedBinding> bindings;
+    for (std::size_t k = 0; k < kHands; ++k) {
+      const auto bind = [&](XrAction of, const std::string& where) -> Outcome {
+        if (where.ends_with('/')) return Done{};
+        CATENA_TRY(const XrPath to, path((std::string(kHandPaths[k]) + where).c_str()));
+        bindings.push_back({of, to});
+        return Done{};
+      };
+      CATENA_CHECK(bind(aim_, "/input/aim/pose"));
+      CATENA_CHECK(bind(grip_, "/input/grip/pose"));
+      CATENA_CHECK(bind(vibration_, "/output/haptic"));
+      CATENA_CHECK(bind(select_, std::string("/input/") + profile.select));
+      CATENA_CHECK(bind(grab_, std::string("/input/") + profile.grab));
+      CATENA_CHECK(bind(stick_, std::string("/input/") + profile.stick));
+      CATENA_CHECK(bind(menu_, std::string("/input/") + (k == 0 ? profile.left_menu : profile.right_menu)));
+    }
+    XrInteractionProfileSuggestedBinding info{};
+    info.type = XR_TYPE_INTERACTION_PROFILE_SUGGESTED_BINDING;
+    CATENA_TRY(info.interactionProfile, path((std::string("/interaction_profiles/") + profile.name).c_str()));
+    info.countSuggestedBindings = std::uint32_t(bindings.size());
+    info.suggestedBindings = bindings.data();
+    const XrResult said = session_->xr().SuggestInteractionProfileBindings(session_->instance().handle(), &info);
+    taken = taken || XR_SUCCEEDED(said);
+    if (XR_FAILED(said)) last = said;
+  }
+  return taken ? Outcome(Done{}) : Outcome(session_->failed(last, "take controls"));
+}
+
+Outcome Actions::sync() {
+  const XrActiveActionSet active{set_, XR_NULL_PATH};
+  XrActionsSyncInfo info{};
+  info.type = XR_TYPE_ACTIONS_SYNC_INFO;
+  info.countActiveActionSets = 1;
+  info.activeActionSets = &active;
+  CATENA_XR_CHECK(*session_, session_->xr().SyncActions(session_->handle(), &info), "look at the controls");
+  return Done{};
+}
+
+Result<bool> Actions::locate(XrSpace space, XrTime at, RoomPose& pose) {
+  constexpr XrSpaceLocationFlags kKnown = XR_SPACE_LOCATION_ORIENTATION_VALID_BIT | XR_SPACE_LOCATION_POSITION_VALID_BIT;
+  XrSpaceLocation found{};
+  found.type = XR_TYPE_SPACE_LOCATION;
+  CATENA_XR_CHECK(*session_, session_->xr().LocateSpace(space, session_->space(SpaceKind::local), at, &found), "locate a hand");
+  const auto& [x, y, z, w] = found.pose.orientation;
+  pose.position = Vec3(found.pose.position.x, found.pose.position.y, found.pose.position.z);
+  pose.turn = normalised(Quat(w, x, y, z));
+  return (found.locationFlags & kKnown) == kKnown && is_finite(pose.position);
+}
+
+Result<HandState> Actions::hand(std::size_t which, XrTime at) {
+  const Functions& xr = session_->xr();
+  HandState state;
+  state.focused = session_->focused();
+  XrActionStateGetInfo info{};
+  info.type = XR_TYPE_ACTION_STATE_GET_INFO;
+  info.subactionPath = hands_[which];
+  info.action = grip_;
+  XrActionStatePose pose{};
+  pose.type = XR_TYPE_ACTION_STATE_POSE;
+  CATENA_XR_CHECK(*session_, xr.GetActionStatePose(session_->handle(), &info, &pose), "look at the controls");
+  if (!pose.isActive) return state;
+  CATENA_TRY(state.there, locate(grip_spaces_[which], at, state.grip));
+  CATENA_TRY(state.points, locate(aim_spaces_[which], at, state.aim));
+  if (!state.focused) return state;
+
+  const auto amount = [&](XrAction of, double& value) -> Outcome {
+    XrActionStateFloat found{};
+    found.type = XR_TYPE_ACTION_STATE_FLOAT;
+    info.action = of;
+    CATENA_XR_CHECK(*session_, xr.GetActionStateFloat(session_->handle(), &info, &found), "look at the controls");
+    value = found.isActive ? clamped(found.currentState, 0) : 0;
+    return Done{};
+  };
+  CATENA_CHECK(amount(select_, state.select));
+  CATENA_CHECK(amount(grab_, state.grab));
+  XrActionStateVector2f stick{};
+  stick.type = XR_TYPE_ACTION_STATE_VECTOR2F;
+  info.action = stick_;
+  CATENA_XR_CHECK(*session_, xr.GetActionStateVector2f(session_->handle(), &info, &stick), "look at the controls");
+  if (stick.isActive) {
+    state.stick_x = clamped(stick.currentState.x, -1);
+    state.stick_y = clamped(stick.currentState.y, -1);
+  }
+  XrActionStateBoolean menu{};
+  menu.type = XR_TYPE_ACTION_STATE_BOOLEAN;
+  info.action = menu_;
+  CATENA_XR_CHECK(*session_, xr.GetActionStateBoolean(session_->handle(), &info, &menu), "look at the controls");
+  state.menu = menu.isActive && menu.currentState;
+  return state;
+}
+
+Outcome Actions::vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns) {
+  if (!session_->focused()) return Done{};
+  XrHapticActionInfo info{};
+  info.type = XR_TYPE_HAPTIC_ACTION_INFO;
+  info.action = vibration_;
+  info.subactionPath = hands_[which];
+  XrHapticVibration vibration{};
+  vibration.type = XR_TYPE_HAPTIC_VIBRATION;
+  vibration.amplitude = float(std::isfinite(amplitude) ? std::clamp(amplitude, 0.0, 1.0) : 0);
+  vibration.frequency = float(frequency_hz > 0 && std::isfinite(frequency_hz) ? frequency_hz : 0);  // 0: XR_FREQUENCY_UNSPECIFIED
+  vibration.duration = duration_ns > 0 ? duration_ns : XR_MIN_HAPTIC_DURATION;
+  CATENA_XR_CHECK(*session_,
+                  session_->xr().ApplyHapticFeedback(session_->handle(), &info, reinterpret_cast<const XrHapticBaseHeader*>(&vibration)),
+                  "vibrate");
+  return Done{};
+}
+
+Outcome Actions::stop_vibration(std::size_t which) {
+  XrHapticActionInfo info{};
+  info.type = XR_TYPE_HAPTIC_ACTION_INFO;
+  info.action = vibration_;
+  info.subactionPath = hands_[which];
+  CATENA_XR_CHECK(*session_, session_->xr().StopHapticFeedback(session_->handle(), &info), "stop vibrating");
+  return Done{};
+}
+
+Result<std::string> Actions::profile(std::size_t which) {
+  XrInteractionProfileState state{};
+  state.type = XR_TYPE_INTERACTION_PROFILE_STATE;
+  CATENA_XR_CHECK(*session_, session_->xr().GetCurrentInteractionProfile(session_->handle(), hands_[which], &state), "name a controller");
+  if (state.interactionProfile == XR_NULL_PATH) return std::string();
+  std::array<char, XR_MAX_PATH_LENGTH> text{};
+  std::uint32_t count = 0;
+  CATENA_XR_CHECK(
+      *session_,
+      session_->xr().PathToString(session_->instance().handle(), state.interactionProfile, std::uint32_t(text.size()), &count, text.data()),
+      "name a controller");
+  return std::string(text.data());
+}
+
+}  // namespace catena::render::xr

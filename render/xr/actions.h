@@ -1,0 +1,72 @@
+/// The hands in OpenXR's words: what a person does with controllers, whichever they are, and the vibration that they feel. The runtime maps
+/// what is suggested here for the common controllers (KHR simple, Oculus Touch, Valve Index, HTC Vive, Windows motion controllers), and
+/// for others what it thinks best.
+///   aim    where the hand points: along -z        grip   where the controller is held; the probe is its origin
+///   select trigger, 0..1                          grab   squeeze, 0..1
+///   stick  thumbstick or trackpad, right and up   menu   the panel
+/// A hand whose controller is off, or which the runtime cannot see, is not there. One object a session; it goes before the session.
+/// Frame thread; the haptic thread never comes here.
+#pragma once
+#include <array>
+#include <memory>
+
+#include "engine/base/vec.h"
+#include "render/xr/session.h"
+
+namespace catena::render::xr {
+
+/// In the local space, metres.
+struct RoomPose {
+  Vec3 position{0.0};
+  Quat turn = kNoRotation;
+};
+
+struct HandState {
+  bool there = false;    ///< position and direction of the grip are known
+  bool points = false;   ///< those of the aim are
+  bool focused = false;  ///< buttons count
+  RoomPose grip, aim;
+  double select = 0, grab = 0, stick_x = 0, stick_y = 0;
+  bool menu = false;
+};
+
+inline constexpr std::size_t kHands = 2;  ///< 0 left, 1 right
+
+class Actions {
+ public:
+  static Result<std::unique_ptr<Actions>> create(Session& session);
+  ~Actions();
+  Actions(const Actions&) = delete;
+  Actions& operator=(const Actions&) = delete;
+
+  /// Buttons and poses from now on are the newest; once a frame.
+  Outcome sync();
+  /// A hand at a time of the runtime's clock: `now` for what it does, the frame's time for what is drawn of it.
+  Result<HandState> hand(std::size_t which, XrTime at);
+
+  /// Replaces what the hand feels. amplitude 0..1; frequency in Hz, 0: the runtime's choice; what it cannot make it clamps.
+  /// Nothing without focus.
+  Outcome vibrate(std::size_t which, double amplitude, double frequency_hz, std::int64_t duration_ns);
+  Outcome stop_vibration(std::size_t which);
+
+  /// "/interaction_profiles/valve/index_controller"; empty: no controller.
+  Result<std::string> profile(std::size_t which);
+
+ private:
+  explicit Actions(Session& session) : session_(&session) {}
+  Outcome make();
+  Outcome suggest();
+  Result<XrPath> path(const char* text);
+  Result<XrAction> action(XrActionType type, const char* name, const char* words);
+  Result<XrSpace> pose_space(XrAction pose, std::size_t which);
+  Result<bool> locate(XrSpace space, XrTime at, RoomPose& pose);
+
+  Session* session_;
+  XrActionSet set_ = XR_NULL_HANDLE;
+  XrAction aim_ = XR_NULL_HANDLE, grip_ = XR_NULL_HANDLE, select_ = XR_NULL_HANDLE, grab_ = XR_NULL_HANDLE, stick_ = XR_NULL_HANDLE,
+           menu_ = XR_NULL_HANDLE, vibration_ = XR_NULL_HANDLE;
+  std::array<XrPath, kHands> hands_{};
+  std::array<XrSpace, kHands> aim_spaces_{}, grip_spaces_{};
+};
+
+}  // namespace catena::render::xr

@@ -1,0 +1,58 @@
+#include "render/xr/depth_images.h"
+
+#include "shaders/shared/headset.h"
+
+namespace catena::render::xr {
+
+namespace {
+
+constexpr std::uint32_t kHeadsetVertexShader[] = {
+#include "spirv/screen.vert.inc"
+};
+constexpr std::uint32_t kHeadsetDepthShader[] = {
+#include "spirv/headset_depth.frag.inc"
+};
+
+}  // namespace
+
+std::unique_ptr<DepthImages> DepthImages::create(Session& session, ViewSize size) {
+  if (!session.instance().has().depth) return nullptr;
+  std::unique_ptr<DepthImages> self(new DepthImages(session));
+  auto images = EyeImages::create(session, size, Content::depth);
+  if (!images) return nullptr;
+  self->images_ = std::move(*images);
+  return self;
+}
+
+Result<bool> DepthImages::take(Renderer& renderer, double metres_per_unit) {
+  const auto opaque = renderer.opaque_depth();
+  if (!opaque) return false;
+  vk::Device& device = session_->device();
+  const VkExtent3D extent = opaque->image->info().extent;
+  CATENA_CHECK(vk::fit_image(device, drawn_, VK_FORMAT_D32_SFLOAT, extent.width, extent.height,
+                             VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
+  if (!pipeline_) {
+    vk::GraphicsInfo info;
+    info.vertex = kHeadsetVertexShader;
+    info.fragment = kHeadsetDepthShader;
+    info.slots = {{0, vk::Resource::uniform}, {1, vk::Resource::texture}};
+    info.depth = true;
+    CATENA_TRY(pipeline_, vk::Pipeline::create(device, info));
+  }
+  const shared::HeadsetDepthData data{float(metres_per_unit), float(metres_per_unit * opaque->reference), kNearM, kFarM};
+  CATENA_CHECK(vk::write_uniform(device, uniform_, data));
+  CATENA_TRY(vk::Commands commands, vk::Commands::begin(device));
+  commands.use(*opaque->image, vk::kFragmentRead);
+  commands.begin_pass({}, {&drawn_, 0.0f});
+  const vk::Binding bindings[] = {{0, vk::Resource::uniform, &uniform_, nullptr, nullptr},
+                                  {1, vk::Resource::texture, nullptr, opaque->image, nullptr}};
+  commands.bind(pipeline_, bindings);
+  commands.draw_triangle();
+  commands.end_pass();
+  commands.use(drawn_, vk::kTransferRead);
+  CATENA_CHECK(commands.finish());
+  CATENA_CHECK(images_->take(drawn_));
+  return true;
+}
+
+}  // namespace catena::render::xr

@@ -1,0 +1,32 @@
+/// The depth of a view's opaque things, for the runtime to move the picture with the head between frames (XR_KHR_composition_layer_depth):
+///   d = f / (f - n) (1 - n / z),  z metres from the eye along its axis, n = kNearM and f = kFarM; 1 where nothing is
+/// A picture with a volume has none: where a volume is, what is opaque behind it would lie too deep. Frame thread.
+#pragma once
+#include <memory>
+
+#include "render/passes/renderer.h"
+#include "render/vk/pipeline.h"
+#include "render/xr/eye_images.h"
+
+namespace catena::render::xr {
+
+class DepthImages {
+ public:
+  static constexpr float kNearM = 0.02f, kFarM = 1000;
+
+  /// Nothing where the runtime takes no depths of 32 bits.
+  static std::unique_ptr<DepthImages> create(Session& session, ViewSize size);
+  const EyeImages& images() const { return *images_; }
+  /// Of the renderer's last picture. False: it has no depth.
+  Result<bool> take(Renderer& renderer, double metres_per_unit);
+
+ private:
+  explicit DepthImages(Session& session) : session_(&session) {}
+  Session* session_;
+  std::unique_ptr<EyeImages> images_;
+  vk::Image drawn_;
+  vk::Pipeline pipeline_;
+  vk::Buffer uniform_;
+};
+
+}  // namespace catena::render::xr

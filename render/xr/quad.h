@@ -1,0 +1,33 @@
+/// A flat panel in the room: a picture on a rectangle, over the scene. The runtime draws it, sharp at any distance. Frame thread.
+#pragma once
+#include "engine/base/vec.h"
+#include "render/xr/actions.h"
+#include "render/xr/eye_images.h"
+
+namespace catena::render::xr {
+
+struct Quad {
+  RoomPose pose;                          ///< of its middle; it faces along +z
+  double width_m = 0.5, height_m = 0.35;  ///< > 0
+};
+
+class QuadLayer {
+ public:
+  /// Of that many pixels.
+  static Result<std::unique_ptr<QuadLayer>> create(Session& session, ViewSize size);
+  /// The picture from now on (RGBA, 8 bits, straight alpha, of the layer's size).
+  Outcome take(vk::Image& picture);
+  void place(const Quad& quad) { quad_ = quad; }
+  /// For end_frame; lives until the next call. Nothing before the first picture.
+  const XrCompositionLayerBaseHeader* layer();
+
+ private:
+  explicit QuadLayer(Session& session) : session_(&session) {}
+  Session* session_;
+  std::unique_ptr<EyeImages> images_;
+  Quad quad_;
+  ViewSize shown_;
+  XrCompositionLayerQuad layer_{};
+};
+
+}  // namespace catena::render::xr

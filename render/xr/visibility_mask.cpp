@@ -1,0 +1,51 @@
+#include "render/xr/visibility_mask.h"
+
+#include <algorithm>
+
+namespace catena::render::xr {
+
+namespace {
+
+constexpr double kNearM = 0.02;  // nearer to the eye than anybody looks
+
+}  // namespace
+
+Result<HiddenMesh> hidden_mesh(Session& session, std::size_t view) {
+  HiddenMesh mesh;
+  const auto get = session.xr().GetVisibilityMaskKHR;
+  if (!session.instance().has().visibility_mask || !get) return mesh;
+  XrVisibilityMaskKHR mask{};
+  mask.type = XR_TYPE_VISIBILITY_MASK_KHR;
+  const auto ask = [&] {
+    return get(session.handle(), XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, std::uint32_t(view),
+               XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR, &mask);
+  };
+  CATENA_XR_CHECK(session, ask(), "say what its lenses hide");
+  if (mask.vertexCountOutput == 0 || mask.indexCountOutput == 0) return mesh;
+  std::vector<XrVector2f> vertices(mask.vertexCountOutput);
+  mesh.triangles.resize(mask.indexCountOutput);
+  mask.vertexCapacityInput = mask.vertexCountOutput;
+  mask.indexCapacityInput = mask.indexCountOutput;
+  mask.vertices = vertices.data();
+  mask.indices = mesh.triangles.data();
+  CATENA_XR_CHECK(session, ask(), "say what its lenses hide");
+  mesh.triangles.resize(std::min<std::size_t>(mesh.triangles.size(), mask.indexCountOutput) / 3 * 3);
+  // a mesh that points beyond its vertices is none
+  if (std::ranges::any_of(mesh.triangles, [&](std::uint32_t i) { return i >= vertices.size(); })) return HiddenMesh{};
+  for (const XrVector2f& v : vertices) mesh.vertices.push_back({v.x, v.y});
+  return mesh;
+}
+
+MeshItem mask_item(const HiddenMesh& mesh, const Placement& placement, const RoomEye& eye) {
+  auto geometry = std::make_shared<MeshGeometry>();
+  for (const auto& [x, y] : mesh.vertices)
+    geometry->vertices.push_back(placement.to_world(eye.position + eye.room_from_eye * (kNearM * Vec3(x, y, -1.0))));
+  geometry->triangles = mesh.triangles;
+  MeshItem item;
+  item.geometry = std::move(geometry);
+  item.color = {0, 0, 0};
+  item.clipped = false;
+  return item;
+}
+
+}  // namespace catena::render::xr

@@ -1,0 +1,16 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_samplerless_texture_functions : require
+// The opaque depth as a depth buffer in metres: d = f / (f - n) (1 - n / z), 1 where there is nothing.
+#include "shaders/shared/headset.h"
+
+layout(scalar, binding = 0) uniform Depth { HeadsetDepthData depth; };
+layout(binding = 1) uniform texture2D opaque_depth;
+
+void main() {
+  const float units = texelFetch(opaque_depth, ivec2(gl_FragCoord.xy), 0).r;
+  const float z = max(depth.reference_m + depth.metres_per_unit * units, depth.near_m);
+  const float d = depth.far_m / (depth.far_m - depth.near_m) * (1.0 - depth.near_m / z);
+  gl_FragDepth = units >= NO_DEPTH ? 1.0 : clamp(d, 0.0, 1.0);
+}
