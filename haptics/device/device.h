@@ -50,6 +50,7 @@ struct DeviceCapabilities {
   Vec3 workspace_centre_m{0.0};
   bool has_orientation = false;
   int buttons = 1;
+  bool vibrates = false;     ///< what it has in place of force: a person feels how the force changes
   double max_force_n = 0;    ///< 0: no force output (pseudo-haptics only)
   double max_torque_nm = 0;  ///< 0: no torque output
   Mechanics mechanics{};

@@ -1,4 +1,4 @@
-/// The stated map, and what the sender asks of the runtime in which order. CATENA_PLOT=FILE.svg draws the map with gnuplot.
+/// The stated map, and what the sender asks of the runtime in which order. CATENA_PLOT=FILE.png draws the map with gnuplot.
 #include "haptics/vibration/vibration.h"
 
 #include <gtest/gtest.h>
@@ -96,7 +96,7 @@ TEST(Vibration, ItStopsOnceWhereItIsNotAllowedAndForgetsWhatWasFeltThere) {
 // Not a test of its own: the plot of docs/headset.md.
 TEST(Vibration, Plot) {
   const char* file = std::getenv("CATENA_PLOT");
-  if (file == nullptr) GTEST_SKIP() << "CATENA_PLOT=FILE.svg draws the map";
+  if (file == nullptr) GTEST_SKIP() << "CATENA_PLOT=FILE.png draws the map";
   const test::TemporaryFolder folder;
   std::string contact, friction;
   for (int i = 0; i <= 120; ++i) {
