@@ -17,8 +17,8 @@ double SnapTurn::step(double stick) {
 
 double Vignette::step(const Placement& before, const Placement& now, const Vec3& head_m, double dt_s) {
   if (!(dt_s > 0)) return strength_;
-  const double speed = norm(room_of(now, world_of(before, head_m)) - head_m) / dt_s;
-  const double turn = norm(rotation_vector(normalised(now.room_from_world * glm::conjugate(before.room_from_world)))) / dt_s;
+  const double speed = norm(now.to_room(before.to_world(head_m)) - head_m) / dt_s;
+  const double turn = norm(rotation_vector(normalised(glm::quat_cast(transpose(now.world_from_room) * before.world_from_room)))) / dt_s;
   const double scaling = std::fabs(std::log(now.metres_per_unit / before.metres_per_unit)) / dt_s;
   double wish = std::max({speed / options_.full_speed_m_per_s, turn / options_.full_turn_rad_per_s, scaling / options_.full_scaling_per_s});
   wish = wish >= kLeastWish ? std::min(1.0, wish) : 0;

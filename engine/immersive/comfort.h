@@ -1,7 +1,7 @@
 /// What keeps a person well while the world moves around them: turns in steps, and a picture that narrows.
 /// Plain functions of their inputs; the frame thread keeps the state.
 #pragma once
-#include "engine/immersive/placement.h"
+#include "engine/geometry/placement.h"
 
 namespace catena::immersive {
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/immersive/world_grab.h"
+
 namespace comfort_test {
 
 using namespace catena;
@@ -20,12 +22,12 @@ TEST(SnapTurn, OneStepAPush) {
 }
 
 TEST(SnapTurn, AStepTurnsTheWorldAboutTheHead) {
-  const Placement before{0.1, rotation_of({0.2, 0.3, 0.4}), {1, 1, 1}};
+  const Placement before{{1, 1, 1}, glm::mat3_cast(rotation_of({0.2, 0.3, 0.4})), 0.1};
   const Vec3 head(0.5, 1.7, 0.2);
   const Placement after = turned_about(before, head, M_PI / 2);
-  EXPECT_LT(norm(room_of(after, world_of(before, head)) - head), 1e-15);
+  EXPECT_LT(norm(after.to_room(before.to_world(head)) - head), 1e-15);
   // seen from above, counter-clockwise: what was ahead (-z) is to the left (-x)
-  EXPECT_LT(norm(room_of(after, world_of(before, head + Vec3(0, 0.3, -1))) - head - Vec3(-1, 0.3, 0)), 1e-14);
+  EXPECT_LT(norm(after.to_room(before.to_world(head + Vec3(0, 0.3, -1))) - head - Vec3(-1, 0.3, 0)), 1e-14);
 }
 
 TEST(Vignette, RisesWhileTheWorldMovesAndFallsAgain) {
@@ -37,7 +39,7 @@ TEST(Vignette, RisesWhileTheWorldMovesAndFallsAgain) {
   double last = 0;
   for (int k = 0; k < 10; ++k) {
     const Placement before = now;
-    now.origin_m.x += 0.02;  // 2 m/s
+    now.world_origin.x -= 0.02;  // 2 m/s
     const double strength = vignette.step(before, now, head, dt);
     EXPECT_NEAR(strength, last + 0.1, 1e-12);
     last = strength;
@@ -55,14 +57,13 @@ TEST(Vignette, RisesWhileTheWorldMovesAndFallsAgain) {
   EXPECT_NEAR(last, 0.5, 1e-9);
   for (int k = 0; k < 100; ++k) {
     const Placement before = now;
-    now.metres_per_unit *= std::exp(0.0025);
-    now.origin_m = head + (before.origin_m - head) * std::exp(0.0025);
+    now = moved(now, head, kNoRotation, std::exp(0.0025), head);
     last = vignette.step(before, now, head, dt);
   }
   EXPECT_NEAR(last, 0.25, 1e-9);
   for (int k = 0; k < 100; ++k) {
     const Placement before = now;
-    now.origin_m.y += 0.0005;
+    now.world_origin.y -= 0.0005 / now.metres_per_unit;
     last = vignette.step(before, now, head, dt);
   }
   EXPECT_NEAR(last, 0, 1e-12);

@@ -1,8 +1,6 @@
-#include "engine/immersive/placement.h"
+#include "engine/immersive/world_grab.h"
 
 #include <fmt/format.h>
-
-#include "engine/base/result.h"
 
 namespace catena::immersive {
 namespace {
@@ -36,29 +34,18 @@ Pull pull_of(const std::array<Hand, 2>& from, const std::array<Hand, 2>& to) {
 
 }  // namespace
 
-Vec3 room_of(const Placement& p, const Vec3& world) { return p.origin_m + rotate(p.room_from_world, world) * p.metres_per_unit; }
-
-Vec3 world_of(const Placement& p, const Vec3& room_m) {
-  return rotate(glm::conjugate(p.room_from_world), room_m - p.origin_m) / p.metres_per_unit;
-}
-
-Placement placed(const Bounds& box, double longest_m, const Vec3& middle_m) {
-  CATENA_ASSERT(longest_m > 0);
+Placement moved(const Placement& placement, const Vec3& from_m, const Quat& turn, double factor, const Vec3& to_m) {
+  const Quat back = glm::conjugate(turn);
   Placement out;
-  out.room_from_world = rotation_of(Vec3(-0.5 * M_PI, 0, 0));  // z up becomes y up
-  const double longest = box.empty() ? 2 : box.longest_edge();
-  out.metres_per_unit = longest > 0 ? longest_m / longest : 1;
-  const Vec3 middle = box.empty() ? Vec3(0.0) : box.centre();
-  out.origin_m = middle_m - rotate(out.room_from_world, middle) * out.metres_per_unit;
+  out.metres_per_unit = factor * placement.metres_per_unit;
+  // through a unit quaternion: hours of turning leave a rotation
+  out.world_from_room = glm::mat3_cast(normalised(glm::quat_cast(placement.world_from_room) * back));
+  out.world_origin = placement.to_world(from_m - rotate(back, to_m) / factor);
   return out;
 }
 
 Placement turned_about(const Placement& placement, const Vec3& pivot_m, double angle_rad) {
-  Placement out = placement;
-  const Quat turn = rotation_of(angle_rad * kUp);
-  out.room_from_world = normalised(turn * placement.room_from_world);
-  out.origin_m = pivot_m + rotate(turn, placement.origin_m - pivot_m);
-  return out;
+  return moved(placement, pivot_m, rotation_of(angle_rad * kUp), 1, pivot_m);
 }
 
 std::string scale_words(double metres_per_unit) {
@@ -98,11 +85,8 @@ Placement WorldGrab::move(const Placement& now, const std::array<Hand, 2>& hands
   }
   if (options_.upright) pull.turn = rotation_of(wrapped(twist_about(kUp, pull.turn)) * kUp);
 
-  Placement out;
-  out.metres_per_unit = std::clamp(begun_.metres_per_unit * pull.factor, options_.least_metres_per_unit, options_.most_metres_per_unit);
-  out.room_from_world = normalised(pull.turn * begun_.room_from_world);
-  out.origin_m = to + rotate(pull.turn, begun_.origin_m - from) * (out.metres_per_unit / begun_.metres_per_unit);
-  return out;
+  const double scale = std::clamp(begun_.metres_per_unit * pull.factor, options_.least_metres_per_unit, options_.most_metres_per_unit);
+  return moved(begun_, from, pull.turn, scale / begun_.metres_per_unit, to);
 }
 
 }  // namespace catena::immersive
