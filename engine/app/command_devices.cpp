@@ -26,12 +26,14 @@ std::string abilities(const haptics::DeviceCapabilities& c) {
   std::string line = c.has_orientation ? "position, orientation" : "position";
   if (c.max_force_n > 0) line += fmt::format(", force up to {} N", to_text(c.max_force_n));
   if (c.max_torque_nm > 0) line += fmt::format(", torque up to {} N m", to_text(c.max_torque_nm));
+  if (c.vibrates) line += ", vibration";
   if (!(c.max_force_n > 0) && !(c.max_torque_nm > 0)) line += ", no force";
   return line;
 }
 
 std::string how_to_open(const haptics::DeviceInfo& info) {
   if (info.name == "mouse") return "catena view SCENE";
+  if (info.name == "controller") return "catena view SCENE --xr";
   return "--device " + info.name;
 }
 

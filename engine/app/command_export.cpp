@@ -1,4 +1,4 @@
-/// catena export FILE.catlog -o TICKS.csv [--details FILE.csv]: a recording as tables. Needs none of the scene's files.
+/// catena export FILE.catlog -o TICKS.csv [--details FILE.csv] [--poses FILE.csv]: a recording as tables. Needs none of the scene's files.
 /// catena export SCENE --isosurface I|--slice I|--streamlines I|--mesh M|--field F|--probe PATH.csv -o OUT: a part of a scene.
 #include <fmt/core.h>
 
@@ -26,7 +26,7 @@ namespace {
 namespace log = haptics::log;
 
 struct ExportOptions {
-  std::string log, output, details;
+  std::string log, output, details, poses;
   SceneExport part;
 };
 
@@ -82,6 +82,7 @@ Outcome export_log(const ExportOptions& options) {
   files.reads(options.log);
   files.writes("-o", options.output);
   files.writes("--details", options.details);
+  files.writes("--poses", options.poses);
   CATENA_CHECK(files.check());
   CATENA_TRY(LinkColumns columns, columns_of_log(options.log));
   CATENA_TRY(OutputFile ticks, OutputFile::open(options.output));
@@ -93,11 +94,23 @@ Outcome export_log(const ExportOptions& options) {
     details->write(details_header(columns) + recorded_header(columns));
   }
 
+  std::optional<OutputFile> poses;
+  if (!options.poses.empty()) {
+    CATENA_TRY(OutputFile file, OutputFile::open(options.poses));
+    poses.emplace(std::move(file));
+    poses->write(log::poses_header());
+  }
+
   std::string line;
   std::uint64_t count = 0;
   for (log::LogEvent event = reader.next(); event != log::LogEvent::done; event = reader.next()) {
     if (event == log::LogEvent::program) columns.bind(reader.program().link_names());
     if (event == log::LogEvent::gap) tell(options.log + ": " + reader.gap().text());
+    if (event == log::LogEvent::poses && poses) {
+      line.clear();
+      for (const log::LogPoses& one : reader.poses()) append_poses(line, one);
+      poses->write(line);
+    }
     if (event != log::LogEvent::tick) continue;
     ++count;
     line.clear();
@@ -111,6 +124,7 @@ Outcome export_log(const ExportOptions& options) {
   }
   std::vector<OutputFile*> written{&ticks};
   if (details) written.push_back(&*details);
+  if (poses) written.push_back(&*poses);
   CATENA_CHECK(commit_all(written));
   fmt::print("{}: {} ticks; {}\n", printable(options.log), count, printable(reader.ending()));
   return Done{};
@@ -127,6 +141,7 @@ Outcome export_any(const ExportOptions& options) {
     return export_log(options);
   }
   if (!options.details.empty()) return Error{options.log + ": --details goes with a recording (.catlog)"};
+  if (!options.poses.empty()) return Error{options.log + ": --poses goes with a recording (.catlog)"};
   if (parts != 1) return Error{options.log + ": expected one of " + kParts + ", which says what of the scene to write"};
   SceneExport request = part;
   request.source = options.log;
@@ -143,6 +158,7 @@ void add_export(CLI::App& program, Work& chosen) {
   command->add_option("FILE", options->log, "a recording (.catlog), a scene (.json) or a data file")->required();
   command->add_option("-o,--output", options->output, "of a recording: CSV, the columns of replay; of a scene: by its ending")->required();
   command->add_option("--details", options->details, "of a recording: all else that was recorded, CSV");
+  command->add_option("--poses", options->poses, "of a recording with a headset: head, hands and gaze of every picture, CSV");
   const auto number = CLI::Range(0, 1'000'000);
   command->add_option("--isosurface", part.isosurface, "number in the scene's list, from 0: " + surface_endings())->check(number);
   command->add_option("--slice", part.slice, "number in the scene's list: .csv or .vtp, with the values of all fields")->check(number);

@@ -30,7 +30,8 @@ struct DeviceInput {
 struct DeviceOutput {
   Vec3 force_n{0.0};
   Vec3 torque_nm{0.0};
-  bool live = true;  ///< false: the forces are off or stopped, and nothing may be added to the zero (gravity compensation)
+  bool live = true;     ///< false: the forces are off or stopped, and nothing may be added to the zero (gravity compensation)
+  double booked_j = 0;  ///< of all links: given to the hand and ready for it (haptics/chain/passivity.h); falls by what friction takes
 };
 
 /// The mechanism as the servo's stability sees it: what bounds the stiffness that it can show.
@@ -49,6 +50,7 @@ struct DeviceCapabilities {
   Vec3 workspace_centre_m{0.0};
   bool has_orientation = false;
   int buttons = 1;
+  bool vibrates = false;     ///< what it has in place of force: a person feels how the force changes
   double max_force_n = 0;    ///< 0: no force output (pseudo-haptics only)
   double max_torque_nm = 0;  ///< 0: no torque output
   Mechanics mechanics{};

@@ -99,6 +99,7 @@ void HandMap::write(const DeviceOutput& output) noexcept {
     gravity_weight_ = carries ? std::min(1.0, gravity_weight_ + gravity_step_) : 0;
     out.force_n += gravity_n_ * gravity_weight_;
   }
+  if (scale_ != 1) out.booked_j /= scale_;
   fresh_ = false;
   device_->write(out);
 }

@@ -1,10 +1,9 @@
 /// Mouse and keyboard as a haptic device without force output: the frame writes where the hand is and how it is turned, the servo
 /// reads it each tick through a triple buffer, so that a slow picture never delays a tick; the hand then stays where it was.
-/// Motion is eased over `smoothing_s` towards the newest pose, because a picture's 60 Hz steps would otherwise reach the tick as jumps:
-///   x += (target - x) (1 - exp(-dt / smoothing)),  the same share of the rotation that is left, at 1 / rate
+/// Motion is eased (eased_pose.h), because a picture's 60 Hz steps would otherwise reach the tick as jumps.
 #pragma once
 #include "engine/exchange/triple_buffer.h"
-#include "haptics/device/device.h"
+#include "haptics/device/eased_pose.h"
 
 namespace catena::haptics {
 
@@ -35,13 +34,11 @@ class MouseDevice final : public Device {
   };
 
   DeviceCapabilities capabilities_;
-  double share_;  ///< of the way to the target that one tick covers
   exchange::TripleBuffer<Pose> poses_;
 
   // haptic thread
   Pose newest_;
-  Vec3 position_m_;
-  Quat orientation_{kNoRotation};
+  EasedPose eased_;
 };
 
 }  // namespace catena::haptics

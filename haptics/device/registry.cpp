@@ -4,6 +4,7 @@
 
 #include "engine/base/csv.h"
 #include "engine/base/numbers.h"
+#include "haptics/device/controller.h"
 #include "haptics/device/device.h"
 #include "haptics/device/emulator/emulated_transport.h"
 #include "haptics/device/hand_map.h"
@@ -67,6 +68,10 @@ Result<std::unique_ptr<Device>> open_mouse(const std::string&, const DeviceSetti
   return Error{"the mouse belongs to a window; \"catena view SCENE\" was expected, or another device"};
 }
 
+Result<std::unique_ptr<Device>> open_controller(const std::string&, const DeviceSettings&) {
+  return Error{"the controller belongs to a headset; \"catena view SCENE --xr\" was expected, or another device"};
+}
+
 Result<std::unique_ptr<Device>> open_spacemouse(const std::string&, const DeviceSettings& settings) {
   SpaceMouseParameters parameters;
   parameters.rate_hz = settings.rate_hz;
@@ -104,6 +109,11 @@ const std::vector<DeviceType>& types() {
          to.push_back({"mouse", false, "mouse and keyboard, in the window of catena view"});
        },
        open_mouse},
+      {"controller", Controller::nominal,
+       [](std::vector<DeviceInfo>& to) {
+         to.push_back({"controller", false, "a headset's controller, with catena view --xr: it is tracked and vibrates"});
+       },
+       open_controller},
       {"spacemouse", SpaceMouse::nominal,
        [](std::vector<DeviceInfo>& to) {
          const bool there = SpaceMouse::daemon_is_there();

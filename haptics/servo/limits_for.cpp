@@ -49,6 +49,8 @@ Limits limits_for(const DeviceCapabilities& device, const DeviceSettings& settin
     if (settings.cap == DeviceSettings::Cap::safe) limits.max_rotational_stiffness_nm_per_rad = safe_rotational_stiffness(m, period_s);
   }
 
+  if (device.vibrates) limits.ramp_in_s = kRampIn_s;
+
   // what the person says
   if (settings.cap == DeviceSettings::Cap::value) limits.max_stiffness_n_per_m = settings.stiffness_cap_n_per_m;
   limits.max_force_n = settings.max_force_n.value_or(limits.max_force_n);

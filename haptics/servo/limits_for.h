@@ -6,7 +6,8 @@
 ///   ramp in     0.5 s;  ramp out 20 ms after more than 5 late ticks
 ///   passivity   observed and controlled; the controller adds at most m / (4 (T + t_d)) of damping: from about four
 ///               times that on (m / T without delay), damping itself shakes the device
-/// A device without force output (mouse, null, recorded path): none of this, but what the person states.
+/// A device that vibrates: the ramp in alone, so that a controller that is found again does not buzz with all of the force at once.
+/// A device without either (mouse, null, recorded path): none of this, but what the person states.
 #pragma once
 #include "haptics/chain/constraint.h"
 #include "haptics/device/settings.h"

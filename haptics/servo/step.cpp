@@ -23,7 +23,12 @@ ProbeSample probe_of(const Program& program, const DeviceInput& input, double t_
 
 DeviceOutput output_of(const Program& program, const exchange::HapticState& state) noexcept {
   const bool live = state.force_state != exchange::ForceState::off && state.force_state != exchange::ForceState::stopped;
-  return {.force_n = state.force_n * program.workspace_rotation, .torque_nm = state.torque_nm * program.workspace_rotation, .live = live};
+  double booked_j = 0;
+  for (std::size_t i = 0; i < program.links.size(); ++i) booked_j += state.links[i].booked_j;
+  return {.force_n = state.force_n * program.workspace_rotation,
+          .torque_nm = state.torque_nm * program.workspace_rotation,
+          .live = live,
+          .booked_j = booked_j};
 }
 
 Stepper::Stepper(Device& device, const Program& program, double rate_hz, TickSink* sink)

@@ -281,6 +281,7 @@ struct FramePacket {
   std::vector<Plane> clip;        ///< what all planes keep is drawn; at most kMaxClipPlanes
   std::vector<LightItem> lights;  ///< none: a headlight; at most kMaxLights
   std::optional<FogItem> fog;
+  double vignette = 0;  ///< 0..1: how far the picture narrows while the world moves around a person; 0: not at all
   AidItems aids;
   WidgetItems widgets;
   std::optional<bool> jitter;  ///< of rays; overrides RenderSettings::jitter

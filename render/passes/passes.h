@@ -53,6 +53,11 @@ extern const PassEntry kGhostPass;
 /// Ghost over volume over opaque over background, into the finished picture (RGBA8, straight alpha).
 extern const PassEntry kComposePass;
 
+/// The finished picture darkened away from the eye's axis (FramePacket::vignette), so that a person whom the world moves around sees less
+/// of it go by:  alpha of black = strength smoothstep(tan inner, tan outer, tan angle). Perspective views alone.
+extern const PassEntry kVignettePass;
+inline constexpr double kVignetteInner_deg = 12, kVignetteOuter_deg = 30;
+
 /// Text and flat shapes over the finished picture: scalar bars, labels, title, orientation marker, status. They are drawn into an image
 /// of their own (premultiplied) and blended into the picture (straight alpha), so that both opaque and transparent pictures are right.
 /// Without an item there is no pass. Without a font there is no text, and the pass's note says why.

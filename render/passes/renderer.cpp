@@ -19,9 +19,9 @@ namespace catena::render {
 namespace {
 
 /// All that a picture can hold, in the order of drawing.
-constexpr const PassEntry* kPasses[] = {&kAidPass,    &kWidgetPass,  &kMeshPass,       &kStreamlinePass,   &kGlyphPass,
-                                        &kBallPass,   &kCursorPass,  &kIsosurfacePass, &kSurfaceColorPass, &kSlicePass,
-                                        &kLayersPass, &kRaycastPass, &kGhostPass,      &kComposePass,      &kOverlayPass};
+constexpr const PassEntry* kPasses[] = {&kAidPass,    &kWidgetPass,     &kMeshPass,         &kStreamlinePass, &kGlyphPass,  &kBallPass,
+                                        &kCursorPass, &kIsosurfacePass, &kSurfaceColorPass, &kSlicePass,      &kLayersPass, &kRaycastPass,
+                                        &kGhostPass,  &kComposePass,    &kVignettePass,     &kOverlayPass};
 
 Outcome check(const FramePacket& packet, const RenderSettings& settings, const vk::DeviceInfo& device) {
   const std::uint32_t most = device.limits.maxImageDimension2D;

@@ -9,6 +9,7 @@ namespace catena::render {
 namespace {
 
 constexpr double kFirstGuessMs = 400;  // a unit of cost at a megapixel on two CPU cores
+constexpr double kFinerBelow = 0.7;    // of the budget, likewise for pixels
 constexpr double kUpBelow = 0.85;      // of the budget: a better rung is taken only with some room, or it would come and go
 
 /// The share of pixels whose rays are marched, and what interpolation costs beside them.
@@ -77,6 +78,16 @@ std::vector<RenderSettings> quality_ladder(const LadderKind& kind) {
     return relative_cost(a, kind.shaded) < relative_cost(b, kind.shaded);
   });
   return all;
+}
+
+std::uint32_t coarser_pixels(double expected_ms, std::uint32_t before, double budget_ms) {
+  const auto fits = [&](std::uint32_t scale) {
+    const double room = scale < before ? kFinerBelow : 1;
+    return expected_ms / (scale * scale) <= room * budget_ms;
+  };
+  std::uint32_t scale = 1;
+  while (scale < kMaxScale && !fits(scale)) scale *= 2;
+  return scale;
 }
 
 TimeModel::TimeModel(std::vector<double> costs, double first_guess_ms) : unit_ms_(first_guess_ms) {

@@ -15,6 +15,7 @@ namespace catena::render {
 struct LadderKind {
   bool fast = true;  ///< Renderer::draws_fast
   bool shaded = false;
+  bool operator==(const LadderKind&) const = default;
 };
 
 /// Every `spacing`-th pixel at that step by the fast raycast, refined where interpolation errs by more than `half` and `full` (1/255; < 0:
@@ -53,6 +54,11 @@ class TimeModel {
   double unit_ms_;
 };
 
+/// Where even the cheapest picture of every pixel takes longer than the budget: every so many pixels each way, 1 to kMaxScale. `before`:
+/// the last choice; more pixels again only with some room, or their number would come and go.
+inline constexpr std::uint32_t kMaxScale = 4;
+std::uint32_t coarser_pixels(double expected_ms, std::uint32_t before, double budget_ms);
+
 struct RefinementStep {
   RenderSettings settings;
   double expected_ms = 0;
@@ -62,10 +68,14 @@ struct RefinementStep {
 class Refinement {
  public:
   Refinement(double budget_ms, const LadderKind& kind);
+  /// From the next picture on.
+  void set_budget(double ms) { budget_ms_ = ms; }
   /// The picture to draw now; nothing where the last one is finished and nothing has `changed` (camera, scene, size) since.
   std::optional<RefinementStep> next(bool changed);
   /// What next(false) would take; nothing where it has nothing.
   std::optional<double> expected_better_ms() const;
+  /// What the coarsest picture would take.
+  double expected_coarsest_ms() const { return times_.expected_ms(0); }
   /// What that picture took.
   void drawn(double ms);
 

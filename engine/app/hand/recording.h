@@ -26,6 +26,11 @@ class Recording {
   /// Another program, before the servo gets it. `text`: the scene's, now.
   void add_program(const haptics::Program& program, const std::string& text);
 
+  /// Of a picture that a headset is about to show.
+  void add_poses(const haptics::log::LogPoses& poses) {
+    if (writer_) writer_->add_poses(poses);
+  }
+
   /// For ServoOptions::sink or Servo::set_sink; nullptr: none.
   haptics::TickSink* sink() const { return writer_.get(); }
   bool running() const { return writer_ != nullptr; }

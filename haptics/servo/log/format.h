@@ -101,6 +101,9 @@ class ByteReader {
 ///            A log without it was cut off.
 /// 6 STATE    u64 tick, u64 layout, bytes of haptics/chain ChainState: a log that begins while the servo runs has one, before its first
 ///            ticks, which are those after `tick`. Only a program that keeps its state in the same way (layout) can run them again.
+/// 7 POSES    of a session with a headset, anywhere after the header: u32 n, n times {u64 newest tick, i64 predicted ns on the runtime's
+///            clock, u8 known: one bit each for head, left hand, right hand and gaze, from the lowest on; for each bit that is 1: vec3
+///            metres of room, orientation as 4 f64 w x y z}. A program from before this block calls such a log damaged and reads its ticks.
 ///
 /// A file cut at any byte holds every block that is complete. A block whose hashes do not fit is damaged: where its own 32 bytes
 /// are good its length is, too; else the next block is found by its mark.
@@ -109,7 +112,7 @@ inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 inline constexpr std::uint64_t kPreambleBytes = 16;
 
-enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5, state = 6 };
+enum class BlockType : std::uint32_t { header = 1, program = 2, ticks = 3, gap = 4, end = 5, state = 6, poses = 7 };
 
 struct BlockHead {
   std::uint32_t mark = kBlockMark;

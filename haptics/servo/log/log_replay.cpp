@@ -95,6 +95,7 @@ Result<LogReplay> replay_log(LogReader& log, const LogReplayHooks& hooks) {
         if (hooks.on_tick) hooks.on_tick(log.program(), out);
         break;
       }
+      case LogEvent::poses:
       case LogEvent::done:
         break;
     }

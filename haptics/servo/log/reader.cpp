@@ -88,6 +88,8 @@ std::optional<LogEvent> LogReader::read_block() {
       return read_gap();
     case BlockType::end:
       return read_end();
+    case BlockType::poses:
+      return read_poses();
     case BlockType::header:
       break;
   }
@@ -188,6 +190,16 @@ std::optional<LogEvent> LogReader::read_gap() {
   gap_ = *gap;
   last_ += gap->ticks;
   return LogEvent::gap;
+}
+
+std::optional<LogEvent> LogReader::read_poses() {
+  auto poses = poses_from(blocks_.payload());
+  if (!poses) {
+    damage();
+    return std::nullopt;
+  }
+  poses_ = std::move(*poses);
+  return LogEvent::poses;
 }
 
 std::optional<LogEvent> LogReader::read_end() {

@@ -6,6 +6,7 @@
 
 #include "haptics/servo/log/block_file.h"
 #include "haptics/servo/log/contents.h"
+#include "haptics/servo/log/poses.h"
 #include "haptics/servo/log/record.h"
 
 namespace catena::haptics::log {
@@ -14,7 +15,8 @@ enum class LogEvent {
   program,  ///< takes over with the next tick
   state,    ///< the log begins after tick state().tick
   tick,
-  gap,  ///< ticks that are not there
+  gap,    ///< ticks that are not there
+  poses,  ///< of some pictures of a headset; those of a session without one have none
   done
 };
 
@@ -31,6 +33,7 @@ class LogReader {
   const Words& words() const { return words_; }  ///< the same tick (record.h)
   const LogGap& gap() const { return gap_; }
   const LogState& state() const { return state_; }
+  const std::vector<LogPoses>& poses() const { return poses_; }
 
   std::uint64_t last_tick() const { return last_; }
   /// Once done: the end that the writer wrote; none: the log was cut off.
@@ -47,6 +50,7 @@ class LogReader {
   std::optional<LogEvent> read_ticks();
   std::optional<LogEvent> read_state();
   std::optional<LogEvent> read_gap();
+  std::optional<LogEvent> read_poses();
   std::optional<LogEvent> read_end();
   LogEvent lost_before(std::uint64_t next);
   bool damage();
@@ -58,6 +62,7 @@ class LogReader {
   Words words_{};
   LogGap gap_;
   LogState state_;
+  std::vector<LogPoses> poses_;
   std::optional<LogEnd> end_;
   bool has_program_ = false, damaged_ = false, finished_ = false, again_ = false;
   std::uint64_t next_sequence_ = 1, last_ = 0;

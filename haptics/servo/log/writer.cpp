@@ -49,6 +49,7 @@ struct LogWriter::Parts {
   std::map<std::uint64_t, LogProgram> programs;
   std::optional<std::uint64_t> first_epoch;  ///< until the first tick
   bool has_first = false, stop = false;
+  std::vector<LogPoses> poses;
 
   // writer's thread
   TickBlocks blocks;
@@ -90,6 +91,12 @@ void LogWriter::Parts::drain() {
     if (!blocks.file().failed()) blocks.add(tick, words);
   }
   blocks.flush();
+  std::vector<LogPoses> said;
+  {
+    const std::lock_guard lock(mutex);
+    said.swap(poses);
+  }
+  if (!said.empty() && !blocks.file().failed()) blocks.file().write(BlockType::poses, to_bytes(said));
 }
 
 void LogWriter::Parts::publish() {
@@ -153,6 +160,14 @@ void LogWriter::add_program(const Program& program, std::optional<std::string> s
   const std::lock_guard lock(parts_->mutex);
   if (!std::exchange(parts_->has_first, true)) parts_->first_epoch = program.epoch;
   parts_->programs.insert_or_assign(program.epoch, std::move(facts));
+}
+
+bool LogWriter::add_poses(const LogPoses& poses) {
+  Parts& p = *parts_;
+  const std::lock_guard lock(p.mutex);
+  if (p.stop || p.failed.load(std::memory_order_acquire) || p.poses.size() >= kMaxWaitingPoses) return false;
+  p.poses.push_back(poses);
+  return true;
 }
 
 void LogWriter::begin(const ChainState& state) noexcept {

@@ -11,6 +11,7 @@
 
 #include "engine/base/result.h"
 #include "haptics/servo/log/contents.h"
+#include "haptics/servo/log/poses.h"
 #include "haptics/servo/servo.h"
 
 namespace catena::haptics::log {
@@ -41,6 +42,11 @@ class LogWriter final : public TickSink {
   /// up (Servo::set_sink). Every set_program needs a program of an
   /// epoch of its own, as extract_program gives it. `scene_text`: that of the moment; none: still the header's.
   void add_program(const Program& program, std::optional<std::string> scene_text = {});
+
+  /// Frame side: of a picture that a headset is about to show. False: it is left out, since nothing is written any more or the disk does
+  /// not keep up with kMaxWaitingPoses of them.
+  bool add_poses(const LogPoses& poses);
+  static constexpr std::size_t kMaxWaitingPoses = 4096;
 
   // haptic thread
   void begin(const ChainState& state) noexcept override;

@@ -76,7 +76,7 @@ TEST(Pacing, WhereEvenTheCheapestTakesTooLongThereAreFewerPixels) {
   for (const NextPicture& next : rest(slow, kExact, 400)) EXPECT_EQ(next.scale, 1u);
 
   Pacing slower = pacing("time=50");
-  EXPECT_EQ(settle(slower, kExact, 4000).scale, kMaxScale);
+  EXPECT_EQ(settle(slower, kExact, 4000).scale, render::kMaxScale);
   Pacing quick = pacing("time=50");
   EXPECT_EQ(settle(quick, kExact, 20).scale, 1u);
 }

@@ -269,7 +269,7 @@ TEST(Registry, OpensThroughTheMapWhereSettingsAskForIt) {
 }
 
 TEST(Registry, NamesWhatThereIs) {
-  for (const char* type : {"null", "simulated", "simulated-6dof", "recorded", "mouse", "spacemouse"}) {
+  for (const char* type : {"null", "simulated", "simulated-6dof", "recorded", "mouse", "controller", "spacemouse"}) {
     EXPECT_TRUE(is_device_type(type)) << type;
     EXPECT_NE(device_types().find(type), std::string::npos);
     EXPECT_FALSE(nominal_capabilities(type).name.empty());
@@ -284,6 +284,7 @@ TEST(Registry, NamesWhatThereIs) {
   }
   EXPECT_NE(open_device("sextant", {}).error().message.find("simulated-6dof"), std::string::npos);
   EXPECT_NE(open_device("mouse", {}).error().message.find("catena view"), std::string::npos);
+  EXPECT_NE(open_device("controller", {}).error().message.find("catena view SCENE --xr"), std::string::npos);
 }
 
 }  // namespace hand_map_test

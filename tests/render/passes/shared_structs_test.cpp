@@ -9,6 +9,7 @@
 #include "shaders/shared/pack.h"
 #include "shaders/shared/tube.h"
 #include "shaders/shared/ui.h"
+#include "shaders/shared/vignette.h"
 #include "tests/render/support/spirv.h"
 
 namespace catena::test {
@@ -84,6 +85,18 @@ TEST(SharedStructs, FrameAndGridData) {
     EXPECT_OFFSET(FrameData, grids);
     EXPECT_EQ(found.size(), compared);
   }
+}
+
+TEST(SharedStructs, Vignette) {
+  auto all = struct_offsets(shader_words("vignette.frag"));
+  const auto& found = all["VignetteData"];
+  std::size_t compared = 0;
+  EXPECT_OFFSET(VignetteData, first);
+  EXPECT_OFFSET(VignetteData, step);
+  EXPECT_OFFSET(VignetteData, strength);
+  EXPECT_OFFSET(VignetteData, inner);
+  EXPECT_OFFSET(VignetteData, outer);
+  EXPECT_EQ(compared, found.size());
 }
 
 TEST(SharedStructs, TubeRingData) {

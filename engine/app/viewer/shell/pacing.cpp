@@ -42,13 +42,8 @@ NextPicture Pacing::ask(const render::RefinementStep& step, std::uint32_t scale)
 NextPicture Pacing::moving(const SceneKind& kind) {
   follow(kind);
   const render::RefinementStep step = *refinement_.next(true);
-  const auto fits = [&](std::uint32_t scale) {
-    const double room = scale < current_.scale ? kFinerBelow : 1;
-    return step.expected_ms / (scale * scale) <= room * budget_ms_;
-  };
-  std::uint32_t scale = 1;
   // the fast raycast saves pixels by itself
-  while (!kind.fast && scale < kMaxScale && !fits(scale)) scale *= 2;
+  const std::uint32_t scale = kind.fast ? 1 : render::coarser_pixels(step.expected_ms, current_.scale, budget_ms_);
   by_moving_ = true;
   finished_ = false;
   return ask(step, scale);

@@ -20,7 +20,6 @@
 namespace catena::app {
 
 inline constexpr double kBudgetMs = 50;
-inline constexpr std::uint32_t kMaxScale = 4;
 
 /// What the scene asks of the rays.
 struct SceneKind {

@@ -1,0 +1,39 @@
+#include "haptics/vibration/vibration.h"
+
+namespace catena::haptics {
+namespace {
+
+constexpr double kFrictionCalls = 1.5;  // a call that is a little late leaves no gap
+
+std::int64_t nanoseconds(double s) noexcept { return static_cast<std::int64_t>(1e9 * s); }
+
+}  // namespace
+
+Vibration vibration_of(const FeltPeaks& peaks, double call_s, const VibrationMap& map) noexcept {
+  const double pulse = std::min(1.0, peaks.change_n / map.full_change_n);
+  const double rubs = map.most_friction * std::min(1.0, peaks.friction_n / map.full_friction_n);
+  if (!(std::max(pulse, rubs) >= map.least)) return {};
+  if (pulse >= rubs) return {pulse, map.pulse_hz, nanoseconds(map.pulse_s), true};
+  return {rubs, std::clamp(peaks.speed_m_per_s / map.grain_m, map.slowest_hz, map.fastest_hz), nanoseconds(kFrictionCalls * call_s), false};
+}
+
+VibrationSender::Call VibrationSender::next(Peaks& peaks, std::int64_t now_ns, bool allowed) noexcept {
+  const FeltPeaks felt = peaks.take();
+  if (!allowed) {
+    const bool stops = was_allowed_;
+    was_allowed_ = false;
+    running_ = {};
+    return {stops ? What::stop : What::nothing, {}};
+  }
+  const bool began = !was_allowed_;
+  was_allowed_ = true;
+  if (began) return {};  // what was felt before it was allowed
+  const Vibration wish = vibration_of(felt, call_s_, map_);
+  const bool pulse_lasts = running_.is_pulse && now_ns < ends_ns_;
+  if (!(wish.amplitude > 0) || (pulse_lasts && wish.amplitude < running_.amplitude)) return {};
+  running_ = wish;
+  ends_ns_ = now_ns + wish.duration_ns;
+  return {What::vibrate, wish};
+}
+
+}  // namespace catena::haptics

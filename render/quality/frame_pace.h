@@ -1,0 +1,63 @@
+/// Which picture a headset's next frame is, so that it comes in time: a display that shows a frame every period, whether it is there or
+/// not. Pure logic of what it is told, no device and no clock; it shares the ladder and the times of refinement.h with the window.
+///   budget   room of the period; room is 0.8, falls by a tenth with every late frame (to 0.25 at least) and rises by 0.0005 with every
+///            other one: what the compositor and the machine need beside the picture is not known before
+///   rung     the best one whose expected time, of both eyes together, fits the budget; where the fast raycast cannot draw it and none
+///            fits, fewer pixels (coarser_pixels)
+///   rate     where even the coarsest does not fit for 8 frames in a row: that one, at half rate (two periods a frame); said once. Back at
+///            full rate when it would fit with room (0.7) for 30 frames
+///   late     a frame that is shown more periods after the one before than its rate has; of the first 30 apart, while times are learnt
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "render/quality/refinement.h"
+
+namespace catena::render {
+
+struct FramePlan {
+  RenderSettings settings;
+  std::uint32_t scale = 1;  ///< every so many pixels, each way
+  int periods = 1;          ///< of the display, for this frame: 2 at half rate
+};
+
+class FramePace {
+ public:
+  static constexpr int kLearning = 30;
+
+  explicit FramePace(const LadderKind& kind = {});
+  /// Another scene has another ladder.
+  void follow(const LadderKind& kind);
+
+  /// After the frame's wait: the display's period and when this frame will be shown, as the runtime predicts them.
+  FramePlan next(double period_ms, std::int64_t shown_ns);
+  /// What that frame took, both eyes. Not called: it says nothing (nothing was to be drawn).
+  void drawn(double ms);
+  /// The session did not run: the next frame is not late, whenever it is.
+  void pause() { shown_ns_ = 0; }
+  /// One sentence for the person when the rate changes for the first time; empty: nothing new. Once.
+  std::string news();
+
+  int frames() const { return frames_; }
+  int late() const { return late_; }                       ///< of all
+  int late_after_learning() const { return late_after_; }  ///< of those after the first kLearning
+  int at_half_rate() const { return at_half_rate_; }       ///< frames
+  double budget_ms() const { return budget_ms_; }
+
+ private:
+  void count(double period_ms, std::int64_t shown_ns);
+  void choose_rate(double coarsest_ms);
+
+  LadderKind kind_;
+  Refinement refinement_;
+  FramePlan plan_;
+  double period_ms_ = 0, room_, budget_ms_ = 0;
+  std::int64_t shown_ns_ = 0;  ///< the last frame; 0: none
+  bool asked_ = false;
+  int frames_ = 0, drawn_ = 0, late_ = 0, late_after_ = 0, at_half_rate_ = 0;
+  int too_slow_ = 0, quick_ = 0;  ///< frames in a row
+  bool half_ = false, told_ = false;
+  std::string news_;
+};
+
+}  // namespace catena::render

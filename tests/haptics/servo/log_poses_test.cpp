@@ -1,0 +1,87 @@
+/// Head, hands and gaze in a recording: to bytes and back, beside ticks, and damaged.
+#include "haptics/servo/log/poses.h"
+#include "tests/haptics/servo/log_fixture.h"
+
+namespace log_poses_test {
+
+using namespace catena;
+using namespace catena::haptics;
+using namespace catena::haptics::log;
+using namespace catena::test;
+
+LogPoses some(int k) {
+  LogPoses out;
+  out.tick = static_cast<std::uint64_t>(10 * k);
+  out.predicted_ns = 1'000'000'007LL * k - 5;
+  for (std::size_t part = 0; part < kTrackedParts; ++part)
+    if ((k >> part & 1) == 0)
+      out.parts[part] = TrackedPose{{0.1 * k, -0.0, 1.7 + 0.1 * static_cast<double>(part)}, rotation_of({0.1, 0.2, 0.3})};
+  return out;
+}
+
+TEST(LogPoses, BytesLeadBack) {
+  std::vector<LogPoses> all;
+  EXPECT_EQ(poses_from(to_bytes(all)), all);
+  for (int k = 0; k < 16; ++k) all.push_back(some(k));
+  const std::string bytes = to_bytes(all);
+  EXPECT_EQ(poses_from(bytes), all);
+  for (std::size_t cut = 0; cut < bytes.size(); cut += 7) EXPECT_FALSE(poses_from(bytes.substr(0, cut)));
+  EXPECT_FALSE(poses_from(bytes + "x"));
+  all[3][TrackedPart::gaze] = TrackedPose{Vec3(NAN), kNoRotation};
+  EXPECT_FALSE(poses_from(to_bytes(all)));
+  std::string parts = to_bytes({LogPoses{}});
+  parts[4 + 16] = 16;
+  EXPECT_FALSE(poses_from(parts)) << "a fifth part";
+}
+
+TEST(LogPoses, GoWithTheTicksAndChangeNothingOfThem) {
+  const test::TemporaryFolder folder;
+  const std::vector<Change> changes{{1, test::level_program(1, {"a"}), {}}};
+  std::vector<LogPoses> said;
+  for (const bool with : {false, true}) {
+    auto writer = LogWriter::open(folder / (with ? "with" : "without"), {}, {}, fast_flush());
+    for (const Change& change : changes) (*writer)->add_program(*change.program, {});
+    int k = 0;
+    test::drive(changes, test::hostile_path(3000), [&](const ProbeSample& input, const exchange::HapticState& output) {
+      (*writer)->put(input, output);
+      if (!with || ++k % 11 != 0) return;
+      said.push_back(some(k));
+      EXPECT_TRUE((*writer)->add_poses(said.back()));
+    });
+    ASSERT_TRUE((*writer)->finish());
+    EXPECT_FALSE((*writer)->add_poses({})) << "nothing is written any more";
+  }
+
+  std::vector<LogPoses> found;
+  auto reader = LogReader::open(folder / "with");
+  std::uint64_t ticks = 0;
+  for (LogEvent e = reader->next(); e != LogEvent::done; e = reader->next()) {
+    if (e == LogEvent::tick) ++ticks;
+    if (e == LogEvent::poses) found.insert(found.end(), reader->poses().begin(), reader->poses().end());
+  }
+  EXPECT_EQ(ticks, 3000u);
+  EXPECT_EQ(found, said);
+  EXPECT_FALSE(reader->damaged());
+  ASSERT_TRUE(reader->end());
+
+  // the same ticks, and a replay that is equal to the bit
+  auto without = LogReader::open(folder / "without");
+  while (without->next() != LogEvent::done) {
+  }
+  EXPECT_EQ(without->end()->state_hash, reader->end()->state_hash);
+  auto again = LogReader::open(folder / "with");
+  const auto replayed = replay_log(*again, test::hooks_for(changes));
+  EXPECT_EQ(replayed->stats.ticks, 3000u);
+  EXPECT_EQ(replayed->differing, 0u);
+}
+
+TEST(LogPoses, AreATable) {
+  std::string line;
+  append_poses(line, some(13));  // 1101: only the left hand
+  EXPECT_TRUE(line.starts_with("130,13000000086,,,,,,,,1.3,-0,1.8,")) << line;
+  const auto columns = [](const std::string& row) { return std::count(row.begin(), row.end(), ','); };
+  EXPECT_EQ(columns(line), columns(poses_header()));
+  EXPECT_TRUE(poses_header().starts_with("tick,predicted_ns,head_x,head_y,head_z,head_qw"));
+}
+
+}  // namespace log_poses_test

@@ -1,0 +1,127 @@
+/// What a sender that looks some dozens of times a second learns of a force at 1 kHz: detents, contact, friction, of the real tick.
+#include "haptics/vibration/peaks.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "haptics/chain/tick.h"
+#include "haptics/servo/step.h"
+#include "tests/haptics/constraints/rig.h"
+#include "tests/support/simple_links.h"
+
+namespace peaks_test {
+
+using namespace catena;
+using namespace catena::haptics;
+
+/// A hand that goes its way whatever it feels, on the real tick.
+struct Way {
+  explicit Way(Link link) {
+    program.links = {std::move(link)};
+    program.metres_per_unit = 0.1;
+  }
+  void to(const Vec3& hand_m) {
+    tick(program, {1e-3 * static_cast<double>(ticks++), world_from_device(program, hand_m)}, *state, *scratch, out);
+    const DeviceOutput sent = output_of(program, out);
+    peaks.add({sent.force_n, hand_m, sent.booked_j, sent.live});
+  }
+  Program program;
+  std::unique_ptr<ChainState> state = std::make_unique<ChainState>();
+  std::unique_ptr<ChainScratch> scratch = std::make_unique<ChainScratch>();
+  exchange::HapticState out;
+  Peaks peaks;
+  int ticks = 0;
+};
+
+Link drag(double threshold) {
+  Link link;
+  link.name = "drag";
+  link.constraint = tests::build(R"({"name": "drag", "type": "drag", "threshold": )" + std::to_string(threshold) + "}");
+  link.stiffness_n_per_m = 500;
+  return link;
+}
+
+TEST(Peaks, ADetentOfTwoMillisecondsIsSeenWheneverTheSenderLooks) {
+  for (int first = 0; first < 11; ++first) {
+    Link link = test::hold_height("plane", 0);
+    link.indication = {.cue = Indication::Cue::detent, .at = 0.01, .amplitude_n = 0.5, .duration_s = 0.002};
+    Way way(link);
+    double most = 0, before = 0;
+    // slowly away from the plane, past the place where the link is left at 1 mm; the sender looks every 11 ms
+    for (int k = 0; k < 400; ++k) {
+      way.to({0.0, 0.0, 5e-6 * k});
+      if (k % 11 != first) continue;
+      const double change = way.peaks.take().change_n;
+      if (k < 190) before = std::max(before, change);
+      most = std::max(most, change);
+    }
+    EXPECT_NEAR(most, 0.5, 0.06) << "looked at tick " << first;
+    EXPECT_LT(before, 0.06) << "the spring alone is no detent";
+  }
+}
+
+TEST(Peaks, ContactIsTheRateOfTheForceAndNoFriction) {
+  Way way(test::hold_height("plane", 0));
+  // pressed at 0.1 m/s into 500 N/m: 50 N/s, for 5 mm
+  for (int k = 0; k < 50; ++k) way.to({0.0, 0.0, -1e-4 * k});
+  const FeltPeaks felt = way.peaks.take();
+  EXPECT_NEAR(felt.change_n, 50 * Peaks::kTau_s, 0.02);
+  EXPECT_LT(felt.friction_n, 0.03) << "what a spring stores is not lost";
+  for (int k = 0; k < 100; ++k) way.to({0.0, 0.0, -5e-3});
+  way.peaks.take();
+  for (int k = 0; k < 100; ++k) way.to({0.0, 0.0, -5e-3});
+  EXPECT_LT(way.peaks.take().change_n, 1e-4) << "a hand that holds still is told nothing";
+  EXPECT_EQ(way.peaks.take().friction_n, 0);
+}
+
+TEST(Peaks, FrictionIsTheForceOfADragThatSlips) {
+  Way way(drag(0.04));  // 4 mm of hand: 2 N
+  for (int k = 0; k < 300; ++k) way.to({1e-4 * k, 0.0, 0.0});
+  way.peaks.take();
+  for (int k = 300; k < 330; ++k) way.to({1e-4 * k, 0.0, 0.0});
+  const FeltPeaks felt = way.peaks.take();
+  EXPECT_NEAR(felt.friction_n, 2, 0.02);
+  EXPECT_NEAR(felt.speed_m_per_s, 0.1, 1e-3);
+  EXPECT_LT(felt.change_n, 1e-3);
+}
+
+TEST(Peaks, WhatIsThereWhenTheHandComesBackIsNoStep) {
+  Peaks peaks;
+  for (int k = 0; k < 10; ++k) peaks.add({});
+  peaks.add({.live = false});
+  for (int k = 0; k < 10; ++k) peaks.add({Vec3(3, 0, 0), Vec3(1, 0, 0), -5});
+  peaks.add({Vec3(NAN, 0, 0), Vec3(0.0), 0});
+  peaks.add({Vec3(-2, 0, 0), Vec3(0, 1, 0), 7});
+  const FeltPeaks felt = peaks.take();
+  EXPECT_LT(felt.change_n, 1e-6);
+  EXPECT_EQ(felt.friction_n, 0);
+}
+
+TEST(Peaks, NoneIsLostBetweenTwoThreads) {
+  Peaks peaks;
+  constexpr int kPulses = 20000;
+  std::atomic<bool> done{false};
+  // pulses that grow: the largest one ever taken is the last one, and what is taken never exceeds what was
+  std::thread servo([&] {
+    for (int i = 1; i <= kPulses; ++i) {
+      peaks.add({.live = false});
+      peaks.add({});
+      peaks.add({.force_n = Vec3(i, 0, 0)});
+    }
+    done = true;
+  });
+  double most = 0;
+  int takes = 0;
+  for (bool last = false; !last; ++takes) {
+    last = done;
+    const double change = peaks.take().change_n;
+    ASSERT_TRUE(change == 0 || change >= most) << "an old peak was kept beside a newer one";
+    most = std::max(most, change);
+  }
+  servo.join();
+  EXPECT_EQ(most, kPulses);
+  EXPECT_GT(takes, 1);
+}
+
+}  // namespace peaks_test

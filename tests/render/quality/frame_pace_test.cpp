@@ -1,0 +1,123 @@
+/// Frames of a headset on a scripted machine and a scripted display: in time where that can be, at half rate where it cannot.
+#include "render/quality/frame_pace.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace catena::test {
+namespace frame_pace_test {
+
+using namespace catena::render;
+
+/// A display of that period that shows a frame at the first moment after it is there, and a machine whose every picture takes what the
+/// ladder's costs say times `unit_ms`, give or take a tenth, and something beside.
+struct Headset {
+  explicit Headset(const LadderKind& kind = {}) : pace(kind), kind_(kind) {}
+
+  void run(int frames) {
+    for (int k = 0; k < frames; ++k) {
+      const auto shown_ns = static_cast<std::int64_t>(1e6 * period_ms * static_cast<double>(slot));
+      plan = pace.next(period_ms, shown_ns);
+      std::uniform_real_distribution<double> noise(0.9, 1.1);
+      const double ms = unit_ms * relative_cost(plan.settings, kind_.shaded) * noise(random) / (plan.scale * plan.scale);
+      pace.drawn(ms);
+      news += pace.news();
+      slot += std::max<std::int64_t>(plan.periods, static_cast<std::int64_t>(std::ceil((ms + beside_ms) / period_ms)));
+    }
+  }
+  FramePace pace;
+  LadderKind kind_;
+  FramePlan plan;
+  std::string news;
+  std::mt19937 random{2};
+  std::int64_t slot = 1;
+  double period_ms = 11.1, unit_ms = 20, beside_ms = 1;
+};
+
+double coarsest_cost() { return relative_cost(quality_ladder({}).front(), false); }
+
+TEST(FramePace, HoldsThePeriodWhereItCan) {
+  for (const double unit : {1.0, 20.0, 60.0}) {
+    Headset h;
+    h.unit_ms = unit;
+    h.run(2000);
+    EXPECT_LE(h.pace.late_after_learning(), 20) << unit << ": more than 1 % late";
+    EXPECT_EQ(h.pace.frames(), 2000);
+    EXPECT_EQ(h.pace.at_half_rate(), 0);
+    EXPECT_TRUE(h.news.empty()) << h.news;
+    EXPECT_EQ(h.plan.periods, 1);
+    // and does not waste it: a rung twice as dear would not have fitted
+    EXPECT_TRUE(unit < 2 || 2 * unit * relative_cost(h.plan.settings, false) > 0.6 * h.period_ms) << unit;
+  }
+}
+
+TEST(FramePace, WhereItCannotTheCoarsestComesAtHalfRateAndThatIsSaidOnce) {
+  Headset h;
+  h.unit_ms = 1.4 * h.period_ms / coarsest_cost();
+  h.run(1000);
+  EXPECT_EQ(h.plan.settings.fast, quality_ladder({}).front().fast);
+  EXPECT_EQ(h.plan.periods, 2);
+  EXPECT_GT(h.pace.at_half_rate(), 950);
+  EXPECT_LE(h.pace.late_after_learning(), 10);
+  EXPECT_NE(h.news.find("every 2nd frame"), std::string::npos);
+  EXPECT_EQ(h.news.find("every 2nd frame"), h.news.rfind("every 2nd frame"));
+  // the machine is free again, and then not
+  h.unit_ms = 5;
+  h.run(200);
+  EXPECT_EQ(h.plan.periods, 1);
+  h.unit_ms = 1.4 * h.period_ms / coarsest_cost();
+  h.run(200);
+  EXPECT_EQ(h.plan.periods, 2);
+  EXPECT_EQ(h.news.find("every 2nd frame"), h.news.rfind("every 2nd frame"));
+}
+
+TEST(FramePace, GivesWayToWhatElseTheMachineDoesAndComesBack) {
+  Headset h;
+  h.run(300);
+  const double before = h.pace.budget_ms();
+  h.beside_ms = 8;  // a compositor that needs more than the usual room
+  h.run(300);
+  EXPECT_LT(h.pace.budget_ms(), before);
+  const int late = h.pace.late_after_learning();
+  h.run(1000);
+  EXPECT_LE(h.pace.late_after_learning() - late, 15);
+  h.beside_ms = 0;
+  h.run(1000);
+  EXPECT_NEAR(h.pace.budget_ms(), 0.8 * h.period_ms, 1e-9);
+}
+
+TEST(FramePace, CountsWhatIsLateAndNotAPause) {
+  FramePace pace;
+  std::int64_t shown = 10'000'000;
+  const auto frame = [&](int periods) {
+    shown += periods * 10'000'000;
+    pace.next(10, shown);
+    pace.drawn(1);
+  };
+  for (int k = 0; k < 40; ++k) frame(1);
+  EXPECT_EQ(pace.late(), 0);
+  frame(2);
+  frame(1);
+  frame(5);
+  EXPECT_EQ(pace.late(), 2);
+  EXPECT_EQ(pace.late_after_learning(), 2);
+  pace.pause();
+  frame(500);
+  EXPECT_EQ(pace.late(), 2);
+  shown += 3'000'000;  // the runtime's prediction wavers
+  frame(1);
+  EXPECT_EQ(pace.late(), 2);
+}
+
+TEST(FramePace, ExactRaysSavePixels) {
+  Headset h({false, false});
+  h.unit_ms = 100;
+  h.run(400);
+  EXPECT_GT(h.plan.scale, 1u);
+  EXPECT_EQ(h.plan.periods, 1);
+  EXPECT_LE(h.pace.late_after_learning(), 4);
+}
+
+}  // namespace frame_pace_test
+}  // namespace catena::test
