@@ -74,7 +74,7 @@ Outcome open_window(const ViewArguments& o, int& exit_code) {
   options.height = size.height;
   options.frames = o.frames;
   options.panels = !o.no_panels;
-  options.headset = o.headset;
+  options.headset = options.hand.headset = o.headset;
   options.screenshot = o.screenshot;
   options.window_screenshot = o.window_screenshot;
   exit_code = view(std::move(options));

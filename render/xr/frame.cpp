@@ -41,6 +41,19 @@ RoomEye room_eye(const XrView& view) {
   return eye;
 }
 
+RoomHead head_of(const Frame& frame) {
+  RoomHead head;
+  Quat sum(0.0, 0.0, 0.0, 0.0);
+  for (const XrView& view : frame.views) {
+    const auto& [x, y, z, w] = view.pose.orientation;
+    const Quat turn(w, x, y, z);
+    sum += dot(sum, turn) < 0 ? -turn : turn;  // q and -q are one rotation
+    head.position += room_eye(view).position / double(frame.views.size());
+  }
+  head.turn = normalised(sum);
+  return head;
+}
+
 Result<Frame> begin_frame(Session& session) {
   const Functions& xr = session.xr();
   XrFrameWaitInfo wait{};

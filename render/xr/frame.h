@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "render/stereo/placement.h"
+#include "render/stereo/room_eye.h"
 #include "render/xr/eye_images.h"
 
 namespace catena::render::xr {
@@ -19,6 +19,12 @@ struct Frame {
 };
 
 RoomEye room_eye(const XrView& view);
+/// Between the eyes, in the local space.
+struct RoomHead {
+  Vec3 position{0.0};
+  Quat turn = kNoRotation;
+};
+RoomHead head_of(const Frame& frame);
 
 /// What is submitted of one view: the upper left part of its images.
 struct Shown {

@@ -21,7 +21,8 @@
   X(DestroyInstance)                                                                                                                      \
   X(GetInstanceProperties)                                                                                                                \
   X(PollEvent)                                                                                                                            \
-  X(GetSystem) X(GetSystemProperties) X(EnumerateViewConfigurations) X(EnumerateViewConfigurationViews) X(EnumerateEnvironmentBlendModes) \
+  X(GetSystem)                                                                                                                            \
+  X(GetSystemProperties) X(EnumerateViewConfigurations) X(EnumerateViewConfigurationViews) X(EnumerateEnvironmentBlendModes)              \
       X(CreateSession) X(DestroySession) X(BeginSession) X(EndSession) X(RequestExitSession) X(EnumerateReferenceSpaces)                  \
           X(CreateReferenceSpace) X(DestroySpace) X(LocateSpace) X(EnumerateSwapchainFormats) X(CreateSwapchain) X(DestroySwapchain)      \
               X(EnumerateSwapchainImages) X(AcquireSwapchainImage) X(WaitSwapchainImage) X(ReleaseSwapchainImage) X(WaitFrame)            \
@@ -48,8 +49,8 @@ struct Functions {
   CATENA_XR_OPTIONAL(CATENA_XR_MEMBER)
 #undef CATENA_XR_MEMBER
 
-      /// Of an instance with XR_KHR_vulkan_enable2; an optional function stays empty where its extension was not asked for.
-      Outcome load(XrInstance instance);
+  /// Of an instance with XR_KHR_vulkan_enable2; an optional function stays empty where its extension was not asked for.
+  Outcome load(XrInstance instance);
 };
 
 /// The loader's library, kept open as long as this lives.

@@ -48,15 +48,19 @@ void Headset::stop() {
   session_.reset();
 }
 
-Result<Frame> Headset::draw(Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement,
-                            double share, const Aim& aim) {
+Result<Frame> Headset::begin() {
   CATENA_TRY(Frame frame, begin_frame(*session_));
   ++counts_.frames;
+  return frame;
+}
+
+Outcome Headset::show(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,
+                      const Placement& placement, double share, const Aim& aim) {
   std::vector<Shown> shown;
   if (frame.wants_picture) {
     auto drawn = draw_views(frame, renderer, packet, settings, placement, share, aim);
     if (!drawn) {
-      (void)end_frame(*session_, frame, {});
+      (void)skip(frame);
       return drawn.error();
     }
     shown = std::move(*drawn);
@@ -64,14 +68,7 @@ Result<Frame> Headset::draw(Renderer& renderer, FramePacket& packet, const Rende
   }
   std::vector<const XrCompositionLayerBaseHeader*> panels;
   if (const auto* panel = panel_ && !shown.empty() ? panel_->layer() : nullptr) panels.push_back(panel);
-  CATENA_CHECK(end_frame(*session_, frame, shown, panels));
-  return frame;
-}
-
-Outcome Headset::skip_frame() {
-  CATENA_TRY(const Frame frame, begin_frame(*session_));
-  ++counts_.frames;
-  return end_frame(*session_, frame, {});
+  return end_frame(*session_, frame, shown, panels);
 }
 
 Result<std::vector<Shown>> Headset::draw_views(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings,

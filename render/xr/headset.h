@@ -1,6 +1,6 @@
 /// The headset as the program sees it: opened before the Vulkan device (its runtime makes that), started on it, and then a frame at a time.
 ///   auto headset = Headset::open();  options.maker = (*headset)->maker(lock);  renderer = Renderer::create(options)
-///   (*headset)->start(renderer->device());   while (..) { poll(); if (running()) draw(renderer, packet, settings, placement); }
+///   (*headset)->start(renderer->device());   while (..) { poll(); if (running()) { begin(); show(..); } }
 /// After an error loss() says what has to be made again: of the session, stop() and start(); of the instance, another Headset and another
 /// renderer, later, since the runtime may be gone for a while. Frame thread.
 #pragma once
@@ -47,14 +47,16 @@ class Headset {
   bool running() const { return session_ && session_->running(); }
   Loss loss() const { return instance_->loss(); }
 
-  /// A frame: waits for its time, draws every view of the packet's scene, and hands them over. The first view is drawn last, so that it is
-  /// the renderer's last picture: for the window. `share`: of the recommended pixels, each way. `aim` changes what of the packet follows
-  /// from the view. What is returned is the frame as shown.
+  /// A frame begins: waits for its time. It is ended by show() or skip().
+  Result<Frame> begin();
+  /// Draws every view of the packet's scene, where the frame wants a picture, and hands them over. The first view is drawn last, so that it
+  /// is the renderer's last picture: for the window. `share`: of the recommended pixels, each way. `aim` changes what of the packet follows
+  /// from the view.
   using Aim = std::function<void(const View& view, FramePacket& packet)>;
-  Result<Frame> draw(Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement, double share = 1,
-                     const Aim& aim = {});
-  /// A frame with nothing to show.
-  Outcome skip_frame();
+  Outcome show(const Frame& frame, Renderer& renderer, FramePacket& packet, const RenderSettings& settings, const Placement& placement,
+               double share = 1, const Aim& aim = {});
+  /// Nothing to show.
+  Outcome skip(const Frame& frame) { return end_frame(*session_, frame, {}); }
   const FrameCounts& counts() const { return counts_; }
 
  private:

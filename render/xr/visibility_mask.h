@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/frame/frame_packet.h"
-#include "render/stereo/placement.h"
+#include "render/stereo/room_eye.h"
 #include "render/xr/session.h"
 
 namespace catena::render::xr {

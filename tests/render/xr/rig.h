@@ -86,7 +86,8 @@ class HeadsetFixture : public testing::Test {
     for (int i = 0; i < turns; ++i) {
       CATENA_CHECK(headset_->poll());
       if (!headset_->running()) continue;
-      CATENA_TRY([[maybe_unused]] const xr::Frame frame, headset_->draw(*renderer_, packet, {}, placement, share));
+      CATENA_TRY(const xr::Frame frame, headset_->begin());
+      CATENA_CHECK(headset_->show(frame, *renderer_, packet, {}, placement, share));
     }
     return Done{};
   }

@@ -8,10 +8,13 @@
 #include "engine/base/text.h"
 #include "engine/scene/prepare.h"
 #include "haptics/extract/extract.h"
+#include "haptics/servo/limits_for.h"
 
 namespace catena::app {
 
 namespace {
+
+constexpr const char* kController = "controller";
 
 std::vector<std::string> names_of(const haptics::Program& program) {
   std::vector<std::string> names;
@@ -45,6 +48,15 @@ Outcome HandHost::load(scene::Scene& scene) {
 }
 
 Result<OpenHand> HandHost::open(const scene::Scene& scene, const std::string& name) const {
+  if (name == kController && options_.headset) {
+    OpenHand hand;
+    hand.settings.type = kController;
+    haptics::ControllerParameters parameters;
+    parameters.rate_hz = hand.settings.rate_hz;
+    hand.device = std::make_unique<haptics::Controller>(parameters);
+    hand.limits = haptics::limits_for(hand.device->capabilities(), hand.settings);
+    return hand;
+  }
   if (name != "mouse") return open_hand(scene, name, {}, options_.firmware);
   OpenHand mouse;
   mouse.device = std::make_unique<haptics::MouseDevice>(Vec3(0.0));
@@ -58,7 +70,7 @@ Outcome HandHost::open_device(const scene::Scene& scene) {
     // what is simulated would only keep the hand off the probe
     if (haptics::is_hardware(settings.type)) name = settings.type;
   }
-  if (name.empty()) name = "mouse";
+  if (name.empty()) name = options_.headset ? kController : "mouse";
   auto opened = open(scene, name);
   if (!opened) {
     if (!options_.or_mouse || !haptics::is_hardware(haptics::device_type_of(name))) return opened.error();

@@ -11,6 +11,7 @@
 #include "engine/app/hand/open_hand.h"
 #include "engine/app/hand/recording.h"
 #include "engine/app/hand/signals.h"
+#include "haptics/device/controller.h"
 #include "haptics/device/mouse.h"
 #include "haptics/device/registry.h"
 
@@ -28,6 +29,7 @@ class HandHost {
     haptics::RealtimeOptions realtime;  ///< of the servo
     bool forces = false;                ///< the device may push from the first tick on, and no key changes that
     bool or_mouse = true;               ///< the mouse steps in for a device that is not plugged in
+    bool headset = false;               ///< a headset's controller holds the probe, unless another device is asked for
   };
 
   explicit HandHost(Options options) : options_(std::move(options)) {}
@@ -70,6 +72,13 @@ class HandHost {
   const std::shared_ptr<const haptics::Program>& program() const { return program_; }
 
   bool is_mouse() const { return mouse_ != nullptr; }
+  /// The headset's controller, where that is the device: the frame tells it where it is; null otherwise.
+  haptics::Controller* controller() const { return dynamic_cast<haptics::Controller*>(hand_.device.get()); }
+  /// Of a picture that a headset is about to show, into the recording if there is one.
+  void record_poses(haptics::log::LogPoses poses) {
+    poses.tick = felt_.tick;
+    recording_.add_poses(poses);
+  }
   void move_mouse(const scene::Scene& scene, const Vec3& world, std::uint32_t buttons);
   const Vec3& first_probe() const { return first_probe_; }
   bool forces() const { return servo_ && servo_->forces(); }

@@ -2,9 +2,12 @@
 
 #include <utility>
 
+#include "engine/app/viewer/shell/headset_hands.h"
+
 #ifdef CATENA_XR
 #include <fmt/format.h>
 
+#include "engine/base/clock.h"
 #include "render/xr/headset.h"
 #endif
 
@@ -15,6 +18,11 @@ namespace catena::app {
 namespace {
 
 constexpr int kFarewellTurns = 200;  // of events and frames, while the runtime ends the session
+constexpr double kMostStepS = 0.1;   // of the world's motion: after a pause it does not race
+
+RoomHand room_hand(const render::xr::HandState& state) {
+  return {state.there, state.grip.position, state.grip.turn, state.select, state.grab, state.stick_x};
+}
 
 }  // namespace
 
@@ -25,8 +33,13 @@ struct HeadsetHost::Parts {
   std::string said;           ///< what was lost last, while nothing has been seen since
   std::string broken;         ///< what went wrong in a frame; follow() acts on it
   bool left = false;          ///< the person has ended it by the runtime's own ways
+  std::optional<Placement> placement;
+  HeadsetHands hands;
+  render::FramePace pace;
+  XrTime last_time = 0;  ///< of the last frame; 0: none before
 
   void lose(const std::string& why, std::int64_t now_ns);
+  Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
 };
 
 HeadsetHost::HeadsetHost(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -45,10 +58,12 @@ void HeadsetHost::join(Screen::Options& options) {
   };
 }
 
-/// It is tried again later; the runtime's own instance goes with it where that was lost.
+/// It is tried again, at once where something was seen before; the runtime's own instance goes with it where that was lost.
 void HeadsetHost::Parts::lose(const std::string& why, std::int64_t now_ns) {
-  said = why;
-  retry_ns = now_ns + std::int64_t(1e9 * kRetryS);
+  const bool again = !std::exchange(said, why).empty();
+  last_time = 0;
+  pace.pause();
+  retry_ns = again ? now_ns + std::int64_t(1e9 * kRetryS) : now_ns;
   headset->stop();
   if (headset->loss() == render::xr::Loss::instance) headset.reset();
 }
@@ -81,6 +96,7 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
     lose(polled.error().message);
     return Done{};
   }
+  if (const std::string news = p.pace.news(); !news.empty()) say(news);
   if (p.headset->session().has_left()) {
     p.left = true;
     p.headset->stop();
@@ -91,25 +107,93 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
 
 bool HeadsetHost::running() const { return parts_->headset && parts_->headset->running(); }
 
-Result<bool> HeadsetHost::draw(Screen& screen, render::FramePacket& packet, const render::RenderSettings& settings, double share,
-                               const Aim& aim) {
+/// What the hands do to the world, to the probe, and what they are told. Poses go to the recording as they are when the picture is seen.
+Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost& hand) {
+  using haptics::log::TrackedPart;
+  render::xr::Actions& actions = headset->actions();
+  CATENA_CHECK(actions.sync());
+  const render::xr::RoomHead head = render::xr::head_of(frame);
+  haptics::log::LogPoses poses;
+  poses.predicted_ns = frame.time;
+  if (frame.wants_picture) poses[TrackedPart::head] = {head.position, head.turn};
+  std::array<RoomHand, 2> hands_then;
+  for (std::size_t k = 0; k < hands_then.size(); ++k) {
+    CATENA_TRY(const render::xr::HandState state, actions.hand(k, frame.time));
+    hands_then[k] = room_hand(state);
+    if (state.there) poses[k == 0 ? TrackedPart::left_hand : TrackedPart::right_hand] = {state.grip.position, state.grip.turn};
+  }
+  hand.record_poses(poses);
+  const double dt_s = last_time == 0 ? 0 : std::min(1e-9 * double(frame.time - last_time), kMostStepS);
+  last_time = frame.time;
+  if (placement) hands.step(hands_then, head.position, dt_s, *placement);
+
+  // the probe is where the hand is now
+  haptics::Controller* controller = hand.controller();
+  if (!controller) return Done{};
+  const std::int64_t now = now_ns();
+  const auto at = render::xr::time_of(headset->instance(), now);
+  RoomHand probe = hands_then[HeadsetHands::kProbe];
+  if (at) {
+    CATENA_TRY(const render::xr::HandState state, actions.hand(HeadsetHands::kProbe, *at));
+    probe = room_hand(state);
+  }
+  controller->say(hands.probe(probe, now));
+  const auto call = hands.vibration(controller->peaks(), now, headset->session().focused(), probe);
+  using What = haptics::VibrationSender::What;
+  if (call.what == What::stop) return actions.stop_vibration(HeadsetHands::kProbe);
+  if (call.what == What::nothing) return Done{};
+  return actions.vibrate(HeadsetHands::kProbe, call.vibration.amplitude, call.vibration.frequency_hz, call.vibration.duration_ns);
+}
+
+Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& content) {
   Parts& p = *parts_;
-  if (!placement) placement = render::first_placement(packet.view);
-  auto frame = p.headset->draw(screen.renderer(), packet, settings, *placement, share, aim);
-  if (frame) {
-    if (frame->wants_picture) {
-      screen.has_drawn();
-      p.said.clear();
-    }
-    return frame->wants_picture;
+  const auto broken = [&](const std::string& why) {
+    p.broken = why;  // follow() acts on it
+    return false;
+  };
+  auto frame = p.headset->begin();
+  if (!frame) return broken(frame.error().message);
+  if (const Outcome taken = p.take_hands(*frame, hand); !taken) {
+    (void)p.headset->skip(*frame);
+    return broken(taken.error().message);
+  }
+  if (!frame->wants_picture) {
+    p.pace.pause();
+    const Outcome ended = p.headset->skip(*frame);
+    return ended ? false : broken(ended.error().message);
+  }
+  auto packet = content.make();
+  if (!packet) {
+    (void)p.headset->skip(*frame);
+    return packet.error();
+  }
+  if (!p.placement) p.placement = render::first_placement(packet->view);
+  packet->vignette = p.hands.vignette();
+  const render::FramePlan plan = p.pace.next(1e-6 * double(frame->period_ns), frame->time);
+  const std::int64_t start = now_ns();
+  const Outcome shown = p.headset->show(*frame, screen.renderer(), *packet, plan.settings, *p.placement, 1.0 / plan.scale, content.aim);
+  if (shown) {
+    p.pace.drawn(ms_since(start));
+    p.pace.follow(content.kind(*packet));
+    p.said.clear();
+    screen.has_drawn();
+    return true;
   }
   if (screen.renderer().device().lost()) {
     CATENA_CHECK(screen.make_again());
     return false;
   }
-  if (p.headset->loss() == render::xr::Loss::none) return frame.error();
-  p.broken = frame.error().message;
-  return false;
+  if (p.headset->loss() == render::xr::Loss::none) return shown.error();
+  return broken(shown.error().message);
+}
+
+const std::optional<Placement>& HeadsetHost::placement() const { return parts_->placement; }
+bool HeadsetHost::holds_world() const { return parts_->hands.holds_world(); }
+
+std::string HeadsetHost::figures() const {
+  const Parts& p = *parts_;
+  return fmt::format("headset: {} pictures, {} late after the first {}, {} at half rate", p.pace.frames(), p.pace.late_after_learning(),
+                     render::FramePace::kLearning, p.pace.at_half_rate());
 }
 
 void HeadsetHost::leave() {
@@ -118,7 +202,8 @@ void HeadsetHost::leave() {
   (void)p.headset->session().ask_to_leave();
   for (int i = 0; i < kFarewellTurns; ++i) {
     if (!p.headset->poll() || !p.headset->running()) break;
-    if (!p.headset->skip_frame()) break;
+    const auto frame = p.headset->begin();
+    if (!frame || !p.headset->skip(*frame)) break;
   }
   p.headset->stop();
 }
@@ -126,12 +211,14 @@ void HeadsetHost::leave() {
 std::string HeadsetHost::words() const {
   const Parts& p = *parts_;
   const std::string state = p.headset && p.headset->started() ? render::xr::state_word(p.headset->session().state()) : "lost";
-  return placement ? fmt::format("headset {}, 1 unit = {:.3g} m", state, placement->metres_per_unit) : "headset " + state;
+  return "headset " + state + (p.placement ? ", " + immersive::scale_words(p.placement->metres_per_unit) : "");
 }
 
 #else
 
-struct HeadsetHost::Parts {};
+struct HeadsetHost::Parts {
+  std::optional<Placement> placement;
+};
 HeadsetHost::HeadsetHost(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 HeadsetHost::~HeadsetHost() = default;
 Result<std::unique_ptr<HeadsetHost>> HeadsetHost::open() {
@@ -140,9 +227,12 @@ Result<std::unique_ptr<HeadsetHost>> HeadsetHost::open() {
 void HeadsetHost::join(Screen::Options&) {}
 Outcome HeadsetHost::follow(Screen&, std::int64_t, const std::function<void(const std::string&)>&) { return Done{}; }
 bool HeadsetHost::running() const { return false; }
-Result<bool> HeadsetHost::draw(Screen&, render::FramePacket&, const render::RenderSettings&, double, const Aim&) { return false; }
+Result<bool> HeadsetHost::draw(Screen&, HandHost&, const Content&) { return false; }
 void HeadsetHost::leave() {}
 std::string HeadsetHost::words() const { return "no headset"; }
+std::string HeadsetHost::figures() const { return words(); }
+const std::optional<Placement>& HeadsetHost::placement() const { return parts_->placement; }
+bool HeadsetHost::holds_world() const { return false; }
 
 #endif
 

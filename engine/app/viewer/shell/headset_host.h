@@ -1,6 +1,6 @@
 /// The headset beside the window, for `catena view --xr`: it draws both eyes, the window mirrors the first one. What is lost is said once,
-/// the window goes on, and the headset is tried again: its session after kRetryS, its runtime (which may be gone for a while) with a new
-/// graphics device. Nothing here is OpenXR's own (render/xr is); without it, open() is one sentence. Frame thread.
+/// the window goes on, and the headset is tried again, at once and then every kRetryS: its session, or its runtime (which may be gone for a
+/// while) with a new graphics device. Nothing here is OpenXR's own (render/xr is); without it, open() is one sentence. Frame thread.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -8,8 +8,10 @@
 #include <optional>
 #include <string>
 
+#include "engine/app/viewer/shell/hand_host.h"
 #include "engine/app/viewer/shell/screen.h"
-#include "render/stereo/placement.h"
+#include "render/quality/frame_pace.h"
+#include "render/stereo/room_eye.h"
 
 namespace catena::app {
 
@@ -30,18 +32,26 @@ class HeadsetHost {
   Outcome follow(Screen& screen, std::int64_t now_ns, const std::function<void(const std::string&)>& say);
   /// Frames are made: draw() paces the loop.
   bool running() const;
-  /// Changes the packet for a view: what follows from where the eye is.
-  using Aim = std::function<void(const render::View& view, render::FramePacket& packet)>;
-  /// A frame, of `share` of the pixels each way. True: the screen's picture is the first eye's. False: nobody sees anything now, or the
-  /// headset is lost. Errors: what a window's picture would fail with, too.
-  Result<bool> draw(Screen& screen, render::FramePacket& packet, const render::RenderSettings& settings, double share, const Aim& aim);
+  /// What a frame is made of.
+  struct Content {
+    std::function<Result<render::FramePacket>()> make;                               ///< of the scene as it is now
+    std::function<void(const render::View& view, render::FramePacket& packet)> aim;  ///< what follows from where the eye is
+    std::function<render::LadderKind(const render::FramePacket& packet)> kind;       ///< what the rays have to do, once it was drawn
+  };
+  /// A frame: it is waited for, the hands are looked at, and both eyes are drawn as well as its time allows. True: the screen's picture is
+  /// the first eye's. False: nobody sees anything now, or the headset is lost. Errors: what a window's picture would fail with, too.
+  Result<bool> draw(Screen& screen, HandHost& hand, const Content& content);
   /// Asks the runtime to end the session, and gives it a moment for that.
   void leave();
 
-  /// "headset focused, 1 unit = 0.23 m", for the title.
+  /// "headset focused, 1 unit = 23 cm", for the title.
   std::string words() const;
-  /// Where the world stands; none: not placed yet.
-  std::optional<render::Placement> placement;
+  /// "headset: 900 frames, 880 pictures, 3 late, 0 at half rate", for the last words.
+  std::string figures() const;
+  /// Where the world stands in the room; none: not placed yet.
+  const std::optional<Placement>& placement() const;
+  /// A hand has hold of the world, which moves with it.
+  bool holds_world() const;
 
  private:
   struct Parts;

@@ -100,33 +100,47 @@ Result<bool> PictureView::follow_headset() {
 }
 
 /// True: the picture is an eye's. What lies at a place of the window's picture cannot be said by it: an eye has its own packet.
-Result<bool> PictureView::draw_in_headset(const NextPicture& next) {
+Result<bool> PictureView::draw_in_headset() {
   const std::int64_t start = now_ns();
-  auto [width, height] = size();
-  CATENA_TRY(render::FramePacket packet, this->packet(width, height));
-  // what belongs to a flat picture stays in the window
-  packet.overlay.texts.clear();
-  packet.overlay.scalar_bars.clear();
-  packet.overlay.orientation_marker.reset();
-  packet.overlay.status.reset();
-  const scene::Scene& scene = std::as_const(shared_.scene).scene();
-  const auto aim = [&](const render::View& view, render::FramePacket& of) { render::set_view(scene, view, of); };
-  CATENA_TRY(const bool drawn, headset_->draw(*screen_, packet, next.settings, 1.0 / next.scale, aim));
+  scene::Scene& scene = shared_.scene.scene();
+  HeadsetHost::Content content;
+  content.make = [&]() -> Result<render::FramePacket> {
+    auto [width, height] = size();
+    CATENA_TRY(render::FramePacket packet, this->packet(width, height));
+    // what belongs to a flat picture stays in the window
+    packet.overlay.texts.clear();
+    packet.overlay.scalar_bars.clear();
+    packet.overlay.orientation_marker.reset();
+    packet.overlay.status.reset();
+    return packet;
+  };
+  content.aim = [&](const render::View& view, render::FramePacket& of) { render::set_view(scene, view, of); };
+  content.kind = [&](const render::FramePacket& of) {
+    kind_ = {render::draws_rays(of), screen_->renderer().draws_fast(of), std::ranges::any_of(of.volumes, &render::VolumeItem::shade)};
+    return render::LadderKind{kind_.fast, kind_.shaded};
+  };
+  CATENA_TRY(const bool drawn, headset_->draw(*screen_, shared_.hand, content));
+  // the hand's metres are the room's, unless another device holds the probe; not while the world is on its way
+  const std::optional<Placement>& placed = headset_->placement();
+  if (shared_.hand.controller() && placed && !headset_->holds_world()) {
+    const scene::Workspace now{placed->metres_per_unit, placed->world_origin, placed->world_from_room, true};
+    scene::Workspace& workspace = scene.workspace;
+    if (now.metres_per_unit != workspace.metres_per_unit || now.origin != workspace.origin || now.rotation != workspace.rotation) {
+      workspace = now;
+      shared_.state.say_if_wrong(shared_.hand.publish(scene, shared_.scene.felt_text()));
+    }
+  }
   if (!drawn) return false;
-  const double ms = ms_since(start);
-  shared_.pacing.drawn(ms);
-  kind_ = {render::draws_rays(packet), screen_->renderer().draws_fast(packet),
-           std::ranges::any_of(packet.volumes, &render::VolumeItem::shade)};
   if (shared_.times.count() == 0) tell_notes();
   shown_.reset();
   is_eye_ = picked_stale_ = true;
-  shared_.times.add(ms, now_ns());
+  shared_.times.add(ms_since(start), now_ns());
   return true;
 }
 
 std::optional<Failure> PictureView::draw(const NextPicture& next, bool for_file) {
   if (headset_ && headset_->running() && !for_file && !is_minimised()) {
-    const auto drawn = draw_in_headset(next);
+    const auto drawn = draw_in_headset();
     if (!drawn) return Failure{1, drawn.error().message};
     if (*drawn || shown_) return std::nullopt;
   }

@@ -25,6 +25,8 @@ class PictureView {
   Result<bool> follow_headset();
   /// For the title; empty without one.
   std::string headset_words() const { return headset_ ? headset_->words() : std::string(); }
+  /// For the last words; empty without one.
+  std::string headset_figures() const { return headset_ ? headset_->figures() : std::string(); }
   Screen& screen() { return *screen_; }
 
   bool is_minimised() const;
@@ -76,7 +78,7 @@ class PictureView {
 
  private:
   std::uint32_t scale_of(const NextPicture& next) const;
-  Result<bool> draw_in_headset(const NextPicture& next);
+  Result<bool> draw_in_headset();
   Result<render::FramePacket> packet(std::uint32_t width, std::uint32_t height) const;
   std::optional<PickedPlace> picked_at(double window_x, double window_y) const;
   void tell_notes() const;

@@ -319,6 +319,7 @@ void Session::tell_figures() {
   const exchange::HapticState& felt = shared_.hand.felt();
   fmt::print("{} frames, {:.1f} ms median, on {}\n", times.count(), 1e-3 * times.draw().p50_us,
              printable(screen.renderer().stats().device));
+  if (const std::string headset = picture_.headset_figures(); !headset.empty()) fmt::print("{}\n", headset);
   if (screen.recoveries() > 0)
     fmt::print("the graphics device was lost and started again {} time{}\n", screen.recoveries(), screen.recoveries() == 1 ? "" : "s");
   fmt::print("probe {:.6g} {:.6g} {:.6g}, force {:.3g} N, {} ticks, {} deadlines missed\n", felt.probe.x, felt.probe.y, felt.probe.z,

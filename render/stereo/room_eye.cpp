@@ -1,4 +1,6 @@
-#include "render/stereo/placement.h"
+#include "render/stereo/room_eye.h"
+
+#include <cmath>
 
 #include "render/frame/camera.h"
 
