@@ -459,6 +459,8 @@ Result<bool> Renderer::present(vk::Swapchain& swapchain, const UiItems* ui) {
   return swapchain.present(p.ui->window());
 }
 
+vk::Image* Renderer::window_image() { return parts_->ui && parts_->ui->window() ? &parts_->ui->window() : nullptr; }
+
 Result<Picture> Renderer::read_back_window() {
   Parts& p = *parts_;
   CATENA_ASSERT(p.ui && p.ui->window());

@@ -125,6 +125,8 @@ class Renderer {
   Result<bool> present(vk::Swapchain& swapchain, const UiItems* ui = nullptr);
   /// The same without a window: what present() with this `ui` would show in a window of this size.
   Outcome paint_window(std::uint32_t width, std::uint32_t height, const UiItems& ui);
+  /// That image, for who copies it on: in the layout TRANSFER_SRC, until it is painted again or something fails. Null before.
+  vk::Image* window_image();
   /// The window's image that paint_window() or present() with a user interface painted last, opaque.
   Result<Picture> read_back_window();
 

@@ -18,7 +18,8 @@ const XrCompositionLayerBaseHeader* QuadLayer::layer() {
   if (shown_.width == 0) return nullptr;
   layer_ = {};
   layer_.type = XR_TYPE_COMPOSITION_LAYER_QUAD;
-  layer_.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT | XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
+  if (!quad_.opaque)
+    layer_.layerFlags = XR_COMPOSITION_LAYER_BLEND_TEXTURE_SOURCE_ALPHA_BIT | XR_COMPOSITION_LAYER_UNPREMULTIPLIED_ALPHA_BIT;
   layer_.space = session_->space(SpaceKind::local);
   layer_.eyeVisibility = XR_EYE_VISIBILITY_BOTH;
   layer_.subImage.swapchain = images_->handle();

@@ -9,6 +9,7 @@ namespace catena::render::xr {
 struct Quad {
   RoomPose pose;                          ///< of its middle; it faces along +z
   double width_m = 0.5, height_m = 0.35;  ///< > 0
+  bool opaque = false;                    ///< the picture's alpha does not count
 };
 
 class QuadLayer {

@@ -42,9 +42,9 @@ void write_record() {
   const Record& r = world().stage.record;
   std::FILE* file = std::fopen(record_path().c_str(), "w");
   if (!file) return;
-  std::fprintf(file, "frames %llu\npictures %llu\nmoved %llu\nillegal %zu\nobjects %llu\nvibrations %zu\n", (unsigned long long)r.frames,
-               (unsigned long long)r.pictures, (unsigned long long)r.moved_poses, r.illegal.size(), (unsigned long long)r.objects,
-               r.vibrations.size());
+  std::fprintf(file, "frames %llu\nquads %llu\npictures %llu\nmoved %llu\nillegal %zu\nobjects %llu\nvibrations %zu\n",
+               (unsigned long long)r.frames, (unsigned long long)r.quads, (unsigned long long)r.pictures, (unsigned long long)r.moved_poses,
+               r.illegal.size(), (unsigned long long)r.objects, r.vibrations.size());
   for (const std::string& line : r.illegal) std::fprintf(file, "# %s\n", line.c_str());
   std::fclose(file);
 }
@@ -92,6 +92,10 @@ void read_environment() {
     if (key == "state") script.states.emplace(std::strtoull(value.c_str(), nullptr, 10), state_named(value.substr(colon + 1)));
     if (key == "without") script.without.insert(value);
     if (key == "with") script.without.erase(value);
+    if (key == "menu") {
+      script.menu_from = std::strtoull(value.c_str(), nullptr, 10);
+      script.menu_to = std::strtoull(value.c_str() + colon + 1, nullptr, 10);
+    }
     if (key == "paced") script.paced = true;
     if (key == "record") {
       record_path() = value;

@@ -1,8 +1,8 @@
 /// A headset's runtime for tests, loaded by the real loader. What it plays, and what it has seen: plain data in the library, shared with
 /// the tests of one process by catena_xr_stage(). A program of its own is played to by the environment variable CATENA_XR_SCRIPT:
 ///   words apart by spaces: fail=xrEndFrame:3:-17 (the third call answers so), size=64x48, period_ms=11, state=40:VISIBLE (posted before
-///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, paced (xrWaitFrame
-///   sleeps)
+///   the frame 40), record=FILE (counts, at exit), without=XR_KHR_composition_layer_depth, with=XR_KHR_visibility_mask, menu=5:9 (the right
+///   hand's button is down from frame 5 to 8), paced (xrWaitFrame sleeps)
 /// Everything is under one lock; the tests write between calls.
 #pragma once
 #include <vulkan/vulkan.h>
@@ -51,6 +51,7 @@ struct Script {
   std::function<void(std::uint64_t frame, Script&)> at_frame;  ///< before the wait of each frame
   ScriptedHand hands[2];
   std::string profile = "/interaction_profiles/khr/simple_controller";
+  std::uint64_t menu_from = 0, menu_to = 0;  ///< frames in which the right hand's button is down
   bool keep_pictures = false;
 };
 

@@ -145,6 +145,7 @@ XRAPI_ATTR XrResult XRAPI_CALL wait_frame(XrSession handle, const XrFrameWaitInf
     Script& script = world().stage.script;
     const std::uint64_t frame = session->frame++;
     if (script.at_frame) script.at_frame(frame, script);
+    if (script.menu_to > 0) script.hands[1].menu = frame >= script.menu_from && frame < script.menu_to;
     for (auto [it, end] = script.states.equal_range(frame); it != end; ++it) post_state(number(handle), *session, it->second);
     auto* instance = world().find<InstanceObject>(session->parent, Kind::instance);
     for (auto [it, end] = script.events.equal_range(frame); it != end; ++it) instance->events.push_back(it->second);

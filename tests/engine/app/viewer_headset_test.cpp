@@ -1,12 +1,14 @@
-// catena view --xr against the scripted runtime (tests/xr_runtime), on a virtual display.
+// catena view --xr against the scripted runtime (tests/xr_runtime), on a virtual display; what its hands do, without one.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <sstream>
 
+#include "engine/app/viewer/shell/headset_hands.h"
 #include "render/image/picture.h"
 #include "tests/support/support.h"
 #include "tests/support/windows.h"
@@ -76,6 +78,14 @@ TEST_F(ViewerHeadset, WithoutARuntimeItSaysSoInOneLine) {
   EXPECT_NE(log().find("expected an OpenXR runtime"), std::string::npos) << log();
 }
 
+/// The menu button brings the window into the room, as a quad over the picture.
+TEST_F(ViewerHeadset, TheWindowComesIntoTheRoom) {
+  ASSERT_EQ(view("--frames 24", "size=48x40 menu=5:8"), 0) << log();
+  EXPECT_GT(seen("quads"), 0);
+  EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
+  EXPECT_EQ(seen("objects"), 0);
+}
+
 /// The session is lost, then the whole runtime: said once each, the window goes on, and the headset comes back with a new device.
 TEST_F(ViewerHeadset, WhatIsLostComesBack) {
   ASSERT_EQ(view("--frames 60", "size=32x32 fail=xrEndFrame:6:-17 fail=xrWaitFrame:20:-13"), 0) << log();
@@ -85,6 +95,74 @@ TEST_F(ViewerHeadset, WhatIsLostComesBack) {
   EXPECT_GT(seen("pictures"), 20);
   EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(seen("objects"), 0);
+}
+
+constexpr double kDt = 1.0 / 90;
+const Vec3 kHead(0.0, 1.6, 0.0);
+
+RoomHand hand_at(const Vec3& position, double grab = 0) {
+  RoomHand hand;
+  hand.there = true;
+  hand.position_m = position;
+  hand.grab = grab;
+  return hand;
+}
+
+TEST(HeadsetHands, WhatIsSqueezedStaysInTheHandAndNothingIsFeltMeanwhile) {
+  HeadsetHands hands;
+  Placement placement;
+  placement.metres_per_unit = 0.1;
+  const Vec3 from(0.2, 1.0, -0.5), to(0.4, 1.1, -0.3);
+  const Vec3 held = placement.to_world(from);
+  hands.step({RoomHand{}, hand_at(from)}, kHead, kDt, placement);
+  EXPECT_TRUE(hands.probe(hand_at(from), 1).tracked);
+  hands.step({RoomHand{}, hand_at(from, 1)}, kHead, kDt, placement);
+  EXPECT_TRUE(hands.holds_world());
+  EXPECT_FALSE(hands.probe(hand_at(from, 1), 2).tracked);
+  hands.step({RoomHand{}, hand_at(to, 0.5)}, kHead, kDt, placement);  // between up and down: still held
+  EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);
+  EXPECT_GT(hands.vignette(), 0);
+  hands.step({RoomHand{}, hand_at(to, 0.3)}, kHead, kDt, placement);
+  EXPECT_FALSE(hands.holds_world());
+  EXPECT_TRUE(hands.probe(hand_at(to), 3).tracked);
+  hands.step({RoomHand{}, hand_at(from)}, kHead, kDt, placement);
+  EXPECT_LT(norm(placement.to_room(held) - to), 1e-12);  // it was let go
+}
+
+TEST(HeadsetHands, TheStickTurnsThePersonAndTheWorldTheOtherWay) {
+  HeadsetHands hands;
+  Placement placement;
+  const Vec3 ahead = placement.to_world(kHead + Vec3(0.0, 0.0, -1.0));
+  RoomHand right = hand_at({0.2, 1.0, -0.3});
+  right.stick_x = -1;  // to the left
+  hands.step({RoomHand{}, right}, kHead, kDt, placement);
+  const Vec3 now = placement.to_room(ahead) - kHead;
+  EXPECT_GT(now.x, 0.1);  // what was ahead is to the right
+  EXPECT_NEAR(now.y, 0, 1e-12);
+  EXPECT_EQ(hands.vignette(), 0);  // a step is no motion
+}
+
+TEST(HeadsetHands, AVibrationStopsWithTheFocus) {
+  HeadsetHands hands;
+  haptics::Peaks peaks;
+  const RoomHand hand = hand_at({0.0, 1.0, -0.3});
+  using What = haptics::VibrationSender::What;
+  std::int64_t now = 1'000'000;
+  const auto push = [&](double n) {
+    haptics::FeltTick tick;
+    tick.force_n = {n, 0.0, 0.0};
+    peaks.add(tick);
+  };
+  (void)hands.vibration(peaks, now, true, hand);
+  push(0);
+  push(1.5);
+  const auto felt = hands.vibration(peaks, now += 11'000'000, true, hand);
+  EXPECT_EQ(felt.what, What::vibrate);
+  EXPECT_GT(felt.vibration.amplitude, 0.5);
+  push(0);
+  EXPECT_EQ(hands.vibration(peaks, now += 11'000'000, false, hand).what, What::stop);
+  push(1.5);
+  EXPECT_EQ(hands.vibration(peaks, now += 11'000'000, false, hand).what, What::nothing);
 }
 
 }  // namespace viewer_headset_test

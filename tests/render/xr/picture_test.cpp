@@ -89,6 +89,50 @@ TEST_F(HeadsetPicture, ABallIsSeenWhereItStandsByBothEyes) {
   EXPECT_EQ(runtime_.record().moved_poses, 0u);
 }
 
+/// A ball where the hand is, while the head moves: drawn for the frame's own poses, it covers the hand in both eyes.
+TEST_F(HeadsetPicture, TheHandIsSeenWhereItIsWhileTheHeadMoves) {
+  runtime_.script().keep_pictures = true;
+  runtime_.script().width = runtime_.script().height = 160;
+  const std::vector<XrView> still = runtime_.script().views;
+  runtime_.script().at_frame = [still](std::uint64_t frame, xr_runtime::Script& script) {
+    const float t = float(frame);
+    for (std::size_t k = 0; k < still.size(); ++k) {
+      script.views[k].pose.position.x = still[k].pose.position.x + 0.01f * t;
+      script.views[k].pose.position.z = still[k].pose.position.z - 0.005f * t;
+      script.views[k].pose.orientation = {0.01f * t, still[k].pose.orientation.y + 0.004f * t, 0, still[k].pose.orientation.w};
+      // a unit quaternion, as a runtime gives
+      XrQuaternionf& q = script.views[k].pose.orientation;
+      const float length = std::sqrt(q.x * q.x + q.y * q.y + q.w * q.w);
+      q = {q.x / length, q.y / length, 0, q.w / length};
+    }
+    script.hands[1].grip.position = {0.05f, -0.1f + 0.003f * t, -0.5f};
+  };
+  ASSERT_TRUE(open());
+  Placement placement;
+  placement.metres_per_unit = 0.3;
+  placement.world_origin = {1.0, 2.0, 3.0};
+  double most = 0;
+  for (int i = 0; i < 12; ++i) {
+    ASSERT_TRUE(headset_->poll());
+    const auto frame = headset_->begin();
+    ASSERT_TRUE(frame);
+    ASSERT_TRUE(headset_->actions().sync());
+    const auto hand = headset_->actions().hand(1, frame->time);
+    ASSERT_TRUE(hand);
+    const Vec3 room = hand->grip.position;
+    FramePacket packet = ball_packet(placement.to_world(room), 0.05 / placement.metres_per_unit);
+    ASSERT_TRUE(headset_->show(*frame, *renderer_, packet, {}, placement));
+    if (!frame->wants_picture || !hand->there) continue;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Place seen = centroid(runtime_.record().last[k]), due = expected_centroid(runtime_.script().views[k], room, 0.05, 160, 160);
+      most = std::max({most, std::abs(seen[0] - due[0]), std::abs(seen[1] - due[1])});
+    }
+  }
+  EXPECT_GT(most, 0);  // it was looked at
+  EXPECT_LT(most, 0.25);
+  EXPECT_EQ(runtime_.record().moved_poses, 0u);
+}
+
 /// In an sRGB image as in a plain one the bytes are those of a picture to a file.
 TEST_F(HeadsetPicture, WhatIsSubmittedIsWhatAFileWouldHold) {
   for (const std::int64_t format : {VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8G8B8A8_UNORM}) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "render/text/font.h"
@@ -38,10 +39,12 @@ struct Gui::Parts {
   Window* window;
   std::shared_ptr<const render::UiTexture> font;
   KeyFrames keys{};
-  Input last{};        ///< the piece that was told last
-  bool moved = false;  ///< the pointer, since the last frame
-  int settling = 0;    ///< frames to make before the next stroke
-  float wheel = 0;     ///< turned in frames that nobody saw
+  Input last{};                     ///< the piece that was told last
+  bool moved = false;               ///< the pointer, since the last frame
+  int settling = 0;                 ///< frames to make before the next stroke
+  float wheel = 0;                  ///< turned in frames that nobody saw
+  std::optional<ImVec2> pointed{};  ///< another pointer, for one frame
+  bool pressed = false;             ///< its button
 
   /// A frame that nobody sees, with the pointer at a place and the buttons of a piece.
   void make(const Input& buttons, double x, double y, const Frame& frame);
@@ -141,9 +144,19 @@ void Gui::expect_change() { parts_->settling = kSettling; }
 
 void Gui::begin() {
   ImGui_ImplGlfw_NewFrame();
-  ImGui::GetIO().MouseWheel += std::exchange(parts_->wheel, 0.0f);
+  ImGuiIO& io = ImGui::GetIO();
+  io.MouseWheel += std::exchange(parts_->wheel, 0.0f);
+  if (const auto pointed = std::exchange(parts_->pointed, std::nullopt)) {
+    io.MousePos = *pointed;
+    io.MouseDown[0] = parts_->pressed;
+  }
   ImGui::NewFrame();
   parts_->framed();
+}
+
+void Gui::point(double x, double y, bool pressed) {
+  parts_->pointed = ImVec2(static_cast<float>(x), static_cast<float>(y));
+  parts_->pressed = pressed;
 }
 
 render::UiItems Gui::end() {

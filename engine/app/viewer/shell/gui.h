@@ -29,6 +29,8 @@ class Gui {
   /// Between the two the panels are made, once for what is shown.
   void begin();
   render::UiItems end();
+  /// Another pointer than the window's, at a place of the window, for the next frame that is shown: a controller that points at a panel.
+  void point(double x, double y, bool pressed);
   /// Tells the beginning of a piece of input, a button or a stroke, and makes frames that nobody sees wherever it must be read apart from
   /// what was told before: however long a picture takes, each press, release and character counts, in order, with the pointer and the
   /// modifiers as they were. Not between begin() and end().

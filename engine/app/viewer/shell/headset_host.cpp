@@ -17,8 +17,9 @@ namespace catena::app {
 
 namespace {
 
-constexpr int kFarewellTurns = 200;  // of events and frames, while the runtime ends the session
-constexpr double kMostStepS = 0.1;   // of the world's motion: after a pause it does not race
+constexpr int kFarewellTurns = 200;                                    // of events and frames, while the runtime ends the session
+constexpr double kPanelM = 0.8, kPanelAwayM = 0.9, kPanelDropM = 0.1;  // its width; from the head
+constexpr double kMostStepS = 0.1;                                     // of the world's motion: after a pause it does not race
 
 RoomHand room_hand(const render::xr::HandState& state) {
   return {state.there, state.grip.position, state.grip.turn, state.select, state.grab, state.stick_x};
@@ -38,9 +39,25 @@ struct HeadsetHost::Parts {
   render::FramePace pace;
   XrTime last_time = 0;  ///< of the last frame; 0: none before
 
+  // the panel
+  bool panel_open = false, menu_down = false;
+  immersive::Panel panel{.width_m = kPanelM};
+  immersive::PanelPointer pointer;
+  immersive::PanelPointer::Mouse mouse;
+  bool pressed_since = false;  ///< since it was asked for
+  std::unique_ptr<render::xr::QuadLayer> quad;
+
   void lose(const std::string& why, std::int64_t now_ns);
   Outcome take_hands(const render::xr::Frame& frame, HandHost& hand);
+  void take_panel(const std::array<render::xr::HandState, render::xr::kHands>& states, const render::xr::RoomHead& head);
+  void stop();
 };
+
+/// What hangs on the session goes with it.
+void HeadsetHost::Parts::stop() {
+  quad.reset();
+  if (headset) headset->stop();
+}
 
 HeadsetHost::HeadsetHost(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 HeadsetHost::~HeadsetHost() = default;
@@ -53,9 +70,7 @@ Result<std::unique_ptr<HeadsetHost>> HeadsetHost::open() {
 
 void HeadsetHost::join(Screen::Options& options) {
   options.maker = [this] { return parts_->headset ? parts_->headset->maker(parts_->queue_lock) : render::vk::VulkanMaker{}; };
-  options.before_making = [this] {
-    if (parts_->headset) parts_->headset->stop();
-  };
+  options.before_making = [this] { parts_->stop(); };
 }
 
 /// It is tried again, at once where something was seen before; the runtime's own instance goes with it where that was lost.
@@ -64,7 +79,7 @@ void HeadsetHost::Parts::lose(const std::string& why, std::int64_t now_ns) {
   last_time = 0;
   pace.pause();
   retry_ns = again ? now_ns + std::int64_t(1e9 * kRetryS) : now_ns;
-  headset->stop();
+  stop();
   if (headset->loss() == render::xr::Loss::instance) headset.reset();
 }
 
@@ -99,13 +114,68 @@ Outcome HeadsetHost::follow(Screen& screen, std::int64_t now_ns, const std::func
   if (const std::string news = p.pace.news(); !news.empty()) say(news);
   if (p.headset->session().has_left()) {
     p.left = true;
-    p.headset->stop();
+    p.stop();
     say("the headset's session was ended by its runtime");
   }
   return Done{};
 }
 
 bool HeadsetHost::running() const { return parts_->headset && parts_->headset->running(); }
+
+void HeadsetHost::Parts::take_panel(const std::array<render::xr::HandState, render::xr::kHands>& states, const render::xr::RoomHead& head) {
+  const bool menu = states[0].menu || states[1].menu;
+  if (menu && !menu_down) {
+    panel_open = !panel_open;
+    panel = immersive::in_front_of(head.position, head.turn, kPanelAwayM, kPanelDropM, panel);
+    pointer = {};
+  }
+  menu_down = menu;
+  mouse = {};
+  const render::xr::HandState& hand = states[HeadsetHands::kProbe];
+  if (!panel_open || !quad || !hand.points) return;
+  mouse = pointer.step(panel, immersive::aim_ray(hand.aim.position, hand.aim.turn), hand.select > HeadsetHands::kDown);
+  pressed_since = pressed_since || mouse.pressed;
+}
+
+void HeadsetHost::show_panel(Screen& screen) {
+  Parts& p = *parts_;
+  if (!p.headset || !p.headset->started()) return;
+  render::vk::Image* const window = p.panel_open ? screen.renderer().window_image() : nullptr;
+  if (!window) {
+    p.headset->show_panel(nullptr);
+    p.quad.reset();
+    return;
+  }
+  const VkExtent3D size = window->info().extent;
+  if (!p.quad || p.panel.width_px != size.width || p.panel.height_px != size.height) {
+    p.headset->show_panel(nullptr);
+    p.quad.reset();
+    p.panel.width_px = size.width;
+    p.panel.height_px = size.height;
+    p.panel.height_m = kPanelM * size.height / size.width;
+    auto made = render::xr::QuadLayer::create(p.headset->session(), {size.width, size.height});
+    if (!made) {
+      p.broken = made.error().message;
+      return;
+    }
+    p.quad = std::move(*made);
+  }
+  if (const Outcome taken = p.quad->take(*window); !taken) {
+    p.broken = taken.error().message;
+    return;
+  }
+  p.quad->place({{p.panel.middle_m, p.panel.orientation}, p.panel.width_m, p.panel.height_m, true});
+  p.headset->show_panel(p.quad.get());
+}
+
+std::optional<immersive::PanelPointer::Mouse> HeadsetHost::panel_mouse() {
+  Parts& p = *parts_;
+  const bool pressed = std::exchange(p.pressed_since, false);
+  if (!p.mouse.here) return std::nullopt;
+  immersive::PanelPointer::Mouse mouse = p.mouse;
+  mouse.pressed = mouse.pressed || pressed;
+  return mouse;
+}
 
 /// What the hands do to the world, to the probe, and what they are told. Poses go to the recording as they are when the picture is seen.
 Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost& hand) {
@@ -116,12 +186,14 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
   haptics::log::LogPoses poses;
   poses.predicted_ns = frame.time;
   if (frame.wants_picture) poses[TrackedPart::head] = {head.position, head.turn};
+  std::array<render::xr::HandState, render::xr::kHands> states;
   std::array<RoomHand, 2> hands_then;
   for (std::size_t k = 0; k < hands_then.size(); ++k) {
-    CATENA_TRY(const render::xr::HandState state, actions.hand(k, frame.time));
-    hands_then[k] = room_hand(state);
-    if (state.there) poses[k == 0 ? TrackedPart::left_hand : TrackedPart::right_hand] = {state.grip.position, state.grip.turn};
+    CATENA_TRY(states[k], actions.hand(k, frame.time));
+    hands_then[k] = room_hand(states[k]);
+    if (states[k].there) poses[k == 0 ? TrackedPart::left_hand : TrackedPart::right_hand] = {states[k].grip.position, states[k].grip.turn};
   }
+  take_panel(states, head);
   hand.record_poses(poses);
   const double dt_s = last_time == 0 ? 0 : std::min(1e-9 * double(frame.time - last_time), kMostStepS);
   last_time = frame.time;
@@ -137,6 +209,7 @@ Outcome HeadsetHost::Parts::take_hands(const render::xr::Frame& frame, HandHost&
     CATENA_TRY(const render::xr::HandState state, actions.hand(HeadsetHands::kProbe, *at));
     probe = room_hand(state);
   }
+  if (mouse.here) probe.select = 0;  // it means the panel
   controller->say(hands.probe(probe, now));
   const auto call = hands.vibration(controller->peaks(), now, headset->session().focused(), probe);
   using What = haptics::VibrationSender::What;
@@ -205,7 +278,7 @@ void HeadsetHost::leave() {
     const auto frame = p.headset->begin();
     if (!frame || !p.headset->skip(*frame)) break;
   }
-  p.headset->stop();
+  p.stop();
 }
 
 std::string HeadsetHost::words() const {
@@ -233,6 +306,8 @@ std::string HeadsetHost::words() const { return "no headset"; }
 std::string HeadsetHost::figures() const { return words(); }
 const std::optional<Placement>& HeadsetHost::placement() const { return parts_->placement; }
 bool HeadsetHost::holds_world() const { return false; }
+void HeadsetHost::show_panel(Screen&) {}
+std::optional<immersive::PanelPointer::Mouse> HeadsetHost::panel_mouse() { return std::nullopt; }
 
 #endif
 

@@ -10,6 +10,7 @@
 
 #include "engine/app/viewer/shell/hand_host.h"
 #include "engine/app/viewer/shell/screen.h"
+#include "engine/immersive/panel.h"
 #include "render/quality/frame_pace.h"
 #include "render/stereo/room_eye.h"
 
@@ -41,6 +42,11 @@ class HeadsetHost {
   /// A frame: it is waited for, the hands are looked at, and both eyes are drawn as well as its time allows. True: the screen's picture is
   /// the first eye's. False: nobody sees anything now, or the headset is lost. Errors: what a window's picture would fail with, too.
   Result<bool> draw(Screen& screen, HandHost& hand, const Content& content);
+  /// The menu button brings the window, panels and all, before the person, and sends it away again. After the window was shown: as it is
+  /// now, on that panel.
+  void show_panel(Screen& screen);
+  /// The controller as a mouse on the panel, since the last call; pixels of the window. Nothing while it points elsewhere.
+  std::optional<immersive::PanelPointer::Mouse> panel_mouse();
   /// Asks the runtime to end the session, and gives it a moment for that.
   void leave();
 

@@ -22,6 +22,14 @@ namespace {
 constexpr std::uint32_t kLeastPixels = 16;  // of a picture each way: any packing of views has its pixels
 constexpr int kMaxWaits = 30;
 
+/// The largest part of an area, in its middle, with a picture's proportions.
+std::array<std::uint32_t, 4> fitted_area(const std::array<std::uint32_t, 4>& area, const std::array<std::uint32_t, 2>& picture) {
+  const double width = area[2] - area[0], height = area[3] - area[1];
+  const double scale = std::min(width / picture[0], height / picture[1]);
+  const auto half_x = std::uint32_t(0.5 * (width - scale * picture[0])), half_y = std::uint32_t(0.5 * (height - scale * picture[1]));
+  return {area[0] + half_x, area[1] + half_y, area[2] - half_x, area[3] - half_y};
+}
+
 }  // namespace
 
 PictureView::~PictureView() {
@@ -255,13 +263,21 @@ std::optional<Failure> PictureView::show(const std::function<void()>& make_panel
   const std::int64_t start = now_ns();
   update_values();
   Gui& gui = shared_.gui;
+  if (const auto mouse = headset_ ? headset_->panel_mouse() : std::nullopt) {
+    double width = 1, height = 1;
+    std::uint32_t frame_width = 1, frame_height = 1;
+    shared_.window.size(width, height);
+    screen_->size(frame_width, frame_height);
+    gui.point(mouse->x_px * width / frame_width, mouse->y_px * height / frame_height, mouse->pressed);
+  }
   gui.begin();
   // the glyph is the pointer while the mouse is the hand
   if (shared_.controls.hand_mode && shared_.hand.is_mouse() && shared_.state.pointer_on_picture) gui.hide_pointer();
   make_panels();
   render::UiItems items = gui.end();
-  items.area = pixels_;
+  items.area = is_eye_ && screen_->has_picture() ? fitted_area(pixels_, screen_->renderer().view_size()) : pixels_;
   if (auto shown = screen_->show(items); !shown) return Failure{1, shown.error().message};
+  if (headset_) headset_->show_panel(*screen_);
   shared_.times.add_interface(ms_since(start));
   damaged_ = false;
   return std::nullopt;
