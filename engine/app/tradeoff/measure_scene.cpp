@@ -12,6 +12,7 @@
 #include "engine/app/tradeoff/measure/eye/eye.h"
 #include "engine/app/tradeoff/measure/registry.h"
 #include "engine/app/tradeoff/report/report.h"
+#include "engine/base/clock.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/scene/prepare.h"
@@ -50,11 +51,14 @@ Result<Report> measure(const MeasureOptions& options) {
     return part == "data" || (part == "hand" ? subject.program != nullptr : subject.eye != nullptr);
   };
   const auto all = tradeoff::measurements();
+  const tradeoff::Effort whole = subject.effort;
+  const std::int64_t began = now_ns();
   Report report;
   report.source = std::filesystem::path(options.source).filename().string();
   report.about = about_this_machine();
   const bool sees = std::any_of(all.begin(), all.end(), [&](const auto& m) { return wanted(m) && std::string_view(m.part) == "eye"; });
-  Progress progress("tradeoff", static_cast<double>(all.size()) + 3);
+  constexpr double kBefore = 3;  // of what a measurement takes: to open the eye
+  Progress progress("tradeoff", static_cast<double>(all.size()) + kBefore);
   double done = 0;
   if (sees) {
     CATENA_CHECK(tradeoff::open_eye(subject));
@@ -63,13 +67,14 @@ Result<Report> measure(const MeasureOptions& options) {
       report.about.emplace_back("pictures", fmt::format("{}x{}", subject.effort.width, subject.effort.height));
     }
   }
-  progress.at(done += 3);
+  progress.at(done += kBefore);
   report.about.emplace_back("effort", subject.effort.word);
   if (subject.program)
     report.about.emplace_back("hand", fmt::format("{}, {:g} s at {:g} Hz", subject.motion.words, subject.motion.seconds, subject.rate_hz));
   for (const tradeoff::Measurement& m : all) {
     if (wanted(m) && has_part(m)) {
       progress.at(done, m.name);
+      subject.effort = tradeoff::in_time(whole, 1e-3 * ms_since(began), (done - kBefore) / static_cast<double>(all.size()));
       auto curves = m.measure(subject);
       if (!curves) subject.left_out.push_back(std::string(m.name) + ": " + curves.error().message + ".");
       if (curves)

@@ -167,6 +167,16 @@ TEST(TradeoffChoice, TakesTheKneeOrWhatTheSceneHas) {
   EXPECT_NE(curve.why.find("No setting changes"), std::string::npos);
 }
 
+TEST(TradeoffTiming, ARunThatIsLateRepeatsLess) {
+  const Effort& whole = effort(true, false);
+  EXPECT_EQ(in_time(whole, 0, 0).eye_s, whole.eye_s);
+  EXPECT_EQ(in_time(whole, 0.4 * whole.run_s, 0.5).eye_s, whole.eye_s) << "early";
+  EXPECT_NEAR(in_time(whole, 0.75 * whole.run_s, 0.5).eye_s, 0.5 * whole.eye_s, 1e-9);
+  EXPECT_NEAR(in_time(whole, 0.75 * whole.run_s, 0.5).hand_s, 0.5 * whole.hand_s, 1e-9);
+  EXPECT_GT(in_time(whole, 9 * whole.run_s, 0.9).eye_s, 0) << "each is measured at least";
+  EXPECT_LT(in_time(whole, 9 * whole.run_s, 0.9).eye_s, 0.1 * whole.eye_s);
+}
+
 TEST(TradeoffTiming, RunsSettingsInTurns) {
   std::string order;
   const auto times =

@@ -104,9 +104,19 @@ std::optional<Motion> through_surface(scene::Scene& scene, const LinkOf& link, d
 }
 
 const Effort& effort(bool quick, bool thorough) {
-  static constexpr Effort kQuick{"quick", 1.5, 8, 1, 256, 192}, kDefault{"default", 6, 30, 2, 400, 300},
-      kThorough{"thorough", 20, 120, 4, 640, 480};
+  static constexpr Effort kQuick{"quick", 1.5, 8, 1, 256, 192, 110}, kDefault{"default", 6, 30, 2, 400, 300, 500},
+      kThorough{"thorough", 20, 120, 4, 640, 480, 1100};
   return quick ? kQuick : thorough ? kThorough : kDefault;
+}
+
+Effort in_time(const Effort& whole, double elapsed_s, double done) {
+  constexpr double kLeast = 0.05;
+  const double left_s = whole.run_s - elapsed_s, wanted_s = whole.run_s * (1 - done);
+  const double share = left_s >= wanted_s ? 1 : std::fmax(kLeast, left_s / wanted_s);
+  Effort effort = whole;
+  effort.hand_s *= share;
+  effort.eye_s *= share;
+  return effort;
 }
 
 std::vector<haptics::ProbeSample> Motion::samples(double rate_hz) const {

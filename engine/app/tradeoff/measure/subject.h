@@ -20,8 +20,11 @@ struct Effort {
   double hand_s, eye_s;         ///< of a curve of the hand, of the eye: wall time for its repeats
   double motion_s;              ///< of the hand's motion, simulated
   std::uint32_t width, height;  ///< of the pictures
+  double run_s;                 ///< of all curves together
 };
 const Effort& effort(bool quick, bool thorough);
+/// `whole`, with less time for repeats where a run is late: after `elapsed_s` a share `done` (0 to 1) of its curves is measured.
+Effort in_time(const Effort& whole, double elapsed_s, double done);
 
 /// The scene's links of a type.
 struct LinkOf {
