@@ -17,11 +17,18 @@ namespace catena::test::xr_rig {
 
 using namespace catena::render;
 
+/// What the environment named before the scripted runtime took its place; empty: nothing.
+inline const std::string& named_runtime() {
+  static const std::string path = std::getenv("XR_RUNTIME_JSON") ? std::getenv("XR_RUNTIME_JSON") : "";
+  return path;
+}
+
 /// The library, opened once more than the loader does: its stage outlives instances.
 class Runtime {
  public:
   Runtime() {
     use_lavapipe();
+    (void)named_runtime();
     const std::string library = binary_dir() + "/libcatena_xr_runtime.so";
     ::setenv("XR_RUNTIME_JSON", (binary_dir() + "/xr_runtime.json").c_str(), 1);
     handle_ = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <fstream>
+#include <chrono>
 #include <set>
-#include <sstream>
+#include <thread>
 
 #include "tests/render/xr/rig.h"
 #include "tests/support/resident.h"
@@ -204,6 +204,21 @@ TEST_F(HeadsetSession, ManyFramesTakeNoMoreMemory) {
   EXPECT_EQ(runtime_.record().moved_poses, 0u);
   RecordProperty("grown_bytes", std::to_string(grown));
   if (asked) std::printf("%d frames, %.0f bytes more after the first third\n", frames, grown);
+}
+
+/// XR_RUNTIME_JSON=/somewhere/openxr.json build/dev/test_render_xr --gtest_filter='*AnyRuntime*' tries a real one.
+TEST_F(HeadsetSession, AnyRuntimeThatIsNamedShowsPictures) {
+  if (named_runtime().empty()) GTEST_SKIP() << "XR_RUNTIME_JSON names no runtime";
+  ::setenv("XR_RUNTIME_JSON", named_runtime().c_str(), 1);
+  const Outcome opened = open();
+  if (!opened) GTEST_SKIP() << opened.error().message;
+  for (int i = 0; i < 2000 && headset_->counts().pictures < 60; ++i) {
+    if (!headset_->running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const Outcome turned = turn(packet_, {}, 1);
+    ASSERT_TRUE(turned) << turned.error().message;
+  }
+  EXPECT_GE(headset_->counts().pictures, 60u);
+  EXPECT_EQ(headset_->session().odd_edges(), 0u);
 }
 
 /// Debian's layer between program and runtime: it writes what it finds to a file.
