@@ -41,6 +41,8 @@ void add_render(CLI::App& program, Work& chosen) {
   command->add_option("--view", options->view, "look along +x, -x, +y, -y, +z, -z, or iso, at all that is drawn");
   command->add_flag("--fit", options->fit, "bring all that is drawn into the picture, from the same direction");
   command->add_option("--camera", options->camera, "key frames, CSV: t,px,py,pz,tx,ty,tz[,ux,uy,uz][,fovy]");
+  command->add_option("--head", options->head,
+                      "a tracked head before --screen, CSV: t,x,y,z, world units (default: the camera's position)");
   command->add_option("--phase", options->phase, "where the pulses of streamlines are, 0 to 1; the frames add one round");
   command->add_option("--grid", options->grid, "of a data file that holds several: which field is shown");
   command->add_option("--step", options->step, "which step in time, of fields that have several")->check(CLI::Range(0, 1'000'000));

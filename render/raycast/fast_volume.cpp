@@ -102,6 +102,19 @@ std::uint32_t lattice_size(std::uint32_t pixels, std::uint32_t spacing) {
   return spacing == 1 ? pixels : (pixels - 1 + spacing - 1) / spacing + 1 + COARSE_APRON + 4;
 }
 
+/// Where the eye looks, in pixels, and the tangents that a pixel covers, by the fovea's.
+struct Gaze {
+  decltype(shared::LatticeData::gaze) at{}, per_fovea{};
+};
+Gaze gaze_of(const FastSettings& settings, const Camera& camera) {
+  if (!(settings.fovea > 0) || camera.orthographic) return {};
+  const double x = (settings.gaze_right - camera.centre_x + camera.half_width) / (2 * camera.half_width),
+               y = (camera.centre_y + camera.half_height - settings.gaze_up) / (2 * camera.half_height);
+  return {
+      {float(x * camera.width), float(y * camera.height)},
+      {float(2 * camera.half_width / (camera.width * settings.fovea)), float(2 * camera.half_height / (camera.height * settings.fovea))}};
+}
+
 /// The texels of a lattice that the pixels of an area need.
 VkRect2D lattice_area(const VkRect2D& area, std::uint32_t spacing, const VkExtent3D& extent) {
   if (spacing == 1) return area;
@@ -267,6 +280,7 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
   }
 
   // from the coarsest lattice to every pixel
+  const Gaze gaze = gaze_of(settings, rays.camera);
   vk::Image* coarser = nullptr;
   const std::uint32_t finest = target ? 1 : 2;
   for (std::uint32_t spacing = settings.spacing; spacing >= finest; spacing /= 2) {
@@ -283,6 +297,8 @@ Outcome FastVolumeRaycast::record(vk::Commands& commands, const CameraRays& rays
     const shared::LatticeData data{float(spacing),
                                    apron,
                                    float(refine_255 / 255),
+                                   gaze.at,
+                                   gaze.per_fovea,
                                    from.width,
                                    from.height,
                                    look_.gradient_unit(),
@@ -318,7 +334,8 @@ Outcome FastVolumeRaycast::record_probe(vk::Commands& commands, const CameraRays
   CATENA_CHECK(vk::fit_image(*device_, probe_.marks, VK_FORMAT_R8_UINT, 1, 1));
   commands.use(probe_.marks, vk::kFragmentRead);
   CATENA_CHECK(vk::write_uniform(
-      *device_, probe_.data, shared::LatticeData{float(spacing), 0, 0, 1, 1, look_.gradient_unit(), look_.gradient_nodes(), 0, 0, 0, 0}));
+      *device_, probe_.data,
+      shared::LatticeData{float(spacing), 0, 0, {}, {}, 1, 1, look_.gradient_unit(), look_.gradient_nodes(), 0, 0, 0, 0}));
   const VkExtent3D& extent = target.info().extent;
   return draw(
       commands, probe_,

@@ -22,6 +22,10 @@ struct FastSettings {
   bool skip = true;
   /// On the device, for packed words and gradients; the budget's rest, where that is less. What needs more is drawn exactly.
   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
+  /// Away from where the eye looks interpolation may err by more: both thresholds times max(1, e / fovea)^2, e the tangent of the angle
+  /// from the gaze. 0: they hold everywhere; so they do in orthographic views, which have no angles.
+  double fovea = 0;
+  double gaze_right = 0, gaze_up = 0;  ///< where the eye looks: tangents from the view's axis
   /// The last step to every pixel is interpolation alone.
   bool ends_at_half() const { return spacing > 1 && refine_full_255 < 0; }
   bool operator==(const FastSettings&) const = default;

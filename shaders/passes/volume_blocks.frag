@@ -49,6 +49,9 @@ void main() {
   worst = max(worst, worst_along(first + ivec2(0, -2), ivec2(0, 1)));
   worst = max(worst, worst_along(first + ivec2(1, -2), ivec2(0, 1)));
   worst = max(worst, worst_along(first + ivec2(2, -2), ivec2(0, 1)));
-  out_mark = (3.0 / 128.0) * max(max(worst.r, worst.g), max(worst.b, worst.a)) > lattice.threshold ? 1u : 0u;
+  const vec2 pixel = lattice.spacing * (4.0 * floor(gl_FragCoord.xy) + 2.0 - lattice.apron);
+  const vec2 off = (pixel - lattice.gaze) * lattice.per_fovea;
+  const float threshold = lattice.threshold * max(1.0, dot(off, off));
+  out_mark = (3.0 / 128.0) * max(max(worst.r, worst.g), max(worst.b, worst.a)) > threshold ? 1u : 0u;
   if (OPAQUE != 0u && opaque_near()) out_mark = 1u;
 }

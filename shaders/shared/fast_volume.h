@@ -12,7 +12,8 @@ CATENA_SHARED_BEGIN
 struct LatticeData {
   float spacing;                   // pixels
   float apron;                     // texels before the picture's first; coarser lattices have COARSE_APRON
-  float threshold;                 // a block is marched where interpolation is expected to err by more (display units)
+  float threshold;                 // a block is marched where interpolation is expected to err by more (display units),
+  vec2 gaze, per_fovea;            // times max(1, |(pixel - gaze) per_fovea|^2): tangents a pixel, by that of the fovea
   uint width, height;              // of the lattice that this one refines, texels
   float gradient_unit;             // codes a voxel in one count of the gradient volume
   float gradient_nodes;            // of a brick, an axis; 0: of the whole volume, one a voxel

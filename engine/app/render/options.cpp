@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "engine/base/csv.h"
 #include "engine/base/numbers.h"
 #include "render/frame/camera.h"
 
@@ -22,21 +23,35 @@ Result<CameraMotion> CameraMotion::make(const RenderOptions& o, double hand_s) {
     if (motion.towards_eye_ || o.fit) return Error{"--camera " + o.camera + ": goes without --view and --fit"};
     CATENA_TRY(motion.path_, render::read_camera_path(o.camera));
   }
+  if (!o.head.empty()) {
+    if (o.stereo.screen.empty()) return Error{"--head " + o.head + ": expected --screen, before which the head is"};
+    if (!o.camera.empty()) return Error{"--head " + o.head + ": goes without --camera"};
+    CATENA_TRY(const std::vector<ProbeRow> rows, read_probe_path(o.head));
+    std::vector<render::CameraKey> keys;
+    for (const ProbeRow& row : rows) keys.push_back({row.t_s, row.position, Vec3(0.0), std::nullopt, std::nullopt});
+    motion.head_.emplace(std::move(keys));
+  }
   motion.fit_ = o.fit;
   motion.orbit_deg_ = o.orbit_deg;
   motion.elevation_deg_ = o.elevation_deg;
   motion.zoom_ = o.zoom;
-  const double by_path = std::max(motion.path_ ? motion.path_->duration_s() : 0.0, hand_s) * o.fps + 1;
+  const auto duration_s = [](const std::optional<render::CameraPath>& path) { return path ? path->duration_s() : 0.0; };
+  const double by_path = std::max({duration_s(motion.path_), duration_s(motion.head_), hand_s}) * o.fps + 1;
   if (o.frames == 0 && by_path > kMaxFrames)
-    return Error{(o.camera.empty() ? o.probe : o.camera) + ": at " + std::to_string(o.fps) +
-                 " frames a second there are more than 100000: expected --frames N"};
+    return Error{(!o.camera.empty() ? o.camera
+                  : !o.head.empty() ? o.head
+                                    : o.probe) +
+                 ": at " + std::to_string(o.fps) + " frames a second there are more than 100000: expected --frames N"};
   motion.frames_ = o.frames > 0 ? o.frames : std::max(1, static_cast<int>(std::lround(by_path)));
   return motion;
 }
 
 render::View CameraMotion::at(const render::View& base, const Bounds& bounds, double aspect, int frame) const {
   render::View view = base;
-  if (path_) view = path_->at(view, path_->start_s() + (frames_ > 1 ? path_->duration_s() * frame / (frames_ - 1) : 0));
+  const auto along = [&](const render::CameraPath& path) {
+    return path.at(view, path.start_s() + (frames_ > 1 ? path.duration_s() * frame / (frames_ - 1) : 0));
+  };
+  if (path_) view = along(*path_);
   if (towards_eye_) {
     view = render::fit_view(bounds, aspect, *towards_eye_, base.fovy_deg);
     view.orthographic = base.orthographic;
@@ -45,7 +60,9 @@ render::View CameraMotion::at(const render::View& base, const Bounds& bounds, do
   }
   view.window = base.window;
   view = render::zoomed(view, zoom_);
-  return render::turned(view, orbit_deg_ * frame / frames_, elevation_deg_);
+  view = render::turned(view, orbit_deg_ * frame / frames_, elevation_deg_);
+  if (head_) view.position = along(*head_).position;
+  return view;
 }
 
 Result<std::vector<int>> parse_steps(const std::string& words) {

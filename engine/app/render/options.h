@@ -29,7 +29,7 @@ struct RenderOptions {
   std::string steps;  ///< A:B or A:B:STRIDE, a frame each
   bool play = false;  ///< the hand goes along the probe path over the frames
   // the camera
-  std::string camera, view;
+  std::string camera, view, head;
   bool fit = false;
   double orbit_deg = 0, elevation_deg = 0, zoom = 1;
   double gpu_memory_mb = 0;  ///< 0: what the driver offers
@@ -43,7 +43,8 @@ struct RenderOptions {
 /// All of the work. An Error: bad input; throws MachineFailure for the rest.
 Outcome render_pictures(const RenderOptions& options);
 
-/// Where the camera is in each frame: the scene's, a key-framed path's, or along an axis; fitted, zoomed, raised and turned.
+/// Where the camera is in each frame: the scene's, a key-framed path's, or along an axis; fitted, zoomed, raised and turned; or, before a
+/// screen of the scene, where a tracked head is.
 class CameraMotion {
  public:
   /// Checks the words and numbers of the options and reads the path.
@@ -55,7 +56,7 @@ class CameraMotion {
   render::View at(const render::View& base, const Bounds& bounds, double aspect, int frame) const;
 
  private:
-  std::optional<render::CameraPath> path_;
+  std::optional<render::CameraPath> path_, head_;
   std::optional<Vec3> towards_eye_;
   bool fit_ = false;
   double orbit_deg_ = 0, elevation_deg_ = 0, zoom_ = 1;

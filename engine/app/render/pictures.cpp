@@ -207,6 +207,7 @@ Outcome render_pictures(const RenderOptions& given) {
   RunFiles files(scene);
   files.reads(o.probe);
   files.reads(o.camera);
+  files.reads(o.head);
   PictureShape shape{picture.width, picture.height, scene.background.transparent, o.bits, o.fps, {}};
   CATENA_CHECK(check_outputs(o, shape, motion.frames(), files));
   std::FILE* const words = uses_standard_output(o) ? stderr : stdout;

@@ -123,6 +123,34 @@ TEST(RenderStereo, AGoalOfQualityIsMetEyeByEye) {
   }
 }
 
+TEST(RenderStereo, ATrackedHeadLooksThroughAScreen) {
+  const std::string screens =
+      R"(, "screens": [{"name": "desk", "lower_left": [-2, -2, -1.5], "lower_right": [2, -2, -1.5], "upper_left": [-2, -2, 1.5]}])";
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "s.json", scene(screens));
+  // from the camera's place to the right of it, in five frames
+  test::write_file(folder / "head.csv", "t,x,y,z\n10,0,-8,2\n10.16,1.6,-8,2\n");
+  const auto run = test::run_catena(
+      {"render", folder / "s.json", "-o", folder / "o_%d.png", "--size", "80x60", "--screen", "desk", "--head", folder / "head.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_FALSE(test::exists(folder / "o_5.png"));
+  const auto first = render::read_png(folder / "o_0.png"), last = render::read_png(folder / "o_4.png");
+  ASSERT_TRUE(first && last);
+  EXPECT_TRUE(same_columns(draw(screens, {"--screen", "desk"}).picture, 0, *first)) << "the camera's own place";
+  // the ball is behind the screen: it follows the head, by the share of the way that the screen is at:  1.6 (1 - 6/8) of 4 units, 80 pixels
+  EXPECT_NEAR(middle(*last, 0, 80) - middle(*first, 0, 80), 1.6 * (1 - 6.0 / 8) * 20, 1);
+
+  const auto wrong = [&](std::vector<std::string> options, const char* part) {
+    std::vector<std::string> arguments{"render", folder / "s.json", "-o", folder / "x.png", "--head", folder / "head.csv"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto bad = test::run_catena(arguments);
+    EXPECT_EQ(bad.exit_code, 2);
+    EXPECT_NE(bad.err.find(part), std::string::npos) << bad.err;
+  };
+  wrong({}, "expected --screen");
+  wrong({"--screen", "desk", "--camera", folder / "c.csv"}, "goes without --camera");
+}
+
 TEST(RenderStereo, BadInputIsOneLine) {
   const test::TemporaryFolder folder;
   test::write_file(folder / "s.json", scene(""));

@@ -111,8 +111,8 @@ TEST(Vibration, Plot) {
   }
   test::write_file(folder / "plot",
                    "set terminal png size 520,320 background 'white'\nset output '" + std::string(file) +
-                       "'\nset xlabel 'force (N)'\nset ylabel 'amplitude of the vibration'\nset yrange [0:1.05]\nset key left "
-                       "top\nset grid\n$contact << E\n" +
+                       "'\nset xlabel 'force (N)'\nset ylabel 'amplitude of the vibration'\nset yrange [0:1.05]\nset key bottom "
+                       "right\nset grid\n$contact << E\n" +
                        contact + "E\n$friction << E\n" + friction +
                        "E\nplot $contact with lines lw 2 title 'step of force (contact, detent), 20 ms', $friction with "
                        "lines lw 2 title 'friction, while it lasts'\n");
