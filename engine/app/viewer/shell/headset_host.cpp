@@ -19,7 +19,8 @@ namespace {
 
 constexpr int kFarewellTurns = 200;                                    // of events and frames, while the runtime ends the session
 constexpr double kPanelM = 0.8, kPanelAwayM = 0.9, kPanelDropM = 0.1;  // its width; from the head
-constexpr double kMostStepS = 0.1;                                     // of the world's motion: after a pause it does not race
+constexpr double kFovea = 0.36;     // tan 20 degrees off the eye's axis: beyond, lenses and eyes see less than the rays cost
+constexpr double kMostStepS = 0.1;  // of the world's motion: after a pause it does not race
 
 RoomHand room_hand(const render::xr::HandState& state) {
   return {state.there, state.grip.position, state.grip.turn, state.select, state.grab, state.stick_x};
@@ -242,7 +243,8 @@ Result<bool> HeadsetHost::draw(Screen& screen, HandHost& hand, const Content& co
   }
   if (!p.placement) p.placement = render::first_placement(packet->view);
   packet->vignette = p.hands.vignette();
-  const render::FramePlan plan = p.pace.next(1e-6 * double(frame->period_ns), frame->time);
+  render::FramePlan plan = p.pace.next(1e-6 * double(frame->period_ns), frame->time);
+  if (plan.settings.fast) plan.settings.fast->fovea = kFovea;
   const std::int64_t start = now_ns();
   const Outcome shown = p.headset->show(*frame, screen.renderer(), *packet, plan.settings, *p.placement, 1.0 / plan.scale, content.aim);
   if (shown) {

@@ -34,8 +34,8 @@ class PictureView {
   bool lay_out();
   /// Width and height of the picture, pixels; at least 1.
   std::array<std::uint32_t, 2> size() const;
-  /// It is not there, or not in the window's size.
-  bool is_stale() const { return screen_->is_resized() || !screen_->has_picture(); }
+  /// It is not there, not in the window's size, or an eye's of a headset that shows nothing any more.
+  bool is_stale() const { return screen_->is_resized() || !screen_->has_picture() || (is_eye_ && !headset_->running()); }
   /// True: the next picture is drawn with other shaders.
   bool take_shaders();
 
