@@ -33,7 +33,7 @@ struct Parts {
     if (untested > 0) return {Verdict::not_testable, {}, numbers};
     if (all == 1) return {borne_out == 1 ? Verdict::supported : Verdict::not_supported, {}, numbers};
     std::vector<std::string> marked = numbers;
-    for (std::size_t i = 0; i < marked.size(); ++i) marked[i] += bears[i] ? " - yes" : " - no";
+    for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = (bears[i] ? "yes: " : "no: ") + marked[i];
     return {borne_out == all ? Verdict::supported : Verdict::not_supported, fmt::format("{} of {}", borne_out, all), marked};
   }
 };
