@@ -10,10 +10,9 @@
 namespace catena {
 
 Result<FolderLock> FolderLock::take(const std::string& folder) {
-  const std::string path = folder + "/.lock";
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-  if (descriptor < 0) return Error{path + ": cannot write: " + std::strerror(errno)};
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return FolderLock(descriptor);
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return Error{folder + ": cannot read the folder: " + std::strerror(errno)};
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return FolderLock(descriptor);
   ::close(descriptor);
   return Error{folder + ": another session writes to it; its end was expected, or another folder"};
 }

@@ -6,7 +6,8 @@
 
 namespace catena {
 
-/// A lock on a folder, by flock(2) on its file ".lock": it goes with its process, however that ends.
+/// A lock on a folder, by flock(2) on the folder itself: it goes with its process, however that ends, and leaves nothing. Where a file
+/// system knows no such locks (some of networks) everybody has it.
 class FolderLock {
  public:
   /// An error where another process has it, or this one already: "FOLDER: another session writes to it; ...".

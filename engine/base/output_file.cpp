@@ -59,6 +59,14 @@ bool same_file(const std::string& a, const std::string& b) {
   return first && first == identity_of(b);
 }
 
+bool lies_within(const std::string& place, const std::string& folder) {
+  std::error_code code;
+  const fs::path inner = fs::weakly_canonical(fs::absolute(place, code), code),
+                 outer = fs::weakly_canonical(fs::absolute(folder, code), code);
+  const auto [end, ignored] = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
+  return !code && end == outer.end() && inner != outer;
+}
+
 Outcome check_outputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
   std::map<Identity, const std::string*> read;
   for (const std::string& input : inputs)

@@ -29,6 +29,9 @@ Outcome check_output(const std::string& path, const std::vector<std::string>& in
 /// Two names of one place, whether or not it exists yet. Devices and pipes are nobody's own.
 bool same_file(const std::string& a, const std::string& b);
 
+/// Whether a place, there or not, lies anywhere below a folder.
+bool lies_within(const std::string& place, const std::string& folder);
+
 /// The unfinished file that an output is written to before it is renamed to its place, so that the place holds the old content or the new
 /// one, whole. It lies beside its place under a name of its own, NAME.part<pid>-<random>; it is made by this program alone (O_EXCL: never
 /// what somebody put there, never through a link) and locked (flock) while it is written. What programs that have ended left of the same

@@ -1,5 +1,6 @@
 #include "engine/study/read_parts.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -42,7 +43,8 @@ schema::Keys condition_keys() {
 
 schema::Keys question_keys() {
   return {schema::identifier("name", "Its name, in the table of answers.").required(),
-          schema::text("question", "What is asked.").required(), schema::texts("answers", "What can be answered.").by_default("any text")};
+          schema::text("question", "What is asked.").required(),
+          schema::texts("answers", "What can be answered: 2 to 9, by the keys 1 to 9.").by_default("any text")};
 }
 
 Outcome read_question(const json::Node& node, Question& question) {
@@ -51,13 +53,24 @@ Outcome read_question(const json::Node& node, Question& question) {
   CATENA_CHECK(schema::read_value(question_keys()[1], node, question.question));
   const json::Node* answers = node.find("answers");
   if (answers == nullptr) return Done{};
-  if (answers->kind != json::Kind::array || answers->items.size() < 2)
-    return json::error_at(*answers, "\"answers\" is no list of two or more; strings to choose from were expected");
+  if (answers->kind != json::Kind::array || answers->items.size() < 2 || answers->items.size() > kMostAnswers)
+    return json::error_at(*answers, "\"answers\" is no list of 2 to " + std::to_string(kMostAnswers) +
+                                        "; so many strings to choose from were expected, a key each");
   for (const json::Node& answer : answers->items) {
     CATENA_TRY(std::string text, json::as_string(answer, "answers"));
     question.answers.push_back(std::move(text));
   }
   return Done{};
+}
+
+/// Names stand in tables and in file names of plots.
+Outcome check_name(const json::Node& item, const std::string& name) {
+  constexpr std::size_t kMost = 64;
+  const auto breaks = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == ',' || c == '"'; };
+  if (!name.empty() && name.size() <= kMost && std::ranges::none_of(name, breaks)) return Done{};
+  return json::error_at(json::member_or(item, "name"),
+                        "\"name\" is empty, longer than " + std::to_string(kMost) +
+                            " bytes, or has commas, quotes or line ends; a short name without them was expected");
 }
 
 /// Objects of an array, each with a name of its own.
@@ -72,6 +85,7 @@ Outcome read_items(const json::Node& root, const char* key, std::size_t least, s
   for (const json::Node& item : list->items) {
     CATENA_CHECK(json::expect_object(item, item.label));
     CATENA_CHECK(read(item, out.emplace_back()));
+    CATENA_CHECK(check_name(item, out.back().name));
     if (!names.insert(out.back().name).second)
       return json::error_at(*item.find("name"),
                             "there are two of the name " + in_quotes(out.back().name) + "; different names were expected");

@@ -12,17 +12,17 @@ const StudyTable<StimulusRules>& stimulus_table() {
   using T = StimulusRules;
   static const auto table =
       StudyTable<T>()
-          .bind(number("path_mm", "mm", "Length of every correct path.").positive(), &T::path_mm)
-          .bind(number("clearance_mm", "mm", "The start is at least so far from every global streamline.").not_negative(), &T::clearance_mm)
+          .bind(number("path_mm", "mm", "Length of every correct path.").limited({0.0, 1e4, true}), &T::path_mm)
+          .bind(number("clearance_mm", "mm", "The start is at least so far from every global streamline.").within(0, 1e4), &T::clearance_mm)
           .bind(integer("lines", "", "Global streamlines.", 0, 200), &T::lines)
-          .bind(number("line_mm", "mm", "The longest that one is, each way.").positive(), &T::line_mm)
-          .bind(number("parallel", "", "3D: at least this share of the path's length is seen in the picture plane.").within(0, 1),
+          .bind(number("line_mm", "mm", "The longest that one is, each way.").limited({0.0, 1e5, true}), &T::line_mm)
+          .bind(number("parallel", "", "3D: at least this share of the path's length is seen along the picture plane (across the camera's axis).").within(0, 1),
                 &T::parallel)
           .bind(number("crossing_deg", "degrees", "Advection: the path meets its target at this angle or a steeper one.").within(0, 90),
                 &T::crossing_deg)
           .bind(number("turn_deg", "degrees", "The path turns at least this much from its start to its middle or its end.").within(0, 180),
                 &T::turn_deg)
-          .bind(number("bend_mm", "mm", "The path's radius of curvature is nowhere smaller.").not_negative(), &T::bend_mm)
+          .bind(number("bend_mm", "mm", "The path's radius of curvature is nowhere smaller.").within(0, 1e4), &T::bend_mm)
           .bind(integer("candidates", "", "Starts that are tried in a field, before another field is.", 1, 10000), &T::candidates)
           .bind(number("region", "", "Share of the field's box, about its middle, in which starts lie.").limited({0.0, 1.0, true}),
                 &T::region);
@@ -33,10 +33,11 @@ const StudyTable<Limits>& limits_table() {
   using T = Limits;
   static const auto table =
       StudyTable<T>()
-          .bind(number("told_s", "s", "What the subject is told; it is not enforced.").positive(), &T::told_s)
-          .bind(number("ends_s", "s", "Here a trial ends.").positive(), &T::ends_s)
-          .bind(number("reject_error_mm", "mm", "A trial with a larger error is left out of the analysis.").positive(), &T::reject_error_mm)
-          .bind(number("reject_time_s", "s", "So is one that took longer.").positive(), &T::reject_time_s);
+          .bind(number("told_s", "s", "What the subject is told; it is not enforced.").limited({0.0, 3600, true}), &T::told_s)
+          .bind(number("ends_s", "s", "Here a trial ends.").limited({0.0, 3600, true}), &T::ends_s)
+          .bind(number("reject_error_mm", "mm", "A trial with a larger error is left out of the analysis.").limited({0.0, 1e6, true}),
+                &T::reject_error_mm)
+          .bind(number("reject_time_s", "s", "So is one that took longer.").limited({0.0, 3600, true}), &T::reject_time_s);
   return table;
 }
 
@@ -113,10 +114,11 @@ const StudyTable<Task>& task_table() {
     t.bind(schema::text("field", "The field of the scene that the path follows.").required(), &T::field);
     bind_object(t, "stimulus", stimulus_table(), &T::rules, "How start and path are chosen.");
     bind_object(t, "limits", limits_table(), &T::limits, "Times and errors.");
-    t.bind(number("start_mm", "mm", "The clock starts when the cursor leaves this ball about the start; 2D: this circle.").positive(),
+    t.bind(number("start_mm", "mm", "The clock starts when the cursor leaves this ball about the start; 2D: this circle.")
+               .limited({0.0, 1e4, true}),
            &T::start_mm);
-    t.bind(number("reach_mm", "mm", "Tracing: so near, the end is reached.").positive(), &T::reach_mm);
-    t.bind(number("indicator_mm", "mm", "Advection: length of the local indicator, from the cursor downstream.").positive(),
+    t.bind(number("reach_mm", "mm", "Tracing: so near, the end is reached.").limited({0.0, 1e4, true}), &T::reach_mm);
+    t.bind(number("indicator_mm", "mm", "Advection: length of the local indicator, from the cursor downstream.").limited({0.0, 1e4, true}),
            &T::indicator_mm);
     t.hand(schema::object("scene", {}, "A scene (scene.md) without a chain, in which strings stand for values of the trial.").required(),
            [](const None&, const json::Node& object, T& task) -> Outcome {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,8 +15,11 @@
 namespace catena::study {
 namespace {
 
-constexpr int kFields = 200;             ///< asked one after the other for a start
+constexpr int kFields = 200;             ///< at most, asked one after the other for a start
+constexpr int kStarts = 20000;           ///< at most, in all of them
+constexpr double kMostBoxes = 100;       ///< a path and a line are so long at most, by the diagonal of the field's box
 constexpr int kLineChoices = 6;          ///< a global line begins at the place, of so many, that is farthest from the others
+constexpr int kLinePlaces = 60;          ///< that are drawn for those at most: a field may have holes
 constexpr double kPathTolerance = 1e-9;  ///< of the trace, L
 constexpr double kLineTolerance = 1e-6;  ///< of lines, and of paths that are tried
 constexpr double kHidingRadiusMm = 1.5;  ///< a global line hides what is so near to it in the picture
@@ -39,6 +43,26 @@ double distance_to(const std::vector<std::vector<Vec3>>& lines, const Vec3& p) {
   return std::sqrt(least2);
 }
 
+/// Why a start is none, in the order in which it is asked.
+enum class Fault { leaves, turn, bend, flat, parallel, crossing, line };
+constexpr int kFaults = 7;
+constexpr const char* kFaultWords[kFaults] = {"have no path of that length within the field",
+                                              "turn too little",
+                                              "bend too sharply",
+                                              "leave the picture plane",
+                                              "run too much along the view",
+                                              "meet their target too flatly, or before their end",
+                                              "lie too near a global line"};
+using Faults = std::array<int, kFaults>;
+
+std::string words_of(const Faults& faults) {
+  std::string text;
+  for (int i = 0; i < kFaults; ++i)
+    if (const int n = faults[static_cast<std::size_t>(i)]; n > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, kFaultWords[i]);
+  return text;
+}
+
 /// What is drawn by chance in one field.
 class Draw {
  public:
@@ -54,15 +78,15 @@ class Draw {
     stimulus_.line_length = task.world(rules_.line_mm);
   }
 
-  std::optional<Stimulus> stimulus() {
+  /// Counts why starts were none.
+  std::optional<Stimulus> stimulus(Faults& faults) {
     std::optional<Stimulus> best;
     for (int k = 0; k < rules_.candidates; ++k) {
       const Vec3 start = place(rules_.region, random_);
-      if (!take_path(start, kLineTolerance) || !path_is_allowed()) continue;
-      if (stimulus_.lines.empty()) draw_lines();
-      if (distance_to(lines_, start) < task_.world(rules_.clearance_mm)) continue;
-      // what is kept is traced well
-      if (!take_path(start, kPathTolerance) || !path_is_allowed()) continue;
+      if (const auto fault = fault_of(start)) {
+        ++faults[static_cast<std::size_t>(*fault)];
+        continue;
+      }
       stimulus_.hidden = task_.dimensions == 3 ? hidden() : 0;
       if (!best || stimulus_.hidden < best->hidden) best = stimulus_;
       if (best->hidden == 0) break;
@@ -90,13 +114,30 @@ class Draw {
     return curve ? *curve : nullptr;
   }
 
+  std::optional<Fault> fault_of(const Vec3& start) {
+    if (!take_path(start, kLineTolerance)) return Fault::leaves;
+    if (const auto fault = fault_of_path()) return fault;
+    if (stimulus_.lines.empty()) draw_lines();
+    if (distance_to(lines_, start) < task_.world(rules_.clearance_mm)) return Fault::line;
+    // what is kept is traced well
+    if (!take_path(start, kPathTolerance)) return Fault::leaves;
+    return fault_of_path();
+  }
+
+  bool has_flow(const Vec3& p) {
+    const field::VectorSample sample = field_.sample(p, cursor_);
+    return sample.inside && norm(sample.value) > 0;
+  }
+
   void draw_lines() {
     const double step = task_.world(2);
     for (int k = 0; k < rules_.lines; ++k) {
       std::optional<Vec3> seed;
       double farthest = -1;
-      for (int choice = 0; choice < kLineChoices; ++choice) {
+      for (int choice = 0, drawn = 0; choice < kLineChoices && drawn < kLinePlaces; ++drawn) {
         const Vec3 p = place(1, line_random_);
+        if (!has_flow(p)) continue;
+        ++choice;
         const double distance = distance_to(lines_, p);
         if (distance > farthest) farthest = distance, seed = p;
       }
@@ -134,33 +175,34 @@ class Draw {
     return direction(path[std::min(i + 1, path.size() - 1)] - path[i > 0 ? i - 1 : 0]);
   }
 
-  bool path_is_allowed() const {
+  std::optional<Fault> fault_of_path() const {
     const std::vector<Vec3>& path = stimulus_.path;
     const std::size_t last = path.size() - 1;
     const double turn = std::cos(rules_.turn_deg * std::numbers::pi / 180);
-    if (rules_.turn_deg > 0 && std::min(dot(tangent(0), tangent(last)), dot(tangent(0), tangent(last / 2))) > turn) return false;
+    if (rules_.turn_deg > 0 && std::min(dot(tangent(0), tangent(last)), dot(tangent(0), tangent(last / 2))) > turn) return Fault::turn;
     for (std::size_t i = 1; i < last; ++i) {
       // a corner of angle a between pieces of length h: a / h is the curvature
       const Vec3 before = path[i] - path[i - 1], after = path[i + 1] - path[i];
-      if (norm(direction(after) - direction(before)) * task_.world(rules_.bend_mm) > norm(before)) return false;
+      if (norm(direction(after) - direction(before)) * task_.world(rules_.bend_mm) > norm(before)) return Fault::bend;
     }
     if (task_.dimensions == 2) {
       for (const Vec3& p : path)
-        if (std::fabs(dot(p - task_.plane, task_.view)) > kFlat * stimulus_.length) return false;
+        if (std::fabs(dot(p - task_.plane, task_.view)) > kFlat * stimulus_.length) return Fault::flat;
     } else {
       double seen = 0;
       for (std::size_t i = 1; i < path.size(); ++i) {
         const Vec3 way = path[i] - path[i - 1];
         seen += norm(way - task_.view * dot(way, task_.view));
       }
-      if (seen < rules_.parallel * stimulus_.length) return false;
+      if (seen < rules_.parallel * stimulus_.length) return Fault::parallel;
     }
+    bool crosses = true;
     if (task_.target == Target::circle)
-      return first_crosses([&](const Vec3& p) { return norm(p - stimulus_.start); }, stimulus_.radius) &&
-             dot(tangent(last), direction(stimulus_.end - stimulus_.start)) >= sine(rules_.crossing_deg);
+      crosses = first_crosses([&](const Vec3& p) { return norm(p - stimulus_.start); }, stimulus_.radius) &&
+                dot(tangent(last), direction(stimulus_.end - stimulus_.start)) >= sine(rules_.crossing_deg);
     if (task_.target == Target::plane)
-      return first_crosses([&](const Vec3& p) { return -p.z; }, -stimulus_.end.z) && -tangent(last).z >= sine(rules_.crossing_deg);
-    return true;
+      crosses = first_crosses([&](const Vec3& p) { return -p.z; }, -stimulus_.end.z) && -tangent(last).z >= sine(rules_.crossing_deg);
+    return crosses ? std::nullopt : std::optional(Fault::crossing);
   }
 
   template <class Measure>
@@ -194,9 +236,23 @@ class Draw {
   const field::VectorField& field_;
   Bounds box_;
   Random random_, line_random_;
+  field::Cursor cursor_;
   std::vector<std::vector<Vec3>> lines_;
   Stimulus stimulus_;
 };
+
+/// What is longer than any field is a mistake in the units, and would be traced without end.
+Outcome check_lengths(const Task& task, const Bounds& box) {
+  const double diagonal = norm(box.hi - box.lo);
+  for (const auto& [key, mm] : {std::pair{"path_mm", task.rules.path_mm}, {"line_mm", task.rules.line_mm}})
+    if (const double length = task.world(mm); !(length <= kMostBoxes * diagonal))
+      return json::error_at(
+          json::member_or(task.where, "stimulus"),
+          fmt::format("task {}: \"{}\" is {:.3g} world units, {:.3g} times as long as the field's box; at most {:g} times "
+                      "was expected (metres_per_unit is {:g})",
+                      in_quotes(task.name), key, length, length / diagonal, kMostBoxes, task.metres_per_unit));
+  return Done{};
+}
 
 }  // namespace
 
@@ -216,13 +272,17 @@ Result<field::AnyField> StimulusMaker::field_of(int task, int seed) {
 
 Result<Stimulus> StimulusMaker::make(int task, int seed) {
   const Task& of = study_.tasks[static_cast<std::size_t>(task)];
-  for (int k = 0, at = seed; k < kFields; ++k, at = next_seed(at)) {
+  const int fields = std::clamp(kStarts / of.rules.candidates, 2, kFields);
+  Faults faults{};
+  for (int k = 0, at = seed; k < fields; ++k, at = next_seed(at)) {
     CATENA_TRY(const field::AnyField field, field_of(task, at));
-    if (auto found = Draw(of, *field.vector, at).stimulus()) return *found;
+    CATENA_CHECK(check_lengths(of, field.vector->world_bounds()));
+    if (auto found = Draw(of, *field.vector, at).stimulus(faults)) return *found;
   }
-  return json::error_at(json::member_or(of.where, "stimulus"),
-                        fmt::format("task {}: no start under these rules was found in {} fields; rules that more paths meet were expected",
-                                    in_quotes(of.name), kFields));
+  return json::error_at(
+      json::member_or(of.where, "stimulus"),
+      fmt::format("task {}: no start under these rules was found: of {} that were drawn {}; rules that more meet were expected",
+                  in_quotes(of.name), fields * of.rules.candidates, words_of(faults)));
 }
 
 }  // namespace catena::study

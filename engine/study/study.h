@@ -91,6 +91,8 @@ struct OperatorModel {
   double yield_n = 3;  ///< the hand gives way to a greater force
 };
 
+inline constexpr std::size_t kMostAnswers = 9;  ///< to choose from, a key each
+
 struct Question {
   std::string name, question;
   std::vector<std::string> answers;  ///< to choose from; empty: any text

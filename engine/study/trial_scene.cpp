@@ -30,8 +30,26 @@ Values values_of(const Task& task, const Stimulus& s) {
 
 bool stands_for_a_value(const json::Node& node) { return node.kind == json::Kind::string && node.string.starts_with("$"); }
 
+/// Nothing can be drawn of it: an object with a list of places that is empty.
+bool draws_nothing(const json::Node& item, const Values& values) {
+  return std::ranges::any_of(item.members, [&](const auto& member) {
+    const auto found = std::ranges::find(values, member.second.string, &Values::value_type::first);
+    return stands_for_a_value(member.second) && found != values.end() && found->second == "[]";
+  });
+}
+
+std::string with_values(const std::string& text, const json::Node& node, const Values& values);
+
 /// The node's own bytes of the study file with the values in it.
 void append_with_values(std::string& out, const std::string& text, const json::Node& node, const Values& values, std::size_t& at) {
+  if (std::ranges::any_of(node.items, [&](const json::Node& item) { return draws_nothing(item, values); })) {
+    std::string kept;
+    for (const json::Node& item : node.items)
+      if (!draws_nothing(item, values)) kept += (kept.empty() ? "" : ", ") + with_values(text, item, values);
+    out.append(text, at, node.begin - at).append("[" + kept + "]");
+    at = node.end;
+    return;
+  }
   if (stands_for_a_value(node)) {
     const auto found = std::ranges::find(values, node.string, &Values::value_type::first);
     if (found != values.end()) {

@@ -83,20 +83,26 @@ Error system_error(const std::string& path, const char* what) { return Error{fmt
 std::string table_of(const std::string& folder) { return (fs::path(folder) / "trials.csv").string(); }
 
 /// A subject's rows; of how many bytes of the file's `size`.
-Result<std::vector<Row>> read_subject(const std::string& path, std::size_t& whole, std::size_t& size) {
+Result<std::vector<Row>> read_subject(const std::string& folder, int subject, std::size_t& whole, std::size_t& size) {
+  const std::string path = subject_file(folder, subject);
   std::error_code code;
-  if (!fs::exists(path, code)) return std::vector<Row>{};
+  if (fs::symlink_status(path, code).type() == fs::file_type::not_found) return std::vector<Row>{};
   CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
   size = text.size();
-  return parse_rows(text, path, true, &whole);
+  CATENA_TRY(std::vector<Row> rows, parse_rows(text, path, true, &whole));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].subject != subject)
+      return fault_at(path, static_cast<int>(i) + 2, fmt::format("is a trial of subject {}; of {} was expected", rows[i].subject, subject));
+  return rows;
 }
 
 /// By the subjects' numbers.
-Result<std::vector<Row>> rows_of_subjects(const std::string& folder) {
-  CATENA_TRY(const std::vector<int> numbers, subjects_in(folder));
+Result<std::vector<Row>> rows_of_subjects(const std::string& folder, std::vector<std::string>* notes = nullptr) {
+  CATENA_TRY(const std::vector<int> numbers, subjects_in(folder, notes));
   std::vector<Row> all;
   for (const int subject : numbers) {
-    CATENA_TRY(const std::vector<Row> some, rows_in(folder, subject));
+    CATENA_TRY(const std::vector<Row> some, rows_in(folder, subject, notes));
+    if (some.empty() && notes != nullptr) notes->push_back(subject_file(folder, subject) + ": has no finished trial");
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
@@ -185,48 +191,64 @@ Outcome make_folder(const std::string& path) {
 
 std::string recording_name(const Trial& trial) { return fmt::format("{:03}-{:03}.catlog", trial.subject, trial.index); }
 
-Result<std::vector<int>> subjects_in(const std::string& folder) {
+Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std::string>* notes) {
   std::vector<int> numbers;
   std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / "subjects", code))
-    if (const auto number = parse_integer(entry.path().stem().string());
-        number && entry.path().extension() == ".csv" && *number >= 1 && *number <= kMaxSubject)
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(folder) / "subjects", code)) {
+    const auto number = parse_integer(entry.path().stem().string());
+    const bool is_one =
+        number && *number >= 1 && *number <= kMaxSubject && entry.path().string() == subject_file(folder, static_cast<int>(*number));
+    if (is_one)
       numbers.push_back(static_cast<int>(*number));
+    else if (notes != nullptr && entry.path().string().find(".csv.part") == std::string::npos)
+      notes->push_back(one_line(entry.path().string()) + ": is no subject's file, and is not read");
+  }
   if (code && code != std::errc::no_such_file_or_directory)
     return Error{fmt::format("{}: cannot read the folder: {}", folder, code.message())};
   std::sort(numbers.begin(), numbers.end());
   return numbers;
 }
 
-Result<std::vector<Row>> rows_in(const std::string& folder, int subject) {
+Result<std::vector<Row>> rows_in(const std::string& folder, int subject, std::vector<std::string>* notes) {
   std::size_t whole = 0, size = 0;
-  return read_subject(subject_file(folder, subject), whole, size);
+  CATENA_TRY(std::vector<Row> rows, read_subject(folder, subject, whole, size));
+  if (whole < size && notes != nullptr) notes->push_back(subject_file(folder, subject) + ": its last line is torn, and is not read");
+  return rows;
 }
 
-Result<DataFolder> DataFolder::open(const std::string& path, const Study& study) {
-  std::error_code code;
-  fs::create_directories(fs::path(path) / "subjects", code);
-  if (code) return Error{fmt::format("{}: cannot make the folder: {}", path, code.message())};
-  CATENA_TRY(FolderLock lock, FolderLock::take(path));
+Result<DataFolder> DataFolder::open(const std::string& path, const Study& study, Who who) {
   const std::string copy = (fs::path(path) / "study.json").string();
-  if (fs::exists(copy, code)) {
+  std::error_code code;
+  const bool is_new = !fs::exists(copy, code);
+  if (!is_new) {
     CATENA_TRY(const std::string old, read_text(copy, "the study of this data folder", kMaxJsonBytes));
     if (old != study.text)
       return Error{
           fmt::format("{}: holds data of another study ({} differs from {}); another folder was expected", path, copy, study.path)};
-  } else {
-    CATENA_TRY(OutputFile file, OutputFile::open(copy));
-    file.write(study.text);
-    file.sync();
-    CATENA_CHECK(file.commit());
   }
+  CATENA_TRY(const std::vector<int> there, subjects_in(path));
+  const bool simulated = is_simulated(path);
+  if (who == Who::people && simulated) return Error{path + ": holds trials that a model did; another folder was expected for people's"};
+  if (who == Who::model && !simulated && !there.empty())
+    return Error{path + ": holds trials that people did; another folder was expected for a model's"};
+  CATENA_CHECK(make_folder((fs::path(path) / "subjects").string()));
+  CATENA_TRY(FolderLock lock, FolderLock::take(path));
+  const auto write = [](const std::string& file, const std::string& text) -> Outcome {
+    CATENA_TRY(OutputFile out, OutputFile::open(file));
+    out.write(text);
+    out.sync();
+    return out.commit();
+  };
+  if (is_new) CATENA_CHECK(write(copy, study.text));
+  if (who == Who::model && !simulated)
+    CATENA_CHECK(write(mark_of(path), "{\"simulated\": true, \"by\": \"the operator model of study.json; it stands in for nobody\"}\n"));
   return DataFolder(path, std::move(lock));
 }
 
 Result<std::vector<Row>> DataFolder::rows(int subject) const {
-  const std::string path = subject_file(path_, subject);
   std::size_t whole = 0, size = 0;
-  CATENA_TRY(std::vector<Row> rows, read_subject(path, whole, size));
+  CATENA_TRY(std::vector<Row> rows, read_subject(path_, subject, whole, size));
+  const std::string path = subject_file(path_, subject);
   if (whole < size && ::truncate(path.c_str(), static_cast<off_t>(whole)) != 0)
     return system_error(path, "cannot cut off its torn last line");
   return rows;
@@ -249,24 +271,21 @@ Outcome DataFolder::write_table() const {
 }
 
 Result<TrialTable> read_table(const std::string& folder) {
-  CATENA_TRY(std::vector<Row> rows, rows_of_subjects(folder));
+  TrialTable table;
+  CATENA_TRY(table.rows, rows_of_subjects(folder, &table.notes));
   const std::string path = table_of(folder);
   std::error_code code;
   if (!fs::exists(path, code)) {
-    if (rows.empty()) return Error{folder + ": no trials.csv and no subjects/*.csv; a data folder of a study was expected"};
-    return TrialTable{std::move(rows), false};
+    if (table.rows.empty()) return Error{folder + ": no trials.csv and no trials in subjects/*.csv; a data folder of a study was expected"};
+    return table;
   }
   CATENA_TRY(const std::string text, read_text(path, "a table of trials"));
-  if (!rows.empty()) return TrialTable{rows, text != table_text(rows)};
-  CATENA_TRY(rows, parse_rows(text, path));
-  return TrialTable{std::move(rows), false};
-}
-
-Outcome DataFolder::mark_simulated() const {
-  if (is_simulated(path_)) return Done{};
-  CATENA_TRY(OutputFile file, OutputFile::open(mark_of(path_)));
-  file.write("{\"simulated\": true, \"by\": \"the operator model of study.json; it stands in for nobody\"}\n");
-  return file.commit();
+  if (table.rows.empty()) {
+    CATENA_TRY(table.rows, parse_rows(text, path));
+  } else if (text != table_text(table.rows)) {
+    table.notes.push_back(path + ": differs from subjects/*.csv, which are what is analysed");
+  }
+  return table;
 }
 
 bool is_simulated(const std::string& folder) {

@@ -5,7 +5,6 @@
 ///   DIR/recordings/       every tick of a trial, where that was asked for
 ///   DIR/trials.csv        all subjects' rows by their numbers, as they were when a command last ended; alone it is read, too
 ///   DIR/questionnaire/    answers (answers.h)
-///   DIR/.lock             held by whoever writes
 ///   DIR/simulated.json    there where a model of a person did trials: whoever reads them must know
 /// Doubles in the fewest digits that read back.
 #pragma once
@@ -49,16 +48,20 @@ std::string recordings_folder(const std::string& folder);
 Outcome make_folder(const std::string& path);
 std::string recording_name(const Trial& trial);
 
-/// The numbers of the subjects that have a file in a data folder, rising.
-Result<std::vector<int>> subjects_in(const std::string& folder);
-/// The finished trials of a subject, as they are on the disk; none where it has no file. Nothing is written.
-Result<std::vector<Row>> rows_in(const std::string& folder, int subject);
+/// The numbers of the subjects that have a file in a data folder, rising; other files are told in `notes`.
+Result<std::vector<int>> subjects_in(const std::string& folder, std::vector<std::string>* notes = nullptr);
+/// The finished trials of a subject, as they are on the disk; none where it has no file; a torn end is told in `notes`. Nothing is written.
+Result<std::vector<Row>> rows_in(const std::string& folder, int subject, std::vector<std::string>* notes = nullptr);
+
+/// Who does the trials of a data folder: people and models never share one.
+enum class Who { people, model };
 
 /// A data folder that is written to, by one program at a time: it is locked as long as this lives.
 class DataFolder {
  public:
-  /// Makes it where it is missing. An error where it holds another study, or another program writes to it.
-  static Result<DataFolder> open(const std::string& path, const Study& study);
+  /// Makes it where it is missing. An error where it holds another study, another program writes to it, or it holds trials of a model
+  /// where people's are to come, or people's where a model's are.
+  static Result<DataFolder> open(const std::string& path, const Study& study, Who who);
 
   const std::string& path() const { return path_; }
   /// rows_in(), but a torn end is cut off the file, so that rows can be appended.
@@ -67,8 +70,6 @@ class DataFolder {
   Outcome append(const Row& row) const;
   /// All of a subject's rows at once, whole or not at all.
   Outcome write_subject(int subject, const std::vector<Row>& rows) const;
-  /// Says that a model of a person does trials here: DIR/simulated.json.
-  Outcome mark_simulated() const;
   /// Writes trials.csv of all of them.
   Outcome write_table() const;
 
@@ -81,11 +82,11 @@ class DataFolder {
 /// The rows of a data folder: of DIR/subjects/*.csv, or of DIR/trials.csv where there are none of those.
 struct TrialTable {
   std::vector<Row> rows;
-  bool differs = false;  ///< trials.csv has other rows than the subjects' files, which were taken
+  std::vector<std::string> notes;  ///< lines: what of the folder was not taken, or torn, and that trials.csv differs from what was
 };
 Result<TrialTable> read_table(const std::string& folder);
 
-/// Whether a model of a person did some of the trials (DataFolder::mark_simulated).
+/// Whether a model did the trials.
 bool is_simulated(const std::string& folder);
 
 }  // namespace catena::study

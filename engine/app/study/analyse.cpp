@@ -11,6 +11,7 @@
 #include "engine/app/study/study_command.h"
 #include "engine/base/tell.h"
 #include "engine/base/text.h"
+#include "engine/study/departures.h"
 
 namespace catena::app {
 
@@ -31,11 +32,12 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   Progress progress("study analyse", 4);
   CATENA_TRY(const study::TrialTable table, study::read_table(data));
   const std::vector<study::Row>& rows = table.rows;
-  if (table.differs) tell_from_catena("note: " + data + "/trials.csv: differs from subjects/*.csv, which are what is analysed");
   if (rows.empty()) return Error{one_line(data + ": there are no trials; at least one was expected")};
   progress.at(1);
-  CATENA_TRY(const analysis::Analysis result, analysis::analyse(study, inquiry, rows, data));
+  CATENA_TRY(analysis::Analysis result, analysis::analyse(study, inquiry, rows, data));
   CATENA_TRY(const std::vector<analysis::Answered> answers, analysis::read_questionnaires(study, data, result.subjects));
+  result.notes = table.notes;
+  for (std::string& line : study::departures(study, rows)) result.notes.push_back(std::move(line));
   progress.at(2);
   std::error_code code;
   const analysis::Source source{fs::weakly_canonical(data, code).filename().string(), study::is_simulated(data)};
@@ -51,6 +53,8 @@ Outcome analyse_folder(const AnalyseOptions& options) {
       {"findings.csv", analysis::findings_csv(inquiry, result)},
       {"answers.csv", analysis::answers_csv(study, answers)},
       {"results.json", analysis::to_json(study, inquiry, result, source, answers)}};
+  if (lies_within(options.output, data))
+    return Error{options.output + ": lies in the data folder " + data + "; another place was expected"};
   RunFiles checked;
   checked.reads_folder(data);
   if (fs::is_directory(options.output)) {
@@ -69,7 +73,11 @@ Outcome analyse_folder(const AnalyseOptions& options) {
   CATENA_CHECK(folder.commit());
 
   const analysis::Rejections all = result.all_rejected();
-  fmt::print("{} subjects, {} trials, {} left out\n", result.subjects.size(), all.trials, all.rejected());
+  constexpr std::size_t kMostTold = 10;
+  for (std::size_t i = 0; i < std::min(kMostTold, result.notes.size()); ++i) tell_from_catena("note: " + result.notes[i]);
+  if (result.notes.size() > kMostTold) tell_from_catena(fmt::format("note: and {} more, in the page", result.notes.size() - kMostTold));
+  fmt::print("{} subject{}, {} trials, {} left out\n", result.subjects.size(), result.subjects.size() == 1 ? "" : "s", all.trials,
+             all.rejected());
   for (std::size_t i = 0; i < inquiry.findings.size(); ++i)
     fmt::print("{}: {}\n", analysis::verdict_word(result.findings[i].verdict), printable(inquiry.findings[i].paper));
   if (source.simulated) fmt::print("{}\n", analysis::kModelSentence);

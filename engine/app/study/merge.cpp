@@ -9,8 +9,10 @@
 
 #include "engine/app/study/study_command.h"
 #include "engine/base/output_file.h"
+#include "engine/base/tell.h"
 #include "engine/base/text.h"
 #include "engine/study/answers.h"
+#include "engine/study/departures.h"
 #include "engine/study/trial_table.h"
 
 namespace catena::app {
@@ -45,21 +47,29 @@ Outcome merge(const MergeOptions& options) {
   // all are read before anything is written
   std::optional<study::Study> study;
   std::map<int, std::pair<std::string, std::vector<study::Row>>> subjects;
+  std::vector<std::string> notes;
+  const bool simulated = study::is_simulated(options.folders.front());
   for (const std::string& folder : options.folders) {
     if (same_file(folder, options.output)) return Error{options.output + ": is one of the folders to merge; another one was expected"};
+    if (lies_within(options.output, folder))
+      return Error{options.output + ": lies in " + folder + ", which is merged; another place was expected"};
+    if (study::is_simulated(folder) != simulated)
+      return Error{fmt::format("{}: {} a model did, {} people; data of one kind were expected", folder,
+                               simulated ? options.folders.front() : folder, simulated ? folder : options.folders.front())};
     CATENA_TRY(study::Study one, study::read_study((fs::path(folder) / "study.json").string()));
     if (study && study->text != one.text) return Error{one.path + ": differs from " + study->path + "; data of one study were expected"};
     if (!study) study.emplace(std::move(one));
-    CATENA_TRY(const std::vector<int> numbers, study::subjects_in(folder));
+    CATENA_TRY(const std::vector<int> numbers, study::subjects_in(folder, &notes));
     for (const int number : numbers) {
-      CATENA_TRY(std::vector<study::Row> rows, study::rows_in(folder, number));
+      CATENA_TRY(std::vector<study::Row> rows, study::rows_in(folder, number, &notes));
       const auto [found, is_new] = subjects.try_emplace(number, folder, rows);
       if (!is_new && found->second.second != rows)
         return Error{fmt::format("{}: subject {} has other trials than in {}; each subject in one folder was expected", folder, number,
                                  found->second.first)};
     }
   }
-  CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, *study));
+  CATENA_TRY(const study::DataFolder data,
+             study::DataFolder::open(options.output, *study, simulated ? study::Who::model : study::Who::people));
   std::size_t trials = 0;
   for (const auto& [number, from] : subjects) {
     CATENA_TRY(const std::vector<study::Row> there, data.rows(number));
@@ -69,8 +79,11 @@ Outcome merge(const MergeOptions& options) {
     CATENA_CHECK(bring_answers(from.first, options.output, number));
     trials += from.second.size();
   }
-  if (std::any_of(options.folders.begin(), options.folders.end(), study::is_simulated)) CATENA_CHECK(data.mark_simulated());
   CATENA_CHECK(data.write_table());
+  std::vector<study::Row> all;
+  for (const auto& [number, from] : subjects) all.insert(all.end(), from.second.begin(), from.second.end());
+  for (const std::string& line : study::departures(*study, all)) notes.push_back(line);
+  for (const std::string& note : notes) tell_from_catena("note: " + note);
   fmt::print("{}: {} subjects, {} trials\n", printable(options.output), subjects.size(), trials);
   return Done{};
 }

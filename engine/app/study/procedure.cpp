@@ -101,6 +101,17 @@ Procedure::Stage Procedure::stage() const {
 
 const Page& Procedure::page() const { return pause_ ? *pause_ : pages_[steps_[at_].number]; }
 std::size_t Procedure::trial() const { return steps_[at_].number; }
+std::string Procedure::trial_words() const {
+  const study::Trial& now = trials_[trial()];
+  std::size_t number = 0, all = 0;
+  for (const study::Trial& one : trials_) {
+    if (one.training != now.training || (now.training && one.block != now.block)) continue;
+    ++all;
+    number += one.index <= now.index;
+  }
+  return fmt::format("{} {} of {}", now.training ? "Training," : "Trial", number, all);
+}
+
 const study::Question& Procedure::question() const { return study_.questions[steps_[at_].number]; }
 std::size_t Procedure::question_number() const { return steps_[at_].number; }
 
@@ -143,7 +154,7 @@ void Procedure::answer(const Stroke& stroke) {
       return choices.empty() ? remove_character(entry_) : entry_.clear();
     case Stroke::What::character: {
       const std::uint32_t c = stroke.character;
-      if (!choices.empty() && c >= '1' && c - '1' < std::min(kMaxAnswers, choices.size())) entry_ = choices[c - '1'];
+      if (!choices.empty() && c >= '1' && c - '1' < choices.size()) entry_ = choices[c - '1'];
       if (choices.empty() && c >= 0x20 && c != 0x7f && c <= 0x10ffff && entry_.size() + 4 <= kMaxAnswer) append_utf8(entry_, c);
       return;
     }

@@ -31,7 +31,6 @@ struct Stroke {
 class Procedure {
  public:
   static constexpr std::size_t kMaxAnswer = 1000;  ///< bytes of a typed one
-  static constexpr std::size_t kMaxAnswers = 9;    ///< of a question, to choose from
 
   enum class Stage : std::uint8_t { page, ready, running, question, over };
 
@@ -41,8 +40,10 @@ class Procedure {
             std::size_t answered = 0);
 
   Stage stage() const;
-  const Page& page() const;                 ///< Stage::page
-  std::size_t trial() const;                ///< ready, running: of trials()
+  const Page& page() const;   ///< Stage::page
+  std::size_t trial() const;  ///< ready, running: of trials()
+  /// "Trial 3 of 36", or "Training, 2 of 4" of those of its block.
+  std::string trial_words() const;
   const study::Question& question() const;  ///< Stage::question
   std::size_t question_number() const;      ///< from 0
   const std::vector<study::Trial>& trials() const { return trials_; }

@@ -17,20 +17,12 @@ namespace catena::app {
 namespace {
 
 struct StudyRunOptions {
-  std::string study, folder, device, firmware, forces, size = "1280x960";
+  std::string study, folder, device, firmware, forces, size = "1280x960", quality = "time=50";
   int subject = 0;
   bool full_screen = false;
   StereoChoice stereo;
   RealtimeChoice realtime;
 };
-
-Outcome check_questions(const study::Study& study) {
-  for (const study::Question& question : study.questions)
-    if (question.answers.size() > Procedure::kMaxAnswers)
-      return Error{fmt::format("{}: the question {} has {} answers; at most {} were expected, a key each", study.path,
-                               in_quotes(question.name), question.answers.size(), Procedure::kMaxAnswers)};
-  return Done{};
-}
 
 Result<Instructions> instructions_of(const study::Study& study) {
   if (study.instructions.empty()) return Instructions{};
@@ -61,10 +53,9 @@ ViewOptions view_options(const StudyRunOptions& options, const Size& size) {
 Outcome run_study(const StudyRunOptions& options) {
   CATENA_TRY(const Size size, parse_size(options.size));
   CATENA_TRY(const study::Study study, study::read_study(options.study));
-  CATENA_CHECK(check_questions(study));
   CATENA_TRY(const Instructions instructions, instructions_of(study));
   ViewOptions view = view_options(options, size);
-  CATENA_TRY(view.quality, parse_quality("time=50"));
+  CATENA_TRY(view.quality, parse_quality(options.quality));
   const auto adjust = [&](scene::Scene& scene) { return options.stereo.apply(scene.stereo); };
   // the first trial's scene says what a device needs to know
   const std::vector<study::Trial> trials = study::session_of(study, options.subject);
@@ -77,6 +68,7 @@ Outcome run_study(const StudyRunOptions& options) {
   Procedure procedure(study, instructions, folder.trials(), folder.finished(), folder.answered());
   LiveSession session(study, folder, procedure, adjust);
   CATENA_TRY(auto scene, session.next_scene());
+  tell(fmt::format("study run: subject {}: the window opens, and the first picture is made ready", options.subject));
   auto window = Window::create(size.width, size.height, "catena study");
   if (!window) return Error{window.error().message, true};
   std::optional<Failure> failure;
@@ -108,6 +100,8 @@ void add_study_run(CLI::App& study, Work& chosen) {
       ->check(CLI::IsMember({"on", "off"}));
   command->add_option("--firmware", options->firmware, "falcon: the vendor's image, sent when the device has none");
   command->add_option("--size", options->size, "of the window, WxH")->capture_default_str();
+  command->add_option("--quality", options->quality, "of the pictures, as of view: error=2 is as sharp at any time, whatever the machine")
+      ->capture_default_str();
   command->add_flag("--full-screen", options->full_screen, "as large as the screen (F11)");
   add_stereo_options(*command, options->stereo);
   add_realtime_options(*command, options->realtime);

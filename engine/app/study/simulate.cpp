@@ -14,6 +14,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/json_edit.h"
 #include "engine/base/numbers.h"
+#include "engine/base/output_file.h"
 #include "engine/base/text.h"
 #include "engine/base/threads.h"
 #include "engine/study/simulated_trial.h"
@@ -27,7 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SimulateOptions {
-  std::string study, output, shard;
+  std::string study, output;
+  std::optional<std::string> shard;
   std::vector<std::string> model;
   int subjects = 0;
   bool record = false;
@@ -50,11 +52,12 @@ struct Shard {
   int index = 1, count = 1;
 };
 
-Result<Shard> read_shard(const std::string& text) {
-  if (text.empty()) return Shard{};
+Result<Shard> read_shard(const std::optional<std::string>& given) {
+  if (!given) return Shard{};
+  const std::string& text = *given;
   const std::size_t slash = text.find('/');
   const auto index = parse_integer(text.substr(0, slash)), count = parse_integer(slash == std::string::npos ? "" : text.substr(slash + 1));
-  if (!index || !count || *index < 1 || *index > *count || *count > study::kMaxSubject)
+  if (!index || !count || text.find(' ') != std::string::npos || *index < 1 || *index > *count || *count > study::kMaxSubject)
     return Error{"--shard " + in_quotes(text) + ": no I/N; a share such as 1/4, 2/4, 3/4 or 4/4 was expected"};
   return Shard{static_cast<int>(*index), static_cast<int>(*count)};
 }
@@ -72,19 +75,31 @@ class Recordings {
     header.catena_version = kCatenaVersion;
     header.rate_hz = study::kSimulatedRateHz;
     header.about = about_trial(study_, trial);
-    CATENA_TRY(writer_, haptics::log::LogWriter::open((fs::path(folder_) / study::recording_name(trial)).string(), std::move(header)));
+    place_ = (fs::path(folder_) / study::recording_name(trial)).string();
+    remove_stale_parts(place_);
+    unfinished_ = part_name(place_);
+    CATENA_TRY(writer_, haptics::log::LogWriter::open(unfinished_, std::move(header)));
     writer_->add_program(program);
     return writer_.get();
   }
+  /// A recording gets its name once it is whole.
   Outcome end() {
     if (!writer_) return Done{};
     const auto writer = std::move(writer_);
-    return writer->finish();
+    CATENA_CHECK(writer->finish());
+    std::error_code code;
+    fs::rename(std::exchange(unfinished_, {}), place_, code);
+    if (code) return Error{place_ + ": cannot write: " + code.message()};
+    return Done{};
+  }
+  ~Recordings() {
+    std::error_code ignored;
+    if (!unfinished_.empty()) fs::remove(unfinished_, ignored);
   }
 
  private:
   const study::Study& study_;
-  std::string folder_;
+  std::string folder_, place_, unfinished_;
   std::unique_ptr<haptics::log::LogWriter> writer_;
 };
 
@@ -117,9 +132,15 @@ Outcome simulate_subject(const study::Study& study, const study::DataFolder& dat
     };
   study::TrialSimulator simulator(study, recorder);
   for (std::size_t i = session.done; i < session.trials.size(); ++i) {
-    CATENA_TRY(const study::Measured measured, simulator.run(session.trials[i]));
+    const study::Trial& trial = session.trials[i];
+    const auto ran = simulator.run(trial);
+    if (!ran) return Error{fmt::format("{} (subject {}, trial {})", ran.error().message, trial.subject, trial.index)};
+    const study::Measured& measured = *ran;
+    if (!std::isfinite(measured.error_mm) || !std::isfinite(measured.travelled_mm) || !is_finite(measured.end_mm))
+      return Error{fmt::format("{}: subject {}, trial {}: the model left all numbers; milder ones in \"operator\" were expected",
+                               study.path, trial.subject, trial.index)};
     CATENA_CHECK(recordings.end());
-    CATENA_CHECK(data.append(study::row_of(study, session.trials[i], measured)));
+    CATENA_CHECK(data.append(study::row_of(study, trial, measured)));
     on_trial();
   }
   return Done{};
@@ -129,8 +150,7 @@ Outcome simulate(const SimulateOptions& options) {
   CATENA_TRY(const study::Study study, study_with_model(options));
   CATENA_TRY(const Shard shard, read_shard(options.shard));
   CATENA_CHECK(study::TrialSimulator(study).check());
-  CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study));
-  CATENA_CHECK(data.mark_simulated());
+  CATENA_TRY(const study::DataFolder data, study::DataFolder::open(options.output, study, study::Who::model));
   if (options.record) CATENA_CHECK(study::make_folder(study::recordings_folder(data.path())));
   const int subjects = options.subjects > 0 ? options.subjects : study.subjects;
   std::vector<Session> sessions;

@@ -31,7 +31,7 @@ void sync_folder(const std::string& folder) {
 }  // namespace
 
 Result<SubjectFolder> SubjectFolder::open(const std::string& path, const study::Study& study, int subject) {
-  CATENA_TRY(study::DataFolder folder, study::DataFolder::open(path, study));
+  CATENA_TRY(study::DataFolder folder, study::DataFolder::open(path, study, study::Who::people));
   SubjectFolder result(study, subject, std::move(folder));
   CATENA_CHECK(study::make_folder(study::recordings_folder(path)));
   CATENA_CHECK(study::make_folder(std::filesystem::path(study::answers_file(path, subject)).parent_path()));

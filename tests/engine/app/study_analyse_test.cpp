@@ -24,7 +24,7 @@ TEST(StudyFindings, AreJudgedByTheirTests) {
   EXPECT_EQ(finding(clear, "1 of 400 was rejected").verdict, Verdict::supported);
   EXPECT_EQ(finding(clear, "they liked it").verdict, Verdict::not_testable);
   EXPECT_EQ(finding(clear, "they liked it").text(), "nobody was asked");
-  EXPECT_TRUE(finding(clear, "the times' intervals overlap").text().starts_with("2 of 2: trace: free "));
+  EXPECT_TRUE(finding(clear, "the times' intervals overlap").text().starts_with("2 of 2: yes: trace: free "));
 
   // the other way round, and without any
   const Analysis turned = analysed(table(random, {.effect = -3, .haste = 3})), none = analysed(table(random, {}));

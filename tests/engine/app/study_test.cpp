@@ -54,6 +54,10 @@ TEST(Study, ShardsAreTheWholeToTheBit) {
   fs::create_directories(folder / "bad/subjects");
   test::write_file(folder / "bad/study.json", test::read_file(path));
   test::write_file(folder / "bad/subjects/001.csv", other);
+  const auto mixed = study({"merge", folder / "part1", folder / "bad", "-o", folder / "never"});
+  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_NE(mixed.err.find("a model did"), std::string::npos) << mixed.err;
+  test::write_file(folder / "bad/simulated.json", "{}");
   const auto refused = study({"merge", folder / "part1", folder / "bad", "-o", folder / "never"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.err.find("subject 1 has other trials"), std::string::npos) << refused.err;
@@ -71,6 +75,9 @@ TEST(Study, GoesOnWhereItWasEnded) {
   fs::create_directories(folder / "b/subjects");
   test::write_file(folder / "b/study.json", test::read_file(path));
   test::write_file(folder / "b/subjects/001.csv", whole.substr(0, at + 17));
+  EXPECT_EQ(study({"simulate", path, "--subjects", "1", "-o", folder / "b"}).exit_code, 2)
+      << "a person's session is not finished by a model";
+  test::write_file(folder / "b/simulated.json", "{}");
   const auto on = study({"simulate", path, "--subjects", "1", "-o", folder / "b"});
   ASSERT_EQ(on.exit_code, 0) << on.err;
   EXPECT_NE(on.out.find("16 trials, 7 of them now"), std::string::npos) << on.out;
@@ -155,6 +162,41 @@ TEST(Study, AnotherModelIsAnotherStudy) {
   EXPECT_NE(other.err.find("another study"), std::string::npos) << other.err;
 }
 
+/// The paper's study, a text of it replaced; what `study scene` says of it.
+std::string refusal(const test::TemporaryFolder& folder, const std::string& from, const std::string& to) {
+  std::string text = test::read_file(short_study(folder));
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+  test::write_file(folder / "changed.json", text);
+  const auto run = study({"scene", folder / "changed.json", "-o", folder / "d.json"});
+  EXPECT_EQ(run.exit_code, 2) << to << run.err;
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_FALSE(test::exists(folder / "d.json"));
+  return run.err;
+}
+
+TEST(Study, WhatCouldNotBeDoneOrReadAgainIsRefusedInTheFile) {
+  const test::TemporaryFolder folder;
+  EXPECT_NE(refusal(folder, "\"name\": \"iso\"", "\"name\": \"i\\nso\"").find("\"name\""), std::string::npos);
+  EXPECT_NE(refusal(folder, "\"name\": \"iso\"", "\"name\": \"\"").find("\"name\""), std::string::npos);
+  EXPECT_NE(refusal(folder, "\"metres_per_unit\": 0.05", "\"metres_per_unit\": 1e-9").find("times as long as the field's box"),
+            std::string::npos);
+  EXPECT_NE(refusal(folder, "\"stimulus\": {", "\"stimulus\": {\"turn_deg\": 180, \"candidates\": 1, ").find("turn too little"),
+            std::string::npos);
+}
+
+TEST(Study, WithoutGlobalLinesNoneAreDrawn) {
+  const test::TemporaryFolder folder;
+  std::string text = test::read_file(short_study(folder));
+  text.replace(text.find("\"lines\": 14"), 11, "\"lines\": 0");
+  test::write_file(folder / "none.json", text);
+  const auto run = study({"scene", folder / "none.json", "-o", folder / "d.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto info = test::run_catena({"info", folder / "d.json"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+}
+
 TEST(Study, MistakesAreOneLine) {
   const test::TemporaryFolder folder;
   const std::string path = short_study(folder);
@@ -163,6 +205,8 @@ TEST(Study, MistakesAreOneLine) {
       {"simulate", path, "--subjects", "0", "-o", folder / "d"},
       {"simulate", path, "--subjects", "1", "--shard", "3/2", "-o", folder / "d"},
       {"simulate", path, "--subjects", "1", "--shard", "half", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "1", "--shard", "", "-o", folder / "d"},
+      {"simulate", path, "--subjects", "1", "--model", "tremor_mm=1e300", "-o", folder / "d"},
       {"simulate", path, "--subjects", "1", "--model", "tremor_mm", "-o", folder / "d"},
       {"simulate", path, "--subjects", "1", "--model", "tremor=1", "-o", folder / "d"},
       {"simulate", path, "--subjects", "1", "--model", "tremor_mm=-1", "-o", folder / "d"},

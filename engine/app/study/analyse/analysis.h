@@ -105,8 +105,9 @@ struct Analysis {
   std::vector<Paired> conditions, tasks, trade;
   std::vector<Correlated> correlations;
   std::vector<Change> changes;
-  std::vector<Judged> findings;   ///< of the inquiry, in its order
-  std::vector<std::string> gaps;  ///< "subject 7: no kept trials of tracing_2d in iso"
+  std::vector<Judged> findings;    ///< of the inquiry, in its order
+  std::vector<std::string> gaps;   ///< "subject 7: no kept trials of tracing_2d in iso"
+  std::vector<std::string> notes;  ///< what of the data is not as the study's design has it
 
   std::size_t tasks_count = 0, conditions_count = 0;
   const Cell& cell(std::size_t subject, const Place& p) const {

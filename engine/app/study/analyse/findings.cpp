@@ -19,20 +19,22 @@ using study::Finding;
 struct Parts {
   int all = 0, borne_out = 0, untested = 0;
   std::vector<std::string> numbers;
+  std::vector<bool> bears;
 
   void add(std::optional<bool> says, const std::string& text) {
     ++all;
-    if (!says)
-      ++untested;
-    else if (*says)
-      ++borne_out;
+    untested += !says;
+    borne_out += says.value_or(false);
     numbers.push_back(text);
+    bears.push_back(says.value_or(false));
   }
   Judged judged() const {
     if (all == 0) return {Verdict::not_testable, {}, {"there is nothing to compare"}};
     if (untested > 0) return {Verdict::not_testable, {}, numbers};
-    return {borne_out == all ? Verdict::supported : Verdict::not_supported, all > 1 ? fmt::format("{} of {}", borne_out, all) : "",
-            numbers};
+    if (all == 1) return {borne_out == 1 ? Verdict::supported : Verdict::not_supported, {}, numbers};
+    std::vector<std::string> marked = numbers;
+    for (std::size_t i = 0; i < marked.size(); ++i) marked[i] = (bears[i] ? "yes: " : "no: ") + marked[i];
+    return {borne_out == all ? Verdict::supported : Verdict::not_supported, fmt::format("{} of {}", borne_out, all), marked};
   }
 };
 
@@ -51,6 +53,12 @@ Quantity quantity_of(const Finding& f) {
 std::optional<bool> first_is(const Paired& paired, Expect expect) {
   if (!paired.test) return std::nullopt;
   return paired.corrected < kAlpha && (expect == Expect::lower) == (paired.test->difference < 0);
+}
+
+/// A correlation that is another's opposite is no weaker one.
+bool is_reversed(const statistics::CorrelationDifference& x) {
+  const double df = x.n - 2, t = x.second * std::sqrt(df / (1 - x.second * x.second));
+  return x.first * x.second < 0 && statistics::two_sided_p(t, df) < kAlpha;
 }
 
 struct Judge {
@@ -130,7 +138,7 @@ struct Judge {
   Judged weaker(const Finding& f) const {
     using Difference = statistics::CorrelationDifference;
     return at_places(
-        f, analysis.changes, [](const Difference& x) { return std::fabs(x.second) < std::fabs(x.first); },
+        f, analysis.changes, [](const Difference& x) { return std::fabs(x.second) < std::fabs(x.first) && !is_reversed(x); },
         [](const Difference& x) { return fmt::format("r = {:.3f}, baseline {:.3f}, z = {:.2f}", x.second, x.first, x.z); });
   }
 
@@ -177,8 +185,8 @@ struct Judge {
     const double theirs = static_cast<double>(f.rejected) / f.trials;
     return {share.contains(theirs) ? Verdict::supported : Verdict::not_supported,
             {},
-            {fmt::format("{} of {} were left out, {:.1f} % ({:.1f} to {:.1f}); the paper's share is {:.1f} %", all.rejected(), all.trials,
-                         100.0 * all.rejected() / all.trials, 100 * share.low, 100 * share.high, 100 * theirs)}};
+            {fmt::format("{} of {} were left out, {:.1f} % ({:.1f} to {:.1f}); the share that is stated, {:.1f} %", all.rejected(),
+                         all.trials, 100.0 * all.rejected() / all.trials, 100 * share.low, 100 * share.high, 100 * theirs)}};
   }
 
   Judged of(const Finding& f) const {

@@ -41,7 +41,7 @@ std::string parts_cell(const Judged& judged) {
 }
 
 std::string findings_table(const study::Inquiry& inquiry, const Analysis& analysis) {
-  std::string text = table_head({"the paper", "its numbers", "these data", "numbers of these data"});
+  std::string text = table_head({"finding", "as reported", "these data", "numbers of these data"});
   for (std::size_t i = 0; i < inquiry.findings.size(); ++i) {
     const study::Finding& f = inquiry.findings[i];
     const Judged& judged = analysis.findings[i];
@@ -136,6 +136,31 @@ std::string rejections_table(const Study& study, const Analysis& analysis) {
   return text + kTableEnd + csv_note("rejections.csv");
 }
 
+std::string list_of(const std::vector<std::string>& lines) {
+  std::string text = "<ul>\n";
+  for (const std::string& line : lines) text += "<li>" + escaped(line) + "</li>\n";
+  return text + "</ul>\n";
+}
+
+/// Where one condition lost many more trials than another, those that are left are not alike.
+std::string uneven_shares(const Study& study, const Analysis& analysis) {
+  constexpr double kUneven = 0.1;
+  std::vector<std::string> lines;
+  for (int t = 0; t < static_cast<int>(analysis.tasks_count); ++t)
+    for (int c = 1; c < static_cast<int>(analysis.conditions_count); ++c) {
+      const Rejections &a = analysis.rejected({t, 0}), &b = analysis.rejected({t, c});
+      if (a.trials == 0 || b.trials == 0) continue;
+      const double share_a = static_cast<double>(a.rejected()) / a.trials, share_b = static_cast<double>(b.rejected()) / b.trials;
+      if (std::fabs(share_a - share_b) > kUneven)
+        lines.push_back(
+            fmt::format("{}: {:.0f} %; {}: {:.0f} %", place_text(study, {t, 0}), 100 * share_a, place_text(study, {t, c}), 100 * share_b));
+    }
+  if (lines.empty()) return {};
+  return "<p class=\"why\">So many more trials were left out under one condition than under the other that what is left is not a fair "
+         "sample of both:</p>\n" +
+         list_of(lines);
+}
+
 std::string section(const char* heading, const std::string& what, const std::vector<std::string>& plots = {}) {
   return fmt::format("<h2>{}</h2>\n<p>{}</p>\n", heading, escaped(what)) + (plots.empty() ? "" : plots_row(plots));
 }
@@ -195,20 +220,20 @@ std::string to_html(const Study& study, const study::Inquiry& inquiry, const Ana
   if (source.simulated) text += fmt::format("<p class=\"why\"><b>Simulated.</b> {}</p>\n", kModelSentence);
   text += summary(study, analysis, source);
   if (!inquiry.findings.empty())
-    text += section("The paper's findings", "Each finding that the study file names, and what these data say of it.") +
-            findings_table(inquiry, analysis);
+    text +=
+        section("Findings", "Each finding that the study file names, and what these data say of it.") + findings_table(inquiry, analysis);
   text +=
-      section("Conditions: means",
-              "Means over the subjects with their 95 % intervals, as in the paper's Figures 9 and 10: where two intervals do not overlap, "
-              "the means differ.",
-              drawn.means) +
+      section(
+          "Conditions: means",
+          "Means over the subjects with their 95 % intervals. Every subject did all conditions, so that whether they differ is what the "
+          "paired tests below say: their means may differ where intervals overlap.",
+          drawn.means) +
       means_table(study, analysis);
   text += section("Conditions: paired tests", "Means and standard deviations of every subject in one condition against another, paired.") +
           tests_table(study, analysis.conditions, "measure") + csv_note("tests.csv");
   if (!analysis.tasks.empty())
     text += section("Tasks", "One task against another, paired.") + tests_table(study, analysis.tasks, "measure") + csv_note("tests.csv");
-  text += section("Error and time", "A point is a subject: its mean error over its mean time, as in the paper's Figure 11.",
-                  drawn.correlations) +
+  text += section("Error and time", "A point is a subject: its mean error over its mean time.", drawn.correlations) +
           correlations_table(study, analysis);
   text +=
       section("The trade",
@@ -219,14 +244,14 @@ std::string to_html(const Study& study, const study::Inquiry& inquiry, const Ana
   text +=
       section("Trials that were left out", "Beyond the study's limits: " + limits_words(study) + "; or not finished within the trial.") +
       rejections_table(study, analysis);
+  text += uneven_shares(study, analysis);
   text += answers_html(study, answers);
+  if (!analysis.notes.empty()) text += "<h2>Not as designed</h2>\n" + list_of(analysis.notes);
   if (!analysis.gaps.empty()) {
-    text += "<h2>Missing</h2>\n<ul>\n";
-    for (const std::string& gap : analysis.gaps) text += "<li>" + escaped(gap) + "</li>\n";
-    text += "</ul>\n";
+    text += "<h2>Missing</h2>\n" + list_of(analysis.gaps);
   }
   if (drawn.means.empty())
-    text += "<p>There are no plots: gnuplot is not installed, or there is nothing to draw. The tables are complete.</p>\n";
+    text += "<p>There are no plots: there is nothing to draw, or the program gnuplot is missing. The tables are complete.</p>\n";
   return text + kHow + page_end();
 }
 

@@ -116,6 +116,7 @@ std::string to_json(const Study& study, const study::Inquiry& inquiry, const Ana
   text += fmt::format(" \"subjects\": {}, \"trials\": {}, \"rejected\": {}, \"training\": {},\n", numbers_list(analysis.subjects),
                       all.trials, all.rejected(), analysis.training);
   text += fmt::format(" \"gaps\": {},\n", json_list(analysis.gaps, json_string));
+  text += fmt::format(" \"notes\": {},\n", json_list(analysis.notes, json_string));
   const auto part = [&](const char* key, const std::string& json) { text += fmt::format(" \"{}\": {},\n", key, json); };
   part("findings", "[" + findings + "]");
   part("rejections", "[" + rejections + "]");

@@ -169,7 +169,7 @@ void draw_study(const StudyView& view, const std::vector<Area>& areas) {
         draw_question(view, areas[i], name.c_str());
         break;
       case Procedure::Stage::ready:
-        draw_line(fmt::format("Trial {} of {}.  {}", view.procedure.trial() + 1, view.procedure.trials().size(),
+        draw_line(fmt::format("{}.  {}", view.procedure.trial_words(),
                               view.at_start ? "Space: begin" : "Bring the cross to the start.  P: pause"),
                   areas[i], (name + "line").c_str());
         break;
