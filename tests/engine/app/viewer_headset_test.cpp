@@ -46,10 +46,11 @@ class ViewerHeadset : public testing::Test {
       if (name == word) return value;
     return -1;
   }
-  int lines_of_catena() const {
+  /// Beside what a slow machine is told of its frame rate.
+  int lost_lines() const {
     std::istringstream in(log());
     int count = 0;
-    for (std::string line; std::getline(in, line);) count += line.starts_with("catena: ");
+    for (std::string line; std::getline(in, line);) count += line.starts_with("catena: the headset could not");
     return count;
   }
   test::TemporaryFolder folder_;
@@ -62,7 +63,7 @@ TEST_F(ViewerHeadset, BothEyesAreDrawnAndTheFirstOneIsMirrored) {
   EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(seen("objects"), 0);
   EXPECT_NE(log().find("headset: "), std::string::npos) << log();
-  EXPECT_EQ(lines_of_catena(), 0) << log();
+  EXPECT_EQ(lost_lines(), 0) << log();
   const auto eye = render::read_png(folder_ / "eye.png");
   ASSERT_TRUE(eye) << eye.error().message;
   // the ball is straight ahead, and orange
@@ -74,7 +75,7 @@ TEST_F(ViewerHeadset, BothEyesAreDrawnAndTheFirstOneIsMirrored) {
 
 TEST_F(ViewerHeadset, WithoutARuntimeItSaysSoInOneLine) {
   EXPECT_EQ(view("--frames 2", "", "/nowhere/runtime.json"), 1) << log();
-  EXPECT_EQ(lines_of_catena(), 1) << log();
+  EXPECT_EQ(lost_lines(), 1) << log();
   EXPECT_NE(log().find("expected an OpenXR runtime"), std::string::npos) << log();
 }
 
@@ -91,7 +92,7 @@ TEST_F(ViewerHeadset, WhatIsLostComesBack) {
   ASSERT_EQ(view("--frames 60", "size=32x32 fail=xrEndFrame:6:-17 fail=xrWaitFrame:20:-13"), 0) << log();
   EXPECT_NE(log().find("XR_ERROR_SESSION_LOST"), std::string::npos) << log();
   EXPECT_NE(log().find("XR_ERROR_INSTANCE_LOST"), std::string::npos) << log();
-  EXPECT_EQ(lines_of_catena(), 2) << log();
+  EXPECT_EQ(lost_lines(), 2) << log();
   EXPECT_GT(seen("pictures"), 20);
   EXPECT_EQ(seen("illegal"), 0) << test::read_file(folder_ / "record");
   EXPECT_EQ(seen("objects"), 0);
