@@ -65,10 +65,10 @@ TEST_F(Foveation, RefinesWhereTheEyeLooksAndNotFarFromIt) {
             c.outside_interpolated += same(picture, rough, x, y) ? 1 : 0;
           }
         }
-      EXPECT_GT(c.inside, 400) << spacing << " " << right;
+      EXPECT_GT(c.inside, 300) << spacing << " " << right;
       EXPECT_EQ(c.inside_other, 0) << spacing << " " << right;
       EXPECT_GT(c.outside, 2000);
-      EXPECT_GT(c.outside_interpolated, c.outside / 3);
+      EXPECT_GT(c.outside_interpolated, c.outside / (spacing == 2 ? 3 : 8)) << "of two levels one may be refined";
       EXPECT_LT(c.outside_refined, c.outside * 2 / 3);
     }
   }
