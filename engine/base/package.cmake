@@ -103,4 +103,5 @@ install(FILES ${PROJECT_BINARY_DIR}/catena-config.cmake ${PROJECT_BINARY_DIR}/ca
   COMPONENT development)
 install(DIRECTORY docs/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
 
+include(engine/python/python.cmake)
 include(engine/base/deb.cmake)
