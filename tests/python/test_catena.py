@@ -14,6 +14,7 @@ import numpy as np
 import catena
 
 SOURCE, PROGRAM = os.environ["SOURCE"], os.environ["CATENA"]
+os.environ["PATH"] = os.path.dirname(PROGRAM) + ":" + os.environ["PATH"]
 
 
 def run(*arguments):
@@ -207,6 +208,36 @@ class Tables(unittest.TestCase):
             self.assertEqual(r["version"], catena.__version__)
             with self.assertRaises(catena.Error):
                 catena.recording(SOURCE + "/README.md")
+
+
+    def test_a_study_s_table_has_a_row_a_trial(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = run("study", "simulate", SOURCE + "/assets/studies/proxy-chain.json", "--subjects", "1", "-o", folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            table = catena.study_table(folder)
+            self.assertTrue(table["simulated"])
+            self.assertEqual(table["end_mm"].shape, (len(table["time_s"]), 3))
+            self.assertEqual(set(table["subject"]), {1})
+            self.assertEqual(table["condition"].dtype.kind, "U")
+
+
+class Windows(unittest.TestCase):
+    def test_an_array_and_a_scene_are_shown(self):
+        code = ("import numpy as np, catena\n"
+                "a = np.mgrid[:9, :9, :9][0]\n"
+                "print(catena.show(a, options=['--frames', '2']))\n"
+                "scene = {'isosurfaces': [{'field': 'height', 'level': 4}]}\n"
+                "done = catena.show(scene, fields={'height': a}, options=['--frames', '2', '--size', '200x150'])\n"
+                "print(done['changed'], '\"level\": 4' in done['scene'])\n"
+                "try: catena.show({'isosurfaces': [{'field': 'none', 'level': 4}]})\n"
+                "except catena.Error as error: print(error)\n")
+        done = subprocess.run(["sh", SOURCE + "/tests/support/on_display.sh", "640x480x24", os.sys.executable, "-c", code], capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines = done.stdout.strip().splitlines()
+        self.assertEqual(lines[0], "{'scene': None, 'changed': False}")
+        self.assertEqual(lines[1], "False True")
+        self.assertIn('unknown field "none"', lines[2])
 
 
 class Words(unittest.TestCase):

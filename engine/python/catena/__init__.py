@@ -166,7 +166,7 @@ def show(scene, *, fields=None, seconds=None, options=()):
         command = [_program(), "view", path, *arguments, *options]
         if seconds is not None:
             command += ["--seconds", str(seconds)]
-        done = _subprocess.run(command, stderr=_subprocess.PIPE, text=True, check=False)
+        done = _subprocess.run(command, stdout=_subprocess.DEVNULL, stderr=_subprocess.PIPE, text=True, check=False)
         if done.returncode != 0:
             lines = done.stderr.strip().splitlines() or [f"catena view ended with {done.returncode}"]
             raise (Error if done.returncode == 2 else MachineError)(lines[-1].removeprefix("catena: "))
