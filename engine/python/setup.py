@@ -1,5 +1,6 @@
 """pip install --no-build-isolation --no-deps engine/python: builds Catena with CMake and installs the module with its library and the
-programs that it starts, all inside of the package's folder. CATENA_BUILD names a build folder to keep (default: one below build/)."""
+programs that it starts, all inside of the package's folder. CATENA_BUILD names another build folder than build/pip, CATENA_PRESET another
+preset than release."""
 import os
 import pathlib
 import re
@@ -8,8 +9,7 @@ import subprocess
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
-# where pip copies this folder elsewhere, CATENA_SOURCE says where the checkout is
-SOURCE = pathlib.Path(os.environ.get("CATENA_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
 VERSION = re.search(r'kVersion = "(.*)"', (SOURCE / "engine/base/version.h").read_text(encoding="utf-8")).group(1)
 FOLDERS = {"LIB": "lib", "BIN": "bin", "LIBEXEC": "libexec", "DATAROOT": "share", "INCLUDE": "include"}
 
@@ -20,7 +20,7 @@ class CMakeBuild(build_ext):
         prefix = pathlib.Path(self.build_lib).resolve()
         if self.editable_mode:
             raise SystemExit("catena: an editable install is not made; build/PRESET/python can be put into PYTHONPATH")
-        subprocess.run(["cmake", "--preset", "release", "-S", str(SOURCE), "-B", str(build), "-DCATENA_BENCH=OFF", "-DCATENA_TESTS=OFF",
+        subprocess.run(["cmake", "--preset", os.environ.get("CATENA_PRESET", "release"), "-S", str(SOURCE), "-B", str(build), "-DCATENA_BENCH=OFF", "-DCATENA_TESTS=OFF",
                         "-DCATENA_PYTHON_FOLDER=.", *(f"-DCMAKE_INSTALL_{key}DIR=catena/{value}" for key, value in FOLDERS.items())],
                        cwd=SOURCE, check=True)
         subprocess.run(["cmake", "--build", str(build)], check=True)
