@@ -32,7 +32,7 @@ std::string roff_name(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names += (names.empty() ? "" : ", ") + ("\\fB" + roff("-" + name) + "\\fR");
   for (const std::string& name : option.get_lnames()) names += (names.empty() ? "" : ", ") + ("\\fB" + roff("--" + name) + "\\fR");
   if (names.empty()) return "\\fI" + roff(option.get_name(true)) + "\\fR";
-  return names + (option.get_type_size() != 0 ? " \\fI" + roff(option.get_type_name()) + "\\fR" : "");
+  return names + (!option.get_type_name().empty() ? " \\fI" + roff(option.get_type_name()) + "\\fR" : "");
 }
 
 void add_options(const CLI::App& command, std::string& page) {
