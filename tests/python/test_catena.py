@@ -221,6 +221,16 @@ class Tables(unittest.TestCase):
             self.assertEqual(table["condition"].dtype.kind, "U")
 
 
+    def test_a_trade_report_keeps_its_columns(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(run("tradeoff", "--figure", "2", "-o", folder).returncode, 0)
+            drift = catena.trade_report(folder)["figure2-drift"]
+            with open(folder + "/figure2-drift.csv", encoding="utf-8") as file:
+                self.assertEqual(",".join(drift.dtype.names), file.readline().strip())
+            lap = dict(zip(drift["method"], drift["drift_mm_first_lap"]))
+            self.assertGreater(abs(lap["linear"]), 1e3 * abs(lap["selected"]))
+
+
 class Windows(unittest.TestCase):
     def test_an_array_and_a_scene_are_shown(self):
         code = ("import numpy as np, catena\n"

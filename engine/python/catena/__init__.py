@@ -103,7 +103,8 @@ def study_table(folder):
 
 
 def trade_report(folder):
-    """What `catena tradeoff -o FOLDER` wrote: {"report": the JSON file's object, NAME: a structured array of NAME.csv, ...}."""
+    """What `catena tradeoff -o FOLDER` wrote: {NAME: a structured array of NAME.csv, with its columns' names, ...}, and, of a report of a
+    scene, {"tradeoff": the object of tradeoff.json}."""
     folder = _os.fspath(folder)
     if not _os.path.isdir(folder):
         raise Error(f"{folder}: is no folder; what `catena tradeoff -o` wrote was expected")
@@ -111,7 +112,8 @@ def trade_report(folder):
     for entry in sorted(_os.listdir(folder)):
         path = _os.path.join(folder, entry)
         if entry.endswith(".csv"):
-            found[entry[:-4]] = _np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8", comments=None)
+            found[entry[:-4]] = _np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8", comments=None, deletechars="",
+                                              replace_space=" ")
         elif entry.endswith(".json"):
             with open(path, encoding="utf-8") as file:
                 found[entry[:-5]] = _json.load(file)
