@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
@@ -20,8 +21,8 @@ class CMakeBuild(build_ext):
         prefix = pathlib.Path(self.build_lib).resolve()
         if self.editable_mode:
             raise SystemExit("catena: an editable install is not made; build/PRESET/python can be put into PYTHONPATH")
-        subprocess.run(["cmake", "--preset", os.environ.get("CATENA_PRESET", "release"), "-S", str(SOURCE), "-B", str(build), "-DCATENA_BENCH=OFF", "-DCATENA_TESTS=OFF",
-                        "-DCATENA_PYTHON_FOLDER=.", *(f"-DCMAKE_INSTALL_{key}DIR=catena/{value}" for key, value in FOLDERS.items())],
+        subprocess.run(["cmake", "--preset", os.environ.get("CATENA_PRESET", "release"), "-S", str(SOURCE), "-B", str(build),
+                        "-DCATENA_BENCH=OFF", "-DCATENA_TESTS=OFF", f"-DPython3_EXECUTABLE={sys.executable}", "-DCATENA_PYTHON_FOLDER=.", *(f"-DCMAKE_INSTALL_{key}DIR=catena/{value}" for key, value in FOLDERS.items())],
                        cwd=SOURCE, check=True)
         subprocess.run(["cmake", "--build", str(build)], check=True)
         for component in ("python", "library", "catena"):
