@@ -98,7 +98,8 @@ py::list words(const std::vector<study::Row>& rows, Member member) {
 }
 
 py::dict study_table(const std::string& folder) {
-  const std::vector<study::Row> rows = take(study::read_table(folder)).rows;
+  const study::TrialTable table = take(study::read_table(folder));
+  const std::vector<study::Row>& rows = table.rows;
   const py::object array = py::module_::import("numpy").attr("array");
   py::dict out;
   const auto add = [&](const char* name, const py::list& values, const char* type) { out[name] = array(values, py::arg("dtype") = type); };
@@ -121,6 +122,7 @@ py::dict study_table(const std::string& folder) {
   for (const study::Row& row : rows) ends.push_back(row.end_mm);
   out["end_mm"] = array_of(ends);
   out["simulated"] = study::is_simulated(folder);
+  out["notes"] = table.notes;
   return out;
 }
 

@@ -98,7 +98,8 @@ def recording(path):
 
 def study_table(folder):
     """All finished trials of a study's data folder, as a dict of arrays with a row for each: subject, task, condition, time_s, error_mm, ...
-    end_mm is (N, 3). Rows of training are there too (training). "simulated" is one truth value: a model of a person did some of the trials."""
+    end_mm is (N, 3). Rows of training are there too (training). "simulated" is one truth value: a model of a person did
+    the trials; "notes" are lines about what of the folder was not taken."""
     return _study_table(_os.fspath(folder))
 
 
